@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib_core/kinematic_model.hpp"
+
+namespace calib {
+
+/// A body of the arm or the probe: all points within radius_m of a segment, fixed in one frame of the arm.
+struct Capsule {
+  std::string name;
+  int frame = 0;  // 0 to 7: the body moves with R_frame
+  Eigen::Vector3d from_m;
+  Eigen::Vector3d to_m;
+  double radius_m = 0.0;
+};
+
+/// An obstacle: a box with edges along R_-1's axes.
+struct Box {
+  std::string name;
+  Eigen::Vector3d min_m;
+  Eigen::Vector3d max_m;
+};
+
+/// What may collide. Bodies are in order from the base to the stylus.
+struct CollisionScene {
+  std::vector<Capsule> bodies;
+  std::vector<Box> obstacles;
+};
+
+/// Two things that are too near: body against obstacle or body against body.
+struct Clash {
+  std::string body;
+  std::string other;
+  double distance_m = 0.0;  // between the surfaces, negative when they overlap
+};
+
+/// Distance between the surface of a capsule given by its end points in R_-1 and a box; negative inside is not
+/// promised to be exact, only to be <= 0.
+double capsule_box_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, double radius_m,
+                              const Box& box);
+
+/// Shortest distance between two segments.
+double segment_distance_m(const Eigen::Vector3d& from_a, const Eigen::Vector3d& to_a,
+                          const Eigen::Vector3d& from_b, const Eigen::Vector3d& to_b);
+
+/// The first pair nearer than `clearance_m` (obstacles) or touching (arm against itself), or nothing.
+/// Bodies of the same or of neighbouring frames never clash with each other.
+std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain, double clearance_m);
+
+}  // namespace calib

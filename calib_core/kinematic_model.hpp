@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+
+#include "calib_core/joint_vector.hpp"
+
+namespace calib {
+
+/// Frames R_0 to R_7: 0 places the arm in the block's frame R_-1, 1 to 6 are the joints, 7 ends in the centre
+/// of the stylus ball.
+inline constexpr int kFrameCount = 8;
+
+/// Constant parameters of one frame (Khalil and Kleinfinger's modified DH, with Hayati's beta).
+/// The transform from R_(j-1) to R_j is Rot(y,beta) Rot(x,alpha) Trans(x,d) Rot(z,theta) Trans(z,r).
+/// At a joint, theta_rad (r_m for a prismatic joint) is the offset added to gain * joint position (eq. 1).
+struct LinkParameters {
+  double alpha_rad = 0.0;
+  double d_m = 0.0;
+  double theta_rad = 0.0;
+  double r_m = 0.0;
+  double beta_rad = 0.0;
+};
+
+enum class JointType { kRevolute, kPrismatic };
+
+struct KinematicModel {
+  std::array<LinkParameters, kFrameCount> links{};
+  std::array<JointType, kJointCount> joint_types{};                           // of frames 1 to 6
+  std::array<double, kJointCount> gains{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // K_j of eq. 1
+};
+
+/// Every frame of the arm in the block's frame R_-1.
+struct Chain {
+  std::array<Eigen::Isometry3d, kFrameCount> block_from_frame;
+
+  [[nodiscard]] Eigen::Vector3d tip_in_block_m() const { return block_from_frame.back().translation(); }
+};
+
+/// Transform of one frame in the one before it.
+Eigen::Isometry3d frame_transform(const LinkParameters& link);
+
+/// All frames at a joint vector.
+Chain forward_chain(const KinematicModel& model, const JointVector& joints);
+
+/// R_7 in R_-1; its origin is the centre of the stylus ball.
+Eigen::Isometry3d forward_kinematics(const KinematicModel& model, const JointVector& joints);
+
+/// Bound on |forward_kinematics - reference| for this size of arm; see tests/data/reference_poses.csv.
+inline constexpr double kPositionErrorMaxMetres = 1e-9;
+
+/// d tip / d joint, 3 x 6, in R_-1: metres per radian (per metre for a prismatic joint).
+Eigen::Matrix<double, 3, kJointCount> tip_jacobian(const KinematicModel& model, const Chain& chain);
+
+}  // namespace calib

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calib_core/collision.hpp"
+#include "calib_core/face.hpp"
+#include "calib_core/joint_vector.hpp"
+#include "calib_core/kinematic_model.hpp"
+#include "calib_core/touch.hpp"
+
+namespace calib {
+
+/// One touch to make. Approach, search end and clear posture keep the orientation that `joints` has; they lie on
+/// the face's outward normal through the touched point.
+struct PlannedTouch {
+  int face = 0;
+  TouchRole role = TouchRole::kFit;
+  JointVector joints;            // the nominal arm's ball touches the nominal face
+  JointVector clear_joints;      // well off the face: transfers begin and end here
+  JointVector approach_joints;   // standoff: the search begins and the retract ends here
+  JointVector search_end_joints;  // where a search that met nothing ends
+  Eigen::Vector3d search_direction;  // unit, in R_-1: into the face
+  double search_length_m = 0.0;
+  double tilt_rad = 0.0;  // stylus axis to inward normal
+};
+
+struct TouchRequest {
+  int face = 0;
+  int fit_count = 0;
+  int held_out_count = 0;
+};
+
+struct PlanningProblem {
+  KinematicModel nominal;
+  JointRanges joint_ranges;
+  std::vector<Face> faces;
+  Stylus stylus;
+  CollisionScene scene;
+  std::vector<TouchRequest> requests;
+  JointVector park_joints;        // where a run begins and ends; free of obstacles
+  double nominal_miss_m = 0.012;  // how far the uncalibrated arm may miss: sizes clearance, standoff and search
+  double tilt_max_rad = 0.0;
+  std::uint64_t seed = 1;  // of the candidates; the same problem gives the same plan
+};
+
+struct TouchPlan {
+  std::vector<PlannedTouch> touches;  // in the order they are made: planes interleaved, fit before held-out
+};
+
+/// Nothing can be planned: which face, how many of how many, and what stood in the way most often.
+struct PlanningFailure {
+  int face = 0;
+  int found = 0;
+  int wanted = 0;
+  std::string reason;
+};
+
+std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& problem);
+
+/// Joint postures that lead from `from` to `to` in straight joint moves, neither end included, all clear of the
+/// scene by the nominal miss; nothing when no way is found. Empty when the direct move is clear.
+std::optional<std::vector<JointVector>> find_transfer(const PlanningProblem& problem, const JointVector& from,
+                                                      const JointVector& to);
+
+/// find_transfer gives at most this many postures.
+inline constexpr std::size_t kTransferPosturesMax = 4;
+
+}  // namespace calib

@@ -1,0 +1,317 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <variant>
+
+/// Every message between touchcal and the controller, declared once; PROTOCOL.md describes the same in prose.
+/// A frame is a header and a payload of fixed size for its type, all little-endian:
+///   'T' 'C' | version u8 | type u8 | sequence u32 | payload length u16 | payload
+/// Payload fields are 32-bit words (VAL3 reads "-4l" and "4l") but for text, which is bytes padded with NUL.
+/// `visit` names the fields in wire order; codec.cpp reads and writes through it, so the two cannot drift.
+namespace cs8 {
+
+inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::size_t kHeaderSize = 10;
+inline constexpr std::size_t kPayloadSizeMax = 512;
+inline constexpr std::size_t kViaCountMax = 5;
+
+/// Joint positions as the controller has them, 10^-6 degree, joint 1 first.
+using JointsMicrodeg = std::array<std::int32_t, 6>;
+
+enum class MessageType : std::uint8_t {
+  // host -> controller
+  kHello = 1,
+  kHeartbeat = 2,
+  kTouch = 3,
+  kTravel = 4,
+  kRetract = 5,
+  kStop = 6,
+  kResultQuery = 7,
+  kResultAcknowledge = 8,
+  // controller -> host
+  kWelcome = 65,
+  kState = 66,
+  kAccepted = 67,
+  kRejected = 68,
+  kTouchResult = 69,
+  kMoveResult = 70,
+  kResultUnknown = 71,
+  kFault = 72,
+};
+
+/// Why a command was refused before anything moved.
+enum class RejectReason : std::int32_t {
+  kBusy = 1,                  // another motion command is running
+  kResultUnacknowledged = 2,  // the result of the previous command was not acknowledged yet
+  kStaleSequence = 3,         // older than the newest command and no longer stored
+  kNotRemote = 4,
+  kNotPowered = 5,
+  kHold = 6,
+  kEmergencyStop = 7,
+  kNotCalibrated = 8,
+  kOutOfRange = 9,            // a posture outside the joint ranges; `detail` is the joint, from 1
+  kProbeTriggered = 10,       // the probe reads touched before any motion
+  kMonitorSpeed = 11,         // not 100 %; `detail` is the monitor speed
+  kSearchTooLong = 12,        // `detail` is the limit, 10^-4 mm
+  kSearchTooFast = 13,        // the arm could not stop within half the overtravel; `detail` is the limit, um/s
+  kBadField = 14,             // a count, speed or deadline that makes no sense; `detail` is the word, from 1
+  kNothingToRetract = 15,
+  kRetractPending = 16,       // the stylus was left near a face: only a retract is allowed
+};
+
+/// How a motion command ended.
+enum class Outcome : std::int32_t {
+  kContact = 1,            // touch: the probe tripped in the search and was free again after the retract
+  kNoContact = 2,          // touch: search end reached, no edge; retracted
+  kArrived = 3,            // travel, retract: at the last posture
+  kUnexpectedContact = 4,  // an edge in a move that is not a search: stopped there
+  kProbeStuck = 5,         // still touched after the retract
+  kStopped = 6,            // by kStop; a search was retracted to its approach posture
+  kHeartbeatLost = 7,      // the host was silent: stopped, not retracted
+  kPermissionLost = 8,     // power, mode, hold or emergency stop
+  kCollision = 9,          // following error or crash protection; power is off
+  kMotionError = 10,       // error_number says which run-time error (out of reach, singular line, ...)
+  kDeadline = 11,          // not done within deadline_ms: stopped
+  kOvertravel = 12,        // the arm stopped farther behind the trigger than the stylus may bend
+};
+
+/// What the controller is doing in a motion command, and how far it got.
+enum class Phase : std::int32_t { kIdle = 0, kTravel = 1, kApproach = 2, kSearch = 3, kRetract = 4 };
+
+/// Where the joints of a contact come from.
+enum class CaptureSource : std::int32_t { kNone = 0, kLatched = 1, kPolled = 2 };
+
+enum class WorkingMode : std::int32_t { kNone = 0, kManual = 1, kTest = 2, kLocal = 3, kRemote = 4 };
+
+/// Bits of State::flags.
+enum StateFlag : std::uint32_t {
+  kPowered = 1u << 0,
+  kHeld = 1u << 1,           // move/hold key on hold: the queue does not move
+  kArmCalibrated = 1u << 2,  // joint positions are referenced
+  kSettled = 1u << 3,
+  kQueueEmpty = 1u << 4,
+  kProbeTouched = 1u << 5,
+  kRetractDue = 1u << 6,  // a search was broken off: only kRetract moves
+};
+
+/// Why the controller closes the connection.
+enum class FaultCode : std::int32_t {
+  kBadMagic = 1,
+  kVersion = 2,      // `detail` is the controller's protocol version
+  kUnknownType = 3,  // `detail` is the type
+  kLength = 4,       // payload length is not the type's; `detail` is the expected length
+  kNoHandshake = 5,  // a command before kHello
+  kOccupied = 6,     // another host is connected
+  kWrongSide = 7,    // a message only the controller sends
+};
+
+// ---- host -> controller -------------------------------------------------------------------------------------
+
+/// First message of a connection.
+struct Hello {
+  static constexpr MessageType kType = MessageType::kHello;
+  std::uint32_t heartbeat_timeout_ms{};  // the controller stops when it hears nothing for this long; 200..2000
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.heartbeat_timeout_ms); }
+};
+
+/// Sent every 100 ms.
+struct Heartbeat {
+  static constexpr MessageType kType = MessageType::kHeartbeat;
+  std::uint32_t host_clock_ms{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.host_clock_ms); }
+};
+
+/// One guarded touch, carried out whole: joint moves through `via` to `clear`, to `approach`, a straight line to
+/// `search_end` until the probe trips, back to `approach`, back to `clear`. Answered once, by TouchResult.
+struct Touch {
+  static constexpr MessageType kType = MessageType::kTouch;
+  std::int32_t via_count{};  // how many of `via` are used
+  std::array<JointsMicrodeg, kViaCountMax> via{};
+  JointsMicrodeg clear{};
+  JointsMicrodeg approach{};
+  JointsMicrodeg search_end{};
+  std::int32_t travel_speed_um_s{};    // cap of the tool centre's speed on the way to `clear`
+  std::int32_t approach_speed_um_s{};  // clear <-> approach, and the retract
+  std::int32_t search_speed_um_s{};
+  std::uint32_t deadline_ms{};  // of the whole command
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) {
+    fields(m.via_count, m.via, m.clear, m.approach, m.search_end, m.travel_speed_um_s, m.approach_speed_um_s,
+           m.search_speed_um_s, m.deadline_ms);
+  }
+};
+
+/// Joint moves through `via` to `target`; an edge on the way is an unexpected contact. Answered by MoveResult.
+struct Travel {
+  static constexpr MessageType kType = MessageType::kTravel;
+  std::int32_t via_count{};
+  std::array<JointsMicrodeg, kViaCountMax> via{};
+  JointsMicrodeg target{};
+  std::int32_t travel_speed_um_s{};
+  std::uint32_t deadline_ms{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) {
+    fields(m.via_count, m.via, m.target, m.travel_speed_um_s, m.deadline_ms);
+  }
+};
+
+/// Back along the line of the search that was broken off, to its approach posture and on to its clear posture.
+/// The only motion allowed then.
+struct Retract {
+  static constexpr MessageType kType = MessageType::kRetract;
+  std::int32_t approach_speed_um_s{};
+  std::uint32_t deadline_ms{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.approach_speed_um_s, m.deadline_ms); }
+};
+
+/// Ends the running motion command at once; its result follows with kStopped. Harmless when nothing runs.
+struct Stop {
+  static constexpr MessageType kType = MessageType::kStop;
+  template <class Self, class Fields>
+  static void visit(Self&, Fields&) {}
+};
+
+/// What became of the command with this sequence? Answered by its result, by Accepted while it runs, or by
+/// ResultUnknown.
+struct ResultQuery {
+  static constexpr MessageType kType = MessageType::kResultQuery;
+  std::uint32_t command_sequence{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.command_sequence); }
+};
+
+/// The result is stored: the controller may forget it and take the next command.
+struct ResultAcknowledge {
+  static constexpr MessageType kType = MessageType::kResultAcknowledge;
+  std::uint32_t command_sequence{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.command_sequence); }
+};
+
+// ---- controller -> host -------------------------------------------------------------------------------------
+
+using Text16 = std::array<char, 16>;  // ASCII, padded with NUL
+
+/// Answer to Hello.
+struct Welcome {
+  static constexpr MessageType kType = MessageType::kWelcome;
+  Text16 application{};      // "touchcal"
+  Text16 arm{};              // "tx90"
+  std::uint32_t application_version{};  // 10000 major + 100 minor + patch
+  std::uint32_t language_version{};     // VAL3: 70702 is s7.7.2
+  std::uint32_t session{};              // counts starts of the application
+  std::uint32_t last_sequence{};        // newest command taken in this session, 0 for none
+  std::uint32_t open_sequence{};        // a command that runs or whose result waits, 0 for none
+  std::uint32_t heartbeat_timeout_ms{};
+  std::uint32_t clock_ms{};
+  JointsMicrodeg lower_limits{};
+  JointsMicrodeg upper_limits{};
+  std::int32_t search_length_max_dmm{};  // 10^-4 mm
+  std::int32_t search_speed_max_um_s{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) {
+    fields(m.application, m.arm, m.application_version, m.language_version, m.session, m.last_sequence,
+           m.open_sequence, m.heartbeat_timeout_ms, m.clock_ms, m.lower_limits, m.upper_limits,
+           m.search_length_max_dmm, m.search_speed_max_um_s);
+  }
+};
+
+/// Sent every 20 ms after Welcome; dropped, never queued, when the connection is full.
+struct State {
+  static constexpr MessageType kType = MessageType::kState;
+  std::uint32_t session{};
+  std::uint32_t clock_ms{};
+  std::uint32_t flags{};
+  WorkingMode mode{};
+  std::int32_t mode_status{};
+  std::int32_t emergency_stop{};  // 0 none, 1 released but to be acknowledged, 2 active
+  std::int32_t monitor_speed_percent{};
+  JointsMicrodeg joints{};  // commanded
+  std::uint32_t active_sequence{};  // the running command, 0 for none
+  Phase phase{};
+  std::int32_t task_error{};  // run-time error number of a task of the application, 0 for none
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) {
+    fields(m.session, m.clock_ms, m.flags, m.mode, m.mode_status, m.emergency_stop, m.monitor_speed_percent,
+           m.joints, m.active_sequence, m.phase, m.task_error);
+  }
+};
+
+/// The motion command with the header's sequence has been taken and is being carried out.
+struct Accepted {
+  static constexpr MessageType kType = MessageType::kAccepted;
+  template <class Self, class Fields>
+  static void visit(Self&, Fields&) {}
+};
+
+/// The motion command with the header's sequence was refused; nothing moved.
+struct Rejected {
+  static constexpr MessageType kType = MessageType::kRejected;
+  RejectReason reason{};
+  std::int32_t detail{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.reason, m.detail); }
+};
+
+/// How a Touch ended; the header's sequence is the command's. Kept until acknowledged.
+struct TouchResult {
+  static constexpr MessageType kType = MessageType::kTouchResult;
+  Outcome outcome{};
+  Phase phase{};           // reached when it ended early
+  CaptureSource source{};  // kNone unless the probe tripped in the search
+  JointsMicrodeg contact{};  // joints at the trigger; all 0 when source is kNone
+  JointsMicrodeg stopped{};  // joints where the arm came to rest behind it
+  std::int32_t overtravel_dmm{};  // tool centre's way between both, 10^-4 mm
+  std::int32_t search_speed_um_s{};
+  std::int32_t monitor_speed_percent{};
+  std::uint32_t contact_clock_ms{};
+  std::int32_t error_number{};  // run-time error for kMotionError, else 0
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) {
+    fields(m.outcome, m.phase, m.source, m.contact, m.stopped, m.overtravel_dmm, m.search_speed_um_s,
+           m.monitor_speed_percent, m.contact_clock_ms, m.error_number);
+  }
+};
+
+/// How a Travel or Retract ended. Kept until acknowledged.
+struct MoveResult {
+  static constexpr MessageType kType = MessageType::kMoveResult;
+  Outcome outcome{};
+  Phase phase{};
+  JointsMicrodeg joints{};  // where the arm stands now
+  std::int32_t error_number{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.outcome, m.phase, m.joints, m.error_number); }
+};
+
+/// No command with that sequence in this session, or its result was acknowledged.
+struct ResultUnknown {
+  static constexpr MessageType kType = MessageType::kResultUnknown;
+  std::uint32_t command_sequence{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.command_sequence); }
+};
+
+/// The connection is closed after this.
+struct Fault {
+  static constexpr MessageType kType = MessageType::kFault;
+  FaultCode code{};
+  std::int32_t detail{};
+  template <class Self, class Fields>
+  static void visit(Self& m, Fields& fields) { fields(m.code, m.detail); }
+};
+
+using Payload = std::variant<Hello, Heartbeat, Touch, Travel, Retract, Stop, ResultQuery, ResultAcknowledge, Welcome,
+                             State, Accepted, Rejected, TouchResult, MoveResult, ResultUnknown, Fault>;
+
+/// `sequence` is the command's number in a command and in all that answers it, a counter in State, else 0.
+struct Message {
+  std::uint32_t sequence{};
+  Payload payload;
+};
+
+}  // namespace cs8
