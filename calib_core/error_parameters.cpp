@@ -80,7 +80,7 @@ KinematicModel apply(const KinematicModel& model, const ErrorVector& errors) {
   return changed;
 }
 
-Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const Chain& chain, const KinematicModel& model) {
+Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicModel& model, const Chain& chain) {
   Eigen::Matrix<double, 3, kErrorParameterCount> derivatives;
   const Eigen::Vector3d tip = chain.tip_in_block_m();
   const auto& parameters = error_parameters();

@@ -44,6 +44,6 @@ double parameter_value(const KinematicModel& model, int index);
 KinematicModel apply(const KinematicModel& model, const ErrorVector& errors);
 
 /// d tip / d error parameter, 3 x 37, in R_-1: metres per metre and metres per radian; the psi of eq. 6.
-Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const Chain& chain, const KinematicModel& model);
+Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicModel& model, const Chain& chain);
 
 }  // namespace calib
