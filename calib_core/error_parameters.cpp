@@ -24,11 +24,16 @@ std::array<ErrorParameter, kErrorParameterCount> list_parameters() {
 
 std::string_view kind_name(ParameterKind kind) {
   switch (kind) {
-    case ParameterKind::kAlpha: return "alpha";
-    case ParameterKind::kD: return "d";
-    case ParameterKind::kTheta: return "theta";
-    case ParameterKind::kR: return "r";
-    case ParameterKind::kBeta: return "beta";
+    case ParameterKind::kAlpha:
+      return "alpha";
+    case ParameterKind::kD:
+      return "d";
+    case ParameterKind::kTheta:
+      return "theta";
+    case ParameterKind::kR:
+      return "r";
+    case ParameterKind::kBeta:
+      return "beta";
   }
   return "";
 }
@@ -37,11 +42,16 @@ template <class Model>
 auto& value_of(Model& model, const ErrorParameter& parameter) {
   auto& link = model.links[static_cast<std::size_t>(parameter.frame)];
   switch (parameter.kind) {
-    case ParameterKind::kAlpha: return link.alpha_rad;
-    case ParameterKind::kD: return link.d_m;
-    case ParameterKind::kTheta: return link.theta_rad;
-    case ParameterKind::kR: return link.r_m;
-    case ParameterKind::kBeta: break;
+    case ParameterKind::kAlpha:
+      return link.alpha_rad;
+    case ParameterKind::kD:
+      return link.d_m;
+    case ParameterKind::kTheta:
+      return link.theta_rad;
+    case ParameterKind::kR:
+      return link.r_m;
+    case ParameterKind::kBeta:
+      break;
   }
   return link.beta_rad;
 }
@@ -63,7 +73,8 @@ const std::array<ErrorParameter, kErrorParameterCount>& error_parameters() {
 
 std::optional<int> error_parameter_index(std::string_view name) {
   const auto& all = error_parameters();
-  const auto found = std::ranges::find_if(all, [&](const auto& parameter) { return parameter.name() == name; });
+  const auto found =
+      std::ranges::find_if(all, [&](const auto& parameter) { return parameter.name() == name; });
   if (found == all.end()) return std::nullopt;
   return static_cast<int>(found - all.begin());
 }
@@ -80,7 +91,8 @@ KinematicModel apply(const KinematicModel& model, const ErrorVector& errors) {
   return changed;
 }
 
-Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicModel& model, const Chain& chain) {
+Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicModel& model,
+                                                               const Chain& chain) {
   Eigen::Matrix<double, 3, kErrorParameterCount> derivatives;
   const Eigen::Vector3d tip = chain.tip_in_block_m();
   const auto& parameters = error_parameters();
@@ -97,10 +109,18 @@ Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicMo
     const Eigen::Vector3d x_turned =
         std::cos(beta) * before.linear().col(0) - std::sin(beta) * before.linear().col(2);
     switch (parameter.kind) {
-      case ParameterKind::kAlpha: derivatives.col(i) = x_turned.cross(tip - before.translation()); break;
-      case ParameterKind::kD: derivatives.col(i) = x_turned; break;
-      case ParameterKind::kTheta: derivatives.col(i) = z_here.cross(tip - here.translation()); break;
-      case ParameterKind::kR: derivatives.col(i) = z_here; break;
+      case ParameterKind::kAlpha:
+        derivatives.col(i) = x_turned.cross(tip - before.translation());
+        break;
+      case ParameterKind::kD:
+        derivatives.col(i) = x_turned;
+        break;
+      case ParameterKind::kTheta:
+        derivatives.col(i) = z_here.cross(tip - here.translation());
+        break;
+      case ParameterKind::kR:
+        derivatives.col(i) = z_here;
+        break;
       case ParameterKind::kBeta:
         derivatives.col(i) = before.linear().col(1).cross(tip - before.translation());
         break;

@@ -10,13 +10,14 @@
 
 namespace calib {
 
-/// The candidates of the identification (section II of the paper): alpha d theta r beta of frames 1 to 7, theta
-/// and r of frame 0.
+/// The candidates of the identification (section II of the paper): alpha d theta r beta of frames 1 to 7,
+/// theta and r of frame 0.
 inline constexpr int kErrorParameterCount = 37;
 
 enum class ParameterKind { kAlpha, kD, kTheta, kR, kBeta };
 
-/// What an error belongs to: the place of the block (all that comes before joint 1's motion), the arm, the tool.
+/// What an error belongs to: the place of the block (all that comes before joint 1's motion), the arm, the
+/// tool.
 enum class ParameterGroup { kPlace, kArm, kTool };
 
 struct ErrorParameter {
@@ -44,6 +45,7 @@ double parameter_value(const KinematicModel& model, int index);
 KinematicModel apply(const KinematicModel& model, const ErrorVector& errors);
 
 /// d tip / d error parameter, 3 x 37, in R_-1: metres per metre and metres per radian; the psi of eq. 6.
-Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicModel& model, const Chain& chain);
+Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicModel& model,
+                                                               const Chain& chain);
 
 }  // namespace calib

@@ -26,7 +26,7 @@ enum class JointType { kRevolute, kPrismatic };
 
 struct KinematicModel {
   std::array<LinkParameters, kFrameCount> links{};
-  std::array<JointType, kJointCount> joint_types{};                           // of frames 1 to 6
+  std::array<JointType, kJointCount> joint_types{};                     // of frames 1 to 6
   std::array<double, kJointCount> gains{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // K_j of eq. 1
 };
 

@@ -1,0 +1,159 @@
+#include "calib_core/identifiability.hpp"
+
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace calib {
+namespace {
+
+/// Rounding leaves a dependent column this far from zero, relative to the longest column. Eq. 13's tolerance
+/// falls below it when there are few rows; between it and the weakest real direction lie nine orders of
+/// magnitude.
+constexpr double kRoundingRelative = 1e-13;
+
+/// Factors smaller than this, relative to the largest, are rounding.
+constexpr double kFactorRelative = 1e-9;
+
+std::vector<int> column_order(const IdentifiabilityOptions& options) {
+  const auto listed = [](const std::vector<int>& list, int column) {
+    return std::ranges::find(list, column) != list.end();
+  };
+  std::vector<int> order;
+  for (int column = 0; column < kErrorParameterCount; ++column) {
+    if (!listed(options.excluded, column) && !listed(options.tried_last, column)) order.push_back(column);
+  }
+  for (const int column : options.tried_last) {
+    if (!listed(options.excluded, column)) order.push_back(column);
+  }
+  return order;
+}
+
+/// Householder reflectors of the kept columns, in the order they were kept.
+class Reflectors {
+ public:
+  explicit Reflectors(Eigen::Index rows) : rows_(rows) {}
+
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(vectors_.size()); }
+
+  void apply_to(Eigen::VectorXd& column) const {
+    for (Eigen::Index i = 0; i < count(); ++i) {
+      const Eigen::VectorXd& v = vectors_[static_cast<std::size_t>(i)];
+      auto tail = column.tail(rows_ - i);
+      tail -= 2.0 * v.dot(tail) * v;
+    }
+  }
+
+  /// Keeps a column that apply_to() has been through; returns it with its tail reflected onto one entry.
+  void keep(Eigen::VectorXd& column) {
+    auto tail = column.tail(rows_ - count());
+    const double norm = tail.norm();
+    Eigen::VectorXd v = tail;
+    const double head = v[0] > 0.0 ? -norm : norm;
+    v[0] -= head;
+    v.normalize();
+    tail.setZero();
+    tail[0] = head;
+    vectors_.push_back(std::move(v));
+  }
+
+ private:
+  Eigen::Index rows_;
+  std::vector<Eigen::VectorXd> vectors_;
+};
+
+/// What one unit of a dependent column adds to each kept one: R f = top of the reflected column.
+std::vector<std::pair<int, double>> combination(const std::vector<Eigen::VectorXd>& kept_columns,
+                                                const std::vector<int>& kept,
+                                                const Eigen::VectorXd& reflected) {
+  const auto count = static_cast<Eigen::Index>(kept.size());
+  Eigen::MatrixXd r(count, count);
+  for (Eigen::Index j = 0; j < count; ++j) r.col(j) = kept_columns[static_cast<std::size_t>(j)].head(count);
+  const Eigen::VectorXd factors = r.triangularView<Eigen::Upper>().solve(reflected.head(count));
+  const double largest = factors.cwiseAbs().maxCoeff();
+  std::vector<std::pair<int, double>> result;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    if (std::abs(factors[j]) > kFactorRelative * largest) {
+      result.emplace_back(kept[static_cast<std::size_t>(j)], factors[j]);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
+                                    const IdentifiabilityOptions& options) {
+  IdentifiableSet set;
+  set.smallest_kept = std::numeric_limits<double>::infinity();
+  for (const int column : options.excluded) {
+    set.candidates[static_cast<std::size_t>(column)].status = ParameterStatus::kExcluded;
+  }
+
+  const Eigen::Index rows = observation_matrix.rows();
+  const double longest = rows > 0 ? observation_matrix.colwise().norm().maxCoeff() : 0.0;
+  const double rounding =
+      std::max(static_cast<double>(rows) * std::numeric_limits<double>::epsilon(), kRoundingRelative) *
+      longest;
+  const double tolerance = std::max(options.qr_tolerance.value_or(0.0), rounding);
+
+  Reflectors reflectors(rows);
+  std::vector<int> kept;
+  std::vector<Eigen::VectorXd> kept_columns;
+  for (const int column : column_order(options)) {
+    CandidateStatus& candidate = set.candidates[static_cast<std::size_t>(column)];
+    Eigen::VectorXd reflected = observation_matrix.col(column);
+    if (reflected.norm() <= rounding) continue;  // stays kNoEffect
+    reflectors.apply_to(reflected);
+    const double diagonal = reflected.tail(rows - reflectors.count()).norm();  // |R_ii|
+    if (diagonal > tolerance) {
+      candidate.status = ParameterStatus::kIdentified;
+      set.smallest_kept = std::min(set.smallest_kept, diagonal);
+      reflectors.keep(reflected);
+      kept.push_back(column);
+      kept_columns.push_back(std::move(reflected));
+      continue;
+    }
+    set.largest_dropped = std::max(set.largest_dropped, diagonal);
+    candidate.status = diagonal > rounding ? ParameterStatus::kWeak : ParameterStatus::kGrouped;
+    if (candidate.status == ParameterStatus::kGrouped) {
+      candidate.grouped_with = combination(kept_columns, kept, reflected);
+    }
+  }
+  set.columns = kept;
+  std::ranges::sort(set.columns);
+  return set;
+}
+
+Eigen::MatrixXd select_columns(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
+                               const std::vector<int>& columns) {
+  Eigen::MatrixXd selected(matrix.rows(), static_cast<Eigen::Index>(columns.size()));
+  for (Eigen::Index j = 0; j < selected.cols(); ++j)
+    selected.col(j) = matrix.col(columns[static_cast<std::size_t>(j)]);
+  return selected;
+}
+
+Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  if (matrix.rows() == 0 || matrix.cols() == 0) return {};
+  if (matrix.rows() <= matrix.cols()) return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
+  // R has the singular values of W and fewer rows.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
+  return Eigen::BDCSVD<Eigen::MatrixXd>(r).singularValues();
+}
+
+double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  const Eigen::VectorXd sigma = singular_values(matrix);
+  if (sigma.size() < matrix.cols() || sigma.size() == 0 || sigma[sigma.size() - 1] <= 0.0) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return sigma[0] / sigma[sigma.size() - 1];
+}
+
+double scaled_condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  return condition_number(matrix * matrix.colwise().norm().cwiseInverse().asDiagonal());
+}
+
+}  // namespace calib

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "calib_core/error_parameters.hpp"
+
+namespace calib {
+
+/// What the observation matrix says of a candidate.
+enum class ParameterStatus {
+  kIdentified,
+  kGrouped,   // its column is a combination of identified ones, which carry its effect
+  kNoEffect,  // a column of zeros
+  kExcluded,  // by the options
+  kWeak,      // independent, but under the given tolerance
+};
+
+struct IdentifiabilityOptions {
+  std::optional<double> qr_tolerance;  // on |R_ii|; eq. 13 when absent
+  std::vector<int> tried_last;         // candidates moved to the end of the column order, in this order
+  std::vector<int> excluded;           // candidates never identified
+};
+
+/// Status of a candidate; for a grouped one what one unit of it adds to which identified ones (SI units).
+struct CandidateStatus {
+  ParameterStatus status = ParameterStatus::kNoEffect;
+  std::vector<std::pair<int, double>> grouped_with;
+};
+
+struct IdentifiableSet {
+  std::vector<int> columns;  // identified candidates, ascending
+  std::array<CandidateStatus, kErrorParameterCount> candidates;
+  double smallest_kept = 0.0;    // |R_ii|
+  double largest_dropped = 0.0;  // |R_ii|: the gap between the two is the certainty of the choice
+};
+
+/// QR without pivoting in the wanted column order (eq. 12 to 14): a column whose |R_ii| is under the
+/// tolerance depends on the ones before it and is left out of the rest of the decomposition. W is meant to be
+/// that of the nominal model with each touch on its nominal face.
+IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
+                                    const IdentifiabilityOptions& options);
+
+/// Columns of a matrix by index.
+Eigen::MatrixXd select_columns(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
+                               const std::vector<int>& columns);
+
+/// Singular values, descending.
+Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
+/// sigma_max / sigma_min (eq. 16); infinite when sigma_min is 0.
+double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
+/// The same after columns of unit norm.
+double scaled_condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
+
+}  // namespace calib
