@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string_view>
 #include <variant>
 
 /// Every message between touchcal and the controller, declared once; PROTOCOL.md describes the same in prose.
@@ -44,20 +47,20 @@ enum class MessageType : std::uint8_t {
 enum class RejectReason : std::int32_t {
   kBusy = 1,                  // another motion command is running
   kResultUnacknowledged = 2,  // the result of the previous command was not acknowledged yet
-  kStaleSequence = 3,         // older than the newest command and no longer stored
+  kStaleSequence = 3,         // not newer than the newest command taken, and no longer stored
   kNotRemote = 4,
   kNotPowered = 5,
   kHold = 6,
   kEmergencyStop = 7,
   kNotCalibrated = 8,
-  kOutOfRange = 9,            // a posture outside the joint ranges; `detail` is the joint, from 1
-  kProbeTriggered = 10,       // the probe reads touched before any motion
-  kMonitorSpeed = 11,         // not 100 %; `detail` is the monitor speed
-  kSearchTooLong = 12,        // `detail` is the limit, 10^-4 mm
-  kSearchTooFast = 13,        // the arm could not stop within half the overtravel; `detail` is the limit, um/s
-  kBadField = 14,             // a count, speed or deadline that makes no sense; `detail` is the word, from 1
+  kOutOfRange = 9,       // a posture outside the joint ranges; `detail` is the joint, from 1
+  kProbeTriggered = 10,  // the probe reads touched before any motion
+  kMonitorSpeed = 11,    // not 100 %; `detail` is the monitor speed
+  kSearchTooLong = 12,   // `detail` is the limit, 10^-4 mm
+  kSearchTooFast = 13,   // the arm could not stop within half the overtravel; `detail` is the limit, um/s
+  kBadField = 14,        // a speed or deadline that makes no sense; `detail` is the payload word, from 1
   kNothingToRetract = 15,
-  kRetractPending = 16,       // the stylus was left near a face: only a retract is allowed
+  kRetractPending = 16,  // StateFlag::kRetractDue is set: only a retract is allowed
 };
 
 /// How a motion command ended.
@@ -92,7 +95,7 @@ enum StateFlag : std::uint32_t {
   kSettled = 1u << 3,
   kQueueEmpty = 1u << 4,
   kProbeTouched = 1u << 5,
-  kRetractDue = 1u << 6,  // a search was broken off: only kRetract moves
+  kRetractDue = 1u << 6,  // a touch left its clear posture and did not come back to it: only kRetract moves
 };
 
 /// Why the controller closes the connection.
@@ -102,18 +105,21 @@ enum class FaultCode : std::int32_t {
   kUnknownType = 3,  // `detail` is the type
   kLength = 4,       // payload length is not the type's; `detail` is the expected length
   kNoHandshake = 5,  // a command before kHello
-  kOccupied = 6,     // another host is connected
-  kWrongSide = 7,    // a message only the controller sends
+  kOccupied = 6,     // another host is connected; this connection alone is closed
+  kWrongSide = 7,    // a message only the controller sends; `detail` is the type
+  kBadValue = 8,     // a count outside its range; `detail` is the payload word, from 1
 };
 
-// ---- host -> controller -------------------------------------------------------------------------------------
+// ---- host -> controller ----
 
 /// First message of a connection.
 struct Hello {
   static constexpr MessageType kType = MessageType::kHello;
-  std::uint32_t heartbeat_timeout_ms{};  // the controller stops when it hears nothing for this long; 200..2000
+  std::uint32_t heartbeat_timeout_ms{};  // silence after which the controller stops; brought into 200..2000
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.heartbeat_timeout_ms); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.heartbeat_timeout_ms);
+  }
 };
 
 /// Sent every 100 ms.
@@ -121,11 +127,13 @@ struct Heartbeat {
   static constexpr MessageType kType = MessageType::kHeartbeat;
   std::uint32_t host_clock_ms{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.host_clock_ms); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.host_clock_ms);
+  }
 };
 
-/// One guarded touch, carried out whole: joint moves through `via` to `clear`, to `approach`, a straight line to
-/// `search_end` until the probe trips, back to `approach`, back to `clear`. Answered once, by TouchResult.
+/// One guarded touch, carried out whole: joint moves through `via` to `clear`, to `approach`, a straight line
+/// to `search_end` until the probe trips, back to `approach`, back to `clear`. Answered once, by TouchResult.
 struct Touch {
   static constexpr MessageType kType = MessageType::kTouch;
   std::int32_t via_count{};  // how many of `via` are used
@@ -138,13 +146,13 @@ struct Touch {
   std::int32_t search_speed_um_s{};
   std::uint32_t deadline_ms{};  // of the whole command
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) {
+  static constexpr void visit(Self& m, Fields& fields) {
     fields(m.via_count, m.via, m.clear, m.approach, m.search_end, m.travel_speed_um_s, m.approach_speed_um_s,
            m.search_speed_um_s, m.deadline_ms);
   }
 };
 
-/// Joint moves through `via` to `target`; an edge on the way is an unexpected contact. Answered by MoveResult.
+/// Joint moves through `via` to `target`, where an edge is an unexpected contact. Answered by MoveResult.
 struct Travel {
   static constexpr MessageType kType = MessageType::kTravel;
   std::int32_t via_count{};
@@ -153,26 +161,28 @@ struct Travel {
   std::int32_t travel_speed_um_s{};
   std::uint32_t deadline_ms{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) {
+  static constexpr void visit(Self& m, Fields& fields) {
     fields(m.via_count, m.via, m.target, m.travel_speed_um_s, m.deadline_ms);
   }
 };
 
-/// Back along the line of the search that was broken off, to its approach posture and on to its clear posture.
-/// The only motion allowed then.
+/// From wherever a touch was broken off, back along the line of its search to its approach posture and on to
+/// its clear posture. The only motion allowed while StateFlag::kRetractDue is set.
 struct Retract {
   static constexpr MessageType kType = MessageType::kRetract;
   std::int32_t approach_speed_um_s{};
   std::uint32_t deadline_ms{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.approach_speed_um_s, m.deadline_ms); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.approach_speed_um_s, m.deadline_ms);
+  }
 };
 
 /// Ends the running motion command at once; its result follows with kStopped. Harmless when nothing runs.
 struct Stop {
   static constexpr MessageType kType = MessageType::kStop;
   template <class Self, class Fields>
-  static void visit(Self&, Fields&) {}
+  static constexpr void visit(Self&, Fields&) {}
 };
 
 /// What became of the command with this sequence? Answered by its result, by Accepted while it runs, or by
@@ -181,7 +191,9 @@ struct ResultQuery {
   static constexpr MessageType kType = MessageType::kResultQuery;
   std::uint32_t command_sequence{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.command_sequence); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.command_sequence);
+  }
 };
 
 /// The result is stored: the controller may forget it and take the next command.
@@ -189,31 +201,45 @@ struct ResultAcknowledge {
   static constexpr MessageType kType = MessageType::kResultAcknowledge;
   std::uint32_t command_sequence{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.command_sequence); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.command_sequence);
+  }
 };
 
-// ---- controller -> host -------------------------------------------------------------------------------------
+// ---- controller -> host ----
 
-using Text16 = std::array<char, 16>;  // ASCII, padded with NUL
+using Text16 = std::array<char, 16>;  // printable ASCII, padded with NUL
+
+/// The first 16 characters of `text`.
+constexpr Text16 text16(std::string_view text) {
+  Text16 field{};
+  std::copy_n(text.begin(), std::min(text.size(), field.size()), field.begin());
+  return field;
+}
+/// `field` without its padding.
+constexpr std::string_view text_of(const Text16& field) {
+  return {field.data(),
+          static_cast<std::size_t>(std::find(field.begin(), field.end(), '\0') - field.begin())};
+}
 
 /// Answer to Hello.
 struct Welcome {
   static constexpr MessageType kType = MessageType::kWelcome;
-  Text16 application{};      // "touchcal"
-  Text16 arm{};              // "tx90"
-  std::uint32_t application_version{};  // 10000 major + 100 minor + patch
-  std::uint32_t language_version{};     // VAL3: 70702 is s7.7.2
-  std::uint32_t session{};              // counts starts of the application
-  std::uint32_t last_sequence{};        // newest command taken in this session, 0 for none
-  std::uint32_t open_sequence{};        // a command that runs or whose result waits, 0 for none
-  std::uint32_t heartbeat_timeout_ms{};
+  Text16 application{};                  // "touchcal"
+  Text16 arm{};                          // "tx90"
+  std::uint32_t application_version{};   // 10000 major + 100 minor + patch
+  std::uint32_t language_version{};      // VAL3: 70702 is s7.7.2
+  std::uint32_t session{};               // counts starts of the application
+  std::uint32_t last_sequence{};         // newest command taken in this session, 0 for none
+  std::uint32_t open_sequence{};         // a command that runs or whose result waits, 0 for none
+  std::uint32_t heartbeat_timeout_ms{};  // in use: Hello's, brought into 200..2000
   std::uint32_t clock_ms{};
   JointsMicrodeg lower_limits{};
   JointsMicrodeg upper_limits{};
   std::int32_t search_length_max_dmm{};  // 10^-4 mm
   std::int32_t search_speed_max_um_s{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) {
+  static constexpr void visit(Self& m, Fields& fields) {
     fields(m.application, m.arm, m.application_version, m.language_version, m.session, m.last_sequence,
            m.open_sequence, m.heartbeat_timeout_ms, m.clock_ms, m.lower_limits, m.upper_limits,
            m.search_length_max_dmm, m.search_speed_max_um_s);
@@ -230,12 +256,12 @@ struct State {
   std::int32_t mode_status{};
   std::int32_t emergency_stop{};  // 0 none, 1 released but to be acknowledged, 2 active
   std::int32_t monitor_speed_percent{};
-  JointsMicrodeg joints{};  // commanded
+  JointsMicrodeg joints{};          // commanded
   std::uint32_t active_sequence{};  // the running command, 0 for none
   Phase phase{};
   std::int32_t task_error{};  // run-time error number of a task of the application, 0 for none
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) {
+  static constexpr void visit(Self& m, Fields& fields) {
     fields(m.session, m.clock_ms, m.flags, m.mode, m.mode_status, m.emergency_stop, m.monitor_speed_percent,
            m.joints, m.active_sequence, m.phase, m.task_error);
   }
@@ -245,7 +271,7 @@ struct State {
 struct Accepted {
   static constexpr MessageType kType = MessageType::kAccepted;
   template <class Self, class Fields>
-  static void visit(Self&, Fields&) {}
+  static constexpr void visit(Self&, Fields&) {}
 };
 
 /// The motion command with the header's sequence was refused; nothing moved.
@@ -254,24 +280,26 @@ struct Rejected {
   RejectReason reason{};
   std::int32_t detail{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.reason, m.detail); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.reason, m.detail);
+  }
 };
 
 /// How a Touch ended; the header's sequence is the command's. Kept until acknowledged.
 struct TouchResult {
   static constexpr MessageType kType = MessageType::kTouchResult;
   Outcome outcome{};
-  Phase phase{};           // reached when it ended early
-  CaptureSource source{};  // kNone unless the probe tripped in the search
-  JointsMicrodeg contact{};  // joints at the trigger; all 0 when source is kNone
-  JointsMicrodeg stopped{};  // joints where the arm came to rest behind it
+  Phase phase{};                  // reached when it ended early
+  CaptureSource source{};         // kNone unless the probe tripped in the search
+  JointsMicrodeg contact{};       // joints at the trigger; all 0 when source is kNone
+  JointsMicrodeg stopped{};       // joints where the arm came to rest behind it
   std::int32_t overtravel_dmm{};  // tool centre's way between both, 10^-4 mm
   std::int32_t search_speed_um_s{};
   std::int32_t monitor_speed_percent{};
   std::uint32_t contact_clock_ms{};
   std::int32_t error_number{};  // run-time error for kMotionError, else 0
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) {
+  static constexpr void visit(Self& m, Fields& fields) {
     fields(m.outcome, m.phase, m.source, m.contact, m.stopped, m.overtravel_dmm, m.search_speed_um_s,
            m.monitor_speed_percent, m.contact_clock_ms, m.error_number);
   }
@@ -285,7 +313,9 @@ struct MoveResult {
   JointsMicrodeg joints{};  // where the arm stands now
   std::int32_t error_number{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.outcome, m.phase, m.joints, m.error_number); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.outcome, m.phase, m.joints, m.error_number);
+  }
 };
 
 /// No command with that sequence in this session, or its result was acknowledged.
@@ -293,7 +323,9 @@ struct ResultUnknown {
   static constexpr MessageType kType = MessageType::kResultUnknown;
   std::uint32_t command_sequence{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.command_sequence); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.command_sequence);
+  }
 };
 
 /// The connection is closed after this.
@@ -302,13 +334,17 @@ struct Fault {
   FaultCode code{};
   std::int32_t detail{};
   template <class Self, class Fields>
-  static void visit(Self& m, Fields& fields) { fields(m.code, m.detail); }
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.code, m.detail);
+  }
 };
 
-using Payload = std::variant<Hello, Heartbeat, Touch, Travel, Retract, Stop, ResultQuery, ResultAcknowledge, Welcome,
-                             State, Accepted, Rejected, TouchResult, MoveResult, ResultUnknown, Fault>;
+using Payload =
+    std::variant<Hello, Heartbeat, Touch, Travel, Retract, Stop, ResultQuery, ResultAcknowledge, Welcome,
+                 State, Accepted, Rejected, TouchResult, MoveResult, ResultUnknown, Fault>;
 
-/// `sequence` is the command's number in a command and in all that answers it, a counter in State, else 0.
+/// `sequence` is the command's number in a motion command and in all that answers it or a query about it, a
+/// counter in State, else 0.
 struct Message {
   std::uint32_t sequence{};
   Payload payload;
