@@ -23,10 +23,11 @@ boost::asio::awaitable<DecodeResult> read_frame(AsyncStream& stream) {
   std::array<std::uint8_t, kHeaderSize + kPayloadSizeMax> bytes;
   co_await boost::asio::async_read(stream, boost::asio::buffer(bytes, kHeaderSize),
                                    boost::asio::use_awaitable);
-  const auto checked = decode_header(std::span(bytes).first<kHeaderSize>());
+  const std::span<std::uint8_t, kHeaderSize + kPayloadSizeMax> all(bytes);
+  const std::variant<Header, DecodeError> checked = decode_header(all.template first<kHeaderSize>());
   if (const auto* error = std::get_if<DecodeError>(&checked)) co_return *error;
-  const auto& header = std::get<Header>(checked);
-  const auto payload = std::span(bytes).subspan(kHeaderSize, header.payload_length);
+  const Header header = std::get<Header>(checked);
+  const std::span<std::uint8_t> payload = all.subspan(kHeaderSize, header.payload_length);
   co_await boost::asio::async_read(stream, boost::asio::buffer(payload.data(), payload.size()),
                                    boost::asio::use_awaitable);
   co_return decode(header, payload);

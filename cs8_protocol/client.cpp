@@ -1,0 +1,142 @@
+#include "cs8_protocol/client.hpp"
+
+#include <algorithm>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "cs8_protocol/link.hpp"
+
+namespace cs8 {
+
+// ---- calls that wait ----
+
+Link::Waiting::Waiting(Link& on_link, std::uint32_t of_sequence, MessageType wants)
+    : link(on_link), sequence(of_sequence), wanted(wants), alarm(on_link.executor_) {
+  if (link.waiting_ != nullptr)
+    throw std::logic_error("cs8::Client: a second call while one waits for its answer");
+  link.waiting_ = this;
+}
+
+Link::Waiting::~Waiting() {
+  link.waiting_ = nullptr;
+  if (!answer)
+    link.fail(LinkErrorKind::kClosed, "a call that waited for the controller's answer was given up");
+}
+
+bool Link::Waiting::takes(const Answer& offered) const {
+  const MessageType type = std::visit([](const auto& body) { return body.kType; }, offered);
+  if (type == wanted) return true;
+  const bool is_query = wanted == MessageType::kResultUnknown;
+  return is_query ? type != MessageType::kRejected : type == MessageType::kRejected;
+}
+
+asio::awaitable<void> Link::wait(Waiting& waiting, Clock::time_point accept_by, Clock::time_point answer_by) {
+  while (!waiting.answer && !error_) {
+    const auto deadline = waiting.accepted ? answer_by : std::min(accept_by, answer_by);
+    if (Clock::now() >= deadline) {
+      fail(LinkErrorKind::kUnanswered,
+           "command " + std::to_string(waiting.sequence) +
+               (waiting.accepted ? " was accepted, but no result came within its deadline"
+                                 : " was not answered within its deadline"));
+      co_return;
+    }
+    waiting.alarm.expires_at(deadline);
+    boost::system::error_code woken;
+    co_await waiting.alarm.async_wait(asio::redirect_error(asio::use_awaitable, woken));
+  }
+}
+
+template <class Result, class Command>
+asio::awaitable<Reply<Result>> Link::command(std::shared_ptr<Link> link, Command body) {
+  Reply<Result> reply;
+  if (!link || !link->is_up()) {
+    reply.answer = not_connected(link.get());
+    co_return reply;
+  }
+  Waiting waiting(*link, link->last_sequence_ + 1, Result::kType);
+  reply.sequence = ++link->last_sequence_;
+  link->send(Message{reply.sequence, body});
+  const auto now = Clock::now();
+  co_await link->wait(waiting, now + link->options_.answer_deadline,
+                      now + std::chrono::milliseconds(body.deadline_ms) + link->options_.result_margin);
+  if (!waiting.answer) {
+    reply.answer = *link->error_;
+  } else if (const auto* rejected = std::get_if<Rejected>(&*waiting.answer)) {
+    reply.answer = *rejected;
+  } else {
+    reply.answer = std::get<Result>(*waiting.answer);
+  }
+  co_return reply;
+}
+
+asio::awaitable<QueryReply> Link::query(std::shared_ptr<Link> link, std::uint32_t sequence,
+                                        std::chrono::milliseconds deadline) {
+  if (!link || !link->is_up()) co_return not_connected(link.get());
+  Waiting waiting(*link, sequence, MessageType::kResultUnknown);
+  const ResultQuery question{sequence};
+  link->send(Message{0, question});
+  const auto now = Clock::now();
+  co_await link->wait(waiting, now + link->options_.answer_deadline, now + deadline);
+  if (!waiting.answer) co_return *link->error_;
+  if (const auto* touch = std::get_if<TouchResult>(&*waiting.answer)) co_return *touch;
+  if (const auto* move = std::get_if<MoveResult>(&*waiting.answer)) co_return *move;
+  co_return std::get<ResultUnknown>(*waiting.answer);
+}
+
+LinkError Link::not_connected(const Link* link) {
+  const std::string why = link != nullptr && link->error_ ? ": " + link->error_->text : std::string();
+  return {LinkErrorKind::kNotConnected, "not connected to the controller" + why};
+}
+
+// ---- the client ----
+
+Client::Client(asio::any_io_executor executor, ClientOptions options, ClientHooks hooks)
+    : executor_(std::move(executor)), options_(options), hooks_(std::move(hooks)) {}
+
+Client::~Client() { close(); }
+
+asio::awaitable<ConnectReply> Client::connect(tcp::endpoint endpoint, ExpectedController expected) {
+  close();
+  link_ = std::make_shared<Link>(executor_, options_, hooks_);
+  return Link::open(link_, std::move(endpoint), std::move(expected));
+}
+
+void Client::close() {
+  if (link_) link_->close();
+}
+
+bool Client::connected() const { return link_ && link_->is_up(); }
+
+std::optional<State> Client::latest_state() const { return link_ ? link_->latest_state() : std::nullopt; }
+
+std::optional<Clock::time_point> Client::heard_at() const { return link_ ? link_->heard_at() : std::nullopt; }
+
+std::uint32_t Client::next_sequence() const { return connected() ? link_->last_sequence() + 1 : 0; }
+
+asio::awaitable<TouchReply> Client::touch(Touch command) {
+  return Link::command<TouchResult>(link_, command);
+}
+
+asio::awaitable<MoveReply> Client::travel(Travel command) {
+  return Link::command<MoveResult>(link_, command);
+}
+
+asio::awaitable<MoveReply> Client::retract(Retract command) {
+  return Link::command<MoveResult>(link_, command);
+}
+
+asio::awaitable<QueryReply> Client::query(std::uint32_t sequence, std::chrono::milliseconds deadline) {
+  return Link::query(link_, sequence, deadline);
+}
+
+void Client::stop() {
+  if (connected()) link_->send(Message{0, Stop{}});
+}
+
+void Client::acknowledge(std::uint32_t sequence) {
+  if (connected()) link_->send(Message{0, ResultAcknowledge{sequence}});
+}
+
+}  // namespace cs8

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "cs8_protocol/messages.hpp"
+
+namespace cs8 {
+
+enum class LinkErrorKind {
+  kNotConnected,      // no connection was made, or it was lost before the call
+  kUnreachable,       // no TCP connection
+  kHandshakeTimeout,  // no connection or no Welcome within the deadline
+  kIncompatible,      // another protocol version, application, arm or other joint ranges
+  kPeerClosed,        // the controller or the network ended the connection
+  kSilent,            // nothing was heard for the heartbeat timeout, or the controller does not read
+  kProtocol,    // bytes that are no frame, a message of the wrong side, an answer to nothing that was asked
+  kFault,       // the controller said why it closes the connection
+  kUnanswered,  // the controller lives but did not answer a command or query within its deadline
+  kClosed,      // close() on this side
+};
+
+/// Why there is no link (any more). `text` is one line for people.
+struct LinkError {
+  LinkErrorKind kind{};
+  std::string text;
+};
+
+/// Who must be at the other end.
+struct ExpectedController {
+  std::string application = "touchcal";
+  std::string arm;
+  JointsMicrodeg lower_limits{};
+  JointsMicrodeg upper_limits{};
+};
+
+/// Joint limits of both sides may differ by this much: files give them rounded.
+inline constexpr std::int32_t kJointLimitToleranceMicrodeg = 1000;
+
+struct ClientOptions {
+  std::chrono::milliseconds connect_deadline{2000};  // TCP connection and handshake together
+  std::chrono::milliseconds heartbeat_period{100};
+  std::chrono::milliseconds heartbeat_timeout{500};  // of both sides
+  std::chrono::milliseconds answer_deadline{2000};   // until a command is accepted or rejected
+  std::chrono::milliseconds result_margin{2000};     // added to a command's own deadline_ms
+};
+
+/// Called from the io_context, never from inside a call of the client. They may close or destroy the client.
+struct ClientHooks {
+  std::function<void(const State&)> on_state;
+  std::function<void(const LinkError&)> on_loss;  // once per connection; not after close()
+};
+
+/// What became of a motion command; `sequence` is 0 when it was never sent. After a LinkError the command may
+/// have run all the same: query(sequence) on the next connection tells.
+template <class Result>
+struct Reply {
+  std::uint32_t sequence = 0;
+  std::variant<Result, Rejected, LinkError> answer;
+};
+using TouchReply = Reply<TouchResult>;
+using MoveReply = Reply<MoveResult>;
+using QueryReply = std::variant<TouchResult, MoveResult, ResultUnknown, LinkError>;
+using ConnectReply = std::variant<Welcome, LinkError>;
+
+class Link;
+
+/// The host's side of one connection at a time, all on one thread: that of the executor.
+///
+/// Every failure of the link ends the call that waits with a LinkError and closes the socket, on which the
+/// controller stops; what was asked is then found out by connect() and query(). One motion command or query
+/// at a time: a second one is std::logic_error. Every wait has a deadline, so do not block the thread for
+/// long. A result is not acknowledged here: the owner does it when it is stored.
+class Client {
+ public:
+  explicit Client(boost::asio::any_io_executor executor, ClientOptions options = {}, ClientHooks hooks = {});
+  ~Client();  // as close()
+  Client(const Client&) = delete;
+  Client& operator=(const Client&) = delete;
+
+  /// Connects and shakes hands; ends a connection that is open. Sequence numbers go on from
+  /// Welcome::last_sequence. They mean something only within Welcome::session, which the owner compares with
+  /// the one it remembers.
+  boost::asio::awaitable<ConnectReply> connect(boost::asio::ip::tcp::endpoint endpoint,
+                                               ExpectedController expected);
+  /// Ends the connection; a call that waits ends with kClosed. Nothing is called back afterwards.
+  void close();
+  [[nodiscard]] bool connected() const;
+
+  /// The newest State of this connection, and when the controller was last heard.
+  [[nodiscard]] std::optional<State> latest_state() const;
+  [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> heard_at() const;
+
+  /// The number the next motion command will have, to be stored before it is sent; 0 when not connected.
+  [[nodiscard]] std::uint32_t next_sequence() const;
+
+  boost::asio::awaitable<TouchReply> touch(Touch command);
+  boost::asio::awaitable<MoveReply> travel(Travel command);
+  boost::asio::awaitable<MoveReply> retract(Retract command);
+
+  /// The result of a command of this session; waits while it still runs, `deadline` at most.
+  boost::asio::awaitable<QueryReply> query(std::uint32_t sequence, std::chrono::milliseconds deadline);
+
+  /// Sent at once, also while a command runs; that command's reply then says kStopped. Nothing when not
+  /// connected.
+  void stop();
+  /// Lets the controller forget a result. Call it when the result is stored for good.
+  void acknowledge(std::uint32_t sequence);
+
+ private:
+  boost::asio::any_io_executor executor_;
+  ClientOptions options_;
+  ClientHooks hooks_;
+  std::shared_ptr<Link> link_;  // shared with the coroutines that run on it
+};
+
+}  // namespace cs8
