@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "calib_core/collision.hpp"
+#include "calib_core/error_parameters.hpp"
 #include "calib_core/face.hpp"
 #include "calib_core/joint_vector.hpp"
 #include "calib_core/kinematic_model.hpp"
@@ -27,8 +28,16 @@ struct Arm {
   std::string name;
   calib::KinematicModel model;
   calib::JointRanges joint_ranges;
-  calib::JointVector joint_speeds_max;    // rad/s
+  calib::JointVector joint_speeds_max;  // rad/s
   std::vector<calib::Capsule> bodies;
+  /// One standard deviation of each error as the maker promises it; nothing where nobody promises anything.
+  std::array<std::optional<double>, calib::kErrorParameterCount> std_errors{};
+};
+
+/// How well a face of the block is known; nothing where the certificate does not say.
+struct FaceTolerance {
+  std::optional<double> std_offset_m;
+  std::optional<double> std_tilt_rad;
 };
 
 /// Two faces of the block that lie a certified length apart.
@@ -44,6 +53,7 @@ struct Block {
   double std_temperature_k = 0.0;
   double thermal_expansion_per_k = 0.0;
   std::vector<calib::Face> faces;
+  std::vector<FaceTolerance> face_tolerances;  // one a face
   std::vector<CertifiedLength> lengths;
   std::vector<calib::Box> solids;
 };
@@ -51,10 +61,13 @@ struct Block {
 struct Probe {
   std::string name;
   calib::Stylus stylus;
-  bool tip_is_contact_point = false;
+  bool tip_is_contact_point = false;  // no ball: stylus is all zero
+  std::optional<double> std_stylus_radius_m;
+  std::optional<double> std_pretravel_m;
   double overtravel_m = 0.0;
   double calibration_speed_m_s = 0.0;  // of a search; the pre-travel holds at this speed only
-  std::vector<calib::Capsule> bodies;  // in frame 7: its origin is the ball's centre, its z axis points out of the tip
+  std::vector<calib::Capsule>
+      bodies;  // in frame 7: its origin is the ball's centre, its z axis points out of the tip
 };
 
 /// A run is accepted when the held-out touches, on every plane, stay within these.
@@ -90,7 +103,7 @@ struct Cell {
   double touch_noise_m = 0.0;  // one standard deviation of a touch along the normal, all in all
   calib::Box workspace_box;
   std::vector<calib::Box> keep_out_boxes;
-  std::map<std::string, Eigen::Isometry3d> tools;  // named tool centres: flange (R_6) from tool
+  std::map<std::string, Eigen::Isometry3d> tools;  // named tool centres: R_6 (wrist centre) from tool
   AcceptanceLimits acceptance;
   Speeds speeds;
   Deadlines deadlines;

@@ -1,0 +1,138 @@
+#include "config/arm_file.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "calib_core/units.hpp"
+#include "config/file_bytes.hpp"
+#include "config/shapes.hpp"
+
+namespace cell {
+namespace {
+
+using calib::kFrameCount;
+using calib::kJointCount;
+using calib::kRadiansPerDegree;
+
+bool is_joint(int frame) { return frame >= 1 && frame <= kJointCount; }
+
+/// The keys that a frame may have. Frame 0 has only theta and r: what comes before them is the choice of
+/// R_-1.
+JsonObject frame_object(const JsonValue& value, int frame) {
+  if (frame == 0) return value.object({"j", "theta_deg", "theta_rad", "r_mm", "std"});
+  if (is_joint(frame)) {
+    return value.object({"j", "joint_type", "alpha_deg", "alpha_rad", "d_mm", "theta_offset_deg",
+                         "theta_offset_rad", "r_mm", "beta_deg", "beta_rad", "gain", "std"});
+  }
+  return value.object({"j", "alpha_deg", "alpha_rad", "d_mm", "theta_deg", "theta_rad", "r_mm", "beta_deg",
+                       "beta_rad", "std"});
+}
+
+void read_joint(const JsonObject& object, int frame, calib::KinematicModel& model) {
+  const auto joint = static_cast<std::size_t>(frame - 1);
+  const JsonValue type = object.at("joint_type");
+  if (type.text() != "revolute") type.fail("only \"revolute\" joints are read: joint ranges are in degrees");
+  model.joint_types[joint] = calib::JointType::kRevolute;
+  const JsonValue gain = object.at("gain");
+  model.gains[joint] = gain.number();
+  if (model.gains[joint] == 0.0) gain.fail("is 0; a joint that moves has a gain, 1 as a rule");
+}
+
+std::optional<double> std_of(const JsonObject& object, calib::ParameterKind kind) {
+  const auto angle = [&object](std::string_view name) {
+    const std::optional<double> rad = object.find_radians(name);
+    if (rad && *rad < 0.0) object.fail("a standard deviation is negative; give 0 or more");
+    return rad;
+  };
+  switch (kind) {
+    case calib::ParameterKind::kAlpha:
+      return angle("alpha");
+    case calib::ParameterKind::kD:
+      return object.find_metres("d", kNotNegative);
+    case calib::ParameterKind::kTheta:
+      return angle("theta");
+    case calib::ParameterKind::kR:
+      return object.find_metres("r", kNotNegative);
+    case calib::ParameterKind::kBeta:
+      return angle("beta");
+  }
+  return std::nullopt;
+}
+
+void read_standard_deviations(const JsonObject& frame_object, int frame, Arm& arm) {
+  std::optional<JsonObject> given;
+  if (const auto value = frame_object.find("std")) {
+    given = frame == 0 ? value->object({"theta_deg", "theta_rad", "r_mm"})
+                       : value->object({"alpha_deg", "alpha_rad", "d_mm", "theta_deg", "theta_rad", "r_mm",
+                                        "beta_deg", "beta_rad"});
+  }
+  const auto& parameters = calib::error_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].frame != frame) continue;
+    arm.std_errors[i] = given ? std_of(*given, parameters[i].kind) : std::nullopt;
+  }
+}
+
+void read_joint_ranges(const JsonObject& object, Arm& arm) {
+  const auto ranges = object.at("joint_limits_deg").items(kJointCount, kJointCount);
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const JsonValue& range = ranges[static_cast<std::size_t>(joint)];
+    const Eigen::Vector2d limits_deg = range.numbers<2>();
+    if (limits_deg[0] >= limits_deg[1])
+      range.fail("the lower limit is not below the upper one; exchange or correct them");
+    arm.joint_ranges.lower[joint] = limits_deg[0] * kRadiansPerDegree;
+    arm.joint_ranges.upper[joint] = limits_deg[1] * kRadiansPerDegree;
+  }
+  const auto speeds = object.at("joint_max_speeds_deg_s").items(kJointCount, kJointCount);
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    arm.joint_speeds_max[joint] =
+        speeds[static_cast<std::size_t>(joint)].number(kPositive) * kRadiansPerDegree;
+  }
+}
+
+}  // namespace
+
+int frame_number(const JsonValue& value) {
+  for (const auto& [key, member] : value.members()) {
+    if (key == "j") return member.integer(0, kFrameCount - 1);
+  }
+  value.fail("\"j\" is missing; add the frame's number");
+}
+
+void read_frame(const JsonValue& value, int frame, Arm& arm) {
+  const JsonObject object = frame_object(value, frame);
+  calib::LinkParameters link;
+  link.r_m = object.metres("r");
+  link.theta_rad = object.radians(is_joint(frame) ? "theta_offset" : "theta");
+  if (frame > 0) {
+    link.alpha_rad = object.radians("alpha");
+    link.d_m = object.metres("d");
+    link.beta_rad = object.radians("beta");
+  }
+  if (is_joint(frame)) read_joint(object, frame, arm.model);
+  arm.model.links[static_cast<std::size_t>(frame)] = link;
+  read_standard_deviations(object, frame, arm);
+}
+
+Arm read_arm(const std::filesystem::path& file) {
+  const std::string source = file.string();
+  const nlohmann::json document = read_json_file(file);
+  const JsonObject object = JsonValue(source, document)
+                                .document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg",
+                                                       "joint_max_speeds_deg_s", "bodies"});
+  Arm arm;
+  arm.name = object.at("name").text();
+  const auto frames = object.at("frames").items(kFrameCount, kFrameCount);
+  for (int frame = 0; frame < kFrameCount; ++frame) {
+    const JsonValue& value = frames[static_cast<std::size_t>(frame)];
+    if (const int given = frame_number(value); given != frame) {
+      value.fail("is frame " + std::to_string(given) + " where frame " + std::to_string(frame) +
+                 " is expected; put frames 0 to 7 in order");
+    }
+    read_frame(value, frame, arm);
+  }
+  read_joint_ranges(object, arm);
+  arm.bodies = capsules_from_json(object.at("bodies"));
+  return arm;
+}
+
+}  // namespace cell

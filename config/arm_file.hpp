@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "config/cell.hpp"
+#include "config/json_value.hpp"
+
+namespace cell {
+
+inline constexpr std::string_view kArmSchema = "touchcal/arm/1";
+
+/// Joint ranges, speeds, frames, bodies of an arm. ConfigError.
+Arm read_arm(const std::filesystem::path& file);
+
+/// The entry of "frames" for `frame` into the arm: its parameters and standard deviations replace what was
+/// there.
+void read_frame(const JsonValue& value, int frame, Arm& arm);
+
+/// The "j" of an entry of "frames".
+int frame_number(const JsonValue& value);
+
+}  // namespace cell

@@ -1,0 +1,132 @@
+#include "config/block_file.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calib_core/units.hpp"
+#include "config/file_bytes.hpp"
+#include "config/json_value.hpp"
+#include "config/shapes.hpp"
+
+namespace cell {
+namespace {
+
+constexpr std::size_t kFaceCountMax = 100;
+
+Eigen::Vector3d unit_vector(const JsonValue& value) {
+  const Eigen::Vector3d direction = value.numbers<3>();
+  if (std::abs(direction.norm() - 1.0) > kDirectionErrorMax) {
+    value.fail("has length " + nlohmann::json(direction.norm()).dump() + "; give a unit vector");
+  }
+  return direction.normalized();
+}
+
+calib::Face face_from_json(const JsonObject& object) {
+  calib::Face face;
+  face.plane.outward = unit_vector(object.at("outward"));
+  face.plane.offset_m = object.metres("offset");
+  const JsonValue center = object.at("center_mm");
+  face.center_m = center.numbers<3>() * calib::kMetresPerMillimetre;
+  if (std::abs(signed_distance_m(face.plane, face.center_m)) > kFaceCenterErrorMaxMetres) {
+    center.fail("does not lie on the plane outward . X = offset_mm; correct one of the three");
+  }
+  const JsonValue edge = object.at("edge_u");
+  face.edge_u = unit_vector(edge);
+  if (std::abs(face.edge_u.dot(face.plane.outward)) > kDirectionErrorMax) {
+    edge.fail("is not perpendicular to outward; give an edge that lies in the face");
+  }
+  const JsonValue half_extent = object.at("half_extent_mm");
+  face.half_extent_m = half_extent.numbers<2>() * calib::kMetresPerMillimetre;
+  if ((face.half_extent_m.array() <= 0.0).any())
+    half_extent.fail("is not over 0; give half the length of both edges");
+  return face;
+}
+
+FaceTolerance tolerance_from_json(const JsonObject& object) {
+  FaceTolerance tolerance;
+  tolerance.std_offset_m = object.find_metres("std_offset", kNotNegative);
+  if (const auto tilt = object.find("std_tilt_rad")) tolerance.std_tilt_rad = tilt->number(kNotNegative);
+  return tolerance;
+}
+
+void demand_known_place(const JsonObject& object) {
+  const JsonValue place = object.at("place");
+  const std::string text = place.text();
+  if (text == "known") return;
+  if (text == "estimated") place.fail("this version identifies with known faces only; give \"known\"");
+  place.fail("is not a kind of place; give \"known\"");
+}
+
+void read_faces(const JsonValue& value, Block& block) {
+  for (const JsonValue& item : value.items(1, kFaceCountMax)) {
+    const JsonObject object = item.object({"plane", "outward", "offset_mm", "std_offset_mm", "std_tilt_rad",
+                                           "center_mm", "edge_u", "half_extent_mm", "place"});
+    const int plane = static_cast<int>(block.faces.size()) + 1;
+    const JsonValue given = object.at("plane");
+    if (given.number() != plane)
+      given.fail("is not " + std::to_string(plane) + "; number the planes 1, 2, 3, ... in order");
+    demand_known_place(object);
+    block.faces.push_back(face_from_json(object));
+    block.face_tolerances.push_back(tolerance_from_json(object));
+  }
+}
+
+CertifiedLength length_from_json(const JsonValue& value, const std::vector<calib::Face>& faces) {
+  const JsonObject object = value.object({"planes", "value_mm", "std_mm"});
+  CertifiedLength length;
+  const JsonValue planes = object.at("planes");
+  const auto pair = planes.items(2, 2);
+  for (std::size_t i = 0; i < pair.size(); ++i) {
+    length.faces[i] = pair[i].integer(1, static_cast<int>(faces.size())) - 1;
+  }
+  const auto& first = faces[static_cast<std::size_t>(length.faces[0])];
+  const auto& second = faces[static_cast<std::size_t>(length.faces[1])];
+  if (length.faces[0] == length.faces[1]) planes.fail("names one plane twice; a length lies between two");
+  if (first.plane.outward.cross(second.plane.outward).norm() > kDirectionErrorMax) {
+    planes.fail("the two planes are not parallel; a length lies between parallel faces");
+  }
+  length.value_m = object.metres("value", kPositive);
+  length.std_m = object.metres("std", kNotNegative);
+  return length;
+}
+
+void read_temperature(const JsonObject& object, Block& block) {
+  constexpr NumberRange kRoomTemperatures{-50.0, 100.0};
+  if (const auto temperature = object.find("temperature_c")) {
+    block.temperature_c = temperature->number(kRoomTemperatures);
+    block.std_temperature_k = object.at("std_temperature_k").number(kNotNegative);
+    block.thermal_expansion_per_k = object.at("thermal_expansion_per_k").number(kNotNegative);
+    return;
+  }
+  for (const char* key : {"std_temperature_k", "thermal_expansion_per_k"}) {
+    if (const auto value = object.find(key))
+      value->fail("without \"temperature_c\"; add the block's temperature");
+  }
+}
+
+}  // namespace
+
+Block read_block(const std::filesystem::path& file) {
+  const std::string source = file.string();
+  const nlohmann::json document = read_json_file(file);
+  const JsonObject object =
+      JsonValue(source, document)
+          .document(kBlockSchema, {"schema", "name", "temperature_c", "std_temperature_k",
+                                   "thermal_expansion_per_k", "certificate", "faces", "lengths", "solids"});
+  Block block;
+  block.name = object.at("name").text();
+  read_temperature(object, block);
+  if (const auto certificate = object.find("certificate")) {
+    for (const auto& [key, value] : certificate->members()) static_cast<void>(value.text());  // for people
+  }
+  read_faces(object.at("faces"), block);
+  if (const auto lengths = object.find("lengths")) {
+    for (const JsonValue& item : lengths->items(0, kFaceCountMax)) {
+      block.lengths.push_back(length_from_json(item, block.faces));
+    }
+  }
+  block.solids = boxes_from_json(object.at("solids"));
+  return block;
+}
+
+}  // namespace cell

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "config/cell.hpp"
+
+namespace cell {
+
+inline constexpr std::string_view kProbeSchema = "touchcal/probe/1";
+
+/// The probe and its stylus. A ball radius or a pre-travel that is not there is refused: unknown is not zero;
+/// "tip_is_contact_point":true says that there is no ball, and then neither may be given. ConfigError.
+Probe read_probe(const std::filesystem::path& file);
+
+}  // namespace cell

@@ -1,0 +1,169 @@
+#include "config/read_config.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calib_core/units.hpp"
+#include "config/arm_file.hpp"
+#include "config/block_file.hpp"
+#include "config/file_bytes.hpp"
+#include "config/json_value.hpp"
+#include "config/probe_file.hpp"
+#include "config/recipe_file.hpp"
+#include "config/shapes.hpp"
+
+namespace cell {
+namespace {
+
+using calib::metres_from_mm;
+
+constexpr std::size_t kRecipeCountMax = 100;
+
+/// A file that the cell names; that it is there is the cell file's promise.
+std::filesystem::path named_file(const JsonValue& value, const std::filesystem::path& cell_file) {
+  const std::filesystem::path file = (cell_file.parent_path() / value.text()).lexically_normal();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    value.fail("there is no file " + in_quotes(file.string()) +
+               "; correct the path (relative to the cell file)");
+  }
+  return file;
+}
+
+/// Frames 0 (place) and 7 (tool) are the cell's to change; the joints are the arm's.
+void read_frame_overrides(const JsonValue& value, Arm& arm) {
+  int last_frame = -1;
+  for (const JsonValue& item : value.items(1, 2)) {
+    const int frame = frame_number(item);
+    if (frame != 0 && frame != calib::kFrameCount - 1) {
+      item.fail("overrides frame " + std::to_string(frame) +
+                "; a cell has a say on frames 0 and 7 only, change the arm's file");
+    }
+    if (frame <= last_frame) item.fail("frames stand in order, each once; exchange or remove one");
+    read_frame(item, frame, arm);
+    last_frame = frame;
+  }
+}
+
+void read_recipes(const JsonObject& object, const std::filesystem::path& file, Cell& cell) {
+  for (const JsonValue& item : object.at("recipes").items(1, kRecipeCountMax)) {
+    Recipe recipe = read_recipe(named_file(item, file), static_cast<int>(cell.block.faces.size()));
+    const std::string name = recipe.name;
+    if (!cell.recipes.emplace(name, std::move(recipe)).second) {
+      item.fail("a recipe with the name " + in_quotes(name) + " is already there; rename one of them");
+    }
+  }
+  const JsonValue chosen = object.at("default_recipe");
+  cell.default_recipe = chosen.text();
+  if (!cell.recipes.contains(cell.default_recipe)) {
+    chosen.fail("no recipe of this cell is called " + in_quotes(cell.default_recipe) +
+                "; name one of /recipes");
+  }
+}
+
+/// Rotation as in VAL3's trsf: Rot(x) Rot(y) Rot(z), degrees.
+Eigen::Isometry3d tool_from_json(const JsonValue& value) {
+  const JsonObject object = value.object({"position_mm", "rotation_deg"});
+  const Eigen::Vector3d position_m = object.at("position_mm").numbers<3>() * calib::kMetresPerMillimetre;
+  const Eigen::Vector3d angles = object.at("rotation_deg").numbers<3>() * calib::kRadiansPerDegree;
+  Eigen::Isometry3d wrist_from_tool = Eigen::Isometry3d::Identity();
+  wrist_from_tool.translate(position_m);
+  wrist_from_tool.rotate(Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()));
+  wrist_from_tool.rotate(Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()));
+  wrist_from_tool.rotate(Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()));
+  return wrist_from_tool;
+}
+
+void read_space(const JsonObject& object, Cell& cell) {
+  cell.workspace_box = box_from_json(object.at("workspace_box"));
+  if (const auto boxes = object.find("keep_out_boxes")) cell.keep_out_boxes = boxes_from_json(*boxes);
+  if (const auto tools = object.find("tools")) {
+    for (const auto& [name, value] : tools->members()) cell.tools.emplace(name, tool_from_json(value));
+  }
+  const JsonValue park = object.at("park_joints_deg");
+  cell.park_joints = park.numbers<calib::kJointCount>() * calib::kRadiansPerDegree;
+  if (!cell.arm.joint_ranges.contains(cell.park_joints))
+    park.fail("a joint is outside its range; choose another posture");
+}
+
+void read_touch_conditions(const JsonObject& object, Cell& cell) {
+  constexpr NumberRange kMisses{.min = kPositive.min, .max = 100.0};  // mm: beyond, no search would be safe
+  constexpr NumberRange kTilts{.min = kPositive.min, .max = 89.0};    // degrees
+  cell.nominal_miss_m = object.metres("nominal_miss", kMisses);
+  cell.stylus_tilt_max_rad = calib::radians_from_degrees(object.at("stylus_tilt_max_deg").number(kTilts));
+  cell.touch_noise_m = object.metres("touch_noise", kNotNegative);
+}
+
+AcceptanceLimits acceptance_from_json(const JsonValue& value) {
+  const JsonObject object =
+      value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max"});
+  constexpr NumberRange kAtLeastOne{.min = 1.0};
+  return {.held_out_mean_max_m = object.metres("held_out_mean_max", kPositive),
+          .held_out_rms_max_m = object.metres("held_out_rms_max", kPositive),
+          .condition_number_max = object.at("condition_number_max").number(kAtLeastOne)};
+}
+
+Speeds speeds_from_json(const JsonValue& value, const Probe& probe) {
+  const JsonObject object = value.object({"travel_mm_s", "approach_mm_s", "search_mm_s"});
+  const auto speed = [&object](std::string_view key) {
+    return metres_from_mm(object.at(key).number(kPositive));
+  };
+  const Speeds speeds{.travel_m_s = speed("travel_mm_s"),
+                      .approach_m_s = speed("approach_mm_s"),
+                      .search_m_s = speed("search_mm_s")};
+  if (!probe.tip_is_contact_point && speeds.search_m_s != probe.calibration_speed_m_s) {
+    object.at("search_mm_s")
+        .fail(
+            "is not the probe's calibration_speed_mm_s, at which alone its pre-travel holds; "
+            "search at that speed or calibrate the probe at this one");
+  }
+  return speeds;
+}
+
+Deadlines deadlines_from_json(const JsonValue& value) {
+  const JsonObject object = value.object({"connect_ms", "heartbeat_timeout_ms", "command_ms"});
+  constexpr int kHourMs = 3'600'000;
+  const auto deadline = [&object](std::string_view key) {
+    return std::chrono::milliseconds(object.at(key).integer(1, kHourMs));
+  };
+  return {.connect = deadline("connect_ms"),
+          .heartbeat_timeout = deadline("heartbeat_timeout_ms"),
+          .command = deadline("command_ms")};
+}
+
+Endpoint endpoint_from_json(const JsonValue& value) {
+  const JsonObject object = value.object({"host", "port"});
+  constexpr int kPortMax = 65'535;
+  return {.host = object.at("host").text(),
+          .port = static_cast<std::uint16_t>(object.at("port").integer(0, kPortMax))};
+}
+
+}  // namespace
+
+Cell read_cell(const std::filesystem::path& file) {
+  const std::string source = file.string();
+  const nlohmann::json document = read_json_file(file);
+  const JsonObject object =
+      JsonValue(source, document)
+          .document(kCellSchema, {"schema", "name", "arm", "frames", "block", "probe", "recipes",
+                                  "default_recipe", "tools", "workspace_box", "keep_out_boxes",
+                                  "park_joints_deg", "nominal_miss_mm", "stylus_tilt_max_deg",
+                                  "touch_noise_mm", "acceptance", "speeds", "deadlines", "controller"});
+  Cell cell;
+  cell.name = object.at("name").text();
+  cell.file = file;
+  cell.arm = read_arm(named_file(object.at("arm"), file));
+  if (const auto frames = object.find("frames")) read_frame_overrides(*frames, cell.arm);
+  cell.block = read_block(named_file(object.at("block"), file));
+  cell.probe = read_probe(named_file(object.at("probe"), file));
+  read_recipes(object, file, cell);
+  read_space(object, cell);
+  read_touch_conditions(object, cell);
+  cell.acceptance = acceptance_from_json(object.at("acceptance"));
+  cell.speeds = speeds_from_json(object.at("speeds"), cell.probe);
+  cell.deadlines = deadlines_from_json(object.at("deadlines"));
+  cell.controller = endpoint_from_json(object.at("controller"));
+  return cell;
+}
+
+}  // namespace cell

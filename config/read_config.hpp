@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "config/cell.hpp"
+#include "config/config_error.hpp"
+
+namespace cell {
+
+inline constexpr std::string_view kCellSchema = "touchcal/cell/1";
+
+/// The cell and the arm, block, probe and recipes that it names (paths are relative to the cell file). Throws
+/// ConfigError with file, JSON pointer and remedy. The shapes of the files: config/FILES.md.
+Cell read_cell(const std::filesystem::path& file);
+
+}  // namespace cell

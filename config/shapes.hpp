@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calib_core/collision.hpp"
+#include "config/json_value.hpp"
+
+/// The solids that several files describe in the same words.
+namespace cell {
+
+/// {"name","min_mm":[3],"max_mm":[3]}: edges along R_-1's axes, min below max.
+calib::Box box_from_json(const JsonValue& value);
+std::vector<calib::Box> boxes_from_json(const JsonValue& value);
+
+/// [{"name","frame","from_mm":[3],"to_mm":[3],"radius_mm"}, ...]; "name" may be left out. With `only_frame`
+/// "frame" may be left out too, and is that one.
+std::vector<calib::Capsule> capsules_from_json(const JsonValue& value,
+                                               std::optional<int> only_frame = std::nullopt);
+
+}  // namespace cell

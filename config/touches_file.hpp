@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib_core/touch.hpp"
+#include "config/cell.hpp"
+
+namespace cell {
+
+inline constexpr std::string_view kTouchesSchema = "touchcal/touches/1";
+inline constexpr std::string_view kTouchesCsvHeader = "plane,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg";
+inline constexpr std::size_t kTouchCountMax = 100'000;
+/// Room for kTouchCountMax touches with every number on a line of its own.
+inline constexpr std::size_t kTouchesSizeMax = 64U << 20U;
+
+struct TouchesFile {
+  std::vector<calib::Touch> touches;
+  std::vector<std::string>
+      warnings;  // a sentence a touch with joints outside their ranges; touches count from 1
+};
+
+/// JSON, or CSV when the file's name ends in .csv or its first line is kTouchesCsvHeader. ConfigError: what
+/// is not as contract section 3 says, another arm's touches, a plane the block does not have; a CSV error
+/// names its line.
+TouchesFile read_touches(const std::filesystem::path& file, const Cell& cell);
+
+/// The same from memory. `source` is how messages call the bytes.
+TouchesFile touches_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes,
+                              const Cell& cell);
+TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, const Cell& cell);
+
+}  // namespace cell
