@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdlib>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,17 +39,37 @@ struct Clash {
   double distance_m = 0.0;  // between the surfaces, negative when they overlap
 };
 
-/// Distance between the surface of a capsule given by its end points in R_-1 and a box; negative inside is not
-/// promised to be exact, only to be <= 0.
+/// The middle line of a body, in R_-1.
+struct Segment {
+  Eigen::Vector3d from_m;
+  Eigen::Vector3d to_m;
+};
+
+/// Where a body is.
+Segment place(const Capsule& body, const Chain& chain);
+
+/// Bodies whose frames are at most this many joints apart never clash with each other: they meet at a joint
+/// in every posture, and the joint ranges keep them off each other.
+inline constexpr int kNeighbourFrames = 2;
+
+inline bool are_neighbours(const Capsule& a, const Capsule& b) {
+  return std::abs(a.frame - b.frame) <= kNeighbourFrames;
+}
+
+/// Shortest distance between a segment and a box, 0 when they meet. Exact but for rounding.
+double segment_box_distance_m(const Segment& segment, const Box& box);
+
+/// Distance between the surface of a capsule given by its end points in R_-1 and a box; negative inside is
+/// not promised to be exact, only to be <= 0.
 double capsule_box_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, double radius_m,
                               const Box& box);
 
-/// Shortest distance between two segments.
+/// Shortest distance between two segments, either of which may be a point.
 double segment_distance_m(const Eigen::Vector3d& from_a, const Eigen::Vector3d& to_a,
                           const Eigen::Vector3d& from_b, const Eigen::Vector3d& to_b);
 
 /// The first pair nearer than `clearance_m` (obstacles) or touching (arm against itself), or nothing.
-/// Bodies of the same or of neighbouring frames never clash with each other.
+/// Neighbours (are_neighbours) never clash with each other.
 std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain, double clearance_m);
 
 }  // namespace calib
