@@ -1,0 +1,127 @@
+/// cs8sim: a CS8 controller, arm, probe and block that are not there. See README.md.
+#include <spdlog/cfg/env.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <iostream>
+
+#include "config/read_config.hpp"
+#include "config/truth.hpp"
+#include "sim_controller/server.hpp"
+
+namespace {
+
+enum ExitCode { kDone = 0, kWrongUsage = 2, kBadInput = 3, kRefused = 4 };
+
+struct Arguments {
+  std::string cell_file;
+  std::string truth_file;
+  std::string listen;
+  std::uint64_t seed = 1;
+  std::string speed = "1";
+};
+
+std::optional<cell::Endpoint> parse_endpoint(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  std::uint16_t port = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, port);
+  if (error != std::errc{} || rest != end) return std::nullopt;
+  return cell::Endpoint{text.substr(0, colon), port};
+}
+
+std::optional<double> parse_speed(const std::string& text) {
+  if (text == "max") return sim::kSpeedMax;
+  double speed = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, speed);
+  if (error != std::errc{} || rest != end || !std::isfinite(speed) || speed <= 0.0) return std::nullopt;
+  return speed;
+}
+
+std::string check_listen(const std::string& text) {
+  return parse_endpoint(text) ? "" : "'" + text + "' is not HOST:PORT";
+}
+
+std::string check_speed(const std::string& text) {
+  return parse_speed(text) ? "" : "'" + text + "' is neither a number above 0 nor max";
+}
+
+int run(const Arguments& arguments) {
+  const cell::Cell cell = cell::read_cell(arguments.cell_file);
+  const auto truth_file = arguments.truth_file.empty()
+                              ? std::filesystem::path(arguments.cell_file).parent_path() / "truth.json"
+                              : std::filesystem::path(arguments.truth_file);
+  const cell::Truth truth = cell::read_truth(truth_file);
+  const cell::Endpoint endpoint =
+      arguments.listen.empty() ? cell.controller : *parse_endpoint(arguments.listen);
+
+  sim::ServerOptions options;
+  options.controller.seed = arguments.seed;
+  options.controller.speed = *parse_speed(arguments.speed);
+  // Differs from one start to the next, as the session of a real controller does.
+  options.controller.session = static_cast<std::uint32_t>(
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
+          .count());
+  options.log = spdlog::default_logger();
+
+  boost::asio::io_context io;
+  std::optional<sim::Server> server;
+  try {
+    server.emplace(io, endpoint.host, endpoint.port, sim::make_plant(cell, truth.errors), options);
+  } catch (const boost::system::system_error& error) {
+    std::cerr << "cs8sim: cannot listen on " << endpoint.host << ':' << endpoint.port << ": "
+              << error.code().message() << "; give another address with --listen\n";
+    return kRefused;
+  }
+  boost::asio::signal_set signals(io, SIGINT, SIGTERM);
+  signals.async_wait([&server](boost::system::error_code, int) { server->stop(); });
+  std::cout << "listening on " << endpoint.host << ':' << server->port() << std::endl;
+  spdlog::info("cell {}, truth {}, seed {}, speed {}", cell.name, truth.name, arguments.seed,
+               arguments.speed);
+  io.run();
+  return kDone;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  spdlog::set_default_logger(spdlog::stderr_logger_st("cs8sim"));
+  spdlog::cfg::load_env_levels();
+  CLI::App app("cs8sim: a simulated CS8 controller with a TX90, a touch probe and a block", "cs8sim");
+  Arguments arguments;
+  app.set_version_flag("--version", "cs8sim " TOUCHCAL_VERSION);
+  app.add_option("--cell", arguments.cell_file, "cell file")->required()->type_name("FILE");
+  app.add_option("--listen", arguments.listen,
+                 "default: the cell's controller endpoint; port 0 takes a free one")
+      ->type_name("HOST:PORT")
+      ->check(check_listen);
+  app.add_option("--truth", arguments.truth_file,
+                 "the arm's true errors; default: truth.json beside the cell file")
+      ->type_name("FILE");
+  app.add_option("--seed", arguments.seed, "of the touch noise")->type_name("N")->capture_default_str();
+  app.add_option("--speed", arguments.speed, "simulated against wall time; max: motions take no time")
+      ->type_name("X|max")
+      ->check(check_speed)
+      ->capture_default_str();
+  app.footer("SPDLOG_LEVEL=debug in the environment logs each touch.");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kWrongUsage;
+  }
+  try {
+    return run(arguments);
+  } catch (const cell::ConfigError& error) {
+    std::cerr << error.what() << '\n';
+    return kBadInput;
+  }
+}

@@ -1,0 +1,43 @@
+#pragma once
+
+#include "calib_core/collision.hpp"
+#include "calib_core/error_parameters.hpp"
+#include "calib_core/joint_vector.hpp"
+#include "calib_core/kinematic_model.hpp"
+#include "config/cell.hpp"
+
+namespace sim {
+
+/// From the probe's edge to the first braking: what the controller promises, and what search limits are built
+/// on.
+inline constexpr double kStopLatencySeconds = 0.008;
+/// Acceleration and deceleration of the tool centre.
+inline constexpr double kAccelerationMetresPerSecond2 = 0.5;
+/// Searches longer than this are refused.
+inline constexpr double kSearchLengthMaxMetres = 0.06;
+
+/// The simulated cell: what the controller believes (nominal) and what stands there (truth). SI, frames as in
+/// calib_core.
+struct Plant {
+  calib::KinematicModel nominal;  // the controller moves with it
+  calib::KinematicModel truth;    // where the arm really is; nothing but contact and collision looks at it
+  calib::JointRanges joint_ranges;
+  calib::JointVector joint_speeds_max;
+  calib::JointVector start_joints;  // where the arm stands at the start, and after the operator freed it
+  calib::CollisionScene scene;      // all bodies but the stylus ball: the ball may touch, the others collide
+  double trip_distance_m = 0.0;     // of the ball's centre from the nearest obstacle: radius - pre-travel
+  double overtravel_m = 0.0;        // what the stylus bends before it breaks
+  double touch_noise_m = 0.0;       // one standard deviation of the trip distance in a search
+  double stop_latency_s = kStopLatencySeconds;  // what it really takes; longer in tests of overtravel
+};
+
+/// The cell with an arm that has `errors` on top of its nominal parameters.
+Plant make_plant(const cell::Cell& cell, const calib::ErrorVector& errors);
+
+/// Way from the edge to standstill at `speed_m_s`.
+double stopping_distance_m(double speed_m_s, double latency_s);
+
+/// The fastest search whose stopping distance is within half the probe's overtravel.
+double search_speed_max_m_s(double overtravel_m);
+
+}  // namespace sim
