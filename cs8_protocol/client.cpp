@@ -1,6 +1,7 @@
 #include "cs8_protocol/client.hpp"
 
 #include <algorithm>
+#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <stdexcept>
@@ -40,6 +41,7 @@ asio::awaitable<void> Link::wait(Waiting& waiting, Clock::time_point accept_by, 
            "command " + std::to_string(waiting.sequence) +
                (waiting.accepted ? " was accepted, but no result came within its deadline"
                                  : " was not answered within its deadline"));
+      co_await asio::post(executor_, asio::use_awaitable);  // the loss is told before the call ends
       co_return;
     }
     waiting.alarm.expires_at(deadline);

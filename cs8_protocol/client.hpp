@@ -56,7 +56,8 @@ struct ClientOptions {
 /// Called from the io_context, never from inside a call of the client. They may close or destroy the client.
 struct ClientHooks {
   std::function<void(const State&)> on_state;
-  std::function<void(const LinkError&)> on_loss;  // once per connection; not after close()
+  std::function<void(const LinkError&)>
+      on_loss;  // once per connection, before a waiting call ends; not after close()
 };
 
 /// What became of a motion command; `sequence` is 0 when it was never sent. After a LinkError the command may

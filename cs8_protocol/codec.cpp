@@ -33,7 +33,6 @@ constexpr std::size_t size_of_payload() {
   const Body body{};
   SizeCounter counter;
   Body::visit(body, counter);
-  static_assert(std::is_trivially_copyable_v<Body>);
   return counter.size;
 }
 
@@ -149,8 +148,10 @@ bool with_body_of(MessageType type, const Use& use) {
 std::size_t payload_size(MessageType type) {
   std::size_t size = 0;
   with_body_of(type, [&]<class Body>() {
-    static_assert(size_of_payload<Body>() <= kPayloadSizeMax);
     size = size_of_payload<Body>();
+    static_assert(size_of_payload<Body>() <= kPayloadSizeMax);
+    static_assert(std::is_empty_v<Body> || size_of_payload<Body>() == sizeof(Body),
+                  "visit() left a field out");
   });
   return size;
 }

@@ -197,13 +197,14 @@ void Link::fail(LinkErrorKind kind, std::string text) {
   connect_alarm_.cancel();
   heartbeat_timer_.cancel();
   silence_timer_.cancel();
-  if (waiting_ != nullptr) waiting_->alarm.cancel();
-  if (!established_) return;
-  asio::post(executor_, [self = shared_from_this()] {
-    const auto on_loss =
-        self->hooks_.on_loss;  // a copy: the hook may destroy the client and with it the original
-    if (on_loss) on_loss(*self->error_);
-  });
+  if (established_) {
+    asio::post(executor_, [self = shared_from_this()] {
+      const auto on_loss =
+          self->hooks_.on_loss;  // a copy: the hook may destroy the client and with it the original
+      if (on_loss) on_loss(*self->error_);
+    });
+  }
+  if (waiting_ != nullptr) waiting_->alarm.cancel();  // last: the loss is told before the call ends
 }
 
 void Link::close() {

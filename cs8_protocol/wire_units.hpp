@@ -10,12 +10,16 @@ namespace cs8 {
 inline std::int32_t microdeg_from_radians(double rad) {
   return static_cast<std::int32_t>(std::lround(rad * (180.0e6 / std::numbers::pi)));
 }
-constexpr double radians_from_microdeg(std::int32_t microdeg) { return microdeg * (std::numbers::pi / 180.0e6); }
+constexpr double radians_from_microdeg(std::int32_t microdeg) {
+  return microdeg * (std::numbers::pi / 180.0e6);
+}
 
 inline std::int32_t dmm_from_metres(double m) { return static_cast<std::int32_t>(std::lround(m * 1e7)); }
 constexpr double metres_from_dmm(std::int32_t dmm) { return dmm * 1e-7; }
 
-inline std::int32_t um_s_from_metres_per_second(double m_s) { return static_cast<std::int32_t>(std::lround(m_s * 1e6)); }
+inline std::int32_t um_s_from_metres_per_second(double m_s) {
+  return static_cast<std::int32_t>(std::lround(m_s * 1e6));
+}
 constexpr double metres_per_second_from_um_s(std::int32_t um_s) { return um_s * 1e-6; }
 
 }  // namespace cs8

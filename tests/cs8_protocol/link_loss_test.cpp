@@ -1,0 +1,281 @@
+#include <gmock/gmock.h>
+
+#include <boost/asio/bind_cancellation_slot.hpp>
+#include <boost/asio/cancellation_signal.hpp>
+#include <memory>
+#include <utility>
+
+#include "tests/cs8_protocol/fake_controller.hpp"
+
+/// However a link ends while a touch runs: the touch ends with the reason, the owner is told once, nothing
+/// stays.
+namespace cs8 {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+
+class LinkLoss : public WithFakeController {
+ protected:
+  static Touch some_touch() { return {.deadline_ms = 5000}; }
+
+  /// The error a touch ends with when the controller, after the handshake, does `script`. The script begins
+  /// when the touch has been received.
+  LinkError touch_while(const Script& script, ClientOptions options = patient()) {
+    Client client = make_client(options);
+    LinkError error;
+    controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+      co_await peer.shake_hands(welcome());
+      co_await peer.receive<Touch>();
+      co_await script(peer);
+    }});
+    run([&]() -> asio::awaitable<void> {
+      const ConnectReply connected = co_await client.connect(endpoint(), expected());
+      EXPECT_TRUE(std::holds_alternative<Welcome>(connected));
+      const TouchReply reply = co_await client.touch(some_touch());
+      EXPECT_EQ(losses_.size(), 1u) << "the loss is told before the call ends";
+      EXPECT_EQ(reply.sequence, 1u);
+      if (const auto* ended = std::get_if<LinkError>(&reply.answer)) {
+        error = *ended;
+      } else {
+        ADD_FAILURE() << "the touch was answered";
+      }
+      EXPECT_FALSE(client.connected());
+    });
+    EXPECT_EQ(losses_.size(), 1u);
+    for (const LinkError& loss : std::exchange(losses_, {})) EXPECT_EQ(loss.text, error.text);
+    return error;
+  }
+
+  /// As above, for a controller that sends this and then waits for the end.
+  LinkError touch_answered_by(std::uint32_t sequence, const Payload& answer) {
+    return touch_while([&](Peer& peer) -> asio::awaitable<void> {
+      peer.send(sequence, answer);
+      co_await peer.until_closed();
+    });
+  }
+};
+
+TEST_F(LinkLoss, AConnectionClosedDuringATouchEndsIt) {
+  const LinkError error = touch_while([](Peer& peer) -> asio::awaitable<void> {
+    peer.send(1, Accepted{});
+    co_return;
+  });
+  EXPECT_EQ(error.kind, LinkErrorKind::kPeerClosed);
+}
+
+TEST_F(LinkLoss, AFrameThatIsCutOffEndsTheTouch) {
+  const LinkError error = touch_while([](Peer& peer) -> asio::awaitable<void> {
+    auto frame = encode({1, TouchResult{.outcome = Outcome::kContact}});
+    frame.pop_back();
+    peer.send_bytes(frame);
+    co_return;
+  });
+  EXPECT_EQ(error.kind, LinkErrorKind::kPeerClosed);
+}
+
+TEST_F(LinkLoss, SilenceDuringATouchEndsItAtTheHeartbeatTimeout) {
+  ClientOptions options = patient();
+  options.heartbeat_timeout = milliseconds(60);
+  std::chrono::steady_clock::time_point last_word;
+  const LinkError error = touch_while(
+      [&](Peer& peer) -> asio::awaitable<void> {
+        peer.send(1, Accepted{});
+        last_word = std::chrono::steady_clock::now();
+        co_await peer.until_closed();
+      },
+      options);
+  EXPECT_EQ(error.kind, LinkErrorKind::kSilent);
+  const auto waited = std::chrono::steady_clock::now() - last_word;
+  EXPECT_GE(waited, options.heartbeat_timeout);
+  EXPECT_LT(waited, std::chrono::seconds(5)) << "long before any other deadline of this test";
+}
+
+TEST_F(LinkLoss, HalfAFrameAndThenSilenceIsSilence) {
+  ClientOptions options = patient();
+  options.heartbeat_timeout = milliseconds(60);
+  const LinkError error = touch_while(
+      [&](Peer& peer) -> asio::awaitable<void> {
+        peer.send_bytes({'T', 'C', 1});
+        co_await peer.until_closed();
+      },
+      options);
+  EXPECT_EQ(error.kind, LinkErrorKind::kSilent);
+}
+
+TEST_F(LinkLoss, ACommandThatIsNeverAcceptedEndsAtTheAnswerDeadline) {
+  ClientOptions options = patient();
+  options.answer_deadline = milliseconds(50);
+  const LinkError error =
+      touch_while([](Peer& peer) -> asio::awaitable<void> { co_await peer.until_closed(); }, options);
+  EXPECT_EQ(error.kind, LinkErrorKind::kUnanswered);
+  EXPECT_THAT(error.text, HasSubstr("command 1 was not answered"));
+}
+
+TEST_F(LinkLoss, AnAcceptedCommandWithoutAResultEndsAtItsOwnDeadline) {
+  ClientOptions options = patient();
+  options.result_margin = milliseconds(20);
+  Client client = make_client(options);
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.shake_hands(welcome());
+    co_await peer.receive<Touch>();
+    peer.send(1, Accepted{});
+    co_await peer.until_closed();
+  }});
+  run([&]() -> asio::awaitable<void> {
+    co_await client.connect(endpoint(), expected());
+    const auto start = std::chrono::steady_clock::now();
+    const Touch brief{.deadline_ms = 30};
+    const TouchReply reply = co_await client.touch(brief);
+    EXPECT_GE(std::chrono::steady_clock::now() - start, milliseconds(50));
+    const auto* error = std::get_if<LinkError>(&reply.answer);
+    EXPECT_TRUE(error != nullptr && error->kind == LinkErrorKind::kUnanswered);
+  });
+}
+
+TEST_F(LinkLoss, BytesThatAreNoFrameEndTheTouch) {
+  const LinkError error = touch_while([](Peer& peer) -> asio::awaitable<void> {
+    peer.send_bytes(std::vector<std::uint8_t>(64, 0xa5));
+    co_await peer.until_closed();
+  });
+  EXPECT_EQ(error.kind, LinkErrorKind::kProtocol);
+}
+
+TEST_F(LinkLoss, AnAnswerToAnotherSequenceEndsTheLinkInsteadOfShiftingTheSeries) {
+  for (const std::uint32_t sequence : {0u, 2u}) {
+    for (const Payload& answer :
+         {Payload(Accepted{}), Payload(Rejected{RejectReason::kBusy, 0}), Payload(ResultUnknown{sequence}),
+          Payload(TouchResult{.outcome = Outcome::kContact}),
+          Payload(MoveResult{.outcome = Outcome::kArrived})}) {
+      const LinkError error = touch_answered_by(sequence, answer);
+      EXPECT_EQ(error.kind, LinkErrorKind::kProtocol);
+      EXPECT_THAT(error.text, HasSubstr("with sequence " + std::to_string(sequence)));
+    }
+  }
+}
+
+TEST_F(LinkLoss, AnAnswerOfAnotherKindEndsTheLink) {
+  EXPECT_EQ(touch_answered_by(1, MoveResult{.outcome = Outcome::kArrived}).kind, LinkErrorKind::kProtocol);
+  EXPECT_EQ(touch_answered_by(1, ResultUnknown{1}).kind, LinkErrorKind::kProtocol);
+  EXPECT_EQ(touch_answered_by(0, Welcome{}).kind, LinkErrorKind::kProtocol);
+  EXPECT_EQ(touch_answered_by(0, Heartbeat{1}).kind, LinkErrorKind::kProtocol);
+}
+
+TEST_F(LinkLoss, AChangeOfSessionWithinAConnectionEndsIt) {
+  const LinkError error = touch_answered_by(1, State{.session = 4});
+  EXPECT_EQ(error.kind, LinkErrorKind::kProtocol);
+  EXPECT_THAT(error.text, HasSubstr("session changed from 3 to 4"));
+}
+
+TEST_F(LinkLoss, AFaultOfTheControllerIsNamed) {
+  const LinkError error = touch_answered_by(0, Fault{FaultCode::kBadValue, 1});
+  EXPECT_EQ(error.kind, LinkErrorKind::kFault);
+  EXPECT_THAT(error.text, HasSubstr("bad_value (detail 1)"));
+}
+
+TEST_F(LinkLoss, ClosingDuringATouchEndsItAndCallsNothingBack) {
+  Client client = make_client();
+  on_state_ = [&](const State&) { client.close(); };
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.shake_hands(welcome());
+    co_await peer.receive<Touch>();
+    peer.send(1, State{.session = 3});
+    co_await peer.until_closed();
+  }});
+  run([&]() -> asio::awaitable<void> {
+    co_await client.connect(endpoint(), expected());
+    const TouchReply reply = co_await client.touch(some_touch());
+    const auto* error = std::get_if<LinkError>(&reply.answer);
+    EXPECT_TRUE(error != nullptr && error->kind == LinkErrorKind::kClosed);
+  });
+  EXPECT_TRUE(losses_.empty());
+}
+
+TEST_F(LinkLoss, ClosingDuringTheHandshakeEndsIt) {
+  Client client = make_client();
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.receive<Hello>();
+    client.close();
+    co_await peer.until_closed();
+  }});
+  run([&]() -> asio::awaitable<void> {
+    const ConnectReply reply = co_await client.connect(endpoint(), expected());
+    const auto* error = std::get_if<LinkError>(&reply);
+    EXPECT_TRUE(error != nullptr && error->kind == LinkErrorKind::kClosed);
+  });
+}
+
+TEST_F(LinkLoss, TheClientMayBeDestroyedFromItsOwnHooksAndWhileACallWaits) {
+  for (const bool on_loss : {false, true}) {
+    std::unique_ptr<Client> client;
+    const auto destroy = [&] { client.reset(); };
+    client = std::make_unique<Client>(io_.get_executor(), patient(),
+                                      ClientHooks{.on_state =
+                                                      [&, on_loss](const State&) {
+                                                        if (!on_loss) destroy();
+                                                      },
+                                                  .on_loss =
+                                                      [&, on_loss](const LinkError&) {
+                                                        if (on_loss) destroy();
+                                                      }});
+    controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+      co_await peer.shake_hands(welcome());
+      co_await peer.receive<Touch>();
+      peer.send(1, State{.session = 3});
+      peer.send(0, Fault{FaultCode::kLength, 4});
+      co_await peer.until_closed();
+    }});
+    run([&]() -> asio::awaitable<void> {
+      co_await client->connect(endpoint(), expected());
+      const TouchReply reply = co_await client->touch(some_touch());
+      EXPECT_TRUE(std::holds_alternative<LinkError>(reply.answer));
+    });
+    EXPECT_EQ(client, nullptr);
+  }
+}
+
+TEST_F(LinkLoss, ACallThatIsCancelledEndsTheLinkBecauseItsAnswerHasNowhereToGo) {
+  Client client = make_client();
+  asio::cancellation_signal cancel;
+  on_state_ = [&](const State&) { cancel.emit(asio::cancellation_type::terminal); };
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.shake_hands(welcome());
+    co_await peer.receive<Touch>();
+    peer.send(1, State{.session = 3});
+    co_await peer.until_closed();
+  }});
+  bool cancelled = false;
+  run([&]() -> asio::awaitable<void> {
+    co_await client.connect(endpoint(), expected());
+    asio::co_spawn(
+        io_, client.touch(some_touch()),
+        asio::bind_cancellation_slot(cancel.slot(), [&](const std::exception_ptr& failure, auto&&) {
+          cancelled = failure != nullptr;
+        }));
+  });
+  EXPECT_TRUE(cancelled);
+  ASSERT_EQ(losses_.size(), 1u);
+  EXPECT_THAT(losses_.front().text, HasSubstr("given up"));
+}
+
+TEST_F(LinkLoss, AControllerThatStopsReadingIsFoundOut) {
+  Client client = make_client();
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.shake_hands(welcome());
+    asio::steady_timer never(io_, std::chrono::hours(1));
+    co_await never.async_wait(asio::use_awaitable);
+  }});
+  run([&]() -> asio::awaitable<void> {
+    co_await client.connect(endpoint(), expected());
+    for (int i = 0; i < 10'000'000 && client.connected(); ++i) client.stop();
+    EXPECT_FALSE(client.connected());
+    io_.stop();
+  });
+  io_.restart();
+  io_.poll();
+  ASSERT_EQ(losses_.size(), 1u);
+  EXPECT_EQ(losses_.front().kind, LinkErrorKind::kSilent);
+}
+
+}  // namespace
+}  // namespace cs8
