@@ -1,0 +1,329 @@
+// What the states of an Operation do: one coroutine, one step at a time.
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <utility>
+
+#include "cs8_protocol/names.hpp"
+#include "service/acquisition/operation.hpp"
+#include "service/acquisition/touch_command.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// Pauses between attempts to connect: growing, so that a controller that is off is not hammered.
+constexpr auto kFirstPause = 100ms;
+constexpr auto kLongestPause = 2000ms;
+
+std::string rejection_text(const cs8::Rejected& rejected) {
+  return fmt::format("{} (detail {})", cs8::name(rejected.reason), rejected.detail);
+}
+
+}  // namespace
+
+asio::awaitable<void> Operation::wait_for_wake(std::chrono::milliseconds at_most) {
+  wake_.expires_after(at_most);
+  boost::system::error_code ignored;
+  co_await wake_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+}
+
+asio::awaitable<void> Operation::drive() {
+  while (!shutting_down_ || is_active(status_.state)) {
+    switch (status_.state) {
+      case State::kResetting:
+        co_await reset();
+        break;
+      case State::kStarting:
+        co_await start_run();
+        break;
+      case State::kExecute:
+        co_await make_next_touch();
+        break;
+      case State::kCompleting:
+        co_await complete_run();
+        break;
+      case State::kStopping:
+        close_run("stopped");
+        apply(Event::kDone);
+        break;
+      case State::kAborting:
+        close_run("aborted");
+        apply(Event::kDone);
+        break;
+      case State::kHolding:
+      case State::kUnholding:
+      case State::kClearing:
+        apply(Event::kDone);
+        break;
+      case State::kComplete:
+        // A finished run stays to be read while the link comes and goes.
+        co_await (client_.connected() ? wait_for_wake(1h) : connect());
+        break;
+      default:
+        co_await wait_for_wake(1h);
+    }
+  }
+}
+
+asio::awaitable<void> Operation::reset() {
+  if (!client_.connected()) {
+    co_await connect();
+    co_return;
+  }
+  if (unmet_preconditions().empty()) {
+    apply(Event::kDone);
+  } else {
+    co_await wait_for_wake(1h);  // each state of the controller wakes
+  }
+}
+
+/// Tries until there is a link or the state changes. Nothing moves by it.
+asio::awaitable<void> Operation::connect() {
+  asio::ip::tcp::resolver resolver(executor_);
+  const State state = status_.state;
+  for (auto pause = std::chrono::milliseconds(kFirstPause); status_.state == state && !shutting_down_;
+       pause = std::min(2 * pause, std::chrono::milliseconds(kLongestPause))) {
+    boost::system::error_code failure;
+    const auto found = co_await resolver.async_resolve(endpoint_.host, std::to_string(endpoint_.port),
+                                                       asio::redirect_error(asio::use_awaitable, failure));
+    cs8::ConnectReply reply = cs8::LinkError{cs8::LinkErrorKind::kUnreachable,
+                                             fmt::format("{}: {}", endpoint_.host, failure.message())};
+    if (!failure) {
+      reply = co_await client_.connect(found.begin()->endpoint(),
+                                       {.arm = cell_.arm.name,
+                                        .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
+                                        .upper_limits = to_wire(cell_.arm.joint_ranges.upper)});
+    }
+    if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
+      if (state == State::kResetting) status_.fault.reset();
+      publish();
+      co_await settle_open_command(*welcome);
+      co_return;
+    }
+    const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
+    if (!status_.fault || status_.fault->message() != fault.message()) raise(fault, Event::kLinkDown);
+    if (status_.state == state && !shutting_down_) co_await wait_for_wake(pause);
+  }
+}
+
+/// A result that waits at the controller belongs to a run that is over: it is told and acknowledged, so that
+/// the next run can start.
+asio::awaitable<void> Operation::settle_open_command(const cs8::Welcome& welcome) {
+  if (welcome.open_sequence == 0) co_return;
+  const cs8::QueryReply reply = co_await client_.query(welcome.open_sequence, cell_.deadlines.command);
+  if (const auto* touch = std::get_if<cs8::TouchResult>(&reply)) {
+    spdlog::warn("touch {} of an ended run had come to '{}'", welcome.open_sequence,
+                 cs8::name(touch->outcome));
+  }
+  if (!std::holds_alternative<cs8::LinkError>(reply)) client_.acknowledge(welcome.open_sequence);
+}
+
+calib::PlanningProblem Operation::planning_problem(const Recipe& recipe) const {
+  calib::PlanningProblem problem{.nominal = cell_.arm.model,
+                                 .joint_ranges = cell_.arm.joint_ranges,
+                                 .faces = cell_.block.faces,
+                                 .stylus = cell_.probe.stylus,
+                                 .scene = cell_.collision_scene(),
+                                 .park_joints = cell_.park_joints,
+                                 .nominal_miss_m = cell_.nominal_miss_m,
+                                 .tilt_max_rad = cell_.stylus_tilt_max_rad};
+  for (const int face : recipe.faces) {
+    problem.requests.push_back({face, recipe.fit_per_face, recipe.held_out_per_face});
+  }
+  return problem;
+}
+
+asio::awaitable<bool> Operation::plan() {
+  const Recipe& recipe = run_->recipe();
+  if (!plans_.contains(recipe.name)) {
+    const calib::PlanningProblem problem = planning_problem(recipe);
+    const auto outcome = co_await asio::co_spawn(
+        planner_,
+        [&problem]() -> asio::awaitable<std::variant<calib::TouchPlan, calib::PlanningFailure>> {
+          co_return calib::plan_touches(problem);
+        },
+        asio::use_awaitable);
+    if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome)) {
+      raise({FaultCode::kRecipeUnreachable,
+             fmt::format("plane {}: {} of {} touches found; {}", failure->face + 1, failure->found,
+                         failure->wanted, failure->reason)},
+            Event::kAbortFault);
+      co_return false;
+    }
+    plans_.emplace(recipe.name, std::get<calib::TouchPlan>(outcome));
+  }
+  run_->set_plan(plans_.at(recipe.name));
+  store_.set_touches_total(run_->id(), run_->touches_total());
+  publish();
+  co_return true;
+}
+
+/// Where the arm stands, from a state that was told after this call; nothing when the link is lost meanwhile.
+asio::awaitable<std::optional<calib::JointVector>> Operation::standing_joints() {
+  if (standing_) co_return standing_;
+  const auto asked_at = std::chrono::steady_clock::now();
+  while (client_.connected()) {
+    const auto state = client_.latest_state();
+    if (state && client_.heard_at() > asked_at && (state->flags & cs8::kSettled) != 0) {
+      co_return from_wire(state->joints);
+    }
+    co_await wait_for_wake(20ms);
+  }
+  co_return std::nullopt;
+}
+
+/// A search that was broken off left the stylus near a face: back along its line first.
+asio::awaitable<bool> Operation::leave_broken_search() {
+  const auto state = client_.latest_state();
+  if (!state || (state->flags & cs8::kRetractDue) == 0) co_return true;
+  take_move(co_await client_.retract(retract_command(cell_)));
+  co_return status_.state == State::kStarting;
+}
+
+asio::awaitable<void> Operation::start_run() {
+  standing_.reset();
+  if (!co_await plan()) co_return;
+  if (status_.state != State::kStarting) co_return;
+  if (!co_await leave_broken_search()) co_return;
+  if (status_.state == State::kStarting) apply(Event::kDone);
+}
+
+asio::awaitable<void> Operation::make_next_touch() {
+  const calib::PlannedTouch* planned = run_->next();
+  if (!planned) {
+    apply(Event::kDone);
+    co_return;
+  }
+  const auto from = co_await standing_joints();
+  if (!from || status_.state != State::kExecute) co_return;
+  const auto via = calib::find_transfer(planning_problem(run_->recipe()), *from, planned->clear_joints);
+  if (!via) {
+    raise({FaultCode::kNoSafeWay,
+           fmt::format("to touch {} on plane {}", run_->touches_done() + 1, planned->face + 1)},
+          Event::kAbortFault);
+    co_return;
+  }
+  standing_.reset();
+  const cs8::TouchReply reply = co_await client_.touch(touch_command(cell_, *planned, *via));
+  if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
+    raise({FaultCode::kTouchRejected, rejection_text(*rejected)}, Event::kHoldFault);
+  } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
+    take_contact(*planned, reply, *result);
+  } else if (is_active(status_.state)) {
+    raise(link_fault(std::get<cs8::LinkError>(reply.answer)), Event::kAbortFault);
+  }
+}
+
+/// A contact counts once it is stored; only then may the controller forget it.
+void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::TouchReply& reply,
+                             const cs8::TouchResult& result) {
+  if (const auto fault = fault_of(result.outcome, result.phase, result.error_number)) {
+    client_.acknowledge(reply.sequence);
+    raise(fault->fault, fault->holds ? Event::kHoldFault : Event::kAbortFault);
+    return;
+  }
+  if (result.outcome != cs8::Outcome::kContact) {  // stopped, as was asked
+    client_.acknowledge(reply.sequence);
+    return;
+  }
+  if (const auto why = implausible(cell_, planned, result)) {
+    client_.acknowledge(reply.sequence);
+    raise({FaultCode::kImplausibleTouch, *why}, Event::kAbortFault);
+    return;
+  }
+  try {
+    run_->add(store_, {.number = run_->touches_done() + 1,
+                       .plane = planned.face + 1,
+                       .role = planned.role,
+                       .joints = result.contact,
+                       .source = result.source,
+                       .overtravel_dmm = result.overtravel_dmm,
+                       .captured_at = now_text()});
+  } catch (const std::exception& error) {
+    raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    return;
+  }
+  client_.acknowledge(reply.sequence);
+  standing_ = planned.clear_joints;
+  publish();
+}
+
+void Operation::take_move(const cs8::MoveReply& reply) {
+  if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
+    raise({FaultCode::kTouchRejected, rejection_text(*rejected)}, Event::kAbortFault);
+  } else if (const auto* result = std::get_if<cs8::MoveResult>(&reply.answer)) {
+    client_.acknowledge(reply.sequence);
+    if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {
+      raise(fault->fault, Event::kAbortFault);
+    }
+  } else if (is_active(status_.state)) {
+    raise(link_fault(std::get<cs8::LinkError>(reply.answer)), Event::kAbortFault);
+  }
+}
+
+asio::awaitable<void> Operation::complete_run() {
+  co_await park();
+  if (status_.state != State::kCompleting) co_return;
+  const calib::IdentificationResult& result = run_->latest();
+  if (result.status != calib::IdentificationStatus::kConverged) {
+    status_.fault = Fault{FaultCode::kNotIdentifiable, result.message};
+  }
+  close_run("complete");
+  apply(Event::kDone);
+}
+
+asio::awaitable<void> Operation::park() {
+  const auto from = co_await standing_joints();
+  if (!from || status_.state != State::kCompleting) co_return;
+  const auto via = calib::find_transfer(planning_problem(run_->recipe()), *from, cell_.park_joints);
+  if (!via) {
+    raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kAbortFault);
+    co_return;
+  }
+  standing_.reset();
+  take_move(co_await client_.travel(travel_command(cell_, cell_.park_joints, *via)));
+}
+
+/// The run is over: its verdict and its latest result are stored with it.
+void Operation::close_run(const std::string& outcome) {
+  standing_.reset();
+  if (!run_open_) return;
+  run_open_ = false;
+  const Judgement judgement = judge(run_->latest(), cell_.acceptance, run_->complete());
+  const bool finished =
+      outcome == "complete" && run_->latest().status == calib::IdentificationStatus::kConverged;
+  status_.verdict = !finished            ? Verdict::kIncomplete
+                    : judgement.accepted ? Verdict::kAccepted
+                                         : Verdict::kRejected;
+  RunEnd end{.outcome = outcome,
+             .verdict = std::string(verdict_name(status_.verdict)),
+             .ended_at = now_text(),
+             .result_json = result_json()};
+  if (status_.fault) {
+    end.fault_code = std::string(describe(status_.fault->code).name);
+    end.fault_message = status_.fault->message();
+  }
+  if (status_.verdict == Verdict::kAccepted) {
+    status_.last_accepted_run_id = run_->id();
+    status_.last_accepted_at = end.ended_at;
+  }
+  try {
+    store_.finish_run(run_->id(), end);
+  } catch (const std::exception& error) {
+    status_.fault = Fault{FaultCode::kStoreFailed, error.what()};
+    spdlog::error("run {}: its end could not be stored: {}", run_->id(), error.what());
+  }
+  spdlog::info("run {} {}: {}, {} of {} touches", run_->id(), outcome, end.verdict, run_->touches_done(),
+               run_->touches_total());
+}
+
+}  // namespace cell

@@ -1,0 +1,276 @@
+#include "service/acquisition/operation.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <utility>
+
+#include "cs8_protocol/names.hpp"
+#include "service/http/json_view.hpp"
+#include "service/utc_time.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+cs8::ClientOptions client_options(const Deadlines& deadlines) {
+  return {.connect_deadline = deadlines.connect, .heartbeat_timeout = deadlines.heartbeat_timeout};
+}
+
+FaultCode fault_code_of(cs8::LinkErrorKind kind) {
+  switch (kind) {
+    case cs8::LinkErrorKind::kIncompatible:
+      return FaultCode::kControllerIncompatible;
+    case cs8::LinkErrorKind::kProtocol:
+    case cs8::LinkErrorKind::kFault:
+      return FaultCode::kProtocolError;
+    case cs8::LinkErrorKind::kUnreachable:
+    case cs8::LinkErrorKind::kHandshakeTimeout:
+    case cs8::LinkErrorKind::kNotConnected:
+      return FaultCode::kControllerUnreachable;
+    default:
+      return FaultCode::kLinkLost;
+  }
+}
+
+}  // namespace
+
+Fault link_fault(const cs8::LinkError& error) { return {fault_code_of(error.kind), error.text}; }
+
+Operation::Operation(asio::any_io_executor executor, const Cell& cell, TouchStore& store, Endpoint controller,
+                     std::string instance_id, Clock clock)
+    : executor_(executor),
+      cell_(cell),
+      store_(store),
+      endpoint_(std::move(controller)),
+      clock_(std::move(clock)),
+      client_(executor, client_options(cell.deadlines),
+              {.on_state = [this](const cs8::State& state) { hear(state); },
+               .on_loss = [this](const cs8::LinkError& error) { lose(error); }}),
+      wake_(executor),
+      ended_(executor, asio::steady_timer::time_point::max()) {
+  status_.instance_id = std::move(instance_id);
+  status_.since = now_text();
+  if (const auto accepted = store_.last_accepted()) {
+    status_.last_accepted_run_id = accepted->id;
+    status_.last_accepted_at = accepted->ended_at;
+  }
+}
+
+Operation::~Operation() { planner_.join(); }
+
+std::string Operation::now_text() const { return format_utc(clock_()); }
+
+void Operation::launch() {
+  enter(State::kResetting);  // finding the controller moves nothing
+  driving_ = true;
+  asio::co_spawn(executor_, drive(), [this](const std::exception_ptr& failure) {
+    driving_ = false;
+    ended_.cancel();
+    if (failure) std::rethrow_exception(failure);
+  });
+}
+
+void Operation::enter(State state) {
+  if (state == status_.state) return;
+  spdlog::info("{} -> {}{}", state_name(status_.state), state_name(state),
+               run_ ? fmt::format(" (run {})", run_->id()) : "");
+  status_.state = state;
+  status_.since = now_text();
+  publish();
+  wake_.cancel();
+}
+
+void Operation::apply(Event event) { enter(after_event(status_.state, event)); }
+
+void Operation::raise(Fault fault, Event event) {
+  spdlog::warn("fault {}: {}", describe(fault.code).name, fault.message());
+  status_.fault = std::move(fault);
+  publish();
+  apply(event);
+}
+
+void Operation::publish() {
+  ++status_.sequence;
+  status_.controller = controller_view();
+  status_.touches_done = run_ ? run_->touches_done() : 0;
+  status_.touches_total = run_ ? run_->touches_total() : 0;
+  status_.identifiable_count.reset();
+  status_.condition_number.reset();
+  status_.eta_s.reset();
+  status_.plane.reset();
+  if (run_) {
+    status_.run_id = run_->id();
+    status_.recipe = run_->recipe().name;
+    const calib::IdentificationResult& latest = run_->latest();
+    if (run_->touches_done() > 0)
+      status_.identifiable_count = static_cast<int>(latest.identifiable.columns.size());
+    if (!latest.iterations.empty()) status_.condition_number = latest.iterations.back().condition_number;
+    if (is_active(status_.state)) {
+      if (const calib::PlannedTouch* next = run_->next()) status_.plane = next->face + 1;
+      if (run_->touches_done() > 0) {
+        const std::chrono::duration<double> elapsed = clock_() - run_began_;
+        status_.eta_s =
+            elapsed.count() / run_->touches_done() * (run_->touches_total() - run_->touches_done());
+      }
+    }
+  }
+  for (asio::steady_timer* waiter : waiters_) waiter->cancel();
+}
+
+ControllerView Operation::controller_view() const {
+  ControllerView view{.connected = client_.connected()};
+  const auto state = client_.latest_state();
+  if (!view.connected || !state) return view;
+  view.powered = (state->flags & cs8::kPowered) != 0;
+  view.emergency_stop = state->emergency_stop != 0;
+  view.mode = std::string(cs8::name(state->mode));
+  return view;
+}
+
+void Operation::hear(const cs8::State& state) {
+  if (status_.controller != controller_view()) publish();
+  if (status_.state == State::kResetting) wake_.cancel();
+  if (state.task_error != 0) {
+    raise({FaultCode::kMotionError,
+           fmt::format("a task of the application ended with error {}", state.task_error)},
+          Event::kAbortFault);
+  }
+}
+
+void Operation::lose(const cs8::LinkError& error) {
+  if (shutting_down_) return;
+  standing_.reset();
+  raise(link_fault(error), Event::kLinkDown);
+  wake_.cancel();
+}
+
+std::vector<Unmet> Operation::unmet_preconditions() const {
+  if (!client_.connected()) {
+    return {{"controller_not_connected",
+             status_.fault ? status_.fault->message() : "there is no link to the controller yet"}};
+  }
+  const auto state = client_.latest_state();
+  if (!state) return {{"controller_state_unknown", "the controller has not told its state yet"}};
+  std::vector<Unmet> unmet;
+  const auto flag = [&](cs8::StateFlag bit) { return (state->flags & bit) != 0; };
+  if (state->emergency_stop != 0)
+    unmet.push_back({"emergency_stop", "release and acknowledge the emergency stop"});
+  if (state->mode != cs8::WorkingMode::kRemote)
+    unmet.push_back({"not_remote", "turn the controller to remote mode"});
+  if (!flag(cs8::kPowered)) unmet.push_back({"not_powered", "switch the arm's power on"});
+  if (flag(cs8::kHeld)) unmet.push_back({"hold", "release the hold on the pendant"});
+  if (!flag(cs8::kArmCalibrated))
+    unmet.push_back({"not_calibrated", "let the controller find its joint zeros"});
+  if (flag(cs8::kProbeTouched))
+    unmet.push_back({"probe_touched", "the probe reads touched: free it or check its cable"});
+  if (state->monitor_speed_percent != 100) {
+    unmet.push_back({"monitor_speed",
+                     fmt::format("set the monitor speed from {} to 100 %", state->monitor_speed_percent)});
+  }
+  return unmet;
+}
+
+std::variant<Started, Refusal> Operation::start(const std::string& recipe,
+                                                const std::optional<std::string>& idempotency_key) {
+  if (idempotency_key) {
+    if (const auto earlier = store_.run_with_key(*idempotency_key)) {
+      if (earlier->recipe == recipe) return Started{earlier->id, true};
+      return Refusal{.kind = Refusal::Kind::kOtherKey,
+                     .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'",
+                                           earlier->id, earlier->recipe)};
+    }
+  }
+  const auto found = cell_.recipes.find(recipe);
+  if (found == cell_.recipes.end()) {
+    std::string known;
+    for (const auto& [name, unused] : cell_.recipes) known += (known.empty() ? "" : ", ") + name;
+    return Refusal{.kind = Refusal::Kind::kUnknownRecipe,
+                   .detail = fmt::format("there is no recipe '{}'; this cell has {}", recipe, known)};
+  }
+  if (is_active(status_.state)) {
+    return Refusal{.detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->id() : 0)};
+  }
+  if (auto unmet = unmet_preconditions(); !unmet.empty()) {
+    return Refusal{
+        .kind = Refusal::Kind::kPreconditions, .detail = "the cell is not ready", .unmet = std::move(unmet)};
+  }
+  if (!after_command(status_.state, Command::kStart)) {
+    return Refusal{.detail = fmt::format("a run cannot start in the state {}", state_name(status_.state))};
+  }
+  const std::int64_t id =
+      store_.begin_run({.recipe = recipe, .started_at = now_text(), .idempotency_key = idempotency_key});
+  run_.emplace(id, cell_, found->second, now_text());
+  run_open_ = true;
+  run_began_ = clock_();
+  status_.fault.reset();
+  status_.verdict = Verdict::kNone;
+  enter(State::kStarting);
+  return Started{id, false};
+}
+
+std::optional<Refusal> Operation::command(Command command, std::optional<std::int64_t> run_id) {
+  if (run_id && (!run_ || run_->id() != *run_id)) {
+    return Refusal{.kind = Refusal::Kind::kNotThisRun, .detail = fmt::format("run {} is over", *run_id)};
+  }
+  const auto next = after_command(status_.state, command);
+  if (!next) {
+    return Refusal{.detail = fmt::format("{} is not possible in the state {}", command_name(command),
+                                         state_name(status_.state))};
+  }
+  spdlog::info("command {}", command_name(command));
+  const bool settles_fault =
+      command == Command::kAcknowledge || command == Command::kClear || command == Command::kResume;
+  if (settles_fault && status_.fault) {
+    status_.fault.reset();
+    publish();
+  }
+  if (*next == State::kStopping || *next == State::kAborting) client_.stop();
+  enter(*next);
+  return std::nullopt;
+}
+
+Status Operation::status() const {
+  Status status = status_;
+  if (const auto heard = client_.heard_at()) {
+    status.data_age_ms =
+        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - *heard)
+            .count();
+  }
+  return status;
+}
+
+std::optional<std::string> Operation::result_json() const {
+  if (!run_ || run_->latest().status != calib::IdentificationStatus::kConverged) return std::nullopt;
+  return result_document(cell_, run_->recipe(), run_->latest(), {.complete = run_->complete()});
+}
+
+asio::awaitable<void> Operation::wait_for_change(std::uint64_t sequence, std::chrono::milliseconds wait) {
+  if (status_.sequence != sequence) co_return;
+  asio::steady_timer timer(executor_, wait);
+  waiters_.push_back(&timer);
+  boost::system::error_code ignored;
+  co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  waiters_.remove(&timer);
+}
+
+asio::awaitable<void> Operation::shut_down() {
+  shutting_down_ = true;
+  if (is_active(status_.state)) {
+    client_.stop();
+    enter(State::kStopping);
+  } else {
+    wake_.cancel();
+  }
+  boost::system::error_code ignored;
+  if (driving_) co_await ended_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  client_.close();
+}
+
+}  // namespace cell

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <chrono>
+#include <functional>
+#include <list>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calib_core/touch_planning.hpp"
+#include "config/cell.hpp"
+#include "cs8_protocol/client.hpp"
+#include "service/acquisition/state_machine.hpp"
+#include "service/acquisition/status.hpp"
+#include "service/run.hpp"
+#include "service/store/touch_store.hpp"
+
+namespace cell {
+
+/// One thing that stands in the way of a start.
+struct Unmet {
+  std::string code;    // "not_powered"
+  std::string detail;  // what to do
+};
+
+/// Why a command was not taken.
+struct Refusal {
+  enum class Kind { kState, kPreconditions, kUnknownRecipe, kNotThisRun, kOtherKey };
+  Kind kind = Kind::kState;
+  std::string detail;
+  std::vector<Unmet> unmet;  // all of them at once
+};
+
+struct Started {
+  std::int64_t run_id = 0;
+  bool repeated = false;  // the same Idempotency-Key started it before
+};
+
+/// A failure of the link as a fault.
+Fault link_fault(const cs8::LinkError& error);
+
+/// The cell in operation: the state, the run, the link. Commands act at once on the state
+/// (state_machine.hpp); the coroutine drive() does what the state asks for, one touch at a time. One thread:
+/// that of the executor.
+class Operation {
+ public:
+  using Clock = std::function<std::chrono::system_clock::time_point()>;
+
+  /// `cell` and `store` must outlive the operation.
+  Operation(boost::asio::any_io_executor executor, const Cell& cell, TouchStore& store, Endpoint controller,
+            std::string instance_id, Clock clock);
+  ~Operation();
+  Operation(const Operation&) = delete;
+  Operation& operator=(const Operation&) = delete;
+
+  /// Begins to look for the controller and to act on commands. Nothing moves before start().
+  void launch();
+  /// Ends all: a running motion is stopped, the run is closed as stopped. Waits for the controller's answer.
+  boost::asio::awaitable<void> shut_down();
+
+  std::variant<Started, Refusal> start(const std::string& recipe,
+                                       const std::optional<std::string>& idempotency_key);
+  /// `run_id` when the command names a run: it must be the active one.
+  std::optional<Refusal> command(Command command, std::optional<std::int64_t> run_id = {});
+
+  [[nodiscard]] Status status() const;
+  /// The run under way or the last one of this daemon; null before the first.
+  [[nodiscard]] const Run* run() const { return run_ ? &*run_ : nullptr; }
+  /// The result document of run(), as json text; nothing before there is a result.
+  [[nodiscard]] std::optional<std::string> result_json() const;
+  [[nodiscard]] const Cell& cell() const { return cell_; }
+  [[nodiscard]] const TouchStore& store() const { return store_; }
+
+  /// Returns when the status has another sequence than `sequence`, or after `wait`.
+  boost::asio::awaitable<void> wait_for_change(std::uint64_t sequence, std::chrono::milliseconds wait);
+
+ private:
+  // commands and status (operation.cpp)
+  void enter(State state);
+  void apply(Event event);
+  void raise(Fault fault, Event event);
+  void publish();
+  void hear(const cs8::State& state);
+  void lose(const cs8::LinkError& error);
+  [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
+  [[nodiscard]] ControllerView controller_view() const;
+  [[nodiscard]] std::string now_text() const;
+
+  // what the states do (drive.cpp)
+  boost::asio::awaitable<void> drive();
+  boost::asio::awaitable<void> reset();
+  boost::asio::awaitable<void> start_run();
+  boost::asio::awaitable<bool> plan();
+  boost::asio::awaitable<void> make_next_touch();
+  void take_contact(const calib::PlannedTouch& planned, const cs8::TouchReply& reply,
+                    const cs8::TouchResult& result);
+  boost::asio::awaitable<void> complete_run();
+  boost::asio::awaitable<void> park();
+  boost::asio::awaitable<bool> leave_broken_search();
+  boost::asio::awaitable<void> settle_open_command(const cs8::Welcome& welcome);
+  boost::asio::awaitable<std::optional<calib::JointVector>> standing_joints();
+  boost::asio::awaitable<void> connect();
+  boost::asio::awaitable<void> wait_for_wake(std::chrono::milliseconds at_most);
+  void take_move(const cs8::MoveReply& reply);
+  void close_run(const std::string& outcome);
+  [[nodiscard]] calib::PlanningProblem planning_problem(const Recipe& recipe) const;
+
+  boost::asio::any_io_executor executor_;
+  const Cell& cell_;
+  TouchStore& store_;
+  Endpoint endpoint_;
+  Clock clock_;
+  cs8::Client client_;
+  boost::asio::thread_pool planner_{1};  // planning takes seconds; the thread of the sockets must not wait
+  boost::asio::steady_timer wake_;       // cancelled when drive() has something to do
+  boost::asio::steady_timer ended_;      // cancelled when drive() has ended
+  std::list<boost::asio::steady_timer*> waiters_;
+
+  Status status_;
+  std::optional<Run> run_;
+  bool run_open_ = false;  // begun in the store, not finished there
+  std::chrono::system_clock::time_point run_began_;
+  std::map<std::string, calib::TouchPlan> plans_;  // by recipe; the same problem gives the same plan
+  std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
+  bool shutting_down_ = false;
+  bool driving_ = false;
+};
+
+}  // namespace cell

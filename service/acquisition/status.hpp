@@ -1,0 +1,47 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "service/acquisition/state_machine.hpp"
+#include "service/faults.hpp"
+#include "service/verdict.hpp"
+
+namespace cell {
+
+/// What is known of the controller; nothing is unknown, which is never shown as fine.
+struct ControllerView {
+  bool connected = false;
+  std::optional<bool> powered;
+  std::optional<std::string> mode;
+  std::optional<bool> emergency_stop;
+
+  bool operator==(const ControllerView&) const = default;
+};
+
+/// What a supervisor polls: a value, made anew at each change. `sequence` counts the changes since the
+/// daemon's start, which `instance_id` names.
+struct Status {
+  State state = State::kStopped;
+  std::optional<std::int64_t> run_id;
+  std::optional<std::string> recipe;
+  int touches_done = 0;
+  int touches_total = 0;
+  std::optional<int> plane;  // of the touch under way, from 1
+  std::optional<int> identifiable_count;
+  std::optional<double> condition_number;
+  std::optional<double> eta_s;
+  Verdict verdict = Verdict::kNone;
+  ControllerView controller;
+  std::optional<Fault> fault;
+  std::optional<std::int64_t> last_accepted_run_id;
+  std::optional<std::string> last_accepted_at;
+  std::uint64_t sequence = 0;
+  std::string instance_id;
+  std::string since;                        // when the state was entered
+  std::optional<std::int64_t> data_age_ms;  // since the controller was last heard; not part of `sequence`
+};
+
+}  // namespace cell

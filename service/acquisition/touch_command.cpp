@@ -1,0 +1,116 @@
+#include "service/acquisition/touch_command.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib_core/plane.hpp"
+#include "calib_core/units.hpp"
+#include "cs8_protocol/names.hpp"
+#include "cs8_protocol/wire_units.hpp"
+
+namespace cell {
+namespace {
+
+static_assert(calib::kTransferPosturesMax <= cs8::kViaCountMax - 1,
+              "the posture left behind and the way fit into a command");
+
+template <class Command>
+void set_via(Command& command, const std::vector<calib::JointVector>& via) {
+  command.via_count = static_cast<std::int32_t>(via.size());
+  std::ranges::transform(via, command.via.begin(), to_wire);
+}
+
+}  // namespace
+
+cs8::JointsMicrodeg to_wire(const calib::JointVector& joints) {
+  cs8::JointsMicrodeg wire{};
+  for (int i = 0; i < calib::kJointCount; ++i)
+    wire[static_cast<std::size_t>(i)] = cs8::microdeg_from_radians(joints[i]);
+  return wire;
+}
+
+calib::JointVector from_wire(const cs8::JointsMicrodeg& wire) {
+  calib::JointVector joints;
+  for (int i = 0; i < calib::kJointCount; ++i)
+    joints[i] = cs8::radians_from_microdeg(wire[static_cast<std::size_t>(i)]);
+  return joints;
+}
+
+cs8::Touch touch_command(const Cell& cell, const calib::PlannedTouch& planned,
+                         const std::vector<calib::JointVector>& via) {
+  cs8::Touch command;
+  set_via(command, via);
+  command.clear = to_wire(planned.clear_joints);
+  command.approach = to_wire(planned.approach_joints);
+  command.search_end = to_wire(planned.search_end_joints);
+  command.travel_speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.travel_m_s);
+  command.approach_speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.approach_m_s);
+  command.search_speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.search_m_s);
+  command.deadline_ms = static_cast<std::uint32_t>(cell.deadlines.command.count());
+  return command;
+}
+
+cs8::Travel travel_command(const Cell& cell, const calib::JointVector& target,
+                           const std::vector<calib::JointVector>& via) {
+  cs8::Travel command;
+  set_via(command, via);
+  command.target = to_wire(target);
+  command.travel_speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.travel_m_s);
+  command.deadline_ms = static_cast<std::uint32_t>(cell.deadlines.command.count());
+  return command;
+}
+
+cs8::Retract retract_command(const Cell& cell) {
+  return {.approach_speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.approach_m_s),
+          .deadline_ms = static_cast<std::uint32_t>(cell.deadlines.command.count())};
+}
+
+std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std::int32_t error_number) {
+  const std::string where = fmt::format("in the phase '{}'", cs8::name(phase));
+  switch (outcome) {
+    case cs8::Outcome::kContact:
+    case cs8::Outcome::kArrived:
+    case cs8::Outcome::kStopped:
+      return std::nullopt;
+    case cs8::Outcome::kNoContact:
+      return OutcomeFault{{FaultCode::kNoContact, {}}, true};
+    case cs8::Outcome::kProbeStuck:
+      return OutcomeFault{{FaultCode::kProbeStuck, {}}, true};
+    case cs8::Outcome::kUnexpectedContact:
+      return OutcomeFault{{FaultCode::kUnexpectedContact, where}};
+    case cs8::Outcome::kHeartbeatLost:
+      return OutcomeFault{{FaultCode::kLinkLost, "the controller heard no heartbeat " + where}};
+    case cs8::Outcome::kPermissionLost:
+      return OutcomeFault{{FaultCode::kPermissionLost, where}};
+    case cs8::Outcome::kCollision:
+      return OutcomeFault{{FaultCode::kCollision, where}};
+    case cs8::Outcome::kDeadline:
+      return OutcomeFault{{FaultCode::kTouchDeadline, where}};
+    case cs8::Outcome::kOvertravel:
+      return OutcomeFault{{FaultCode::kOvertravel, {}}};
+    case cs8::Outcome::kMotionError:
+      break;
+  }
+  return OutcomeFault{{FaultCode::kMotionError, fmt::format("run-time error {} {}", error_number, where)}};
+}
+
+std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
+                                       const cs8::TouchResult& result) {
+  const calib::JointVector joints = from_wire(result.contact);
+  const Eigen::Vector3d tip = calib::forward_kinematics(cell.arm.model, joints).translation();
+  const Eigen::Vector3d planned_tip = calib::forward_kinematics(cell.arm.model, planned.joints).translation();
+  const Eigen::Vector3d off = tip - planned_tip;
+  const double along = off.dot(planned.search_direction);
+  const double aside = (off - along * planned.search_direction).norm();
+  // The controller moves the nominal ball on the search line: the contact lies on it, between both its ends.
+  constexpr double kAsideMax = 1e-4;
+  const double half = planned.search_length_m / 2 + kAsideMax;
+  if (aside <= kAsideMax && std::abs(along) <= half) return std::nullopt;
+  return fmt::format(
+      "its tip is {:.3f} mm beside the search line and {:.3f} mm from the planned touch along it",
+      calib::mm_from_metres(aside), calib::mm_from_metres(along));
+}
+
+}  // namespace cell

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib_core/touch_planning.hpp"
+#include "config/cell.hpp"
+#include "cs8_protocol/messages.hpp"
+#include "service/faults.hpp"
+
+namespace cell {
+
+/// Joint vectors in the wire's 10^-6 degrees, and back.
+cs8::JointsMicrodeg to_wire(const calib::JointVector& joints);
+calib::JointVector from_wire(const cs8::JointsMicrodeg& joints);
+
+/// The guarded touch that makes a planned touch, reached through `via`.
+cs8::Touch touch_command(const Cell& cell, const calib::PlannedTouch& planned,
+                         const std::vector<calib::JointVector>& via);
+
+/// Joint moves through `via` to `target`.
+cs8::Travel travel_command(const Cell& cell, const calib::JointVector& target,
+                           const std::vector<calib::JointVector>& via);
+
+cs8::Retract retract_command(const Cell& cell);
+
+/// What the run makes of an outcome: nothing (a contact, or a stop that was asked for), a fault to hold on (a
+/// person can mend it and try the touch again) or one that ends the run.
+struct OutcomeFault {
+  Fault fault;
+  bool holds = false;
+};
+std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std::int32_t error_number);
+
+/// Why a reported contact cannot be the one that was asked for, or nothing: the nominal model's ball must be
+/// on the way of the search, as far off as the uncalibrated arm may miss.
+std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
+                                       const cs8::TouchResult& result);
+
+}  // namespace cell

@@ -1,0 +1,132 @@
+#include "service/daemon.hpp"
+
+#include <fcntl.h>
+#include <openssl/rand.h>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <charconv>
+#include <cstdio>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "service/acquisition/operation.hpp"
+#include "service/http/listener.hpp"
+#include "service/http/tokens.hpp"
+#include "service/store/touch_store.hpp"
+#include "service/utc_time.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+
+namespace {
+
+/// Held while a daemon uses a state directory: two would count the same touches twice.
+class DirectoryLock {
+ public:
+  explicit DirectoryLock(const std::filesystem::path& directory)
+      : descriptor_(::open((directory / "touchcald.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    if (descriptor_ < 0)
+      throw std::runtime_error(directory.string() + ": cannot be written; give another --state");
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      ::close(descriptor_);
+      throw std::runtime_error(
+          directory.string() +
+          ": another touchcald uses this state directory; stop it or give another --state");
+    }
+  }
+  ~DirectoryLock() { ::close(descriptor_); }
+  DirectoryLock(const DirectoryLock&) = delete;
+  DirectoryLock& operator=(const DirectoryLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+std::string random_instance_id() {
+  std::array<unsigned char, 8> bytes{};
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
+    throw std::runtime_error("no random numbers");
+  std::string text;
+  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+asio::ip::tcp::endpoint listen_address(asio::io_context& context, const Endpoint& listen) {
+  asio::ip::tcp::resolver resolver(context);
+  const asio::ip::tcp::endpoint address =
+      resolver.resolve(listen.host, std::to_string(listen.port), asio::ip::tcp::resolver::passive)
+          .begin()
+          ->endpoint();
+  if (!address.address().is_loopback()) {
+    throw std::runtime_error(
+        fmt::format("--listen {}: only loopback addresses are served as long as there is no TLS; "
+                    "use 127.0.0.1 and a proxy",
+                    listen.host));
+  }
+  return address;
+}
+
+}  // namespace
+
+std::filesystem::path default_state_directory() {
+  if (const char* state = std::getenv("XDG_STATE_HOME"); state && *state)
+    return std::filesystem::path(state) / "touchcal";
+  const char* home = std::getenv("HOME");
+  return std::filesystem::path(home && *home ? home : "/var/lib") / ".local" / "state" / "touchcal";
+}
+
+std::optional<Endpoint> parse_endpoint(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos || colon == 0) return std::nullopt;
+  std::string host = text.substr(0, colon);
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  Endpoint endpoint{host, 0};
+  const char* end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data() + colon + 1, end, endpoint.port);
+  if (error != std::errc{} || parsed != end || host.empty()) return std::nullopt;
+  return endpoint;
+}
+
+void run_daemon(const Cell& cell, const DaemonOptions& options) {
+  std::filesystem::create_directories(options.state_directory);
+  std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
+  const DirectoryLock lock(options.state_directory);
+  TouchStore store(options.state_directory / "touchcal.sqlite");
+  const Tokens tokens = load_or_make_tokens(options.state_directory);
+  const auto clock = [] { return std::chrono::system_clock::now(); };
+  if (const int interrupted = store.finish_interrupted(format_utc(clock())); interrupted > 0) {
+    spdlog::warn("{} run was interrupted when the daemon ended; its touches are kept", interrupted);
+  }
+
+  asio::io_context context(1);
+  Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
+                      random_instance_id(), clock);
+  HttpListener listener(context.get_executor(), listen_address(context, options.listen), operation, tokens);
+  asio::signal_set signals(context, SIGINT, SIGTERM);
+  signals.async_wait([&](const boost::system::error_code& failure, int signal) {
+    if (failure) return;
+    spdlog::info("signal {}: stopping", signal);
+    listener.close();
+    asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
+  });
+  operation.launch();
+  listener.launch();
+  spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());
+  const auto address = listener.address();
+  fmt::print("listening on {}:{}\n", options.listen.host, address.port());
+  std::fflush(stdout);
+  context.run();
+}
+
+}  // namespace cell

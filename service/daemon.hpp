@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "config/cell.hpp"
+
+namespace cell {
+
+struct DaemonOptions {
+  std::filesystem::path state_directory;
+  Endpoint listen{"127.0.0.1", 8080};
+  std::optional<Endpoint> controller;  // the cell's when absent
+};
+
+/// $XDG_STATE_HOME/touchcal or ~/.local/state/touchcal.
+std::filesystem::path default_state_directory();
+
+/// "HOST:PORT", an IPv6 host in brackets; nothing when it is not that.
+std::optional<Endpoint> parse_endpoint(const std::string& text);
+
+/// Serves one cell until SIGINT or SIGTERM; a running motion is stopped then. Prints "listening on HOST:PORT"
+/// on standard output when ready. Throws std::exception when it cannot start (address taken, state not
+/// writable).
+void run_daemon(const Cell& cell, const DaemonOptions& options);
+
+}  // namespace cell

@@ -1,0 +1,380 @@
+#include "service/http/routes.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "config/config_error.hpp"
+#include "config/strict_json.hpp"
+#include "service/acquisition/operation.hpp"
+#include "service/http/json_view.hpp"
+
+namespace cell {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kBodyBytesMax = 64 * 1024;
+constexpr std::size_t kIdempotencyKeyMax = 255;
+constexpr int kRunsPageDefault = 50;
+constexpr int kRunsPageMax = 200;
+constexpr int kWaitSecondsMax = 60;
+
+struct Call {
+  const HttpRequest& request;
+  Operation& operation;
+  std::vector<std::string> segments;  // of the path, behind /api/v1
+
+  [[nodiscard]] std::string_view segment(std::size_t index) const {
+    return index < segments.size() ? std::string_view(segments[index]) : std::string_view();
+  }
+};
+
+const char* title_of(unsigned status) {
+  switch (status) {
+    case 400:
+      return "Bad request";
+    case 401:
+      return "Token needed";
+    case 403:
+      return "Not allowed";
+    case 404:
+      return "Not found";
+    case 405:
+      return "Method not allowed";
+    case 409:
+      return "Not in this state";
+    case 413:
+      return "Too large";
+    case 415:
+      return "Wrong content type";
+    case 417:
+      return "Expectation failed";
+    case 421:
+      return "Wrong host";
+    case 422:
+      return "Not possible";
+    case 431:
+      return "Header too large";
+    case 501:
+      return "Not supported";
+    case 503:
+      return "Busy";
+    default:
+      return "Internal error";
+  }
+}
+
+template <class Integer>
+std::optional<Integer> integer(std::string_view text) {
+  Integer value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+HttpResponse json_response(unsigned status, std::string body) {
+  return {.status = status, .body = std::move(body)};
+}
+
+HttpResponse not_found(std::string detail) {
+  return to_response({.status = 404, .kind = "not-found", .detail = std::move(detail)});
+}
+
+HttpResponse from_refusal(const Refusal& refusal, const Operation& operation) {
+  const unsigned status = refusal.kind == Refusal::Kind::kUnknownRecipe ? 422 : 409;
+  Problem problem{.status = status, .kind = "state", .detail = refusal.detail};
+  switch (refusal.kind) {
+    case Refusal::Kind::kState:
+      break;
+    case Refusal::Kind::kPreconditions:
+      problem.kind = "preconditions";
+      break;
+    case Refusal::Kind::kUnknownRecipe:
+      problem.kind = "unknown-recipe";
+      problem.pointer = "/recipe";
+      break;
+    case Refusal::Kind::kOtherKey:
+      problem.kind = "idempotency-key";
+      break;
+    case Refusal::Kind::kNotThisRun:
+      problem.kind = "not-this-run";
+      break;
+  }
+  for (const Unmet& unmet : refusal.unmet) problem.errors.emplace_back(unmet.code, unmet.detail);
+  if (!refusal.unmet.empty()) {
+    problem.detail += ": ";
+    for (const Unmet& unmet : refusal.unmet)
+      problem.detail += (&unmet == refusal.unmet.data() ? "" : "; ") + unmet.detail;
+  }
+  for (const Command command : exits(operation.status().state))
+    problem.exits.emplace_back(command_name(command));
+  return to_response(problem);
+}
+
+HttpResponse get_status(const Call& call) {
+  const Status status = call.operation.status();
+  const std::string etag = fmt::format("\"{}-{}\"", status.instance_id, status.sequence);
+  const auto& known = call.request.if_none_match;
+  if (known && (*known == "*" || known->find(etag) != std::string::npos)) {
+    return {.status = 304, .headers = {{"ETag", etag}}};
+  }
+  HttpResponse response = json_response(200, status_document(status));
+  response.headers = {{"ETag", etag}};
+  return response;
+}
+
+HttpResponse get_runs(const Call& call) {
+  const auto& query = call.request.query;
+  int limit = kRunsPageDefault;
+  std::optional<std::int64_t> before;
+  if (const auto found = query.find("limit"); found != query.end()) {
+    const auto wanted = integer<int>(found->second);
+    if (!wanted || *wanted < 1 || *wanted > kRunsPageMax) {
+      return to_response(
+          {.kind = "query", .detail = fmt::format("limit takes a number from 1 to {}", kRunsPageMax)});
+    }
+    limit = *wanted;
+  }
+  if (const auto found = query.find("before"); found != query.end()) {
+    before = integer<std::int64_t>(found->second);
+    if (!before) return to_response({.kind = "query", .detail = "before takes the id of a run"});
+  }
+  auto runs = call.operation.store().runs(limit + 1, before);
+  const bool more = runs.size() > static_cast<std::size_t>(limit);
+  if (more) runs.pop_back();
+  return json_response(200, runs_document(runs, more ? std::optional(runs.back().id) : std::nullopt));
+}
+
+HttpResponse get_result(const Call& call, std::int64_t id) {
+  const Run* live = call.operation.run();
+  const auto document =
+      live && live->id() == id ? call.operation.result_json() : call.operation.store().result_json(id);
+  if (document) return json_response(200, *document);
+  std::string why = "this run ended before its touches determined the parameters";
+  if (live && live->id() == id) {
+    why = live->touches_done() == 0 ? "no touch has been made yet" : live->latest().message;
+  }
+  return to_response({.status = 409, .kind = "no-result", .detail = "there is no result: " + why});
+}
+
+HttpResponse get_of_run(const Call& call) {
+  const auto id = integer<std::int64_t>(call.segment(1));
+  const auto run = id ? call.operation.store().run(*id) : std::nullopt;
+  if (!run)
+    return not_found(fmt::format("there is no run '{}'; GET /api/v1/runs lists them", call.segment(1)));
+  if (call.segments.size() == 2) return json_response(200, run_document(*run));
+  if (call.segment(2) == "touches") {
+    return json_response(200, touches_document(call.operation.cell(), call.operation.store().touches(*id)));
+  }
+  return get_result(call, *id);
+}
+
+/// The recipe named by a start's body, or what is wrong with it.
+std::variant<std::string, Problem> recipe_of(const std::string& body) {
+  try {
+    const nlohmann::json document = parse_strict_json("request body", body, kBodyBytesMax);
+    if (!document.is_object()) return Problem{.kind = "body", .detail = "an object is wanted", .pointer = ""};
+    for (const auto& [key, value] : document.items()) {
+      if (key != "recipe") {
+        return Problem{
+            .kind = "body", .detail = "unknown key; 'recipe' is known", .pointer = pointer_step(key)};
+      }
+    }
+    if (!document.contains("recipe") || !document["recipe"].is_string()) {
+      return Problem{.kind = "body", .detail = "the name of a recipe is wanted", .pointer = "/recipe"};
+    }
+    return document["recipe"].get<std::string>();
+  } catch (const ConfigError& error) {
+    return Problem{.kind = "body", .detail = error.what(), .pointer = error.pointer()};
+  }
+}
+
+HttpResponse post_runs(const Call& call) {
+  const auto& key = call.request.idempotency_key;
+  if (key && (key->empty() || key->size() > kIdempotencyKeyMax)) {
+    return to_response(
+        {.kind = "idempotency-key",
+         .detail = fmt::format("an Idempotency-Key has 1 to {} characters", kIdempotencyKeyMax)});
+  }
+  const auto recipe = recipe_of(call.request.body);
+  if (const auto* problem = std::get_if<Problem>(&recipe)) return to_response(*problem);
+  const auto outcome = call.operation.start(std::get<std::string>(recipe), key);
+  if (const auto* refusal = std::get_if<Refusal>(&outcome)) return from_refusal(*refusal, call.operation);
+  const std::int64_t id = std::get<Started>(outcome).run_id;
+  HttpResponse response = json_response(201, run_document(call.operation.store().run(id).value()));
+  response.headers = {{"Location", fmt::format("/api/v1/runs/{}", id)}};
+  return response;
+}
+
+HttpResponse give_command(const Call& call, Command command, std::optional<std::int64_t> run_id) {
+  if (!call.request.body.empty() && call.request.body != "{}") {
+    return to_response({.kind = "body", .detail = "this command takes no body", .pointer = ""});
+  }
+  if (const auto refusal = call.operation.command(command, run_id))
+    return from_refusal(*refusal, call.operation);
+  return json_response(202, status_document(call.operation.status()));
+}
+
+HttpResponse post_to_run(const Call& call, Command command) {
+  const auto id = integer<std::int64_t>(call.segment(1));
+  if (!id || !call.operation.store().run(*id))
+    return not_found(fmt::format("there is no run '{}'", call.segment(1)));
+  return give_command(call, command, id);
+}
+
+struct Route {
+  std::string_view method;
+  std::string_view path;  // behind /api/v1; * is any one segment
+  HttpResponse (*handle)(const Call&);
+};
+
+template <Command kCommand>
+HttpResponse run_command(const Call& call) {
+  return post_to_run(call, kCommand);
+}
+template <Command kCommand>
+HttpResponse cell_command(const Call& call) {
+  return give_command(call, kCommand, std::nullopt);
+}
+
+constexpr std::array kRoutes{
+    Route{"GET", "status", get_status},
+    Route{"GET", "runs", get_runs},
+    Route{"POST", "runs", post_runs},
+    Route{"GET", "runs/*", get_of_run},
+    Route{"GET", "runs/*/touches", get_of_run},
+    Route{"GET", "runs/*/result", get_of_run},
+    Route{"POST", "runs/*/pause", run_command<Command::kPause>},
+    Route{"POST", "runs/*/resume", run_command<Command::kResume>},
+    Route{"POST", "runs/*/abort", run_command<Command::kAbort>},
+    Route{"POST", "cell/stop", cell_command<Command::kStop>},
+    Route{"POST", "cell/acknowledge", cell_command<Command::kAcknowledge>},
+    Route{"POST", "cell/clear", cell_command<Command::kClear>},
+    Route{"POST", "cell/reset", cell_command<Command::kReset>},
+};
+
+std::vector<std::string> split(std::string_view path) {
+  std::vector<std::string> segments;
+  while (!path.empty()) {
+    const std::size_t end = path.find('/');
+    segments.emplace_back(path.substr(0, end));
+    path = end == std::string_view::npos ? std::string_view() : path.substr(end + 1);
+  }
+  return segments;
+}
+
+bool matches(std::string_view pattern, const std::vector<std::string>& segments) {
+  const std::vector<std::string> wanted = split(pattern);
+  return std::ranges::equal(wanted, segments,
+                            [](const auto& want, const auto& is) { return want == "*" || want == is; });
+}
+
+/// Nothing when the request may do what it asks.
+std::optional<HttpResponse> refuse_access(const HttpRequest& request, const Tokens& tokens) {
+  const bool changes = request.method != "GET";
+  if (!changes && request.from_loopback) return std::nullopt;
+  constexpr std::string_view kScheme = "Bearer ";
+  const std::string_view sent =
+      request.authorization ? std::string_view(*request.authorization) : std::string_view();
+  const std::string_view token = sent.starts_with(kScheme) ? sent.substr(kScheme.size()) : std::string_view();
+  if (same_token(tokens.operate, token)) return std::nullopt;
+  if (same_token(tokens.view, token)) {
+    if (!changes) return std::nullopt;
+    return to_response({.status = 403, .kind = "role", .detail = "the view token may only read"});
+  }
+  HttpResponse response = to_response(
+      {.status = 401,
+       .kind = "token",
+       .detail = fmt::format(
+           "send 'Authorization: Bearer TOKEN'; the token stands in {} in the daemon's state directory",
+           kOperateTokenFile)});
+  response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"touchcal\"");
+  return response;
+}
+
+/// A body must say that it is JSON: a web page elsewhere cannot send that without asking.
+std::optional<HttpResponse> refuse_content_type(const HttpRequest& request) {
+  if (request.body.empty()) return std::nullopt;
+  const std::string_view type =
+      request.content_type ? std::string_view(*request.content_type) : std::string_view();
+  if (type.substr(0, type.find(';')) == "application/json") return std::nullopt;
+  return to_response({.status = 415, .kind = "content-type", .detail = "a body must be application/json"});
+}
+
+}  // namespace
+
+HttpResponse to_response(const Problem& problem) {
+  Json document{{"type", fmt::format("urn:touchcal:problem:{}", problem.kind)},
+                {"title", title_of(problem.status)},
+                {"status", problem.status},
+                {"detail", problem.detail}};
+  if (problem.pointer) document["pointer"] = *problem.pointer;
+  for (const auto& [code, detail] : problem.errors)
+    document["errors"].push_back({{"code", code}, {"detail", detail}});
+  if (!problem.exits.empty()) document["exits"] = problem.exits;
+  return {.status = problem.status,
+          .content_type = "application/problem+json",
+          .body = document.dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+std::optional<std::pair<std::string, std::map<std::string, std::string>>> parse_target(
+    std::string_view target) {
+  if (!target.starts_with('/')) return std::nullopt;
+  const std::size_t question = target.find('?');
+  std::map<std::string, std::string> query;
+  std::string_view rest =
+      question == std::string_view::npos ? std::string_view() : target.substr(question + 1);
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('&');
+    const std::string_view pair = rest.substr(0, end);
+    const std::size_t equals = pair.find('=');
+    query.insert_or_assign(std::string(pair.substr(0, equals)),
+                           std::string(equals == std::string_view::npos ? "" : pair.substr(equals + 1)));
+    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+  }
+  return std::pair{std::string(target.substr(0, question)), std::move(query)};
+}
+
+std::optional<LongPoll> long_poll(const HttpRequest& request) {
+  const auto wait = request.query.find("wait_s");
+  const auto after = request.query.find("after");
+  if (request.method != "GET" || request.path != "/api/v1/status" || wait == request.query.end() ||
+      after == request.query.end()) {
+    return std::nullopt;
+  }
+  const auto seconds = integer<int>(wait->second);
+  const auto sequence = integer<std::uint64_t>(after->second);
+  if (!seconds || !sequence || *seconds < 0) return std::nullopt;
+  return LongPoll{*sequence, std::chrono::seconds(std::min(*seconds, kWaitSecondsMax))};
+}
+
+HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens) {
+  if (request.path == "/healthz" && request.method == "GET") return json_response(200, R"({"status":"ok"})");
+
+  constexpr std::string_view kPrefix = "/api/v1/";
+  std::string allowed;
+  if (request.path.starts_with(kPrefix)) {
+    const std::vector<std::string> segments = split(std::string_view(request.path).substr(kPrefix.size()));
+    for (const Route& candidate : kRoutes) {
+      if (!matches(candidate.path, segments)) continue;
+      if (candidate.method != request.method) {
+        allowed += (allowed.empty() ? "" : ", ") + std::string(candidate.method);
+        continue;
+      }
+      if (auto refused = refuse_access(request, tokens)) return *refused;
+      if (auto refused = refuse_content_type(request)) return *refused;
+      return candidate.handle({request, operation, segments});
+    }
+  }
+  if (allowed.empty() && request.path == "/healthz") allowed = "GET";
+  if (allowed.empty()) return not_found(fmt::format("there is nothing at {}", request.path));
+  HttpResponse response =
+      to_response({.status = 405, .kind = "method", .detail = "this path takes " + allowed});
+  response.headers.emplace_back("Allow", allowed);
+  return response;
+}
+
+}  // namespace cell

@@ -1,0 +1,70 @@
+#include "service/http/tokens.hpp"
+
+#include <fcntl.h>
+#include <openssl/crypto.h>
+#include <openssl/rand.h>
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <stdexcept>
+#include <system_error>
+
+namespace cell {
+namespace {
+
+constexpr std::size_t kTokenBytes = 32;
+
+std::string random_token() {
+  std::array<unsigned char, kTokenBytes> bytes{};
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
+    throw std::runtime_error("no random numbers for an access token");
+  }
+  std::string text;
+  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+[[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
+  throw std::runtime_error(
+      fmt::format("{}: {}: {}", file.string(), what, std::generic_category().message(errno)));
+}
+
+void write_for_owner_only(const std::filesystem::path& file, const std::string& token) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (descriptor < 0) fail(file, "the token cannot be created");
+  const std::string line = token + "\n";
+  const bool written = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+  if (!written || ::fsync(descriptor) != 0 || ::close(descriptor) != 0)
+    fail(file, "the token cannot be written");
+}
+
+std::string load_or_make(const std::filesystem::path& file) {
+  if (std::ifstream existing(file); existing) {
+    std::string token;
+    std::getline(existing, token);
+    if (token.size() < 2 * kTokenBytes) {
+      throw std::runtime_error(file.string() +
+                               ": is no token of this daemon; remove the file to have a new one made");
+    }
+    return token;
+  }
+  const std::string token = random_token();
+  write_for_owner_only(file, token);
+  return token;
+}
+
+}  // namespace
+
+Tokens load_or_make_tokens(const std::filesystem::path& state_directory) {
+  return {load_or_make(state_directory / kOperateTokenFile), load_or_make(state_directory / kViewTokenFile)};
+}
+
+bool same_token(std::string_view expected, std::string_view presented) {
+  return expected.size() == presented.size() &&
+         CRYPTO_memcmp(expected.data(), presented.data(), expected.size()) == 0;
+}
+
+}  // namespace cell

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace cell {
+
+/// What a request may do. Reading needs a token only from beyond loopback.
+struct Tokens {
+  std::string operate;  // may change things, and read
+  std::string view;     // may read
+};
+
+inline constexpr std::string_view kOperateTokenFile = "operate.token";
+inline constexpr std::string_view kViewTokenFile = "view.token";
+
+/// Reads both tokens from the state directory, or makes them at the first start: 256 random bits as
+/// hexadecimal text, the files for their owner only (mode 0600). Throws std::runtime_error that names the
+/// file.
+Tokens load_or_make_tokens(const std::filesystem::path& state_directory);
+
+/// Compares in constant time: how long it takes says nothing about how much was right.
+bool same_token(std::string_view expected, std::string_view presented);
+
+}  // namespace cell

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib_core/identify.hpp"
+#include "calib_core/touch_planning.hpp"
+#include "config/cell.hpp"
+#include "service/store/touch_store.hpp"
+
+namespace cell {
+
+/// Where the ball's centre is at the trigger, one plane a face of the block.
+std::vector<calib::Plane> contact_planes(const Cell& cell);
+
+/// A stored touch in SI units: the only unit change on the way from the wire to the core.
+calib::Touch to_touch(const StoredTouch& stored);
+
+/// One execution of a recipe: the touches so far and the latest result. The one mutable object of a run.
+class Run {
+ public:
+  Run(std::int64_t id, const Cell& cell, Recipe recipe, std::string started_at);
+
+  [[nodiscard]] std::int64_t id() const { return id_; }
+  [[nodiscard]] const Recipe& recipe() const { return recipe_; }
+  [[nodiscard]] const std::string& started_at() const { return started_at_; }
+
+  void set_plan(calib::TouchPlan plan) { plan_ = std::move(plan); }
+  [[nodiscard]] int touches_total() const { return static_cast<int>(plan_.touches.size()); }
+  [[nodiscard]] int touches_done() const { return static_cast<int>(touches_.size()); }
+  [[nodiscard]] bool complete() const { return touches_total() > 0 && touches_done() == touches_total(); }
+  /// The touch to make now, or null when all are made.
+  [[nodiscard]] const calib::PlannedTouch* next() const;
+
+  /// Stores the touch, then counts it and identifies anew from all touches. Throws what the store throws; the
+  /// touch does not count then.
+  void add(TouchStore& store, const StoredTouch& touch);
+
+  [[nodiscard]] const std::vector<StoredTouch>& touches() const { return touches_; }
+  [[nodiscard]] const calib::IdentificationResult& latest() const { return latest_; }
+
+ private:
+  std::int64_t id_;
+  Recipe recipe_;
+  std::string started_at_;
+  calib::TouchPlan plan_;
+  std::vector<StoredTouch> touches_;
+  calib::IdentificationProblem problem_;
+  calib::IdentificationResult latest_;
+};
+
+}  // namespace cell
