@@ -12,18 +12,19 @@
 #include "calib_core/joint_vector.hpp"
 #include "calib_core/kinematic_model.hpp"
 #include "calib_core/touch.hpp"
+#include "calib_core/transfer.hpp"
 
 namespace calib {
 
-/// One touch to make. Approach, search end and clear posture keep the orientation that `joints` has; they lie on
-/// the face's outward normal through the touched point.
+/// One touch to make. Approach, search end and clear posture keep the orientation that `joints` has; they lie
+/// on the face's outward normal through the touched point.
 struct PlannedTouch {
   int face = 0;
   TouchRole role = TouchRole::kFit;
-  JointVector joints;            // the nominal arm's ball touches the nominal face
-  JointVector clear_joints;      // well off the face: transfers begin and end here
-  JointVector approach_joints;   // standoff: the search begins and the retract ends here
-  JointVector search_end_joints;  // where a search that met nothing ends
+  JointVector joints;                // the nominal arm's ball touches the nominal face
+  JointVector clear_joints;          // well off the face: transfers begin and end here
+  JointVector approach_joints;       // standoff: the search begins and the retract ends here
+  JointVector search_end_joints;     // where a search that met nothing ends
   Eigen::Vector3d search_direction;  // unit, in R_-1: into the face
   double search_length_m = 0.0;
   double tilt_rad = 0.0;  // stylus axis to inward normal
@@ -42,8 +43,9 @@ struct PlanningProblem {
   Stylus stylus;
   CollisionScene scene;
   std::vector<TouchRequest> requests;
-  JointVector park_joints;        // where a run begins and ends; free of obstacles
-  double nominal_miss_m = 0.012;  // how far the uncalibrated arm may miss: sizes clearance, standoff and search
+  JointVector park_joints;  // where a run begins and ends; free of obstacles
+  double nominal_miss_m =
+      0.012;  // how far the uncalibrated arm may miss: sizes clearance, standoff and search
   double tilt_max_rad = 0.0;
   std::uint64_t seed = 1;  // of the candidates; the same problem gives the same plan
 };
@@ -60,14 +62,17 @@ struct PlanningFailure {
   std::string reason;
 };
 
+/// Finds postures for the touches asked for (see touch_candidate.hpp for what a touch must keep clear of),
+/// takes those that tell most of the kinematic errors (fit) and others apart from them (held out), and puts
+/// them in an order that shows all parameters early and then travels little. Any touch can follow any other:
+/// see find_transfer. A failure names the first face with too few touches. Throws std::logic_error for a face
+/// that does not exist.
 std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& problem);
 
-/// Joint postures that lead from `from` to `to` in straight joint moves, neither end included, all clear of the
-/// scene by the nominal miss; nothing when no way is found. Empty when the direct move is clear.
+/// Joint postures that lead from `from` to `to` in straight joint moves, neither end included, all clear of
+/// the scene by the nominal miss; nothing when no way is found. Empty when the direct move is clear. At most
+/// kTransferPosturesMax. See find_way.
 std::optional<std::vector<JointVector>> find_transfer(const PlanningProblem& problem, const JointVector& from,
                                                       const JointVector& to);
-
-/// find_transfer gives at most this many postures.
-inline constexpr std::size_t kTransferPosturesMax = 4;
 
 }  // namespace calib

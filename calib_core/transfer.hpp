@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "calib_core/collision.hpp"
+#include "calib_core/joint_vector.hpp"
+#include "calib_core/kinematic_model.hpp"
+
+namespace calib {
+
+/// What the arm moves in between two touches.
+struct TransferSpace {
+  const KinematicModel& model;
+  const CollisionScene& scene;
+  const JointVector& park_joints;  // free of obstacles, the arm raised
+  double clearance_m = 0.0;        // kept by every body to every obstacle
+};
+
+/// A way has at most this many postures between its ends.
+inline constexpr std::size_t kTransferPosturesMax = 4;
+
+/// Postures that lead from `from` to `to` in straight joint moves, all clear; neither end included, empty
+/// when the direct move is clear. Tried, the shortest first: the direct move and ways through the park
+/// posture and through raised postures, which have joints 2 and 3 (one or both) where the park posture has
+/// them and the others as at the end they belong to. Nothing when none of them is clear, as from a start
+/// inside the clearance.
+std::optional<std::vector<JointVector>> find_way(const TransferSpace& space, const JointVector& from,
+                                                 const JointVector& to);
+
+/// Whether find_way leads to the park posture with at most one posture between. Two postures for which this
+/// holds always have a way from one to the other.
+bool is_near_park(const TransferSpace& space, const JointVector& joints);
+
+}  // namespace calib
