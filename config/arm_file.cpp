@@ -30,7 +30,8 @@ JsonObject frame_object(const JsonValue& value, int frame) {
 void read_joint(const JsonObject& object, int frame, calib::KinematicModel& model) {
   const auto joint = static_cast<std::size_t>(frame - 1);
   const JsonValue type = object.at("joint_type");
-  if (type.text() != "revolute") type.fail("only \"revolute\" joints are read: joint ranges are in degrees");
+  if (type.text() != "revolute")
+    type.fail("is not \"revolute\"; only such joints are read, as joint ranges are in degrees");
   model.joint_types[joint] = calib::JointType::kRevolute;
   const JsonValue gain = object.at("gain");
   model.gains[joint] = gain.number();
@@ -38,22 +39,17 @@ void read_joint(const JsonObject& object, int frame, calib::KinematicModel& mode
 }
 
 std::optional<double> std_of(const JsonObject& object, calib::ParameterKind kind) {
-  const auto angle = [&object](std::string_view name) {
-    const std::optional<double> rad = object.find_radians(name);
-    if (rad && *rad < 0.0) object.fail("a standard deviation is negative; give 0 or more");
-    return rad;
-  };
   switch (kind) {
     case calib::ParameterKind::kAlpha:
-      return angle("alpha");
+      return object.find_radians("alpha", kNotNegative);
     case calib::ParameterKind::kD:
       return object.find_metres("d", kNotNegative);
     case calib::ParameterKind::kTheta:
-      return angle("theta");
+      return object.find_radians("theta", kNotNegative);
     case calib::ParameterKind::kR:
       return object.find_metres("r", kNotNegative);
     case calib::ParameterKind::kBeta:
-      return angle("beta");
+      return object.find_radians("beta", kNotNegative);
   }
   return std::nullopt;
 }

@@ -16,7 +16,7 @@ constexpr std::size_t kFaceCountMax = 100;
 Eigen::Vector3d unit_vector(const JsonValue& value) {
   const Eigen::Vector3d direction = value.numbers<3>();
   if (std::abs(direction.norm() - 1.0) > kDirectionErrorMax) {
-    value.fail("has length " + nlohmann::json(direction.norm()).dump() + "; give a unit vector");
+    value.fail("has length " + plain_number(direction.norm()) + "; give a unit vector");
   }
   return direction.normalized();
 }

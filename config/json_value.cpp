@@ -32,8 +32,6 @@ std::string kind_of(const json& value) {
   }
 }
 
-std::string plain(double number) { return json(number).dump(); }
-
 std::string listed(const std::vector<std::string_view>& names) {
   std::string text;
   for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
@@ -44,7 +42,20 @@ std::string joined(std::string_view name, std::string_view suffix) {
   return std::string(name).append(suffix);
 }
 
+std::string wanted_number(const NumberRange& range) {
+  const bool over_zero = range.min == kPositive.min;
+  if (std::isinf(range.max)) return over_zero ? "a number over 0" : "at least " + plain_number(range.min);
+  if (std::isinf(range.min)) return "at most " + plain_number(range.max);
+  return (over_zero ? "a number over 0, up to " : plain_number(range.min) + " to ") + plain_number(range.max);
+}
+
 }  // namespace
+
+std::string plain_number(double number) {
+  std::string text = json(number).dump();
+  if (text.ends_with(".0")) text.resize(text.size() - 2);
+  return text;
+}
 
 JsonValue::JsonValue(const std::string& source, const json& document)
     : JsonValue(std::make_shared<const std::string>(source), "", document) {}
@@ -111,11 +122,7 @@ double JsonValue::number(const NumberRange& range) const {
   const double number = value_->get<double>();
   if (!std::isfinite(number)) fail("is not finite; give a finite number");
   if (number < range.min || number > range.max) {
-    const std::string wanted = range.min == kPositive.min ? "a number over 0"
-                               : std::isinf(range.max)    ? "at least " + plain(range.min)
-                               : std::isinf(range.min)    ? "at most " + plain(range.max)
-                                                          : plain(range.min) + " to " + plain(range.max);
-    fail("is " + plain(number) + "; give " + wanted);
+    fail("is " + plain_number(number) + "; give " + wanted_number(range));
   }
   return number;
 }
@@ -123,7 +130,7 @@ double JsonValue::number(const NumberRange& range) const {
 int JsonValue::integer(int min, int max) const {
   const double number = value_->is_number() ? value_->get<double>() : std::nan("");
   if (!(number >= min && number <= max) || number != std::floor(number)) {
-    const std::string given = value_->is_number() ? plain(number) : kind_of(*value_);
+    const std::string given = value_->is_number() ? plain_number(number) : kind_of(*value_);
     fail("is " + given + "; give a whole number from " + std::to_string(min) + " to " + std::to_string(max));
   }
   return static_cast<int>(number);
@@ -197,14 +204,14 @@ double JsonObject::radians(std::string_view name) const {
   return *angle;
 }
 
-std::optional<double> JsonObject::find_radians(std::string_view name) const {
+std::optional<double> JsonObject::find_radians(std::string_view name, const NumberRange& range) const {
   const auto in_degrees = find(joined(name, "_deg"));
   const auto in_radians = find(joined(name, "_rad"));
   if (in_degrees && in_radians) {
     in_radians->fail("the angle is also given as \"" + joined(name, "_deg") + "\"; keep one of them");
   }
-  if (in_degrees) return calib::radians_from_degrees(in_degrees->number());
-  if (in_radians) return in_radians->number();
+  if (in_degrees) return calib::radians_from_degrees(in_degrees->number(range));
+  if (in_radians) return in_radians->number(range);
   return std::nullopt;
 }
 

@@ -15,6 +15,9 @@ namespace cell {
 
 class JsonObject;
 
+/// As short as it can be written without loss: 4, 0.5, 1e-09.
+std::string plain_number(double number);
+
 /// Ends included.
 struct NumberRange {
   double min = -std::numeric_limits<double>::infinity();
@@ -82,7 +85,8 @@ class JsonObject {
   [[nodiscard]] std::optional<double> find_metres(std::string_view name, const NumberRange& range_mm) const;
   /// The key `name` + "_deg" or `name` + "_rad": one of them, not both.
   [[nodiscard]] double radians(std::string_view name) const;
-  [[nodiscard]] std::optional<double> find_radians(std::string_view name) const;
+  [[nodiscard]] std::optional<double> find_radians(std::string_view name,
+                                                   const NumberRange& range = kAnyNumber) const;
 
   [[noreturn]] void fail(const std::string& message) const { self_.fail(message); }
 

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "calib_core/units.hpp"
 #include "config/config_error.hpp"
@@ -20,20 +21,21 @@ constexpr std::size_t kWarningCountMax = 100;
 
 std::string degrees(double radians) {
   constexpr double kShown = 1e6;  // what a controller resolves; hides the conversion's rounding
-  return nlohmann::json(std::round(calib::degrees_from_radians(radians) * kShown) / kShown).dump();
+  return plain_number(std::round(calib::degrees_from_radians(radians) * kShown) / kShown);
 }
 
-/// A sentence on the joints of one touch that are outside their ranges; empty when none is.
+/// A sentence on the joints of one touch that are outside their ranges.
 std::string range_warning(std::size_t number, const calib::JointVector& joints,
                           const calib::JointRanges& ranges) {
-  std::string text;
+  std::ostringstream text;
+  const char* separator = ": ";
   for (int joint = 0; joint < kJointCount; ++joint) {
     if (joints[joint] >= ranges.lower[joint] && joints[joint] <= ranges.upper[joint]) continue;
-    text += (text.empty() ? "" : ", ") + ("joint " + std::to_string(joint + 1)) + " at " +
-            degrees(joints[joint]) + " deg is outside " + degrees(ranges.lower[joint]) + " to " +
-            degrees(ranges.upper[joint]);
+    text << separator << "joint " << joint + 1 << " at " << degrees(joints[joint]) << " deg is outside "
+         << degrees(ranges.lower[joint]) << " to " << degrees(ranges.upper[joint]);
+    separator = ", ";
   }
-  return text.empty() ? text : "touch " + std::to_string(number) + ": " + text;
+  return "touch " + std::to_string(number) + text.str();
 }
 
 std::vector<std::string> range_warnings(const std::vector<calib::Touch>& touches,
@@ -41,10 +43,9 @@ std::vector<std::string> range_warnings(const std::vector<calib::Touch>& touches
   std::vector<std::string> warnings;
   std::size_t untold = 0;
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    std::string warning = range_warning(i + 1, touches[i].joints, ranges);
-    if (warning.empty()) continue;
+    if (ranges.contains(touches[i].joints)) continue;
     if (warnings.size() < kWarningCountMax) {
-      warnings.push_back(std::move(warning));
+      warnings.push_back(range_warning(i + 1, touches[i].joints, ranges));
     } else {
       ++untold;
     }
@@ -131,7 +132,7 @@ class CsvLine {
     double number = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
     if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number)) {
-      fail("j" + std::to_string(joint + 1) + "_deg is " + in_quotes(std::string(text)) +
+      fail("joint " + std::to_string(joint + 1) + " is " + in_quotes(std::string(text)) +
            "; give a finite number");
     }
     return number;

@@ -1,0 +1,356 @@
+#include "config/read_config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "config/truth.hpp"
+#include "folder.hpp"
+
+namespace cell {
+namespace {
+
+using nlohmann::json;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+constexpr const char* kArm = "arms/tx90.json";
+constexpr const char* kBlock = "cells/demo/block.json";
+constexpr const char* kProbe = "cells/demo/probe.json";
+constexpr const char* kRecipe = "recipes/edf-25.json";
+constexpr const char* kCell = "cells/demo/cell.json";
+constexpr const char* kTruth = "cells/demo/truth.json";
+
+/// A copy of the shipped configuration to spoil: the demo cell, whose files have every kind of entry.
+class ReadConfig : public testing::Test {
+ protected:
+  ReadConfig() {
+    for (const char* name : {"arms", "cells", "recipes"}) {
+      std::filesystem::copy(kSourceDir / "config" / name, folder_.path() / name,
+                            std::filesystem::copy_options::recursive);
+    }
+  }
+
+  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+
+  void edit(const std::string& file, const std::function<void(json&)>& change) const {
+    json document = json_of(path(file));
+    change(document);
+    folder_.write(file, document.dump());
+  }
+
+  [[nodiscard]] Cell read() const { return read_cell(path(kCell)); }
+
+  Folder folder_;
+};
+
+/// `value` put at `at` (nothing: what is there is taken away) must be refused at `pointer` with `said`.
+struct Spoiled {
+  const char* file;
+  const char* at;
+  std::optional<json> value;
+  const char* pointer;
+  const char* said;
+};
+
+void PrintTo(const Spoiled& spoiled, std::ostream* stream) {
+  *stream << spoiled.file << spoiled.at << " = " << spoiled.value.value_or("nothing");
+}
+
+class SpoiledEntry : public ReadConfig, public testing::WithParamInterface<Spoiled> {
+ protected:
+  static void spoil(json& document, const Spoiled& spoiled) {
+    const json::json_pointer place(spoiled.at);
+    if (spoiled.value) {
+      document[place] = *spoiled.value;
+    } else {
+      json& parent = document.at(place.parent_pointer());
+      parent.is_array() ? parent.erase(std::stoul(place.back()))
+                        : static_cast<void>(parent.erase(place.back()));
+    }
+  }
+};
+
+TEST_P(SpoiledEntry, IsRefusedInOneLineWithFilePointerAndRemedy) {
+  const Spoiled& spoiled = GetParam();
+  edit(spoiled.file, [&](json& document) { spoil(document, spoiled); });
+  const ConfigError error = error_of([&] {
+    if (std::string(spoiled.file).ends_with("truth.json")) {
+      read_truth(path(spoiled.file));
+    } else {
+      static_cast<void>(read());
+    }
+  });
+  EXPECT_THAT(error.source(), EndsWith(spoiled.file));
+  EXPECT_EQ(error.pointer(), spoiled.pointer);
+  EXPECT_THAT(error.message(), HasSubstr(spoiled.said));
+  EXPECT_THAT(error.message(), testing::MatchesRegex(".+; .+")) << "what is wrong; what to do";
+  const std::string what = error.what();
+  EXPECT_EQ(what.find('\n'), std::string::npos);
+  EXPECT_THAT(what, HasSubstr(error.source()));
+  EXPECT_THAT(what, HasSubstr(error.message()));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Arm, SpoiledEntry,
+    testing::Values(
+        Spoiled{kArm, "/schema", "touchcal/arm/2", "/schema", "this program reads \"touchcal/arm/1\""},
+        Spoiled{kArm, "/schema", std::nullopt, "", "\"schema\" is missing"},
+        Spoiled{kArm, "/schema", 1, "/schema", "is a number"},
+        Spoiled{kArm, "/colour", "yellow", "/colour", "unknown key \"colour\"; known here: schema, name"},
+        Spoiled{kArm, "/a\nb", 1, "/a\nb", "unknown key \"a?b\""},
+        Spoiled{kArm, "/name", "", "/name", "is empty"},
+        Spoiled{kArm, "/name", "tx\n90", "/name", "control character"},
+        Spoiled{kArm, "/frames/7", std::nullopt, "/frames", "wants 8 entries, has 7"},
+        Spoiled{kArm, "/frames/2/j", 3, "/frames/2", "is frame 3 where frame 2 is expected"},
+        Spoiled{kArm, "/frames/2/j", 2.5, "/frames/2/j", "whole number"},
+        Spoiled{kArm, "/frames/2/j", std::nullopt, "/frames/2", "\"j\" is missing"},
+        Spoiled{kArm, "/frames/0/alpha_deg", 0, "/frames/0/alpha_deg", "unknown key"},
+        Spoiled{kArm, "/frames/3/theta_deg", 0, "/frames/3/theta_deg", "unknown key"},
+        Spoiled{kArm, "/frames/7/gain", 1, "/frames/7/gain", "unknown key"},
+        Spoiled{kArm, "/frames/7/theta_deg", -14.7, "/frames/7/theta_rad", "keep one of them"},
+        Spoiled{kArm, "/frames/4/r_mm", std::nullopt, "/frames/4", "\"r_mm\" is missing"},
+        Spoiled{kArm, "/frames/4/r_mm", nullptr, "/frames/4/r_mm", "is null; give a finite number"},
+        Spoiled{kArm, "/frames/4/alpha_deg", std::nullopt, "/frames/4", "\"alpha_deg\" is missing"},
+        Spoiled{kArm, "/frames/4/joint_type", "prismatic", "/frames/4/joint_type", "revolute"},
+        Spoiled{kArm, "/frames/4/gain", 0, "/frames/4/gain", "is 0"},
+        Spoiled{kArm, "/frames/4/std/d_mm", -0.3, "/frames/4/std/d_mm", "at least 0"},
+        Spoiled{kArm, "/frames/4/std/beta_rad", -0.3, "/frames/4/std/beta_rad", "at least 0"},
+        Spoiled{kArm, "/frames/4/std/d_deg", 1, "/frames/4/std/d_deg", "unknown key"},
+        Spoiled{kArm, "/joint_limits_deg/1", json({147.5, -130}), "/joint_limits_deg/1", "not below"},
+        Spoiled{kArm, "/joint_limits_deg/5", std::nullopt, "/joint_limits_deg", "wants 6 entries, has 5"},
+        Spoiled{kArm, "/joint_max_speeds_deg_s/0", 0, "/joint_max_speeds_deg_s/0", "a number over 0"},
+        Spoiled{kArm, "/bodies/0/radius_mm", 0, "/bodies/0/radius_mm", "a number over 0"},
+        Spoiled{kArm, "/bodies/0/frame", 8, "/bodies/0/frame", "0 to 7"},
+        Spoiled{kArm, "/bodies/0/to_mm", json({0, 1}), "/bodies/0/to_mm", "wants 3 numbers, has 2"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Block, SpoiledEntry,
+    testing::Values(
+        Spoiled{kBlock, "/schema", "touchcal/arm/1", "/schema", "this program reads \"touchcal/block/1\""},
+        Spoiled{kBlock, "/faces", json::array(), "/faces", "at least 1"},
+        Spoiled{kBlock, "/faces/1/plane", 3, "/faces/1/plane", "is not 2"},
+        Spoiled{kBlock, "/faces/1/outward", json({-1, 0, 0.1}), "/faces/1/outward", "give a unit vector"},
+        Spoiled{kBlock, "/faces/1/outward", json({0, 0, 0}), "/faces/1/outward", "give a unit vector"},
+        Spoiled{kBlock, "/faces/1/outward", json({1, 0, 0}), "/faces/1/center_mm",
+                "does not lie on the plane"},
+        Spoiled{kBlock, "/faces/1/offset_mm", 76, "/faces/1/center_mm", "does not lie on the plane"},
+        Spoiled{kBlock, "/faces/1/edge_u", json({1, 0, 0}), "/faces/1/edge_u", "not perpendicular"},
+        Spoiled{kBlock, "/faces/1/half_extent_mm", json({75, 0}), "/faces/1/half_extent_mm", "not over 0"},
+        Spoiled{kBlock, "/faces/1/std_offset_mm", -1, "/faces/1/std_offset_mm", "at least 0"},
+        Spoiled{kBlock, "/faces/1/place", "estimated", "/faces/1/place", "known faces only"},
+        Spoiled{kBlock, "/faces/1/place", std::nullopt, "/faces/1", "\"place\" is missing"},
+        Spoiled{kBlock, "/lengths/0/planes", json({3, 6}), "/lengths/0/planes/1", "1 to 5"},
+        Spoiled{kBlock, "/lengths/0/planes", json({3, 3}), "/lengths/0/planes", "twice"},
+        Spoiled{kBlock, "/lengths/0/planes", json({2, 3}), "/lengths/0/planes", "not parallel"},
+        Spoiled{kBlock, "/lengths/0/value_mm", 0, "/lengths/0/value_mm", "over 0"},
+        Spoiled{kBlock, "/temperature_c", std::nullopt, "/std_temperature_k", "without \"temperature_c\""},
+        Spoiled{kBlock, "/std_temperature_k", std::nullopt, "", "\"std_temperature_k\" is missing"},
+        Spoiled{kBlock, "/solids/0/max_mm", json({75, -200, 75}), "/solids/0", "not below max_mm"},
+        Spoiled{kBlock, "/certificate", 3, "/certificate", "give an object"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Probe, SpoiledEntry,
+    testing::Values(Spoiled{kProbe, "/stylus_radius_mm", std::nullopt, "", "unknown is not zero"},
+                    Spoiled{kProbe, "/pretravel_mm", std::nullopt, "", "unknown is not zero"},
+                    Spoiled{kProbe, "/stylus_radius_mm", 0, "/stylus_radius_mm", "over 0"},
+                    Spoiled{kProbe, "/pretravel_mm", -0.01, "/pretravel_mm", "at least 0"},
+                    Spoiled{kProbe, "/tip_is_contact_point", true, "/stylus_radius_mm", "no ball"},
+                    Spoiled{kProbe, "/tip_is_contact_point", "yes", "/tip_is_contact_point", "true or false"},
+                    Spoiled{kProbe, "/overtravel_mm", 0, "/overtravel_mm", "over 0"},
+                    Spoiled{kProbe, "/bodies/0/frame", 6, "/bodies/0/frame", "7 to 7"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Recipe, SpoiledEntry,
+    testing::Values(
+        Spoiled{kRecipe, "/touches/planes", json({1, 2, 6}), "/touches/planes/2", "1 to 5"},
+        Spoiled{kRecipe, "/touches/planes", json({1, 2, 2}), "/touches/planes/2", "twice"},
+        Spoiled{kRecipe, "/touches/planes", json::array(), "/touches/planes", "at least 1"},
+        Spoiled{kRecipe, "/touches/fit_per_plane", 0, "/touches/fit_per_plane", "whole number from 1"},
+        Spoiled{kRecipe, "/identification/excluded", json({"alpha4", "alfa5"}), "/identification/excluded/1",
+                "unknown parameter \"alfa5\""},
+        Spoiled{kRecipe, "/identification/tried_last/1", "r2", "/identification/tried_last/1", "twice"},
+        Spoiled{kRecipe, "/identification/formulation", "eq6", "/identification/formulation",
+                "plane_coefficients"},
+        Spoiled{kRecipe, "/identification/qr_tolerance", 0, "/identification/qr_tolerance", "over 0"},
+        Spoiled{kRecipe, "/identification/robust", true, "/identification/robust", "unknown key"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Cell, SpoiledEntry,
+    testing::Values(
+        Spoiled{kCell, "/schema", "touchcal/cell/9", "/schema", "\"touchcal/cell/1\""},
+        Spoiled{kCell, "/arm", "../arms/none.json", "/arm", "there is no file"},
+        Spoiled{kCell, "/arm", "../../arms", "/arm", "there is no file"},
+        Spoiled{kCell, "/recipes/1", "nowhere.json", "/recipes/1", "there is no file"},
+        Spoiled{kCell, "/recipes/1", "../../recipes/edf-25.json", "/recipes/1", "already there"},
+        Spoiled{kCell, "/default_recipe", "edf-99", "/default_recipe", "\"edf-99\""},
+        Spoiled{kCell, "/frames", json::parse(R"([{"j":3,"r_mm":1}])"), "/frames/0", "frames 0 and 7 only"},
+        Spoiled{kCell, "/frames",
+                json::parse(R"([{"j":0,"theta_deg":0,"r_mm":1},{"j":0,"theta_deg":0,"r_mm":1}])"),
+                "/frames/1", "each once"},
+        Spoiled{kCell, "/park_joints_deg", json({0, 0, 60, 0, 90}), "/park_joints_deg",
+                "wants 6 numbers, has 5"},
+        Spoiled{kCell, "/park_joints_deg", json({0, 0, 150, 0, 90, 0}), "/park_joints_deg",
+                "outside its range"},
+        Spoiled{kCell, "/nominal_miss_mm", 0, "/nominal_miss_mm", "0"},
+        Spoiled{kCell, "/stylus_tilt_max_deg", 90, "/stylus_tilt_max_deg", "89"},
+        Spoiled{kCell, "/touch_noise_mm", -1, "/touch_noise_mm", "at least 0"},
+        Spoiled{kCell, "/acceptance/condition_number_max", 0.5, "/acceptance/condition_number_max",
+                "at least 1"},
+        Spoiled{kCell, "/speeds/travel_mm_s", 0, "/speeds/travel_mm_s", "over 0"},
+        Spoiled{kCell, "/speeds/search_mm_s", 10, "/speeds/search_mm_s", "pre-travel"},
+        Spoiled{kCell, "/deadlines/connect_ms", 0, "/deadlines/connect_ms", "whole number from 1"},
+        Spoiled{kCell, "/controller/port", 65536, "/controller/port", "0 to 65535"},
+        Spoiled{kCell, "/controller/host", std::nullopt, "/controller", "\"host\" is missing"},
+        Spoiled{kCell, "/workspace_box/min_mm", json({1, 2}), "/workspace_box/min_mm",
+                "wants 3 numbers, has 2"},
+        Spoiled{kCell, "/keep_out_boxes", 3, "/keep_out_boxes", "give an array"},
+        Spoiled{kCell, "/tools/gripper/position_mm/1", "x", "/tools/gripper/position_mm/1", "is a text"}));
+
+INSTANTIATE_TEST_SUITE_P(
+    Truth, SpoiledEntry,
+    testing::Values(Spoiled{kTruth, "/schema", "touchcal/truth/2", "/schema", "\"touchcal/truth/1\""},
+                    Spoiled{kTruth, "/errors/theta9_rad", 1, "/errors/theta9_rad", "unknown error"},
+                    Spoiled{kTruth, "/errors/r0", 1, "/errors/r0", "\"r0_mm\""},
+                    Spoiled{kTruth, "/errors/theta0_mm", 1, "/errors/theta0_mm", "\"theta0_rad\""},
+                    Spoiled{kTruth, "/errors/r0_rad", 1, "/errors/r0_rad", "\"r0_mm\""},
+                    Spoiled{kTruth, "/errors/theta0_deg", 1, "/errors/theta0_rad", "two units"},
+                    Spoiled{kTruth, "/errors/r0_mm", nullptr, "/errors/r0_mm", "is null"}));
+
+/// Pointers of everything in a document but its root.
+std::vector<json::json_pointer> places_in(const json& value,
+                                          const json::json_pointer& here = json::json_pointer("")) {
+  std::vector<json::json_pointer> places;
+  const auto visit = [&](const json& child, const json::json_pointer& place) {
+    places.push_back(place);
+    const auto deeper = places_in(child, place);
+    places.insert(places.end(), deeper.begin(), deeper.end());
+  };
+  if (value.is_object()) {
+    for (const auto& [key, child] : value.items()) visit(child, here / key);
+  } else if (value.is_array()) {
+    for (std::size_t i = 0; i < value.size(); ++i) visit(value[i], here / i);
+  }
+  return places;
+}
+
+class EveryEntry : public ReadConfig, public testing::WithParamInterface<const char*> {
+ protected:
+  [[nodiscard]] ConfigError error_with(const json& document) const {
+    const std::filesystem::path file = folder_.write(GetParam(), document.dump());
+    return error_of(
+        [&] { GetParam() == kTruth ? static_cast<void>(read_truth(file)) : static_cast<void>(read()); });
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Files, EveryEntry, testing::Values(kArm, kBlock, kProbe, kRecipe, kCell, kTruth));
+
+TEST_P(EveryEntry, ThatIsNullIsRefusedAtItsPlace) {
+  const json whole = json_of(path(GetParam()));
+  for (const json::json_pointer& place : places_in(whole)) {
+    json document = whole;
+    document[place] = nullptr;
+    EXPECT_EQ(error_with(document).pointer(), place.to_string());
+  }
+}
+
+TEST_P(EveryEntry, ThatIsAnObjectTakesNoKeyItDoesNotKnow) {
+  const json whole = json_of(path(GetParam()));
+  std::vector<json::json_pointer> places = places_in(whole);
+  places.emplace_back("");
+  for (const json::json_pointer& place : places) {
+    if (!whole.at(place).is_object()) continue;
+    json document = whole;
+    document[place]["surprise"] = 1;
+    EXPECT_EQ(error_with(document).pointer(), (place / "surprise").to_string());
+  }
+}
+
+TEST_P(EveryEntry, ThatIsCutOffAnywhereIsRefused) {
+  const std::string whole = json_of(path(GetParam())).dump();
+  for (std::size_t length = 0; length < whole.size(); length += 7) {
+    folder_.write(GetParam(), whole.substr(0, length));
+    const ConfigError error = error_of([&] {
+      GetParam() == kTruth ? static_cast<void>(read_truth(path(kTruth))) : static_cast<void>(read());
+    });
+    EXPECT_THAT(error.source(), EndsWith(GetParam())) << length;
+  }
+}
+
+TEST_F(ReadConfig, TheCopyIsReadAsLongAsNothingIsSpoiled) { EXPECT_EQ(read().name, "demo"); }
+
+TEST_F(ReadConfig, FilesThatCannotBeReadAreNamed) {
+  const auto what = [](const std::filesystem::path& file) {
+    return std::string(error_of([&] { static_cast<void>(read_cell(file)); }).what());
+  };
+  const std::string root = folder_.path().string();
+  EXPECT_EQ(what(path("none.json")), root + "/none.json: there is no such file; check the path");
+  EXPECT_EQ(what(path("cells")), root + "/cells: is a folder; name a file in it");
+  EXPECT_EQ(what(path("cells/demo/cell.json/x")),
+            root + "/cells/demo/cell.json/x: there is no such file; check the path");
+  EXPECT_EQ(what(folder_.write("empty.json", "")), root + "/empty.json: is empty; give a document");
+  EXPECT_THAT(what(folder_.write("big.json", std::string(2'000'000, ' '))),
+              HasSubstr("larger than 1048576 bytes"));
+  EXPECT_THAT(what(folder_.write("text.json", "hello\n")),
+              HasSubstr("text.json: line 1, column 1: not JSON"));
+  EXPECT_THAT(what(folder_.write("list.json", "[]")),
+              HasSubstr("is an array; give an object with \"schema\""));
+}
+
+TEST_F(ReadConfig, ANamedFileThatIsNotJsonIsNamedItself) {
+  folder_.write(kBlock, "{\"schema\": \"touchcal/block/1\",\n\"name\": NaN}");
+  const ConfigError error = error_of([&] { static_cast<void>(read()); });
+  EXPECT_THAT(error.what(), HasSubstr("cells/demo/block.json: line 2, column"));
+}
+
+TEST_F(ReadConfig, ACellOverridesPlaceAndToolOfItsArm) {
+  edit(kCell, [](json& cell) {
+    cell["frames"] = json::parse(
+        R"([{"j":0,"theta_deg":90,"r_mm":100,"std":{"r_mm":1}},
+            {"j":7,"alpha_rad":0.1,"d_mm":2,"theta_deg":0,"r_mm":300,"beta_deg":0}])");
+  });
+  const Cell cell = read();
+  EXPECT_DOUBLE_EQ(cell.arm.model.links[0].theta_rad, std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(cell.arm.model.links[0].r_m, 0.1);
+  EXPECT_DOUBLE_EQ(cell.arm.model.links[7].alpha_rad, 0.1);
+  EXPECT_DOUBLE_EQ(cell.arm.model.links[7].d_m, 0.002);
+  EXPECT_DOUBLE_EQ(cell.arm.std_errors[static_cast<std::size_t>(*calib::error_parameter_index("r0"))].value(),
+                   0.001);
+  EXPECT_FALSE(
+      cell.arm.std_errors[static_cast<std::size_t>(*calib::error_parameter_index("r7"))].has_value());
+}
+
+TEST_F(ReadConfig, AnglesMayBeGivenInRadians) {
+  const Cell in_degrees = read();
+  edit(kArm, [](json& arm) {
+    arm["frames"][2].erase("alpha_deg");
+    arm["frames"][2]["alpha_rad"] = -std::numbers::pi / 2;
+  });
+  EXPECT_DOUBLE_EQ(read().arm.model.links[2].alpha_rad, in_degrees.arm.model.links[2].alpha_rad);
+}
+
+TEST_F(ReadConfig, ANearlyUnitNormalIsMadeOne) {
+  edit(kBlock, [](json& block) { block["faces"][0]["outward"] = {0.0, 0.0, -1.0 + 5e-7}; });
+  EXPECT_DOUBLE_EQ(read().block.faces[0].plane.outward.norm(), 1.0);
+}
+
+TEST_F(ReadConfig, AnUnknownTemperatureStaysUnknown) {
+  edit(kBlock, [](json& block) {
+    for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
+      block.erase(key);
+  });
+  EXPECT_FALSE(read().block.temperature_c.has_value());
+}
+
+TEST_F(ReadConfig, ToolsTurnAsInVal3) {
+  edit(kCell, [](json& cell) {
+    cell["tools"]["bent"] = json::parse(R"({"position_mm":[10,20,30],"rotation_deg":[90,0,90]})");
+  });
+  const Eigen::Isometry3d wrist_from_tool = read().tools.at("bent");
+  // Rot(x, 90) Rot(z, 90) takes x to Rot(x, 90) y = z.
+  EXPECT_TRUE((wrist_from_tool * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(0.01, 0.02, 1.03)));
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,178 @@
+#include "config/touches_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "calib_core/units.hpp"
+#include "config/read_config.hpp"
+#include "folder.hpp"
+
+namespace cell {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const Cell& edf() {
+  static const Cell cell = read_cell(kSourceDir / "config/cells/edf/cell.json");
+  return cell;
+}
+
+TouchesFile from_json(const std::string& bytes) {
+  return touches_from_json("body", bytes, kTouchesSizeMax, edf());
+}
+TouchesFile from_csv(const std::string& lines) {
+  return touches_from_csv("t.csv", std::string(kTouchesCsvHeader) + "\n" + lines, edf());
+}
+
+std::string document(const std::string& touches) {
+  return R"({"schema":"touchcal/touches/1","arm":"tx90","touches":[)" + touches + "]}";
+}
+
+TEST(TouchesJson, IsReadAsTheContractShowsIt) {
+  const TouchesFile file = from_json(document(R"({"plane":1,"joints_deg":[1.5,2.5,3.5,4.5,5.5,6.5]},
+                  {"plane":4,"joints_deg":[0,0,0,0,0,0],"role":"held_out"},
+                  {"plane":2,"joints_deg":[0,0,0,0,0,0],"role":"proof"},
+                  {"plane":2,"joints_deg":[0,0,0,0,0,0],"role":"fit"})"));
+  ASSERT_EQ(file.touches.size(), 4U);
+  EXPECT_THAT(file.warnings, IsEmpty());
+  EXPECT_EQ(file.touches[0].face, 0);
+  EXPECT_EQ(file.touches[0].role, calib::TouchRole::kFit);
+  for (int i = 0; i < calib::kJointCount; ++i) {
+    EXPECT_DOUBLE_EQ(file.touches[0].joints[i], calib::radians_from_degrees(1.5 + i));
+  }
+  EXPECT_EQ(file.touches[1].face, 3);
+  EXPECT_EQ(file.touches[1].role, calib::TouchRole::kHeldOut);
+  EXPECT_EQ(file.touches[2].role, calib::TouchRole::kProof);
+  EXPECT_EQ(file.touches[3].role, calib::TouchRole::kFit);
+}
+
+struct RefusedTouches {
+  std::string bytes;
+  std::string what;
+};
+
+TEST(TouchesJson, WhatIsWrongIsSaidWithItsPlace) {
+  const std::vector<RefusedTouches> cases{
+      {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6]},{"plane":1,"joints_deg":[1,2,3,4,5]})"),
+       "body: /touches/1/joints_deg: wants 6 numbers, has 5; add the missing ones"},
+      {document(R"({"plane":5,"joints_deg":[1,2,3,4,5,6]})"),
+       "body: /touches/0/plane: is 5; give a whole number from 1 to 4"},
+      {document(R"({"plane":0,"joints_deg":[1,2,3,4,5,6]})"), "/touches/0/plane: is 0"},
+      {document(R"({"plane":1,"joints_deg":[1,2,null,4,5,6]})"), "/touches/0/joints_deg/2: is null"},
+      {document(R"({"plane":1,"joints_deg":[1,2,NaN,4,5,6]})"), "not JSON near"},
+      {document(R"({"plane":1,"joints_deg":[1,2,1e400,4,5,6]})"), "too large"},
+      {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6],"role":"fitted"})"),
+       "/touches/0/role: is \"fitted\""},
+      {document(R"({"plane":1,"joints_rad":[1,2,3,4,5,6]})"), "/touches/0/joints_rad: unknown key"},
+      {document("7"), "body: /touches/0: is a number; give an object"},
+      {R"({"schema":"touchcal/touches/1","arm":"tx60","touches":[]})",
+       "body: /arm: is \"tx60\" but the cell's arm is \"tx90\""},
+      {R"({"schema":"touchcal/touches/2","arm":"tx90","touches":[]})",
+       "this program reads \"touchcal/touches/1\""},
+      {R"({"schema":"touchcal/touches/1","touches":[]})", "body: \"arm\" is missing; add it"},
+      {R"({"schema":"touchcal/touches/1","arm":"tx90"})", "body: \"touches\" is missing; add it"},
+      {"[]", "give an object with \"schema\":\"touchcal/touches/1\""},
+  };
+  for (const RefusedTouches& refused : cases) {
+    EXPECT_THAT(error_of([&] { from_json(refused.bytes); }).what(), HasSubstr(refused.what)) << refused.bytes;
+  }
+}
+
+TEST(TouchesJson, ALargerBodyThanItsCallerAllowsIsRefused) {
+  const std::string bytes = document("");
+  EXPECT_THAT(touches_from_json("body", bytes, bytes.size(), edf()).touches, IsEmpty());
+  EXPECT_THAT(error_of([&] { touches_from_json("body", bytes, bytes.size() - 1, edf()); }).what(),
+              HasSubstr("larger than"));
+}
+
+TEST(TouchesJson, TheTouchLimitIsReadAndOneMoreIsRefused) {
+  const std::string touch = R"({"plane":1,"joints_deg":[0,0,0,0,0,0]})";
+  std::string touches = touch;
+  for (std::size_t i = 1; i < kTouchCountMax; ++i) touches += "," + touch;
+  EXPECT_EQ(from_json(document(touches)).touches.size(), kTouchCountMax);
+  EXPECT_THAT(error_of([&] { from_json(document(touches + "," + touch)); }).what(),
+              HasSubstr("/touches: wants at most 100000 entries, has 100001"));
+}
+
+TEST(TouchesJson, AJointOutsideItsRangeIsAWarningThatNamesTheTouch) {
+  const TouchesFile file = from_json(document(
+      R"({"plane":1,"joints_deg":[180,147.5,-145,270,140,-270]},{"plane":1,"joints_deg":[0,147.6,0,0,-115.5,0]})"));
+  EXPECT_EQ(file.touches.size(), 2U);
+  EXPECT_THAT(file.warnings, ElementsAre("touch 2: joint 2 at 147.6 deg is outside -130 to 147.5, "
+                                         "joint 5 at -115.5 deg is outside -115 to 140"));
+}
+
+TEST(TouchesJson, EndlessWarningsAreCounted) {
+  const std::string touch = R"({"plane":1,"joints_deg":[999,0,0,0,0,0]})";
+  std::string touches = touch;
+  for (int i = 1; i < 250; ++i) touches += "," + touch;
+  const TouchesFile file = from_json(document(touches));
+  ASSERT_EQ(file.warnings.size(), 101U);
+  EXPECT_EQ(file.warnings.back(), "150 more touches have joints outside their ranges");
+}
+
+TEST(TouchesCsv, GivesTheSameTouchesAsJson) {
+  const TouchesFile json = from_json(document(
+      R"({"plane":1,"joints_deg":[1.5,-2.5,3.5e0,4.5,5.5,6.5]},{"plane":4,"joints_deg":[10,20,30,200,50,6.5]})"));
+  const std::string header(kTouchesCsvHeader);
+  const std::string first = "1,1.5,-2.5,3.5e0,4.5,5.5,6.5";
+  const std::string second = "4, 10, 20 ,30,200,50,6.5";
+  for (const std::string& bytes :
+       {header + "\n" + first + "\n" + second + "\n", header + "\r\n" + first + "\r\n" + second + "\r\n",
+        header + "\n" + first + "\n" + second, header + "\n" + first + "\n\n" + second + "\n\n"}) {
+    const TouchesFile csv = touches_from_csv("t.csv", bytes, edf());
+    ASSERT_EQ(csv.touches.size(), 2U) << bytes;
+    for (std::size_t i = 0; i < csv.touches.size(); ++i) {
+      EXPECT_EQ(csv.touches[i].face, json.touches[i].face);
+      EXPECT_EQ(csv.touches[i].joints, json.touches[i].joints);
+      EXPECT_EQ(csv.touches[i].role, calib::TouchRole::kFit);
+    }
+  }
+}
+
+TEST(TouchesCsv, WhatIsWrongIsSaidWithItsLine) {
+  const std::vector<RefusedTouches> cases{
+      {"1,1,2,3,4,5,6\n1,1,2,3,4,5\n", "t.csv: line 3: wants a plane and 6 joints, has 6 values"},
+      {"1,1,2,3,4,5,6,7\n", "line 2: wants a plane and 6 joints, has 8 values"},
+      {"1;1;2;3;4;5;6\n", "line 2: wants a plane and 6 joints, has 1 values"},
+      {"5,1,2,3,4,5,6\n", "line 2: plane is \"5\"; give a whole number from 1 to 4"},
+      {"1.5,1,2,3,4,5,6\n", "line 2: plane is \"1.5\""},
+      {"1,1,2,nan,4,5,6\n", "line 2: joint 3 is \"nan\"; give a finite number"},
+      {"1,1,2,3,inf,5,6\n", "line 2: joint 4 is \"inf\""},
+      {"1,1,2,3,4,1e999,6\n", "line 2: joint 5 is \"1e999\""},
+      {"1,1,2,3,4,5,\n", "line 2: joint 6 is \"\""},
+      {"1,1,2,3,4,5,6 deg\n", "line 2: joint 6 is \"6 deg\""},
+      {"1,1,2,3,4,5,6\r\n\r\n9,1,2,3,4,5,6\r\n", "line 4: plane is \"9\""},
+  };
+  for (const RefusedTouches& refused : cases) {
+    EXPECT_THAT(error_of([&] { from_csv(refused.bytes); }).what(), HasSubstr(refused.what)) << refused.bytes;
+  }
+  EXPECT_THAT(error_of([&] { touches_from_csv("t.csv", "1,1,2,3,4,5,6\n", edf()); }).what(),
+              HasSubstr("t.csv: line 1: the header is missing"));
+}
+
+TEST(TouchesCsv, AHeaderAloneIsNoTouches) {
+  EXPECT_THAT(from_csv("").touches, IsEmpty());
+  EXPECT_THAT(touches_from_csv("t.csv", kTouchesCsvHeader, edf()).touches, IsEmpty());
+}
+
+TEST(TouchesFile, IsTakenForCsvByItsNameOrItsHeader) {
+  const Folder folder;
+  const std::string csv = std::string(kTouchesCsvHeader) + "\n2,1,2,3,4,5,6\n";
+  EXPECT_EQ(read_touches(folder.write("a.csv", csv), edf()).touches.size(), 1U);
+  EXPECT_EQ(read_touches(folder.write("a.txt", csv), edf()).touches.size(), 1U);
+  EXPECT_EQ(read_touches(folder.write("a.json", document("")), edf()).touches.size(), 0U);
+  const auto file = folder.write("b.csv", document(""));
+  EXPECT_EQ(std::string(error_of([&] { read_touches(file, edf()); }).what()),
+            file.string() + ": line 1: the header is missing; begin with " + std::string(kTouchesCsvHeader));
+}
+
+TEST(TouchesFile, AMissingFileIsNamed) {
+  EXPECT_EQ(std::string(error_of([&] { read_touches("/nowhere/t.json", edf()); }).what()),
+            "/nowhere/t.json: there is no such file; check the path");
+}
+
+}  // namespace
+}  // namespace cell
