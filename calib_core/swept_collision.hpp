@@ -12,9 +12,9 @@ namespace calib {
 /// at.
 inline constexpr double kSweptErrorMaxMetres = 1e-3;
 
-/// find_clash on a straight joint move, both ends included. Conservative advancement: a pair is looked at
-/// again only after the joints have gone far enough to use up its distance (Mirtich, Impulse-based dynamic
-/// simulation of rigid body systems, 1996), so nothing farther in than kSweptErrorMaxMetres is missed.
+/// find_clash on a straight joint move, both ends included. Conservative advancement: the next look comes
+/// when the joints have gone far enough to use up the least distance (Mirtich, Impulse-based dynamic
+/// simulation of rigid body systems, 1996), so nothing deeper than kSweptErrorMaxMetres is missed.
 std::optional<Clash> find_clash_on_way(const CollisionScene& scene, const KinematicModel& model,
                                        const JointVector& from, const JointVector& to, double clearance_m);
 

@@ -15,9 +15,9 @@ namespace calib {
 namespace {
 
 /// How many possible touches a face is given to choose from, and how many poses are tried for them.
-constexpr int kCandidatesPerTouch = 5;
-constexpr int kCandidatesMin = 120;
-constexpr int kPosesPerCandidate = 40;
+constexpr int kCandidatesPerTouch = 16;
+constexpr int kCandidatesMin = 240;
+constexpr int kPosesPerCandidate = 20;
 
 int candidates_wanted(const TouchRequest& request) {
   return std::max(kCandidatesPerTouch * (request.fit_count + request.held_out_count), kCandidatesMin);
