@@ -14,7 +14,7 @@ namespace cs8 {
 namespace {
 
 /// More than this waiting to be written means that the controller stopped reading.
-constexpr std::size_t kOutgoingMax = 16 * 1024;
+constexpr std::size_t kOutgoingMax = 16384;  // bytes
 
 std::string milliseconds_text(std::chrono::milliseconds time) { return std::to_string(time.count()) + " ms"; }
 

@@ -155,8 +155,10 @@ TEST_F(ClientTest, SilenceInTheHandshakeEndsAtItsDeadline) {
 
 TEST_F(ClientTest, NobodyAtTheEndpointIsUnreachable) {
   Client client = make_client();
-  const tcp::endpoint nobody = endpoint();
-  acceptor_.close();
+  tcp::acceptor bound(io_);  // holds the port but does not listen
+  bound.open(tcp::v4());
+  bound.bind(tcp::endpoint(asio::ip::address_v4::loopback(), 0));
+  const tcp::endpoint nobody = bound.local_endpoint();
   run([&]() -> asio::awaitable<void> {
     const ConnectReply reply = co_await client.connect(nobody, expected());
     EXPECT_EQ(expect_held<LinkError>(reply).kind, LinkErrorKind::kUnreachable);
