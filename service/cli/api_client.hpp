@@ -1,0 +1,46 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+namespace cell {
+
+/// The daemon cannot be reached, or what answers is not it.
+struct DaemonUnreachable : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct ApiReply {
+  unsigned status = 0;
+  std::string body;
+};
+
+/// One daemon's API, a connection a request.
+class ApiClient {
+ public:
+  /// `url`: http://HOST:PORT. Throws std::invalid_argument when it is not that.
+  ApiClient(const std::string& url, std::optional<std::string> token);
+
+  /// `target` with its query; `body` is JSON. Throws DaemonUnreachable.
+  ApiReply get(const std::string& target, std::chrono::seconds deadline = std::chrono::seconds(10)) const;
+  ApiReply post(const std::string& target, const std::string& body) const;
+
+  [[nodiscard]] std::string url() const { return "http://" + host_ + ":" + port_; }
+
+ private:
+  [[nodiscard]] ApiReply request(bool post, const std::string& target, const std::string& body,
+                                 std::chrono::seconds deadline) const;
+
+  std::string host_;
+  std::string port_;
+  std::optional<std::string> token_;
+};
+
+/// The token that changes things: TOUCHCAL_TOKEN, else the daemon's file in its state directory; nothing when
+/// neither is there.
+std::optional<std::string> find_operate_token(const std::filesystem::path& state_directory);
+
+}  // namespace cell

@@ -1,0 +1,69 @@
+#include "service/cli/progress.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace cell {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kBarWidth = 30;
+
+std::string figures(const json& status) {
+  std::string text =
+      fmt::format("{}/{}", status.at("touches_done").get<int>(), status.at("touches_total").get<int>());
+  if (status.at("plane").is_number()) text += fmt::format("  plane {}", status.at("plane").get<int>());
+  if (status.at("identifiable_count").is_number())
+    text += fmt::format("  rank {}", status.at("identifiable_count").get<int>());
+  if (status.at("condition_number").is_number())
+    text += fmt::format("  cond {:.0f}", status.at("condition_number").get<double>());
+  if (status.at("eta_s").is_number())
+    text += fmt::format("  {:.0f} s left", status.at("eta_s").get<double>());
+  return text;
+}
+
+}  // namespace
+
+void Progress::show_fault(const json& status) {
+  const std::string fault =
+      status.at("fault_code").is_string() ? status.at("fault_code").get<std::string>() : "";
+  if (fault == last_fault_) return;
+  last_fault_ = fault;
+  if (fault.empty()) return;
+  finish();
+  fmt::print("fault {}: {}\n  robot: {}\n  next:  {}\n", fault, status.at("fault_message").get<std::string>(),
+             status.at("fault_robot_action").get<std::string>(),
+             status.at("fault_next_step").get<std::string>());
+  std::fflush(stdout);
+}
+
+void Progress::show(const json& status) {
+  show_fault(status);
+  const std::string state = status.at("state");
+  const int total = status.at("touches_total");
+  const int done = status.at("touches_done");
+  if (on_terminal_) {
+    const int filled = total > 0 ? done * kBarWidth / total : 0;
+    fmt::print("\r\033[K{:<11}[{}{}] {}", state, std::string(static_cast<std::size_t>(filled), '#'),
+               std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), figures(status));
+    line_open_ = true;
+  } else {
+    const int tenth = total > 0 ? done * 10 / total : 0;
+    if (state == last_state_ && tenth == last_tenth_) return;
+    last_tenth_ = tenth;
+    fmt::print("{:<11} {}\n", state, figures(status));
+  }
+  last_state_ = state;
+  std::fflush(stdout);
+}
+
+void Progress::finish() {
+  if (line_open_) fmt::print("\n");
+  line_open_ = false;
+  std::fflush(stdout);
+}
+
+}  // namespace cell

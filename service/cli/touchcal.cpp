@@ -1,0 +1,114 @@
+// touchcal: the command line. Talks to a daemon, or identifies offline.
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <iostream>
+#include <map>
+
+#include "config/config_error.hpp"
+#include "service/cli/commands.hpp"
+#include "service/daemon.hpp"
+#include "service/version.hpp"
+
+namespace {
+
+const std::map<std::string, std::string> kCellCommands{
+    {"pause", "hold the run after the touch under way"},
+    {"resume", "go on with the run that is on hold"},
+    {"abort", "end the run at once; the cell must be cleared afterwards"},
+    {"stop", "stop motion and end the run"},
+    {"acknowledge", "take the fault off the screen"},
+    {"clear", "leave ABORTED once its cause is gone"},
+    {"reset", "make the cell ready for a run"},
+};
+
+class CommandLine {
+ public:
+  CommandLine() : app_("touchcal: calibrates a robot arm by touching a block") {
+    app_.set_version_flag("--version", std::string("touchcal ") + cell::kVersion);
+    app_.require_subcommand(1);
+    add_identify();
+    auto* run = add_for_daemon(
+        "run", "start a run and watch it to its end",
+        [this](const cell::ApiClient& daemon) { return cell::run_command(daemon, recipe_, json_); });
+    run->add_option("RECIPE", recipe_, "name of the recipe")->default_str("edf-25");
+    add_for_daemon("watch", "watch the run under way",
+                   [this](const cell::ApiClient& daemon) { return cell::watch_command(daemon, json_); });
+    add_for_daemon("status", "what the cell is doing",
+                   [this](const cell::ApiClient& daemon) { return cell::status_command(daemon, json_); });
+    add_for_daemon("runs", "the history, newest first",
+                   [this](const cell::ApiClient& daemon) { return cell::runs_command(daemon, json_); });
+    auto* show = add_for_daemon("show", "one run and its result", [this](const cell::ApiClient& daemon) {
+      return cell::show_command(daemon, run_id_, json_);
+    });
+    show->add_option("RUN", run_id_, "id of the run")->required();
+    for (const auto& [name, description] : kCellCommands) {
+      add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {
+        return cell::give_command(daemon, command, json_);
+      });
+    }
+  }
+
+  int run(int argc, char** argv) {
+    try {
+      app_.parse(argc, argv);
+      return action_();
+    } catch (const CLI::ParseError& error) {
+      return app_.exit(error, std::cout, std::cerr) == 0 ? cell::kExitDone : cell::kExitUsage;
+    }
+  }
+
+ private:
+  void add_identify() {
+    auto* identify = app_.add_subcommand("identify", "identify an arm from a file of touches (offline)");
+    identify->add_option("--cell", identify_.cell_file, "cell file")->required();
+    identify->add_option("--touches", identify_.touches_file, "touches, JSON or CSV")->required();
+    identify->add_option("--recipe", identify_.recipe,
+                         "whose identification options hold; default: the cell's first");
+    identify->add_flag("--json", json_, "one JSON document on standard output");
+    identify->callback([this] { action_ = [this] { return cell::identify_command(identify_, json_); }; });
+  }
+
+  CLI::App* add_for_daemon(const std::string& name, const std::string& description,
+                           const std::function<cell::ExitCode(const cell::ApiClient&)>& command) {
+    auto* sub = app_.add_subcommand(name, description);
+    sub->add_option("--daemon", daemon_url_, "the daemon's address")->envname("TOUCHCAL_DAEMON");
+    sub->add_option("--state", state_directory_, "the daemon's state directory, where its token is")
+        ->envname("TOUCHCAL_STATE");
+    sub->add_flag("--json", json_, "one JSON document on standard output");
+    sub->callback([this, command] {
+      action_ = [this, command] {
+        return command(cell::ApiClient(daemon_url_, cell::find_operate_token(state_directory_)));
+      };
+    });
+    return sub;
+  }
+
+  CLI::App app_;
+  std::function<cell::ExitCode()> action_;
+  cell::IdentifyArguments identify_;
+  std::string daemon_url_ = "http://127.0.0.1:8080";
+  std::filesystem::path state_directory_ = cell::default_state_directory();
+  std::string recipe_ = "edf-25";
+  std::string run_id_;
+  bool json_ = false;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return CommandLine().run(argc, argv);
+  } catch (const cell::ConfigError& error) {
+    std::cerr << error.what() << '\n';
+    return cell::kExitBadInput;
+  } catch (const cell::DaemonUnreachable& error) {
+    std::cerr << error.what() << '\n';
+    return cell::kExitUnreachable;
+  } catch (const std::invalid_argument& error) {
+    std::cerr << error.what() << '\n';
+    return cell::kExitUsage;
+  } catch (const std::exception& error) {
+    std::cerr << "touchcal: " << error.what() << '\n';
+    return cell::kExitFailed;
+  }
+}
