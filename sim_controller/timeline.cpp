@@ -64,16 +64,17 @@ void add_search(const Plant& plant, Timeline& timeline, const TouchMotion& motio
   const auto trip = find_trip(plant, line.path, noise_m);
   const double stop_m = stopping_distance_m(motion.search_speed_m_s, plant.stop_latency_s);
   const double end = trip ? std::min(1.0, *trip + stop_m / line.length_m) : 1.0;
-  const auto hit = find_hit(plant, line.path, end);
+  // Behind the trip the stylus yields, so nothing is hit there.
+  const auto hit = find_hit(plant, line.path, trip.value_or(1.0));
   const double before_search_s = timeline.duration_s();
 
   timeline.legs.push_back(timed_leg(plant, cs8::Phase::kSearch, {line.path, 0.0, hit ? hit->progress : end},
                                     motion.search_speed_m_s));
   const Leg& search = timeline.legs.back();
-  if (trip && (!hit || hit->progress > *trip)) {
+  if (trip && !hit) {
     Capture capture{posture(line.path, *trip), search.stretch.at(1.0), 0.0, before_search_s};
     capture.overtravel_m = tip_distance_m(plant, capture.contact, capture.stopped);
-    if (search.stretch.to > 0.0) capture.at_s += search.duration_s * *trip / search.stretch.to;
+    capture.at_s += search.duration_s * *trip / end;
     timeline.capture = capture;
   }
   if (hit) {
