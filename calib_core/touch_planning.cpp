@@ -98,15 +98,18 @@ Eigen::MatrixXd observation_rows(const PlanningProblem& problem, const std::vect
   return rows;
 }
 
-/// What makes touches of a face alike: the place on the face, in half extents, and the posture, in radians.
+/// What makes touches of a face alike: the place on the face in half extents, the direction of the stylus,
+/// and joints 1 to 3 in radians. The turn about the stylus is left out: it tells nothing.
 Eigen::MatrixXd touch_features(const PlanningProblem& problem, const std::vector<PlannedTouch>& touches) {
-  Eigen::MatrixXd features(2 + kJointCount, static_cast<Eigen::Index>(touches.size()));
+  Eigen::MatrixXd features(8, static_cast<Eigen::Index>(touches.size()));
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Face& face = problem.faces[static_cast<std::size_t>(touches[i].face)];
-    const Eigen::Vector3d from_center =
-        forward_kinematics(problem.nominal, touches[i].joints).translation() - face.center_m;
-    features.col(static_cast<Eigen::Index>(i)) << from_center.dot(face.edge_u) / face.half_extent_m.x(),
-        from_center.dot(face.edge_v()) / face.half_extent_m.y(), touches[i].joints;
+    const Eigen::Isometry3d block_from_tip = forward_kinematics(problem.nominal, touches[i].joints);
+    const Eigen::Vector3d from_center_m = block_from_tip.translation() - face.center_m;
+    const Eigen::Vector2d quarter_m = 0.5 * face.half_extent_m;
+    features.col(static_cast<Eigen::Index>(i)) << from_center_m.dot(face.edge_u) / quarter_m.x(),
+        from_center_m.dot(face.edge_v()) / quarter_m.y(), block_from_tip.linear().col(2),
+        touches[i].joints.head<3>();
   }
   return features;
 }

@@ -103,6 +103,10 @@ bool exchange(const Eigen::MatrixXd& rows, std::span<const int> groups, std::vec
   return changed;
 }
 
+/// Being far from each other comes before being far from the taken ones, or the selected would crowd into the
+/// places that these left.
+constexpr double kFromTakenWeight = 2.0;
+
 }  // namespace
 
 std::vector<std::size_t> select_informative(const Matrix& rows, std::span<const int> groups,
@@ -128,21 +132,21 @@ std::vector<std::size_t> select_apart(const Matrix& features, std::span<const in
                                       std::span<const Quota> quotas, const std::vector<std::size_t>& taken) {
   std::vector<bool> eligible(groups.size(), true);
   Eigen::VectorXd nearest = Eigen::VectorXd::Constant(features.cols(), std::numeric_limits<double>::max());
-  const auto take = [&](std::size_t index) {
+  const auto take = [&](std::size_t index, double weight) {
     const auto column = static_cast<Eigen::Index>(index);
     for (Eigen::Index i = 0; i < features.cols(); ++i) {
       if (groups[static_cast<std::size_t>(i)] != groups[index]) continue;
-      nearest[i] = std::min(nearest[i], (features.col(i) - features.col(column)).norm());
+      nearest[i] = std::min(nearest[i], weight * (features.col(i) - features.col(column)).norm());
     }
   };
   for (const std::size_t i : taken) {
     eligible[i] = false;
-    take(i);
+    take(i, kFromTakenWeight);
   }
   return interleaved(groups, quotas, std::move(eligible), [&](const std::vector<std::size_t>& members) {
     const std::size_t farthest = *std::ranges::max_element(
         members, {}, [&](std::size_t i) { return nearest[static_cast<Eigen::Index>(i)]; });
-    take(farthest);
+    take(farthest, 1.0);
     return farthest;
   });
 }

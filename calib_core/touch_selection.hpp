@@ -24,8 +24,8 @@ std::vector<std::size_t> order_by_information(const Eigen::Ref<const Eigen::Matr
                                               std::span<const int> groups, std::span<const Quota> quotas,
                                               const std::vector<std::size_t>& chosen);
 
-/// Candidates far from the taken ones and from each other, by the distance of their columns in `features`,
-/// within each group; groups interleaved.
+/// Candidates far from each other and, second to that, from the taken ones, by the distance of their columns
+/// in `features`, within each group; groups interleaved.
 std::vector<std::size_t> select_apart(const Eigen::Ref<const Eigen::MatrixXd>& features,
                                       std::span<const int> groups, std::span<const Quota> quotas,
                                       const std::vector<std::size_t>& taken);

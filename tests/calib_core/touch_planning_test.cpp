@@ -1,0 +1,274 @@
+#include "calib_core/touch_planning.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "calib_core/identifiability.hpp"
+#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/observation_matrix.hpp"
+#include "tests/calib_core/tx90.hpp"
+
+namespace calib {
+namespace {
+
+constexpr int kFitPerFace = 25;
+constexpr int kHeldOutPerFace = 10;
+
+struct PlannedCell {
+  PlanningProblem problem;
+  TouchPlan plan;
+  double condition_number_max = 0.0;
+};
+
+PlanningProblem problem_of(double ball_radius_m, double tilt_max_deg, int face_count) {
+  PlanningProblem problem{.nominal = paper::nominal(),
+                          .joint_ranges = tx90::joint_ranges(),
+                          .faces = tx90::faces(),
+                          .stylus = {.radius_m = ball_radius_m},
+                          .scene = tx90::scene(ball_radius_m),
+                          .park_joints = tx90::park_joints(),
+                          .tilt_max_rad = radians_from_degrees(tilt_max_deg)};
+  for (int face = 0; face < face_count; ++face) {
+    problem.requests.push_back({face, kFitPerFace, kHeldOutPerFace});
+  }
+  return problem;
+}
+
+PlannedCell planned(PlanningProblem problem, double condition_number_max) {
+  auto plan = plan_touches(problem);
+  if (const auto* failure = std::get_if<PlanningFailure>(&plan)) throw std::runtime_error(failure->reason);
+  return {std::move(problem), std::get<TouchPlan>(std::move(plan)), condition_number_max};
+}
+
+/// The paper's cell: the tip is the contact point, tilts to 45 degrees.
+const PlannedCell& edf() {
+  static const PlannedCell cell = planned(problem_of(0.0, 45, 4), 160);
+  return cell;
+}
+
+/// A 3 mm ball, tilts to 70 degrees, the plate as a fifth face.
+const PlannedCell& demo() {
+  static const PlannedCell cell = planned(problem_of(0.003, 70, 5), 80);
+  return cell;
+}
+
+class EveryPlan : public testing::TestWithParam<const PlannedCell& (*)()> {
+ protected:
+  const PlanningProblem& problem_ = GetParam()().problem;
+  const std::vector<PlannedTouch>& touches_ = GetParam()().plan.touches;
+  const double condition_number_max_ = GetParam()().condition_number_max;
+
+  [[nodiscard]] const Face& face_of(const PlannedTouch& touch) const {
+    return problem_.faces[static_cast<std::size_t>(touch.face)];
+  }
+
+  [[nodiscard]] std::size_t fit_count() const { return problem_.requests.size() * kFitPerFace; }
+
+  /// W of the first touches and its identifiable columns.
+  [[nodiscard]] Eigen::MatrixXd identifiable_columns(std::size_t count) const {
+    std::vector<Plane> planes;
+    for (const Face& face : problem_.faces) planes.push_back(contact_plane(face, problem_.stylus));
+    std::vector<Touch> made;
+    for (std::size_t i = 0; i < count; ++i) made.push_back({touches_[i].face, touches_[i].joints});
+    const Eigen::MatrixXd matrix =
+        observe(problem_.nominal, planes, made, Formulation::kSignedDistance).matrix;
+    return select_columns(matrix, choose_identifiable(matrix, {.tried_last = paper::tried_last()}).columns);
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(TouchPlanning, EveryPlan, testing::Values(&edf, &demo),
+                         [](const auto& each) { return each.index == 0 ? "edf" : "demo"; });
+
+TEST_P(EveryPlan, InterleavesTheFacesAndFitsBeforeItHoldsOut) {
+  ASSERT_EQ(touches_.size(), problem_.requests.size() * (kFitPerFace + kHeldOutPerFace));
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    EXPECT_EQ(touches_[i].face, static_cast<int>(i % problem_.requests.size()));
+    EXPECT_EQ(touches_[i].role, i < fit_count() ? TouchRole::kFit : TouchRole::kHeldOut);
+  }
+}
+
+TEST_P(EveryPlan, StaysInTheJointRanges) {
+  for (const PlannedTouch& touch : touches_) {
+    for (const auto* joints :
+         {&touch.joints, &touch.clear_joints, &touch.approach_joints, &touch.search_end_joints}) {
+      EXPECT_TRUE(problem_.joint_ranges.contains(*joints));
+    }
+  }
+}
+
+TEST_P(EveryPlan, TouchesTheFaceOnAStraightLineAlongItsNormal) {
+  const double standoff_m = problem_.nominal_miss_m + 0.003;
+  for (const PlannedTouch& touch : touches_) {
+    const Face& face = face_of(touch);
+    const Eigen::Isometry3d contact = forward_kinematics(problem_.nominal, touch.joints);
+    EXPECT_NEAR(signed_distance_m(contact_plane(face, problem_.stylus), contact.translation()), 0.0, 1e-9);
+    EXPECT_NEAR(std::acos(-contact.linear().col(2).dot(face.plane.outward)), touch.tilt_rad, 1e-7);
+    EXPECT_LE(touch.tilt_rad, problem_.tilt_max_rad);
+    EXPECT_EQ(touch.search_direction, -face.plane.outward);
+    EXPECT_DOUBLE_EQ(touch.search_length_m, 2.0 * standoff_m);
+    for (const auto& [joints, height_m] :
+         {std::pair(touch.clear_joints, standoff_m + 0.025), std::pair(touch.approach_joints, standoff_m),
+          std::pair(touch.search_end_joints, -standoff_m)}) {
+      Eigen::Isometry3d expected = contact;
+      expected.pretranslate(height_m * face.plane.outward);
+      EXPECT_LT((forward_kinematics(problem_.nominal, joints).matrix() - expected.matrix()).norm(), 1e-8);
+      EXPECT_LT((joints - touch.joints).cwiseAbs().maxCoeff(), 0.6) << "another branch";
+    }
+  }
+}
+
+TEST_P(EveryPlan, KeepsTheArmClearFromTheClearPostureToTheContact) {
+  CollisionScene arm = problem_.scene;
+  std::erase_if(arm.bodies, [](const Capsule& body) { return body.frame == 7; });
+  for (const PlannedTouch& touch : touches_) {
+    EXPECT_FALSE(find_clash(problem_.scene, forward_chain(problem_.nominal, touch.clear_joints),
+                            problem_.nominal_miss_m));
+    for (const auto& [from, to] : {std::pair(touch.clear_joints, touch.approach_joints),
+                                   std::pair(touch.approach_joints, touch.joints)}) {
+      for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+        const Chain chain = forward_chain(problem_.nominal, from + share * (to - from));
+        EXPECT_FALSE(find_clash(arm, chain, problem_.nominal_miss_m - 1e-4));
+      }
+    }
+  }
+}
+
+TEST_P(EveryPlan, AnArmThatMissesAsInTheTableMeetsItsFaceAndNothingElse) {
+  const KinematicModel truth = apply(problem_.nominal, paper::table3());
+  CollisionScene all_but_ball = problem_.scene;
+  std::erase_if(all_but_ball.bodies, [](const Capsule& body) { return body.name == "ball"; });
+  for (const PlannedTouch& touch : touches_) {
+    const Plane plane = contact_plane(face_of(touch), problem_.stylus);
+    Eigen::Isometry3d pose = forward_kinematics(problem_.nominal, touch.approach_joints);
+    JointVector joints = touch.approach_joints;
+    double height_m = 1.0;
+    constexpr double kStepMetres = 2.5e-4;
+    for (double gone_m = 0.0; gone_m <= touch.search_length_m; gone_m += kStepMetres) {
+      const Chain chain = forward_chain(truth, joints);
+      ASSERT_FALSE(find_clash(all_but_ball, chain, 0.0));
+      height_m = signed_distance_m(plane, chain.tip_in_block_m());
+      ASSERT_TRUE(gone_m > 0.0 || height_m > 0.0) << "on the face before the search began";
+      if (height_m <= 0.0) break;
+      pose.pretranslate(kStepMetres * touch.search_direction);
+      joints = solve_near(problem_.nominal, pose, joints).value();
+    }
+    EXPECT_LE(height_m, 0.0) << "the search ended before the face";
+  }
+}
+
+TEST_P(EveryPlan, ShowsAllIdentifiableParametersWithAGoodConditionNumber) {
+  const Eigen::MatrixXd columns = identifiable_columns(fit_count());
+  EXPECT_EQ(columns.cols(), 25);
+  EXPECT_LT(condition_number(columns), condition_number_max_);
+  RecordProperty("condition_number", std::to_string(condition_number(columns)));
+}
+
+TEST_P(EveryPlan, ShowsThemAfterLittleMoreTouchesThanThereAreParameters) {
+  EXPECT_EQ(identifiable_columns(28).cols(), 25);
+  EXPECT_LT(condition_number(identifiable_columns(40)), 310);  // what method-notes says of interleaved planes
+}
+
+TEST_P(EveryPlan, HoldsOutTouchesThatAreSpreadAndNotAmongTheFitted) {
+  std::map<int, std::set<int>> quadrants;
+  for (std::size_t i = fit_count(); i < touches_.size(); ++i) {
+    const Face& face = face_of(touches_[i]);
+    const Eigen::Vector3d place =
+        forward_kinematics(problem_.nominal, touches_[i].joints).translation() - face.center_m;
+    quadrants[touches_[i].face].insert((place.dot(face.edge_u) > 0 ? 1 : 0) +
+                                       (place.dot(face.edge_v()) > 0 ? 2 : 0));
+    for (std::size_t j = 0; j < i; ++j) {
+      EXPECT_GT((touches_[i].joints - touches_[j].joints).norm(), radians_from_degrees(2));
+    }
+  }
+  for (const auto& [face, reached] : quadrants) EXPECT_EQ(reached.size(), 4u) << "face " << face;
+}
+
+TEST_P(EveryPlan, HasAClearWayFromEachTouchToTheNext) {
+  std::vector<JointVector> stops{problem_.park_joints};
+  for (const PlannedTouch& touch : touches_) stops.push_back(touch.clear_joints);
+  stops.push_back(problem_.park_joints);
+  for (std::size_t i = 1; i < stops.size(); ++i) {
+    const auto between = find_transfer(problem_, stops[i - 1], stops[i]);
+    ASSERT_TRUE(between) << i;
+    ASSERT_LE(between->size(), kTransferPosturesMax);
+    std::vector<JointVector> way{stops[i - 1]};
+    way.insert(way.end(), between->begin(), between->end());
+    way.push_back(stops[i]);
+    for (std::size_t leg = 1; leg < way.size(); ++leg) {
+      EXPECT_TRUE(problem_.joint_ranges.contains(way[leg]));
+      const JointVector move = way[leg] - way[leg - 1];
+      const int steps = static_cast<int>(move.cwiseAbs().sum() * 1.3 / 0.005) + 1;  // 5 mm apart at most
+      for (int step = 0; step <= steps; ++step) {
+        const JointVector joints = way[leg - 1] + move * step / steps;
+        ASSERT_FALSE(find_clash(problem_.scene, forward_chain(problem_.nominal, joints),
+                                problem_.nominal_miss_m - 1e-3));
+      }
+    }
+  }
+}
+
+TEST(TouchPlanning, AnyTouchCanFollowAnyOther) {
+  const auto& touches = demo().plan.touches;
+  for (std::size_t i = 0; i < touches.size(); i += 7) {
+    for (std::size_t j = 3; j < touches.size(); j += 11) {
+      EXPECT_TRUE(find_transfer(demo().problem, touches[i].clear_joints, touches[j].clear_joints));
+    }
+  }
+}
+
+TEST(TouchPlanning, GivesTheSamePlanForTheSameSeedAndAnotherForAnother) {
+  PlanningProblem problem = problem_of(0.0, 45, 2);
+  const auto joints_of = [](const PlanningProblem& asked) {
+    std::vector<JointVector> joints;
+    for (const PlannedTouch& touch : planned(asked, 0).plan.touches) joints.push_back(touch.joints);
+    return joints;
+  };
+  const auto first = joints_of(problem);
+  EXPECT_EQ(joints_of(problem), first);
+  problem.seed = 2;
+  EXPECT_NE(joints_of(problem), first);
+}
+
+PlanningFailure failure_of(const PlanningProblem& problem) {
+  auto plan = plan_touches(problem);
+  if (!std::holds_alternative<PlanningFailure>(plan)) throw std::runtime_error("there is a plan");
+  return std::get<PlanningFailure>(std::move(plan));
+}
+
+TEST(TouchPlanning, SaysThatABlockIsOutOfReach) {
+  PlanningProblem problem = problem_of(0.0, 45, 4);
+  problem.nominal.links[1].d_m -= 1.0;
+  const PlanningFailure failure = failure_of(problem);
+  EXPECT_EQ(failure.face, 0);
+  EXPECT_EQ(failure.found, 0);
+  EXPECT_EQ(failure.wanted, kFitPerFace + kHeldOutPerFace);
+  EXPECT_EQ(failure.reason, "out of reach");
+}
+
+TEST(TouchPlanning, SaysThatTheJointRangesStandInTheWay) {
+  PlanningProblem problem = problem_of(0.0, 45, 4);
+  problem.joint_ranges.upper[2] = 0.0;
+  problem.joint_ranges.lower[2] = -0.1;
+  EXPECT_EQ(failure_of(problem).reason, "joint ranges");
+}
+
+TEST(TouchPlanning, NamesTheBodyAndTheObstacleThatStandInTheWay) {
+  PlanningProblem problem = problem_of(0.003, 70, 3);
+  problem.requests = {{2, 5, 0}};
+  problem.scene.obstacles.push_back({"lid", {-0.1, -0.260, -0.1}, {0.1, -0.250, 0.1}});
+  const PlanningFailure failure = failure_of(problem);
+  EXPECT_EQ(failure.face, 2);
+  EXPECT_EQ(failure.reason, "the tool holder is within 12 mm of the lid");
+}
+
+TEST(TouchPlanning, RefusesAFaceThatDoesNotExist) {
+  PlanningProblem problem = problem_of(0.0, 45, 4);
+  problem.requests = {{5, 1, 0}};
+  EXPECT_THROW(plan_touches(problem), std::logic_error);
+}
+
+}  // namespace
+}  // namespace calib
