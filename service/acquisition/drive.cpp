@@ -1,10 +1,13 @@
 // What the states of an Operation do: one coroutine, one step at a time.
+// Each co_await stands alone in its statement and takes named values: GCC 12 miscompiles it inside conditions and
+// destroys braced temporaries twice.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/bind_executor.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <utility>
@@ -66,7 +69,11 @@ asio::awaitable<void> Operation::drive() {
         break;
       case State::kComplete:
         // A finished run stays to be read while the link comes and goes.
-        co_await (client_.connected() ? wait_for_wake(1h) : connect());
+        if (client_.connected()) {
+          co_await wait_for_wake(1h);
+        } else {
+          co_await connect();
+        }
         break;
       default:
         co_await wait_for_wake(1h);
@@ -98,10 +105,10 @@ asio::awaitable<void> Operation::connect() {
     cs8::ConnectReply reply = cs8::LinkError{cs8::LinkErrorKind::kUnreachable,
                                              fmt::format("{}: {}", endpoint_.host, failure.message())};
     if (!failure) {
-      reply = co_await client_.connect(found.begin()->endpoint(),
-                                       {.arm = cell_.arm.name,
-                                        .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
-                                        .upper_limits = to_wire(cell_.arm.joint_ranges.upper)});
+      const cs8::ExpectedController expected{.arm = cell_.arm.name,
+                                             .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
+                                             .upper_limits = to_wire(cell_.arm.joint_ranges.upper)};
+      reply = co_await client_.connect(found.begin()->endpoint(), expected);
     }
     if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
       if (state == State::kResetting) status_.fault.reset();
@@ -146,12 +153,9 @@ asio::awaitable<bool> Operation::plan() {
   const Recipe& recipe = run_->recipe();
   if (!plans_.contains(recipe.name)) {
     const calib::PlanningProblem problem = planning_problem(recipe);
-    const auto outcome = co_await asio::co_spawn(
-        planner_,
-        [&problem]() -> asio::awaitable<std::variant<calib::TouchPlan, calib::PlanningFailure>> {
-          co_return calib::plan_touches(problem);
-        },
-        asio::use_awaitable);
+    co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
+    const auto outcome = calib::plan_touches(problem);
+    co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
     if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome)) {
       raise({FaultCode::kRecipeUnreachable,
              fmt::format("plane {}: {} of {} touches found; {}", failure->face + 1, failure->found,
@@ -167,34 +171,38 @@ asio::awaitable<bool> Operation::plan() {
   co_return true;
 }
 
-/// Where the arm stands, from a state that was told after this call; nothing when the link is lost meanwhile.
-asio::awaitable<std::optional<calib::JointVector>> Operation::standing_joints() {
-  if (standing_) co_return standing_;
+/// The controller's state, told after this call and at rest; nothing when the link or the state of the run is lost.
+asio::awaitable<std::optional<cs8::State>> Operation::settled_state() {
+  const State state = status_.state;
   const auto asked_at = std::chrono::steady_clock::now();
-  while (client_.connected()) {
-    const auto state = client_.latest_state();
-    if (state && client_.heard_at() > asked_at && (state->flags & cs8::kSettled) != 0) {
-      co_return from_wire(state->joints);
-    }
+  while (client_.connected() && status_.state == state) {
+    const auto told = client_.latest_state();
+    if (told && client_.heard_at() > asked_at && (told->flags & cs8::kSettled) != 0) co_return told;
     co_await wait_for_wake(20ms);
   }
   co_return std::nullopt;
 }
 
-/// A search that was broken off left the stylus near a face: back along its line first.
-asio::awaitable<bool> Operation::leave_broken_search() {
-  const auto state = client_.latest_state();
-  if (!state || (state->flags & cs8::kRetractDue) == 0) co_return true;
-  take_move(co_await client_.retract(retract_command(cell_)));
-  co_return status_.state == State::kStarting;
+/// Where the arm stands, clear of the faces: a search that was broken off left the stylus near one, and the arm goes
+/// back along its line first. Nothing when that failed or another state was entered meanwhile.
+asio::awaitable<std::optional<calib::JointVector>> Operation::standing_joints() {
+  if (standing_) co_return standing_;
+  auto told = co_await settled_state();
+  if (told && (told->flags & cs8::kRetractDue) != 0) {
+    const State state = status_.state;
+    const cs8::MoveReply reply = co_await client_.retract(retract_command(cell_));
+    take_move(reply);
+    if (status_.state != state) co_return std::nullopt;
+    told = co_await settled_state();
+  }
+  if (!told) co_return std::nullopt;
+  co_return from_wire(told->joints);
 }
 
 asio::awaitable<void> Operation::start_run() {
   standing_.reset();
-  if (!co_await plan()) co_return;
-  if (status_.state != State::kStarting) co_return;
-  if (!co_await leave_broken_search()) co_return;
-  if (status_.state == State::kStarting) apply(Event::kDone);
+  const bool planned = co_await plan();
+  if (planned && status_.state == State::kStarting) apply(Event::kDone);
 }
 
 asio::awaitable<void> Operation::make_next_touch() {
@@ -218,9 +226,7 @@ asio::awaitable<void> Operation::make_next_touch() {
     raise({FaultCode::kTouchRejected, rejection_text(*rejected)}, Event::kHoldFault);
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
     take_contact(*planned, reply, *result);
-  } else if (is_active(status_.state)) {
-    raise(link_fault(std::get<cs8::LinkError>(reply.answer)), Event::kAbortFault);
-  }
+  }  // a lost link has been told by lose()
 }
 
 /// A contact counts once it is stored; only then may the controller forget it.
@@ -265,9 +271,7 @@ void Operation::take_move(const cs8::MoveReply& reply) {
     if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {
       raise(fault->fault, Event::kAbortFault);
     }
-  } else if (is_active(status_.state)) {
-    raise(link_fault(std::get<cs8::LinkError>(reply.answer)), Event::kAbortFault);
-  }
+  }  // a lost link has been told by lose()
 }
 
 asio::awaitable<void> Operation::complete_run() {
@@ -290,7 +294,8 @@ asio::awaitable<void> Operation::park() {
     co_return;
   }
   standing_.reset();
-  take_move(co_await client_.travel(travel_command(cell_, cell_.park_joints, *via)));
+  const cs8::MoveReply reply = co_await client_.travel(travel_command(cell_, cell_.park_joints, *via));
+  take_move(reply);
 }
 
 /// The run is over: its verdict and its latest result are stored with it.

@@ -103,7 +103,7 @@ class Operation {
                     const cs8::TouchResult& result);
   boost::asio::awaitable<void> complete_run();
   boost::asio::awaitable<void> park();
-  boost::asio::awaitable<bool> leave_broken_search();
+  boost::asio::awaitable<std::optional<cs8::State>> settled_state();
   boost::asio::awaitable<void> settle_open_command(const cs8::Welcome& welcome);
   boost::asio::awaitable<std::optional<calib::JointVector>> standing_joints();
   boost::asio::awaitable<void> connect();

@@ -98,6 +98,7 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
 
 std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
                                        const cs8::TouchResult& result) {
+  if (result.source == cs8::CaptureSource::kNone) return "it comes without captured joints";
   const calib::JointVector joints = from_wire(result.contact);
   const Eigen::Vector3d tip = calib::forward_kinematics(cell.arm.model, joints).translation();
   const Eigen::Vector3d planned_tip = calib::forward_kinematics(cell.arm.model, planned.joints).translation();
