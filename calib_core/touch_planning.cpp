@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -98,8 +99,8 @@ Eigen::MatrixXd observation_rows(const PlanningProblem& problem, const std::vect
   return rows;
 }
 
-/// What makes touches of a face alike: the place on the face in half extents, the direction of the stylus,
-/// and joints 1 to 3 in radians. The turn about the stylus is left out: it tells nothing.
+/// What makes touches of a face alike: the place on the face in quarters of its extents, the direction of the
+/// stylus, and joints 1 to 3 in radians. The turn about the stylus is left out: it tells nothing.
 Eigen::MatrixXd touch_features(const PlanningProblem& problem, const std::vector<PlannedTouch>& touches) {
   Eigen::MatrixXd features(8, static_cast<Eigen::Index>(touches.size()));
   for (std::size_t i = 0; i < touches.size(); ++i) {
@@ -162,6 +163,11 @@ TouchPlan choose(const PlanningProblem& problem, const std::vector<PlannedTouch>
 }  // namespace
 
 std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& problem) {
+  const Chain parked = forward_chain(problem.nominal, problem.park_joints);
+  if (const auto clash = find_clash(problem.scene, parked, problem.nominal_miss_m)) {
+    return PlanningFailure{.reason = "the " + clash->body + " is too near the " + clash->other +
+                                     " in the park posture"};
+  }
   UniformChance chance(problem.seed);
   std::vector<PlannedTouch> candidates;
   for (const TouchRequest& request : problem.requests) {

@@ -43,9 +43,8 @@ struct PlanningProblem {
   Stylus stylus;
   CollisionScene scene;
   std::vector<TouchRequest> requests;
-  JointVector park_joints;  // where a run begins and ends; free of obstacles
-  double nominal_miss_m =
-      0.012;  // how far the uncalibrated arm may miss: sizes clearance, standoff and search
+  JointVector park_joints;        // where a run begins and ends; free of obstacles
+  double nominal_miss_m = 0.012;  // how far the uncalibrated arm may miss: sizes clearance and search
   double tilt_max_rad = 0.0;
   std::uint64_t seed = 1;  // of the candidates; the same problem gives the same plan
 };
@@ -65,7 +64,8 @@ struct PlanningFailure {
 /// Finds postures for the touches asked for (see touch_candidate.hpp for what a touch must keep clear of),
 /// takes those that tell most of the kinematic errors (fit) and others apart from them (held out), and puts
 /// them in an order that shows all parameters early and then travels little. Any touch can follow any other:
-/// see find_transfer. A failure names the first face with too few touches. Throws std::logic_error for a face
+/// see find_transfer. A failure names the first face with too few touches, or says that the park
+/// posture is not clear. Throws std::logic_error for a face
 /// that does not exist.
 std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& problem);
 

@@ -186,7 +186,8 @@ TEST_P(EveryPlan, HoldsOutTouchesThatAreSpreadAndNotAmongTheFitted) {
   for (const auto& [face, reached] : quadrants) EXPECT_EQ(reached.size(), 4u) << "face " << face;
 }
 
-TEST_P(EveryPlan, HasAClearWayFromEachTouchToTheNext) {
+TEST_P(EveryPlan, HasAClearWayFromEachTouchToTheNextAlsoForAnArmThatMisses) {
+  const KinematicModel truth = apply(problem_.nominal, paper::table3());
   std::vector<JointVector> stops{problem_.park_joints};
   for (const PlannedTouch& touch : touches_) stops.push_back(touch.clear_joints);
   stops.push_back(problem_.park_joints);
@@ -205,6 +206,7 @@ TEST_P(EveryPlan, HasAClearWayFromEachTouchToTheNext) {
         const JointVector joints = way[leg - 1] + move * step / steps;
         ASSERT_FALSE(find_clash(problem_.scene, forward_chain(problem_.nominal, joints),
                                 problem_.nominal_miss_m - 1e-3));
+        ASSERT_FALSE(find_clash(problem_.scene, forward_chain(truth, joints), 0.0));
       }
     }
   }
@@ -262,6 +264,12 @@ TEST(TouchPlanning, NamesTheBodyAndTheObstacleThatStandInTheWay) {
   const PlanningFailure failure = failure_of(problem);
   EXPECT_EQ(failure.face, 2);
   EXPECT_EQ(failure.reason, "the tool holder is within 12 mm of the lid");
+}
+
+TEST(TouchPlanning, SaysThatTheParkPostureIsNotClear) {
+  PlanningProblem problem = problem_of(0.0, 45, 4);
+  problem.park_joints = tx90::degrees(0, 60, 90, 0, 0, 0);
+  EXPECT_EQ(failure_of(problem).reason, "the forearm is too near the plate in the park posture");
 }
 
 TEST(TouchPlanning, RefusesAFaceThatDoesNotExist) {
