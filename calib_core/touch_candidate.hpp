@@ -63,7 +63,7 @@ TouchedFace find_touched(const PlanningProblem& problem, int face);
 std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& problem, const TouchedFace& around,
                                                    const TouchPose& pose, const JointVector& joints);
 
-/// How far the true arm's tip may turn away from the nominal one, radians (Table III: 0.01).
+/// How far the true arm's tip may turn away from the nominal one, radians (Table III: 0.016).
 inline constexpr double kOrientationMiss = 0.03;
 
 /// A posture with faster joints than this, for any straight motion of the tip, is too near a singular one:
