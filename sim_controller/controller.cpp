@@ -274,9 +274,10 @@ class Step {
     state_.way_out = timeline.way_out;
     if (timeline.outcome == Outcome::kCollision) {
       state_.panel.powered = false;
-      state_.operator_called = true;
       replies.warning = timeline.collision;
     }
+    const bool on_known_way = !state_.way_out.empty() || trip_gap_m(plant_, state_.joints, 0.0) > 0.0;
+    state_.operator_called = timeline.outcome == Outcome::kCollision || !on_known_way;
     store_result(running, timeline.outcome, timeline.phase, timeline.capture);
   }
 
@@ -334,6 +335,7 @@ class Step {
   void free_arm() {
     state_.operator_called = false;
     state_.joints = plant_.start_joints;
+    state_.way_out.clear();
     state_.power_due = now_ + std::chrono::duration_cast<TimePoint::duration>(
                                   std::chrono::duration<double>(kPowerUpSeconds / state_.speed));
   }

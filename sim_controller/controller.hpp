@@ -31,8 +31,9 @@ struct ControllerOptions {
 };
 
 /// What the operator and the cabinet decide. The operator script built in: remote mode and no hold from the
-/// start; power comes kPowerUpSeconds (simulated) later. A collision takes power away; when a host says Hello
-/// again after it, the operator frees the arm, jogs it to its start posture and powers up as at the start.
+/// start; power comes kPowerUpSeconds (simulated) later. A collision takes power away, and an edge in a
+/// travel leaves the stylus on something with no known way back: when a host says Hello the next time, the
+/// operator has jogged the arm to its start posture, and powers up as at the start.
 struct Panel {
   bool powered = false;
   bool held = false;
@@ -62,7 +63,7 @@ struct ControllerState {
   std::uint32_t session = 1;
   Panel panel;
   std::optional<TimePoint> power_due;
-  bool operator_called = false;  // after a collision, until the next Hello
+  bool operator_called = false;  // to free the arm by hand, at the next Hello
   calib::JointVector joints;     // where the arm stands, or stood when the running command began
   std::vector<Stretch>
       way_out;  // back from a face; while there is one, only a Retract is taken and goes along it

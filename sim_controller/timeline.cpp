@@ -35,8 +35,6 @@ bool add_guarded_move(const Plant& plant, Timeline& timeline, cs8::Phase phase,
   } else if (trip) {
     end_early(timeline, cs8::Outcome::kUnexpectedContact);
     timeline.way_out = way_out_from(timeline.legs, timeline.legs.size() - 1, 1.0);
-    // In a travel the way back is that of the move it happened in.
-    if (timeline.way_out.empty()) timeline.way_out.push_back({path, end, 0.0});
   }
   return !hit && !trip;
 }

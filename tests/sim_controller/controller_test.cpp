@@ -509,18 +509,35 @@ TEST_F(Controller, AMissedFaceIsNoContact) {
   EXPECT_EQ(result.contact, cs8::JointsMicrodeg{});
 }
 
-TEST_F(Controller, AnUnexpectedContactIsLeftByARetract) {
+TEST_F(Controller, AnEdgeInTheApproachIsLeftByARetract) {
+  Bench bench = Bench::ready(plant());
+  cs8::Touch low = touch();
+  low.approach = touch().search_end;
+  low.search_end = touch().approach;
+  bench.answer<cs8::Accepted>(1, low);
+  const auto met = bench.result<cs8::TouchResult>();
+  EXPECT_EQ(met.outcome, Outcome::kUnexpectedContact);
+  EXPECT_EQ(met.phase, Phase::kApproach);
+  EXPECT_EQ(met.source, cs8::CaptureSource::kNone);
+  bench.send(0, cs8::ResultAcknowledge{1});
+  bench.pass(milliseconds(20));
+  EXPECT_TRUE(bench.flag(cs8::kProbeTouched));
+  EXPECT_TRUE(bench.flag(cs8::kRetractDue));
+  bench.answer<cs8::Accepted>(2, kRetract);
+  EXPECT_EQ(bench.result<cs8::MoveResult>().joints, touch().clear);
+}
+
+TEST_F(Controller, AnEdgeInATravelIsLeftByTheOperator) {
   Bench bench = Bench::ready(plant());
   bench.answer<cs8::Accepted>(1, travel_command(motion().search_end));
   const auto met = bench.result<cs8::MoveResult>();
   EXPECT_EQ(met.outcome, Outcome::kUnexpectedContact);
   EXPECT_EQ(met.phase, Phase::kTravel);
   bench.send(0, cs8::ResultAcknowledge{1});
-  bench.pass(milliseconds(20));
-  EXPECT_TRUE(bench.flag(cs8::kProbeTouched));
-  EXPECT_TRUE(bench.flag(cs8::kRetractDue));
-  bench.answer<cs8::Accepted>(2, kRetract);
-  EXPECT_EQ(bench.result<cs8::MoveResult>().joints, wire_from_joints(plant().start_joints));
+  EXPECT_EQ(bench.rejection(2, kRetract), RejectReason::kNothingToRetract);
+  EXPECT_EQ(bench.rejection(2, touch()), RejectReason::kProbeTriggered);
+  bench.connect();
+  bench.answer<cs8::Accepted>(2, touch());
 }
 
 TEST_F(Controller, ACollisionTakesPowerAwayUntilTheOperatorFreesTheArmForTheNextHost) {

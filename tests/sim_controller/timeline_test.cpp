@@ -75,14 +75,13 @@ TEST(Touch, ThatMeetsTheFaceInItsApproachIsUnexpectedAndKnowsTheWayBackToClear) 
   EXPECT_LT((timeline.way_out.front().at(1.0) - touch.motion.waypoints.back()).norm(), 1e-12);
 }
 
-TEST(Travel, ThatMeetsTheBlockIsUnexpectedAndKnowsTheWayBack) {
+TEST(Travel, ThatMeetsTheBlockIsUnexpectedAndKnowsNoWayBack) {
   const Plant plant = testing::true_plant("demo");
   const auto touch = aimed_touch(testing::read_cell("demo"), {});
   const Timeline timeline = travel_timeline(plant, plant.start_joints, {touch.motion.search_end}, 0.25);
   EXPECT_EQ(timeline.outcome, Outcome::kUnexpectedContact);
   EXPECT_EQ(timeline.phase, Phase::kTravel);
-  ASSERT_EQ(timeline.way_out.size(), 1u);
-  EXPECT_LT((timeline.way_out.front().at(1.0) - plant.start_joints).norm(), 1e-12);
+  EXPECT_TRUE(timeline.way_out.empty());
 }
 
 TEST(Travel, ThatBringsTheForearmIntoTheTableIsACollisionThatNamesBoth) {
