@@ -1,7 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
-#include <array>
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -17,6 +17,9 @@ using nlohmann::json;
 
 /// How long a watcher waits for a change before it asks anew.
 constexpr int kWaitSeconds = 10;
+
+/// How long run waits for a cell that is being made ready.
+constexpr int kReadyWaitSeconds = 5;
 
 json parse_reply(const ApiReply& reply) {
   try {
@@ -40,6 +43,21 @@ ExitCode exit_code_of_end(const json& status) {
   return fault == "recipe_unreachable" || fault == "not_identifiable" ? kExitRefused : kExitFailed;
 }
 
+json wait_for_change(const ApiClient& daemon, const json& status, int wait_s) {
+  const std::string target =
+      fmt::format("/api/v1/status?wait_s={}&after={}", wait_s, status.at("sequence").get<std::uint64_t>());
+  return parse_reply(daemon.get(target, std::chrono::seconds(wait_s + 10)));
+}
+
+/// A daemon that was just started is still looking for its controller: give it a moment.
+void wait_until_ready(const ApiClient& daemon) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kReadyWaitSeconds);
+  json status = parse_reply(daemon.get("/api/v1/status"));
+  while (status.at("state") == "RESETTING" && std::chrono::steady_clock::now() < deadline) {
+    status = wait_for_change(daemon, status, 1);
+  }
+}
+
 /// Waits for the end of the run under way; returns the last status.
 json watch_to_end(const ApiClient& daemon, bool silent) {
   Progress progress(isatty(STDOUT_FILENO) != 0);
@@ -51,9 +69,7 @@ json watch_to_end(const ApiClient& daemon, bool silent) {
     if (is_over(status) ||
         (unattended && status.at("state") == "HELD" && status.at("fault_code").is_string()))
       break;
-    const std::string target = fmt::format("/api/v1/status?wait_s={}&after={}", kWaitSeconds,
-                                           status.at("sequence").get<std::uint64_t>());
-    status = parse_reply(daemon.get(target, std::chrono::seconds(kWaitSeconds + 10)));
+    status = wait_for_change(daemon, status, kWaitSeconds);
   }
   progress.finish();
   return status;
@@ -101,6 +117,7 @@ ExitCode tell_problem(const ApiReply& reply, bool json_only) {
 }
 
 ExitCode run_command(const ApiClient& daemon, const std::string& recipe, bool json_only) {
+  wait_until_ready(daemon);
   const ApiReply reply = daemon.post("/api/v1/runs", json{{"recipe", recipe}}.dump());
   if (reply.status != 201) return tell_problem(reply, json_only);
   return tell_end(daemon, watch_to_end(daemon, json_only), json_only);

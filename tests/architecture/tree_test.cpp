@@ -1,0 +1,54 @@
+// The tree keeps its shape: what stands at the top, how long a file may be, which names say nothing.
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <set>
+#include <string>
+
+#include "tests/architecture/source_files.hpp"
+
+namespace architecture {
+namespace {
+
+constexpr std::size_t kLinesMax = 400;
+constexpr std::size_t kTestLinesMax = 600;  // a list of cases is read in parts
+
+TEST(Tree, HasNothingAtTheTopButTheFixedFolders) {
+  const std::set<std::string> allowed{"CMakeLists.txt", "README.md", "service", "calib_core", "cs8_protocol",
+                                      "sim_controller", "config",    "tests",   "build"};
+  for (const auto& entry : std::filesystem::directory_iterator(kRoot)) {
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(name.starts_with('.') || allowed.contains(name)) << name;
+  }
+}
+
+TEST(Tree, HoldsFilesOneCanKeepInTheHead) {
+  for (const std::string& folder : kFolders) {
+    for (const auto& file : source_files(folder)) {
+      EXPECT_LE(read_lines(file).size(), kLinesMax) << file << ": look for the second noun in it";
+    }
+  }
+  for (const auto& file : source_files("tests")) {
+    EXPECT_LE(read_lines(file).size(), kTestLinesMax) << file << ": look for the second noun in it";
+  }
+}
+
+TEST(Tree, HasNoNamesThatSayNothing) {
+  const std::regex vague("(manager|helper|utils?|misc|common)", std::regex::icase);
+  for (const std::string& folder : kFolders) {
+    for (const auto& file : source_files(folder)) {
+      EXPECT_FALSE(std::regex_search(file.filename().string(), vague)) << file;
+    }
+  }
+}
+
+TEST(Tree, TestsDoNotSleep) {
+  const std::regex sleep(std::string("sleep_") + "for|\\bu" + "sleep\\(");
+  for (const auto& file : source_files("tests")) {
+    for (const std::string& line : read_lines(file))
+      EXPECT_FALSE(std::regex_search(line, sleep)) << file << ": " << line;
+  }
+}
+
+}  // namespace
+}  // namespace architecture
