@@ -43,7 +43,7 @@ TEST(SweptCollision, FindsWhatAFineSamplingFindsAndNothingElse) {
     return JointVector(ranges.lower + (ranges.upper - ranges.lower).cwiseProduct(joints));
   };
   int clear = 0, clashes = 0;
-  while (clear < 15 || clashes < 15) {
+  while (clear < 6 || clashes < 6) {
     const JointVector from = random_joints(), to = random_joints();
     if (find_clash(scene, forward_chain(paper::nominal(), from), kClearanceMetres)) continue;
     const bool found = find_clash_on_way(scene, paper::nominal(), from, to, kClearanceMetres).has_value();
