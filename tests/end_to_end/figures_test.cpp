@@ -1,0 +1,159 @@
+// The figures that the README promises, over many seeds: the simulator's contact function without its
+// sockets.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include "calib_core/identify.hpp"
+#include "calib_core/touch_planning.hpp"
+#include "calib_core/units.hpp"
+#include "service/acquisition/touch_command.hpp"
+#include "service/run.hpp"
+#include "sim_controller/admission.hpp"
+#include "sim_controller/contact.hpp"
+#include "sim_controller/controller.hpp"
+#include "sim_controller/motion.hpp"
+#include "tests/end_to_end/held_out.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+constexpr int kSeedCount = 100;
+/// The mean of ten held-out touches of declared noise scatters by 8 um (6 of them are the ten touches' own),
+/// so one run in a thousand is beyond kHeldOutMeanMaxMetres on some plane by chance, and is rejected.
+constexpr int kSeedsBeyondMeanMax = 1;
+
+constexpr int kPostureCount = 500;
+/// Bound on the identified arm's tip error, anywhere in the joint ranges, after touches without noise.
+constexpr double kTipErrorMaxMetres = 0.05e-3;
+
+constexpr double kMicrometres = 1e-6;
+
+calib::TouchPlan plan_of(const cell::Cell& cell) {
+  calib::PlanningProblem problem{.nominal = cell.arm.model,
+                                 .joint_ranges = cell.arm.joint_ranges,
+                                 .faces = cell.block.faces,
+                                 .stylus = cell.probe.stylus,
+                                 .scene = cell.collision_scene(),
+                                 .park_joints = cell.park_joints,
+                                 .nominal_miss_m = cell.nominal_miss_m,
+                                 .tilt_max_rad = cell.stylus_tilt_max_rad};
+  const cell::Recipe& recipe = cell.recipes.at(kRecipe);
+  for (const int face : recipe.faces) {
+    problem.requests.push_back({face, recipe.fit_per_face, recipe.held_out_per_face});
+  }
+  return std::get<calib::TouchPlan>(calib::plan_touches(problem));
+}
+
+class Figures : public ::testing::TestWithParam<const char*> {
+ protected:
+  Figures()
+      : cell_(shipped_cell(GetParam())),
+        plant_(sim::make_plant(cell_, shipped_truth(GetParam()))),
+        plan_(plan_of(cell_)) {
+    for (const calib::PlannedTouch& planned : plan_.touches) {
+      const sim::TouchMotion motion = sim::touch_motion(cell::touch_command(cell_, planned, {}));
+      searches_.push_back(sim::straight_line(plant_, motion.approach, motion.search_end).path);
+    }
+  }
+
+  /// Every planned touch made by the true arm, its joints as the wire carries them.
+  calib::IdentificationResult calibrate(double noise_m, std::uint64_t seed) const {
+    std::mt19937_64 chance(seed);
+    calib::IdentificationProblem problem{cell_.arm.model, cell::contact_planes(cell_), {}};
+    for (std::size_t i = 0; i < plan_.touches.size(); ++i) {
+      const auto trip = sim::find_trip(plant_, searches_[i], noise_m * sim::gaussian(chance));
+      if (!trip) throw std::runtime_error("touch " + std::to_string(i + 1) + " met nothing");
+      const auto captured = cell::to_wire(sim::posture(searches_[i], *trip));
+      problem.touches.push_back({plan_.touches[i].face, cell::from_wire(captured), plan_.touches[i].role});
+    }
+    return calib::identify(problem, cell_.recipes.at(kRecipe).identification);
+  }
+
+  cell::Cell cell_;
+  sim::Plant plant_;
+  calib::TouchPlan plan_;
+  std::vector<sim::Path> searches_;
+};
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
+}
+
+TEST_P(Figures, HeldOutTouchesOfAHundredSeedsShowWhatIsPromised) {
+  const double noise_m = cell_.touch_noise_m;
+  std::vector<double> means_m, rms_parts, removed, removed_on_worst_plane;
+  double condition_max = 0.0;
+  std::size_t iterations_max = 0;
+  for (int seed = 1; seed <= kSeedCount; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const calib::IdentificationResult result = calibrate(noise_m, static_cast<std::uint64_t>(seed));
+    ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
+    EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
+    const HeldOut figures = held_out(result);
+    EXPECT_EQ(figures.touch_count, kPlaneCount * kHeldOutPerPlane);
+    EXPECT_LE(figures.rms_m, kHeldOutRmsMaxPart * noise_m);
+    EXPECT_GE(figures.rms_removed, kRmsRemovedMin);
+    means_m.push_back(figures.mean_max_m);
+    rms_parts.push_back(figures.rms_m / noise_m);
+    removed.push_back(figures.rms_removed);
+    removed_on_worst_plane.push_back(figures.rms_removed_min);
+    condition_max = std::max(condition_max, result.iterations.back().condition_number);
+    iterations_max = std::max(iterations_max, result.iterations.size());
+  }
+  const auto beyond =
+      std::ranges::count_if(means_m, [](double mean_m) { return mean_m > kHeldOutMeanMaxMetres; });
+  EXPECT_LE(beyond, kSeedsBeyondMeanMax);
+  EXPECT_LE(median(rms_parts), kHeldOutRmsMedianMaxPart);
+  // On one plane in one run, ten touches of declared noise may hide it: Table III misses plane 3 by 2.4 mm
+  // rms.
+  EXPECT_GE(median(removed_on_worst_plane), kRmsRemovedMin);
+  EXPECT_LT(condition_max, kConditionNumberMax);
+  EXPECT_LE(iterations_max, static_cast<std::size_t>(kIterationsMax));
+  std::printf(
+      "cell %s, %d seeds: held-out rms %.3f (median) to %.3f (worst) x noise; largest plane mean %.1f um "
+      "(median) "
+      "to %.1f um (worst), %td of them beyond %.0f um; rms removed %.2f %% (median) to %.2f %% (worst), on "
+      "the "
+      "worst plane %.2f %% to %.2f %%; condition number up to %.1f, %zu iterations at most\n",
+      GetParam(), kSeedCount, median(rms_parts), std::ranges::max(rms_parts), median(means_m) / kMicrometres,
+      std::ranges::max(means_m) / kMicrometres, beyond, kHeldOutMeanMaxMetres / kMicrometres,
+      100.0 * median(removed), 100.0 * std::ranges::min(removed), 100.0 * median(removed_on_worst_plane),
+      100.0 * std::ranges::min(removed_on_worst_plane), condition_max, iterations_max);
+}
+
+TEST_P(Figures, WithoutNoiseTheIdentifiedArmIsTheTrueOneInItsWholeRange) {
+  const calib::IdentificationResult result = calibrate(0.0, 1);
+  ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
+  std::mt19937_64 chance(500);
+  const auto uniform = [&chance] { return static_cast<double>(chance() >> 11) * 0x1p-53; };
+  const calib::JointRanges& ranges = cell_.arm.joint_ranges;
+  double worst_m = 0.0;
+  double worst_nominal_m = 0.0;
+  for (int i = 0; i < kPostureCount; ++i) {
+    calib::JointVector joints;
+    for (int j = 0; j < calib::kJointCount; ++j) {
+      joints[j] = ranges.lower[j] + uniform() * (ranges.upper[j] - ranges.lower[j]);
+    }
+    const auto tip_m = [&joints](const calib::KinematicModel& model) {
+      return calib::forward_chain(model, joints).tip_in_block_m();
+    };
+    worst_m = std::max(worst_m, (tip_m(result.calibrated) - tip_m(plant_.truth)).norm());
+    worst_nominal_m = std::max(worst_nominal_m, (tip_m(cell_.arm.model) - tip_m(plant_.truth)).norm());
+  }
+  EXPECT_LE(worst_m, kTipErrorMaxMetres);
+  EXPECT_GT(worst_nominal_m, 100.0 * kTipErrorMaxMetres) << "the truth hides nothing";
+  std::printf("cell %s, no noise: tip within %.2f um of the truth's (nominal: %.2f mm) at %d postures\n",
+              GetParam(), worst_m / kMicrometres, calib::mm_from_metres(worst_nominal_m), kPostureCount);
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, Figures, ::testing::Values("edf", "demo"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace touchcal::testing
