@@ -1,6 +1,6 @@
 // What the states of an Operation do: one coroutine, one step at a time.
-// Each co_await stands alone in its statement and takes named values: GCC 12 miscompiles it inside conditions and
-// destroys braced temporaries twice.
+// Each co_await stands alone in its statement and takes named values: GCC 12 miscompiles it inside conditions
+// and destroys braced temporaries twice.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
@@ -14,6 +14,7 @@
 
 #include "cs8_protocol/names.hpp"
 #include "service/acquisition/operation.hpp"
+#include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"
 
 namespace cell {
@@ -86,7 +87,9 @@ asio::awaitable<void> Operation::reset() {
     co_await connect();
     co_return;
   }
-  if (unmet_preconditions().empty()) {
+  if (open_touch_) {
+    co_await settle_open_command(open_touch_->sequence);
+  } else if (unmet_preconditions().empty()) {
     apply(Event::kDone);
   } else {
     co_await wait_for_wake(1h);  // each state of the controller wakes
@@ -111,9 +114,10 @@ asio::awaitable<void> Operation::connect() {
       reply = co_await client_.connect(found.begin()->endpoint(), expected);
     }
     if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
+      session_ = welcome->session;
       if (state == State::kResetting) status_.fault.reset();
       publish();
-      co_await settle_open_command(*welcome);
+      if (welcome->open_sequence != 0) co_await settle_open_command(welcome->open_sequence);
       co_return;
     }
     const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
@@ -122,37 +126,33 @@ asio::awaitable<void> Operation::connect() {
   }
 }
 
-/// A result that waits at the controller belongs to a run that is over: it is told and acknowledged, so that
-/// the next run can start.
-asio::awaitable<void> Operation::settle_open_command(const cs8::Welcome& welcome) {
-  if (welcome.open_sequence == 0) co_return;
-  const cs8::QueryReply reply = co_await client_.query(welcome.open_sequence, cell_.deadlines.command);
-  if (const auto* touch = std::get_if<cs8::TouchResult>(&reply)) {
-    spdlog::warn("touch {} of an ended run had come to '{}'", welcome.open_sequence,
-                 cs8::name(touch->outcome));
+/// A result that still waits at the controller belongs to a run that is over. A contact in it was captured
+/// all the same: it is kept with that run. Then the controller may forget it, and the next run can start.
+asio::awaitable<void> Operation::settle_open_command(std::uint32_t sequence) {
+  const cs8::QueryReply reply = co_await client_.query(sequence, cell_.deadlines.command);
+  if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
+  const auto* result = std::get_if<cs8::TouchResult>(&reply);
+  const bool ours = open_touch_ && open_touch_->session == session_ && open_touch_->sequence == sequence;
+  if (result && ours && result->outcome == cs8::Outcome::kContact &&
+      !implausible(cell_, open_touch_->planned, *result)) {
+    spdlog::info("run {}: touch {} had been made when the run ended", run_->id(), run_->touches_done() + 1);
+    if (!keep_touch(open_touch_->planned, *result)) {
+      enter(State::kStopped);  // it waits at the controller until it can be stored
+      co_return;
+    }
   }
-  if (!std::holds_alternative<cs8::LinkError>(reply)) client_.acknowledge(welcome.open_sequence);
+  acknowledge(sequence);
 }
 
-calib::PlanningProblem Operation::planning_problem(const Recipe& recipe) const {
-  calib::PlanningProblem problem{.nominal = cell_.arm.model,
-                                 .joint_ranges = cell_.arm.joint_ranges,
-                                 .faces = cell_.block.faces,
-                                 .stylus = cell_.probe.stylus,
-                                 .scene = cell_.collision_scene(),
-                                 .park_joints = cell_.park_joints,
-                                 .nominal_miss_m = cell_.nominal_miss_m,
-                                 .tilt_max_rad = cell_.stylus_tilt_max_rad};
-  for (const int face : recipe.faces) {
-    problem.requests.push_back({face, recipe.fit_per_face, recipe.held_out_per_face});
-  }
-  return problem;
+void Operation::acknowledge(std::uint32_t sequence) {
+  client_.acknowledge(sequence);
+  open_touch_.reset();
 }
 
 asio::awaitable<bool> Operation::plan() {
   const Recipe& recipe = run_->recipe();
   if (!plans_.contains(recipe.name)) {
-    const calib::PlanningProblem problem = planning_problem(recipe);
+    const calib::PlanningProblem problem = planning_problem(cell_, recipe);
     co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
     const auto outcome = calib::plan_touches(problem);
     co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
@@ -171,7 +171,8 @@ asio::awaitable<bool> Operation::plan() {
   co_return true;
 }
 
-/// The controller's state, told after this call and at rest; nothing when the link or the state of the run is lost.
+/// The controller's state, told after this call and at rest; nothing when the link or the state of the run is
+/// lost.
 asio::awaitable<std::optional<cs8::State>> Operation::settled_state() {
   const State state = status_.state;
   const auto asked_at = std::chrono::steady_clock::now();
@@ -183,8 +184,8 @@ asio::awaitable<std::optional<cs8::State>> Operation::settled_state() {
   co_return std::nullopt;
 }
 
-/// Where the arm stands, clear of the faces: a search that was broken off left the stylus near one, and the arm goes
-/// back along its line first. Nothing when that failed or another state was entered meanwhile.
+/// Where the arm stands, clear of the faces: a search that was broken off left the stylus near one, and the
+/// arm goes back along its line first. Nothing when that failed or another state was entered meanwhile.
 asio::awaitable<std::optional<calib::JointVector>> Operation::standing_joints() {
   if (standing_) co_return standing_;
   auto told = co_await settled_state();
@@ -213,7 +214,8 @@ asio::awaitable<void> Operation::make_next_touch() {
   }
   const auto from = co_await standing_joints();
   if (!from || status_.state != State::kExecute) co_return;
-  const auto via = calib::find_transfer(planning_problem(run_->recipe()), *from, planned->clear_joints);
+  const auto via =
+      calib::find_transfer(planning_problem(cell_, run_->recipe()), *from, planned->clear_joints);
   if (!via) {
     raise({FaultCode::kNoSafeWay,
            fmt::format("to touch {} on plane {}", run_->touches_done() + 1, planned->face + 1)},
@@ -221,8 +223,10 @@ asio::awaitable<void> Operation::make_next_touch() {
     co_return;
   }
   standing_.reset();
+  open_touch_ = OpenTouch{session_, client_.next_sequence(), *planned};
   const cs8::TouchReply reply = co_await client_.touch(touch_command(cell_, *planned, *via));
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
+    open_touch_.reset();
     raise({FaultCode::kTouchRejected, rejection_text(*rejected)}, Event::kHoldFault);
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
     take_contact(*planned, reply, *result);
@@ -233,19 +237,27 @@ asio::awaitable<void> Operation::make_next_touch() {
 void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::TouchReply& reply,
                              const cs8::TouchResult& result) {
   if (const auto fault = fault_of(result.outcome, result.phase, result.error_number)) {
-    client_.acknowledge(reply.sequence);
+    acknowledge(reply.sequence);
     raise(fault->fault, fault->holds ? Event::kHoldFault : Event::kAbortFault);
     return;
   }
   if (result.outcome != cs8::Outcome::kContact) {  // stopped, as was asked
-    client_.acknowledge(reply.sequence);
+    acknowledge(reply.sequence);
     return;
   }
   if (const auto why = implausible(cell_, planned, result)) {
-    client_.acknowledge(reply.sequence);
+    acknowledge(reply.sequence);
     raise({FaultCode::kImplausibleTouch, *why}, Event::kAbortFault);
     return;
   }
+  if (!keep_touch(planned, result)) return;
+  acknowledge(reply.sequence);
+  standing_ = planned.clear_joints;
+  publish();
+}
+
+/// Stores and counts a contact; false when it could not be stored, which ends the run.
+bool Operation::keep_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result) {
   try {
     run_->add(store_, {.number = run_->touches_done() + 1,
                        .plane = planned.face + 1,
@@ -254,13 +266,11 @@ void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::Touc
                        .source = result.source,
                        .overtravel_dmm = result.overtravel_dmm,
                        .captured_at = now_text()});
+    return true;
   } catch (const std::exception& error) {
     raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
-    return;
+    return false;
   }
-  client_.acknowledge(reply.sequence);
-  standing_ = planned.clear_joints;
-  publish();
 }
 
 void Operation::take_move(const cs8::MoveReply& reply) {
@@ -288,7 +298,7 @@ asio::awaitable<void> Operation::complete_run() {
 asio::awaitable<void> Operation::park() {
   const auto from = co_await standing_joints();
   if (!from || status_.state != State::kCompleting) co_return;
-  const auto via = calib::find_transfer(planning_problem(run_->recipe()), *from, cell_.park_joints);
+  const auto via = calib::find_transfer(planning_problem(cell_, run_->recipe()), *from, cell_.park_joints);
   if (!via) {
     raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kAbortFault);
     co_return;

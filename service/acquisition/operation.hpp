@@ -99,18 +99,26 @@ class Operation {
   boost::asio::awaitable<void> start_run();
   boost::asio::awaitable<bool> plan();
   boost::asio::awaitable<void> make_next_touch();
+  bool keep_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result);
   void take_contact(const calib::PlannedTouch& planned, const cs8::TouchReply& reply,
                     const cs8::TouchResult& result);
   boost::asio::awaitable<void> complete_run();
   boost::asio::awaitable<void> park();
   boost::asio::awaitable<std::optional<cs8::State>> settled_state();
-  boost::asio::awaitable<void> settle_open_command(const cs8::Welcome& welcome);
+  boost::asio::awaitable<void> settle_open_command(std::uint32_t sequence);
+  void acknowledge(std::uint32_t sequence);
   boost::asio::awaitable<std::optional<calib::JointVector>> standing_joints();
   boost::asio::awaitable<void> connect();
   boost::asio::awaitable<void> wait_for_wake(std::chrono::milliseconds at_most);
   void take_move(const cs8::MoveReply& reply);
   void close_run(const std::string& outcome);
-  [[nodiscard]] calib::PlanningProblem planning_problem(const Recipe& recipe) const;
+
+  /// A touch whose result was not acknowledged yet: the controller still has it.
+  struct OpenTouch {
+    std::uint32_t session = 0;
+    std::uint32_t sequence = 0;
+    calib::PlannedTouch planned;
+  };
 
   boost::asio::any_io_executor executor_;
   const Cell& cell_;
@@ -129,6 +137,8 @@ class Operation {
   std::chrono::system_clock::time_point run_began_;
   std::map<std::string, calib::TouchPlan> plans_;  // by recipe; the same problem gives the same plan
   std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
+  std::uint32_t session_ = 0;                   // of the controller's application
+  std::optional<OpenTouch> open_touch_;
   bool shutting_down_ = false;
   bool driving_ = false;
 };
