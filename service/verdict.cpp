@@ -28,18 +28,20 @@ Judgement judge(const calib::IdentificationResult& result, const AcceptanceLimit
   std::vector<std::string> reasons;
   if (!complete) reasons.emplace_back("not all touches of the recipe were made");
   if (result.status != calib::IdentificationStatus::kConverged) reasons.push_back(result.message);
-  if (!result.iterations.empty() && result.iterations.back().condition_number > limits.condition_number_max) {
+  // Written so that a figure that is no number misses its limit.
+  if (!result.iterations.empty() &&
+      !(result.iterations.back().condition_number <= limits.condition_number_max)) {
     reasons.push_back(fmt::format("the condition number is {:.0f}, the limit {:.0f}",
                                   result.iterations.back().condition_number, limits.condition_number_max));
   }
   for (const calib::FaceDistances& face : result.distances) {
     if (face.role != calib::TouchRole::kHeldOut) continue;
-    if (std::abs(face.calibrated_mean_m) > limits.held_out_mean_max_m) {
+    if (!(std::abs(face.calibrated_mean_m) <= limits.held_out_mean_max_m)) {
       reasons.push_back(fmt::format(
           "held-out touches on plane {} are off by {:.3f} mm in the mean, the limit is {:.3f} mm",
           face.face + 1, mm_from_metres(face.calibrated_mean_m), mm_from_metres(limits.held_out_mean_max_m)));
     }
-    if (face.calibrated_rms_m > limits.held_out_rms_max_m) {
+    if (!(face.calibrated_rms_m <= limits.held_out_rms_max_m)) {
       reasons.push_back(fmt::format(
           "held-out touches on plane {} scatter by {:.3f} mm rms, the limit is {:.3f} mm", face.face + 1,
           mm_from_metres(face.calibrated_rms_m), mm_from_metres(limits.held_out_rms_max_m)));

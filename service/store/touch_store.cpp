@@ -73,7 +73,7 @@ void bind_or_null(SQLite::Statement& statement, int index, const std::optional<s
 
 }  // namespace
 
-TouchStore::TouchStore(const std::filesystem::path& file)
+TouchStore::TouchStore(const std::filesystem::path& file) try
     : database_(
           std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)) {
   database_->setBusyTimeout(1000);
@@ -89,6 +89,8 @@ TouchStore::TouchStore(const std::filesystem::path& file)
   database_->exec(kSchema);
   database_->exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
   transaction.commit();
+} catch (const SQLite::Exception& error) {
+  throw std::runtime_error(file.string() + ": " + error.what() + "; mend the file or give another --state");
 }
 
 TouchStore::~TouchStore() = default;

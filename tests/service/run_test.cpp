@@ -1,0 +1,86 @@
+#include "service/run.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "service/acquisition/touch_command.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+namespace {
+
+StoredTouch stored(int number, const calib::Touch& touch) {
+  return {.number = number, .plane = touch.face + 1, .role = touch.role, .joints = to_wire(touch.joints)};
+}
+
+class RunTest : public ::testing::Test {
+ protected:
+  RunTest() {
+    calib::TouchPlan plan;
+    for (const calib::Touch& touch : table3_touches()) {
+      const calib::JointVector& joints = touch.joints;
+      plan.touches.push_back(
+          {touch.face, touch.role, joints, joints, joints, joints, Eigen::Vector3d::UnitX()});
+    }
+    run_.set_plan(plan);
+  }
+
+  Folder folder_;
+  TouchStore store_{folder_.path() / "touchcal.sqlite"};
+  cell::Run run_{store_.begin_run({.recipe = "edf-25"}), edf(), edf().recipes.at("edf-25"), "start"};
+};
+
+TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches()) {
+    EXPECT_FALSE(run_.complete());
+    ASSERT_NE(run_.next(), nullptr);
+    EXPECT_EQ(run_.next()->face, touch.face);
+    run_.add(store_, stored(++number, touch));
+    EXPECT_EQ(run_.touches_done(), number);
+  }
+  EXPECT_TRUE(run_.complete());
+  EXPECT_EQ(run_.next(), nullptr);
+  EXPECT_EQ(run_.latest().status, calib::IdentificationStatus::kConverged);
+  EXPECT_EQ(run_.latest().fitted_touch_count, number);
+  EXPECT_EQ(store_.touches(run_.id()).size(), table3_touches().size());
+}
+
+TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
+  run_.add(store_, stored(1, table3_touches()[0]));
+  EXPECT_THROW(run_.add(store_, stored(1, table3_touches()[1])), std::exception);
+  EXPECT_EQ(run_.touches_done(), 1);
+  EXPECT_EQ(run_.latest().fitted_touch_count, 1);
+  EXPECT_EQ(store_.touches(run_.id()).size(), 1u);
+}
+
+TEST_F(RunTest, WithoutAPlanNothingIsCompleteAndNothingIsNext) {
+  const cell::Run planless(1, edf(), edf().recipes.at("edf-25"), "start");
+  EXPECT_FALSE(planless.complete());
+  EXPECT_EQ(planless.next(), nullptr);
+}
+
+TEST(ToTouch, TurnsTheWiresUnitsIntoRadiansAndThePlaneIntoAFace) {
+  const calib::Touch touch = to_touch(
+      {.plane = 3, .role = calib::TouchRole::kHeldOut, .joints = {180'000'000, -90'000'000, 1, 0, 0, 0}});
+  EXPECT_EQ(touch.face, 2);
+  EXPECT_EQ(touch.role, calib::TouchRole::kHeldOut);
+  EXPECT_DOUBLE_EQ(touch.joints[0], std::numbers::pi);
+  EXPECT_DOUBLE_EQ(touch.joints[1], -std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(touch.joints[2], std::numbers::pi / 180e6);
+}
+
+TEST(ContactPlanes, LieABallsRadiusLessThePretravelOffTheFaces) {
+  Cell cell = edf();
+  cell.probe.stylus = {.radius_m = 0.003, .pretravel_m = 1e-5};
+  const auto planes = contact_planes(cell);
+  ASSERT_EQ(planes.size(), cell.block.faces.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    EXPECT_EQ(planes[i].outward, cell.block.faces[i].plane.outward);
+    EXPECT_DOUBLE_EQ(planes[i].offset_m, cell.block.faces[i].plane.offset_m + 0.003 - 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace cell

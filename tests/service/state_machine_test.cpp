@@ -1,0 +1,177 @@
+#include "service/acquisition/state_machine.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+
+namespace cell {
+namespace {
+
+using enum State;
+
+constexpr std::array kCommands{Command::kStart, Command::kPause, Command::kResume, Command::kStop,
+                               Command::kAbort, Command::kClear, Command::kReset,  Command::kAcknowledge};
+constexpr std::array kEvents{Event::kDone, Event::kHoldFault, Event::kAbortFault, Event::kLinkDown};
+
+struct Row {
+  State state;
+  std::array<std::optional<State>, kCommands.size()> after_command;  // as kCommands
+  std::array<State, kEvents.size()> after_event;                     // as kEvents
+};
+
+constexpr std::nullopt_t no = std::nullopt;
+
+/// ISA-TR88.00.02's model with the commands this cell has. Nothing waits for a person in SUSPENDED yet, so no
+/// command leads there.
+// clang-format off
+const std::array kTable{
+    // state            start      pause      resume       stop       abort      clear      reset       acknowledge
+    Row{kStopped,       {no,        no,        no,          kStopped,  kStopped,  no,        kResetting, kStopped},
+                        {kStopped, kStopped, kStopped, kStopped}},
+    Row{kResetting,     {no,        no,        no,          kStopped,  kResetting, no,       kResetting, kResetting},
+                        {kIdle, kResetting, kResetting, kResetting}},
+    Row{kIdle,          {kStarting, no,        no,          kStopped,  kIdle,     no,        kIdle,      kIdle},
+                        {kIdle, kIdle, kIdle, kResetting}},
+    Row{kStarting,      {no,        no,        no,          kStopping, kAborting, no,        no,         kStarting},
+                        {kExecute, kStarting, kAborting, kAborting}},
+    Row{kExecute,       {no,        kHolding,  kExecute,    kStopping, kAborting, no,        no,         kExecute},
+                        {kCompleting, kHolding, kAborting, kAborting}},
+    Row{kCompleting,    {no,        no,        no,          kStopping, kAborting, no,        no,         kCompleting},
+                        {kComplete, kCompleting, kAborting, kAborting}},
+    Row{kComplete,      {kStarting, no,        no,          kStopped,  kComplete, no,        kResetting, kComplete},
+                        {kComplete, kComplete, kComplete, kResetting}},
+    Row{kHolding,       {no,        kHolding,  no,          kStopping, kAborting, no,        no,         kHolding},
+                        {kHeld, kHolding, kAborting, kAborting}},
+    Row{kHeld,          {no,        kHeld,     kUnholding,  kStopping, kAborting, no,        no,         kHeld},
+                        {kHeld, kHeld, kAborting, kAborting}},
+    Row{kUnholding,     {no,        kHolding,  kUnholding,  kStopping, kAborting, no,        no,         kUnholding},
+                        {kExecute, kUnholding, kAborting, kAborting}},
+    Row{kSuspending,    {no,        no,        no,          kStopping, kAborting, no,        no,         kSuspending},
+                        {kSuspended, kSuspending, kAborting, kAborting}},
+    Row{kSuspended,     {no,        no,        no,          kStopping, kAborting, no,        no,         kSuspended},
+                        {kSuspended, kSuspended, kAborting, kAborting}},
+    Row{kUnsuspending,  {no,        no,        no,          kStopping, kAborting, no,        no,         kUnsuspending},
+                        {kExecute, kUnsuspending, kAborting, kAborting}},
+    Row{kStopping,      {no,        no,        no,          kStopping, kAborting, no,        no,         kStopping},
+                        {kStopped, kStopping, kAborting, kAborting}},
+    Row{kAborting,      {no,        no,        no,          kAborting, kAborting, no,        no,         kAborting},
+                        {kAborted, kAborting, kAborting, kAborting}},
+    Row{kAborted,       {no,        no,        no,          kAborted,  kAborted,  kClearing, no,         kAborted},
+                        {kAborted, kAborted, kAborted, kAborted}},
+    Row{kClearing,      {no,        no,        no,          kClearing, kClearing, kClearing, no,         kClearing},
+                        {kStopped, kClearing, kClearing, kClearing}},
+};
+// clang-format on
+
+/// The arm moves there, or is about to.
+bool is_motion(State state) {
+  constexpr std::array kMotion{kStarting, kExecute, kCompleting, kUnholding, kUnsuspending};
+  return std::ranges::find(kMotion, state) != kMotion.end();
+}
+
+std::string text(std::optional<State> state) { return std::string(state ? state_name(*state) : "refused"); }
+
+TEST(StateMachine, EveryStateAnswersEveryCommandAsTheTableSays) {
+  for (const Row& row : kTable) {
+    for (std::size_t i = 0; i < kCommands.size(); ++i) {
+      EXPECT_EQ(text(after_command(row.state, kCommands[i])), text(row.after_command[i]))
+          << command_name(kCommands[i]) << " in " << state_name(row.state);
+    }
+  }
+}
+
+TEST(StateMachine, EveryStateTakesEveryEventAsTheTableSays) {
+  for (const Row& row : kTable) {
+    for (std::size_t i = 0; i < kEvents.size(); ++i) {
+      EXPECT_EQ(text(after_event(row.state, kEvents[i])), text(row.after_event[i]))
+          << "event " << i << " in " << state_name(row.state);
+    }
+  }
+}
+
+TEST(StateMachine, NamesAreThoseOfPackMlAndTheTableHasThemAll) {
+  std::set<std::string> names;
+  for (const Row& row : kTable) names.insert(std::string(state_name(row.state)));
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("STOPPED", "RESETTING", "IDLE", "STARTING", "EXECUTE",
+                                                     "COMPLETING", "COMPLETE", "HOLDING", "HELD", "UNHOLDING",
+                                                     "SUSPENDING", "SUSPENDED", "UNSUSPENDING", "STOPPING",
+                                                     "ABORTING", "ABORTED", "CLEARING"));
+}
+
+TEST(StateMachine, StopIsAlwaysTakenAndNeverEndsInMotion) {
+  for (const Row& row : kTable) {
+    const auto next = after_command(row.state, Command::kStop);
+    ASSERT_TRUE(next) << state_name(row.state);
+    EXPECT_FALSE(is_motion(*next)) << state_name(row.state);
+  }
+}
+
+TEST(StateMachine, FromEveryStateCommandsLeadBackToIdle) {
+  for (const Row& row : kTable) {
+    std::set<State> reached{row.state};
+    for (std::size_t before = 0; before != reached.size();) {
+      before = reached.size();
+      for (const State state : std::set<State>(reached)) {
+        reached.insert(after_event(state, Event::kDone));
+        for (const Command command : kCommands) {
+          if (const auto next = after_command(state, command)) reached.insert(*next);
+        }
+      }
+    }
+    EXPECT_TRUE(reached.contains(kIdle)) << state_name(row.state) << " is a dead end";
+  }
+}
+
+TEST(StateMachine, AStateThatWaitsNamesTheCommandsThatLeadOut) {
+  for (const Row& row : kTable) {
+    const std::vector<Command> out = exits(row.state);
+    for (std::size_t i = 0; i < kCommands.size(); ++i) {
+      const bool leads_out = row.after_command[i] && *row.after_command[i] != row.state;
+      EXPECT_EQ(std::ranges::find(out, kCommands[i]) != out.end(), leads_out)
+          << command_name(kCommands[i]) << " in " << state_name(row.state);
+    }
+    const bool ends_by_itself = after_event(row.state, Event::kDone) != row.state;
+    EXPECT_TRUE(ends_by_itself || !out.empty()) << state_name(row.state);
+  }
+}
+
+TEST(StateMachine, OnlyStartAndResumeLeadFromRestToMotion) {
+  for (const Row& row : kTable) {
+    if (is_motion(row.state)) continue;
+    for (const Command command : kCommands) {
+      const auto next = after_command(row.state, command);
+      const bool asks_for_motion = command == Command::kStart || command == Command::kResume;
+      EXPECT_FALSE(next && is_motion(*next) && !asks_for_motion)
+          << command_name(command) << " in " << state_name(row.state);
+    }
+    for (const Event event : kEvents)
+      EXPECT_FALSE(is_motion(after_event(row.state, event))) << state_name(row.state);
+  }
+}
+
+TEST(StateMachine, ARepeatedCommandThatWasTakenIsTakenAgainWithoutEffect) {
+  for (const Row& row : kTable) {
+    for (const Command command : kCommands) {
+      const auto once = after_command(row.state, command);
+      if (!once || command == Command::kStart) continue;  // a start is repeated by its Idempotency-Key
+      EXPECT_EQ(text(after_command(*once, command)), text(once))
+          << command_name(command) << " in " << state_name(row.state);
+    }
+  }
+}
+
+TEST(StateMachine, ARunIsActiveExactlyWhereItCanBeAborted) {
+  for (const Row& row : kTable) {
+    const bool can_be_aborted = after_command(row.state, Command::kAbort) == kAborting;
+    EXPECT_EQ(is_active(row.state), can_be_aborted) << state_name(row.state);
+    if (is_motion(row.state)) {
+      EXPECT_TRUE(is_active(row.state)) << state_name(row.state);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cell
