@@ -8,20 +8,13 @@
 #include "cs8_protocol/wire_units.hpp"
 #include "sim_controller/admission.hpp"
 #include "sim_controller/contact.hpp"
+#include "sim_controller/reports.hpp"
 
 namespace sim {
 namespace {
 
 using cs8::Outcome;
 using cs8::RejectReason;
-
-constexpr std::uint32_t kApplicationVersion = 100;  // 0.1.0
-constexpr std::uint32_t kLanguageVersion = 70702;   // s7.7.2
-
-std::uint32_t clock_ms(TimePoint now) {
-  return static_cast<std::uint32_t>(
-      std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count());
-}
 
 /// One step: the state it changes and what it sends.
 class Step {
@@ -67,21 +60,7 @@ class Step {
                                           kHeartbeatTimeoutMin, kHeartbeatTimeoutMax);
     state_.next_state = now_ + kStatePeriod;
     if (state_.operator_called) free_arm();
-    cs8::Welcome welcome;
-    welcome.application = cs8::text16("touchcal");
-    welcome.arm = cs8::text16("tx90");
-    welcome.application_version = kApplicationVersion;
-    welcome.language_version = kLanguageVersion;
-    welcome.session = state_.session;
-    welcome.last_sequence = state_.last_sequence;
-    welcome.open_sequence = open_sequence();
-    welcome.heartbeat_timeout_ms = static_cast<std::uint32_t>(state_.heartbeat_timeout.count());
-    welcome.clock_ms = clock_ms(now_);
-    welcome.lower_limits = wire_from_joints(plant_.joint_ranges.lower);
-    welcome.upper_limits = wire_from_joints(plant_.joint_ranges.upper);
-    welcome.search_length_max_dmm = cs8::dmm_from_metres(kSearchLengthMaxMetres);
-    welcome.search_speed_max_um_s = search_speed_max_um_s(plant_);
-    send(0, welcome);
+    send(0, welcome(plant_, state_, open_sequence(), now_));
   }
 
   void take(std::uint32_t, const cs8::Heartbeat&) {}
@@ -301,35 +280,13 @@ class Step {
   void store_result(const RunningCommand& running, Outcome outcome, cs8::Phase phase,
                     const std::optional<Capture>& capture) {
     cs8::Message result{running.sequence, {}};
-    const std::int32_t error_number = outcome == Outcome::kMotionError ? running.timeline.error_number : 0;
     if (running.type == cs8::MessageType::kTouch) {
-      result.payload = touch_result(running, outcome, phase, capture, error_number);
+      result.payload = touch_result(state_, running, {outcome, phase, capture});
     } else {
-      result.payload = cs8::MoveResult{outcome, phase, wire_from_joints(state_.joints), error_number};
+      result.payload = move_result(state_, running, {outcome, phase, capture});
     }
     state_.stored_result = result;
     if (state_.greeted) replies.messages.push_back(result);
-  }
-
-  cs8::TouchResult touch_result(const RunningCommand& running, Outcome outcome, cs8::Phase phase,
-                                const std::optional<Capture>& capture, std::int32_t error_number) const {
-    cs8::TouchResult result;
-    result.outcome = outcome;
-    result.phase = phase;
-    result.source = capture ? cs8::CaptureSource::kLatched : cs8::CaptureSource::kNone;
-    result.stopped = wire_from_joints(state_.joints);
-    if (capture) {
-      result.contact = wire_from_joints(capture->contact);
-      result.stopped = wire_from_joints(capture->stopped);
-      result.overtravel_dmm = cs8::dmm_from_metres(capture->overtravel_m);
-      const std::chrono::duration<double> wall(capture->at_s / state_.speed);
-      result.contact_clock_ms =
-          clock_ms(running.started + std::chrono::duration_cast<TimePoint::duration>(wall));
-    }
-    result.search_speed_um_s = running.search_speed_um_s;
-    result.monitor_speed_percent = state_.panel.monitor_speed_percent;
-    result.error_number = error_number;
-    return result;
   }
 
   void free_arm() {
@@ -358,29 +315,7 @@ class Step {
     replies.messages.push_back({sequence, std::move(payload)});
   }
 
-  void send_state() {
-    const Place place = here();
-    const Panel& panel = state_.panel;
-    cs8::State report;
-    report.session = state_.session;
-    report.clock_ms = clock_ms(now_);
-    const auto flag = [&report](cs8::StateFlag bit, bool on) { report.flags |= on ? bit : 0u; };
-    flag(cs8::kPowered, panel.powered);
-    flag(cs8::kHeld, panel.held);
-    flag(cs8::kArmCalibrated, panel.arm_calibrated);
-    flag(cs8::kSettled, !state_.running);
-    flag(cs8::kQueueEmpty, !state_.running);
-    flag(cs8::kProbeTouched, trip_gap_m(plant_, place.joints, 0.0) <= 0.0);
-    flag(cs8::kRetractDue, !state_.way_out.empty());
-    report.mode = panel.mode;
-    report.mode_status = panel.mode_status;
-    report.emergency_stop = panel.emergency_stop;
-    report.monitor_speed_percent = panel.monitor_speed_percent;
-    report.joints = wire_from_joints(place.joints);
-    report.active_sequence = state_.running ? state_.running->sequence : 0;
-    report.phase = place.phase;
-    send(++state_.state_counter, report);
-  }
+  void send_state() { send(++state_.state_counter, state_report(plant_, state_, here(), now_)); }
 
   const Plant& plant_;
   ControllerState& state_;

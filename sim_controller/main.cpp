@@ -8,7 +8,6 @@
 #include <boost/asio/signal_set.hpp>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <csignal>
 #include <iostream>
 
@@ -19,6 +18,9 @@
 namespace {
 
 enum ExitCode { kDone = 0, kWrongUsage = 2, kBadInput = 3, kRefused = 4 };
+
+constexpr double kSpeedLowest = 1e-3;
+constexpr double kSpeedHighest = 1e3;
 
 struct Arguments {
   std::string cell_file;
@@ -43,7 +45,8 @@ std::optional<double> parse_speed(const std::string& text) {
   double speed = 0.0;
   const char* const end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, speed);
-  if (error != std::errc{} || rest != end || !std::isfinite(speed) || speed <= 0.0) return std::nullopt;
+  if (error != std::errc{} || rest != end || !(speed >= kSpeedLowest && speed <= kSpeedHighest))
+    return std::nullopt;
   return speed;
 }
 
@@ -52,7 +55,7 @@ std::string check_listen(const std::string& text) {
 }
 
 std::string check_speed(const std::string& text) {
-  return parse_speed(text) ? "" : "'" + text + "' is neither a number above 0 nor max";
+  return parse_speed(text) ? "" : "'" + text + "' is neither a number from 0.001 to 1000 nor max";
 }
 
 int run(const Arguments& arguments) {

@@ -14,6 +14,7 @@ bool is_stylus_ball(const calib::Capsule& body) {
 
 Plant make_plant(const cell::Cell& cell, const calib::ErrorVector& errors) {
   Plant plant;
+  plant.arm_name = cell.arm.name;
   plant.nominal = cell.arm.model;
   plant.truth = calib::apply(cell.arm.model, errors);
   plant.joint_ranges = cell.arm.joint_ranges;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "calib_core/collision.hpp"
 #include "calib_core/error_parameters.hpp"
 #include "calib_core/joint_vector.hpp"
@@ -19,6 +21,7 @@ inline constexpr double kSearchLengthMaxMetres = 0.06;
 /// The simulated cell: what the controller believes (nominal) and what stands there (truth). SI, frames as in
 /// calib_core.
 struct Plant {
+  std::string arm_name;
   calib::KinematicModel nominal;  // the controller moves with it
   calib::KinematicModel truth;    // where the arm really is; nothing but contact and collision looks at it
   calib::JointRanges joint_ranges;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -130,6 +132,26 @@ class Bench {
   ControllerState state;
   Replies last;
   std::vector<cs8::Message> sent;
+};
+
+/// Most tests make this touch on the top face of the cell `demo`, with its hidden truth.
+class DemoTouch : public ::testing::Test {
+ protected:
+  static const cell::Cell& demo() {
+    static const cell::Cell cell = read_cell("demo");
+    return cell;
+  }
+  static const Plant& plant() {
+    static const Plant plant = true_plant("demo");
+    return plant;
+  }
+  static const AimedTouch& aimed() {
+    static const AimedTouch touch = aimed_touch(demo(), {});
+    return touch;
+  }
+  static const TouchMotion& motion() { return aimed().motion; }
+  static cs8::Touch touch() { return touch_command(motion()); }
+  static calib::JointVector beside_park() { return plant().start_joints + calib::JointVector::Constant(0.1); }
 };
 
 }  // namespace sim::testing
