@@ -10,8 +10,10 @@ namespace cs8 {
 inline std::int32_t microdeg_from_radians(double rad) {
   return static_cast<std::int32_t>(std::lround(rad * (180.0e6 / std::numbers::pi)));
 }
+/// By way of degrees, as files give them: a touch read back from a file is the one that came over the wire,
+/// to the bit.
 constexpr double radians_from_microdeg(std::int32_t microdeg) {
-  return microdeg * (std::numbers::pi / 180.0e6);
+  return microdeg / 1e6 * (std::numbers::pi / 180.0);
 }
 
 inline std::int32_t dmm_from_metres(double m) { return static_cast<std::int32_t>(std::lround(m * 1e7)); }

@@ -1,0 +1,103 @@
+#include "tests/end_to_end/loopback_cell.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <chrono>
+#include <stdexcept>
+
+#include "service/http/json_view.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+/// No test waits longer for a condition; with sanitizers on a loaded machine a run takes tens of seconds.
+constexpr std::chrono::seconds kPatience{60};
+
+}  // namespace
+
+LoopbackCell::LoopbackCell(const std::string& cell_name)
+    : cell(shipped_cell(cell_name)), store_(folder_ / "touchcal.sqlite") {
+  spdlog::set_level(spdlog::level::off);
+  cell::Recipe recipe = cell.recipes.at(kRecipe);
+  recipe.name = kShortRecipe;
+  recipe.fit_per_face = 7;
+  recipe.held_out_per_face = 1;
+  cell.recipes.emplace(recipe.name, recipe);
+}
+
+LoopbackCell::~LoopbackCell() {
+  if (!operation_) return;
+  bool down = false;
+  boost::asio::co_spawn(io_, operation_->shut_down(), [&down](const std::exception_ptr&) { down = true; });
+  try {
+    run_until([&down](const cell::Status&) { return down; });
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "the operation does not shut down: %s\n", error.what());
+    std::abort();  // going on would free what its coroutine uses
+  }
+}
+
+sim::Plant LoopbackCell::true_plant() const {
+  return sim::make_plant(cell, shipped_truth(cell.file.parent_path().filename().string()));
+}
+
+void LoopbackCell::serve(std::vector<sim::PlannedFault> faults, double speed) {
+  serve(true_plant(), {.controller = {.speed = speed}, .faults = std::move(faults)});
+}
+
+void LoopbackCell::serve(sim::Plant plant, sim::ServerOptions options) {
+  server_.reset();
+  server_ = std::make_unique<sim::Server>(io_, "127.0.0.1", port_, std::move(plant), std::move(options));
+  port_ = server_->port();
+}
+
+void LoopbackCell::launch(std::optional<std::uint16_t> port) {
+  operation_.emplace(io_.get_executor(), cell, store_, cell::Endpoint{"127.0.0.1", port.value_or(port_)},
+                     "end-to-end", std::chrono::system_clock::now);
+  operation_->launch();
+}
+
+void LoopbackCell::run_until(const std::function<bool(const cell::Status&)>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + kPatience;
+  while (!condition(operation_->status())) {
+    if (std::chrono::steady_clock::now() >= deadline) {
+      throw std::runtime_error("waited in vain: " + cell::status_document(operation_->status()));
+    }
+    io_.run_one_until(deadline);
+  }
+}
+
+void LoopbackCell::run_until(cell::State state) {
+  run_until([state](const cell::Status& status) { return status.state == state; });
+}
+
+void LoopbackCell::run_until_touches(int count) {
+  run_until([count](const cell::Status& status) { return status.touches_done >= count; });
+}
+
+void LoopbackCell::run_until_over() {
+  run_until([](const cell::Status& status) {
+    return !cell::is_active(status.state) || (status.state == cell::State::kHeld && status.fault);
+  });
+}
+
+std::int64_t LoopbackCell::start(const std::string& recipe) {
+  const auto answer = operation_->start(recipe, {});
+  if (const auto* refusal = std::get_if<cell::Refusal>(&answer)) throw std::runtime_error(refusal->detail);
+  return std::get<cell::Started>(answer).run_id;
+}
+
+void LoopbackCell::command(cell::Command command) {
+  if (const auto refusal = operation_->command(command)) throw std::runtime_error(refusal->detail);
+}
+
+bool LoopbackCell::is_refused(cell::Command command) { return operation_->command(command).has_value(); }
+
+std::string LoopbackCell::fault_name() const {
+  const cell::Status status = operation_->status();
+  return status.fault ? std::string(cell::describe(status.fault->code).name) : std::string();
+}
+
+}  // namespace touchcal::testing

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/io_context.hpp>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/acquisition/operation.hpp"
+#include "service/store/touch_store.hpp"
+#include "sim_controller/server.hpp"
+#include "tests/end_to_end/folder.hpp"
+
+namespace touchcal::testing {
+
+/// A recipe with just enough touches, added to every LoopbackCell: 7 to fit and one held out on each of the
+/// paper's planes.
+inline constexpr const char* kShortRecipe = "short";
+inline constexpr int kShortTouchCount = 4 * (7 + 1);
+
+/// A daemon's Operation and the simulated controller on one io_context, over real sockets on loopback, with a
+/// store in a folder of its own. Change `cell` before launch().
+class LoopbackCell {
+ public:
+  explicit LoopbackCell(const std::string& cell_name = "edf");
+  /// Shuts the operation down as the daemon does at a signal.
+  ~LoopbackCell();
+
+  /// The simulated controller with the cell's truth, instead of the one before, on the same port.
+  void serve(std::vector<sim::PlannedFault> faults = {}, double speed = sim::kSpeedMax);
+  void serve(sim::Plant plant, sim::ServerOptions options);
+  void stop_serving() { server_.reset(); }
+  [[nodiscard]] sim::Plant true_plant() const;
+  [[nodiscard]] std::uint16_t port() const { return port_; }
+
+  /// Begins the operation; `port` is where it looks for the controller, the server's own by default.
+  void launch(std::optional<std::uint16_t> port = {});
+
+  /// Carries bytes until the condition holds; std::runtime_error with the status after kPatience.
+  void run_until(const std::function<bool(const cell::Status&)>& condition);
+  void run_until(cell::State state);
+  void run_until_touches(int count);
+  /// Until the run has ended, one way or other, or waits for a person with a fault.
+  void run_until_over();
+
+  /// The id of the run that was started; std::runtime_error with the reason when it was refused.
+  std::int64_t start(const std::string& recipe = kShortRecipe);
+  /// std::runtime_error with the reason when it was refused.
+  void command(cell::Command command);
+  [[nodiscard]] bool is_refused(cell::Command command);
+
+  [[nodiscard]] cell::Operation& operation() { return *operation_; }
+  [[nodiscard]] cell::Status status() const { return operation_->status(); }
+  [[nodiscard]] std::string fault_name() const;  // empty without a fault
+  [[nodiscard]] cell::TouchStore& store() { return store_; }
+  [[nodiscard]] std::filesystem::path store_file() const { return folder_ / "touchcal.sqlite"; }
+  [[nodiscard]] boost::asio::io_context& io() { return io_; }
+
+  cell::Cell cell;
+
+ private:
+  Folder folder_;
+  cell::TouchStore store_;
+  boost::asio::io_context io_{1};
+  boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
+  std::unique_ptr<sim::Server> server_;
+  std::uint16_t port_ = 0;
+  std::optional<cell::Operation> operation_;
+};
+
+}  // namespace touchcal::testing

@@ -1,0 +1,85 @@
+// Whole runs over loopback: what a customer sees when nothing goes wrong.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "calib_core/identify.hpp"
+#include "config/touches_file.hpp"
+#include "service/http/json_view.hpp"
+#include "service/run.hpp"
+#include "tests/end_to_end/held_out.hpp"
+#include "tests/end_to_end/loopback_cell.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using cell::State;
+
+class WholeRun : public ::testing::TestWithParam<const char*> {
+ protected:
+  WholeRun() : loop_(GetParam()) {
+    loop_.serve();
+    loop_.launch();
+    loop_.run_until(State::kIdle);
+    run_id_ = loop_.start(kRecipe);
+    loop_.run_until_over();
+  }
+
+  LoopbackCell loop_;
+  std::int64_t run_id_ = 0;
+};
+
+TEST_P(WholeRun, EndsAcceptedWithThePromisedFigures) {
+  const cell::Status status = loop_.status();
+  EXPECT_EQ(status.state, State::kComplete) << loop_.fault_name();
+  EXPECT_EQ(status.verdict, cell::Verdict::kAccepted);
+  EXPECT_EQ(status.last_accepted_run_id, run_id_);
+  EXPECT_EQ(loop_.store().touches(run_id_).size(), static_cast<std::size_t>(kTouchCount));
+
+  const calib::IdentificationResult& result = loop_.operation().run()->latest();
+  EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
+  EXPECT_LE(result.iterations.size(), static_cast<std::size_t>(kIterationsMax));
+  EXPECT_LT(result.iterations.back().condition_number, kConditionNumberMax);
+  const HeldOut figures = held_out(result);
+  EXPECT_EQ(figures.touch_count, kPlaneCount * kHeldOutPerPlane);
+  EXPECT_LE(figures.mean_max_m, kHeldOutMeanMaxMetres);
+  EXPECT_LE(figures.rms_m, kHeldOutRmsMaxPart * loop_.cell.touch_noise_m);
+  EXPECT_GE(figures.rms_removed_min, kRmsRemovedMin);
+
+  const auto stored = loop_.store().run(run_id_).value();
+  EXPECT_EQ(stored.outcome, "complete");
+  EXPECT_EQ(stored.verdict, "accepted");
+  EXPECT_EQ(stored.touches_total, kTouchCount);
+  EXPECT_EQ(stored.touches_done, kTouchCount);
+  EXPECT_FALSE(stored.fault_code);
+  EXPECT_TRUE(loop_.store().result_json(run_id_) == loop_.operation().result_json());
+}
+
+TEST_P(WholeRun, AnotherStartsStraightFromItsEnd) {
+  const std::int64_t second = loop_.start(kRecipe);
+  EXPECT_NE(second, run_id_);
+  loop_.run_until_over();
+  EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
+  EXPECT_EQ(loop_.status().verdict, cell::Verdict::kAccepted);
+  EXPECT_EQ(loop_.store().touches(second).size(), static_cast<std::size_t>(kTouchCount));
+  EXPECT_EQ(loop_.store().touches(run_id_).size(), static_cast<std::size_t>(kTouchCount));
+}
+
+TEST_P(WholeRun, ItsTouchesReadBackFromAFileGiveTheSameResultToTheBit) {
+  const std::string document = cell::touches_document(loop_.cell, loop_.store().touches(run_id_));
+  const cell::TouchesFile file =
+      cell::touches_from_json("the run's touches", document, cell::kTouchesSizeMax, loop_.cell);
+  const cell::Recipe& recipe = loop_.cell.recipes.at(kRecipe);
+  const calib::IdentificationResult again = calib::identify(
+      {loop_.cell.arm.model, cell::contact_planes(loop_.cell), file.touches}, recipe.identification);
+  const calib::IdentificationResult& live = loop_.operation().run()->latest();
+  EXPECT_TRUE((again.errors.array() == live.errors.array()).all());
+  EXPECT_TRUE(cell::result_document(loop_.cell, recipe, again, {}) == loop_.operation().result_json());
+}
+
+INSTANTIATE_TEST_SUITE_P(Cells, WholeRun, ::testing::Values("edf", "demo"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace touchcal::testing
