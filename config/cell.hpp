@@ -14,15 +14,11 @@
 #include "calib_core/face.hpp"
 #include "calib_core/joint_vector.hpp"
 #include "calib_core/kinematic_model.hpp"
+#include "config/endpoint.hpp"
 #include "config/recipe.hpp"
 
 /// What a robot cell is made of, in SI units. Plain values; read_config.hpp makes them from files.
 namespace cell {
-
-struct Endpoint {
-  std::string host;
-  std::uint16_t port = 0;
-};
 
 struct Arm {
   std::string name;

@@ -14,7 +14,6 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/use_awaitable.hpp>
-#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <stdexcept>
@@ -84,18 +83,6 @@ std::filesystem::path default_state_directory() {
     return std::filesystem::path(state) / "touchcal";
   const char* home = std::getenv("HOME");
   return std::filesystem::path(home && *home ? home : "/var/lib") / ".local" / "state" / "touchcal";
-}
-
-std::optional<Endpoint> parse_endpoint(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0) return std::nullopt;
-  std::string host = text.substr(0, colon);
-  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  Endpoint endpoint{host, 0};
-  const char* end = text.data() + text.size();
-  const auto [parsed, error] = std::from_chars(text.data() + colon + 1, end, endpoint.port);
-  if (error != std::errc{} || parsed != end || host.empty()) return std::nullopt;
-  return endpoint;
 }
 
 void run_daemon(const Cell& cell, const DaemonOptions& options) {

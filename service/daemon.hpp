@@ -17,9 +17,6 @@ struct DaemonOptions {
 /// $XDG_STATE_HOME/touchcal or ~/.local/state/touchcal.
 std::filesystem::path default_state_directory();
 
-/// "HOST:PORT", an IPv6 host in brackets; nothing when it is not that.
-std::optional<Endpoint> parse_endpoint(const std::string& text);
-
 /// Serves one cell until SIGINT or SIGTERM; a running motion is stopped then. Prints "listening on HOST:PORT"
 /// on standard output when ready. Throws std::exception when it cannot start (address taken, state not
 /// writable).

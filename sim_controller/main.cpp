@@ -30,16 +30,6 @@ struct Arguments {
   std::string speed = "1";
 };
 
-std::optional<cell::Endpoint> parse_endpoint(const std::string& text) {
-  const std::size_t colon = text.rfind(':');
-  if (colon == std::string::npos || colon == 0) return std::nullopt;
-  std::uint16_t port = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data() + colon + 1, end, port);
-  if (error != std::errc{} || rest != end) return std::nullopt;
-  return cell::Endpoint{text.substr(0, colon), port};
-}
-
 std::optional<double> parse_speed(const std::string& text) {
   if (text == "max") return sim::kSpeedMax;
   double speed = 0.0;
@@ -51,7 +41,7 @@ std::optional<double> parse_speed(const std::string& text) {
 }
 
 std::string check_listen(const std::string& text) {
-  return parse_endpoint(text) ? "" : "'" + text + "' is not HOST:PORT";
+  return cell::parse_endpoint(text) ? "" : "'" + text + "' is not HOST:PORT";
 }
 
 std::string check_speed(const std::string& text) {
@@ -65,7 +55,7 @@ int run(const Arguments& arguments) {
                               : std::filesystem::path(arguments.truth_file);
   const cell::Truth truth = cell::read_truth(truth_file);
   const cell::Endpoint endpoint =
-      arguments.listen.empty() ? cell.controller : *parse_endpoint(arguments.listen);
+      arguments.listen.empty() ? cell.controller : *cell::parse_endpoint(arguments.listen);
 
   sim::ServerOptions options;
   options.controller.seed = arguments.seed;

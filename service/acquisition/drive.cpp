@@ -65,7 +65,11 @@ asio::awaitable<void> Operation::drive() {
         break;
       case State::kHolding:
       case State::kUnholding:
+        apply(Event::kDone);
+        break;
       case State::kClearing:
+        // Whatever stopped the arm, the controller is met anew before the next run.
+        client_.close();
         apply(Event::kDone);
         break;
       case State::kComplete:

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 
-#include "service/daemon.hpp"
+#include "config/endpoint.hpp"
 #include "service/http/tokens.hpp"
 
 namespace cell {

@@ -1,6 +1,7 @@
-#include "service/daemon.hpp"
 
 #include <gtest/gtest.h>
+
+#include "config/endpoint.hpp"
 
 namespace cell {
 namespace {
