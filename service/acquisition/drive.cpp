@@ -119,7 +119,7 @@ asio::awaitable<void> Operation::connect() {
     }
     if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
       session_ = welcome->session;
-      if (state == State::kResetting) status_.fault.reset();
+      status_.fault.reset();  // it was the link's
       publish();
       if (welcome->open_sequence != 0) co_await settle_open_command(welcome->open_sequence);
       co_return;

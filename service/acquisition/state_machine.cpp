@@ -150,7 +150,7 @@ State after_event(State state, Event event) {
   if (event == Event::kLinkDown) {
     if (is_active(state)) return State::kAborting;
     // Nothing moves: looking for the controller again needs nobody's word.
-    return state == State::kIdle || state == State::kComplete ? State::kResetting : state;
+    return state == State::kIdle ? State::kResetting : state;
   }
   switch (state) {
     case State::kResetting:

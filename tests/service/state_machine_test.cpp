@@ -42,7 +42,7 @@ const std::array kTable{
     Row{kCompleting,    {no,        no,        no,          kStopping, kAborting, no,        no,         kCompleting},
                         {kComplete, kCompleting, kAborting, kAborting}},
     Row{kComplete,      {kStarting, no,        no,          kStopped,  kComplete, no,        kResetting, kComplete},
-                        {kComplete, kComplete, kComplete, kResetting}},
+                        {kComplete, kComplete, kComplete, kComplete}},
     Row{kHolding,       {no,        kHolding,  no,          kStopping, kAborting, no,        no,         kHolding},
                         {kHeld, kHolding, kAborting, kAborting}},
     Row{kHeld,          {no,        kHeld,     kUnholding,  kStopping, kAborting, no,        no,         kHeld},
