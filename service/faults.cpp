@@ -28,9 +28,11 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kRecipeUnreachable, "recipe_unreachable",
                "the recipe's touches cannot be planned in this cell", "nothing moved",
                "change the place of the block, the tilt limit or the recipe"},
-    FaultEntry{
-        FaultCode::kTouchRejected, "touch_rejected", "the controller refused a command", "nothing moved",
-        "remove the cause at the cell, then touchcal resume to try this touch again, or touchcal stop"},
+    FaultEntry{FaultCode::kTouchRejected, "touch_rejected", "the controller refused a command",
+               "nothing moved",
+               "remove the cause at the cell, then touchcal resume to try this touch again, or touchcal "
+               "stop; a run that "
+               "was aborted is left by touchcal clear and touchcal reset"},
     FaultEntry{FaultCode::kNoContact, "no_contact", "the search ended without contact",
                "the arm went to the end of the search and retracted; nothing was recorded",
                "check the block's place and the probe's cable, then touchcal resume to try this touch again, "

@@ -28,10 +28,6 @@ namespace {
 constexpr auto kFirstPause = 100ms;
 constexpr auto kLongestPause = 2000ms;
 
-std::string rejection_text(const cs8::Rejected& rejected) {
-  return fmt::format("{} (detail {})", cs8::name(rejected.reason), rejected.detail);
-}
-
 }  // namespace
 
 asio::awaitable<void> Operation::wait_for_wake(std::chrono::milliseconds at_most) {
@@ -231,7 +227,8 @@ asio::awaitable<void> Operation::make_next_touch() {
   const cs8::TouchReply reply = co_await client_.touch(touch_command(cell_, *planned, *via));
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     open_touch_.reset();
-    raise({FaultCode::kTouchRejected, rejection_text(*rejected)}, Event::kHoldFault);
+    const OutcomeFault refused = fault_of(*rejected);
+    raise(refused.fault, refused.holds ? Event::kHoldFault : Event::kAbortFault);
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
     take_contact(*planned, reply, *result);
   }  // a lost link has been told by lose()
@@ -279,7 +276,7 @@ bool Operation::keep_touch(const calib::PlannedTouch& planned, const cs8::TouchR
 
 void Operation::take_move(const cs8::MoveReply& reply) {
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
-    raise({FaultCode::kTouchRejected, rejection_text(*rejected)}, Event::kAbortFault);
+    raise(fault_of(*rejected).fault, Event::kAbortFault);
   } else if (const auto* result = std::get_if<cs8::MoveResult>(&reply.answer)) {
     client_.acknowledge(reply.sequence);
     if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "calib_core/plane.hpp"
 #include "calib_core/units.hpp"
@@ -94,6 +95,17 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
       break;
   }
   return OutcomeFault{{FaultCode::kMotionError, fmt::format("run-time error {} {}", error_number, where)}};
+}
+
+OutcomeFault fault_of(const cs8::Rejected& rejected) {
+  static const std::set<cs8::RejectReason> kMendedAtTheCell{
+      cs8::RejectReason::kNotRemote,     cs8::RejectReason::kNotPowered,
+      cs8::RejectReason::kHold,          cs8::RejectReason::kEmergencyStop,
+      cs8::RejectReason::kNotCalibrated, cs8::RejectReason::kProbeTriggered,
+      cs8::RejectReason::kMonitorSpeed};
+  return {
+      {FaultCode::kTouchRejected, fmt::format("{} (detail {})", cs8::name(rejected.reason), rejected.detail)},
+      kMendedAtTheCell.contains(rejected.reason)};
 }
 
 std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,

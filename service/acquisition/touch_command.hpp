@@ -33,6 +33,9 @@ struct OutcomeFault {
 };
 std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std::int32_t error_number);
 
+/// The same of a command that was refused: it holds when a person at the cell can remove the reason.
+OutcomeFault fault_of(const cs8::Rejected& rejected);
+
 /// Why a reported contact cannot be the one that was asked for, or nothing: the nominal model's ball must be
 /// on the way of the search, as far off as the uncalibrated arm may miss.
 std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
