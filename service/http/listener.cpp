@@ -13,6 +13,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <utility>
+#include <variant>
 
 #include "service/acquisition/operation.hpp"
 #include "service/http/routes.hpp"
@@ -26,12 +27,23 @@ using asio::ip::tcp;
 
 namespace {
 
+constexpr std::size_t kReadBytes = 4096;
+
 using Parser = http::request_parser<http::string_body>;
 using Incoming = http::request<http::string_body>;
 
 std::optional<std::string> field(const Incoming& request, beast::string_view name) {
   const auto found = request.find(name);
   return found == request.end() ? std::nullopt : std::optional<std::string>(found->value());
+}
+
+/// A field that holds a list may stand on several lines (RFC 9110, 5.3).
+std::optional<std::string> list_field(const Incoming& request, beast::string_view name) {
+  std::optional<std::string> joined;
+  const auto [first, last] = request.equal_range(name);
+  for (auto line = first; line != last; ++line)
+    joined = joined ? *joined + ", " + std::string(line->value()) : std::string(line->value());
+  return joined;
 }
 
 /// The names this daemon goes by: another Host is a page that reached us under a name of its own (DNS
@@ -41,11 +53,17 @@ bool is_our_host(std::string_view host, const tcp::endpoint& address) {
   const std::string own =
       address.address().is_v6() ? "[" + address.address().to_string() + "]" : address.address().to_string();
   const std::array<std::string, 4> names{"127.0.0.1", "localhost", "[::1]", own};
-  return std::ranges::any_of(names, [&](const std::string& name) { return host == name + ":" + port; });
+  return std::ranges::any_of(
+      names, [&](const std::string& name) { return beast::iequals(host, name + ":" + port); });
 }
 
-/// What Beast let through and the RFCs do not.
-std::optional<Problem> find_http_fault(const Incoming& request, const tcp::endpoint& address) {
+/// What Beast let through and the RFCs do not. `raw_header`: the header's bytes, where folded lines still
+/// show.
+std::optional<Problem> find_http_fault(const Incoming& request, std::string_view raw_header,
+                                       const tcp::endpoint& address) {
+  if (raw_header.find("\r\n ") != raw_header.npos || raw_header.find("\r\n\t") != raw_header.npos) {
+    return Problem{.kind = "http", .detail = "a header field stands on one line"};
+  }
   const auto hosts = request.count(http::field::host);
   if (hosts > 1 || (hosts == 0 && request.version() >= 11)) {
     return Problem{.kind = "host", .detail = "exactly one Host is wanted"};
@@ -59,8 +77,9 @@ std::optional<Problem> find_http_fault(const Incoming& request, const tcp::endpo
     return Problem{
         .status = 501, .kind = "transfer-encoding", .detail = "the only transfer encoding is chunked"};
   }
-  if (request.count(http::field::content_length) > 1) {
-    return Problem{.kind = "content-length", .detail = "one Content-Length is enough"};
+  if (request.count(http::field::content_length) > 1 ||
+      request[http::field::content_length].find_first_not_of("0123456789") != beast::string_view::npos) {
+    return Problem{.kind = "content-length", .detail = "Content-Length is one number"};
   }
   if (request.count(http::field::expect) > 0) {
     return Problem{.status = 417, .kind = "expect", .detail = "Expect is not supported"};
@@ -84,7 +103,7 @@ std::optional<HttpRequest> to_request(const Incoming& incoming, bool from_loopba
                      .authorization = field(incoming, "Authorization"),
                      .content_type = field(incoming, "Content-Type"),
                      .idempotency_key = field(incoming, "Idempotency-Key"),
-                     .if_none_match = field(incoming, "If-None-Match"),
+                     .if_none_match = list_field(incoming, "If-None-Match"),
                      .body = incoming.body(),
                      .from_loopback = from_loopback};
 }
@@ -120,6 +139,54 @@ std::optional<Problem> problem_of(const boost::system::error_code& failure) {
     return Problem{.kind = "http", .detail = "this is no HTTP request: " + failure.message()};
   }
   return std::nullopt;  // a socket's own failure: nobody is there to read an answer
+}
+
+/// Reads a request's header; gives its bytes as they came, or why they are none. Throws when the connection
+/// ends.
+asio::awaitable<std::variant<std::string, boost::system::error_code>> read_header(beast::tcp_stream& stream,
+                                                                                  beast::flat_buffer& buffer,
+                                                                                  Parser& parser) {
+  std::string raw;
+  while (true) {
+    boost::system::error_code failure;
+    const std::size_t used = parser.put(buffer.cdata(), failure);
+    raw.append(static_cast<const char*>(buffer.cdata().data()), used);
+    buffer.consume(used);
+    if (failure && failure != http::error::need_more) co_return failure;
+    if (parser.is_header_done()) co_return raw;
+    const auto room = buffer.prepare(kReadBytes);
+    const std::size_t count = co_await stream.async_read_some(room, asio::use_awaitable);
+    buffer.commit(count);
+  }
+}
+
+/// Reads one request; gives what is wrong with it. What its header already shows is told without waiting for
+/// its body, which may wait for a word of ours (Expect). Throws when the connection ends.
+asio::awaitable<std::optional<Problem>> read_request(beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                                     Parser& parser, const tcp::endpoint& address) {
+  boost::system::error_code failure;
+  const auto header = co_await read_header(stream, buffer, parser);
+  if (const auto* raw = std::get_if<std::string>(&header)) {
+    if (auto problem = find_http_fault(parser.get(), *raw, address)) co_return problem;
+    if (parser.is_done()) co_return std::nullopt;
+    co_await http::async_read(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failure));
+    if (!failure) co_return std::nullopt;
+  } else {
+    failure = std::get<boost::system::error_code>(header);
+  }
+  auto problem = problem_of(failure);
+  if (!problem) throw boost::system::system_error(failure);
+  co_return problem;
+}
+
+/// Ends a connection so that the last answer arrives: closing it over unread bytes would reset it.
+asio::awaitable<void> finish(beast::tcp_stream& stream, std::chrono::seconds deadline) {
+  boost::system::error_code failure;
+  stream.socket().shutdown(tcp::socket::shutdown_send, failure);
+  stream.expires_after(deadline);
+  std::array<char, kReadBytes> unread;
+  const auto room = asio::buffer(unread);
+  while (!failure) co_await stream.async_read_some(room, asio::redirect_error(asio::use_awaitable, failure));
 }
 
 /// The route's answer; a failure inside is told without its inner workings and logged with them.
@@ -184,42 +251,38 @@ asio::awaitable<void> HttpListener::serve(tcp::socket socket) {
     Parser parser;
     parser.header_limit(limits_.header_bytes_max);
     parser.body_limit(limits_.body_bytes_max);
-    boost::system::error_code failure;
     if (buffer.size() == 0) {
       stream.expires_after(limits_.idle_deadline);
-      buffer.commit(co_await stream.async_read_some(buffer.prepare(4096), asio::use_awaitable));
+      const auto room = buffer.prepare(kReadBytes);
+      const std::size_t count = co_await stream.async_read_some(room, asio::use_awaitable);
+      buffer.commit(count);
     }
     stream.expires_after(limits_.request_deadline);
-    co_await http::async_read(stream, buffer, parser, asio::redirect_error(asio::use_awaitable, failure));
-
-    std::optional<HttpResponse> response;
-    if (failure) {
-      const auto problem = problem_of(failure);
-      if (!problem) co_return;
+    auto problem = co_await read_request(stream, buffer, parser, address_);
+    const Incoming& incoming = parser.get();
+    std::optional<HttpRequest> request;
+    if (!problem) {
+      request = to_request(incoming, from_loopback);
+      if (!request) problem = Problem{.kind = "target", .detail = "the target must be a path"};
+    }
+    HttpResponse response;
+    if (problem) {
       response = to_response(*problem);
       keep_alive = false;
-    } else if (const auto problem = find_http_fault(parser.get(), address_)) {
-      response = to_response(*problem);
-      keep_alive = false;
-    } else if (const auto request = to_request(parser.get(), from_loopback)) {
+    } else {
       if (const auto wait = long_poll(*request)) {
         stream.expires_never();
         co_await operation_.wait_for_change(wait->after, wait->wait);
       }
       response = answer(*request, operation_, tokens_);
-      keep_alive = parser.get().keep_alive();
-    } else {
-      response = to_response({.kind = "target", .detail = "the target must be a path"});
-      keep_alive = false;
+      keep_alive = incoming.keep_alive();
     }
-    const bool head = !failure && parser.get().method() == http::verb::head;
-    const unsigned version = failure ? 11 : parser.get().version();
-    const auto message = to_message(std::move(*response), version, keep_alive, head);
+    const bool head = incoming.method() == http::verb::head;
+    const auto message = to_message(std::move(response), incoming.version(), keep_alive, head);
     stream.expires_after(limits_.request_deadline);
     co_await http::async_write(stream, message, asio::use_awaitable);
   }
-  boost::system::error_code ignored;
-  stream.socket().shutdown(tcp::socket::shutdown_send, ignored);
+  co_await finish(stream, limits_.request_deadline);
 }
 
 }  // namespace cell

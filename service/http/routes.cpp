@@ -300,7 +300,11 @@ std::optional<HttpResponse> refuse_content_type(const HttpRequest& request) {
   if (request.body.empty()) return std::nullopt;
   const std::string_view type =
       request.content_type ? std::string_view(*request.content_type) : std::string_view();
-  if (type.substr(0, type.find(';')) == "application/json") return std::nullopt;
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  if (std::ranges::equal(type.substr(0, type.find_first_of("; \t")), std::string_view("application/json"), {},
+                         lower)) {
+    return std::nullopt;
+  }
   return to_response({.status = 415, .kind = "content-type", .detail = "a body must be application/json"});
 }
 
@@ -349,6 +353,12 @@ std::optional<LongPoll> long_poll(const HttpRequest& request) {
   const auto sequence = integer<std::uint64_t>(after->second);
   if (!seconds || !sequence || *seconds < 0) return std::nullopt;
   return LongPoll{*sequence, std::chrono::seconds(std::min(*seconds, kWaitSecondsMax))};
+}
+
+std::vector<RouteName> route_names() {
+  std::vector<RouteName> names;
+  for (const Route& known : kRoutes) names.push_back({known.method, known.path});
+  return names;
 }
 
 HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens) {

@@ -58,6 +58,13 @@ struct LongPoll {
 };
 std::optional<LongPoll> long_poll(const HttpRequest& request);
 
+struct RouteName {
+  std::string_view method;
+  std::string_view path;  // behind /api/v1/; * stands for any one segment
+};
+/// Everything version 1 answers to.
+std::vector<RouteName> route_names();
+
 /// Version 1 of the API (contract.md, section 4).
 HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens);
 

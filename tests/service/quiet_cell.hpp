@@ -1,0 +1,38 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+
+#include "service/acquisition/operation.hpp"
+#include "service/store/touch_store.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+
+/// The paper's cell in operation without a controller, its store in a folder of its own. Not launched: it
+/// stays in the state that the commands of a test lead to.
+class QuietCell {
+ public:
+  boost::asio::io_context& context() { return context_; }
+  TouchStore& store() { return store_; }
+  Operation& operation() { return operation_; }
+
+ private:
+  /// Where nobody listens: a port that is bound, so that nobody else can take it.
+  Endpoint nobody() {
+    const boost::asio::ip::tcp::endpoint any_port(boost::asio::ip::address_v4::loopback(), 0);
+    held_port_.open(any_port.protocol());
+    held_port_.bind(any_port);
+    return {"127.0.0.1", held_port_.local_endpoint().port()};
+  }
+
+  Folder folder_;
+  TouchStore store_{folder_.path() / "touchcal.sqlite"};
+  boost::asio::io_context context_{1};
+  boost::asio::ip::tcp::socket held_port_{context_};
+  Operation operation_{context_.get_executor(), edf(), store_, nobody(), "instance", [] {
+                         return std::chrono::system_clock::time_point{};
+                       }};
+};
+
+}  // namespace cell
