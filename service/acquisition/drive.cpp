@@ -166,7 +166,12 @@ asio::awaitable<bool> Operation::plan() {
     plans_.emplace(recipe.name, std::get<calib::TouchPlan>(outcome));
   }
   run_->set_plan(plans_.at(recipe.name));
-  store_.set_touches_total(run_->id(), run_->touches_total());
+  try {
+    store_.set_touches_total(run_->id(), run_->touches_total());
+  } catch (const std::exception& error) {
+    raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    co_return false;
+  }
   publish();
   co_return true;
 }
@@ -328,13 +333,14 @@ void Operation::close_run(const std::string& outcome) {
     end.fault_code = std::string(describe(status_.fault->code).name);
     end.fault_message = status_.fault->message();
   }
-  if (status_.verdict == Verdict::kAccepted) {
-    status_.last_accepted_run_id = run_->id();
-    status_.last_accepted_at = end.ended_at;
-  }
   try {
     store_.finish_run(run_->id(), end);
+    if (status_.verdict == Verdict::kAccepted) {
+      status_.last_accepted_run_id = run_->id();
+      status_.last_accepted_at = end.ended_at;
+    }
   } catch (const std::exception& error) {
+    status_.verdict = Verdict::kIncomplete;  // what is not on the disk is not accepted
     status_.fault = Fault{FaultCode::kStoreFailed, error.what()};
     spdlog::error("run {}: its end could not be stored: {}", run_->id(), error.what());
   }
