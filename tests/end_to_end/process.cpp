@@ -1,0 +1,91 @@
+#include "tests/end_to_end/process.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <csignal>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+extern char** environ;
+
+namespace touchcal::testing {
+namespace {
+
+/// No test waits longer for a word of a program.
+constexpr int kPatienceMilliseconds = 60'000;
+
+}  // namespace
+
+Process::Process(const std::vector<std::string>& arguments, std::filesystem::path error_file)
+    : error_file_(std::move(error_file)) {
+  const std::string program = std::string(TOUCHCAL_PROGRAMS_DIR) + "/" + arguments.front();
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  std::array<int, 2> pipe{};
+  if (::pipe2(pipe.data(), O_CLOEXEC) != 0) throw std::runtime_error("no pipe");
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, pipe[1], STDOUT_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, error_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                   0600);
+  const int failure = posix_spawn(&pid_, program.c_str(), &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(pipe[1]);
+  output_ = pipe[0];
+  if (failure != 0) {
+    ::close(output_);
+    throw std::runtime_error(program + " cannot be started");
+  }
+}
+
+Process::~Process() {
+  if (output_ >= 0) ::close(output_);
+  if (pid_ < 0) return;
+  signal(SIGKILL);
+  ::waitpid(pid_, nullptr, 0);
+}
+
+void Process::signal(int number) const {
+  if (pid_ > 0) ::kill(pid_, number);
+}
+
+/// False when its output has ended.
+bool Process::read_more() {
+  pollfd readable{output_, POLLIN, 0};
+  if (::poll(&readable, 1, kPatienceMilliseconds) <= 0)
+    throw std::runtime_error("it says no more after: " + out_);
+  std::array<char, 4096> bytes{};
+  const ssize_t count = ::read(output_, bytes.data(), bytes.size());
+  if (count > 0) out_.append(bytes.data(), static_cast<std::size_t>(count));
+  return count > 0;
+}
+
+std::string Process::wait_for_address() {
+  constexpr std::string_view kBefore = "listening on ";
+  while (out_.find('\n') == std::string::npos && read_more()) {
+  }
+  if (!out_.starts_with(kBefore)) throw std::runtime_error("it does not listen: " + out_);
+  return out_.substr(kBefore.size(), out_.find('\n') - kBefore.size());
+}
+
+Finished Process::wait() {
+  while (read_more()) {
+  }
+  int status = 0;
+  ::waitpid(std::exchange(pid_, -1), &status, 0);
+  std::ifstream error(error_file_, std::ios::binary);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out_,
+          std::string(std::istreambuf_iterator<char>(error), {})};
+}
+
+}  // namespace touchcal::testing

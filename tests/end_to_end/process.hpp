@@ -1,0 +1,43 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace touchcal::testing {
+
+/// What a program that ended has left.
+struct Finished {
+  int exit_code = -1;  // 128 + signal when a signal ended it
+  std::string out;
+  std::string err;
+};
+
+/// One of the build's programs as a process of its own. Still running when it goes, it is killed.
+class Process {
+ public:
+  /// `arguments` start with the program's name. What it writes to standard error goes to `error_file`.
+  Process(const std::vector<std::string>& arguments, std::filesystem::path error_file);
+  ~Process();
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  /// "HOST:PORT" of the line "listening on HOST:PORT"; std::runtime_error when it says something else or
+  /// nothing.
+  std::string wait_for_address();
+  void signal(int number) const;
+  /// Waits for its end; std::runtime_error when there is none.
+  Finished wait();
+
+ private:
+  bool read_more();
+
+  std::filesystem::path error_file_;
+  pid_t pid_ = -1;
+  int output_ = -1;  // the reading end of its standard output; -1 once that has ended
+  std::string out_;
+};
+
+}  // namespace touchcal::testing

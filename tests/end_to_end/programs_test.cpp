@@ -1,0 +1,226 @@
+// The three programs as processes: their exit codes, what they print and where.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "service/exit_code.hpp"
+#include "service/store/touch_store.hpp"
+#include "tests/end_to_end/folder.hpp"
+#include "tests/end_to_end/process.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+const std::string kTouches = std::string(TOUCHCAL_SOURCE_DIR) + "/tests/data/table3-exact.touches.json";
+
+class Programs : public ::testing::Test {
+ protected:
+  Finished run(const std::vector<std::string>& arguments) {
+    return Process(arguments, folder_ / "call.err").wait();
+  }
+
+  Folder folder_;
+};
+
+TEST_F(Programs, TellTheirUsageAndTheirVersion) {
+  for (const std::string program : {"touchcald", "touchcal", "cs8sim"}) {
+    const Finished help = run({program, "--help"});
+    EXPECT_EQ(help.exit_code, cell::kExitDone) << program;
+    EXPECT_THAT(help.out, HasSubstr("--")) << program;
+    EXPECT_EQ(help.err, "") << program;
+    const Finished version = run({program, "--version"});
+    EXPECT_EQ(version.exit_code, cell::kExitDone) << program;
+    EXPECT_EQ(version.out, program + " " TOUCHCAL_VERSION "\n");
+    EXPECT_EQ(version.err, "") << program;
+  }
+}
+
+TEST_F(Programs, EndWithTwoWhenTheyAreUsedWrongly) {
+  const std::string cell = cell_file("edf");
+  const std::vector<std::vector<std::string>> calls{
+      {"touchcald"},
+      {"touchcald", "--nonsense"},
+      {"touchcald", "--cell", cell, "--listen", "nowhere"},
+      {"touchcald", "--cell", cell, "--controller", "127.0.0.1:high"},
+      {"touchcal"},
+      {"touchcal", "levitate"},
+      {"touchcal", "identify"},
+      {"touchcal", "identify", "--cell", cell, "--touches"},
+      {"touchcal", "status", "--daemon", "gopher://127.0.0.1"},
+      {"cs8sim"},
+      {"cs8sim", "--cell", cell, "--speed", "-1"},
+      {"cs8sim", "--cell", cell, "--listen", "127.0.0.1"}};
+  for (const std::vector<std::string>& call : calls) {
+    const Finished finished = run(call);
+    EXPECT_EQ(finished.exit_code, cell::kExitUsage) << ::testing::PrintToString(call);
+    EXPECT_EQ(finished.out, "") << ::testing::PrintToString(call);
+    EXPECT_NE(finished.err, "") << ::testing::PrintToString(call);
+  }
+}
+
+TEST_F(Programs, IdentifyThePapersArmFromAFile) {
+  const Finished json =
+      run({"touchcal", "identify", "--cell", cell_file("edf"), "--touches", kTouches, "--json"});
+  EXPECT_EQ(json.exit_code, cell::kExitDone) << json.err;
+  EXPECT_EQ(json.err, "");
+  const auto result = nlohmann::json::parse(json.out);
+  EXPECT_EQ(result.at("schema"), "touchcal/result/1");
+  EXPECT_EQ(result.at("identifiable_count"), kRank);
+  EXPECT_EQ(result.at("verdict").at("accepted"), true);
+  const Finished text = run({"touchcal", "identify", "--cell", cell_file("edf"), "--touches", kTouches});
+  EXPECT_EQ(text.exit_code, cell::kExitDone);
+  EXPECT_THAT(text.out, HasSubstr("alpha1"));
+}
+
+TEST_F(Programs, TellADaemonThatIsNotThere) {
+  // A port that is bound and not listened at stays nobody's for the time of the test.
+  boost::asio::io_context io;
+  boost::asio::ip::tcp::acceptor held(io, boost::asio::ip::tcp::v4());
+  held.bind({boost::asio::ip::address_v4::loopback(), 0});
+  const std::string url = "http://127.0.0.1:" + std::to_string(held.local_endpoint().port());
+  for (const char* command : {"status", "run", "stop", "runs", "watch"}) {
+    const Finished finished = run({"touchcal", command, "--daemon", url});
+    EXPECT_EQ(finished.exit_code, cell::kExitUnreachable) << command;
+    EXPECT_EQ(finished.out, "") << command;
+    EXPECT_THAT(finished.err, HasSubstr(url)) << command;
+  }
+}
+
+/// A daemon and a simulated controller on a shipped cell, each on a free port.
+class RunningCell {
+ public:
+  RunningCell(const std::string& name, const std::string& speed)
+      : cell_file_(cell_file(name)),
+        controller_({"cs8sim", "--cell", cell_file_, "--listen", "127.0.0.1:0", "--speed", speed},
+                    folder_ / "cs8sim.err"),
+        controller_address_(controller_.wait_for_address()) {
+    start_daemon();
+  }
+
+  void start_daemon() {
+    daemon_.reset();
+    daemon_.emplace(std::vector<std::string>{"touchcald", "--cell", cell_file_, "--listen", "127.0.0.1:0",
+                                             "--controller", controller_address_, "--state", state()},
+                    folder_ / "touchcald.err");
+    url_ = "http://" + daemon_->wait_for_address();
+  }
+
+  [[nodiscard]] std::vector<std::string> call(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), "touchcal");
+    for (const std::string& argument : {std::string("--daemon"), url_, std::string("--state"), state()}) {
+      arguments.push_back(argument);
+    }
+    return arguments;
+  }
+  Finished run(const std::vector<std::string>& arguments) const {
+    return Process(call(arguments), folder_ / "call.err").wait();
+  }
+  nlohmann::json status() const { return nlohmann::json::parse(run({"status", "--json"}).out); }
+
+  /// Asks again and again, as a supervisor that polls does.
+  void wait_for_touches(int count) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (status().at("touches_done") < count) {
+      if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(status().dump());
+    }
+  }
+
+  [[nodiscard]] const Folder& folder() const { return folder_; }
+  Process& controller() { return controller_; }
+  Process& daemon() { return *daemon_; }
+  [[nodiscard]] std::filesystem::path store_file() const { return folder_ / "state" / "touchcal.sqlite"; }
+
+ private:
+  [[nodiscard]] std::string state() const { return (folder_ / "state").string(); }
+
+  Folder folder_;
+  std::string cell_file_;
+  Process controller_;
+  std::string controller_address_;
+  std::optional<Process> daemon_;
+  std::string url_;
+};
+
+TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
+  RunningCell cell("demo", "max");
+  const Finished run = cell.run({"run", kRecipe, "--json"});
+  EXPECT_EQ(run.exit_code, cell::kExitDone) << run.err;
+  const auto result = nlohmann::json::parse(run.out);
+  EXPECT_EQ(result.at("schema"), "touchcal/result/1");
+  EXPECT_EQ(result.at("complete"), true);
+  EXPECT_EQ(result.at("verdict").at("accepted"), true);
+  EXPECT_EQ(cell.status().at("state"), "COMPLETE");
+  const Finished shown = cell.run({"show", "1", "--json"});
+  EXPECT_EQ(nlohmann::json::parse(shown.out), result);
+
+  cell.daemon().signal(SIGTERM);
+  EXPECT_EQ(cell.daemon().wait().exit_code, 0);
+  cell.controller().signal(SIGTERM);
+  EXPECT_EQ(cell.controller().wait().exit_code, 0);
+}
+
+TEST(Daemon, SaysThatTheControllerWasLostWhenItIsKilledInARun) {
+  RunningCell cell("edf", "50");
+  Process run(cell.call({"run", kRecipe, "--json"}), cell.folder() / "run.err");
+  cell.wait_for_touches(3);
+  cell.controller().signal(SIGKILL);
+  const Finished finished = run.wait();
+  EXPECT_EQ(finished.exit_code, cell::kExitFailed) << finished.err;
+  EXPECT_THAT(finished.err, HasSubstr("link"));
+  const auto status = cell.status();
+  EXPECT_EQ(status.at("state"), "ABORTED");
+  EXPECT_EQ(status.at("fault_code"), "link_lost");
+  EXPECT_EQ(status.at("verdict"), "incomplete");
+  EXPECT_GE(status.at("touches_done"), 3);
+  EXPECT_EQ(cell.run({"clear"}).exit_code, cell::kExitDone);
+  cell.daemon().signal(SIGTERM);
+  EXPECT_EQ(cell.daemon().wait().exit_code, 0);
+}
+
+TEST(Daemon, EndsAtASignalInTheMiddleOfARunAndKeepsItsTouches) {
+  RunningCell cell("edf", "50");
+  Process run(cell.call({"run", kRecipe, "--json"}), cell.folder() / "run.err");
+  cell.wait_for_touches(3);
+  cell.daemon().signal(SIGTERM);
+  EXPECT_EQ(cell.daemon().wait().exit_code, 0);
+  EXPECT_EQ(run.wait().exit_code, cell::kExitUnreachable);
+  cell.controller().signal(SIGTERM);
+  EXPECT_EQ(cell.controller().wait().exit_code, 0);
+  const cell::TouchStore store(cell.store_file());
+  EXPECT_EQ(store.run(1)->outcome, "stopped");
+  EXPECT_GE(store.touches(1).size(), 3U);
+}
+
+TEST(Daemon, ThatWasKilledFindsItsRunInterruptedAndCanRunAgain) {
+  RunningCell cell("edf", "50");
+  Process run(cell.call({"run", kRecipe, "--json"}), cell.folder() / "run.err");
+  cell.wait_for_touches(3);
+  cell.daemon().signal(SIGKILL);
+  EXPECT_EQ(cell.daemon().wait().exit_code, 128 + SIGKILL);
+  EXPECT_EQ(run.wait().exit_code, cell::kExitUnreachable);
+
+  cell.start_daemon();
+  const auto history = nlohmann::json::parse(cell.run({"runs", "--json"}).out).at("runs");
+  ASSERT_EQ(history.size(), 1U);
+  EXPECT_EQ(history[0].at("outcome"), "interrupted");
+  EXPECT_EQ(history[0].at("verdict"), "incomplete");
+  EXPECT_GE(history[0].at("touches_done"), 3);
+  Process again(cell.call({"run", kRecipe, "--json"}), cell.folder() / "run.err");
+  cell.wait_for_touches(3);
+  EXPECT_EQ(cell.status().at("run_id"), "2");
+  EXPECT_EQ(cell.run({"stop"}).exit_code, cell::kExitDone);
+  EXPECT_EQ(again.wait().exit_code, cell::kExitFailed);
+}
+
+}  // namespace
+}  // namespace touchcal::testing
