@@ -17,8 +17,8 @@ using cell::State;
 using cs8::MessageType;
 using sim::Fault;
 
-/// Links that are silent for this long are lost; short, so that the tests are.
-constexpr std::chrono::milliseconds kHeartbeatTimeout{250};
+/// Where silence is the fault, links that are silent for this long are lost, so that the test is short.
+constexpr std::chrono::milliseconds kSilenceMax{500};
 
 /// How far the controller came with the n-th touch when the fault cut it off.
 enum class Reached {
@@ -52,7 +52,7 @@ void meet(const Case& link_case, std::uint32_t nth, int before) {
   const int captured = before + (link_case.reached == Reached::kCaptured ? 1 : 0);
   const int kept = before + (link_case.reached == Reached::kNotMade ? 0 : 1);
   LoopbackCell loop;
-  loop.cell.deadlines.heartbeat_timeout = kHeartbeatTimeout;
+  if (link_case.fault == Fault::kGoSilent) loop.cell.deadlines.heartbeat_timeout = kSilenceMax;
   loop.cell.deadlines.command = std::chrono::milliseconds(100);
   loop.serve({{link_case.fault, link_case.on, nth}});
   loop.launch();
