@@ -84,8 +84,7 @@ HttpResponse not_found(std::string detail) {
 }
 
 HttpResponse from_refusal(const Refusal& refusal, const Operation& operation) {
-  const unsigned status = refusal.kind == Refusal::Kind::kUnknownRecipe ? 422 : 409;
-  Problem problem{.status = status, .kind = "state", .detail = refusal.detail};
+  Problem problem{.status = 409, .kind = "state", .detail = refusal.detail};
   switch (refusal.kind) {
     case Refusal::Kind::kState:
       break;
@@ -93,10 +92,12 @@ HttpResponse from_refusal(const Refusal& refusal, const Operation& operation) {
       problem.kind = "preconditions";
       break;
     case Refusal::Kind::kUnknownRecipe:
+      problem.status = 422;
       problem.kind = "unknown-recipe";
       problem.pointer = "/recipe";
       break;
     case Refusal::Kind::kOtherKey:
+      problem.status = 422;
       problem.kind = "idempotency-key";
       break;
     case Refusal::Kind::kNotThisRun:
