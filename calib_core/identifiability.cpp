@@ -152,8 +152,4 @@ double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
   return sigma[0] / sigma[sigma.size() - 1];
 }
 
-double scaled_condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
-  return condition_number(matrix * matrix.colwise().norm().cwiseInverse().asDiagonal());
-}
-
 }  // namespace calib

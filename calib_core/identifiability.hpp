@@ -54,7 +54,4 @@ Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix)
 /// sigma_max / sigma_min (eq. 16); infinite when sigma_min is 0.
 double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
-/// The same after columns of unit norm.
-double scaled_condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
-
 }  // namespace calib

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
 
 namespace calib {
 namespace {
@@ -35,15 +36,19 @@ std::optional<std::string> find_bad_input(const IdentificationProblem& problem, 
   return std::nullopt;
 }
 
-/// How many fitted touches each plane is short of an even share, largest shortage first.
-std::string missing_on_planes(const std::vector<Touch>& fitted, std::size_t plane_count, int needed) {
-  const std::size_t share = (static_cast<std::size_t>(needed) + plane_count - 1) / plane_count;
+/// Where the missing touches are best made: each on the plane that then has the fewest.
+std::string missing_on_planes(const std::vector<Touch>& fitted, std::size_t plane_count, int missing) {
+  std::vector<int> have(plane_count, 0), add(plane_count, 0);
+  for (const Touch& touch : fitted) ++have[static_cast<std::size_t>(touch.face)];
+  for (int i = 0; i < missing; ++i) {
+    const auto fewest = static_cast<std::size_t>(std::ranges::min_element(have) - have.begin());
+    ++have[fewest];
+    ++add[fewest];
+  }
   std::string text;
   for (std::size_t face = 0; face < plane_count; ++face) {
-    const auto have = static_cast<std::size_t>(std::ranges::count_if(
-        fitted, [&](const Touch& touch) { return static_cast<std::size_t>(touch.face) == face; }));
-    if (have >= share) continue;
-    text += (text.empty() ? "" : ", ") + std::to_string(share - have) + " on " + plane_name(face);
+    if (add[face] == 0) continue;
+    text += (text.empty() ? "" : ", ") + std::to_string(add[face]) + " on " + plane_name(face);
   }
   return text;
 }
@@ -52,7 +57,7 @@ std::string too_few_message(const std::vector<Touch>& fitted, std::size_t plane_
   const int have = static_cast<int>(fitted.size());
   return std::to_string(have) + " touches, but " + std::to_string(needed) + " parameters need at least " +
          std::to_string(needed) + ": " + std::to_string(needed - have) + " more are missing (" +
-         missing_on_planes(fitted, plane_count, needed) + ")";
+         missing_on_planes(fitted, plane_count, needed - have) + ")";
 }
 
 std::string unobservable_message(const std::vector<Touch>& fitted, std::size_t plane_count, int shown,
@@ -113,9 +118,10 @@ void iterate(const IdentificationProblem& problem, const IdentificationOptions& 
       return;
     }
   }
+  std::ostringstream last_step;
+  last_step << result.iterations.back().step_norm;
   result.message = "no convergence in " + std::to_string(options.iterations_max) + " iterations (last step " +
-                   std::to_string(result.iterations.back().step_norm) +
-                   "); look for touches on the wrong plane";
+                   last_step.str() + "); look for touches on the wrong plane";
 }
 
 std::vector<FaceDistances> face_distances(const IdentificationProblem& problem,

@@ -1,13 +1,11 @@
 #include "service/daemon.hpp"
 
 #include <fcntl.h>
-#include <openssl/rand.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 #include <sys/file.h>
 #include <unistd.h>
 
-#include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
@@ -52,15 +50,6 @@ class DirectoryLock {
   int descriptor_;
 };
 
-std::string random_instance_id() {
-  std::array<unsigned char, 8> bytes{};
-  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1)
-    throw std::runtime_error("no random numbers");
-  std::string text;
-  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
-  return text;
-}
-
 asio::ip::tcp::endpoint listen_address(asio::io_context& context, const Endpoint& listen) {
   asio::ip::tcp::resolver resolver(context);
   const asio::ip::tcp::endpoint address =
@@ -86,8 +75,9 @@ std::filesystem::path default_state_directory() {
 }
 
 void run_daemon(const Cell& cell, const DaemonOptions& options) {
-  std::filesystem::create_directories(options.state_directory);
-  std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
+  if (std::filesystem::create_directories(options.state_directory)) {
+    std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
+  }
   const DirectoryLock lock(options.state_directory);
   TouchStore store(options.state_directory / "touchcal.sqlite");
   const Tokens tokens = load_or_make_tokens(options.state_directory);
@@ -98,7 +88,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
 
   asio::io_context context(1);
   Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
-                      random_instance_id(), clock);
+                      random_hex(8), clock);
   HttpListener listener(context.get_executor(), listen_address(context, options.listen), operation, tokens);
   asio::signal_set signals(context, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& failure, int signal) {
@@ -106,6 +96,8 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     spdlog::info("signal {}: stopping", signal);
     listener.close();
     asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
+    signals.async_wait(
+        [&](const boost::system::error_code&, int) { context.stop(); });  // a second one: at once
   });
   operation.launch();
   listener.launch();

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "cs8_protocol/wire_units.hpp"
+#include "service/acquisition/touch_command.hpp"
 
 namespace cell {
 
@@ -14,11 +14,7 @@ std::vector<calib::Plane> contact_planes(const Cell& cell) {
 }
 
 calib::Touch to_touch(const StoredTouch& stored) {
-  calib::Touch touch{.face = stored.plane - 1, .role = stored.role};
-  for (int i = 0; i < calib::kJointCount; ++i) {
-    touch.joints[i] = cs8::radians_from_microdeg(stored.joints[static_cast<std::size_t>(i)]);
-  }
-  return touch;
+  return {.face = stored.plane - 1, .joints = from_wire(stored.joints), .role = stored.role};
 }
 
 Run::Run(std::int64_t id, const Cell& cell, Recipe recipe, std::string started_at)

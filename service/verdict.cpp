@@ -26,7 +26,7 @@ std::string_view verdict_name(Verdict verdict) {
 
 Judgement judge(const calib::IdentificationResult& result, const AcceptanceLimits& limits, bool complete) {
   std::vector<std::string> reasons;
-  if (!complete) reasons.emplace_back("not all touches of the recipe were made");
+  if (!complete) reasons.emplace_back("the run did not come to its end");
   if (result.status != calib::IdentificationStatus::kConverged) reasons.push_back(result.message);
   // Written so that a figure that is no number misses its limit.
   if (!result.iterations.empty() &&

@@ -1,4 +1,4 @@
-// What the states of an Operation do: one coroutine, one step at a time.
+// What the states of an Operation do: one coroutine, one step at a time. The link is met in link.cpp.
 // Each co_await stands alone in its statement and takes named values: GCC 12 miscompiles it inside conditions
 // and destroys braced temporaries twice.
 #include <spdlog/fmt/fmt.h>
@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <boost/asio/bind_executor.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -21,14 +20,6 @@ namespace cell {
 
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
-
-namespace {
-
-/// Pauses between attempts to connect: growing, so that a controller that is off is not hammered.
-constexpr auto kFirstPause = 100ms;
-constexpr auto kLongestPause = 2000ms;
-
-}  // namespace
 
 asio::awaitable<void> Operation::wait_for_wake(std::chrono::milliseconds at_most) {
   wake_.expires_after(at_most);
@@ -60,7 +51,10 @@ asio::awaitable<void> Operation::drive() {
         apply(Event::kDone);
         break;
       case State::kHolding:
+        apply(Event::kDone);
+        break;
       case State::kUnholding:
+        standing_.reset();  // on hold the arm may have been moved by hand
         apply(Event::kDone);
         break;
       case State::kClearing:
@@ -82,73 +76,6 @@ asio::awaitable<void> Operation::drive() {
   }
 }
 
-asio::awaitable<void> Operation::reset() {
-  if (!client_.connected()) {
-    co_await connect();
-    co_return;
-  }
-  if (open_touch_) {
-    co_await settle_open_command(open_touch_->sequence);
-  } else if (unmet_preconditions().empty()) {
-    apply(Event::kDone);
-  } else {
-    co_await wait_for_wake(1h);  // each state of the controller wakes
-  }
-}
-
-/// Tries until there is a link or the state changes. Nothing moves by it.
-asio::awaitable<void> Operation::connect() {
-  asio::ip::tcp::resolver resolver(executor_);
-  const State state = status_.state;
-  for (auto pause = std::chrono::milliseconds(kFirstPause); status_.state == state && !shutting_down_;
-       pause = std::min(2 * pause, std::chrono::milliseconds(kLongestPause))) {
-    boost::system::error_code failure;
-    const auto found = co_await resolver.async_resolve(endpoint_.host, std::to_string(endpoint_.port),
-                                                       asio::redirect_error(asio::use_awaitable, failure));
-    cs8::ConnectReply reply = cs8::LinkError{cs8::LinkErrorKind::kUnreachable,
-                                             fmt::format("{}: {}", endpoint_.host, failure.message())};
-    if (!failure) {
-      const cs8::ExpectedController expected{.arm = cell_.arm.name,
-                                             .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
-                                             .upper_limits = to_wire(cell_.arm.joint_ranges.upper)};
-      reply = co_await client_.connect(found.begin()->endpoint(), expected);
-    }
-    if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
-      session_ = welcome->session;
-      status_.fault.reset();  // it was the link's
-      publish();
-      if (welcome->open_sequence != 0) co_await settle_open_command(welcome->open_sequence);
-      co_return;
-    }
-    const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
-    if (!status_.fault || status_.fault->message() != fault.message()) raise(fault, Event::kLinkDown);
-    if (status_.state == state && !shutting_down_) co_await wait_for_wake(pause);
-  }
-}
-
-/// A result that still waits at the controller belongs to a run that is over. A contact in it was captured
-/// all the same: it is kept with that run. Then the controller may forget it, and the next run can start.
-asio::awaitable<void> Operation::settle_open_command(std::uint32_t sequence) {
-  const cs8::QueryReply reply = co_await client_.query(sequence, cell_.deadlines.command);
-  if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
-  const auto* result = std::get_if<cs8::TouchResult>(&reply);
-  const bool ours = open_touch_ && open_touch_->session == session_ && open_touch_->sequence == sequence;
-  if (result && ours && result->outcome == cs8::Outcome::kContact &&
-      !implausible(cell_, open_touch_->planned, *result)) {
-    spdlog::info("run {}: touch {} had been made when the run ended", run_->id(), run_->touches_done() + 1);
-    if (!keep_touch(open_touch_->planned, *result)) {
-      enter(State::kStopped);  // it waits at the controller until it can be stored
-      co_return;
-    }
-  }
-  acknowledge(sequence);
-}
-
-void Operation::acknowledge(std::uint32_t sequence) {
-  client_.acknowledge(sequence);
-  open_touch_.reset();
-}
-
 asio::awaitable<bool> Operation::plan() {
   const Recipe& recipe = run_->recipe();
   if (!plans_.contains(recipe.name)) {
@@ -157,10 +84,11 @@ asio::awaitable<bool> Operation::plan() {
     const auto outcome = calib::plan_touches(problem);
     co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
     if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome)) {
-      raise({FaultCode::kRecipeUnreachable,
-             fmt::format("plane {}: {} of {} touches found; {}", failure->face + 1, failure->found,
-                         failure->wanted, failure->reason)},
-            Event::kAbortFault);
+      const std::string found = failure->wanted == 0
+                                    ? std::string()
+                                    : fmt::format("plane {}: {} of {} touches found; ", failure->face + 1,
+                                                  failure->found, failure->wanted);
+      raise({FaultCode::kRecipeUnreachable, found + failure->reason}, Event::kAbortFault);
       co_return false;
     }
     plans_.emplace(recipe.name, std::get<calib::TouchPlan>(outcome));
@@ -176,35 +104,6 @@ asio::awaitable<bool> Operation::plan() {
   co_return true;
 }
 
-/// The controller's state, told after this call and at rest; nothing when the link or the state of the run is
-/// lost.
-asio::awaitable<std::optional<cs8::State>> Operation::settled_state() {
-  const State state = status_.state;
-  const auto asked_at = std::chrono::steady_clock::now();
-  while (client_.connected() && status_.state == state) {
-    const auto told = client_.latest_state();
-    if (told && client_.heard_at() > asked_at && (told->flags & cs8::kSettled) != 0) co_return told;
-    co_await wait_for_wake(20ms);
-  }
-  co_return std::nullopt;
-}
-
-/// Where the arm stands, clear of the faces: a search that was broken off left the stylus near one, and the
-/// arm goes back along its line first. Nothing when that failed or another state was entered meanwhile.
-asio::awaitable<std::optional<calib::JointVector>> Operation::standing_joints() {
-  if (standing_) co_return standing_;
-  auto told = co_await settled_state();
-  if (told && (told->flags & cs8::kRetractDue) != 0) {
-    const State state = status_.state;
-    const cs8::MoveReply reply = co_await client_.retract(retract_command(cell_));
-    take_move(reply);
-    if (status_.state != state) co_return std::nullopt;
-    told = co_await settled_state();
-  }
-  if (!told) co_return std::nullopt;
-  co_return from_wire(told->joints);
-}
-
 asio::awaitable<void> Operation::start_run() {
   standing_.reset();
   const bool planned = co_await plan();
@@ -218,7 +117,11 @@ asio::awaitable<void> Operation::make_next_touch() {
     co_return;
   }
   const auto from = co_await standing_joints();
-  if (!from || status_.state != State::kExecute) co_return;
+  if (status_.state != State::kExecute) co_return;
+  if (!from) {
+    co_await wait_for_wake(20ms);  // the link is gone, and its loss is about to be told
+    co_return;
+  }
   const auto via =
       calib::find_transfer(planning_problem(cell_, run_->recipe()), *from, planned->clear_joints);
   if (!via) {
@@ -247,8 +150,9 @@ void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::Touc
     raise(fault->fault, fault->holds ? Event::kHoldFault : Event::kAbortFault);
     return;
   }
-  if (result.outcome != cs8::Outcome::kContact) {  // stopped, as was asked
+  if (result.outcome != cs8::Outcome::kContact) {
     acknowledge(reply.sequence);
+    expect_stop(result.outcome);
     return;
   }
   if (const auto why = implausible(cell_, planned, result)) {
@@ -260,6 +164,27 @@ void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::Touc
   acknowledge(reply.sequence);
   standing_ = planned.clear_joints;
   publish();
+}
+
+/// A command that came neither to its end nor to a fault was stopped, as somebody asked; nobody else may.
+void Operation::expect_stop(cs8::Outcome outcome) {
+  const bool asked = status_.state == State::kStopping || status_.state == State::kAborting;
+  if (outcome == cs8::Outcome::kStopped && asked) return;
+  raise({FaultCode::kProtocolError,
+         fmt::format("a command was answered with '{}', which nobody asked for", cs8::name(outcome))},
+        Event::kAbortFault);
+}
+
+/// A contact of a run that is over: its stored result follows, its verdict does not change.
+bool Operation::keep_late_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result) {
+  if (!keep_touch(planned, result)) return false;
+  try {
+    if (const auto document = result_json()) store_.set_result_json(run_->id(), *document);
+  } catch (const std::exception& error) {
+    spdlog::error("run {}: its result could not be stored: {}", run_->id(), error.what());
+  }
+  publish();
+  return true;
 }
 
 /// Stores and counts a contact; false when it could not be stored, which ends the run.
@@ -279,20 +204,33 @@ bool Operation::keep_touch(const calib::PlannedTouch& planned, const cs8::TouchR
   }
 }
 
-void Operation::take_move(const cs8::MoveReply& reply) {
+/// True when the arm is where it was sent.
+bool Operation::take_move(const cs8::MoveReply& reply) {
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
-    raise(fault_of(*rejected).fault, Event::kAbortFault);
-  } else if (const auto* result = std::get_if<cs8::MoveResult>(&reply.answer)) {
-    client_.acknowledge(reply.sequence);
-    if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {
-      raise(fault->fault, Event::kAbortFault);
-    }
-  }  // a lost link has been told by lose()
+    const OutcomeFault refused = fault_of(*rejected);
+    const bool holds = refused.holds && status_.state == State::kExecute;
+    raise(refused.fault, holds ? Event::kHoldFault : Event::kAbortFault);
+    return false;
+  }
+  const auto* result = std::get_if<cs8::MoveResult>(&reply.answer);
+  if (!result) return false;  // a lost link, which lose() tells
+  client_.acknowledge(reply.sequence);
+  if (result->outcome == cs8::Outcome::kArrived) return true;
+  if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {
+    raise(fault->fault, Event::kAbortFault);
+  } else {
+    expect_stop(result->outcome);
+  }
+  return false;
 }
 
 asio::awaitable<void> Operation::complete_run() {
-  co_await park();
+  const bool parked = co_await park();
   if (status_.state != State::kCompleting) co_return;
+  if (!parked) {
+    co_await wait_for_wake(20ms);  // the link is gone, and its loss is about to be told
+    co_return;
+  }
   const calib::IdentificationResult& result = run_->latest();
   if (result.status != calib::IdentificationStatus::kConverged) {
     status_.fault = Fault{FaultCode::kNotIdentifiable, result.message};
@@ -301,17 +239,17 @@ asio::awaitable<void> Operation::complete_run() {
   apply(Event::kDone);
 }
 
-asio::awaitable<void> Operation::park() {
+asio::awaitable<bool> Operation::park() {
   const auto from = co_await standing_joints();
-  if (!from || status_.state != State::kCompleting) co_return;
+  if (!from || status_.state != State::kCompleting) co_return false;
   const auto via = calib::find_transfer(planning_problem(cell_, run_->recipe()), *from, cell_.park_joints);
   if (!via) {
     raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kAbortFault);
-    co_return;
+    co_return false;
   }
   standing_.reset();
   const cs8::MoveReply reply = co_await client_.travel(travel_command(cell_, cell_.park_joints, *via));
-  take_move(reply);
+  co_return take_move(reply);
 }
 
 /// The run is over: its verdict and its latest result are stored with it.
@@ -319,10 +257,9 @@ void Operation::close_run(const std::string& outcome) {
   standing_.reset();
   if (!run_open_) return;
   run_open_ = false;
-  const Judgement judgement = judge(run_->latest(), cell_.acceptance, run_->complete());
-  const bool finished =
-      outcome == "complete" && run_->latest().status == calib::IdentificationStatus::kConverged;
-  status_.verdict = !finished            ? Verdict::kIncomplete
+  run_finished_ = outcome == "complete" && run_->latest().status == calib::IdentificationStatus::kConverged;
+  const Judgement judgement = judge(run_->latest(), cell_.acceptance, run_finished_);
+  status_.verdict = !run_finished_       ? Verdict::kIncomplete
                     : judgement.accepted ? Verdict::kAccepted
                                          : Verdict::kRejected;
   RunEnd end{.outcome = outcome,
@@ -340,7 +277,8 @@ void Operation::close_run(const std::string& outcome) {
       status_.last_accepted_at = end.ended_at;
     }
   } catch (const std::exception& error) {
-    status_.verdict = Verdict::kIncomplete;  // what is not on the disk is not accepted
+    run_finished_ = false;  // what is not on the disk is not accepted
+    status_.verdict = Verdict::kIncomplete;
     status_.fault = Fault{FaultCode::kStoreFailed, error.what()};
     spdlog::error("run {}: its end could not be stored: {}", run_->id(), error.what());
   }

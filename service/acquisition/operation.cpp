@@ -19,6 +19,13 @@ using namespace std::chrono_literals;
 
 namespace {
 
+/// More long polls than this are answered at once: they must not take every connection.
+constexpr std::size_t kWaitersMax = 128;
+
+/// How long the end waits for the controller's last answer, and for what that leaves to be stored.
+constexpr std::chrono::milliseconds kStopPatience{3000};
+constexpr std::chrono::milliseconds kClosePatience{1000};
+
 cs8::ClientOptions client_options(const Deadlines& deadlines) {
   return {.connect_deadline = deadlines.connect, .heartbeat_timeout = deadlines.heartbeat_timeout};
 }
@@ -40,6 +47,18 @@ FaultCode fault_code_of(cs8::LinkErrorKind kind) {
 }
 
 }  // namespace
+
+bool is_link_fault(FaultCode code) {
+  switch (code) {
+    case FaultCode::kControllerUnreachable:
+    case FaultCode::kControllerIncompatible:
+    case FaultCode::kProtocolError:
+    case FaultCode::kLinkLost:
+      return true;
+    default:
+      return false;
+  }
+}
 
 Fault link_fault(const cs8::LinkError& error) { return {fault_code_of(error.kind), error.text}; }
 
@@ -83,6 +102,7 @@ void Operation::enter(State state) {
                run_ ? fmt::format(" (run {})", run_->id()) : "");
   status_.state = state;
   status_.since = now_text();
+  if (state == State::kStopping || state == State::kAborting) client_.stop();
   publish();
   wake_.cancel();
 }
@@ -137,7 +157,8 @@ ControllerView Operation::controller_view() const {
 void Operation::hear(const cs8::State& state) {
   if (status_.controller != controller_view()) publish();
   if (status_.state == State::kResetting) wake_.cancel();
-  if (state.task_error != 0) {
+  told_at_ = std::chrono::steady_clock::now();
+  if (std::exchange(task_error_, state.task_error) != state.task_error && state.task_error != 0) {
     raise({FaultCode::kMotionError,
            fmt::format("a task of the application ended with error {}", state.task_error)},
           Event::kAbortFault);
@@ -170,6 +191,11 @@ std::vector<Unmet> Operation::unmet_preconditions() const {
     unmet.push_back({"not_calibrated", "let the controller find its joint zeros"});
   if (flag(cs8::kProbeTouched))
     unmet.push_back({"probe_touched", "the probe reads touched: free it or check its cable"});
+  if (state->task_error != 0) {
+    unmet.push_back(
+        {"task_error",
+         fmt::format("restart the controller's application: a task ended with error {}", state->task_error)});
+  }
   if (state->monitor_speed_percent != 100) {
     unmet.push_back({"monitor_speed",
                      fmt::format("set the monitor speed from {} to 100 %", state->monitor_speed_percent)});
@@ -194,6 +220,7 @@ std::variant<Started, Refusal> Operation::start(const std::string& recipe,
     return Refusal{.kind = Refusal::Kind::kUnknownRecipe,
                    .detail = fmt::format("there is no recipe '{}'; this cell has {}", recipe, known)};
   }
+  if (shutting_down_) return Refusal{.detail = "the daemon is ending"};
   if (is_active(status_.state)) {
     return Refusal{.detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->id() : 0)};
   }
@@ -208,6 +235,7 @@ std::variant<Started, Refusal> Operation::start(const std::string& recipe,
       store_.begin_run({.recipe = recipe, .started_at = now_text(), .idempotency_key = idempotency_key});
   run_.emplace(id, cell_, found->second, now_text());
   run_open_ = true;
+  run_finished_ = false;
   run_began_ = clock_();
   status_.fault.reset();
   status_.verdict = Verdict::kNone;
@@ -231,7 +259,6 @@ std::optional<Refusal> Operation::command(Command command, std::optional<std::in
     status_.fault.reset();
     publish();
   }
-  if (*next == State::kStopping || *next == State::kAborting) client_.stop();
   enter(*next);
   return std::nullopt;
 }
@@ -248,11 +275,11 @@ Status Operation::status() const {
 
 std::optional<std::string> Operation::result_json() const {
   if (!run_ || run_->latest().status != calib::IdentificationStatus::kConverged) return std::nullopt;
-  return result_document(cell_, run_->recipe(), run_->latest(), {.complete = run_->complete()});
+  return result_document(cell_, run_->recipe(), run_->latest(), {.complete = run_finished_});
 }
 
 asio::awaitable<void> Operation::wait_for_change(std::uint64_t sequence, std::chrono::milliseconds wait) {
-  if (status_.sequence != sequence) co_return;
+  if (status_.sequence != sequence || waiters_.size() >= kWaitersMax) co_return;
   asio::steady_timer timer(executor_, wait);
   waiters_.push_back(&timer);
   boost::system::error_code ignored;
@@ -262,15 +289,21 @@ asio::awaitable<void> Operation::wait_for_change(std::uint64_t sequence, std::ch
 
 asio::awaitable<void> Operation::shut_down() {
   shutting_down_ = true;
-  if (is_active(status_.state)) {
-    client_.stop();
+  if (is_active(status_.state) && status_.state != State::kAborting) {
     enter(State::kStopping);
   } else {
     wake_.cancel();
   }
+  co_await wait_for_end(kStopPatience);
+  client_.close();  // what still waits for the controller ends now
+  co_await wait_for_end(kClosePatience);
+}
+
+asio::awaitable<void> Operation::wait_for_end(std::chrono::milliseconds at_most) {
+  if (!driving_) co_return;
+  ended_.expires_after(at_most);
   boost::system::error_code ignored;
-  if (driving_) co_await ended_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
-  client_.close();
+  co_await ended_.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
 }
 
 }  // namespace cell

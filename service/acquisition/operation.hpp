@@ -43,6 +43,9 @@ struct Started {
   bool repeated = false;  // the same Idempotency-Key started it before
 };
 
+/// A fault of the link ends by itself when there is a link again.
+bool is_link_fault(FaultCode code);
+
 /// A failure of the link as a fault.
 Fault link_fault(const cs8::LinkError& error);
 
@@ -62,7 +65,8 @@ class Operation {
 
   /// Begins to look for the controller and to act on commands. Nothing moves before start().
   void launch();
-  /// Ends all: a running motion is stopped, the run is closed as stopped. Waits for the controller's answer.
+  /// Ends all: a running motion is stopped, the run is closed as stopped. Waits a few seconds for the
+  /// controller's answer; after that the link is cut, on which the controller stops by itself.
   boost::asio::awaitable<void> shut_down();
 
   std::variant<Started, Refusal> start(const std::string& recipe,
@@ -83,6 +87,7 @@ class Operation {
 
  private:
   // commands and status (operation.cpp)
+  boost::asio::awaitable<void> wait_for_end(std::chrono::milliseconds at_most);
   void enter(State state);
   void apply(Event event);
   void raise(Fault fault, Event event);
@@ -93,7 +98,7 @@ class Operation {
   [[nodiscard]] ControllerView controller_view() const;
   [[nodiscard]] std::string now_text() const;
 
-  // what the states do (drive.cpp)
+  // what the states do (drive.cpp, link.cpp)
   boost::asio::awaitable<void> drive();
   boost::asio::awaitable<void> reset();
   boost::asio::awaitable<void> start_run();
@@ -103,14 +108,16 @@ class Operation {
   void take_contact(const calib::PlannedTouch& planned, const cs8::TouchReply& reply,
                     const cs8::TouchResult& result);
   boost::asio::awaitable<void> complete_run();
-  boost::asio::awaitable<void> park();
+  boost::asio::awaitable<bool> park();
   boost::asio::awaitable<std::optional<cs8::State>> settled_state();
   boost::asio::awaitable<void> settle_open_command(std::uint32_t sequence);
   void acknowledge(std::uint32_t sequence);
   boost::asio::awaitable<std::optional<calib::JointVector>> standing_joints();
   boost::asio::awaitable<void> connect();
   boost::asio::awaitable<void> wait_for_wake(std::chrono::milliseconds at_most);
-  void take_move(const cs8::MoveReply& reply);
+  bool take_move(const cs8::MoveReply& reply);
+  void expect_stop(cs8::Outcome outcome);
+  bool keep_late_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result);
   void close_run(const std::string& outcome);
 
   /// A touch whose result was not acknowledged yet: the controller still has it.
@@ -133,12 +140,15 @@ class Operation {
 
   Status status_;
   std::optional<Run> run_;
-  bool run_open_ = false;  // begun in the store, not finished there
+  bool run_finished_ = false;  // complete, and stored as such
+  bool run_open_ = false;      // begun in the store, not finished there
   std::chrono::system_clock::time_point run_began_;
   std::map<std::string, calib::TouchPlan> plans_;  // by recipe; the same problem gives the same plan
   std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
   std::uint32_t session_ = 0;                   // of the controller's application
   std::optional<OpenTouch> open_touch_;
+  std::chrono::steady_clock::time_point told_at_;  // when the controller told its newest state
+  std::int32_t task_error_ = 0;                    // as it told then
   bool shutting_down_ = false;
   bool driving_ = false;
 };

@@ -14,8 +14,7 @@
 namespace cell {
 namespace {
 
-static_assert(calib::kTransferPosturesMax <= cs8::kViaCountMax - 1,
-              "the posture left behind and the way fit into a command");
+static_assert(calib::kTransferPosturesMax <= cs8::kViaCountMax, "a way fits into a command");
 
 template <class Command>
 void set_via(Command& command, const std::vector<calib::JointVector>& via) {

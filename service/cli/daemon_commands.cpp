@@ -90,7 +90,7 @@ ExitCode tell_end(const ApiClient& daemon, const json& status, bool json_only) {
   const ExitCode code = exit_code_of_end(status);
   if (code != kExitDone && code != kExitLimitsMissed) {
     fmt::print(
-        stderr, "the run ended in {}{}; {}\n", status.at("state").get<std::string>(),
+        stderr, "the run is in {}{}; {}\n", status.at("state").get<std::string>(),
         status.at("fault_message").is_string() ? ": " + status.at("fault_message").get<std::string>() : "",
         status.at("fault_next_step").is_string() ? status.at("fault_next_step").get<std::string>()
                                                  : "touchcal status tells more");

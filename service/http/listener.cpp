@@ -270,7 +270,7 @@ asio::awaitable<void> HttpListener::serve(tcp::socket socket) {
       response = to_response(*problem);
       keep_alive = false;
     } else {
-      if (const auto wait = long_poll(*request)) {
+      if (const auto wait = from_loopback ? long_poll(*request) : std::nullopt) {
         stream.expires_never();
         co_await operation_.wait_for_change(wait->after, wait->wait);
       }

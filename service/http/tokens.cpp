@@ -6,26 +6,16 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <fstream>
 #include <stdexcept>
 #include <system_error>
+#include <vector>
 
 namespace cell {
 namespace {
 
 constexpr std::size_t kTokenBytes = 32;
-
-std::string random_token() {
-  std::array<unsigned char, kTokenBytes> bytes{};
-  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
-    throw std::runtime_error("no random numbers for an access token");
-  }
-  std::string text;
-  for (const unsigned char byte : bytes) text += fmt::format("{:02x}", byte);
-  return text;
-}
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
   throw std::runtime_error(
@@ -37,8 +27,13 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
   if (descriptor < 0) fail(file, "the token cannot be created");
   const std::string line = token + "\n";
   const bool written = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
-  if (!written || ::fsync(descriptor) != 0 || ::close(descriptor) != 0)
-    fail(file, "the token cannot be written");
+  const bool durable = written && ::fsync(descriptor) == 0;
+  const int reason = errno;
+  ::close(descriptor);
+  if (durable) return;
+  ::unlink(file.c_str());  // half a token would stand in the way of the next start
+  errno = reason;
+  fail(file, "the token cannot be written");
 }
 
 std::string load_or_make(const std::filesystem::path& file) {
@@ -51,12 +46,21 @@ std::string load_or_make(const std::filesystem::path& file) {
     }
     return token;
   }
-  const std::string token = random_token();
+  const std::string token = random_hex(kTokenBytes);
   write_for_owner_only(file, token);
   return token;
 }
 
 }  // namespace
+
+std::string random_hex(std::size_t bytes) {
+  std::vector<unsigned char> random(bytes);
+  if (RAND_bytes(random.data(), static_cast<int>(bytes)) != 1)
+    throw std::runtime_error("there are no random numbers");
+  std::string text;
+  for (const unsigned char byte : random) text += fmt::format("{:02x}", byte);
+  return text;
+}
 
 Tokens load_or_make_tokens(const std::filesystem::path& state_directory) {
   return {load_or_make(state_directory / kOperateTokenFile), load_or_make(state_directory / kViewTokenFile)};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -14,6 +15,9 @@ struct Tokens {
 
 inline constexpr std::string_view kOperateTokenFile = "operate.token";
 inline constexpr std::string_view kViewTokenFile = "view.token";
+
+/// `bytes` random bytes as hexadecimal text. Throws std::runtime_error when there is no randomness.
+std::string random_hex(std::size_t bytes);
 
 /// Reads both tokens from the state directory, or makes them at the first start: 256 random bits as
 /// hexadecimal text, the files for their owner only (mode 0600). Throws std::runtime_error that names the

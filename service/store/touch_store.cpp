@@ -9,6 +9,9 @@ namespace {
 
 constexpr int kSchemaVersion = 1;
 
+/// A longer wait for another reader would starve the heartbeat.
+constexpr int kBusyMilliseconds = 100;
+
 constexpr const char* kSchema = R"sql(
 CREATE TABLE runs(
   id INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -76,7 +79,7 @@ void bind_or_null(SQLite::Statement& statement, int index, const std::optional<s
 TouchStore::TouchStore(const std::filesystem::path& file) try
     : database_(
           std::make_unique<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)) {
-  database_->setBusyTimeout(1000);
+  database_->setBusyTimeout(kBusyMilliseconds);
   database_->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
   const int version = database_->execAndGet("PRAGMA user_version").getInt();
   if (version > kSchemaVersion) {
@@ -138,6 +141,13 @@ void TouchStore::finish_run(std::int64_t run_id, const RunEnd& end) {
   bind_or_null(update, 5, end.fault_message);
   bind_or_null(update, 6, end.result_json);
   update.bind(7, run_id);
+  update.exec();
+}
+
+void TouchStore::set_result_json(std::int64_t run_id, const std::string& result_json) {
+  SQLite::Statement update(*database_, "UPDATE runs SET result_json = ? WHERE id = ?");
+  update.bind(1, result_json);
+  update.bind(2, run_id);
   update.exec();
 }
 

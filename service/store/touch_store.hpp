@@ -72,6 +72,8 @@ class TouchStore {
   void set_touches_total(std::int64_t run_id, int touches_total);
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
   void finish_run(std::int64_t run_id, const RunEnd& end);
+  /// Replaces the result of a run that ended.
+  void set_result_json(std::int64_t run_id, const std::string& result_json);
   /// Ends runs that a previous daemon left open, as interrupted; returns how many.
   int finish_interrupted(const std::string& now);
 

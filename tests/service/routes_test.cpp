@@ -323,7 +323,7 @@ TEST_F(RoutesTest, ARepeatedStartGetsTheRunThatItsKeyBegan) {
   EXPECT_EQ(cell_.store().runs(10).size(), 1u);
 
   request.body = R"({"recipe":"edf-23"})";
-  EXPECT_EQ(problem(send(request)).at("status"), 409) << "the same key for something else";
+  EXPECT_EQ(problem(send(request)).at("status"), 422) << "the same key for something else";
   for (const std::size_t length : {std::size_t{0}, std::size_t{256}}) {
     request.idempotency_key = std::string(length, 'k');
     EXPECT_EQ(problem(send(request)).at("status"), 400) << length;

@@ -1,0 +1,130 @@
+// How an Operation meets its controller: finding it, settling what an ended run left open, learning where the
+// arm stands. Each co_await stands alone in its statement, see drive.cpp.
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include "service/acquisition/operation.hpp"
+#include "service/acquisition/touch_command.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// Pauses between attempts to connect: growing, so that a controller that is off is not hammered.
+constexpr auto kFirstPause = 100ms;
+constexpr auto kLongestPause = 2000ms;
+
+/// An arm that rests says so within this time.
+constexpr auto kSettleMax = 10s;
+
+}  // namespace
+
+asio::awaitable<void> Operation::reset() {
+  if (!client_.connected()) {
+    co_await connect();
+    co_return;
+  }
+  if (open_touch_) {
+    co_await settle_open_command(open_touch_->sequence);
+  } else if (unmet_preconditions().empty()) {
+    apply(Event::kDone);
+  } else {
+    co_await wait_for_wake(1h);  // each state of the controller wakes
+  }
+}
+
+/// Tries until there is a link or the state changes. Nothing moves by it.
+asio::awaitable<void> Operation::connect() {
+  asio::ip::tcp::resolver resolver(executor_);
+  const State state = status_.state;
+  for (auto pause = std::chrono::milliseconds(kFirstPause); status_.state == state && !shutting_down_;
+       pause = std::min(2 * pause, std::chrono::milliseconds(kLongestPause))) {
+    boost::system::error_code failure;
+    const auto found = co_await resolver.async_resolve(endpoint_.host, std::to_string(endpoint_.port),
+                                                       asio::redirect_error(asio::use_awaitable, failure));
+    cs8::ConnectReply reply = cs8::LinkError{cs8::LinkErrorKind::kUnreachable,
+                                             fmt::format("{}: {}", endpoint_.host, failure.message())};
+    const cs8::ExpectedController expected{.arm = cell_.arm.name,
+                                           .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
+                                           .upper_limits = to_wire(cell_.arm.joint_ranges.upper)};
+    for (const auto& address : found) {
+      reply = co_await client_.connect(address.endpoint(), expected);
+      if (std::holds_alternative<cs8::Welcome>(reply)) break;
+    }
+    if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
+      session_ = welcome->session;
+      if (status_.fault && is_link_fault(status_.fault->code)) status_.fault.reset();
+      publish();
+      if (welcome->open_sequence != 0) co_await settle_open_command(welcome->open_sequence);
+      co_return;
+    }
+    const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
+    if (!status_.fault || status_.fault->message() != fault.message()) raise(fault, Event::kLinkDown);
+    if (status_.state == state && !shutting_down_) co_await wait_for_wake(pause);
+  }
+}
+
+/// A result that still waits at the controller belongs to a run that is over. A contact in it was captured
+/// all the same: it is kept with that run. Then the controller may forget it, and the next run can start.
+asio::awaitable<void> Operation::settle_open_command(std::uint32_t sequence) {
+  const cs8::QueryReply reply = co_await client_.query(sequence, cell_.deadlines.command);
+  if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
+  const auto* result = std::get_if<cs8::TouchResult>(&reply);
+  const bool ours = open_touch_ && open_touch_->session == session_ && open_touch_->sequence == sequence;
+  if (result && ours && result->outcome == cs8::Outcome::kContact &&
+      !implausible(cell_, open_touch_->planned, *result)) {
+    spdlog::info("run {}: touch {} had been made when the run ended", run_->id(), run_->touches_done() + 1);
+    if (!keep_late_touch(open_touch_->planned, *result)) {
+      enter(State::kStopped);  // it waits at the controller until it can be stored
+      co_return;
+    }
+  }
+  acknowledge(sequence);
+}
+
+void Operation::acknowledge(std::uint32_t sequence) {
+  client_.acknowledge(sequence);
+  open_touch_.reset();
+}
+
+/// The controller's state, told after this call and at rest; nothing when the link is lost, another state was
+/// entered or the arm does not come to rest.
+asio::awaitable<std::optional<cs8::State>> Operation::settled_state() {
+  const State state = status_.state;
+  const auto asked_at = std::chrono::steady_clock::now();
+  while (client_.connected() && status_.state == state) {
+    const auto told = client_.latest_state();
+    if (told && told_at_ > asked_at && (told->flags & cs8::kSettled) != 0) co_return told;
+    if (std::chrono::steady_clock::now() > asked_at + kSettleMax) {
+      raise({FaultCode::kMotionError, "the arm does not come to rest"}, Event::kAbortFault);
+    }
+    co_await wait_for_wake(20ms);
+  }
+  co_return std::nullopt;
+}
+
+/// Where the arm stands, clear of the faces: a search that was broken off left the stylus near one, and the
+/// arm goes back along its line first. Nothing when that failed or another state was entered meanwhile.
+asio::awaitable<std::optional<calib::JointVector>> Operation::standing_joints() {
+  if (standing_) co_return standing_;
+  auto told = co_await settled_state();
+  if (told && (told->flags & cs8::kRetractDue) != 0) {
+    const State state = status_.state;
+    const cs8::MoveReply reply = co_await client_.retract(retract_command(cell_));
+    take_move(reply);
+    if (status_.state != state) co_return std::nullopt;
+    told = co_await settled_state();
+  }
+  if (!told) co_return std::nullopt;
+  co_return from_wire(told->joints);
+}
+
+}  // namespace cell
