@@ -89,20 +89,26 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   asio::io_context context(1);
   Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
                       random_hex(8), clock);
-  HttpListener listener(context.get_executor(), listen_address(context, options.listen), operation, tokens);
+  std::optional<HttpListener> listener;
+  try {
+    listener.emplace(context.get_executor(), listen_address(context, options.listen), operation, tokens);
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; give another address with --listen",
+                                         options.listen.host, options.listen.port, error.code().message()));
+  }
   asio::signal_set signals(context, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& failure, int signal) {
     if (failure) return;
     spdlog::info("signal {}: stopping", signal);
-    listener.close();
+    listener->close();
     asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
     signals.async_wait(
         [&](const boost::system::error_code&, int) { context.stop(); });  // a second one: at once
   });
   operation.launch();
-  listener.launch();
+  listener->launch();
   spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());
-  const auto address = listener.address();
+  const auto address = listener->address();
   fmt::print("listening on {}:{}\n", options.listen.host, address.port());
   std::fflush(stdout);
   context.run();

@@ -16,11 +16,12 @@ constexpr std::array kTable{
                "the controller is not the one this cell is made for",
                "nothing: it was refused before any motion",
                "install the matching application or correct the cell file; the daemon keeps trying"},
-    FaultEntry{FaultCode::kProtocolError, "protocol_error",
-               "the controller sent something the protocol does not know",
-               "the arm stops by itself when the link is gone; it stands where it was",
-               "check what listens at the controller's address, then touchcal clear, touchcal reset and "
-               "start a new run"},
+    FaultEntry{
+        FaultCode::kProtocolError, "protocol_error",
+        "the controller sent something the protocol does not know",
+        "the arm stops by itself when the link is gone; it stands where it was",
+        "check what listens at the controller's address and that no other host uses it; after a run touchcal "
+        "clear and touchcal reset, else the daemon keeps trying"},
     FaultEntry{FaultCode::kLinkLost, "link_lost", "the link to the controller was lost",
                "the arm stops by itself after the heartbeat time-out and stands where it was",
                "look at cable and controller, then touchcal clear, touchcal reset and start a new run; it "

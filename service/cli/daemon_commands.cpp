@@ -104,6 +104,8 @@ ExitCode tell_problem(const ApiReply& reply, bool json_only) {
   const json problem = parse_reply(reply);
   if (json_only) fmt::print("{}\n", reply.body);
   std::string line = problem.value("detail", reply.body);
+  if (reply.status == 401)
+    line = "the daemon wants its token: name its state directory with --state DIR, or set TOUCHCAL_TOKEN";
   if (problem.contains("exits")) {
     std::string exits;
     for (const json& exit : problem["exits"]) exits += (exits.empty() ? "" : ", ") + exit.get<std::string>();
@@ -145,6 +147,9 @@ ExitCode runs_command(const ApiClient& daemon, bool json_only) {
 }
 
 ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool json_only) {
+  if (run_id.empty() || run_id.find_first_not_of("0123456789") != std::string::npos) {
+    throw std::invalid_argument("'" + run_id + "' is no run's id; touchcal runs lists them");
+  }
   const ApiReply run = daemon.get("/api/v1/runs/" + run_id);
   if (run.status != 200) return tell_problem(run, json_only);
   const ApiReply result = daemon.get("/api/v1/runs/" + run_id + "/result");

@@ -14,7 +14,9 @@ constexpr int kBarWidth = 30;
 
 std::string figures(const json& status) {
   std::string text =
-      fmt::format("{}/{}", status.at("touches_done").get<int>(), status.at("touches_total").get<int>());
+      status.at("touches_total").is_number()
+          ? fmt::format("{}/{}", status.at("touches_done").get<int>(), status.at("touches_total").get<int>())
+          : "planning";
   if (status.at("plane").is_number()) text += fmt::format("  plane {}", status.at("plane").get<int>());
   if (status.at("identifiable_count").is_number())
     text += fmt::format("  rank {}", status.at("identifiable_count").get<int>());
@@ -43,7 +45,7 @@ void Progress::show_fault(const json& status) {
 void Progress::show(const json& status) {
   show_fault(status);
   const std::string state = status.at("state");
-  const int total = status.at("touches_total");
+  const int total = status.at("touches_total").is_number() ? status.at("touches_total").get<int>() : 0;
   const int done = status.at("touches_done");
   if (on_terminal_) {
     const int filled = total > 0 ? done * kBarWidth / total : 0;

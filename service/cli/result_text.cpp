@@ -100,7 +100,7 @@ std::string status_text(const json& status) {
     lines += fmt::format(
         "run         {} ({}), {} of {} touches, {} identifiable, condition number {}, verdict {}\n",
         text(status.at("run_id")), text(status.at("recipe")), status.at("touches_done").get<int>(),
-        status.at("touches_total").get<int>(), figure(status.at("identifiable_count"), "{:.0f}"),
+        figure(status.at("touches_total"), "{:.0f}"), figure(status.at("identifiable_count"), "{:.0f}"),
         figure(status.at("condition_number"), "{:.0f}"), text(status.at("verdict")));
   }
   if (status.at("fault_code").is_string()) {
@@ -118,7 +118,7 @@ std::string runs_text(const json& runs) {
     lines += fmt::format(
         "{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", text(run.at("id")), text(run.at("recipe")),
         text(run.at("outcome")), text(run.at("verdict")),
-        fmt::format("{}/{}", run.at("touches_done").get<int>(), run.at("touches_total").get<int>()),
+        fmt::format("{}/{}", run.at("touches_done").get<int>(), figure(run.at("touches_total"), "{:.0f}")),
         text(run.at("started_at")), run.at("fault_code").is_string() ? text(run.at("fault_code")) : "");
   }
   return lines;

@@ -1,5 +1,6 @@
 // touchcal: the command line. Talks to a daemon, or identifies offline.
 #include <CLI/CLI.hpp>
+#include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -20,6 +21,11 @@ const std::map<std::string, std::string> kCellCommands{
     {"clear", "leave ABORTED once its cause is gone"},
     {"reset", "make the cell ready for a run"},
 };
+
+std::string environment_or(const char* name, const std::string& otherwise) {
+  const char* value = std::getenv(name);
+  return value && *value ? value : otherwise;
+}
 
 class CommandLine {
  public:
@@ -71,9 +77,10 @@ class CommandLine {
   CLI::App* add_for_daemon(const std::string& name, const std::string& description,
                            const std::function<cell::ExitCode(const cell::ApiClient&)>& command) {
     auto* sub = app_.add_subcommand(name, description);
-    sub->add_option("--daemon", daemon_url_, "the daemon's address")->envname("TOUCHCAL_DAEMON");
+    sub->add_option("--daemon", daemon_url_, "the daemon's address; also TOUCHCAL_DAEMON")
+        ->default_str(daemon_url_);
     sub->add_option("--state", state_directory_, "the daemon's state directory, where its token is")
-        ->envname("TOUCHCAL_STATE");
+        ->default_str(state_directory_);
     sub->add_flag("--json", json_, "one JSON document on standard output");
     sub->callback([this, command] {
       action_ = [this, command] {
@@ -86,8 +93,10 @@ class CommandLine {
   CLI::App app_;
   std::function<cell::ExitCode()> action_;
   cell::IdentifyArguments identify_;
-  std::string daemon_url_ = "http://127.0.0.1:8080";
-  std::filesystem::path state_directory_ = cell::default_state_directory();
+  // Read here and not by CLI11's envname: there the environment of one subcommand would beat the flag of
+  // another.
+  std::string daemon_url_ = environment_or("TOUCHCAL_DAEMON", "http://127.0.0.1:8080");
+  std::string state_directory_ = environment_or("TOUCHCAL_STATE", cell::default_state_directory().string());
   std::string recipe_ = "edf-25";
   std::string run_id_;
   bool json_ = false;

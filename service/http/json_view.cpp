@@ -26,6 +26,9 @@ Json id_or_null(const std::optional<std::int64_t>& id) {
   return id ? Json(std::to_string(*id)) : Json(nullptr);
 }
 
+/// How many touches a run makes is known once it is planned; until then there are none.
+Json count_once_planned(int touches_total) { return touches_total > 0 ? Json(touches_total) : Json(nullptr); }
+
 /// Text from outside (a robot's message, an operator's key) may be no UTF-8: it is shown as far as it is.
 std::string text_of(const Json& document) {
   return document.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -141,7 +144,7 @@ Json run_json(const StoredRun& run) {
           {"outcome", run.outcome},
           {"verdict", run.verdict},
           {"touches_done", run.touches_done},
-          {"touches_total", run.touches_total},
+          {"touches_total", count_once_planned(run.touches_total)},
           {"started_at", run.started_at},
           {"ended_at", value_or_null(run.ended_at)},
           {"fault_code", value_or_null(run.fault_code)},
@@ -155,7 +158,7 @@ std::string status_document(const Status& status) {
                 {"run_id", id_or_null(status.run_id)},
                 {"recipe", value_or_null(status.recipe)},
                 {"touches_done", status.touches_done},
-                {"touches_total", status.touches_total},
+                {"touches_total", count_once_planned(status.touches_total)},
                 {"plane", value_or_null(status.plane)},
                 {"identifiable_count", value_or_null(status.identifiable_count)},
                 {"condition_number", number(status.condition_number)},

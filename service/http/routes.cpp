@@ -154,9 +154,21 @@ HttpResponse get_result(const Call& call, std::int64_t id) {
   const auto document =
       live && live->id() == id ? call.operation.result_json() : call.operation.store().result_json(id);
   if (document) return json_response(200, *document);
-  std::string why = "this run ended before its touches determined the parameters";
-  if (live && live->id() == id) {
-    why = live->touches_done() == 0 ? "no touch has been made yet" : live->latest().message;
+  // A run that the daemon's own end cut off has touches and no result: they are identified now.
+  const std::vector<StoredTouch> touches = call.operation.store().touches(id);
+  const Cell& cell = call.operation.cell();
+  const auto recipe = cell.recipes.find(call.operation.store().run(id)->recipe);
+  std::string why = "no touch has been made yet";
+  if (recipe == cell.recipes.end()) {
+    why = "this cell no longer has the run's recipe";
+  } else if (!touches.empty()) {
+    calib::IdentificationProblem problem{cell.arm.model, contact_planes(cell), {}};
+    std::ranges::transform(touches, std::back_inserter(problem.touches), to_touch);
+    const calib::IdentificationResult result = calib::identify(problem, recipe->second.identification);
+    if (result.status == calib::IdentificationStatus::kConverged) {
+      return json_response(200, result_document(cell, recipe->second, result, {.complete = false}));
+    }
+    why = result.message;
   }
   return to_response({.status = 409, .kind = "no-result", .detail = "there is no result: " + why});
 }
@@ -211,7 +223,8 @@ HttpResponse post_runs(const Call& call) {
 }
 
 HttpResponse give_command(const Call& call, Command command, std::optional<std::int64_t> run_id) {
-  if (!call.request.body.empty() && call.request.body != "{}") {
+  // A stop is taken whatever comes with it.
+  if (command != Command::kStop && !call.request.body.empty() && call.request.body != "{}") {
     return to_response({.kind = "body", .detail = "this command takes no body", .pointer = ""});
   }
   if (const auto refusal = call.operation.command(command, run_id))
@@ -325,24 +338,6 @@ HttpResponse to_response(const Problem& problem) {
           .body = document.dump(-1, ' ', false, Json::error_handler_t::replace)};
 }
 
-std::optional<std::pair<std::string, std::map<std::string, std::string>>> parse_target(
-    std::string_view target) {
-  if (!target.starts_with('/')) return std::nullopt;
-  const std::size_t question = target.find('?');
-  std::map<std::string, std::string> query;
-  std::string_view rest =
-      question == std::string_view::npos ? std::string_view() : target.substr(question + 1);
-  while (!rest.empty()) {
-    const std::size_t end = rest.find('&');
-    const std::string_view pair = rest.substr(0, end);
-    const std::size_t equals = pair.find('=');
-    query.insert_or_assign(std::string(pair.substr(0, equals)),
-                           std::string(equals == std::string_view::npos ? "" : pair.substr(equals + 1)));
-    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-  }
-  return std::pair{std::string(target.substr(0, question)), std::move(query)};
-}
-
 std::optional<LongPoll> long_poll(const HttpRequest& request) {
   const auto wait = request.query.find("wait_s");
   const auto after = request.query.find("after");
@@ -376,7 +371,8 @@ HttpResponse route(const HttpRequest& request, Operation& operation, const Token
         continue;
       }
       if (auto refused = refuse_access(request, tokens)) return *refused;
-      if (auto refused = refuse_content_type(request)) return *refused;
+      if (auto refused = refuse_content_type(request); refused && candidate.path != "cell/stop")
+        return *refused;
       return candidate.handle({request, operation, segments});
     }
   }
