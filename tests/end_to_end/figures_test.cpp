@@ -10,6 +10,7 @@
 #include "calib_core/identify.hpp"
 #include "calib_core/touch_planning.hpp"
 #include "calib_core/units.hpp"
+#include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"
 #include "service/run.hpp"
 #include "sim_controller/admission.hpp"
@@ -34,18 +35,7 @@ constexpr double kTipErrorMaxMetres = 0.05e-3;
 constexpr double kMicrometres = 1e-6;
 
 calib::TouchPlan plan_of(const cell::Cell& cell) {
-  calib::PlanningProblem problem{.nominal = cell.arm.model,
-                                 .joint_ranges = cell.arm.joint_ranges,
-                                 .faces = cell.block.faces,
-                                 .stylus = cell.probe.stylus,
-                                 .scene = cell.collision_scene(),
-                                 .park_joints = cell.park_joints,
-                                 .nominal_miss_m = cell.nominal_miss_m,
-                                 .tilt_max_rad = cell.stylus_tilt_max_rad};
-  const cell::Recipe& recipe = cell.recipes.at(kRecipe);
-  for (const int face : recipe.faces) {
-    problem.requests.push_back({face, recipe.fit_per_face, recipe.held_out_per_face});
-  }
+  const calib::PlanningProblem problem = cell::planning_problem(cell, cell.recipes.at(kRecipe));
   return std::get<calib::TouchPlan>(calib::plan_touches(problem));
 }
 
