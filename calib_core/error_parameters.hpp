@@ -32,6 +32,17 @@ struct ErrorParameter {
 /// One value a candidate, in the order of error_parameters(): metres and radians.
 using ErrorVector = Eigen::Matrix<double, kErrorParameterCount, 1>;
 
+/// One standard deviation of each error as the maker promises it, metres and radians; nothing where nobody
+/// promises anything.
+using ErrorTolerances = std::array<std::optional<double>, kErrorParameterCount>;
+
+/// All that is identified of an arm: the candidates, then the compliance (radians per newton metre) of joints 2
+/// and 3, which carry the arm's weight.
+inline constexpr int kComplianceCount = 2;
+inline constexpr int kArmParameterCount = kErrorParameterCount + kComplianceCount;
+using ArmVector = Eigen::Matrix<double, kArmParameterCount, 1>;
+using ArmMatrix = Eigen::Matrix<double, kArmParameterCount, kArmParameterCount>;
+
 /// All candidates: frame 0 to 7 and, in a frame, alpha d theta r beta.
 const std::array<ErrorParameter, kErrorParameterCount>& error_parameters();
 

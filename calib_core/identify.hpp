@@ -15,9 +15,18 @@
 
 namespace calib {
 
+/// Weighting of the columns of W when eq. 15 is solved: unit norm (the paper's weighted pseudo-inverse), or
+/// metres and radians as they are.
+enum class ColumnScaling { kUnitNorm, kUnits };
+
 struct IdentificationOptions {
   Formulation formulation = Formulation::kSignedDistance;
   IdentifiabilityOptions identifiability;
+  ColumnScaling weights = ColumnScaling::kUnitNorm;
+  bool robust = true;      // name touches that do not belong to the others, and leave them out
+  bool prior = false;      // maximum a posteriori with the maker's tolerances, no choice of columns
+  bool stiffness = false;  // estimate the compliance of joints 2 and 3, with its prior
+  bool hold_weak = true;   // keep at nominal what the declared noise would make a guess
   int iterations_max = 20;
 };
 
