@@ -1,0 +1,22 @@
+#pragma once
+
+namespace calib {
+
+/// Bound on the relative error of the functions below, wherever they answer; confidences from 1e-3 on.
+inline constexpr double kDistributionErrorMax = 1e-10;
+
+/// More degrees of freedom than this chi_square_survival does not take.
+inline constexpr double kChiSquareDegreesMax = 1e5;
+
+/// P(X > x) of a chi-square variable; x >= 0 or infinite, degrees in (0, kChiSquareDegreesMax]. Right in the
+/// far tail too (1e-100). Outside the domain: std::logic_error, as in all functions here.
+double chi_square_survival(double x, double degrees);
+
+/// k with P(|z| <= k) = confidence for a standard normal variable; confidence in (0, 1).
+double normal_two_sided_factor(double confidence);
+
+/// k with P(|t| <= k) = confidence for Student's t: the coverage factor of the GUM, annex G. Degrees of
+/// freedom from 1 on, not only whole ones; infinite ones mean the normal distribution.
+double student_two_sided_factor(double confidence, double degrees);
+
+}  // namespace calib
