@@ -6,6 +6,8 @@
 #include <numbers>
 #include <sstream>
 
+#include "calib_core/quasi_random.hpp"
+
 namespace calib {
 namespace {
 
@@ -151,30 +153,18 @@ Eigen::MatrixXd nominal_observation_matrix(const KinematicModel& nominal, const 
   return observe(nominal, planes, touches, formulation).matrix;
 }
 
-/// The i-th element of van der Corput's sequence, in (0, 1): spreads without chance.
-double van_der_corput(int i, int base) {
-  double value = 0.0, digit = 1.0 / base;
-  for (; i > 0; i /= base, digit /= base) value += (i % base) * digit;
-  return value;
-}
-
 }  // namespace
 
 IdentifiableSet attainable_parameters(const KinematicModel& nominal, const std::vector<Plane>& contact_planes,
                                       const IdentifiabilityOptions& options) {
   constexpr int kTouchesPerFace = 24;
-  constexpr std::array<int, kJointCount> kBases{2, 3, 5, 7, 11, 13};
+  const JointVector widest = JointVector::Constant(0.7 * std::numbers::pi);
   std::vector<Touch> touches;
   int index = 0;
   for (std::size_t face = 0; face < contact_planes.size(); ++face) {
     for (int k = 0; k < kTouchesPerFace; ++k) {
-      Touch touch{.face = static_cast<int>(face)};
-      ++index;
-      for (int joint = 0; joint < kJointCount; ++joint) {
-        touch.joints[joint] = (2.0 * van_der_corput(index, kBases[static_cast<std::size_t>(joint)]) - 1.0) *
-                              0.7 * std::numbers::pi;
-      }
-      touches.push_back(touch);
+      touches.push_back(
+          {.face = static_cast<int>(face), .joints = halton_posture(++index, {-widest, widest})});
     }
   }
   return choose_identifiable(
