@@ -1,7 +1,8 @@
 #include "calib_core/error_parameters.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "calib_core/gravity.hpp"
 
 namespace calib {
 namespace {
@@ -56,6 +57,44 @@ auto& value_of(Model& model, const ErrorParameter& parameter) {
   return link.beta_rad;
 }
 
+JointVector torques_nm(const PreparedModel& prepared, const Chain& chain) {
+  return prepared.has_masses ? gravity_torques_nm(prepared.model, chain) : JointVector::Zero();
+}
+
+/// Where a frame's theta stands among the parameters; its r follows. alpha d theta r beta of a frame lie
+/// together.
+constexpr Eigen::Index theta_index(Eigen::Index frame) { return frame == 0 ? 0 : 5 * frame - 1; }
+
+/// Derivatives along a unit vector of a point fixed in R_last_frame.
+ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, const JointVector& torques,
+                         const Eigen::Vector3d& point_m, int last_frame, const Eigen::Vector3d& direction) {
+  ArmRow row = ArmRow::Zero();
+  // A turn about an axis through the frame's origin moves the point along `direction` by axis . lever, a
+  // shift along the axis by axis . direction. theta and r act on z of R_j; alpha and d of the next frame on x
+  // of R_j once turned by its beta; that beta on y of R_j.
+  for (Eigen::Index frame = 0; frame <= last_frame; ++frame) {
+    const auto& here = chain.block_from_frame[static_cast<std::size_t>(frame)];
+    const Eigen::Vector3d lever = (point_m - here.translation()).cross(direction);
+    const auto x = here.linear().col(0), y = here.linear().col(1), z = here.linear().col(2);
+    const double z_turns = z.dot(lever), z_shifts = z.dot(direction);
+    const Eigen::Index theta = theta_index(frame);
+    row[theta] = z_turns;
+    row[theta + 1] = z_shifts;
+    if (frame == last_frame) break;
+    const CosSin& beta = prepared.beta[static_cast<std::size_t>(frame) + 1];
+    const Eigen::Index alpha = theta_index(frame + 1) - 2;
+    row[alpha] = beta.cos * x.dot(lever) - beta.sin * z_turns;
+    row[alpha + 1] = beta.cos * x.dot(direction) - beta.sin * z_shifts;
+    row[alpha + 4] = y.dot(lever);
+  }
+  for (int i = 0; i < kComplianceCount; ++i) {
+    const int joint = kCompliantJoints[static_cast<std::size_t>(i)];
+    row[kErrorParameterCount + i] =
+        prepared.model.gains[static_cast<std::size_t>(joint)] * row[theta_index(joint + 1)] * torques[joint];
+  }
+  return row;
+}
+
 }  // namespace
 
 ParameterGroup ErrorParameter::group() const {
@@ -91,40 +130,45 @@ KinematicModel apply(const KinematicModel& model, const ErrorVector& errors) {
   return changed;
 }
 
+KinematicModel apply(const KinematicModel& model, const ArmVector& errors) {
+  KinematicModel changed = apply(model, errors.head<kErrorParameterCount>());
+  for (int i = 0; i < kComplianceCount; ++i) {
+    const int joint = kCompliantJoints[static_cast<std::size_t>(i)];
+    changed.compliance_rad_per_nm[static_cast<std::size_t>(joint)] += errors[kErrorParameterCount + i];
+  }
+  return changed;
+}
+
 Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicModel& model,
                                                                const Chain& chain) {
-  Eigen::Matrix<double, 3, kErrorParameterCount> derivatives;
-  const Eigen::Vector3d tip = chain.tip_in_block_m();
-  const auto& parameters = error_parameters();
-  for (int i = 0; i < kErrorParameterCount; ++i) {
-    const ErrorParameter& parameter = parameters[static_cast<std::size_t>(i)];
-    const auto frame = static_cast<std::size_t>(parameter.frame);
-    const Eigen::Isometry3d& here = chain.block_from_frame[frame];
-    const Eigen::Isometry3d before =
-        frame == 0 ? Eigen::Isometry3d::Identity() : chain.block_from_frame[frame - 1];
-    const double beta = model.links[frame].beta_rad;
-    // theta and r act about and along z of R_j; alpha and d about and along x of R_(j-1) once turned by beta;
-    // beta about y of R_(j-1). Rotations leave the displacement axis x (tip - point on the axis).
-    const Eigen::Vector3d z_here = here.linear().col(2);
-    const Eigen::Vector3d x_turned =
-        std::cos(beta) * before.linear().col(0) - std::sin(beta) * before.linear().col(2);
-    switch (parameter.kind) {
-      case ParameterKind::kAlpha:
-        derivatives.col(i) = x_turned.cross(tip - before.translation());
-        break;
-      case ParameterKind::kD:
-        derivatives.col(i) = x_turned;
-        break;
-      case ParameterKind::kTheta:
-        derivatives.col(i) = z_here.cross(tip - here.translation());
-        break;
-      case ParameterKind::kR:
-        derivatives.col(i) = z_here;
-        break;
-      case ParameterKind::kBeta:
-        derivatives.col(i) = before.linear().col(1).cross(tip - before.translation());
-        break;
-    }
+  return tip_arm_derivatives(model, chain).leftCols<kErrorParameterCount>();
+}
+
+ArmRow distance_derivatives(const PreparedModel& prepared, const Chain& chain,
+                            const Eigen::Vector3d& outward) {
+  return derivatives_along(prepared, chain, torques_nm(prepared, chain), chain.tip_in_block_m(),
+                           kFrameCount - 1, outward);
+}
+
+ArmRow distance_derivatives(const KinematicModel& model, const Chain& chain, const Eigen::Vector3d& outward) {
+  return distance_derivatives(prepare(model), chain, outward);
+}
+
+Eigen::Matrix<double, 3, kArmParameterCount> tip_arm_derivatives(const KinematicModel& model,
+                                                                 const Chain& chain) {
+  return point_arm_derivatives(model, chain, chain.tip_in_block_m(), kFrameCount - 1);
+}
+
+Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const KinematicModel& model,
+                                                                   const Chain& chain,
+                                                                   const Eigen::Vector3d& point_in_block_m,
+                                                                   int last_frame) {
+  const PreparedModel prepared = prepare(model);
+  const JointVector torques = torques_nm(prepared, chain);
+  Eigen::Matrix<double, 3, kArmParameterCount> derivatives;
+  for (int i = 0; i < 3; ++i) {
+    derivatives.row(i) =
+        derivatives_along(prepared, chain, torques, point_in_block_m, last_frame, Eigen::Vector3d::Unit(i));
   }
   return derivatives;
 }

@@ -1,8 +1,55 @@
 #include "calib_core/kinematic_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "calib_core/gravity.hpp"
+
 namespace calib {
+namespace {
+
+CosSin cos_sin(double angle_rad) {
+  if (angle_rad == 0.0) return {};  // most angles of a nominal arm: worth the question
+  return {std::cos(angle_rad), std::sin(angle_rad)};
+}
+
+/// The chain of a rigid arm, each step in the columns of the frame before: 4-vectors, two packets each.
+void place_frames(const PreparedModel& prepared, const JointVector& joints, Chain& chain) {
+  Eigen::Vector4d x = Eigen::Vector4d::UnitX(), y = Eigen::Vector4d::UnitY(), z = Eigen::Vector4d::UnitZ();
+  Eigen::Vector4d origin_m = Eigen::Vector4d::UnitW();
+  // Turns the first axis towards the second.
+  const auto turn = [](const CosSin& angle, Eigen::Vector4d& first, Eigen::Vector4d& second) {
+    const Eigen::Vector4d turned = angle.cos * first + angle.sin * second;
+    second = angle.cos * second - angle.sin * first;
+    first = turned;
+  };
+  for (std::size_t frame = 0; frame < kFrameCount; ++frame) {
+    const LinkParameters& link = prepared.model.links[frame];
+    CosSin theta = prepared.theta[frame];
+    double r_m = link.r_m;
+    if (frame > 0 && frame <= kJointCount) {
+      const std::size_t joint = frame - 1;
+      const double moved = prepared.model.gains[joint] * joints[static_cast<Eigen::Index>(joint)];
+      if (prepared.model.joint_types[joint] == JointType::kRevolute) {
+        theta = cos_sin(link.theta_rad + moved);
+      } else {
+        r_m += moved;
+      }
+    }
+    turn(prepared.beta[frame], z, x);
+    turn(prepared.alpha[frame], y, z);
+    origin_m += link.d_m * x;
+    turn(theta, x, y);
+    origin_m += r_m * z;
+    auto& here = chain.block_from_frame[frame].matrix();
+    here.col(0) = x;
+    here.col(1) = y;
+    here.col(2) = z;
+    here.col(3) = origin_m;
+  }
+}
+
+}  // namespace
 
 Eigen::Isometry3d frame_transform(const LinkParameters& link) {
   const double ca = std::cos(link.alpha_rad), sa = std::sin(link.alpha_rad);
@@ -22,22 +69,35 @@ Eigen::Isometry3d frame_transform(const LinkParameters& link) {
   return transform;
 }
 
-Chain forward_chain(const KinematicModel& model, const JointVector& joints) {
+PreparedModel prepare(const KinematicModel& model) {
+  PreparedModel prepared{.model = model};
+  for (std::size_t frame = 0; frame < kFrameCount; ++frame) {
+    const LinkParameters& link = model.links[frame];
+    prepared.alpha[frame] = cos_sin(link.alpha_rad);
+    prepared.beta[frame] = cos_sin(link.beta_rad);
+    const bool turns =
+        frame > 0 && frame <= kJointCount && model.joint_types[frame - 1] == JointType::kRevolute;
+    if (!turns) prepared.theta[frame] = cos_sin(link.theta_rad);
+  }
+  prepared.has_masses =
+      std::ranges::any_of(model.masses, [](const PointMass& m) { return m.mass_kg != 0.0; });
+  prepared.is_compliant = std::ranges::any_of(model.compliance_rad_per_nm, [](double c) { return c != 0.0; });
+  return prepared;
+}
+
+Chain forward_chain(const PreparedModel& prepared, const JointVector& joints) {
   Chain chain;
-  Eigen::Isometry3d block_from_previous = Eigen::Isometry3d::Identity();
-  for (int frame = 0; frame < kFrameCount; ++frame) {
-    LinkParameters link = model.links[static_cast<std::size_t>(frame)];
-    const int joint = frame - 1;
-    if (joint >= 0 && joint < kJointCount) {
-      const auto index = static_cast<std::size_t>(joint);
-      const double moved = model.gains[index] * joints[joint];
-      (model.joint_types[index] == JointType::kRevolute ? link.theta_rad : link.r_m) += moved;
-    }
-    auto& here = chain.block_from_frame[static_cast<std::size_t>(frame)];
-    here = block_from_previous * frame_transform(link);
-    block_from_previous = here;
+  place_frames(prepared, joints, chain);
+  if (prepared.is_compliant) {
+    const Eigen::Map<const JointVector> compliance(prepared.model.compliance_rad_per_nm.data());
+    const JointVector moved = compliance.cwiseProduct(gravity_torques_nm(prepared.model, chain));
+    place_frames(prepared, joints + moved, chain);
   }
   return chain;
+}
+
+Chain forward_chain(const KinematicModel& model, const JointVector& joints) {
+  return forward_chain(prepare(model), joints);
 }
 
 Eigen::Isometry3d forward_kinematics(const KinematicModel& model, const JointVector& joints) {

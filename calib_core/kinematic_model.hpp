@@ -24,10 +24,22 @@ struct LinkParameters {
 
 enum class JointType { kRevolute, kPrismatic };
 
+/// What hangs on one frame.
+struct PointMass {
+  double mass_kg = 0.0;
+  Eigen::Vector3d center_in_frame_m = Eigen::Vector3d::Zero();
+};
+
 struct KinematicModel {
   std::array<LinkParameters, kFrameCount> links{};
   std::array<JointType, kJointCount> joint_types{};                     // of frames 1 to 6
   std::array<double, kJointCount> gains{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // K_j of eq. 1
+  /// Gravity turns a revolute joint by compliance * moment; see gravity_torques_nm(). All 0: a rigid arm.
+  std::array<PointMass, kFrameCount> masses{};  // that of frame 0 does not move
+  std::array<double, kJointCount> compliance_rad_per_nm{};
+  /// Unit vector in R_1, which turns with joint 1: it has to lie along joint 1's axis (an arm that stands or
+  /// hangs).
+  Eigen::Vector3d down_in_frame_1{0.0, 0.0, -1.0};
 };
 
 /// Every frame of the arm in the block's frame R_-1.
@@ -40,7 +52,26 @@ struct Chain {
 /// Transform of one frame in the one before it.
 Eigen::Isometry3d frame_transform(const LinkParameters& link);
 
-/// All frames at a joint vector.
+struct CosSin {
+  double cos = 1.0;
+  double sin = 0.0;
+};
+
+/// A model with all worked out that no joint changes: for many joint vectors.
+struct PreparedModel {
+  KinematicModel model;
+  std::array<CosSin, kFrameCount> alpha;
+  std::array<CosSin, kFrameCount> beta;
+  std::array<CosSin, kFrameCount> theta;  // where no joint turns it
+  bool has_masses = false;
+  bool is_compliant = false;
+};
+
+PreparedModel prepare(const KinematicModel& model);
+
+/// All frames at a joint vector. A compliant joint stands where gravity, acting on the undeflected chain,
+/// takes it.
+Chain forward_chain(const PreparedModel& prepared, const JointVector& joints);
 Chain forward_chain(const KinematicModel& model, const JointVector& joints);
 
 /// R_7 in R_-1; its origin is the centre of the stylus ball.
@@ -49,7 +80,8 @@ Eigen::Isometry3d forward_kinematics(const KinematicModel& model, const JointVec
 /// Bound on |forward_kinematics - reference| for this size of arm; see tests/data/reference_poses.csv.
 inline constexpr double kPositionErrorMaxMetres = 1e-9;
 
-/// d tip / d joint, 3 x 6, in R_-1: metres per radian (per metre for a prismatic joint).
+/// d tip / d joint, 3 x 6, in R_-1: metres per radian (per metre for a prismatic joint). Leaves out that the
+/// moment of gravity changes too: a relative error of the order of the deflection, in radians.
 Eigen::Matrix<double, 3, kJointCount> tip_jacobian(const KinematicModel& model, const Chain& chain);
 
 }  // namespace calib
