@@ -1,9 +1,12 @@
 #include "config/arm_file.hpp"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "calib_core/units.hpp"
+#include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
+#include "config/joint_units.hpp"
 #include "config/shapes.hpp"
 
 namespace cell {
@@ -11,7 +14,9 @@ namespace {
 
 using calib::kFrameCount;
 using calib::kJointCount;
-using calib::kRadiansPerDegree;
+
+constexpr NumberRange kGains{.min = -1000.0, .max = 1000.0};
+constexpr double kGainSizeMin = 1e-3;
 
 bool is_joint(int frame) { return frame >= 1 && frame <= kJointCount; }
 
@@ -30,12 +35,15 @@ JsonObject frame_object(const JsonValue& value, int frame) {
 void read_joint(const JsonObject& object, int frame, calib::KinematicModel& model) {
   const auto joint = static_cast<std::size_t>(frame - 1);
   const JsonValue type = object.at("joint_type");
-  if (type.text() != "revolute")
-    type.fail("is not \"revolute\"; only such joints are read, as joint ranges are in degrees");
-  model.joint_types[joint] = calib::JointType::kRevolute;
+  const std::string name = type.text();
+  if (name != "revolute" && name != "prismatic") {
+    type.fail("is " + in_quotes(name) + R"(; give "revolute" or "prismatic")");
+  }
+  model.joint_types[joint] = name == "revolute" ? calib::JointType::kRevolute : calib::JointType::kPrismatic;
   const JsonValue gain = object.at("gain");
-  model.gains[joint] = gain.number();
-  if (model.gains[joint] == 0.0) gain.fail("is 0; a joint that moves has a gain, 1 as a rule");
+  model.gains[joint] = gain.number(kGains);
+  if (std::abs(model.gains[joint]) < kGainSizeMin)
+    gain.fail("is " + plain_number(model.gains[joint]) + "; a joint that moves has a gain, 1 as a rule");
 }
 
 std::optional<double> std_of(const JsonObject& object, calib::ParameterKind kind) {
@@ -69,19 +77,19 @@ void read_standard_deviations(const JsonObject& frame_object, int frame, Arm& ar
 }
 
 void read_joint_ranges(const JsonObject& object, Arm& arm) {
+  const calib::JointVector units = joint_units(arm.model);
   const auto ranges = object.at("joint_limits_deg").items(kJointCount, kJointCount);
   for (int joint = 0; joint < kJointCount; ++joint) {
     const JsonValue& range = ranges[static_cast<std::size_t>(joint)];
-    const Eigen::Vector2d limits_deg = range.numbers<2>();
-    if (limits_deg[0] >= limits_deg[1])
+    const Eigen::Vector2d limits = range.numbers<2>() * units[joint];
+    if (limits[0] >= limits[1])
       range.fail("the lower limit is not below the upper one; exchange or correct them");
-    arm.joint_ranges.lower[joint] = limits_deg[0] * kRadiansPerDegree;
-    arm.joint_ranges.upper[joint] = limits_deg[1] * kRadiansPerDegree;
+    arm.joint_ranges.lower[joint] = limits[0];
+    arm.joint_ranges.upper[joint] = limits[1];
   }
   const auto speeds = object.at("joint_max_speeds_deg_s").items(kJointCount, kJointCount);
   for (int joint = 0; joint < kJointCount; ++joint) {
-    arm.joint_speeds_max[joint] =
-        speeds[static_cast<std::size_t>(joint)].number(kPositive) * kRadiansPerDegree;
+    arm.joint_speeds_max[joint] = speeds[static_cast<std::size_t>(joint)].number(kPositive) * units[joint];
   }
 }
 

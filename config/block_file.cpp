@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/units.hpp"
+#include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
 #include "config/shapes.hpp"
@@ -42,19 +43,17 @@ calib::Face face_from_json(const JsonObject& object) {
   return face;
 }
 
-FaceTolerance tolerance_from_json(const JsonObject& object) {
-  FaceTolerance tolerance;
-  tolerance.std_offset_m = object.find_metres("std_offset", kNotNegative);
-  if (const auto tilt = object.find("std_tilt_rad")) tolerance.std_tilt_rad = tilt->number(kNotNegative);
-  return tolerance;
-}
-
-void demand_known_place(const JsonObject& object) {
+calib::FaceUncertainty uncertainty_from_json(const JsonObject& object) {
+  calib::FaceUncertainty uncertainty;
+  uncertainty.std_offset_m = object.find_metres("std_offset", kNotNegative).value_or(0.0);
+  if (const auto tilt = object.find("std_tilt_rad")) uncertainty.std_tilt_rad = tilt->number(kNotNegative);
   const JsonValue place = object.at("place");
   const std::string text = place.text();
-  if (text == "known") return;
-  if (text == "estimated") place.fail("this version identifies with known faces only; give \"known\"");
-  place.fail("is not a kind of place; give \"known\"");
+  if (text != "known" && text != "estimated") {
+    place.fail("is " + in_quotes(text) + R"(; give "known" or "estimated")");
+  }
+  uncertainty.estimated = text == "estimated";
+  return uncertainty;
 }
 
 void read_faces(const JsonValue& value, Block& block) {
@@ -65,15 +64,14 @@ void read_faces(const JsonValue& value, Block& block) {
     const JsonValue given = object.at("plane");
     if (given.number() != plane)
       given.fail("is not " + std::to_string(plane) + "; number the planes 1, 2, 3, ... in order");
-    demand_known_place(object);
     block.faces.push_back(face_from_json(object));
-    block.face_tolerances.push_back(tolerance_from_json(object));
+    block.face_uncertainties.push_back(uncertainty_from_json(object));
   }
 }
 
-CertifiedLength length_from_json(const JsonValue& value, const std::vector<calib::Face>& faces) {
+calib::KnownLength length_from_json(const JsonValue& value, const std::vector<calib::Face>& faces) {
   const JsonObject object = value.object({"planes", "value_mm", "std_mm"});
-  CertifiedLength length;
+  calib::KnownLength length;
   const JsonValue planes = object.at("planes");
   const auto pair = planes.items(2, 2);
   for (std::size_t i = 0; i < pair.size(); ++i) {
@@ -92,10 +90,12 @@ CertifiedLength length_from_json(const JsonValue& value, const std::vector<calib
 
 void read_temperature(const JsonObject& object, Block& block) {
   constexpr NumberRange kRoomTemperatures{-50.0, 100.0};
+  constexpr NumberRange kKelvins{0.0, 100.0};
+  constexpr NumberRange kExpansions{0.0, 1e-3};  // zinc's is 4e-5
   if (const auto temperature = object.find("temperature_c")) {
     block.temperature_c = temperature->number(kRoomTemperatures);
-    block.std_temperature_k = object.at("std_temperature_k").number(kNotNegative);
-    block.thermal_expansion_per_k = object.at("thermal_expansion_per_k").number(kNotNegative);
+    block.std_temperature_k = object.at("std_temperature_k").number(kKelvins);
+    block.thermal_expansion_per_k = object.at("thermal_expansion_per_k").number(kExpansions);
     return;
   }
   for (const char* key : {"std_temperature_k", "thermal_expansion_per_k"}) {

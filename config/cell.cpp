@@ -1,5 +1,7 @@
 #include "config/cell.hpp"
 
+#include "config/config_error.hpp"
+
 namespace cell {
 
 calib::CollisionScene Cell::collision_scene() const {
@@ -7,6 +9,41 @@ calib::CollisionScene Cell::collision_scene() const {
   scene.bodies.insert(scene.bodies.end(), probe.bodies.begin(), probe.bodies.end());
   scene.obstacles.insert(scene.obstacles.end(), keep_out_boxes.begin(), keep_out_boxes.end());
   return scene;
+}
+
+calib::ArtefactKnowledge artefact_knowledge(const Cell& cell) {
+  constexpr double kReferenceCelsius = 20.0;
+  const Block& block = cell.block;
+  return {.faces = block.faces,
+          .face_uncertainties = block.face_uncertainties,
+          .lengths = block.lengths,
+          .stylus = cell.probe.stylus,
+          .std_radius_m = cell.probe.std_stylus_radius_m,
+          .std_pretravel_m = cell.probe.std_pretravel_m,
+          .warmer_than_20_c_k = block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius,
+          .std_temperature_k = block.std_temperature_k,
+          .thermal_expansion_per_k = block.thermal_expansion_per_k};
+}
+
+calib::ErrorTolerances prior_tolerances(const Cell& cell) {
+  calib::ErrorTolerances tolerances = cell.arm.std_errors;
+  const auto& parameters = calib::error_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (tolerances[i] || parameters[i].group() != calib::ParameterGroup::kPlace) continue;
+    tolerances[i] =
+        parameters[i].is_length() ? cell.unknown_place_std.length_m : cell.unknown_place_std.angle_rad;
+  }
+  return tolerances;
+}
+
+void demand_revolute(const Cell& cell) {
+  for (std::size_t joint = 0; joint < calib::kJointCount; ++joint) {
+    if (cell.arm.model.joint_types[joint] == calib::JointType::kRevolute) continue;
+    throw ConfigError(cell.file.string(), "/arm",
+                      "joint " + std::to_string(joint + 1) + " of " + in_quotes(cell.arm.name) +
+                          " is prismatic; only arms with six revolute joints are driven or simulated, use " +
+                          "touches of this one with touchcal identify");
+  }
 }
 
 }  // namespace cell

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "calib_core/artefact.hpp"
 #include "calib_core/collision.hpp"
 #include "calib_core/error_parameters.hpp"
 #include "calib_core/face.hpp"
@@ -26,21 +27,9 @@ struct Arm {
   calib::JointRanges joint_ranges;
   calib::JointVector joint_speeds_max;  // rad/s
   std::vector<calib::Capsule> bodies;
-  /// One standard deviation of each error as the maker promises it; nothing where nobody promises anything.
-  std::array<std::optional<double>, calib::kErrorParameterCount> std_errors{};
-};
-
-/// How well a face of the block is known; nothing where the certificate does not say.
-struct FaceTolerance {
-  std::optional<double> std_offset_m;
-  std::optional<double> std_tilt_rad;
-};
-
-/// Two faces of the block that lie a certified length apart.
-struct CertifiedLength {
-  std::array<int, 2> faces{};  // indices
-  double value_m = 0.0;
-  double std_m = 0.0;
+  calib::ErrorTolerances std_errors{};
+  /// One standard deviation of the compliance of joints 2 and 3; nothing where nobody knows one.
+  std::array<std::optional<double>, calib::kComplianceCount> std_compliance_rad_per_nm{};
 };
 
 struct Block {
@@ -48,9 +37,9 @@ struct Block {
   std::optional<double> temperature_c;  // as measured; unknown is not 20
   double std_temperature_k = 0.0;
   double thermal_expansion_per_k = 0.0;
-  std::vector<calib::Face> faces;
-  std::vector<FaceTolerance> face_tolerances;  // one a face
-  std::vector<CertifiedLength> lengths;
+  std::vector<calib::Face> faces;                          // at 20 degrees C
+  std::vector<calib::FaceUncertainty> face_uncertainties;  // one a face
+  std::vector<calib::KnownLength> lengths;
   std::vector<calib::Box> solids;
 };
 
@@ -58,19 +47,27 @@ struct Probe {
   std::string name;
   calib::Stylus stylus;
   bool tip_is_contact_point = false;  // no ball: stylus is all zero
-  std::optional<double> std_stylus_radius_m;
-  std::optional<double> std_pretravel_m;
+  double std_stylus_radius_m = 0.0;
+  double std_pretravel_m = 0.0;
   double overtravel_m = 0.0;
   double calibration_speed_m_s = 0.0;  // of a search; the pre-travel holds at this speed only
   std::vector<calib::Capsule>
       bodies;  // in frame 7: its origin is the ball's centre, its z axis points out of the tip
 };
 
-/// A run is accepted when the held-out touches, on every plane, stay within these.
+/// A run is accepted when the held-out touches, on every plane, and the fit stay within these.
 struct AcceptanceLimits {
   double held_out_mean_max_m = 0.0;  // |mean distance - reference|
   double held_out_rms_max_m = 0.0;
   double condition_number_max = 0.0;
+  double lack_of_fit_p_min = 0.001;         // residuals less likely than this are not touch noise
+  std::optional<double> tip_box_rms_max_m;  // predicted tip uncertainty over the workspace box
+};
+
+/// One standard deviation of the errors of the block's place where the arm's file gives none.
+struct PlaceTolerance {
+  double length_m = 0.0;
+  double angle_rad = 0.0;
 };
 
 struct Speeds {
@@ -95,6 +92,7 @@ struct Cell {
   std::string default_recipe;
   calib::JointVector park_joints;
   double nominal_miss_m = 0.0;
+  PlaceTolerance unknown_place_std;
   double stylus_tilt_max_rad = 0.0;
   double touch_noise_m = 0.0;  // one standard deviation of a touch along the normal, all in all
   calib::Box workspace_box;
@@ -108,5 +106,20 @@ struct Cell {
   /// All that may collide: the arm's and the probe's bodies, the block's solids and the keep-out boxes.
   [[nodiscard]] calib::CollisionScene collision_scene() const;
 };
+
+/// How far from the block's middle the touches lie, about: what a turn of the block moves by as much as
+/// nominal_miss_m.
+inline constexpr double kPlaceLeverMetres = 0.6;
+
+/// All that the touches of this cell are measured against. A block of unknown temperature is taken for one of
+/// 20 degrees C, exactly.
+calib::ArtefactKnowledge artefact_knowledge(const Cell& cell);
+
+/// What is known of each error before the first touch: the maker's tolerances, and for the six errors of the
+/// block's place that have none, unknown_place_std.
+calib::ErrorTolerances prior_tolerances(const Cell& cell);
+
+/// What drives or simulates the arm turns its joints. Throws ConfigError when one of them slides.
+void demand_revolute(const Cell& cell);
 
 }  // namespace cell

@@ -42,10 +42,13 @@ std::string joined(std::string_view name, std::string_view suffix) {
   return std::string(name).append(suffix);
 }
 
-std::string wanted_number(const NumberRange& range) {
-  const bool over_zero = range.min == kPositive.min;
-  if (std::isinf(range.max)) return over_zero ? "a number over 0" : "at least " + plain_number(range.min);
-  if (std::isinf(range.min)) return "at most " + plain_number(range.max);
+/// What to give in place of a number outside the range; the general bounds are told only to who broke them.
+std::string wanted_number(double given, const NumberRange& range) {
+  const bool over_zero = range.min == kPositive.min && given <= 0.0;
+  if (given < range.min && range.max == kNumberMax && range.min != -kNumberMax)
+    return over_zero ? "a number over 0" : "at least " + plain_number(range.min);
+  if (given > range.max && range.min == -kNumberMax && range.max != kNumberMax)
+    return "at most " + plain_number(range.max);
   return (over_zero ? "a number over 0, up to " : plain_number(range.min) + " to ") + plain_number(range.max);
 }
 
@@ -122,7 +125,7 @@ double JsonValue::number(const NumberRange& range) const {
   const double number = value_->get<double>();
   if (!std::isfinite(number)) fail("is not finite; give a finite number");
   if (number < range.min || number > range.max) {
-    fail("is " + plain_number(number) + "; give " + wanted_number(range));
+    fail("is " + plain_number(number) + "; give " + wanted_number(number, range));
   }
   return number;
 }

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <initializer_list>
-#include <limits>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -18,14 +17,19 @@ class JsonObject;
 /// As short as it can be written without loss: 4, 0.5, 1e-09.
 std::string plain_number(double number);
 
+/// No length in mm, angle, speed, mass or deviation in a file is larger (100 m in mm): beyond it stands a
+/// slip of the pen or an overflow in the making. A figure that may be larger has a range of its own.
+inline constexpr double kNumberMax = 1e5;
+
 /// Ends included.
 struct NumberRange {
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
+  double min = -kNumberMax;
+  double max = kNumberMax;
 };
 
 inline constexpr NumberRange kAnyNumber{};
-inline constexpr NumberRange kPositive{.min = std::numeric_limits<double>::min()};
+inline constexpr NumberRange kPositive{
+    .min = 1e-12};  // nothing measurable is smaller, and its inverse is finite
 inline constexpr NumberRange kNotNegative{.min = 0.0};
 
 /// A JSON value and its place in the document. Every demand that is not met is a ConfigError with that place.
@@ -49,7 +53,7 @@ class JsonValue {
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] std::string text() const;  // not empty, no control characters
 
-  /// An array of exactly Count finite numbers.
+  /// An array of exactly Count numbers, each at most kNumberMax in size.
   template <int Count>
   [[nodiscard]] Eigen::Matrix<double, Count, 1> numbers() const {
     Eigen::Matrix<double, Count, 1> values;

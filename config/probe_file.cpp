@@ -20,8 +20,8 @@ void read_stylus(const JsonObject& object, Probe& probe) {
   }
   probe.stylus.radius_m = object.metres("stylus_radius", kPositive);
   probe.stylus.pretravel_m = object.metres("pretravel", kNotNegative);
-  probe.std_stylus_radius_m = object.find_metres("std_stylus_radius", kNotNegative);
-  probe.std_pretravel_m = object.find_metres("std_pretravel", kNotNegative);
+  probe.std_stylus_radius_m = object.find_metres("std_stylus_radius", kNotNegative).value_or(0.0);
+  probe.std_pretravel_m = object.find_metres("std_pretravel", kNotNegative).value_or(0.0);
 }
 
 void refuse_stylus(const JsonObject& object) {

@@ -7,6 +7,7 @@
 #include "config/arm_file.hpp"
 #include "config/block_file.hpp"
 #include "config/file_bytes.hpp"
+#include "config/joint_units.hpp"
 #include "config/json_value.hpp"
 #include "config/probe_file.hpp"
 #include "config/recipe_file.hpp"
@@ -47,7 +48,7 @@ void read_frame_overrides(const JsonValue& value, Arm& arm) {
 
 void read_recipes(const JsonObject& object, const std::filesystem::path& file, Cell& cell) {
   for (const JsonValue& item : object.at("recipes").items(1, kRecipeCountMax)) {
-    Recipe recipe = read_recipe(named_file(item, file), static_cast<int>(cell.block.faces.size()));
+    Recipe recipe = read_recipe(named_file(item, file), cell.arm, cell.block);
     const std::string name = recipe.name;
     if (!cell.recipes.emplace(name, std::move(recipe)).second) {
       item.fail("a recipe with the name " + in_quotes(name) + " is already there; rename one of them");
@@ -81,7 +82,7 @@ void read_space(const JsonObject& object, Cell& cell) {
     for (const auto& [name, value] : tools->members()) cell.tools.emplace(name, tool_from_json(value));
   }
   const JsonValue park = object.at("park_joints_deg");
-  cell.park_joints = park.numbers<calib::kJointCount>() * calib::kRadiansPerDegree;
+  cell.park_joints = park.numbers<calib::kJointCount>().cwiseProduct(joint_units(cell.arm.model));
   if (!cell.arm.joint_ranges.contains(cell.park_joints))
     park.fail("a joint is outside its range; choose another posture");
 }
@@ -92,15 +93,28 @@ void read_touch_conditions(const JsonObject& object, Cell& cell) {
   cell.nominal_miss_m = object.metres("nominal_miss", kMisses);
   cell.stylus_tilt_max_rad = calib::radians_from_degrees(object.at("stylus_tilt_max_deg").number(kTilts));
   cell.touch_noise_m = object.metres("touch_noise", kNotNegative);
+  cell.unknown_place_std = {.length_m = cell.nominal_miss_m,
+                            .angle_rad = cell.nominal_miss_m / kPlaceLeverMetres};
+  if (const auto place = object.find("unknown_place_std")) {
+    const JsonObject given = place->object({"length_mm", "angle_rad"});
+    cell.unknown_place_std = {.length_m = given.metres("length", kPositive),
+                              .angle_rad = given.at("angle_rad").number(kPositive)};
+  }
 }
 
 AcceptanceLimits acceptance_from_json(const JsonValue& value) {
-  const JsonObject object =
-      value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max"});
-  constexpr NumberRange kAtLeastOne{.min = 1.0};
-  return {.held_out_mean_max_m = object.metres("held_out_mean_max", kPositive),
-          .held_out_rms_max_m = object.metres("held_out_rms_max", kPositive),
-          .condition_number_max = object.at("condition_number_max").number(kAtLeastOne)};
+  const JsonObject object = value.object({"held_out_mean_max_mm", "held_out_rms_max_mm",
+                                          "condition_number_max", "lack_of_fit_p_min", "tip_box_rms_max_mm"});
+  constexpr NumberRange kConditionNumbers{.min = 1.0, .max = 1e16};
+  constexpr NumberRange kProbabilities{.min = 0.0, .max = 0.5};
+  AcceptanceLimits limits{
+      .held_out_mean_max_m = object.metres("held_out_mean_max", kPositive),
+      .held_out_rms_max_m = object.metres("held_out_rms_max", kPositive),
+      .condition_number_max = object.at("condition_number_max").number(kConditionNumbers)};
+  if (const auto least = object.find("lack_of_fit_p_min"))
+    limits.lack_of_fit_p_min = least->number(kProbabilities);
+  limits.tip_box_rms_max_m = object.find_metres("tip_box_rms_max", kPositive);
+  return limits;
 }
 
 Speeds speeds_from_json(const JsonValue& value, const Probe& probe) {
@@ -143,12 +157,27 @@ Endpoint endpoint_from_json(const JsonValue& value) {
 Cell read_cell(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const JsonObject object =
-      JsonValue(source, document)
-          .document(kCellSchema, {"schema", "name", "arm", "frames", "block", "probe", "recipes",
-                                  "default_recipe", "tools", "workspace_box", "keep_out_boxes",
-                                  "park_joints_deg", "nominal_miss_mm", "stylus_tilt_max_deg",
-                                  "touch_noise_mm", "acceptance", "speeds", "deadlines", "controller"});
+  const JsonObject object = JsonValue(source, document)
+                                .document(kCellSchema, {"schema",
+                                                        "name",
+                                                        "arm",
+                                                        "frames",
+                                                        "block",
+                                                        "probe",
+                                                        "recipes",
+                                                        "default_recipe",
+                                                        "tools",
+                                                        "workspace_box",
+                                                        "keep_out_boxes",
+                                                        "park_joints_deg",
+                                                        "nominal_miss_mm",
+                                                        "stylus_tilt_max_deg",
+                                                        "touch_noise_mm",
+                                                        "unknown_place_std",
+                                                        "acceptance",
+                                                        "speeds",
+                                                        "deadlines",
+                                                        "controller"});
   Cell cell;
   cell.name = object.at("name").text();
   cell.file = file;

@@ -48,18 +48,41 @@ calib::Formulation formulation_from_json(const JsonValue& value) {
   value.fail("is " + in_quotes(name) + "; give \"signed_distance\" or \"plane_coefficients\"");
 }
 
-calib::IdentificationOptions identification_from_json(const JsonValue& value) {
-  const JsonObject object =
-      value.object({"formulation", "qr_tolerance", "tried_last", "excluded", "iterations_max"});
+calib::ColumnScaling weights_from_json(const JsonValue& value) {
+  const std::string name = value.text();
+  if (name == "columns") return calib::ColumnScaling::kUnitNorm;
+  if (name == "units") return calib::ColumnScaling::kUnits;
+  value.fail("is " + in_quotes(name) + R"(; give "columns" or "units")");
+}
+
+bool stiffness_from_json(const JsonValue& value, const Arm& arm) {
+  const bool wanted = value.boolean();
+  if (wanted && !arm.std_compliance_rad_per_nm[0]) {
+    value.fail("the arm " + in_quotes(arm.name) +
+               " has no masses or no std_compliance_rad_per_nm; add \"gravity\" to its file or give false");
+  }
+  return wanted;
+}
+
+calib::IdentificationOptions identification_from_json(const JsonValue& value, const Arm& arm) {
+  const JsonObject object = value.object({"formulation", "qr_tolerance", "tried_last", "excluded", "weights",
+                                          "robust", "prior", "stiffness", "hold_weak", "iterations_max"});
   calib::IdentificationOptions options;
   if (const auto formulation = object.find("formulation"))
     options.formulation = formulation_from_json(*formulation);
+  constexpr NumberRange kTolerances{.min = 1e-20};
   if (const auto tolerance = object.find("qr_tolerance"))
-    options.identifiability.qr_tolerance = tolerance->number(kPositive);
+    options.identifiability.qr_tolerance = tolerance->number(kTolerances);
   if (const auto names = object.find("tried_last"))
     options.identifiability.tried_last = parameters_from_json(*names);
   if (const auto names = object.find("excluded"))
     options.identifiability.excluded = parameters_from_json(*names);
+  if (const auto weights = object.find("weights")) options.weights = weights_from_json(*weights);
+  if (const auto robust = object.find("robust")) options.robust = robust->boolean();
+  if (const auto prior = object.find("prior")) options.prior = prior->boolean();
+  if (const auto stiffness = object.find("stiffness"))
+    options.stiffness = stiffness_from_json(*stiffness, arm);
+  if (const auto hold_weak = object.find("hold_weak")) options.hold_weak = hold_weak->boolean();
   if (const auto count = object.find("iterations_max"))
     options.iterations_max = count->integer(1, kIterationsMax);
   return options;
@@ -67,7 +90,7 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value) {
 
 }  // namespace
 
-Recipe read_recipe(const std::filesystem::path& file, int face_count) {
+Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
   const JsonObject object =
@@ -76,8 +99,8 @@ Recipe read_recipe(const std::filesystem::path& file, int face_count) {
   Recipe recipe;
   recipe.name = object.at("name").text();
   recipe.description = object.at("description").text();
-  read_touch_counts(object.at("touches"), face_count, recipe);
-  recipe.identification = identification_from_json(object.at("identification"));
+  read_touch_counts(object.at("touches"), static_cast<int>(block.faces.size()), recipe);
+  recipe.identification = identification_from_json(object.at("identification"), arm);
   return recipe;
 }
 

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "calib_core/units.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
+#include "config/joint_units.hpp"
 #include "config/json_value.hpp"
 #include "config/strict_json.hpp"
 
@@ -19,33 +19,35 @@ using calib::kJointCount;
 
 constexpr std::size_t kWarningCountMax = 100;
 
-std::string degrees(double radians) {
+std::string rounded(double number) {
   constexpr double kShown = 1e6;  // what a controller resolves; hides the conversion's rounding
-  return plain_number(std::round(calib::degrees_from_radians(radians) * kShown) / kShown);
+  return plain_number(std::round(number * kShown) / kShown);
 }
 
 /// A sentence on the joints of one touch that are outside their ranges.
-std::string range_warning(std::size_t number, const calib::JointVector& joints,
-                          const calib::JointRanges& ranges) {
+std::string range_warning(std::size_t number, const calib::JointVector& joints, const Arm& arm) {
+  const calib::JointVector units = joint_units(arm.model);
   std::ostringstream text;
   const char* separator = ": ";
   for (int joint = 0; joint < kJointCount; ++joint) {
-    if (joints[joint] >= ranges.lower[joint] && joints[joint] <= ranges.upper[joint]) continue;
-    text << separator << "joint " << joint + 1 << " at " << degrees(joints[joint]) << " deg is outside "
-         << degrees(ranges.lower[joint]) << " to " << degrees(ranges.upper[joint]);
+    const double lower = arm.joint_ranges.lower[joint], upper = arm.joint_ranges.upper[joint];
+    if (joints[joint] >= lower && joints[joint] <= upper) continue;
+    const bool turns = arm.model.joint_types[static_cast<std::size_t>(joint)] == calib::JointType::kRevolute;
+    text << separator << "joint " << joint + 1 << " at " << rounded(joints[joint] / units[joint])
+         << (turns ? " deg" : " mm") << " is outside " << rounded(lower / units[joint]) << " to "
+         << rounded(upper / units[joint]);
     separator = ", ";
   }
   return "touch " + std::to_string(number) + text.str();
 }
 
-std::vector<std::string> range_warnings(const std::vector<calib::Touch>& touches,
-                                        const calib::JointRanges& ranges) {
+std::vector<std::string> range_warnings(const std::vector<calib::Touch>& touches, const Arm& arm) {
   std::vector<std::string> warnings;
   std::size_t untold = 0;
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    if (ranges.contains(touches[i].joints)) continue;
+    if (arm.joint_ranges.contains(touches[i].joints)) continue;
     if (warnings.size() < kWarningCountMax) {
-      warnings.push_back(range_warning(i + 1, touches[i].joints, ranges));
+      warnings.push_back(range_warning(i + 1, touches[i].joints, arm));
     } else {
       ++untold;
     }
@@ -63,11 +65,11 @@ calib::TouchRole role_from_json(const JsonValue& value) {
   value.fail("is " + in_quotes(name) + R"(; give "fit", "held_out" or "proof")");
 }
 
-calib::Touch touch_from_json(const JsonValue& value, int face_count) {
+calib::Touch touch_from_json(const JsonValue& value, int face_count, const calib::JointVector& units) {
   const JsonObject object = value.object({"plane", "joints_deg", "role"});
   calib::Touch touch;
   touch.face = object.at("plane").integer(1, face_count) - 1;
-  touch.joints = object.at("joints_deg").numbers<kJointCount>() * calib::kRadiansPerDegree;
+  touch.joints = object.at("joints_deg").numbers<kJointCount>().cwiseProduct(units);
   if (const auto role = object.find("role")) touch.role = role_from_json(*role);
   return touch;
 }
@@ -89,13 +91,13 @@ class CsvLine {
     throw ConfigError(source_, "", "line " + std::to_string(number_) + ": " + message);
   }
 
-  [[nodiscard]] calib::Touch touch(std::string_view text, int face_count) const {
+  [[nodiscard]] calib::Touch touch(std::string_view text, int face_count,
+                                   const calib::JointVector& units) const {
     const auto cells = split(text);
     calib::Touch touch;
     touch.face = plane(cells[0], face_count) - 1;
     for (int joint = 0; joint < kJointCount; ++joint) {
-      touch.joints[joint] =
-          number(cells[static_cast<std::size_t>(joint) + 1], joint) * calib::kRadiansPerDegree;
+      touch.joints[joint] = number(cells[static_cast<std::size_t>(joint) + 1], joint) * units[joint];
     }
     return touch;
   }
@@ -135,6 +137,10 @@ class CsvLine {
       fail("joint " + std::to_string(joint + 1) + " is " + in_quotes(std::string(text)) +
            "; give a finite number");
     }
+    if (std::abs(number) > kNumberMax) {
+      fail("joint " + std::to_string(joint + 1) + " is " + plain_number(number) + "; give " +
+           plain_number(-kNumberMax) + " to " + plain_number(kNumberMax));
+    }
     return number;
   }
 
@@ -156,10 +162,11 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
   }
   TouchesFile result;
   const int face_count = static_cast<int>(cell.block.faces.size());
+  const calib::JointVector units = joint_units(cell.arm.model);
   for (const JsonValue& item : object.at("touches").items(0, kTouchCountMax)) {
-    result.touches.push_back(touch_from_json(item, face_count));
+    result.touches.push_back(touch_from_json(item, face_count, units));
   }
-  result.warnings = range_warnings(result.touches, cell.arm.joint_ranges);
+  result.warnings = range_warnings(result.touches, cell.arm);
   return result;
 }
 
@@ -169,6 +176,7 @@ TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, 
   }
   TouchesFile result;
   const int face_count = static_cast<int>(cell.block.faces.size());
+  const calib::JointVector units = joint_units(cell.arm.model);
   std::size_t line_number = 1;
   for (std::size_t line_break = bytes.find('\n'); line_break != std::string_view::npos;) {
     const std::size_t begin = line_break + 1;
@@ -179,9 +187,9 @@ TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, 
     if (result.touches.size() == kTouchCountMax) {
       line.fail("more than " + std::to_string(kTouchCountMax) + " touches; split the file");
     }
-    result.touches.push_back(line.touch(text, face_count));
+    result.touches.push_back(line.touch(text, face_count, units));
   }
-  result.warnings = range_warnings(result.touches, cell.arm.joint_ranges);
+  result.warnings = range_warnings(result.touches, cell.arm);
   return result;
 }
 

@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
     if (!listen.empty()) options.listen = endpoint_option("--listen", listen);
     if (!controller.empty()) options.controller = endpoint_option("--controller", controller);
     const cell::Cell cell = cell::read_cell(cell_file);
+    cell::demand_revolute(cell);
     if (check) {
       std::cout << cell_file << ": cell " << cell.name << " is in order\n";
       return cell::kExitDone;

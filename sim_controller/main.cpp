@@ -50,6 +50,7 @@ std::string check_speed(const std::string& text) {
 
 int run(const Arguments& arguments) {
   const cell::Cell cell = cell::read_cell(arguments.cell_file);
+  cell::demand_revolute(cell);
   const auto truth_file = arguments.truth_file.empty()
                               ? std::filesystem::path(arguments.cell_file).parent_path() / "truth.json"
                               : std::filesystem::path(arguments.truth_file);

@@ -114,8 +114,12 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kArm, "/frames/4/r_mm", std::nullopt, "/frames/4", "\"r_mm\" is missing"},
         Spoiled{kArm, "/frames/4/r_mm", nullptr, "/frames/4/r_mm", "is null; give a finite number"},
         Spoiled{kArm, "/frames/4/alpha_deg", std::nullopt, "/frames/4", "\"alpha_deg\" is missing"},
-        Spoiled{kArm, "/frames/4/joint_type", "prismatic", "/frames/4/joint_type", "revolute"},
+        Spoiled{kArm, "/frames/4/joint_type", "ball", "/frames/4/joint_type",
+                "give \"revolute\" or \"prismatic\""},
         Spoiled{kArm, "/frames/4/gain", 0, "/frames/4/gain", "is 0"},
+        Spoiled{kArm, "/frames/4/gain", 1e-300, "/frames/4/gain", "a joint that moves has a gain"},
+        Spoiled{kArm, "/frames/4/gain", 1001, "/frames/4/gain", "give -1000 to 1000"},
+        Spoiled{kArm, "/frames/4/r_mm", 100001, "/frames/4/r_mm", "give -100000 to 100000"},
         Spoiled{kArm, "/frames/4/std/d_mm", -0.3, "/frames/4/std/d_mm", "at least 0"},
         Spoiled{kArm, "/frames/4/std/beta_rad", -0.3, "/frames/4/std/beta_rad", "at least 0"},
         Spoiled{kArm, "/frames/4/std/d_deg", 1, "/frames/4/std/d_deg", "unknown key"},
@@ -140,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kBlock, "/faces/1/edge_u", json({1, 0, 0}), "/faces/1/edge_u", "not perpendicular"},
         Spoiled{kBlock, "/faces/1/half_extent_mm", json({75, 0}), "/faces/1/half_extent_mm", "not over 0"},
         Spoiled{kBlock, "/faces/1/std_offset_mm", -1, "/faces/1/std_offset_mm", "at least 0"},
-        Spoiled{kBlock, "/faces/1/place", "estimated", "/faces/1/place", "known faces only"},
+        Spoiled{kBlock, "/faces/1/place", "guessed", "/faces/1/place", "\"known\" or \"estimated\""},
         Spoiled{kBlock, "/faces/1/place", std::nullopt, "/faces/1", "\"place\" is missing"},
         Spoiled{kBlock, "/lengths/0/planes", json({3, 6}), "/lengths/0/planes/1", "1 to 5"},
         Spoiled{kBlock, "/lengths/0/planes", json({3, 3}), "/lengths/0/planes", "twice"},
@@ -174,8 +178,14 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kRecipe, "/identification/tried_last/1", "r2", "/identification/tried_last/1", "twice"},
         Spoiled{kRecipe, "/identification/formulation", "eq6", "/identification/formulation",
                 "plane_coefficients"},
-        Spoiled{kRecipe, "/identification/qr_tolerance", 0, "/identification/qr_tolerance", "over 0"},
-        Spoiled{kRecipe, "/identification/robust", true, "/identification/robust", "unknown key"}));
+        Spoiled{kRecipe, "/identification/qr_tolerance", 0, "/identification/qr_tolerance", "at least 1e-20"},
+        Spoiled{kRecipe, "/identification/weights", "equal", "/identification/weights",
+                "\"columns\" or \"units\""},
+        Spoiled{kRecipe, "/identification/robust", "yes", "/identification/robust", "true or false"},
+        Spoiled{kRecipe, "/identification/prior", 1, "/identification/prior", "true or false"},
+        Spoiled{kRecipe, "/identification/stiffness", "no", "/identification/stiffness", "true or false"},
+        Spoiled{kRecipe, "/identification/hold_weak", 0, "/identification/hold_weak", "true or false"},
+        Spoiled{kRecipe, "/identification/huber", true, "/identification/huber", "unknown key"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Cell, SpoiledEntry,
@@ -198,7 +208,13 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kCell, "/stylus_tilt_max_deg", 90, "/stylus_tilt_max_deg", "89"},
         Spoiled{kCell, "/touch_noise_mm", -1, "/touch_noise_mm", "at least 0"},
         Spoiled{kCell, "/acceptance/condition_number_max", 0.5, "/acceptance/condition_number_max",
-                "at least 1"},
+                "give 1 to"},
+        Spoiled{kCell, "/acceptance/lack_of_fit_p_min", 1, "/acceptance/lack_of_fit_p_min", "0 to 0.5"},
+        Spoiled{kCell, "/acceptance/tip_box_rms_max_mm", 0, "/acceptance/tip_box_rms_max_mm", "over 0"},
+        Spoiled{kCell, "/unknown_place_std", json{{"length_mm", 5}}, "/unknown_place_std",
+                "\"angle_rad\" is missing"},
+        Spoiled{kCell, "/unknown_place_std", json({{"length_mm", 5}, {"angle_rad", 0}}),
+                "/unknown_place_std/angle_rad", "over 0"},
         Spoiled{kCell, "/speeds/travel_mm_s", 0, "/speeds/travel_mm_s", "over 0"},
         Spoiled{kCell, "/speeds/search_mm_s", 10, "/speeds/search_mm_s", "pre-travel"},
         Spoiled{kCell, "/deadlines/connect_ms", 0, "/deadlines/connect_ms", "whole number from 1"},
@@ -252,6 +268,18 @@ TEST_P(EveryEntry, ThatIsNullIsRefusedAtItsPlace) {
     json document = whole;
     document[place] = nullptr;
     EXPECT_EQ(error_with(document).pointer(), place.to_string());
+  }
+}
+
+TEST_P(EveryEntry, ThatIsANumberIsRefusedWhenItIsBeyondAllMeasure) {
+  const json whole = json_of(path(GetParam()));
+  for (const json::json_pointer& place : places_in(whole)) {
+    if (!whole.at(place).is_number()) continue;
+    for (const double number : {1e308, -1e308}) {
+      json document = whole;
+      document[place] = number;
+      EXPECT_EQ(error_with(document).pointer(), place.to_string()) << number;
+    }
   }
 }
 
@@ -335,12 +363,100 @@ TEST_F(ReadConfig, ANearlyUnitNormalIsMadeOne) {
   EXPECT_DOUBLE_EQ(read().block.faces[0].plane.outward.norm(), 1.0);
 }
 
+TEST_F(ReadConfig, ARecipeThatSaysNothingMoreIsRobustWeighsColumnsAndHasNoPrior) {
+  const calib::IdentificationOptions options = read().recipes.at("edf-25").identification;
+  EXPECT_EQ(options.weights, calib::ColumnScaling::kUnitNorm);
+  EXPECT_TRUE(options.robust);
+  EXPECT_FALSE(options.prior);
+  EXPECT_FALSE(options.stiffness);
+  EXPECT_TRUE(options.hold_weak);
+}
+
+TEST_F(ReadConfig, ARecipeChoosesWeightsRobustnessAndPrior) {
+  edit(kRecipe, [](json& recipe) {
+    recipe["identification"].update({{"weights", "units"}, {"robust", false}, {"prior", true}});
+    recipe["identification"]["hold_weak"] = false;
+  });
+  const calib::IdentificationOptions options = read().recipes.at("edf-25").identification;
+  EXPECT_EQ(options.weights, calib::ColumnScaling::kUnits);
+  EXPECT_FALSE(options.robust);
+  EXPECT_TRUE(options.prior);
+  EXPECT_FALSE(options.hold_weak);
+}
+
+double tolerance(const calib::ErrorTolerances& tolerances, const char* name) {
+  return tolerances[static_cast<std::size_t>(*calib::error_parameter_index(name))].value();
+}
+
+TEST_F(ReadConfig, ThePlaceOfTheBlockIsAsUncertainAsTheArmMayMissUnlessTheCellSaysBetter) {
+  const Cell miss = read();
+  const calib::ErrorTolerances from_miss = prior_tolerances(miss);
+  for (const char* name : {"r0", "d1", "r1"}) EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m);
+  for (const char* name : {"theta0", "alpha1", "theta1"})
+    EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m / kPlaceLeverMetres);
+  EXPECT_DOUBLE_EQ(tolerance(from_miss, "d3"), 0.3e-3);  // the maker's
+  edit(kCell, [](json& cell) {
+    cell["unknown_place_std"] = {{"length_mm", 5}, {"angle_rad", 0.004}};
+    cell["frames"] = json::parse(R"([{"j":0,"theta_deg":0,"r_mm":149.6,"std":{"r_mm":1}}])");
+  });
+  const calib::ErrorTolerances given = prior_tolerances(read());
+  EXPECT_DOUBLE_EQ(tolerance(given, "r0"), 0.001);  // the file's own
+  EXPECT_DOUBLE_EQ(tolerance(given, "d1"), 0.005);
+  EXPECT_DOUBLE_EQ(tolerance(given, "alpha1"), 0.004);
+}
+
+TEST_F(ReadConfig, AcceptanceNeedsNoLimitOnLackOfFitOrTheBox) {
+  const AcceptanceLimits silent = read().acceptance;
+  EXPECT_EQ(silent.lack_of_fit_p_min, AcceptanceLimits{}.lack_of_fit_p_min);
+  EXPECT_FALSE(silent.tip_box_rms_max_m.has_value());
+  edit(kCell, [](json& cell) {
+    cell["acceptance"].update({{"lack_of_fit_p_min", 0.01}, {"tip_box_rms_max_mm", 0.06}});
+  });
+  const AcceptanceLimits limits = read().acceptance;
+  EXPECT_EQ(limits.lack_of_fit_p_min, 0.01);
+  EXPECT_DOUBLE_EQ(limits.tip_box_rms_max_m.value(), 0.06e-3);
+}
+
+TEST_F(ReadConfig, TheArtefactIsTheBlockAndTheBallWithTheirUncertainties) {
+  edit(kBlock, [](json& block) {
+    block["temperature_c"] = 23;
+    block["faces"][1]["place"] = "estimated";
+    block["faces"][2].erase("std_offset_mm");
+  });
+  const calib::ArtefactKnowledge known = artefact_knowledge(read());
+  ASSERT_EQ(known.faces.size(), 5U);
+  ASSERT_EQ(known.face_uncertainties.size(), 5U);
+  EXPECT_FALSE(known.face_uncertainties[0].estimated);
+  EXPECT_DOUBLE_EQ(known.face_uncertainties[0].std_offset_m, 5e-6);
+  EXPECT_DOUBLE_EQ(known.face_uncertainties[0].std_tilt_rad, 5.8e-5);
+  EXPECT_TRUE(known.face_uncertainties[1].estimated);
+  EXPECT_EQ(known.face_uncertainties[2].std_offset_m, 0.0);
+  EXPECT_EQ(known.lengths.size(), 2U);
+  EXPECT_DOUBLE_EQ(known.stylus.radius_m, 0.003);
+  EXPECT_DOUBLE_EQ(known.std_radius_m, 5e-6);
+  EXPECT_DOUBLE_EQ(known.std_pretravel_m, 2e-6);
+  EXPECT_DOUBLE_EQ(known.warmer_than_20_c_k, 3.0);
+  EXPECT_EQ(known.std_temperature_k, 1.0);
+  EXPECT_DOUBLE_EQ(known.thermal_expansion_per_k, 2.36e-5);
+}
+
+TEST_F(ReadConfig, ATipThatIsTheContactPointHasNoBallToBeUncertainOf) {
+  edit(kCell, [](json& cell) { cell["probe"] = "../edf/probe.json"; });
+  const calib::ArtefactKnowledge known = artefact_knowledge(read());
+  EXPECT_EQ(known.stylus.radius_m, 0.0);
+  EXPECT_EQ(known.std_radius_m, 0.0);
+  EXPECT_EQ(known.std_pretravel_m, 0.0);
+}
+
 TEST_F(ReadConfig, AnUnknownTemperatureStaysUnknown) {
   edit(kBlock, [](json& block) {
     for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
       block.erase(key);
   });
-  EXPECT_FALSE(read().block.temperature_c.has_value());
+  const Cell cell = read();
+  EXPECT_FALSE(cell.block.temperature_c.has_value());
+  EXPECT_EQ(artefact_knowledge(cell).warmer_than_20_c_k, 0.0);
+  EXPECT_EQ(artefact_knowledge(cell).std_temperature_k, 0.0);
 }
 
 TEST_F(ReadConfig, ToolsTurnAsInVal3) {

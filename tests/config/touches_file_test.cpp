@@ -113,6 +113,21 @@ TEST(TouchesJson, EndlessWarningsAreCounted) {
   EXPECT_EQ(file.warnings.back(), "150 more touches have joints outside their ranges");
 }
 
+TEST(TouchesFile, HoldsMillimetresWhereAJointSlides) {
+  Cell cell = edf();
+  cell.arm.model.joint_types[2] = calib::JointType::kPrismatic;
+  cell.arm.joint_ranges.lower[2] = -0.1;
+  cell.arm.joint_ranges.upper[2] = 0.2;
+  const std::string csv = std::string(kTouchesCsvHeader) + "\n1,1.5,2.5,250.5,4.5,5.5,6.5\n";
+  const std::string json = document(R"({"plane":1,"joints_deg":[1.5,2.5,250.5,4.5,5.5,6.5]})");
+  for (const TouchesFile& file :
+       {touches_from_csv("t.csv", csv, cell), touches_from_json("body", json, kTouchesSizeMax, cell)}) {
+    EXPECT_DOUBLE_EQ(file.touches.at(0).joints[2], 0.2505);
+    EXPECT_DOUBLE_EQ(file.touches.at(0).joints[1], calib::radians_from_degrees(2.5));
+    EXPECT_THAT(file.warnings, ElementsAre("touch 1: joint 3 at 250.5 mm is outside -100 to 200"));
+  }
+}
+
 TEST(TouchesCsv, GivesTheSameTouchesAsJson) {
   const TouchesFile json = from_json(document(
       R"({"plane":1,"joints_deg":[1.5,-2.5,3.5e0,4.5,5.5,6.5]},{"plane":4,"joints_deg":[10,20,30,200,50,6.5]})"));
@@ -142,6 +157,7 @@ TEST(TouchesCsv, WhatIsWrongIsSaidWithItsLine) {
       {"1,1,2,nan,4,5,6\n", "line 2: joint 3 is \"nan\"; give a finite number"},
       {"1,1,2,3,inf,5,6\n", "line 2: joint 4 is \"inf\""},
       {"1,1,2,3,4,1e999,6\n", "line 2: joint 5 is \"1e999\""},
+      {"1,1,2,3,4,1e308,6\n", "line 2: joint 5 is 1e+308; give -100000 to 100000"},
       {"1,1,2,3,4,5,\n", "line 2: joint 6 is \"\""},
       {"1,1,2,3,4,5,6 deg\n", "line 2: joint 6 is \"6 deg\""},
       {"1,1,2,3,4,5,6\r\n\r\n9,1,2,3,4,5,6\r\n", "line 4: plane is \"9\""},
