@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "calib_core/error_parameters.hpp"
+#include "calib_core/gravity.hpp"
 #include "calib_core/units.hpp"
 #include "tests/calib_core/paper.hpp"
 
@@ -100,6 +101,33 @@ TEST(KinematicModel, PrismaticJointMovesAlongItsAxis) {
   EXPECT_LT((jacobian.col(2) * 0.1 - moved).norm(), 1e-12);
 }
 
+/// Every kind of joint, gain and link: nothing in it is zero.
+KinematicModel mixed_arm() {
+  KinematicModel model = apply(paper::nominal(), ErrorVector::LinSpaced(-0.05, 0.08));
+  model.joint_types[3] = JointType::kPrismatic;
+  model.gains = {1.0, -1.0, 0.5, -2.0, 1.0, 1.0};
+  model.masses[2] = {20.0, {0.25, 0.0, 0.1}};
+  model.masses[4] = {10.0, {0.0, 0.02, -0.15}};
+  model.masses[7] = {1.0, {0.0, 0.03, -0.1}};
+  return model;
+}
+
+TEST(KinematicModel, ChainIsTheProductOfTheFrameTransforms) {
+  const KinematicModel model = mixed_arm();
+  const JointVector joints = some_joints(0.1);
+  const Chain chain = forward_chain(model, joints);
+  Eigen::Isometry3d product = Eigen::Isometry3d::Identity();
+  for (std::size_t frame = 0; frame < kFrameCount; ++frame) {
+    LinkParameters link = model.links[frame];
+    if (frame >= 1 && frame <= 6) {
+      double& moved = model.joint_types[frame - 1] == JointType::kPrismatic ? link.r_m : link.theta_rad;
+      moved += model.gains[frame - 1] * joints[static_cast<Eigen::Index>(frame) - 1];
+    }
+    product = product * frame_transform(link);
+    EXPECT_LT((chain.block_from_frame[frame].matrix() - product.matrix()).norm(), 1e-14) << "frame " << frame;
+  }
+}
+
 TEST(ErrorParameters, AreThePapersThirtySevenInOrder) {
   const auto& all = error_parameters();
   EXPECT_EQ(all.front().name(), "theta0");
@@ -110,17 +138,105 @@ TEST(ErrorParameters, AreThePapersThirtySevenInOrder) {
   EXPECT_EQ(error_parameter_index("alpha0"), std::nullopt);
 }
 
-TEST(ErrorParameters, DerivativesMatchDifferencesForEveryParameter) {
-  const KinematicModel model = apply(paper::nominal(), paper::table3());
-  for (const double shift : {0.0, 0.5}) {
-    const JointVector joints = some_joints(shift);
-    const auto derivatives = tip_derivatives(model, forward_chain(model, joints));
-    for (int i = 0; i < kErrorParameterCount; ++i) {
-      const auto numeric = numeric_derivative([&](double h) -> Eigen::Vector3d {
-        return forward_kinematics(apply(model, h * ErrorVector::Unit(i)), joints).translation();
-      });
-      EXPECT_LT((derivatives.col(i) - numeric).norm(), 1e-9)
-          << error_parameters()[static_cast<std::size_t>(i)].name();
+/// What one unit of a parameter's step is: one, or what turns a joint by about a radian.
+double step_unit(int parameter) { return parameter < kErrorParameterCount ? 1.0 : 0.01; }
+
+std::string arm_parameter_name(int parameter) {
+  return parameter < kErrorParameterCount
+             ? error_parameters()[static_cast<std::size_t>(parameter)].name()
+             : "compliance " +
+                   std::to_string(
+                       kCompliantJoints[static_cast<std::size_t>(parameter - kErrorParameterCount)] + 1);
+}
+
+/// Differences of a point that is fixed in a frame, by all parameters of the arm.
+Eigen::Matrix<double, 3, kArmParameterCount> numeric_derivatives(const KinematicModel& model,
+                                                                 const JointVector& joints,
+                                                                 const Eigen::Vector3d& point_in_frame_m,
+                                                                 std::size_t frame) {
+  Eigen::Matrix<double, 3, kArmParameterCount> derivatives;
+  for (int i = 0; i < kArmParameterCount; ++i) {
+    derivatives.col(i) = numeric_derivative([&](double h) -> Eigen::Vector3d {
+      const KinematicModel changed = apply(model, h * step_unit(i) * ArmVector::Unit(i));
+      return forward_chain(changed, joints).block_from_frame[frame] * point_in_frame_m;
+    });
+    derivatives.col(i) /= step_unit(i);
+  }
+  return derivatives;
+}
+
+TEST(ArmParameters, DerivativesMatchDifferencesForARigidArm) {
+  KinematicModel paper_arm = apply(paper::nominal(), paper::table3());
+  paper_arm.masses = mixed_arm().masses;
+  for (const KinematicModel& model : {paper_arm, mixed_arm()}) {
+    for (const double shift : {0.0, 0.5}) {
+      const JointVector joints = some_joints(shift);
+      const auto derivatives = tip_arm_derivatives(model, forward_chain(model, joints));
+      const auto numeric = numeric_derivatives(model, joints, Eigen::Vector3d::Zero(), kFrameCount - 1);
+      for (int i = 0; i < kArmParameterCount; ++i) {
+        EXPECT_LT((derivatives.col(i) - numeric.col(i)).norm() * step_unit(i), 1e-9) << arm_parameter_name(i);
+        const bool without_effect = numeric.col(i).norm() * step_unit(i) < 1e-9;
+        EXPECT_EQ(without_effect, arm_parameter_name(i) == "theta7");
+      }
+    }
+  }
+}
+
+TEST(ArmParameters, DerivativesOfACompliantArmAreWrongByNoMoreThanItsDeflection) {
+  KinematicModel model = mixed_arm();
+  model.compliance_rad_per_nm[1] = 3e-6;
+  model.compliance_rad_per_nm[2] = 2e-6;
+  const JointVector joints = some_joints(0.2);
+  const Chain chain = forward_chain(model, joints);
+  // No moment of gravity, nor its slope by an angle, is larger than all the weight at the end of the
+  // stretched arm.
+  double mass_kg = 0.0, reach_m = 0.0;
+  for (const PointMass& mass : model.masses) mass_kg += mass.mass_kg;
+  for (std::size_t frame = 2; frame < kFrameCount; ++frame) {
+    reach_m += (chain.block_from_frame[frame].translation() - chain.block_from_frame[frame - 1].translation())
+                   .norm();
+  }
+  const double deflection_rad =
+      (model.compliance_rad_per_nm[1] + model.compliance_rad_per_nm[2]) * mass_kg * kFreeFall * reach_m;
+  ASSERT_LT(deflection_rad, 5e-3);
+
+  const auto derivatives = tip_arm_derivatives(model, chain);
+  const auto numeric = numeric_derivatives(model, joints, Eigen::Vector3d::Zero(), kFrameCount - 1);
+  for (int i = 0; i < kArmParameterCount; ++i) {
+    const double arm_m = i < kErrorParameterCount ? reach_m : reach_m * mass_kg * kFreeFall * reach_m;
+    EXPECT_LT((derivatives.col(i) - numeric.col(i)).norm(), deflection_rad * arm_m) << arm_parameter_name(i);
+  }
+  // Where the block stands changes no moment.
+  EXPECT_LT((derivatives - numeric).leftCols(7).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(ArmParameters, RowOfADistanceIsTheTipsDerivativesAlongTheNormal) {
+  KinematicModel model = mixed_arm();
+  model.compliance_rad_per_nm[1] = 3e-6;
+  const Chain chain = forward_chain(model, some_joints(0.3));
+  const Eigen::Vector3d outward = Eigen::Vector3d(1.0, -2.0, 3.0).normalized();
+  const ArmRow expected = outward.transpose() * tip_arm_derivatives(model, chain);
+  const ArmRow row = distance_derivatives(model, chain, outward);
+  EXPECT_LT((row - expected).norm(), 1e-13 * expected.norm());
+  EXPECT_EQ(distance_derivatives(prepare(model), chain, outward), row);
+}
+
+TEST(ArmParameters, PointOnAnEarlierFrameIsNotMovedByTheFramesAfterIt) {
+  const KinematicModel model = mixed_arm();
+  const JointVector joints = some_joints(0.1);
+  const Chain chain = forward_chain(model, joints);
+  const Eigen::Vector3d tool_in_frame_m(0.12, -0.05, 0.2);
+  for (const int last_frame : {1, 2, 6}) {
+    const auto frame = static_cast<std::size_t>(last_frame);
+    const auto derivatives =
+        point_arm_derivatives(model, chain, chain.block_from_frame[frame] * tool_in_frame_m, last_frame);
+    const auto numeric = numeric_derivatives(model, joints, tool_in_frame_m, frame);
+    for (int i = 0; i < kArmParameterCount; ++i) {
+      EXPECT_LT((derivatives.col(i) - numeric.col(i)).norm() * step_unit(i), 1e-9)
+          << arm_parameter_name(i) << ", frame " << last_frame;
+      if (i < kErrorParameterCount && error_parameters()[static_cast<std::size_t>(i)].frame > last_frame) {
+        EXPECT_EQ(derivatives.col(i).norm(), 0.0) << arm_parameter_name(i);
+      }
     }
   }
 }
