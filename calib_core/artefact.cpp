@@ -1,5 +1,6 @@
 #include "calib_core/artefact.hpp"
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 namespace calib {
