@@ -17,6 +17,8 @@ using calib::kJointCount;
 
 constexpr NumberRange kGains{.min = -1000.0, .max = 1000.0};
 constexpr double kGainSizeMin = 1e-3;
+/// rad/Nm; at the bounds 100 Nm turn a joint by 0.6 degrees. An identified one may be a little under 0.
+constexpr NumberRange kCompliances{.min = -1e-4, .max = 1e-4};
 
 bool is_joint(int frame) { return frame >= 1 && frame <= kJointCount; }
 
@@ -93,6 +95,57 @@ void read_joint_ranges(const JsonObject& object, Arm& arm) {
   }
 }
 
+/// Weights turn with joint 1, so that only an arm whose axis 1 is plumb has a fixed "down" in frame 1.
+Eigen::Vector3d down_from_json(const JsonValue& value) {
+  const Eigen::Vector3d down = value.numbers<3>();
+  if (down.x() != 0.0 || down.y() != 0.0 || std::abs(down.z()) != 1.0) {
+    value.fail("is not along joint 1's axis; give [0,0,-1] (axis 1 points up) or [0,0,1]");
+  }
+  return down;
+}
+
+void read_masses(const JsonValue& value, calib::KinematicModel& model) {
+  int last_frame = 0;
+  for (const JsonValue& item : value.items(1, kFrameCount - 1)) {
+    const JsonObject object = item.object({"frame", "mass_kg", "center_mm"});
+    const JsonValue frame = object.at("frame");
+    const int number = frame.integer(1, kFrameCount - 1);
+    if (number <= last_frame) frame.fail("frames stand in order, each once; exchange or sum up the masses");
+    last_frame = number;
+    model.masses[static_cast<std::size_t>(number)] = {
+        .mass_kg = object.at("mass_kg").number(kPositive),
+        .center_in_frame_m = object.at("center_mm").numbers<3>() * calib::kMetresPerMillimetre};
+  }
+}
+
+void demand_compliant_joints_turn(const JsonObject& gravity, const calib::KinematicModel& model) {
+  for (const int joint : calib::kCompliantJoints) {
+    if (model.joint_types[static_cast<std::size_t>(joint)] == calib::JointType::kRevolute) continue;
+    gravity.fail("joint " + std::to_string(joint + 1) +
+                 " is prismatic, a moment does not bend it; leave \"gravity\" out");
+  }
+}
+
+void read_gravity(const JsonValue& value, Arm& arm) {
+  const JsonObject object =
+      value.object({"down_in_frame_1", "masses", "compliance_rad_per_nm", "std_compliance_rad_per_nm"});
+  demand_compliant_joints_turn(object, arm.model);
+  arm.model.down_in_frame_1 = down_from_json(object.at("down_in_frame_1"));
+  read_masses(object.at("masses"), arm.model);
+  const auto compliances = object.find("compliance_rad_per_nm");
+  const auto deviations = object.find("std_compliance_rad_per_nm");
+  for (std::size_t i = 0; i < calib::kComplianceCount; ++i) {
+    const auto joint = static_cast<std::size_t>(calib::kCompliantJoints[i]);
+    if (compliances)
+      arm.model.compliance_rad_per_nm[joint] =
+          compliances->items(calib::kComplianceCount, calib::kComplianceCount)[i].number(kCompliances);
+    if (deviations)
+      arm.std_compliance_rad_per_nm[i] =
+          deviations->items(calib::kComplianceCount, calib::kComplianceCount)[i].number(
+              {.min = kPositive.min, .max = kCompliances.max});
+  }
+}
+
 }  // namespace
 
 int frame_number(const JsonValue& value) {
@@ -122,7 +175,7 @@ Arm read_arm(const std::filesystem::path& file) {
   const nlohmann::json document = read_json_file(file);
   const JsonObject object = JsonValue(source, document)
                                 .document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg",
-                                                       "joint_max_speeds_deg_s", "bodies"});
+                                                       "joint_max_speeds_deg_s", "gravity", "bodies"});
   Arm arm;
   arm.name = object.at("name").text();
   const auto frames = object.at("frames").items(kFrameCount, kFrameCount);
@@ -135,6 +188,7 @@ Arm read_arm(const std::filesystem::path& file) {
     read_frame(value, frame, arm);
   }
   read_joint_ranges(object, arm);
+  if (const auto gravity = object.find("gravity")) read_gravity(*gravity, arm);
   arm.bodies = capsules_from_json(object.at("bodies"));
   return arm;
 }

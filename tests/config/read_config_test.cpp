@@ -126,6 +126,16 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kArm, "/joint_limits_deg/1", json({147.5, -130}), "/joint_limits_deg/1", "not below"},
         Spoiled{kArm, "/joint_limits_deg/5", std::nullopt, "/joint_limits_deg", "wants 6 entries, has 5"},
         Spoiled{kArm, "/joint_max_speeds_deg_s/0", 0, "/joint_max_speeds_deg_s/0", "a number over 0"},
+        Spoiled{kArm, "/gravity/masses", json::array(), "/gravity/masses", "at least 1"},
+        Spoiled{kArm, "/gravity/masses/1/frame", 2, "/gravity/masses/1/frame", "each once"},
+        Spoiled{kArm, "/gravity/masses/0/frame", 0, "/gravity/masses/0/frame", "from 1 to 7"},
+        Spoiled{kArm, "/gravity/masses/0/mass_kg", 0, "/gravity/masses/0/mass_kg", "over 0"},
+        Spoiled{kArm, "/gravity/down_in_frame_1", json({0, -1, 0}), "/gravity/down_in_frame_1",
+                "joint 1's axis"},
+        Spoiled{kArm, "/gravity/compliance_rad_per_nm", json({1e-6}), "/gravity/compliance_rad_per_nm",
+                "wants 2 entries, has 1"},
+        Spoiled{kArm, "/gravity/std_compliance_rad_per_nm/1", 0, "/gravity/std_compliance_rad_per_nm/1",
+                "over 0"},
         Spoiled{kArm, "/bodies/0/radius_mm", 0, "/bodies/0/radius_mm", "a number over 0"},
         Spoiled{kArm, "/bodies/0/frame", 8, "/bodies/0/frame", "0 to 7"},
         Spoiled{kArm, "/bodies/0/to_mm", json({0, 1}), "/bodies/0/to_mm", "wants 3 numbers, has 2"}));
@@ -382,6 +392,20 @@ TEST_F(ReadConfig, ARecipeChoosesWeightsRobustnessAndPrior) {
   EXPECT_FALSE(options.robust);
   EXPECT_TRUE(options.prior);
   EXPECT_FALSE(options.hold_weak);
+}
+
+TEST_F(ReadConfig, StiffnessIsIdentifiedOnlyOfAnArmThatTellsItsMassesAndHowStiffItIsThoughtToBe) {
+  edit(kRecipe, [](json& recipe) { recipe["identification"]["stiffness"] = true; });
+  EXPECT_TRUE(read().recipes.at("edf-25").identification.stiffness);
+  for (const char* missing : {"/gravity/std_compliance_rad_per_nm", "/gravity"}) {
+    edit(kArm, [&](json& arm) {
+      const json::json_pointer place(missing);
+      arm.at(place.parent_pointer()).erase(place.back());
+    });
+    const ConfigError error = error_of([&] { static_cast<void>(read()); });
+    EXPECT_THAT(error.source(), EndsWith(kRecipe));
+    EXPECT_EQ(error.pointer(), "/identification/stiffness");
+  }
 }
 
 double tolerance(const calib::ErrorTolerances& tolerances, const char* name) {

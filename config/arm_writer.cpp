@@ -1,0 +1,157 @@
+#include "config/arm_writer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "calib_core/units.hpp"
+#include "config/arm_file.hpp"
+#include "config/joint_units.hpp"
+
+namespace cell {
+namespace {
+
+using calib::kFrameCount;
+using calib::kJointCount;
+using calib::kMetresPerMillimetre;
+using Json = nlohmann::ordered_json;  // keys in the order a reader expects
+
+double finite(double number) {
+  if (!std::isfinite(number)) throw std::logic_error("an arm with a figure that is not finite is written");
+  return number;
+}
+
+/// The shortest number of `unit`s that reads back as `si`: 149.6, not 149.60000000000002.
+double in_units(double si, double unit) {
+  constexpr int kDigitsMin = 12, kDigitsMax = 17;
+  for (int digits = kDigitsMin; digits <= kDigitsMax; ++digits) {
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.*g", digits, finite(si) / unit);
+    const double number = std::strtod(text.data(), nullptr);
+    if (number * unit == si) return number;
+  }
+  return si / unit;  // not every length is a whole multiple of the last bit of its millimetres
+}
+
+double in_mm(double metres) { return in_units(metres, kMetresPerMillimetre); }
+
+Json point_mm(const Eigen::Vector3d& point_m) {
+  return {in_mm(point_m.x()), in_mm(point_m.y()), in_mm(point_m.z())};
+}
+
+Json standard_deviations(const Arm& arm, int frame) {
+  static constexpr std::array<const char*, 5> kKeys{"alpha_rad", "d_mm", "theta_rad", "r_mm", "beta_rad"};
+  Json json = Json::object();
+  const auto& parameters = calib::error_parameters();
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    if (parameters[i].frame != frame || !arm.std_errors[i]) continue;
+    const double std = *arm.std_errors[i];
+    json[kKeys.at(static_cast<std::size_t>(parameters[i].kind))] =
+        parameters[i].is_length() ? in_mm(std) : finite(std);
+  }
+  return json;
+}
+
+Json frame_json(const Arm& arm, int frame) {
+  const calib::LinkParameters& link = arm.model.links[static_cast<std::size_t>(frame)];
+  const bool is_joint = frame >= 1 && frame <= kJointCount;
+  const auto joint = static_cast<std::size_t>(frame - 1);
+  Json json{{"j", frame}};
+  if (is_joint) {
+    const bool turns = arm.model.joint_types[joint] == calib::JointType::kRevolute;
+    json["joint_type"] = turns ? "revolute" : "prismatic";
+  }
+  if (frame > 0) {
+    json["alpha_rad"] = finite(link.alpha_rad);
+    json["d_mm"] = in_mm(link.d_m);
+  }
+  json[is_joint ? "theta_offset_rad" : "theta_rad"] = finite(link.theta_rad);
+  json["r_mm"] = in_mm(link.r_m);
+  if (frame > 0) json["beta_rad"] = finite(link.beta_rad);
+  if (is_joint) json["gain"] = finite(arm.model.gains[joint]);
+  if (Json std = standard_deviations(arm, frame); !std.empty()) json["std"] = std::move(std);
+  return json;
+}
+
+Json joint_limits_json(const Arm& arm) {
+  const calib::JointVector units = joint_units(arm.model);
+  Json json = Json::array();
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    json.push_back({in_units(arm.joint_ranges.lower[joint], units[joint]),
+                    in_units(arm.joint_ranges.upper[joint], units[joint])});
+  }
+  return json;
+}
+
+Json joint_speeds_json(const Arm& arm) {
+  const calib::JointVector units = joint_units(arm.model);
+  Json json = Json::array();
+  for (int joint = 0; joint < kJointCount; ++joint)
+    json.push_back(in_units(arm.joint_speeds_max[joint], units[joint]));
+  return json;
+}
+
+/// Nothing for an arm without masses: what bends them is then not known either.
+Json gravity_json(const Arm& arm) {
+  Json masses = Json::array();
+  for (int frame = 1; frame < kFrameCount; ++frame) {
+    const calib::PointMass& mass = arm.model.masses[static_cast<std::size_t>(frame)];
+    if (mass.mass_kg == 0.0) continue;
+    masses.push_back({{"frame", frame},
+                      {"mass_kg", finite(mass.mass_kg)},
+                      {"center_mm", point_mm(mass.center_in_frame_m)}});
+  }
+  if (masses.empty()) return nullptr;
+  const Eigen::Vector3d& down = arm.model.down_in_frame_1;
+  Json json{{"down_in_frame_1", {down.x(), down.y(), down.z()}}, {"masses", std::move(masses)}};
+  const auto add_pair = [&json](const char* key, double first, double second) {
+    json[key] = {finite(first), finite(second)};
+  };
+  const auto [second, third] = calib::kCompliantJoints;
+  const auto& compliance = arm.model.compliance_rad_per_nm;
+  add_pair("compliance_rad_per_nm", compliance[static_cast<std::size_t>(second)],
+           compliance[static_cast<std::size_t>(third)]);
+  if (const auto& std = arm.std_compliance_rad_per_nm; std[0] && std[1])
+    add_pair("std_compliance_rad_per_nm", *std[0], *std[1]);
+  return json;
+}
+
+Json body_json(const calib::Capsule& body) {
+  return {{"name", body.name},
+          {"frame", body.frame},
+          {"from_mm", point_mm(body.from_m)},
+          {"to_mm", point_mm(body.to_m)},
+          {"radius_mm", in_mm(body.radius_m)}};
+}
+
+/// An array with each entry on a line of its own.
+std::string lines(const Json& array) {
+  std::string text = "[";
+  for (const Json& entry : array) text += (text.size() > 1 ? ",\n    " : "\n    ") + entry.dump();
+  return text + (array.empty() ? "]" : "\n  ]");
+}
+
+}  // namespace
+
+std::string arm_document(const Arm& arm) {
+  Json frames = Json::array();
+  for (int frame = 0; frame < kFrameCount; ++frame) frames.push_back(frame_json(arm, frame));
+  Json bodies = Json::array();
+  for (const calib::Capsule& body : arm.bodies) bodies.push_back(body_json(body));
+  const Json gravity = gravity_json(arm);
+
+  std::string text =
+      "{\n  \"schema\": " + Json(kArmSchema).dump() + ",\n  \"name\": " + Json(arm.name).dump();
+  text += ",\n  \"frames\": " + lines(frames);
+  text += ",\n  \"joint_limits_deg\": " + joint_limits_json(arm).dump();
+  text += ",\n  \"joint_max_speeds_deg_s\": " + joint_speeds_json(arm).dump();
+  if (!gravity.is_null()) text += ",\n  \"gravity\": " + gravity.dump();
+  text += ",\n  \"bodies\": " + lines(bodies) + "\n}\n";
+  return text;
+}
+
+}  // namespace cell

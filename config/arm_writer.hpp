@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "config/cell.hpp"
+
+namespace cell {
+
+/// The arm as a document of schema touchcal/arm/1 that read_arm() takes for the same arm: angles exactly,
+/// lengths to the last bit of a double (1e-16 m for an arm of metres). All figures must be finite.
+std::string arm_document(const Arm& arm);
+
+}  // namespace cell

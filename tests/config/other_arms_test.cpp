@@ -1,0 +1,148 @@
+// Arms that come as JSON only, and are identified like the TX90.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "calib_core/gravity.hpp"
+#include "calib_core/identify.hpp"
+#include "config/arm_file.hpp"
+#include "config/read_config.hpp"
+#include "config/touches_file.hpp"
+#include "folder.hpp"
+
+namespace cell {
+namespace {
+
+using testing::HasSubstr;
+
+/// The demo cell with another arm in it.
+Cell demo_with(const std::string& arm) {
+  const Folder folder;
+  nlohmann::json cell = json_of(kSourceDir / "config/cells/demo/cell.json");
+  for (const char* key : {"block", "probe"})
+    cell[key] = (kSourceDir / "config/cells/demo" / cell[key].get<std::string>()).string();
+  for (auto& recipe : cell["recipes"])
+    recipe = (kSourceDir / "config/cells/demo" / recipe.get<std::string>()).string();
+  cell["arm"] = (kSourceDir / "config/arms" / (arm + ".json")).string();
+  return read_cell(folder.write("cell.json", cell.dump()));
+}
+
+calib::JointVector joints_in_range(const Arm& arm, std::mt19937_64& chance) {
+  std::uniform_real_distribution<double> share(0.1, 0.9);
+  calib::JointVector joints;
+  for (int joint = 0; joint < calib::kJointCount; ++joint) {
+    joints[joint] = std::lerp(arm.joint_ranges.lower[joint], arm.joint_ranges.upper[joint], share(chance));
+  }
+  return joints;
+}
+
+std::vector<calib::Plane> contact_planes(const Cell& cell) {
+  return calib::describe(artefact_knowledge(cell)).contact_planes;
+}
+
+/// Postures by chance, each moved until the true tip is on its plane.
+std::vector<calib::Touch> exact_touches(const Cell& cell, const calib::KinematicModel& truth,
+                                        std::mt19937_64& chance) {
+  constexpr double kOnThePlaneMetres = 1e-14;
+  constexpr std::size_t kTouchCount = 125;
+  const std::vector<calib::Plane> planes = contact_planes(cell);
+  std::vector<calib::Touch> touches;
+  while (touches.size() < kTouchCount) {
+    const std::size_t face = touches.size() % planes.size();
+    const calib::Touch start{.face = static_cast<int>(face), .joints = joints_in_range(cell.arm, chance)};
+    const calib::Touch touch = calib::moved_onto_plane(truth, planes[face], start);
+    const Eigen::Vector3d tip_m = calib::forward_kinematics(truth, touch.joints).translation();
+    const bool is_on_plane = std::abs(signed_distance_m(planes[face], tip_m)) < kOnThePlaneMetres;
+    if (is_on_plane && cell.arm.joint_ranges.contains(touch.joints)) touches.push_back(touch);
+  }
+  return touches;
+}
+
+class OtherArm : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Arms, OtherArm, testing::Values("tx60", "three-parallel"), [](const auto& info) {
+  std::string name = info.param;
+  std::erase(name, '-');
+  return name;
+});
+
+TEST_P(OtherArm, TakesThePlaceOfTheTx90InACell) {
+  const Cell cell = demo_with(GetParam());
+  EXPECT_EQ(cell.arm.name, GetParam());
+  EXPECT_NO_THROW(demand_revolute(cell));
+  const std::string document =
+      R"({"schema":"touchcal/touches/1","arm":")" + GetParam() + R"(","touches":[]})";
+  EXPECT_NO_THROW(touches_from_json("body", document, document.size(), cell));
+}
+
+TEST_P(OtherArm, ShowsTheErrorsThatWerePutInAtItsTip) {
+  const Cell cell = demo_with(GetParam());
+  std::mt19937_64 chance(17);
+  std::uniform_real_distribution<double> within(-1.0, 1.0);
+  calib::ErrorVector errors = calib::ErrorVector::Zero();
+  for (const int column : calib::attainable_parameters(cell.arm.model, contact_planes(cell), {}).columns) {
+    const bool is_length = calib::error_parameters()[static_cast<std::size_t>(column)].is_length();
+    errors[column] = (is_length ? 1e-3 : 2e-3) * within(chance);
+  }
+  const calib::KinematicModel truth = calib::apply(cell.arm.model, errors);
+
+  const calib::IdentificationResult result =
+      calib::identify({cell.arm.model, contact_planes(cell), exact_touches(cell, truth, chance)}, {});
+
+  ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
+  double nominal_miss_m = 0.0, calibrated_miss_m = 0.0;
+  for (int i = 0; i < 200; ++i) {
+    const calib::JointVector joints = joints_in_range(cell.arm, chance);
+    const Eigen::Vector3d tip_m = calib::forward_kinematics(truth, joints).translation();
+    const auto miss_m = [&](const calib::KinematicModel& model) {
+      return (calib::forward_kinematics(model, joints).translation() - tip_m).norm();
+    };
+    nominal_miss_m = std::max(nominal_miss_m, miss_m(cell.arm.model));
+    calibrated_miss_m = std::max(calibrated_miss_m, miss_m(result.calibrated));
+  }
+  EXPECT_GT(nominal_miss_m, 1e-3);
+  EXPECT_LT(calibrated_miss_m, 1e-9);
+}
+
+TEST(SlidingArm, IsReadButNotDriven) {
+  const Folder folder;
+  nlohmann::json arm = json_of(kSourceDir / "config/arms/tx60.json");
+  arm["frames"][3]["joint_type"] = "prismatic";
+  arm["joint_limits_deg"][2] = {-50, 250};
+  arm["joint_max_speeds_deg_s"][2] = 500;
+  Cell cell = demo_with("tx60");
+  cell.arm = read_arm(folder.write("arm.json", arm.dump()));
+  EXPECT_EQ(cell.arm.model.joint_types[2], calib::JointType::kPrismatic);
+  EXPECT_DOUBLE_EQ(cell.arm.joint_ranges.lower[2], -0.05);
+  EXPECT_DOUBLE_EQ(cell.arm.joint_ranges.upper[2], 0.25);
+  EXPECT_DOUBLE_EQ(cell.arm.joint_speeds_max[2], 0.5);
+  const ConfigError error = error_of([&] { demand_revolute(cell); });
+  EXPECT_EQ(error.pointer(), "/arm");
+  EXPECT_THAT(error.what(), HasSubstr("joint 3 of \"tx60\" is prismatic"));
+
+  arm["gravity"] = json_of(kSourceDir / "config/arms/tx90.json")["gravity"];
+  EXPECT_EQ(error_of([&] { read_arm(folder.write("arm.json", arm.dump())); }).pointer(), "/gravity");
+}
+
+// What the shipped arm declares about its stiffness: 0.3 mrad of droop, stretched out, is no surprise.
+TEST(Tx90, IsDeclaredStiffEnoughThatATypicalDroopIsOneToTwoDeviations) {
+  constexpr double kTypicalDroopRad = 0.3e-3;
+  const Arm arm = read_arm(kSourceDir / "config/arms/tx90.json");
+  double mass_kg = 0.0;
+  for (const calib::PointMass& mass : arm.model.masses) mass_kg += mass.mass_kg;
+  EXPECT_LT(mass_kg, 111.0);  // of the whole arm, foot and shoulder included
+  calib::JointVector stretched = calib::JointVector::Zero();
+  stretched[1] = std::acos(0.0);
+  const calib::JointVector torques_nm =
+      calib::gravity_torques_nm(arm.model, calib::forward_chain(arm.model, stretched));
+  for (std::size_t i = 0; i < calib::kComplianceCount; ++i) {
+    const double droop_std_rad =
+        arm.std_compliance_rad_per_nm[i].value() * std::abs(torques_nm[calib::kCompliantJoints[i]]);
+    EXPECT_GE(kTypicalDroopRad / droop_std_rad, 1.0);
+    EXPECT_LE(kTypicalDroopRad / droop_std_rad, 2.0);
+  }
+}
+
+}  // namespace
+}  // namespace cell
