@@ -1,0 +1,114 @@
+#include "tests/benchmark/ceres_identify.hpp"
+
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/covariance.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <array>
+#include <stdexcept>
+
+#include "tests/benchmark/templated_kinematics.hpp"
+
+namespace bench {
+namespace {
+
+struct Measured {
+  const calib::KinematicModel& nominal;
+  std::span<const calib::Plane> contact_planes;
+  const std::vector<int>& columns;
+};
+
+template <class T>
+T signed_distance(const Measured& measured, const calib::Touch& touch, const Vector3<T>& tip_m) {
+  const calib::Plane& plane = measured.contact_planes[static_cast<std::size_t>(touch.face)];
+  return plane.outward.x() * tip_m.x() + plane.outward.y() * tip_m.y() + plane.outward.z() * tip_m.z() -
+         plane.offset_m;
+}
+
+/// kUsual: one touch.
+struct SignedDistance {
+  const Measured& measured;
+  const calib::Touch& touch;
+
+  template <class T>
+  [[gnu::flatten]] bool operator()(const T* errors, T* residual) const {
+    const Links<T> links = links_with_errors(measured.nominal, measured.columns, errors);
+    *residual = signed_distance(measured, touch, tip_by_frames(links, touch.joints));
+    return true;
+  }
+};
+
+/// kTuned: all touches.
+struct SignedDistances {
+  const Measured& measured;
+  std::span<const calib::Touch> touches;
+
+  template <class T>
+  [[gnu::flatten]] bool operator()(const T* errors, T* residuals) const {
+    const auto links = prepare(links_with_errors(measured.nominal, measured.columns, errors));
+    for (const calib::Touch& touch : touches) {
+      *residuals++ = signed_distance(measured, touch, tip_by_point(links, touch.joints));
+    }
+    return true;
+  }
+};
+
+void add_residuals(ceres::Problem& problem, const Measured& measured, std::span<const calib::Touch> touches,
+                   CeresForm form, double* errors) {
+  if (form == CeresForm::kTuned) {
+    using Cost = ceres::AutoDiffCostFunction<SignedDistances, ceres::DYNAMIC, kIdentifiedCount>;
+    problem.AddResidualBlock(
+        new Cost(new SignedDistances{measured, touches}, static_cast<int>(touches.size())), nullptr, errors);
+    return;
+  }
+  using Cost = ceres::AutoDiffCostFunction<SignedDistance, 1, kIdentifiedCount>;
+  for (const calib::Touch& touch : touches) {
+    problem.AddResidualBlock(new Cost(new SignedDistance{measured, touch}), nullptr, errors);
+  }
+}
+
+ceres::Solver::Options solver_options(CeresForm form) {
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.num_threads = 1;
+  options.logging_type = ceres::SILENT;
+  if (form == CeresForm::kTuned) options.initial_trust_region_radius = 1e12;
+  return options;
+}
+
+/// DENSE_SVD is faster here than the default, a sparse QR.
+Eigen::MatrixXd covariance_of(ceres::Problem& problem, const double* errors) {
+  ceres::Covariance::Options options;
+  options.algorithm_type = ceres::DENSE_SVD;
+  options.num_threads = 1;
+  ceres::Covariance covariance(options);
+  if (!covariance.Compute(std::vector<std::pair<const double*, const double*>>{{errors, errors}}, &problem)) {
+    throw std::runtime_error("Ceres finds no covariance");
+  }
+  Eigen::Matrix<double, kIdentifiedCount, kIdentifiedCount, Eigen::RowMajor> block;
+  covariance.GetCovarianceBlock(errors, errors, block.data());
+  return block;
+}
+
+}  // namespace
+
+CeresResult ceres_identify(const calib::KinematicModel& nominal, std::span<const calib::Plane> contact_planes,
+                           std::span<const calib::Touch> touches, const std::vector<int>& columns,
+                           CeresForm form, Covariance covariance) {
+  if (columns.size() != kIdentifiedCount) throw std::logic_error("compiled for 25 parameters");
+  const Measured measured{nominal, contact_planes, columns};
+  std::array<double, kIdentifiedCount> errors{};
+  ceres::Problem problem;
+  add_residuals(problem, measured, touches, form, errors.data());
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options(form), &problem, &summary);
+
+  CeresResult result{.converged = summary.termination_type == ceres::CONVERGENCE,
+                     .iterations = static_cast<int>(summary.iterations.size()) - 1};  // [0] is the start
+  for (std::size_t k = 0; k < errors.size(); ++k) result.errors[columns[k]] = errors[k];
+  if (covariance == Covariance::kYes) result.covariance = covariance_of(problem, errors.data());
+  return result;
+}
+
+}  // namespace bench

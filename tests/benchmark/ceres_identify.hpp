@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "calib_core/error_parameters.hpp"
+#include "calib_core/kinematic_model.hpp"
+#include "calib_core/plane.hpp"
+#include "calib_core/touch.hpp"
+
+namespace bench {
+
+/// As many parameters as Ceres is compiled for: its Jets have a fixed size.
+inline constexpr int kIdentifiedCount = 25;
+
+/// kUsual: as Ceres's documentation does it; a residual block a touch, the forward kinematics templated frame
+/// by frame, default options.
+/// kTuned: all that made it faster; one block for all touches, so that what they share is computed once, a
+/// point carried back instead of frames, and a nearly undamped start.
+/// In both GCC is told to inline all arithmetic of derivatives (gnu::flatten), which takes off a third.
+enum class CeresForm { kUsual, kTuned };
+
+enum class Covariance { kNo, kYes };
+
+struct CeresResult {
+  bool converged = false;
+  int iterations = 0;
+  calib::ErrorVector errors = calib::ErrorVector::Zero();  // metres and radians; 0 where not identified
+  Eigen::MatrixXd covariance{};  // 25 x 25, for residuals with a standard deviation of 1 m; empty with kNo
+};
+
+/// What calib::identify solves once it has chosen `columns`: signed distances of the tips (metres), automatic
+/// derivatives, DENSE_QR, one thread, a start at nominal. The problem is built anew each time. Throws
+/// std::logic_error unless there are 25 columns.
+CeresResult ceres_identify(const calib::KinematicModel& nominal, std::span<const calib::Plane> contact_planes,
+                           std::span<const calib::Touch> touches, const std::vector<int>& columns,
+                           CeresForm form, Covariance covariance);
+
+}  // namespace bench
