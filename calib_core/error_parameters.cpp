@@ -159,11 +159,10 @@ Eigen::Matrix<double, 3, kArmParameterCount> tip_arm_derivatives(const Kinematic
   return point_arm_derivatives(model, chain, chain.tip_in_block_m(), kFrameCount - 1);
 }
 
-Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const KinematicModel& model,
+Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const PreparedModel& prepared,
                                                                    const Chain& chain,
                                                                    const Eigen::Vector3d& point_in_block_m,
                                                                    int last_frame) {
-  const PreparedModel prepared = prepare(model);
   const JointVector torques = torques_nm(prepared, chain);
   Eigen::Matrix<double, 3, kArmParameterCount> derivatives;
   for (int i = 0; i < 3; ++i) {
@@ -171,6 +170,13 @@ Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const Kinemat
         derivatives_along(prepared, chain, torques, point_in_block_m, last_frame, Eigen::Vector3d::Unit(i));
   }
   return derivatives;
+}
+
+Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const KinematicModel& model,
+                                                                   const Chain& chain,
+                                                                   const Eigen::Vector3d& point_in_block_m,
+                                                                   int last_frame) {
+  return point_arm_derivatives(prepare(model), chain, point_in_block_m, last_frame);
 }
 
 }  // namespace calib

@@ -58,11 +58,13 @@ double parameter_value(const KinematicModel& model, int index);
 KinematicModel apply(const KinematicModel& model, const ErrorVector& errors);
 KinematicModel apply(const KinematicModel& model, const ArmVector& errors);
 
-/// The same for an expression, which could become either.
+/// An expression of either length, which could become either vector.
 template <class Expression>
-requires(Expression::RowsAtCompileTime == kErrorParameterCount ||
-         Expression::RowsAtCompileTime == kArmParameterCount) KinematicModel
-    apply(const KinematicModel& model, const Eigen::MatrixBase<Expression>& errors) {
+concept ErrorExpression = Expression::RowsAtCompileTime == kErrorParameterCount ||
+                          Expression::RowsAtCompileTime == kArmParameterCount;
+
+template <ErrorExpression Expression>
+KinematicModel apply(const KinematicModel& model, const Eigen::MatrixBase<Expression>& errors) {
   return apply(model, errors.eval());
 }
 
@@ -85,6 +87,10 @@ Eigen::Matrix<double, 3, kArmParameterCount> tip_arm_derivatives(const Kinematic
                                                                  const Chain& chain);
 
 /// Of a point that is fixed in R_last_frame, 3 x 39; frames after that one do not move it.
+Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const PreparedModel& prepared,
+                                                                   const Chain& chain,
+                                                                   const Eigen::Vector3d& point_in_block_m,
+                                                                   int last_frame);
 Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const KinematicModel& model,
                                                                    const Chain& chain,
                                                                    const Eigen::Vector3d& point_in_block_m,
