@@ -1,0 +1,38 @@
+#pragma once
+
+#include "config/read_config.hpp"
+#include "folder.hpp"
+
+namespace cell {
+
+inline constexpr const char* kArm = "arms/tx90.json";
+inline constexpr const char* kBlock = "cells/demo/block.json";
+inline constexpr const char* kProbe = "cells/demo/probe.json";
+inline constexpr const char* kRecipe = "recipes/edf-25.json";
+inline constexpr const char* kCell = "cells/demo/cell.json";
+inline constexpr const char* kTruth = "cells/demo/truth.json";
+
+/// A copy of the shipped configuration to spoil: the demo cell, whose files have every kind of entry.
+class CopiedConfig : public testing::Test {
+ protected:
+  CopiedConfig() {
+    for (const char* name : {"arms", "cells", "recipes"}) {
+      std::filesystem::copy(kSourceDir / "config" / name, folder_.path() / name,
+                            std::filesystem::copy_options::recursive);
+    }
+  }
+
+  [[nodiscard]] std::filesystem::path path(const std::string& name) const { return folder_.path() / name; }
+
+  void edit(const std::string& file, const std::function<void(nlohmann::json&)>& change) const {
+    nlohmann::json document = json_of(path(file));
+    change(document);
+    folder_.write(file, document.dump());
+  }
+
+  [[nodiscard]] Cell read() const { return read_cell(path(kCell)); }
+
+  Folder folder_;
+};
+
+}  // namespace cell

@@ -1,0 +1,127 @@
+// What is known before the first touch, and how it is used: the recipe's options, the prior, the artefact.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "config/cell.hpp"
+#include "copied_config.hpp"
+
+namespace cell {
+namespace {
+
+using nlohmann::json;
+using testing::EndsWith;
+
+using Knowledge = CopiedConfig;
+
+TEST_F(Knowledge, ARecipeThatSaysNothingMoreIsRobustWeighsColumnsAndHasNoPrior) {
+  const calib::IdentificationOptions options = read().recipes.at("edf-25").identification;
+  EXPECT_EQ(options.weights, calib::ColumnScaling::kUnitNorm);
+  EXPECT_TRUE(options.robust);
+  EXPECT_FALSE(options.prior);
+  EXPECT_FALSE(options.stiffness);
+  EXPECT_TRUE(options.hold_weak);
+}
+
+TEST_F(Knowledge, ARecipeChoosesWeightsRobustnessAndPrior) {
+  edit(kRecipe, [](json& recipe) {
+    recipe["identification"].update({{"weights", "units"}, {"robust", false}, {"prior", true}});
+    recipe["identification"]["hold_weak"] = false;
+  });
+  const calib::IdentificationOptions options = read().recipes.at("edf-25").identification;
+  EXPECT_EQ(options.weights, calib::ColumnScaling::kUnits);
+  EXPECT_FALSE(options.robust);
+  EXPECT_TRUE(options.prior);
+  EXPECT_FALSE(options.hold_weak);
+}
+
+TEST_F(Knowledge, StiffnessIsIdentifiedOnlyOfAnArmThatTellsItsMassesAndHowStiffItIsThoughtToBe) {
+  edit(kRecipe, [](json& recipe) { recipe["identification"]["stiffness"] = true; });
+  EXPECT_TRUE(read().recipes.at("edf-25").identification.stiffness);
+  for (const char* missing : {"/gravity/std_compliance_rad_per_nm", "/gravity"}) {
+    edit(kArm, [&](json& arm) {
+      const json::json_pointer place(missing);
+      arm.at(place.parent_pointer()).erase(place.back());
+    });
+    const ConfigError error = error_of([&] { static_cast<void>(read()); });
+    EXPECT_THAT(error.source(), EndsWith(kRecipe));
+    EXPECT_EQ(error.pointer(), "/identification/stiffness");
+  }
+}
+
+double tolerance(const calib::ErrorTolerances& tolerances, const char* name) {
+  return tolerances[static_cast<std::size_t>(*calib::error_parameter_index(name))].value();
+}
+
+TEST_F(Knowledge, ThePlaceOfTheBlockIsAsUncertainAsTheArmMayMissUnlessTheCellSaysBetter) {
+  const Cell miss = read();
+  const calib::ErrorTolerances from_miss = prior_tolerances(miss);
+  for (const char* name : {"r0", "d1", "r1"}) EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m);
+  for (const char* name : {"theta0", "alpha1", "theta1"})
+    EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m / kPlaceLeverMetres);
+  EXPECT_DOUBLE_EQ(tolerance(from_miss, "d3"), 0.3e-3);  // the maker's
+  edit(kCell, [](json& cell) {
+    cell["unknown_place_std"] = {{"length_mm", 5}, {"angle_rad", 0.004}};
+    cell["frames"] = json::parse(R"([{"j":0,"theta_deg":0,"r_mm":149.6,"std":{"r_mm":1}}])");
+  });
+  const calib::ErrorTolerances given = prior_tolerances(read());
+  EXPECT_DOUBLE_EQ(tolerance(given, "r0"), 0.001);  // the file's own
+  EXPECT_DOUBLE_EQ(tolerance(given, "d1"), 0.005);
+  EXPECT_DOUBLE_EQ(tolerance(given, "alpha1"), 0.004);
+}
+
+TEST_F(Knowledge, AcceptanceNeedsNoLimitOnLackOfFitOrTheBox) {
+  const AcceptanceLimits silent = read().acceptance;
+  EXPECT_EQ(silent.lack_of_fit_p_min, AcceptanceLimits{}.lack_of_fit_p_min);
+  EXPECT_FALSE(silent.tip_box_rms_max_m.has_value());
+  edit(kCell, [](json& cell) {
+    cell["acceptance"].update({{"lack_of_fit_p_min", 0.01}, {"tip_box_rms_max_mm", 0.06}});
+  });
+  const AcceptanceLimits limits = read().acceptance;
+  EXPECT_EQ(limits.lack_of_fit_p_min, 0.01);
+  EXPECT_DOUBLE_EQ(limits.tip_box_rms_max_m.value(), 0.06e-3);
+}
+
+TEST_F(Knowledge, TheArtefactIsTheBlockAndTheBallWithTheirUncertainties) {
+  edit(kBlock, [](json& block) {
+    block["temperature_c"] = 23;
+    block["faces"][1]["place"] = "estimated";
+    block["faces"][2].erase("std_offset_mm");
+  });
+  const calib::ArtefactKnowledge known = artefact_knowledge(read());
+  ASSERT_EQ(known.faces.size(), 5U);
+  ASSERT_EQ(known.face_uncertainties.size(), 5U);
+  EXPECT_FALSE(known.face_uncertainties[0].estimated);
+  EXPECT_DOUBLE_EQ(known.face_uncertainties[0].std_offset_m, 5e-6);
+  EXPECT_DOUBLE_EQ(known.face_uncertainties[0].std_tilt_rad, 5.8e-5);
+  EXPECT_TRUE(known.face_uncertainties[1].estimated);
+  EXPECT_EQ(known.face_uncertainties[2].std_offset_m, 0.0);
+  EXPECT_EQ(known.lengths.size(), 2U);
+  EXPECT_DOUBLE_EQ(known.stylus.radius_m, 0.003);
+  EXPECT_DOUBLE_EQ(known.std_radius_m, 5e-6);
+  EXPECT_DOUBLE_EQ(known.std_pretravel_m, 2e-6);
+  EXPECT_DOUBLE_EQ(known.warmer_than_20_c_k, 3.0);
+  EXPECT_EQ(known.std_temperature_k, 1.0);
+  EXPECT_DOUBLE_EQ(known.thermal_expansion_per_k, 2.36e-5);
+}
+
+TEST_F(Knowledge, ATipThatIsTheContactPointHasNoBallToBeUncertainOf) {
+  edit(kCell, [](json& cell) { cell["probe"] = "../edf/probe.json"; });
+  const calib::ArtefactKnowledge known = artefact_knowledge(read());
+  EXPECT_EQ(known.stylus.radius_m, 0.0);
+  EXPECT_EQ(known.std_radius_m, 0.0);
+  EXPECT_EQ(known.std_pretravel_m, 0.0);
+}
+
+TEST_F(Knowledge, AnUnknownTemperatureStaysUnknown) {
+  edit(kBlock, [](json& block) {
+    for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
+      block.erase(key);
+  });
+  const Cell cell = read();
+  EXPECT_FALSE(cell.block.temperature_c.has_value());
+  EXPECT_EQ(artefact_knowledge(cell).warmer_than_20_c_k, 0.0);
+  EXPECT_EQ(artefact_knowledge(cell).std_temperature_k, 0.0);
+}
+
+}  // namespace
+}  // namespace cell
