@@ -76,7 +76,7 @@ std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain,
       if (are_neighbours(body, other)) continue;
       const double distance_m = segment_distance_m(here.from_m, here.to_m, placed[j].from_m, placed[j].to_m) -
                                 body.radius_m - other.radius_m;
-      if (!(distance_m >= 0.0)) return Clash{body.name, other.name, distance_m};
+      if (!(distance_m >= self_clearance_m(clearance_m))) return Clash{body.name, other.name, distance_m};
     }
   }
   return std::nullopt;

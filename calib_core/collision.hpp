@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <string>
@@ -68,8 +69,14 @@ double capsule_box_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector
 double segment_distance_m(const Eigen::Vector3d& from_a, const Eigen::Vector3d& to_a,
                           const Eigen::Vector3d& from_b, const Eigen::Vector3d& to_b);
 
-/// The first pair nearer than `clearance_m` (obstacles) or touching (arm against itself), or nothing.
-/// Neighbours (are_neighbours) never clash with each other.
+/// The arm's bodies keep this distance from each other wherever a clearance is asked for that is not smaller:
+/// an arm that is not nominal has its own bodies a few millimetres elsewhere, but they move together.
+inline constexpr double kSelfClearanceMetres = 0.01;
+
+inline double self_clearance_m(double clearance_m) { return std::min(clearance_m, kSelfClearanceMetres); }
+
+/// The first pair nearer than `clearance_m` (obstacles) or self_clearance_m() of it (arm against itself), or
+/// nothing. Neighbours (are_neighbours) never clash with each other.
 std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain, double clearance_m);
 
 }  // namespace calib

@@ -54,7 +54,7 @@ std::string find_trouble(const PlanningProblem& problem, const TouchedFace& arou
     }
   }
   const CollisionScene arm_alone{.bodies = problem.scene.bodies};
-  const auto clash = find_clash(arm_alone, chain, 0.0);
+  const auto clash = find_clash(arm_alone, chain, kSelfClearanceMetres);
   return clash ? "the " + clash->body + " hits the " + clash->other : "";
 }
 

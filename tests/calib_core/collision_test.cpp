@@ -111,6 +111,19 @@ TEST(FindClash, SeesTheToolHolderFoldedAgainstTheForearm) {
   EXPECT_EQ(clash->other, "forearm");
 }
 
+TEST(FindClash, KeepsTheArmOffItselfByTheClearanceUpToAFewMillimetres) {
+  CollisionScene scene;
+  scene.bodies = {{"base", 0, {0, 0, 0}, {0, 0, 0}, 0.01}, {"hand", 7, {0, 0, 0}, {0, 0, 0}, 0.01}};
+  const Chain chain = forward_chain(paper::nominal(), tx90::park_joints());
+  const double apart =
+      (chain.block_from_frame[7].translation() - chain.block_from_frame[0].translation()).norm();
+  scene.bodies[1].radius_m = apart - scene.bodies[0].radius_m - 0.6 * kSelfClearanceMetres;
+  EXPECT_FALSE(find_clash(scene, chain, 0.5 * kSelfClearanceMetres));
+  EXPECT_TRUE(find_clash(scene, chain, kSelfClearanceMetres));
+  scene.bodies[1].radius_m -= kSelfClearanceMetres;
+  EXPECT_FALSE(find_clash(scene, chain, 10.0 * kSelfClearanceMetres));
+}
+
 TEST(FindClash, NeighboursMayTouch) {
   CollisionScene scene;
   scene.bodies = {{"upper arm", 2, {0, 0, 0}, {0.4, 0, 0}, 0.08},
