@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "calib_core/plane.hpp"
 
@@ -10,7 +10,7 @@ namespace calib {
 struct Face {
   Plane plane;
   Eigen::Vector3d center_m;
-  Eigen::Vector3d edge_u;           // unit vector in the face; edge_v() is outward x edge_u
+  Eigen::Vector3d edge_u;         // unit vector in the face; edge_v() is outward x edge_u
   Eigen::Vector2d half_extent_m;  // along edge_u and edge_v
 
   [[nodiscard]] Eigen::Vector3d edge_v() const { return plane.outward.cross(edge_u); }

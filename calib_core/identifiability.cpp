@@ -82,44 +82,65 @@ std::vector<std::pair<int, double>> combination(const std::vector<Eigen::VectorX
   return result;
 }
 
+/// The R of [leading, W], whose columns hang together as those of W do: the same decomposition of fewer rows.
+Eigen::MatrixXd with_fewer_rows(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
+                                const Eigen::MatrixXd& leading) {
+  Eigen::MatrixXd all(observation_matrix.rows(), leading.cols() + observation_matrix.cols());
+  if (leading.cols() > 0) all.leftCols(leading.cols()) = leading;
+  all.rightCols(observation_matrix.cols()) = observation_matrix;
+  if (all.rows() <= all.cols()) return all;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(all);
+  return qr.matrixQR().topRows(all.cols()).triangularView<Eigen::Upper>();
+}
+
 }  // namespace
 
 IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
-                                    const IdentifiabilityOptions& options) {
+                                    const IdentifiabilityOptions& options,
+                                    const WeakDiagonals& weak_diagonals, const Eigen::MatrixXd& leading) {
   IdentifiableSet set;
   set.smallest_kept = std::numeric_limits<double>::infinity();
   for (const int column : options.excluded) {
     set.candidates[static_cast<std::size_t>(column)].status = ParameterStatus::kExcluded;
   }
 
-  const Eigen::Index rows = observation_matrix.rows();
-  const double longest = rows > 0 ? observation_matrix.colwise().norm().maxCoeff() : 0.0;
+  const double longest = observation_matrix.rows() > 0 ? observation_matrix.colwise().norm().maxCoeff() : 0.0;
   const double rounding =
-      std::max(static_cast<double>(rows) * std::numeric_limits<double>::epsilon(), kRoundingRelative) *
+      std::max(static_cast<double>(observation_matrix.rows()) * std::numeric_limits<double>::epsilon(),
+               kRoundingRelative) *
       longest;
   const double tolerance = std::max(options.qr_tolerance.value_or(0.0), rounding);
+  const Eigen::MatrixXd columns = with_fewer_rows(observation_matrix, leading);
+  const Eigen::Index rows = columns.rows();
 
   Reflectors reflectors(rows);
+  for (Eigen::Index i = 0; i < leading.cols() && reflectors.count() < rows; ++i) {
+    Eigen::VectorXd reflected = columns.col(i);
+    reflectors.apply_to(reflected);
+    if (reflected.tail(rows - reflectors.count()).norm() > rounding) reflectors.keep(reflected);
+  }
+  const Eigen::Index leading_kept = reflectors.count();
   std::vector<int> kept;
   std::vector<Eigen::VectorXd> kept_columns;
   for (const int column : column_order(options)) {
     CandidateStatus& candidate = set.candidates[static_cast<std::size_t>(column)];
-    Eigen::VectorXd reflected = observation_matrix.col(column);
+    Eigen::VectorXd reflected = columns.col(leading.cols() + column);
     if (reflected.norm() <= rounding) continue;  // stays kNoEffect
     reflectors.apply_to(reflected);
     const double diagonal = reflected.tail(rows - reflectors.count()).norm();  // |R_ii|
-    if (diagonal > tolerance) {
+    if (diagonal > std::max(tolerance, weak_diagonals[static_cast<std::size_t>(column)])) {
       candidate.status = ParameterStatus::kIdentified;
       set.smallest_kept = std::min(set.smallest_kept, diagonal);
       reflectors.keep(reflected);
       kept.push_back(column);
-      kept_columns.push_back(std::move(reflected));
+      kept_columns.push_back(reflected.segment(leading_kept, rows - leading_kept));
       continue;
     }
     set.largest_dropped = std::max(set.largest_dropped, diagonal);
     candidate.status = diagonal > rounding ? ParameterStatus::kWeak : ParameterStatus::kGrouped;
-    if (candidate.status == ParameterStatus::kGrouped) {
-      candidate.grouped_with = combination(kept_columns, kept, reflected);
+    if (candidate.status == ParameterStatus::kGrouped && !kept.empty()) {
+      candidate.grouped_with =
+          combination(kept_columns, kept, reflected.segment(leading_kept, rows - leading_kept));
     }
   }
   set.columns = kept;

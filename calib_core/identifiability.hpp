@@ -16,7 +16,7 @@ enum class ParameterStatus {
   kGrouped,   // its column is a combination of identified ones, which carry its effect
   kNoEffect,  // a column of zeros
   kExcluded,  // by the options
-  kWeak,      // independent, but under the given tolerance
+  kWeak,      // independent, but under the given tolerance or too weak for the noise
 };
 
 struct IdentifiabilityOptions {
@@ -24,6 +24,9 @@ struct IdentifiabilityOptions {
   std::vector<int> tried_last;         // candidates moved to the end of the column order, in this order
   std::vector<int> excluded;           // candidates never identified
 };
+
+/// |R_ii| up to which a candidate is weak, one a candidate; 0 lets everything through.
+using WeakDiagonals = std::array<double, kErrorParameterCount>;
 
 /// Status of a candidate; for a grouped one what one unit of it adds to which identified ones (SI units).
 struct CandidateStatus {
@@ -40,9 +43,12 @@ struct IdentifiableSet {
 
 /// QR without pivoting in the wanted column order (eq. 12 to 14): a column whose |R_ii| is under the
 /// tolerance depends on the ones before it and is left out of the rest of the decomposition. W is meant to be
-/// that of the nominal model with each touch on its nominal face.
+/// that of the nominal model with each touch on its nominal face. `leading` columns (as many rows, any
+/// number) come before all candidates: faces estimated in place, which take up what they explain.
 IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
-                                    const IdentifiabilityOptions& options);
+                                    const IdentifiabilityOptions& options,
+                                    const WeakDiagonals& weak_diagonals = {},
+                                    const Eigen::MatrixXd& leading = {});
 
 /// Columns of a matrix by index.
 Eigen::MatrixXd select_columns(const Eigen::Ref<const Eigen::MatrixXd>& matrix,

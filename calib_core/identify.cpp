@@ -1,223 +1,360 @@
 #include "calib_core/identify.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <numeric>
 #include <sstream>
 
-#include "calib_core/quasi_random.hpp"
+#include "calib_core/assess.hpp"
+#include "calib_core/column_choice.hpp"
+#include "calib_core/face_distances.hpp"
+#include "calib_core/input_check.hpp"
+#include "calib_core/least_squares.hpp"
+#include "calib_core/robust.hpp"
+#include "calib_core/units.hpp"
 
 namespace calib {
 namespace {
 
-std::vector<Touch> touches_with_role(const std::vector<Touch>& touches, TouchRole role) {
-  std::vector<Touch> chosen;
-  std::ranges::copy_if(touches, std::back_inserter(chosen), [&](const Touch& t) { return t.role == role; });
-  return chosen;
+/// Steps under this that no longer shrink have reached the rounding of the weakest direction.
+constexpr double kStepNormRounding = 1e-8;
+
+/// More robust rounds than this do not settle.
+constexpr int kRobustRoundsMax = 20;
+
+/// What an arm may well be off by, or its block: the wide prior of the robust start.
+constexpr double kPlausibleMetres = 0.010;
+constexpr double kPlausibleRadians = 0.020;
+constexpr double kLargeNoiseMetres = 1e-4;  // of a touch, where none is declared
+
+/// The chance of the robust start's random subsets: fixed, so that the same touches give the same result.
+constexpr std::uint64_t kRobustSeed = 20111101;
+
+std::string scientific(double value) {
+  std::ostringstream text;
+  text.precision(3);
+  text << value;
+  return text.str();
 }
 
-std::string plane_name(std::size_t face) { return "plane " + std::to_string(face + 1); }
-
-/// What makes the problem unfit for computing at all, or nothing.
-std::optional<std::string> find_bad_input(const IdentificationProblem& problem, Formulation formulation) {
-  for (std::size_t i = 0; i < problem.touches.size(); ++i) {
-    const Touch& touch = problem.touches[i];
-    const std::string which = "touch " + std::to_string(i + 1);
-    if (!touch.joints.allFinite()) return which + " has a joint that is not a finite number; remove it";
-    if (touch.face < 0 || static_cast<std::size_t>(touch.face) >= problem.contact_planes.size()) {
-      return which + " is on " + plane_name(static_cast<std::size_t>(touch.face)) + ", but there are only " +
-             std::to_string(problem.contact_planes.size()) + " planes";
+/// Iterates from an estimate to the minimum over the kept touches.
+class Iterations {
+ public:
+  Iterations(const IdentificationProblem& problem, const IdentificationOptions& options, LeastSquares& fit,
+             const std::vector<int>& identifiable)
+      : problem_(problem), options_(options), fit_(fit) {
+    for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
+      if (std::ranges::binary_search(identifiable, fit.arm_columns()[i])) {
+        positions_.push_back(static_cast<Eigen::Index>(i));
+      }
     }
-    const bool through_origin = problem.contact_planes[static_cast<std::size_t>(touch.face)].offset_m == 0.0;
-    if (through_origin && formulation == Formulation::kPlaneCoefficients) {
-      return plane_name(static_cast<std::size_t>(touch.face)) +
-             " goes through the origin, where eq. 6 has no form; use the formulation signed_distance";
+    history_.reserve(static_cast<std::size_t>(std::max(0, options.iterations_max)));
+  }
+
+  [[nodiscard]] Estimate nominal() const {
+    Estimate estimate{problem_.start, {}};
+    estimate.artefact.setZero(static_cast<Eigen::Index>(problem_.artefact.parameters.size()));
+    return estimate;
+  }
+
+  /// Converged, or why not in message(). Leaves the fit linearised and solved at the estimate.
+  bool run(Estimate& estimate, bool with_conditions) {
+    history_.clear();
+    message_.clear();
+    double before = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < options_.iterations_max; ++i) {
+      fit_.linearise(estimate);
+      if (!fit_.solve()) {
+        solvable_ = std::isfinite(fit_.residual_rms_m());
+        message_ = solvable_ ? "the touches and the priors leave a direction open"
+                             : "the iteration left the finite numbers at step " + std::to_string(i + 1) +
+                                   history_text();
+        return false;
+      }
+      const auto conditions = with_conditions ? fit_.conditions(positions_) : LeastSquares::Conditions{};
+      const double step = fit_.arm_step_norm();
+      history_.push_back(
+          {conditions.condition_number, conditions.scaled_condition_number, fit_.residual_rms_m(), step});
+      estimate = fit_.stepped(std::move(estimate));
+      if (step < kStepNormConverged || (step < kStepNormRounding && step > 0.5 * before)) return true;
+      before = step;
     }
+    message_ = "no convergence in " + std::to_string(options_.iterations_max) + " iterations" +
+               history_text() + "; look for touches on the wrong plane";
+    return false;
   }
-  return std::nullopt;
-}
 
-/// Where the missing touches are best made: each on the plane that then has the fewest.
-std::string missing_on_planes(const std::vector<Touch>& fitted, std::size_t plane_count, int missing) {
-  std::vector<int> have(plane_count, 0), add(plane_count, 0);
-  for (const Touch& touch : fitted) ++have[static_cast<std::size_t>(touch.face)];
-  for (int i = 0; i < missing; ++i) {
-    const auto fewest = static_cast<std::size_t>(std::ranges::min_element(have) - have.begin());
-    ++have[fewest];
-    ++add[fewest];
+  [[nodiscard]] const std::vector<Iteration>& history() const { return history_; }
+  [[nodiscard]] const std::string& message() const { return message_; }
+  [[nodiscard]] bool solvable() const { return solvable_; }
+
+ private:
+  [[nodiscard]] std::string history_text() const {
+    std::string text;
+    for (const Iteration& iteration : history_) {
+      text += (text.empty() ? " (residual rms " : ", ") +
+              scientific(mm_from_metres(iteration.residual_rms_m)) + " mm step " +
+              scientific(iteration.step_norm);
+    }
+    return text.empty() ? text : text + ")";
   }
-  std::string text;
-  for (std::size_t face = 0; face < plane_count; ++face) {
-    if (add[face] == 0) continue;
-    text += (text.empty() ? "" : ", ") + std::to_string(add[face]) + " on " + plane_name(face);
-  }
-  return text;
-}
 
-std::string too_few_message(const std::vector<Touch>& fitted, std::size_t plane_count, int needed) {
-  const int have = static_cast<int>(fitted.size());
-  return std::to_string(have) + " touches, but " + std::to_string(needed) + " parameters need at least " +
-         std::to_string(needed) + ": " + std::to_string(needed - have) + " more are missing (" +
-         missing_on_planes(fitted, plane_count, needed - have) + ")";
-}
-
-std::string unobservable_message(const std::vector<Touch>& fitted, std::size_t plane_count, int shown,
-                                 int needed) {
-  std::string bare;
-  for (std::size_t face = 0; face < plane_count; ++face) {
-    const bool touched = std::ranges::any_of(
-        fitted, [&](const Touch& touch) { return static_cast<std::size_t>(touch.face) == face; });
-    if (!touched) bare += (bare.empty() ? "" : ", ") + plane_name(face);
-  }
-  return "the touches show " + std::to_string(shown) + " of the " + std::to_string(needed) +
-         " parameters that this cell can show: " +
-         (bare.empty() ? "they are too alike; spread them over the faces and over postures and tilts"
-                       : "there is none on " + bare + "; touch it too");
-}
-
-struct Solution {
-  Eigen::VectorXd step;
-  double condition_number = 0.0;
-  double scaled_condition_number = 0.0;
+  const IdentificationProblem& problem_;
+  const IdentificationOptions& options_;
+  LeastSquares& fit_;
+  std::vector<Eigen::Index> positions_;  // of the identifiable among the estimated columns
+  std::vector<Iteration> history_;
+  std::string message_;
+  bool solvable_ = true;
 };
 
-/// Eq. 15 with columns of unit norm: the step of the identifiable errors.
-Solution solve_step(const Observation& observation, const std::vector<int>& columns) {
-  const Eigen::MatrixXd identifiable = select_columns(observation.matrix, columns);
-  const Eigen::VectorXd scale = identifiable.colwise().norm().cwiseInverse();
-  const Eigen::MatrixXd scaled = identifiable * scale.asDiagonal();
-  return {scale.asDiagonal() * scaled.householderQr().solve(observation.output_error).eval(),
-          condition_number(identifiable), condition_number(scaled)};
-}
+/// Which touches belong together. Ends with the kept ones set in the fit, and converged or not.
+class RobustSearch {
+ public:
+  RobustSearch(const IdentificationProblem& problem, LeastSquares& fit, Iterations& iterations)
+      : known_noise_(problem.touch_noise_m > 0.0), fit_(fit), iterations_(iterations) {}
 
-double rms(const Eigen::VectorXd& values) {
-  return values.size() == 0 ? 0.0 : values.norm() / std::sqrt(static_cast<double>(values.size()));
-}
+  /// Whether the declared noise explains the residuals of the fit at hand.
+  [[nodiscard]] bool nothing_suspect() {
+    if (!known_noise_) return fit_.residuals_m().cwiseAbs().maxCoeff() < kScatterMinMetres;
+    return studentized(fit_).maxCoeff() <=
+           largest_expected(fit_.kept_count(), std::numeric_limits<double>::infinity());
+  }
 
-/// Iterates eq. 15 from the nominal model; fills iterations, errors, calibrated and status.
-void iterate(const IdentificationProblem& problem, const IdentificationOptions& options,
-             const std::vector<Touch>& fitted, IdentificationResult& result) {
-  result.status = IdentificationStatus::kNotConverged;
-  for (int i = 0; i < options.iterations_max; ++i) {
-    const Observation observation =
-        observe(result.calibrated, problem.contact_planes, fitted, options.formulation);
-    const Solution solution = solve_step(observation, result.identifiable.columns);
-    if (!solution.step.allFinite()) {
-      result.message = "the iteration left the finite numbers at step " + std::to_string(i + 1) +
-                       "; a touch may be far off its plane";
-      return;
-    }
-    const double residual_rms = rms(signed_distances_m(result.calibrated, problem.contact_planes, fitted));
-    result.iterations.push_back(
-        {solution.condition_number, solution.scaled_condition_number, residual_rms, solution.step.norm()});
-    for (std::size_t k = 0; k < result.identifiable.columns.size(); ++k) {
-      result.errors[result.identifiable.columns[k]] += solution.step[static_cast<Eigen::Index>(k)];
-    }
-    result.calibrated = apply(problem.nominal, result.errors);
-    if (solution.step.norm() < kStepNormConverged) {
-      result.status = IdentificationStatus::kConverged;
-      return;
+  void run(const std::vector<int>& identifiable) {
+    Estimate estimate = iterations_.nominal();
+    const std::vector<bool> core = start(identifiable, estimate);
+    std::vector<bool> kept = core;
+    // The half that agrees best scatters too little to judge the others by: it is kept until no more join it.
+    bool growing = true;
+    for (int round = 0; round < kRobustRoundsMax; ++round) {
+      fit_.keep(kept);
+      if (!iterations_.run(estimate, false)) return;
+      const std::vector<bool> good = judged(estimate);
+      std::vector<bool> next = good;
+      for (std::size_t i = 0; growing && i < next.size(); ++i) next[i] = good[i] || core[i];
+      if (growing && next == kept) {
+        growing = false;
+        next = good;
+      }
+      if (next == kept) return;
+      kept = next;
     }
   }
-  std::ostringstream last_step;
-  last_step << result.iterations.back().step_norm;
-  result.message = "no convergence in " + std::to_string(options.iterations_max) + " iterations (last step " +
-                   last_step.str() + "); look for touches on the wrong plane";
-}
 
-std::vector<FaceDistances> face_distances(const IdentificationProblem& problem,
-                                          const KinematicModel& calibrated) {
-  std::vector<FaceDistances> all;
-  for (const TouchRole role : {TouchRole::kFit, TouchRole::kHeldOut, TouchRole::kProof}) {
-    for (std::size_t face = 0; face < problem.contact_planes.size(); ++face) {
-      std::vector<Touch> here;
-      std::ranges::copy_if(problem.touches, std::back_inserter(here), [&](const Touch& touch) {
-        return touch.role == role && static_cast<std::size_t>(touch.face) == face;
-      });
-      if (here.empty()) continue;
-      const Eigen::VectorXd nominal = signed_distances_m(problem.nominal, problem.contact_planes, here);
-      const Eigen::VectorXd after = signed_distances_m(calibrated, problem.contact_planes, here);
-      all.push_back({static_cast<int>(face), role, static_cast<int>(here.size()), nominal.mean(),
-                     rms(nominal), after.mean(), rms(after)});
+ private:
+  /// A high-breakdown start: least trimmed squares of the problem linearised at the nominal arm, then
+  /// concentrated once more where that leads.
+  std::vector<bool> start(const std::vector<int>& identifiable, Estimate& estimate) {
+    std::vector<bool> all(fit_.touches().size(), true);
+    fit_.keep(all);
+    fit_.linearise(estimate);
+    std::mt19937_64 chance(kRobustSeed);
+    std::vector<Eigen::Index> positions;
+    for (std::size_t i = 0; i < fit_.arm_columns().size(); ++i) {
+      if (std::ranges::binary_search(identifiable, fit_.arm_columns()[i])) {
+        positions.push_back(static_cast<Eigen::Index>(i));
+      }
+    }
+    const double noise = known_noise_ ? 1.0 : kLargeNoiseMetres / fit_.noise_unit_m();
+    Eigen::VectorXd precision(static_cast<Eigen::Index>(positions.size()));
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const int column = fit_.arm_columns()[static_cast<std::size_t>(positions[i])];
+      const double std = error_parameters()[static_cast<std::size_t>(column)].is_length() ? kPlausibleMetres
+                                                                                          : kPlausibleRadians;
+      precision[static_cast<Eigen::Index>(i)] = noise * noise / (std * std);
+    }
+    for (int pass = 0; pass < 2; ++pass) {
+      const Eigen::MatrixXd rows = fit_.rows()(Eigen::all, positions);
+      const auto trimmed = least_trimmed_squares(rows, fit_.weighted_targets(), precision, chance);
+      if (!trimmed) return all;
+      for (std::size_t i = 0; i < positions.size(); ++i) {
+        estimate.arm[fit_.arm_columns()[static_cast<std::size_t>(positions[i])]] +=
+            trimmed->solution[static_cast<Eigen::Index>(i)];
+      }
+      all = trimmed->core;
+      fit_.linearise(estimate);
+    }
+    return all;
+  }
+
+  /// The touches whose residuals a good touch could have.
+  std::vector<bool> judged(const Estimate& estimate) {
+    const Eigen::VectorXd sizes = studentized(fit_);
+    const auto estimated = estimated_noise_m(fit_, estimate);
+    const double scatter = std::max(estimated.value_or(0.0), kScatterMinMetres) / fit_.noise_unit_m();
+    const bool declared_holds = known_noise_ && scatter <= 1.0;
+    const double unit = declared_holds ? 1.0 : scatter;
+    const double degrees =
+        declared_holds ? std::numeric_limits<double>::infinity() : std::max(1, fit_.degrees_of_freedom());
+    const double limit = unit * largest_expected(static_cast<int>(sizes.size()), degrees);
+    std::vector<bool> kept(static_cast<std::size_t>(sizes.size()));
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      kept[i] = sizes[static_cast<Eigen::Index>(i)] <= limit;
+    }
+    return kept;
+  }
+
+  bool known_noise_;
+  LeastSquares& fit_;
+  Iterations& iterations_;
+};
+
+/// What is estimated: the chosen columns, or with the prior all that are not excluded.
+std::vector<int> estimated_columns(const IdentificationOptions& options, const IdentifiableSet& chosen) {
+  std::vector<int> columns = chosen.columns;
+  if (options.prior) {
+    columns.clear();
+    for (int i = 0; i < kErrorParameterCount; ++i) {
+      if (std::ranges::find(options.identifiability.excluded, i) == options.identifiability.excluded.end()) {
+        columns.push_back(i);
+      }
     }
   }
-  return all;
+  for (int i = 0; options.stiffness && i < kComplianceCount; ++i) {
+    columns.push_back(kErrorParameterCount + i);
+  }
+  return columns;
 }
 
-Eigen::MatrixXd nominal_observation_matrix(const KinematicModel& nominal, const std::vector<Plane>& planes,
-                                           std::vector<Touch> touches, Formulation formulation) {
-  for (Touch& touch : touches) {
-    touch = moved_onto_plane(nominal, planes[static_cast<std::size_t>(touch.face)], touch);
+void refuse(IdentificationResult& result, Refusal refusal) {
+  result.status = refusal.status;
+  result.message = std::move(refusal.message);
+}
+
+/// Names what was left out, with its residual at the final arm.
+void name_rejected(const IdentificationProblem& problem, const LeastSquares& fit,
+                   IdentificationResult& result) {
+  for (std::size_t i = 0; i < fit.touches().size(); ++i) {
+    if (fit.kept()[i]) continue;
+    result.rejected.push_back(
+        {fit.touches()[i], fit.residuals_m()[static_cast<Eigen::Index>(i)], RejectionReason::kOutlier});
   }
-  return observe(nominal, planes, touches, formulation).matrix;
+  for (RejectedTouch& rejected : result.rejected) {
+    if (rejected.reason != RejectionReason::kWrongPlane) continue;
+    const Touch& touch = problem.touches[rejected.touch];
+    rejected.residual_m =
+        signed_distances_m(result.calibrated, problem.artefact.contact_planes, std::span(&touch, 1))[0];
+  }
+  std::ranges::sort(result.rejected, {}, &RejectedTouch::touch);
+}
+
+void name_weak(IdentificationResult& result) {
+  std::string names;
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    const auto& candidate = result.identifiable.candidates[static_cast<std::size_t>(i)];
+    if (candidate.status != ParameterStatus::kWeak) continue;
+    names += (names.empty() ? "" : ", ") + error_parameters()[static_cast<std::size_t>(i)].name();
+  }
+  if (names.empty()) return;
+  result.warnings.push_back("held at nominal because these touches hardly show it: " + names +
+                            "; spread the touches over more postures and tilts");
+}
+
+/// Everything that is said of a converged identification.
+void assess(const IdentificationProblem& problem, const IdentificationOptions& options, LeastSquares& fit,
+            const Estimate& estimate, IdentificationResult& result) {
+  result.noise_estimated_m = estimated_noise_m(fit, estimate);
+  result.lack_of_fit = lack_of_fit(problem, fit, estimate);
+  const Linearisation whole = linearise_whole(problem, options, fit, estimate);
+  result.certainty = certainty(problem, options, fit, whole, estimate, result.lack_of_fit);
+  result.scale = check_scale(problem, options, fit, whole, *result.certainty, estimate);
+  if (!result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
+}
+
+void solve(const IdentificationProblem& problem, const IdentificationOptions& options,
+           const std::vector<std::size_t>& fitted, IdentificationResult& result) {
+  LeastSquares fit(problem, options, estimated_columns(options, result.identifiable), fitted);
+  Iterations iterations(problem, options, fit, result.identifiable.columns);
+  Estimate estimate = iterations.nominal();
+  bool converged = iterations.run(estimate, true);
+  if (options.robust && iterations.solvable()) {
+    RobustSearch search(problem, fit, iterations);
+    if (!converged || !search.nothing_suspect()) {
+      search.run(result.identifiable.columns);
+      estimate = iterations.nominal();
+      converged = iterations.run(estimate, true);
+    }
+  }
+  result.iterations = iterations.history();
+  result.errors = estimate.arm;
+  result.artefact_errors = estimate.artefact;
+  result.calibrated = apply(problem.nominal, estimate.arm);
+  result.fitted_touch_count = fit.kept_count();
+  name_rejected(problem, fit, result);
+  if (!converged) {
+    result.status = iterations.solvable() && options.prior && iterations.history().empty()
+                        ? IdentificationStatus::kSingularPrior
+                        : IdentificationStatus::kNotConverged;
+    result.message = iterations.message();
+    return;
+  }
+  const auto total = static_cast<int>(fitted.size());
+  if (2 * fit.kept_count() < total || (!options.prior && fit.kept_count() < fit.arm_count())) {
+    result.status = IdentificationStatus::kContradictory;
+    result.message = std::to_string(total - fit.kept_count()) + " of " + std::to_string(total) +
+                     " touches do not fit the others; check planes, block and probe, and touch again";
+    return;
+  }
+  result.status = IdentificationStatus::kConverged;
+  assess(problem, options, fit, estimate, result);
 }
 
 }  // namespace
 
-IdentifiableSet attainable_parameters(const KinematicModel& nominal, const std::vector<Plane>& contact_planes,
-                                      const IdentifiabilityOptions& options) {
-  constexpr int kTouchesPerFace = 24;
-  const JointVector widest = JointVector::Constant(0.7 * std::numbers::pi);
-  std::vector<Touch> touches;
-  int index = 0;
-  for (std::size_t face = 0; face < contact_planes.size(); ++face) {
-    for (int k = 0; k < kTouchesPerFace; ++k) {
-      touches.push_back(
-          {.face = static_cast<int>(face), .joints = halton_posture(++index, {-widest, widest})});
-    }
-  }
-  return choose_identifiable(
-      nominal_observation_matrix(nominal, contact_planes, std::move(touches), Formulation::kSignedDistance),
-      options);
-}
-
 IdentificationResult identify(const IdentificationProblem& problem, const IdentificationOptions& options) {
   IdentificationResult result;
   result.calibrated = problem.nominal;
-  if (const auto bad = find_bad_input(problem, options.formulation)) {
-    result.status = IdentificationStatus::kBadInput;
-    result.message = *bad;
+  if (auto refusal = find_bad_input(problem, options)) {
+    refuse(result, std::move(*refusal));
     return result;
   }
-  const std::vector<Touch> fitted = touches_with_role(problem.touches, TouchRole::kFit);
-  result.fitted_touch_count = static_cast<int>(fitted.size());
-  // A given tolerance drops parameters on purpose: it does not count as something the touches fail to show.
-  IdentifiabilityOptions without_tolerance = options.identifiability;
-  without_tolerance.qr_tolerance.reset();
-  result.attainable_count = static_cast<int>(
-      attainable_parameters(problem.nominal, problem.contact_planes, without_tolerance).columns.size());
-  result.identifiable = choose_identifiable(
-      nominal_observation_matrix(problem.nominal, problem.contact_planes, fitted, options.formulation),
-      options.identifiability);
-
-  const int shown = static_cast<int>(result.identifiable.columns.size());
-  if (result.fitted_touch_count < result.attainable_count) {
-    result.status = IdentificationStatus::kTooFewTouches;
-    result.message = too_few_message(fitted, problem.contact_planes.size(), result.attainable_count);
+  Sorted sorted = sort_touches(problem, options);
+  result.fitted_touch_count = static_cast<int>(sorted.fitted.size());
+  result.rejected = sorted.wrong_plane;
+  if (sorted.refusal) {
+    refuse(result, std::move(*sorted.refusal));
     return result;
   }
-  const int weak =
-      static_cast<int>(std::ranges::count_if(result.identifiable.candidates, [](const auto& candidate) {
-        return candidate.status == ParameterStatus::kWeak;
-      }));
-  if (shown + weak < result.attainable_count) {
-    result.status = IdentificationStatus::kUnobservable;
-    result.message =
-        unobservable_message(fitted, problem.contact_planes.size(), shown, result.attainable_count);
-    return result;
+  result.attainable =
+      problem.attainable ? *problem.attainable : attainable_parameters(problem, options.identifiability);
+  if (problem.columns) {
+    result.identifiable.columns = *problem.columns;
+    for (const int column : *problem.columns) {
+      result.identifiable.candidates[static_cast<std::size_t>(column)].status = ParameterStatus::kIdentified;
+    }
+  } else {
+    result.identifiable = choose_columns(problem, options, sorted.fitted);
+    result.rank_explanation = explain_rank(problem, sorted.fitted, result.identifiable, result.attainable);
   }
 
-  const Eigen::VectorXd sigma =
-      singular_values(observe(problem.nominal, problem.contact_planes, fitted, options.formulation).matrix);
+  const auto shown = static_cast<int>(result.identifiable.columns.size());
+  if (!options.prior) {
+    if (auto refusal = find_too_little(problem, sorted.fitted, result.attainable.count)) {
+      refuse(result, std::move(*refusal));
+      return result;
+    }
+    const auto weak = std::ranges::count_if(result.identifiable.candidates, [](const auto& candidate) {
+      return candidate.status == ParameterStatus::kWeak;
+    });
+    if (!problem.columns && shown + static_cast<int>(weak) < result.attainable.count) {
+      result.status = IdentificationStatus::kUnobservable;
+      result.message = result.rank_explanation;
+      return result;
+    }
+    name_weak(result);
+  } else if (sorted.fitted.empty()) {
+    result.message = "there is no touch to identify from";
+    return result;
+  }
+
+  std::vector<Touch> touches;
+  for (const std::size_t index : sorted.fitted) touches.push_back(problem.touches[index]);
+  const Eigen::VectorXd sigma = singular_values(
+      observe(problem.nominal, problem.artefact.contact_planes, touches, options.formulation).matrix);
   result.singular_values.assign(sigma.begin(), sigma.begin() + std::min<Eigen::Index>(shown, sigma.size()));
-  iterate(problem, options, fitted, result);
-  result.distances = face_distances(problem, result.calibrated);
-  const int freedom = result.fitted_touch_count - shown;
-  if (freedom > 0 && !result.iterations.empty()) {
-    const Eigen::VectorXd residuals = signed_distances_m(result.calibrated, problem.contact_planes, fitted);
-    result.noise_estimated_m = residuals.norm() / std::sqrt(static_cast<double>(freedom));
-  }
+  solve(problem, options, sorted.fitted, result);
+  result.distances = face_distances(problem, result);
   return result;
 }
 

@@ -12,9 +12,6 @@
 
 namespace cell {
 
-/// Where the ball's centre is at the trigger, one plane a face of the block.
-std::vector<calib::Plane> contact_planes(const Cell& cell);
-
 /// A stored touch in SI units: the only unit change on the way from the wire to the core.
 calib::Touch to_touch(const StoredTouch& stored);
 

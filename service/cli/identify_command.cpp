@@ -5,12 +5,12 @@
 
 #include "calib_core/identify.hpp"
 #include "config/config_error.hpp"
+#include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
 #include "config/touches_file.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/result_text.hpp"
 #include "service/http/json_view.hpp"
-#include "service/run.hpp"
 
 namespace cell {
 namespace {
@@ -29,8 +29,9 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   const Cell cell = read_cell(arguments.cell_file);
   const Recipe& recipe = recipe_named(cell, arguments.recipe);
   const TouchesFile file = read_touches(arguments.touches_file, cell);
-  const calib::IdentificationResult result =
-      calib::identify({cell.arm.model, contact_planes(cell), file.touches}, recipe.identification);
+  calib::IdentificationProblem problem = identification_problem(cell, recipe);
+  problem.touches = file.touches;
+  const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
   switch (result.status) {
     case calib::IdentificationStatus::kConverged:
       break;

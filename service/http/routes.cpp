@@ -6,6 +6,7 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
+#include "config/identification_problem.hpp"
 #include "config/config_error.hpp"
 #include "config/strict_json.hpp"
 #include "service/acquisition/operation.hpp"
@@ -162,7 +163,7 @@ HttpResponse get_result(const Call& call, std::int64_t id) {
   if (recipe == cell.recipes.end()) {
     why = "this cell no longer has the run's recipe";
   } else if (!touches.empty()) {
-    calib::IdentificationProblem problem{cell.arm.model, contact_planes(cell), {}};
+    calib::IdentificationProblem problem = identification_problem(cell, recipe->second);
     std::ranges::transform(touches, std::back_inserter(problem.touches), to_touch);
     const calib::IdentificationResult result = calib::identify(problem, recipe->second.identification);
     if (result.status == calib::IdentificationStatus::kConverged) {

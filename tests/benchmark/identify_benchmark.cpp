@@ -40,7 +40,10 @@ struct Study {
 };
 
 IdentificationProblem problem_of(std::vector<calib::Touch> touches) {
-  return {calib::paper::nominal(), calib::paper::planes(), std::move(touches)};
+  return {.nominal = calib::paper::nominal(),
+          .artefact = calib::exact_artefact(calib::paper::planes()),
+          .touches = std::move(touches),
+          .touch_noise_m = calib::study::kTouchNoiseMetres};
 }
 
 const Study& study() {

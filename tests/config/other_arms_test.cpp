@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "calib_core/column_choice.hpp"
 #include "calib_core/gravity.hpp"
 #include "calib_core/identify.hpp"
 #include "config/arm_file.hpp"
@@ -38,8 +39,8 @@ calib::JointVector joints_in_range(const Arm& arm, std::mt19937_64& chance) {
   return joints;
 }
 
-std::vector<calib::Plane> contact_planes(const Cell& cell) {
-  return calib::describe(artefact_knowledge(cell)).contact_planes;
+calib::Artefact exact(const Cell& cell) {
+  return calib::exact_artefact(calib::describe(artefact_knowledge(cell)).contact_planes);
 }
 
 /// Postures by chance, each moved until the true tip is on its plane.
@@ -47,7 +48,7 @@ std::vector<calib::Touch> exact_touches(const Cell& cell, const calib::Kinematic
                                         std::mt19937_64& chance) {
   constexpr double kOnThePlaneMetres = 1e-14;
   constexpr std::size_t kTouchCount = 125;
-  const std::vector<calib::Plane> planes = contact_planes(cell);
+  const std::vector<calib::Plane> planes = exact(cell).contact_planes;
   std::vector<calib::Touch> touches;
   while (touches.size() < kTouchCount) {
     const std::size_t face = touches.size() % planes.size();
@@ -81,14 +82,14 @@ TEST_P(OtherArm, ShowsTheErrorsThatWerePutInAtItsTip) {
   std::mt19937_64 chance(17);
   std::uniform_real_distribution<double> within(-1.0, 1.0);
   calib::ErrorVector errors = calib::ErrorVector::Zero();
-  for (const int column : calib::attainable_parameters(cell.arm.model, contact_planes(cell), {}).columns) {
+  for (const int column : calib::attainable_set(cell.arm.model, exact(cell), {}).columns) {
     const bool is_length = calib::error_parameters()[static_cast<std::size_t>(column)].is_length();
     errors[column] = (is_length ? 1e-3 : 2e-3) * within(chance);
   }
   const calib::KinematicModel truth = calib::apply(cell.arm.model, errors);
 
   const calib::IdentificationResult result =
-      calib::identify({cell.arm.model, contact_planes(cell), exact_touches(cell, truth, chance)}, {});
+      calib::identify({cell.arm.model, exact(cell), exact_touches(cell, truth, chance)}, {});
 
   ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
   double nominal_miss_m = 0.0, calibrated_miss_m = 0.0;

@@ -10,6 +10,7 @@
 #include "calib_core/identify.hpp"
 #include "calib_core/touch_planning.hpp"
 #include "calib_core/units.hpp"
+#include "config/identification_problem.hpp"
 #include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"
 #include "service/run.hpp"
@@ -26,7 +27,7 @@ namespace {
 constexpr int kSeedCount = 100;
 /// The mean of ten held-out touches of declared noise scatters by 8 um (6 of them are the ten touches' own),
 /// so one run in a thousand is beyond kHeldOutMeanMaxMetres on some plane by chance, and is rejected.
-constexpr int kSeedsBeyondMeanMax = 1;
+constexpr int kSeedsBeyondMax = 1;
 
 constexpr int kPostureCount = 500;
 /// Bound on the identified arm's tip error, anywhere in the joint ranges, after touches without noise.
@@ -44,7 +45,8 @@ class Figures : public ::testing::TestWithParam<const char*> {
   Figures()
       : cell_(shipped_cell(GetParam())),
         plant_(sim::make_plant(cell_, shipped_truth(GetParam()))),
-        plan_(plan_of(cell_)) {
+        plan_(plan_of(cell_)),
+        problem_(cell::identification_problem(cell_, cell_.recipes.at(kRecipe))) {
     for (const calib::PlannedTouch& planned : plan_.touches) {
       const sim::TouchMotion motion = sim::touch_motion(cell::touch_command(cell_, planned, {}));
       searches_.push_back(sim::straight_line(plant_, motion.approach, motion.search_end).path);
@@ -54,7 +56,7 @@ class Figures : public ::testing::TestWithParam<const char*> {
   /// Every planned touch made by the true arm, its joints as the wire carries them.
   calib::IdentificationResult calibrate(double noise_m, std::uint64_t seed) const {
     std::mt19937_64 chance(seed);
-    calib::IdentificationProblem problem{cell_.arm.model, cell::contact_planes(cell_), {}};
+    calib::IdentificationProblem problem = problem_;
     for (std::size_t i = 0; i < plan_.touches.size(); ++i) {
       const auto trip = sim::find_trip(plant_, searches_[i], noise_m * sim::gaussian(chance));
       if (!trip) throw std::runtime_error("touch " + std::to_string(i + 1) + " met nothing");
@@ -67,6 +69,7 @@ class Figures : public ::testing::TestWithParam<const char*> {
   cell::Cell cell_;
   sim::Plant plant_;
   calib::TouchPlan plan_;
+  calib::IdentificationProblem problem_;
   std::vector<sim::Path> searches_;
 };
 
@@ -87,7 +90,6 @@ TEST_P(Figures, HeldOutTouchesOfAHundredSeedsShowWhatIsPromised) {
     EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
     const HeldOut figures = held_out(result);
     EXPECT_EQ(figures.touch_count, kPlaneCount * kHeldOutPerPlane);
-    EXPECT_LE(figures.rms_m, kHeldOutRmsMaxPart * noise_m);
     EXPECT_GE(figures.rms_removed, kRmsRemovedMin);
     means_m.push_back(figures.mean_max_m);
     rms_parts.push_back(figures.rms_m / noise_m);
@@ -98,7 +100,10 @@ TEST_P(Figures, HeldOutTouchesOfAHundredSeedsShowWhatIsPromised) {
   }
   const auto beyond =
       std::ranges::count_if(means_m, [](double mean_m) { return mean_m > kHeldOutMeanMaxMetres; });
-  EXPECT_LE(beyond, kSeedsBeyondMeanMax);
+  EXPECT_LE(beyond, kSeedsBeyondMax);
+  // Forty touches of declared noise scatter by 11 % themselves.
+  EXPECT_LE(std::ranges::count_if(rms_parts, [](double part) { return part > kHeldOutRmsMaxPart; }),
+            kSeedsBeyondMax);
   EXPECT_LE(median(rms_parts), kHeldOutRmsMedianMaxPart);
   // On one plane in one run, ten touches of declared noise may hide it: Table III misses plane 3 by 2.4 mm
   // rms.

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "calib_core/identify.hpp"
+#include "config/identification_problem.hpp"
 #include "config/touches_file.hpp"
 #include "service/http/json_view.hpp"
 #include "service/run.hpp"
@@ -45,7 +46,7 @@ TEST_P(WholeRun, EndsAcceptedWithThePromisedFigures) {
   EXPECT_EQ(figures.touch_count, kPlaneCount * kHeldOutPerPlane);
   EXPECT_LE(figures.mean_max_m, kHeldOutMeanMaxMetres);
   EXPECT_LE(figures.rms_m, kHeldOutRmsMaxPart * loop_.cell.touch_noise_m);
-  EXPECT_GE(figures.rms_removed_min, kRmsRemovedMin);
+  EXPECT_GE(figures.rms_removed, kRmsRemovedMin);
 
   const auto stored = loop_.store().run(run_id_).value();
   EXPECT_EQ(stored.outcome, "complete");
@@ -71,8 +72,9 @@ TEST_P(WholeRun, ItsTouchesReadBackFromAFileGiveTheSameResultToTheBit) {
   const cell::TouchesFile file =
       cell::touches_from_json("the run's touches", document, cell::kTouchesSizeMax, loop_.cell);
   const cell::Recipe& recipe = loop_.cell.recipes.at(kRecipe);
-  const calib::IdentificationResult again = calib::identify(
-      {loop_.cell.arm.model, cell::contact_planes(loop_.cell), file.touches}, recipe.identification);
+  calib::IdentificationProblem problem = cell::identification_problem(loop_.cell, recipe);
+  problem.touches = file.touches;
+  const calib::IdentificationResult again = calib::identify(problem, recipe.identification);
   const calib::IdentificationResult& live = loop_.operation().run()->latest();
   EXPECT_TRUE((again.errors.array() == live.errors.array()).all());
   EXPECT_TRUE(cell::result_document(loop_.cell, recipe, again, {}) == loop_.operation().result_json());

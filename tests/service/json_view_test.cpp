@@ -10,6 +10,7 @@
 #include "service/acquisition/touch_command.hpp"
 #include "service/run.hpp"
 #include "tests/service/shipped_cell.hpp"
+#include "config/identification_problem.hpp"
 
 namespace cell {
 namespace {
@@ -29,8 +30,9 @@ Shape shape_of(const json& object) {
 
 json result_with(const std::string& recipe_name) {
   const Recipe& recipe = edf().recipes.at(recipe_name);
-  const calib::IdentificationResult result =
-      calib::identify({edf().arm.model, contact_planes(edf()), table3_touches()}, recipe.identification);
+  calib::IdentificationProblem problem = identification_problem(edf(), recipe);
+  problem.touches = table3_touches();
+  const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
   return json::parse(result_document(edf(), recipe, result, {}));
 }
 
@@ -176,7 +178,7 @@ TEST(ResultDocument, WithTheRecipeOfThePaper23AreIdentifiedAndTheRestIsNamed) {
 /// One mm or rad of a grouped error moves the tip as its named others do, each by its factor in mm or rad.
 TEST(ResultDocument, AGroupedErrorIsTheSumOfTheOthersInTheUnitsShown) {
   const calib::KinematicModel& model = edf().arm.model;
-  const auto planes = contact_planes(edf());
+  const auto planes = calib::describe(artefact_knowledge(edf())).contact_planes;
   std::vector<calib::Touch> on_face;
   for (const calib::Touch& touch : table3_touches())
     on_face.push_back(moved_onto_plane(model, planes[static_cast<std::size_t>(touch.face)], touch));

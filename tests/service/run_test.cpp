@@ -6,6 +6,7 @@
 
 #include "service/acquisition/touch_command.hpp"
 #include "tests/service/shipped_cell.hpp"
+#include "config/identification_problem.hpp"
 
 namespace cell {
 namespace {
@@ -74,7 +75,7 @@ TEST(ToTouch, TurnsTheWiresUnitsIntoRadiansAndThePlaneIntoAFace) {
 TEST(ContactPlanes, LieABallsRadiusLessThePretravelOffTheFaces) {
   Cell cell = edf();
   cell.probe.stylus = {.radius_m = 0.003, .pretravel_m = 1e-5};
-  const auto planes = contact_planes(cell);
+  const auto planes = identification_problem(cell, cell.recipes.at("edf-25")).artefact.contact_planes;
   ASSERT_EQ(planes.size(), cell.block.faces.size());
   for (std::size_t i = 0; i < planes.size(); ++i) {
     EXPECT_EQ(planes[i].outward, cell.block.faces[i].plane.outward);

@@ -1,0 +1,52 @@
+#include "calib_core/face_distances.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace calib {
+namespace {
+
+double rms(const Eigen::VectorXd& values) {
+  return values.size() == 0 ? 0.0 : values.norm() / std::sqrt(static_cast<double>(values.size()));
+}
+
+}  // namespace
+
+std::vector<Plane> estimated_planes(const Artefact& artefact, const Eigen::VectorXd& artefact_errors) {
+  std::vector<Plane> planes = artefact.contact_planes;
+  for (Eigen::Index k = 0; k < artefact_errors.size(); ++k) {
+    const auto& shifts = artefact.parameters[static_cast<std::size_t>(k)].shifts;
+    for (std::size_t face = 0; face < planes.size(); ++face) {
+      planes[face].offset_m -= artefact_errors[k] * shifts[face].constant;
+      planes[face].outward += artefact_errors[k] * shifts[face].per_metre;
+    }
+  }
+  return planes;
+}
+
+std::vector<FaceDistances> face_distances(const IdentificationProblem& problem,
+                                          const IdentificationResult& result) {
+  const std::vector<Plane> planes = estimated_planes(problem.artefact, result.artefact_errors);
+  std::vector<bool> rejected(problem.touches.size(), false);
+  for (const RejectedTouch& touch : result.rejected) rejected[touch.touch] = true;
+  std::vector<FaceDistances> all;
+  for (const TouchRole role : {TouchRole::kFit, TouchRole::kHeldOut, TouchRole::kProof}) {
+    for (std::size_t face = 0; face < planes.size(); ++face) {
+      std::vector<Touch> here;
+      for (std::size_t i = 0; i < problem.touches.size(); ++i) {
+        const Touch& touch = problem.touches[i];
+        const bool counts = touch.role == role && static_cast<std::size_t>(touch.face) == face;
+        if (counts && !rejected[i]) here.push_back(touch);
+      }
+      if (here.empty()) continue;
+      const Eigen::VectorXd nominal =
+          signed_distances_m(problem.nominal, problem.artefact.contact_planes, here);
+      const Eigen::VectorXd after = signed_distances_m(result.calibrated, planes, here);
+      all.push_back({static_cast<int>(face), role, static_cast<int>(here.size()), nominal.mean(),
+                     rms(nominal), after.mean(), rms(after)});
+    }
+  }
+  return all;
+}
+
+}  // namespace calib
