@@ -267,6 +267,10 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
   LeastSquares fit(problem, options, estimated_columns(options, result.identifiable), fitted);
   Iterations iterations(problem, options, fit, result.identifiable.columns);
   Estimate estimate = iterations.nominal();
+  if (auto refusal = find_untold(problem, options, fit, estimate)) {
+    refuse(result, std::move(*refusal));
+    return;
+  }
   bool converged = iterations.run(estimate, true);
   if (options.robust && iterations.solvable()) {
     RobustSearch search(problem, fit, iterations);

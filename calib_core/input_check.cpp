@@ -16,6 +16,21 @@ constexpr double kSamePlane = 1e-4;
 /// Joints that differ by less (radians) make one posture.
 constexpr double kSamePostureRadians = 1e-4;
 
+/// Nothing is as far off as this (metres, radians, degrees, rad/Nm): a parameter that is no surer is not
+/// known at all.
+constexpr double kBeyondAllMeasure = 1.0;
+
+std::string unknown_name(const IdentificationProblem& problem, const LeastSquares& fit,
+                         Eigen::Index unknown) {
+  if (unknown >= fit.arm_count()) {
+    return problem.artefact.parameters[static_cast<std::size_t>(unknown - fit.arm_count())].name;
+  }
+  const int column = fit.arm_columns()[static_cast<std::size_t>(unknown)];
+  if (column < kErrorParameterCount) return error_parameters()[static_cast<std::size_t>(column)].name();
+  const auto compliance = static_cast<std::size_t>(column - kErrorParameterCount);
+  return "the compliance of joint " + std::to_string(kCompliantJoints.at(compliance) + 1);
+}
+
 std::string plane_name(std::size_t face) { return "plane " + std::to_string(face + 1); }
 std::string touch_name(std::size_t index) { return "touch " + std::to_string(index + 1); }
 
@@ -199,6 +214,37 @@ std::optional<Refusal> find_too_little(const IdentificationProblem& problem,
                        "; one plane does not fix an arm, touch the others too"};
   }
   return std::nullopt;
+}
+
+std::optional<Refusal> find_untold(const IdentificationProblem& problem, const IdentificationOptions& options,
+                                   LeastSquares& fit, const Estimate& estimate) {
+  const Eigen::VectorXd precision = prior_precision(problem, fit.arm_columns(), options.prior);
+  std::vector<Eigen::Index> without;
+  for (Eigen::Index k = 0; k < precision.size(); ++k) {
+    const bool chosen = !options.prior && k < fit.arm_count() &&
+                        fit.arm_columns()[static_cast<std::size_t>(k)] < kErrorParameterCount;
+    if (precision[k] == 0.0 && !chosen) without.push_back(k);
+  }
+  if (without.empty()) return std::nullopt;
+
+  // A prior that says hardly anything makes the problem solvable; who keeps to it has nothing else.
+  fit.linearise(estimate);
+  Eigen::MatrixXd information = fit.information();
+  for (const Eigen::Index k : without) information(k, k) += 1.0 / (kBeyondAllMeasure * kBeyondAllMeasure);
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> cholesky(scale.asDiagonal() * information * scale.asDiagonal());
+  if (cholesky.info() != Eigen::Success) return std::nullopt;  // the iteration will say so
+  std::string names;
+  for (const Eigen::Index k : without) {
+    const Eigen::VectorXd column = cholesky.solve(Eigen::VectorXd::Unit(precision.size(), k));
+    if (scale[k] * std::sqrt(column[k]) < 0.5 * kBeyondAllMeasure) continue;
+    names += (names.empty() ? "" : ", ") + unknown_name(problem, fit, k);
+  }
+  if (names.empty()) return std::nullopt;
+  return Refusal{options.prior ? IdentificationStatus::kSingularPrior : IdentificationStatus::kUnobservable,
+                 "neither a standard deviation nor any of the " + std::to_string(fit.touches().size()) +
+                     " touches tells anything of " + names +
+                     "; give a standard deviation, touch what shows it, or leave it out"};
 }
 
 }  // namespace calib

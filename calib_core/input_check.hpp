@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/least_squares.hpp"
 
 namespace calib {
 
@@ -32,5 +32,11 @@ Sorted sort_touches(const IdentificationProblem& problem, const IdentificationOp
 /// Touches that cannot do, however they are computed: too few, all on one plane, one posture again and again.
 std::optional<Refusal> find_too_little(const IdentificationProblem& problem,
                                        const std::vector<std::size_t>& fitted, int needed);
+
+/// Unknowns of which neither a standard deviation nor the touches say anything, by name. Columns that were
+/// chosen because the touches show them need no standard deviation. Leaves the fit linearised at the
+/// estimate.
+std::optional<Refusal> find_untold(const IdentificationProblem& problem, const IdentificationOptions& options,
+                                   LeastSquares& fit, const Estimate& estimate);
 
 }  // namespace calib
