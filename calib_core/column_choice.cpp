@@ -30,8 +30,9 @@ std::vector<std::size_t> free_parameters(const Artefact& artefact) {
 
 ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefact,
                            std::vector<Touch> touches, Formulation formulation) {
+  const PreparedModel prepared = prepare(nominal);
   for (Touch& touch : touches) {
-    touch = moved_onto_plane(nominal, artefact.contact_planes[static_cast<std::size_t>(touch.face)], touch);
+    touch = moved_onto_plane(prepared, artefact.contact_planes[static_cast<std::size_t>(touch.face)], touch);
   }
   const Eigen::MatrixXd rows = observe(nominal, artefact.contact_planes, touches, formulation).matrix;
   const std::vector<std::size_t> free = free_parameters(artefact);

@@ -27,23 +27,24 @@ std::vector<Plane> estimated_planes(const Artefact& artefact, const Eigen::Vecto
 std::vector<FaceDistances> face_distances(const IdentificationProblem& problem,
                                           const IdentificationResult& result) {
   const std::vector<Plane> planes = estimated_planes(problem.artefact, result.artefact_errors);
+  const Eigen::VectorXd nominal =
+      signed_distances_m(problem.nominal, problem.artefact.contact_planes, problem.touches);
+  const Eigen::VectorXd calibrated = signed_distances_m(result.calibrated, planes, problem.touches);
   std::vector<bool> rejected(problem.touches.size(), false);
   for (const RejectedTouch& touch : result.rejected) rejected[touch.touch] = true;
   std::vector<FaceDistances> all;
   for (const TouchRole role : {TouchRole::kFit, TouchRole::kHeldOut, TouchRole::kProof}) {
     for (std::size_t face = 0; face < planes.size(); ++face) {
-      std::vector<Touch> here;
+      std::vector<Eigen::Index> here;
       for (std::size_t i = 0; i < problem.touches.size(); ++i) {
         const Touch& touch = problem.touches[i];
         const bool counts = touch.role == role && static_cast<std::size_t>(touch.face) == face;
-        if (counts && !rejected[i]) here.push_back(touch);
+        if (counts && !rejected[i]) here.push_back(static_cast<Eigen::Index>(i));
       }
       if (here.empty()) continue;
-      const Eigen::VectorXd nominal =
-          signed_distances_m(problem.nominal, problem.artefact.contact_planes, here);
-      const Eigen::VectorXd after = signed_distances_m(result.calibrated, planes, here);
-      all.push_back({static_cast<int>(face), role, static_cast<int>(here.size()), nominal.mean(),
-                     rms(nominal), after.mean(), rms(after)});
+      const Eigen::VectorXd before = nominal(here), after = calibrated(here);
+      all.push_back({static_cast<int>(face), role, static_cast<int>(here.size()), before.mean(), rms(before),
+                     after.mean(), rms(after)});
     }
   }
   return all;

@@ -1,5 +1,6 @@
 #include "calib_core/identifiability.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -13,6 +14,9 @@ namespace {
 /// falls below it when there are few rows; between it and the weakest real direction lie nine orders of
 /// magnitude.
 constexpr double kRoundingRelative = 1e-13;
+
+/// Eigenvalues of W^T W under this share of the largest have too few digits for singular values.
+constexpr double kGramRelative = 1e-7;
 
 /// Factors smaller than this, relative to the largest, are rounding.
 constexpr double kFactorRelative = 1e-9;
@@ -163,6 +167,18 @@ Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix)
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
   const Eigen::MatrixXd r = qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
   return Eigen::BDCSVD<Eigen::MatrixXd>(r).singularValues();
+}
+
+Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int count) {
+  if (count > 0 && count <= std::min(matrix.rows(), matrix.cols())) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix.transpose() * matrix,
+                                                               Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd values = eigen.eigenvalues().tail(count).reverse();
+    // Squared, the smallest keeps its digits only when it is not too small.
+    if (values[count - 1] > kGramRelative * values[0]) return values.cwiseSqrt();
+  }
+  const Eigen::VectorXd all = singular_values(matrix);
+  return all.head(std::min<Eigen::Index>(count, all.size()));
 }
 
 double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {

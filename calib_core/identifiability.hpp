@@ -57,6 +57,9 @@ Eigen::MatrixXd select_columns(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
 /// Singular values, descending.
 Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
+/// The `count` largest singular values, descending; quicker where they are not far apart.
+Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int count);
+
 /// sigma_max / sigma_min (eq. 16); infinite when sigma_min is 0.
 double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 

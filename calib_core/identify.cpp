@@ -354,9 +354,9 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
 
   std::vector<Touch> touches;
   for (const std::size_t index : sorted.fitted) touches.push_back(problem.touches[index]);
-  const Eigen::VectorXd sigma = singular_values(
-      observe(problem.nominal, problem.artefact.contact_planes, touches, options.formulation).matrix);
-  result.singular_values.assign(sigma.begin(), sigma.begin() + std::min<Eigen::Index>(shown, sigma.size()));
+  const Eigen::VectorXd sigma = largest_singular_values(
+      observe(problem.nominal, problem.artefact.contact_planes, touches, options.formulation).matrix, shown);
+  result.singular_values.assign(sigma.begin(), sigma.end());
   solve(problem, options, sorted.fitted, result);
   result.distances = face_distances(problem, result);
   return result;

@@ -157,13 +157,13 @@ std::optional<Refusal> find_bad_input(const IdentificationProblem& problem,
 
 Sorted sort_touches(const IdentificationProblem& problem, const IdentificationOptions& options) {
   Sorted sorted;
-  const KinematicModel start = apply(problem.nominal, problem.start);
+  const PreparedModel start = prepare(apply(problem.nominal, problem.start));
   const auto& planes = problem.artefact.contact_planes;
   for (std::size_t i = 0; i < problem.touches.size(); ++i) {
     const Touch& touch = problem.touches[i];
     if (touch.role == TouchRole::kProof) continue;
     const auto own = static_cast<std::size_t>(touch.face);
-    const Eigen::Vector3d tip = forward_kinematics(start, touch.joints).translation();
+    const Eigen::Vector3d tip = forward_chain(start, touch.joints).tip_in_block_m();
     const double distance = signed_distance_m(planes[own], tip);
     if (std::abs(distance) <= kFarOffMetres) {
       if (touch.role == TouchRole::kFit) sorted.fitted.push_back(i);

@@ -14,7 +14,7 @@ CosSin cos_sin(double angle_rad) {
 }
 
 /// The chain of a rigid arm, each step in the columns of the frame before: 4-vectors, two packets each.
-void place_frames(const PreparedModel& prepared, const JointVector& joints, Chain& chain) {
+void place_frames(const PreparedModel& prepared, const PreparedJoints& joints, Chain& chain) {
   Eigen::Vector4d x = Eigen::Vector4d::UnitX(), y = Eigen::Vector4d::UnitY(), z = Eigen::Vector4d::UnitZ();
   Eigen::Vector4d origin_m = Eigen::Vector4d::UnitW();
   // Turns the first axis towards the second.
@@ -29,11 +29,12 @@ void place_frames(const PreparedModel& prepared, const JointVector& joints, Chai
     double r_m = link.r_m;
     if (frame > 0 && frame <= kJointCount) {
       const std::size_t joint = frame - 1;
-      const double moved = prepared.model.gains[joint] * joints[static_cast<Eigen::Index>(joint)];
       if (prepared.model.joint_types[joint] == JointType::kRevolute) {
-        theta = cos_sin(link.theta_rad + moved);
+        const CosSin& moved = joints.turned[joint];
+        theta = {theta.cos * moved.cos - theta.sin * moved.sin,
+                 theta.sin * moved.cos + theta.cos * moved.sin};
       } else {
-        r_m += moved;
+        r_m += prepared.model.gains[joint] * joints.joints[static_cast<Eigen::Index>(joint)];
       }
     }
     turn(prepared.beta[frame], z, x);
@@ -75,9 +76,7 @@ PreparedModel prepare(const KinematicModel& model) {
     const LinkParameters& link = model.links[frame];
     prepared.alpha[frame] = cos_sin(link.alpha_rad);
     prepared.beta[frame] = cos_sin(link.beta_rad);
-    const bool turns =
-        frame > 0 && frame <= kJointCount && model.joint_types[frame - 1] == JointType::kRevolute;
-    if (!turns) prepared.theta[frame] = cos_sin(link.theta_rad);
+    prepared.theta[frame] = cos_sin(link.theta_rad);
   }
   prepared.has_masses =
       std::ranges::any_of(model.masses, [](const PointMass& m) { return m.mass_kg != 0.0; });
@@ -85,15 +84,27 @@ PreparedModel prepare(const KinematicModel& model) {
   return prepared;
 }
 
-Chain forward_chain(const PreparedModel& prepared, const JointVector& joints) {
+PreparedJoints prepare(const std::array<double, kJointCount>& gains, const JointVector& joints) {
+  PreparedJoints prepared{joints, {}};
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    prepared.turned[joint] = cos_sin(gains[joint] * joints[static_cast<Eigen::Index>(joint)]);
+  }
+  return prepared;
+}
+
+Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints) {
   Chain chain;
   place_frames(prepared, joints, chain);
   if (prepared.is_compliant) {
     const Eigen::Map<const JointVector> compliance(prepared.model.compliance_rad_per_nm.data());
     const JointVector moved = compliance.cwiseProduct(gravity_torques_nm(prepared.model, chain));
-    place_frames(prepared, joints + moved, chain);
+    place_frames(prepared, prepare(prepared.model.gains, joints.joints + moved), chain);
   }
   return chain;
+}
+
+Chain forward_chain(const PreparedModel& prepared, const JointVector& joints) {
+  return forward_chain(prepared, prepare(prepared.model.gains, joints));
 }
 
 Chain forward_chain(const KinematicModel& model, const JointVector& joints) {

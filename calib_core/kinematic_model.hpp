@@ -62,7 +62,7 @@ struct PreparedModel {
   KinematicModel model;
   std::array<CosSin, kFrameCount> alpha;
   std::array<CosSin, kFrameCount> beta;
-  std::array<CosSin, kFrameCount> theta;  // where no joint turns it
+  std::array<CosSin, kFrameCount> theta;  // at a joint, its offset
   bool has_masses = false;
   bool is_compliant = false;
 };
@@ -73,6 +73,17 @@ PreparedModel prepare(const KinematicModel& model);
 /// takes it.
 Chain forward_chain(const PreparedModel& prepared, const JointVector& joints);
 Chain forward_chain(const KinematicModel& model, const JointVector& joints);
+
+/// A joint vector with all worked out that no error of the arm changes: for many models of one arm.
+struct PreparedJoints {
+  JointVector joints;
+  std::array<CosSin, kJointCount> turned;  // by gain * position; of a prismatic joint, not used
+};
+
+PreparedJoints prepare(const std::array<double, kJointCount>& gains, const JointVector& joints);
+
+/// The same chain; `joints` must have been prepared with the model's gains.
+Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints);
 
 /// R_7 in R_-1; its origin is the centre of the stylus ball.
 Eigen::Isometry3d forward_kinematics(const KinematicModel& model, const JointVector& joints);

@@ -54,6 +54,9 @@ LeastSquares::LeastSquares(const IdentificationProblem& problem, const Identific
   residuals_m_.resize(rows);
   weighted_residuals_.resize(rows);
   step_.setZero(unknowns);
+  for (const std::size_t touch : touches_) {
+    joints_.push_back(prepare(problem.nominal.gains, problem.touches[touch].joints));
+  }
   set_weights(options.formulation);
   keep(std::vector<bool>(touches_.size(), true));
 }
@@ -93,7 +96,7 @@ void LeastSquares::fill_row(Eigen::Index row, const PreparedModel& model) {
   const Touch& touch = problem_.touches[touches_[static_cast<std::size_t>(row)]];
   const auto face = static_cast<std::size_t>(touch.face);
   const Plane& plane = planes_[face];
-  const Chain chain = forward_chain(model, touch.joints);
+  const Chain chain = forward_chain(model, joints_[static_cast<std::size_t>(row)]);
   const Eigen::Vector3d tip = chain.tip_in_block_m();
   const ArmRow slopes = distance_derivatives(model, chain, plane.outward);
   const double weight = weights_[row];

@@ -91,9 +91,10 @@ class LeastSquares {
   bool unit_columns_ = true;
   bool weights_differ_ = false;
   double noise_unit_m_ = 1.0;
-  Eigen::VectorXd weights_;    // of a row, 1/m
-  Eigen::VectorXd precision_;  // of the unknowns' priors
-  std::vector<Plane> planes_;  // contact planes as estimated; normals not of unit length when tilted
+  Eigen::VectorXd weights_;             // of a row, 1/m
+  Eigen::VectorXd precision_;           // of the unknowns' priors
+  std::vector<PreparedJoints> joints_;  // one a touch
+  std::vector<Plane> planes_;           // contact planes as estimated; normals not of unit length when tilted
   Eigen::MatrixXd rows_, kept_rows_;
   Eigen::VectorXd residuals_m_, weighted_residuals_;
   Eigen::MatrixXd touch_information_, information_, scaled_;

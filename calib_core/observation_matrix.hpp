@@ -34,6 +34,7 @@ Eigen::VectorXd signed_distances_m(const KinematicModel& model, std::span<const 
 /// The touch moved by the smallest joint displacement (Newton) so that the model's ball centre lies on the
 /// contact plane. The recorded postures are off the nominal faces, which makes dependent columns look
 /// independent.
+Touch moved_onto_plane(const PreparedModel& model, const Plane& contact_plane, const Touch& touch);
 Touch moved_onto_plane(const KinematicModel& model, const Plane& contact_plane, const Touch& touch);
 
 }  // namespace calib
