@@ -32,7 +32,7 @@ struct SignedDistance {
   const calib::Touch& touch;
 
   template <class T>
-  [[gnu::flatten]] bool operator()(const T* errors, T* residual) const {
+  bool operator()(const T* errors, T* residual) const {
     const Links<T> links = links_with_errors(measured.nominal, measured.columns, errors);
     *residual = signed_distance(measured, touch, tip_by_frames(links, touch.joints));
     return true;

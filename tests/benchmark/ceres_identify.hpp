@@ -17,8 +17,8 @@ inline constexpr int kIdentifiedCount = 25;
 /// kUsual: as Ceres's documentation does it; a residual block a touch, the forward kinematics templated frame
 /// by frame, default options.
 /// kTuned: all that made it faster; one block for all touches, so that what they share is computed once, a
-/// point carried back instead of frames, and a nearly undamped start.
-/// In both GCC is told to inline all arithmetic of derivatives (gnu::flatten), which takes off a third.
+/// point carried back instead of frames, a nearly undamped start, and GCC told to inline all arithmetic of
+/// derivatives (gnu::flatten), which takes off a third.
 enum class CeresForm { kUsual, kTuned };
 
 enum class Covariance { kNo, kYes };
