@@ -84,8 +84,9 @@ struct Deadlines {
 
 struct Cell {
   std::string name;
-  std::filesystem::path file;  // where it was read from
-  Arm arm;                     // with the cell's frames 0 and 7
+  std::filesystem::path file;   // where it was read from
+  Arm arm;                      // with the cell's frames 0 and 7
+  std::vector<int> own_frames;  // those of the arm that the cell's file gives itself
   Block block;
   Probe probe;
   std::map<std::string, Recipe> recipes;

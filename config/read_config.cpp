@@ -32,7 +32,7 @@ std::filesystem::path named_file(const JsonValue& value, const std::filesystem::
 }
 
 /// Frames 0 (place) and 7 (tool) are the cell's to change; the joints are the arm's.
-void read_frame_overrides(const JsonValue& value, Arm& arm) {
+void read_frame_overrides(const JsonValue& value, Cell& cell) {
   int last_frame = -1;
   for (const JsonValue& item : value.items(1, 2)) {
     const int frame = frame_number(item);
@@ -41,7 +41,8 @@ void read_frame_overrides(const JsonValue& value, Arm& arm) {
                 "; a cell has a say on frames 0 and 7 only, change the arm's file");
     }
     if (frame <= last_frame) item.fail("frames stand in order, each once; exchange or remove one");
-    read_frame(item, frame, arm);
+    read_frame(item, frame, cell.arm);
+    cell.own_frames.push_back(frame);
     last_frame = frame;
   }
 }
@@ -182,7 +183,7 @@ Cell read_cell(const std::filesystem::path& file) {
   cell.name = object.at("name").text();
   cell.file = file;
   cell.arm = read_arm(named_file(object.at("arm"), file));
-  if (const auto frames = object.find("frames")) read_frame_overrides(*frames, cell.arm);
+  if (const auto frames = object.find("frames")) read_frame_overrides(*frames, cell);
   cell.block = read_block(named_file(object.at("block"), file));
   cell.probe = read_probe(named_file(object.at("probe"), file));
   read_recipes(object, file, cell);

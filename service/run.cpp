@@ -11,11 +11,12 @@ calib::Touch to_touch(const StoredTouch& stored) {
   return {.face = stored.plane - 1, .joints = from_wire(stored.joints), .role = stored.role};
 }
 
-Run::Run(std::int64_t id, const Cell& cell, Recipe recipe, std::string started_at)
+Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at)
     : id_(id),
+      regions_(regions),
       recipe_(std::move(recipe)),
       started_at_(std::move(started_at)),
-      problem_(identification_problem(cell, recipe_)) {}
+      problem_(identification_problem(regions.cell(), recipe_)) {}
 
 const calib::PlannedTouch* Run::next() const {
   return touches_done() < touches_total() ? &plan_.touches[touches_.size()] : nullptr;
@@ -26,6 +27,10 @@ void Run::add(TouchStore& store, const StoredTouch& touch) {
   touches_.push_back(touch);
   problem_.touches.push_back(to_touch(touch));
   latest_ = calib::identify(problem_, recipe_.identification);
+  predicted_tip_rms_m_.reset();
+  if (latest_.certainty) {
+    predicted_tip_rms_m_ = predicted_rms_m(regions_.tip().workspace_box, *latest_.certainty);
+  }
 }
 
 }  // namespace cell

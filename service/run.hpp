@@ -9,6 +9,7 @@
 #include "calib_core/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "service/store/touch_store.hpp"
+#include "service/tip_prediction.hpp"
 
 namespace cell {
 
@@ -18,7 +19,8 @@ calib::Touch to_touch(const StoredTouch& stored);
 /// One execution of a recipe: the touches so far and the latest result. The one mutable object of a run.
 class Run {
  public:
-  Run(std::int64_t id, const Cell& cell, Recipe recipe, std::string started_at);
+  /// `regions`, those of the cell, must outlive the run.
+  Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at);
 
   [[nodiscard]] std::int64_t id() const { return id_; }
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
@@ -36,16 +38,22 @@ class Run {
   void add(TouchStore& store, const StoredTouch& touch);
 
   [[nodiscard]] const std::vector<StoredTouch>& touches() const { return touches_; }
+  /// What latest() was identified from.
+  [[nodiscard]] const calib::IdentificationProblem& problem() const { return problem_; }
   [[nodiscard]] const calib::IdentificationResult& latest() const { return latest_; }
+  /// Predicted over the workspace box; nothing as long as there is no honest figure.
+  [[nodiscard]] std::optional<double> predicted_tip_rms_m() const { return predicted_tip_rms_m_; }
 
  private:
   std::int64_t id_;
+  const TipRegions& regions_;
   Recipe recipe_;
   std::string started_at_;
   calib::TouchPlan plan_;
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
   calib::IdentificationResult latest_;
+  std::optional<double> predicted_tip_rms_m_;
 };
 
 }  // namespace cell

@@ -258,7 +258,8 @@ void Operation::close_run(const std::string& outcome) {
   if (!run_open_) return;
   run_open_ = false;
   run_finished_ = outcome == "complete" && run_->latest().status == calib::IdentificationStatus::kConverged;
-  const Judgement judgement = judge(run_->latest(), cell_.acceptance, run_finished_);
+  const Judgement judgement = judge(run_->latest(), run_->recipe().identification, cell_.acceptance,
+                                    run_->predicted_tip_rms_m(), run_finished_);
   status_.verdict = !run_finished_       ? Verdict::kIncomplete
                     : judgement.accepted ? Verdict::kAccepted
                                          : Verdict::kRejected;

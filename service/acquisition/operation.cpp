@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "cs8_protocol/names.hpp"
-#include "service/http/json_view.hpp"
+#include "service/http/result_view.hpp"
 #include "service/utc_time.hpp"
 
 namespace cell {
@@ -66,6 +66,7 @@ Operation::Operation(asio::any_io_executor executor, const Cell& cell, TouchStor
                      std::string instance_id, Clock clock)
     : executor_(executor),
       cell_(cell),
+      tip_regions_(cell),
       store_(store),
       endpoint_(std::move(controller)),
       clock_(std::move(clock)),
@@ -123,6 +124,7 @@ void Operation::publish() {
   status_.touches_total = run_ ? run_->touches_total() : 0;
   status_.identifiable_count.reset();
   status_.condition_number.reset();
+  status_.predicted_tip_rms_m.reset();
   status_.eta_s.reset();
   status_.plane.reset();
   if (run_) {
@@ -132,6 +134,7 @@ void Operation::publish() {
     if (run_->touches_done() > 0)
       status_.identifiable_count = static_cast<int>(latest.identifiable.columns.size());
     if (!latest.iterations.empty()) status_.condition_number = latest.iterations.back().condition_number;
+    status_.predicted_tip_rms_m = run_->predicted_tip_rms_m();
     if (is_active(status_.state)) {
       if (const calib::PlannedTouch* next = run_->next()) status_.plane = next->face + 1;
       if (run_->touches_done() > 0) {
@@ -233,7 +236,7 @@ std::variant<Started, Refusal> Operation::start(const std::string& recipe,
   }
   const std::int64_t id =
       store_.begin_run({.recipe = recipe, .started_at = now_text(), .idempotency_key = idempotency_key});
-  run_.emplace(id, cell_, found->second, now_text());
+  run_.emplace(id, tip_regions_, found->second, now_text());
   run_open_ = true;
   run_finished_ = false;
   run_began_ = clock_();
@@ -275,7 +278,8 @@ Status Operation::status() const {
 
 std::optional<std::string> Operation::result_json() const {
   if (!run_ || run_->latest().status != calib::IdentificationStatus::kConverged) return std::nullopt;
-  return result_document(cell_, run_->recipe(), run_->latest(), {.complete = run_finished_});
+  return result_document(tip_regions_, run_->recipe(), run_->problem(), run_->latest(),
+                         {.complete = run_finished_});
 }
 
 asio::awaitable<void> Operation::wait_for_change(std::uint64_t sequence, std::chrono::milliseconds wait) {

@@ -80,6 +80,7 @@ class Operation {
   /// The result document of run(), as json text; nothing before there is a result.
   [[nodiscard]] std::optional<std::string> result_json() const;
   [[nodiscard]] const Cell& cell() const { return cell_; }
+  [[nodiscard]] const TipRegions& tip_regions() const { return tip_regions_; }
   [[nodiscard]] const TouchStore& store() const { return store_; }
 
   /// Returns when the status has another sequence than `sequence`, or after `wait`.
@@ -129,6 +130,7 @@ class Operation {
 
   boost::asio::any_io_executor executor_;
   const Cell& cell_;
+  TipRegions tip_regions_;
   TouchStore& store_;
   Endpoint endpoint_;
   Clock clock_;

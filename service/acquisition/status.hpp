@@ -32,6 +32,7 @@ struct Status {
   std::optional<int> plane;  // of the touch under way, from 1
   std::optional<int> identifiable_count;
   std::optional<double> condition_number;
+  std::optional<double> predicted_tip_rms_m;  // over the workspace box
   std::optional<double> eta_s;
   Verdict verdict = Verdict::kNone;
   ControllerView controller;

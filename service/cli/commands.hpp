@@ -14,9 +14,21 @@ namespace cell {
 struct IdentifyArguments {
   std::filesystem::path cell_file;
   std::filesystem::path touches_file;
-  std::string recipe;  // the cell's default when empty
+  std::string recipe;      // the cell's default when empty
+  std::string arm_file;    // where the calibrated arm is written, if anywhere
+  std::string map_file;    // where the map of the predicted uncertainty is written as CSV, if anywhere
+  bool overwrite = false;  // those two
 };
 ExitCode identify_command(const IdentifyArguments& arguments, bool json);
+
+struct ValidateArguments {
+  std::filesystem::path cell_file;
+  std::filesystem::path touches_file;
+  std::string other_file;  // touches of another set; the held-out ones when empty
+  std::string recipe;      // the cell's default when empty
+};
+/// The paper's validations; kExitLimitsMissed when the same touches give another arm.
+ExitCode validate_command(const ValidateArguments& arguments, bool json);
 
 /// Starts a run and watches it to its end.
 ExitCode run_command(const ApiClient& daemon, const std::string& recipe, bool json);
@@ -26,8 +38,19 @@ ExitCode status_command(const ApiClient& daemon, bool json);
 ExitCode runs_command(const ApiClient& daemon, bool json);
 ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool json);
 
+struct ExportArguments {
+  std::string run_id;
+  std::string arm_file;  // "-" is standard output
+  bool overwrite = false;
+};
+/// Writes a run's calibrated arm as an arm file.
+ExitCode export_command(const ApiClient& daemon, const ExportArguments& arguments, bool json);
+
 /// pause, resume, abort: of the active run. stop, acknowledge, clear, reset: of the cell.
 ExitCode give_command(const ApiClient& daemon, const std::string& command, bool json);
+
+/// std::invalid_argument when this cannot be the id of a run.
+void demand_run_id(const std::string& text);
 
 /// Tells a problem document that the daemon answered; the exit code that goes with it.
 ExitCode tell_problem(const ApiReply& reply, bool json);

@@ -146,10 +146,13 @@ ExitCode runs_command(const ApiClient& daemon, bool json_only) {
   return kExitDone;
 }
 
+void demand_run_id(const std::string& text) {
+  if (text.empty() || text.find_first_not_of("0123456789") != std::string::npos)
+    throw std::invalid_argument("'" + text + "' is no run's id; touchcal runs lists them");
+}
+
 ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool json_only) {
-  if (run_id.empty() || run_id.find_first_not_of("0123456789") != std::string::npos) {
-    throw std::invalid_argument("'" + run_id + "' is no run's id; touchcal runs lists them");
-  }
+  demand_run_id(run_id);
   const ApiReply run = daemon.get("/api/v1/runs/" + run_id);
   if (run.status != 200) return tell_problem(run, json_only);
   const ApiReply result = daemon.get("/api/v1/runs/" + run_id + "/result");

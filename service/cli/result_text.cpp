@@ -29,17 +29,92 @@ std::string status_of(const json& parameter) {
   return fmt::format("grouped into {}{}", into, factors.size() > kShown ? ", ..." : "");
 }
 
+/// A part of a result document; one that an older daemon wrote may lack it.
+const json& part(const json& object, const char* key) {
+  static const json nothing;
+  const auto found = object.is_object() ? object.find(key) : object.end();
+  return found == object.end() ? nothing : *found;
+}
+
+/// Half the width of the 95 % interval.
+std::string half_width(const json& parameter, const char* format) {
+  const json& interval = part(parameter, "interval95");
+  if (!interval.is_array()) return "";
+  return figure(0.5 * (interval[1].get<double>() - interval[0].get<double>()), format);
+}
+
 std::string parameters_text(const json& parameters) {
-  std::string lines =
-      fmt::format("{:<9}{:>12}{:>12}  {:<5}{}\n", "error of", "nominal", "error", "unit", "status");
+  std::string lines = fmt::format("{:<9}{:>12}{:>12}{:>12}  {:<5}{}\n", "error of", "nominal", "error",
+                                  "+- (95 %)", "unit", "status");
   for (const json& parameter : parameters) {
     const bool length = parameter.at("unit") == "mm";
-    lines += fmt::format("{:<9}{:>12}{:>12}  {:<5}{}\n", parameter.at("name").get<std::string>(),
+    lines += fmt::format("{:<9}{:>12}{:>12}{:>12}  {:<5}{}\n", parameter.at("name").get<std::string>(),
                          figure(parameter.at("nominal"), length ? "{:.3f}" : "{:.5f}"),
                          figure(parameter.at("error"), length ? "{:+.4f}" : "{:+.6f}"),
+                         half_width(parameter, length ? "{:.4f}" : "{:.6f}"),
                          parameter.at("unit").get<std::string>(), status_of(parameter));
   }
   return lines;
+}
+
+std::string rejected_text(const json& result) {
+  std::string lines;
+  for (const json& touch : part(result, "rejected_touches")) {
+    lines += fmt::format("touch {} rejected: {}, {} mm off\n", touch.at("touch").get<int>(),
+                         touch.at("reason") == "wrong_plane" ? "on another plane" : "does not fit the others",
+                         figure(touch.at("residual_mm"), "{:+.3f}"));
+  }
+  return lines;
+}
+
+std::string fit_text(const json& fit) {
+  std::string lines = fmt::format("noise of a touch: declared {} um, from the residuals {} um\n",
+                                  figure(part(fit, "noise_declared_um"), "{:.1f}"),
+                                  figure(part(fit, "noise_estimated_um"), "{:.1f}"));
+  if (!part(fit, "lack_of_fit_p").is_number()) return lines;
+  lines += fmt::format("lack of fit: p = {}", figure(fit.at("lack_of_fit_p"), "{:.2g}"));
+  for (const json& plane : part(fit, "planes"))
+    lines += fmt::format("{} {} {}", &plane == &part(fit, "planes")[0] ? "; plane" : ",",
+                         plane.at("plane").get<int>(), figure(plane.at("p"), "{:.2g}"));
+  return lines + "\n";
+}
+
+std::string artefact_text(const json& parameters) {
+  if (parameters.empty()) return {};
+  std::string lines = fmt::format("\n{:<16}{:>12}{:>12}  {:<6}{}\n", "block and probe", "value", "+- (std)",
+                                  "unit", "known from");
+  for (const json& parameter : parameters) {
+    const char* format = parameter.at("unit") == "rad" ? "{:.6f}" : "{:.4f}";
+    lines += fmt::format("{:<16}{:>12}{:>12}  {:<6}{}\n", text(parameter.at("name")),
+                         figure(parameter.at("value"), format),
+                         figure(parameter.at("std_uncertainty"), format), text(parameter.at("unit")),
+                         parameter.at("status") == "identified" ? "the touches" : "what was written down");
+  }
+  return lines;
+}
+
+/// What the tip's uncertainty is made of, and where it is how large.
+std::string tip_text(const json& tip) {
+  std::string lines = "\npredicted uncertainty of the tip, rms\n";
+  const auto line = [&lines](const std::string& where, const json& value) {
+    lines += fmt::format("  {:<34}{:>10} mm\n", where, figure(value, "{:.3f}", "unknown"));
+  };
+  line("at the block", part(tip, "at_block_rms_mm"));
+  line("in the workspace box", part(tip, "workspace_box_rms_mm"));
+  for (const json& source : part(tip, "sources"))
+    line("  from " + text(source.at("name")), source.at("workspace_box_rms_mm"));
+  line("over the joint ranges", part(tip, "joint_ranges_rms_mm"));
+  for (const json& tool : part(tip, "tools")) {
+    line(text(tool.at("name")) + ", in the workspace box", tool.at("workspace_box_rms_mm"));
+    line(text(tool.at("name")) + ", over the joint ranges", tool.at("joint_ranges_rms_mm"));
+  }
+  return lines;
+}
+
+std::string scale_text(const json& scale) {
+  return fmt::format("common scale of all lengths: from {}, +- {} ppm (std); they moved by {} ppm\n",
+                     text(part(scale, "source")), figure(part(scale, "std_uncertainty_ppm"), "{:.0f}"),
+                     figure(part(scale, "stretch_ppm"), "{:+.0f}"));
 }
 
 std::string planes_text(const json& planes, const char* title) {
@@ -70,13 +145,23 @@ std::string result_text(const json& result) {
     lines += " " + figure(iteration.at("condition_number"), "{:.1f}");
   lines +=
       fmt::format(" (columns of unit norm: {})\n", figure(result.at("scaled_condition_number"), "{:.1f}"));
-  const json& fit = result.at("fit");
-  lines += fmt::format("noise of a touch: declared {} um, from the residuals {} um\n",
-                       figure(fit.at("noise_declared_um"), "{:.1f}"),
-                       figure(fit.at("noise_estimated_um"), "{:.1f}"));
+  if (const json& why = part(part(result, "rank"), "explanation");
+      why.is_string() && !why.empty() && why != "")
+    lines += fmt::format("not more of them: {}\n", text(why));
+  lines += fit_text(result.at("fit"));
+  lines += scale_text(result.at("scale"));
+  lines += rejected_text(result);
+  lines += artefact_text(part(result, "artefact_parameters"));
+  for (const json& stiffness : part(result, "stiffness")) {
+    lines += fmt::format("compliance of joint {}: {} +- {} rad/Nm\n", stiffness.at("joint").get<int>(),
+                         figure(stiffness.at("compliance_rad_per_nm"), "{:.3g}"),
+                         figure(stiffness.at("std_uncertainty"), "{:.2g}"));
+  }
+  lines += tip_text(result.at("tip_uncertainty"));
   lines += planes_text(result.at("planes"), "distances of the fitted touches from the block's origin");
   lines += planes_text(result.at("planes_held_out"), "distances of the held-out touches");
   lines += planes_text(result.at("planes_proof"), "distances of the proof touches");
+  for (const json& warning : result.at("warnings")) lines += fmt::format("\nwarning: {}\n", text(warning));
   const json& verdict = result.at("verdict");
   lines += verdict.at("accepted").get<bool>() ? "\nverdict: accepted\n" : "\nverdict: rejected\n";
   for (const json& reason : verdict.at("reasons"))

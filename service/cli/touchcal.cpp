@@ -33,6 +33,7 @@ class CommandLine {
     app_.set_version_flag("--version", std::string("touchcal ") + cell::kVersion);
     app_.require_subcommand(1);
     add_identify();
+    add_validate();
     auto* run = add_for_daemon(
         "run", "start a run and watch it to its end",
         [this](const cell::ApiClient& daemon) { return cell::run_command(daemon, recipe_, json_); });
@@ -47,6 +48,12 @@ class CommandLine {
       return cell::show_command(daemon, run_id_, json_);
     });
     show->add_option("RUN", run_id_, "id of the run")->required();
+    auto* exported = add_for_daemon(
+        "export", "write a run's calibrated arm as an arm file",
+        [this](const cell::ApiClient& daemon) { return cell::export_command(daemon, export_, json_); });
+    exported->add_option("RUN", export_.run_id, "id of the run")->required();
+    exported->add_option("--arm", export_.arm_file, "the file to write; - is standard output")->required();
+    exported->add_flag("--force", export_.overwrite, "overwrite the file");
     for (const auto& [name, description] : kCellCommands) {
       add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {
         return cell::give_command(daemon, command, json_);
@@ -70,8 +77,25 @@ class CommandLine {
     identify->add_option("--touches", identify_.touches_file, "touches, JSON or CSV")->required();
     identify->add_option("--recipe", identify_.recipe,
                          "whose identification options hold; default: the cell's first");
+    identify->add_option("--export", identify_.arm_file, "write the calibrated arm to this arm file");
+    identify->add_option("--map", identify_.map_file,
+                         "write the predicted uncertainty over the workspace box to this CSV file");
+    identify->add_flag("--force", identify_.overwrite, "overwrite these files");
     identify->add_flag("--json", json_, "one JSON document on standard output");
     identify->callback([this] { action_ = [this] { return cell::identify_command(identify_, json_); }; });
+  }
+
+  void add_validate() {
+    auto* validate = app_.add_subcommand(
+        "validate", "identify again from the calibrated arm, and compare distances (offline)");
+    validate->add_option("--cell", validate_.cell_file, "cell file")->required();
+    validate->add_option("--touches", validate_.touches_file, "touches, JSON or CSV")->required();
+    validate->add_option("--other", validate_.other_file,
+                         "touches of another set; default: the held-out ones of --touches");
+    validate->add_option("--recipe", validate_.recipe,
+                         "whose identification options hold; default: the cell's first");
+    validate->add_flag("--json", json_, "one JSON document on standard output");
+    validate->callback([this] { action_ = [this] { return cell::validate_command(validate_, json_); }; });
   }
 
   CLI::App* add_for_daemon(const std::string& name, const std::string& description,
@@ -93,6 +117,8 @@ class CommandLine {
   CLI::App app_;
   std::function<cell::ExitCode()> action_;
   cell::IdentifyArguments identify_;
+  cell::ValidateArguments validate_;
+  cell::ExportArguments export_;
   // Read here and not by CLI11's envname: there the environment of one subcommand would beat the flag of
   // another.
   std::string daemon_url_ = environment_or("TOUCHCAL_DAEMON", "http://127.0.0.1:8080");

@@ -4,13 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/identify.hpp"
 #include "config/cell.hpp"
 #include "service/acquisition/status.hpp"
 #include "service/store/touch_store.hpp"
 
-/// The API's and the files' field names, here and nowhere else. Every function returns one JSON document as
-/// text.
+/// The API's and the files' field names, here, in parameter_view, result_view and validation_view, and
+/// nowhere else. Every function returns one JSON document as text.
 namespace cell {
 
 std::string status_document(const Status& status);
@@ -22,14 +21,5 @@ std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std:
 
 /// touchcal/touches/1: what `touchcal identify` reads back.
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches);
-
-struct ResultContext {
-  bool complete = true;  // every touch was made
-  std::vector<std::string> warnings;
-};
-
-/// touchcal/result/1.
-std::string result_document(const Cell& cell, const Recipe& recipe, const calib::IdentificationResult& result,
-                            const ResultContext& context);
 
 }  // namespace cell

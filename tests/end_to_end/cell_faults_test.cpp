@@ -135,7 +135,7 @@ class FailingStore : public ::testing::Test {
     expect_touches_once(loop_, next, kShortTouchCount);
   }
 
-  LoopbackCell loop_;
+  LoopbackCell loop_{"demo"};  // the cell `edf` is never accepted
   FullDisk disk_{loop_};
 };
 

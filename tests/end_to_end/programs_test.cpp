@@ -68,17 +68,17 @@ TEST_F(Programs, EndWithTwoWhenTheyAreUsedWrongly) {
   }
 }
 
-TEST_F(Programs, IdentifyThePapersArmFromAFile) {
+TEST_F(Programs, IdentifyThePapersArmFromAFileAndFlagIt) {
   const Finished json =
       run({"touchcal", "identify", "--cell", cell_file("edf"), "--touches", kTouches, "--json"});
-  EXPECT_EQ(json.exit_code, cell::kExitDone) << json.err;
+  EXPECT_EQ(json.exit_code, cell::kExitLimitsMissed) << json.err;
   EXPECT_EQ(json.err, "");
   const auto result = nlohmann::json::parse(json.out);
   EXPECT_EQ(result.at("schema"), "touchcal/result/1");
   EXPECT_EQ(result.at("identifiable_count"), kRank);
-  EXPECT_EQ(result.at("verdict").at("accepted"), true);
+  EXPECT_EQ(result.at("verdict").at("reasons"), nlohmann::json::array({result.at("scale").at("warning")}));
   const Finished text = run({"touchcal", "identify", "--cell", cell_file("edf"), "--touches", kTouches});
-  EXPECT_EQ(text.exit_code, cell::kExitDone);
+  EXPECT_EQ(text.exit_code, cell::kExitLimitsMissed);
   EXPECT_THAT(text.out, HasSubstr("alpha1"));
 }
 

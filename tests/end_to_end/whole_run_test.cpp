@@ -7,6 +7,7 @@
 #include "config/identification_problem.hpp"
 #include "config/touches_file.hpp"
 #include "service/http/json_view.hpp"
+#include "service/http/result_view.hpp"
 #include "service/run.hpp"
 #include "tests/end_to_end/held_out.hpp"
 #include "tests/end_to_end/loopback_cell.hpp"
@@ -16,6 +17,9 @@ namespace touchcal::testing {
 namespace {
 
 using cell::State;
+
+/// The cell `edf` has Table III for its truth, whose lengths are together far beyond the maker's tolerances.
+bool is_flagged(const std::string& cell_name) { return cell_name == "edf"; }
 
 class WholeRun : public ::testing::TestWithParam<const char*> {
  protected:
@@ -27,21 +31,28 @@ class WholeRun : public ::testing::TestWithParam<const char*> {
     loop_.run_until_over();
   }
 
+  /// What the run has to be worth.
+  static cell::Verdict expected_verdict() {
+    return is_flagged(GetParam()) ? cell::Verdict::kRejected : cell::Verdict::kAccepted;
+  }
+
   LoopbackCell loop_;
   std::int64_t run_id_ = 0;
 };
 
-TEST_P(WholeRun, EndsAcceptedWithThePromisedFigures) {
+TEST_P(WholeRun, EndsCompleteWithThePromisedFiguresAndOnlyTableThreeIsFlagged) {
   const cell::Status status = loop_.status();
   EXPECT_EQ(status.state, State::kComplete) << loop_.fault_name();
-  EXPECT_EQ(status.verdict, cell::Verdict::kAccepted);
-  EXPECT_EQ(status.last_accepted_run_id, run_id_);
+  EXPECT_EQ(status.verdict, expected_verdict());
+  EXPECT_EQ(status.last_accepted_run_id.has_value(), !is_flagged(GetParam()));
+  EXPECT_GT(status.predicted_tip_rms_m.value_or(0.0), 0.0);
   EXPECT_EQ(loop_.store().touches(run_id_).size(), static_cast<std::size_t>(kTouchCount));
 
   const calib::IdentificationResult& result = loop_.operation().run()->latest();
   EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
   EXPECT_LE(result.iterations.size(), static_cast<std::size_t>(kIterationsMax));
   EXPECT_LT(result.iterations.back().condition_number, kConditionNumberMax);
+  EXPECT_EQ(result.scale.value().warning.empty(), !is_flagged(GetParam())) << result.scale->warning;
   const HeldOut figures = held_out(result);
   EXPECT_EQ(figures.touch_count, kPlaneCount * kHeldOutPerPlane);
   EXPECT_LE(figures.mean_max_m, kHeldOutMeanMaxMetres);
@@ -50,7 +61,7 @@ TEST_P(WholeRun, EndsAcceptedWithThePromisedFigures) {
 
   const auto stored = loop_.store().run(run_id_).value();
   EXPECT_EQ(stored.outcome, "complete");
-  EXPECT_EQ(stored.verdict, "accepted");
+  EXPECT_EQ(stored.verdict, cell::verdict_name(expected_verdict()));
   EXPECT_EQ(stored.touches_total, kTouchCount);
   EXPECT_EQ(stored.touches_done, kTouchCount);
   EXPECT_FALSE(stored.fault_code);
@@ -62,7 +73,7 @@ TEST_P(WholeRun, AnotherStartsStraightFromItsEnd) {
   EXPECT_NE(second, run_id_);
   loop_.run_until_over();
   EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
-  EXPECT_EQ(loop_.status().verdict, cell::Verdict::kAccepted);
+  EXPECT_EQ(loop_.status().verdict, expected_verdict());
   EXPECT_EQ(loop_.store().touches(second).size(), static_cast<std::size_t>(kTouchCount));
   EXPECT_EQ(loop_.store().touches(run_id_).size(), static_cast<std::size_t>(kTouchCount));
 }
@@ -77,7 +88,8 @@ TEST_P(WholeRun, ItsTouchesReadBackFromAFileGiveTheSameResultToTheBit) {
   const calib::IdentificationResult again = calib::identify(problem, recipe.identification);
   const calib::IdentificationResult& live = loop_.operation().run()->latest();
   EXPECT_TRUE((again.errors.array() == live.errors.array()).all());
-  EXPECT_TRUE(cell::result_document(loop_.cell, recipe, again, {}) == loop_.operation().result_json());
+  const cell::TipRegions regions(loop_.cell);
+  EXPECT_TRUE(cell::result_document(regions, recipe, problem, again, {}) == loop_.operation().result_json());
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, WholeRun, ::testing::Values("edf", "demo"),

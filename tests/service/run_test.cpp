@@ -4,9 +4,9 @@
 
 #include <numbers>
 
+#include "config/identification_problem.hpp"
 #include "service/acquisition/touch_command.hpp"
 #include "tests/service/shipped_cell.hpp"
-#include "config/identification_problem.hpp"
 
 namespace cell {
 namespace {
@@ -29,7 +29,8 @@ class RunTest : public ::testing::Test {
 
   Folder folder_;
   TouchStore store_{folder_.path() / "touchcal.sqlite"};
-  cell::Run run_{store_.begin_run({.recipe = "edf-25"}), edf(), edf().recipes.at("edf-25"), "start"};
+  TipRegions regions_{edf()};
+  cell::Run run_{store_.begin_run({.recipe = "edf-25"}), regions_, edf().recipes.at("edf-25"), "start"};
 };
 
 TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
@@ -40,11 +41,13 @@ TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
     EXPECT_EQ(run_.next()->face, touch.face);
     run_.add(store_, stored(++number, touch));
     EXPECT_EQ(run_.touches_done(), number);
+    EXPECT_EQ(run_.predicted_tip_rms_m().has_value(), run_.latest().certainty.has_value()) << number;
   }
   EXPECT_TRUE(run_.complete());
   EXPECT_EQ(run_.next(), nullptr);
   EXPECT_EQ(run_.latest().status, calib::IdentificationStatus::kConverged);
   EXPECT_EQ(run_.latest().fitted_touch_count, number);
+  EXPECT_GT(run_.predicted_tip_rms_m().value_or(0.0), 0.0);
   EXPECT_EQ(store_.touches(run_.id()).size(), table3_touches().size());
 }
 
@@ -57,7 +60,7 @@ TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
 }
 
 TEST_F(RunTest, WithoutAPlanNothingIsCompleteAndNothingIsNext) {
-  const cell::Run planless(1, edf(), edf().recipes.at("edf-25"), "start");
+  const cell::Run planless(1, regions_, edf().recipes.at("edf-25"), "start");
   EXPECT_FALSE(planless.complete());
   EXPECT_EQ(planless.next(), nullptr);
 }

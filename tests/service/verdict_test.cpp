@@ -14,6 +14,8 @@ using ::testing::IsEmpty;
 constexpr AcceptanceLimits kLimits{
     .held_out_mean_max_m = 3e-5, .held_out_rms_max_m = 5e-5, .condition_number_max = 300};
 
+constexpr double kTipBoxRms = 6e-5;
+
 calib::FaceDistances held_out(int face, double mean_m, double rms_m) {
   return {.face = face,
           .role = calib::TouchRole::kHeldOut,
@@ -33,7 +35,7 @@ calib::IdentificationResult at_the_limits() {
 }
 
 std::vector<std::string> reasons_against(const calib::IdentificationResult& result, bool complete = true) {
-  const Judgement judgement = judge(result, kLimits, complete);
+  const Judgement judgement = judge(result, {}, kLimits, kTipBoxRms, complete);
   EXPECT_EQ(judgement.accepted, judgement.reasons.empty());
   return judgement.reasons;
 }
@@ -84,6 +86,48 @@ TEST(Verdict, AFigureThatIsNoNumberIsNeverAccepted) {
   calib::IdentificationResult distance = at_the_limits();
   distance.distances = {held_out(0, nan, nan)};
   EXPECT_EQ(reasons_against(distance).size(), 2u);
+}
+
+TEST(Verdict, AScaleWarningIsAReason) {
+  calib::IdentificationResult result = at_the_limits();
+  result.scale.emplace().warning = "all lengths moved together";
+  EXPECT_THAT(reasons_against(result), ElementsAre("all lengths moved together"));
+}
+
+TEST(Verdict, ResidualsThatAreNoTouchNoiseAreAReason) {
+  calib::IdentificationResult result = at_the_limits();
+  result.lack_of_fit.emplace().p = kLimits.lack_of_fit_p_min;
+  EXPECT_THAT(reasons_against(result), IsEmpty());
+  result.lack_of_fit->p = 0.9 * kLimits.lack_of_fit_p_min;
+  EXPECT_THAT(reasons_against(result), ElementsAre(HasSubstr("lack of fit")));
+}
+
+TEST(Verdict, ASetWithHeldErrorsIsIncompleteButNotWithAPrior) {
+  calib::IdentificationResult result = at_the_limits();
+  const auto d3 = static_cast<std::size_t>(calib::error_parameter_index("d3").value());
+  result.identifiable.candidates[d3].status = calib::ParameterStatus::kWeak;
+  EXPECT_THAT(reasons_against(result),
+              ElementsAre(::testing::AllOf(HasSubstr("incomplete set"), HasSubstr("d3"))));
+  EXPECT_TRUE(judge(result, {.prior = true}, kLimits, kTipBoxRms, true).accepted);
+}
+
+TEST(Verdict, ATipUncertaintyOverItsLimitOrUnknownIsAReason) {
+  AcceptanceLimits limits = kLimits;
+  limits.tip_box_rms_max_m = kTipBoxRms;
+  EXPECT_TRUE(judge(at_the_limits(), {}, limits, kTipBoxRms, true).accepted);
+  EXPECT_THAT(judge(at_the_limits(), {}, limits, 1.5 * kTipBoxRms, true).reasons,
+              ElementsAre(HasSubstr("0.090 mm in the workspace box, the limit is 0.060 mm")));
+  EXPECT_THAT(judge(at_the_limits(), {}, limits, std::nullopt, true).reasons,
+              ElementsAre(HasSubstr("unknown")));
+}
+
+TEST(Verdict, MoreThanATenthOfTheTouchesRejectedIsAReason) {
+  calib::IdentificationResult result = at_the_limits();
+  result.fitted_touch_count = 90;
+  result.rejected.resize(10);
+  EXPECT_THAT(reasons_against(result), IsEmpty());
+  result.fitted_touch_count = 89;
+  EXPECT_EQ(reasons_against(result).size(), 1u) << "10 of 99";
 }
 
 TEST(Verdict, NamesAreTheContracts) {

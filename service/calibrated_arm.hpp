@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+#include "calib_core/identify.hpp"
+#include "config/cell.hpp"
+
+namespace cell {
+
+/// The cell's arm with the identified errors in its frames (and compliances, when estimated), all else as the
+/// maker gives it: a file of schema touchcal/arm/1 that reads back to result.calibrated.
+std::string calibrated_arm_document(const Cell& cell, const calib::IdentificationResult& result);
+
+}  // namespace cell

@@ -1,0 +1,75 @@
+#include "service/cli/offline.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+
+#include "config/config_error.hpp"
+
+namespace cell {
+
+const Recipe& recipe_named(const Cell& cell, const std::string& name) {
+  const auto found = cell.recipes.find(name.empty() ? cell.default_recipe : name);
+  if (found != cell.recipes.end()) return found->second;
+  std::string known;
+  for (const auto& [recipe, unused] : cell.recipes) known += (known.empty() ? "" : ", ") + recipe;
+  throw ConfigError(cell.file.string(), "/recipes", "has no recipe " + in_quotes(name) + "; it has " + known);
+}
+
+ExitCode tell_refusal(const std::filesystem::path& touches_file, const calib::IdentificationResult& result) {
+  fmt::print(stderr, "{}: {}\n", touches_file.string(), result.message);
+  switch (result.status) {
+    case calib::IdentificationStatus::kBadInput:
+    case calib::IdentificationStatus::kCoincidingPlanes:
+    case calib::IdentificationStatus::kSingularPrior:
+      return kExitBadInput;
+    default:
+      return kExitRefused;
+  }
+}
+
+void tell_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
+}
+
+void write_whole_file(const std::string& file, const std::string& text, bool overwrite) {
+  if (file == "-") {
+    fmt::print("{}", text);
+    return;
+  }
+  if (!overwrite && std::filesystem::exists(file))
+    throw std::invalid_argument(file + " is there already; choose another name or give --force");
+  const std::string unfinished = fmt::format("{}.{}.unfinished", file, getpid());
+  std::ofstream stream(unfinished, std::ios::binary);
+  stream << text;
+  stream.close();
+  std::error_code error;
+  if (stream) std::filesystem::rename(unfinished, file, error);
+  if (!stream || error) {
+    std::error_code ignored;
+    std::filesystem::remove(unfinished, ignored);
+    throw std::runtime_error(file + " cannot be written; check the folder and its permissions");
+  }
+}
+
+std::vector<std::string> export_warnings(const std::vector<int>& cell_frames, bool accepted,
+                                         const std::vector<std::string>& reasons) {
+  std::vector<std::string> warnings;
+  for (const int frame : cell_frames) {
+    warnings.push_back(
+        fmt::format("the cell's file gives frame {} itself: there it hides what was identified of it; take "
+                    "\"frames\" out of the cell or correct it",
+                    frame));
+  }
+  if (!accepted) {
+    std::string why;
+    for (const std::string& reason : reasons) why += (why.empty() ? ": " : "; ") + reason;
+    warnings.push_back("this calibration was not accepted" + why);
+  }
+  return warnings;
+}
+
+}  // namespace cell

@@ -1,0 +1,39 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "calib_core/validate.hpp"
+#include "config/identification_problem.hpp"
+#include "config/read_config.hpp"
+#include "config/touches_file.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/offline.hpp"
+#include "service/cli/validation_text.hpp"
+#include "service/http/validation_view.hpp"
+
+namespace cell {
+
+ExitCode validate_command(const ValidateArguments& arguments, bool json) {
+  const Cell cell = read_cell(arguments.cell_file);
+  const Recipe& recipe = recipe_named(cell, arguments.recipe);
+  const TouchesFile file = read_touches(arguments.touches_file, cell);
+  TouchesFile other;
+  if (!arguments.other_file.empty()) other = read_touches(arguments.other_file, cell);
+  calib::IdentificationProblem problem = identification_problem(cell, recipe);
+  problem.touches = file.touches;
+  const calib::Validation validation = calib::validate(problem, recipe.identification, other.touches);
+  if (validation.result.status != calib::IdentificationStatus::kConverged)
+    return tell_refusal(arguments.touches_file, validation.result);
+  const std::string document = validation_document(cell, recipe, problem, validation);
+  if (json) {
+    fmt::print("{}\n", document);
+  } else {
+    tell_warnings(file.warnings);
+    tell_warnings(other.warnings);
+    fmt::print("{}", validation_text(nlohmann::json::parse(document)));
+  }
+  return validation.passed() ? kExitDone : kExitLimitsMissed;
+}
+
+}  // namespace cell

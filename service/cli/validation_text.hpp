@@ -1,0 +1,11 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace cell {
+
+/// A validation document (touchcal/validation/1) for people, in the form of the paper's Tables IV to VII.
+std::string validation_text(const nlohmann::json& validation);
+
+}  // namespace cell
