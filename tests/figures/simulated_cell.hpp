@@ -10,6 +10,7 @@
 #include "calib_core/quasi_random.hpp"
 #include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
+#include "service/acquisition/planning.hpp"
 #include "tests/calib_core/block_study.hpp"
 
 /// Calibrations of a shipped cell by simulation: an arm and an artefact drawn within what is said of them,
@@ -103,6 +104,16 @@ inline std::vector<Touch> even_touches(const cell::Cell& cell, int face_count, i
       const auto pick = static_cast<std::size_t>(chance() * static_cast<double>(postures.size()));
       touches.push_back({.face = face, .joints = postures[pick]});
     }
+  }
+  return touches;
+}
+
+/// The touches that a recipe's plan fits: postures of the nominal arm on the nominal faces.
+inline std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& recipe) {
+  const auto plan = plan_touches(cell::planning_problem(cell, recipe));
+  std::vector<Touch> touches;
+  for (const PlannedTouch& planned : std::get<TouchPlan>(plan).touches) {
+    if (planned.role == TouchRole::kFit) touches.push_back({.face = planned.face, .joints = planned.joints});
   }
   return touches;
 }
