@@ -187,7 +187,8 @@ ScaleCheck check_scale(const IdentificationProblem& problem, const Identificatio
   check.source = source_of(problem, options, fit);
   const ArmVector own = own_lengths(problem.nominal, fit.arm_columns());
   if (own.squaredNorm() > 0.0) {
-    check.std_relative = std::sqrt(own.dot(certainty.covariance() * own)) / own.squaredNorm();
+    // Not of what is grouped: that trades one parameter for another and stretches nothing.
+    check.std_relative = std::sqrt(own.dot(certainty.identified * own)) / own.squaredNorm();
   }
   const double ratio = certainty.noise_m > 0.0 ? certainty.noise_m / fit.noise_unit_m() : 1.0;
   const Guard guard(problem, fit, whole, ratio, estimate);
