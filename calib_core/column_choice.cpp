@@ -11,7 +11,8 @@
 namespace calib {
 namespace {
 
-constexpr double kAlikeTiltsRadians = 3.0 * kRadiansPerDegree;
+/// About their mean: tilts to 3 degrees from the normal may well be 4 from it.
+constexpr double kAlikeTiltsRadians = 5.0 * kRadiansPerDegree;
 
 /// Rows and leading columns of the choice: the touches', then one a certified length that binds an estimated
 /// face, in the same unit (metres).

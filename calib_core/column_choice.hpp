@@ -7,8 +7,8 @@
 
 namespace calib {
 
-/// A parameter is held when the declared noise alone, all those before it known, would give it a larger
-/// standard deviation than this: a guess, not a result.
+/// A parameter is held when the declared noise alone would give it a larger standard deviation than this,
+/// found along with those before it, those after it known: a guess, not a result.
 inline constexpr double kWeakLengthMetres = 3e-3;
 inline constexpr double kWeakAngleRadians = 5e-3;
 

@@ -66,7 +66,8 @@ class Iterations {
       fit_.linearise(estimate);
       if (!fit_.solve()) {
         solvable_ = std::isfinite(fit_.residual_rms_m());
-        message_ = solvable_ ? "the touches and the priors leave a direction open"
+        message_ = solvable_ ? "the touches and the priors leave a direction open at step " +
+                                   std::to_string(i + 1) + history_text()
                              : "the iteration left the finite numbers at step " + std::to_string(i + 1) +
                                    history_text();
         return false;
@@ -217,14 +218,23 @@ std::vector<int> estimated_columns(const IdentificationOptions& options, const I
   return columns;
 }
 
+/// How many parameters the touches show, however weakly: several of them may share one weak direction.
+int shown_at_all(const IdentificationProblem& problem, IdentificationOptions options,
+                 const std::vector<std::size_t>& touches) {
+  options.hold_weak = false;
+  options.identifiability.qr_tolerance.reset();
+  return static_cast<int>(choose_columns(problem, options, touches).columns.size());
+}
+
 void refuse(IdentificationResult& result, Refusal refusal) {
   result.status = refusal.status;
   result.message = std::move(refusal.message);
 }
 
 /// Names what was left out, with its residual at the final arm.
-void name_rejected(const IdentificationProblem& problem, const LeastSquares& fit,
+void name_rejected(const IdentificationProblem& problem, const LeastSquares& fit, const Estimate& estimate,
                    IdentificationResult& result) {
+  const KinematicModel arm = apply(problem.nominal, estimate.arm);
   for (std::size_t i = 0; i < fit.touches().size(); ++i) {
     if (fit.kept()[i]) continue;
     result.rejected.push_back(
@@ -233,8 +243,7 @@ void name_rejected(const IdentificationProblem& problem, const LeastSquares& fit
   for (RejectedTouch& rejected : result.rejected) {
     if (rejected.reason != RejectionReason::kWrongPlane) continue;
     const Touch& touch = problem.touches[rejected.touch];
-    rejected.residual_m =
-        signed_distances_m(result.calibrated, problem.artefact.contact_planes, std::span(&touch, 1))[0];
+    rejected.residual_m = signed_distances_m(arm, problem.artefact.contact_planes, std::span(&touch, 1))[0];
   }
   std::ranges::sort(result.rejected, {}, &RejectedTouch::touch);
 }
@@ -272,6 +281,7 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
     return;
   }
   bool converged = iterations.run(estimate, true);
+  const bool all_converged = converged;
   if (options.robust && iterations.solvable()) {
     RobustSearch search(problem, fit, iterations);
     if (!converged || !search.nothing_suspect()) {
@@ -281,16 +291,18 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
     }
   }
   result.iterations = iterations.history();
-  result.errors = estimate.arm;
-  result.artefact_errors = estimate.artefact;
-  result.calibrated = apply(problem.nominal, estimate.arm);
   result.fitted_touch_count = fit.kept_count();
-  name_rejected(problem, fit, result);
+  name_rejected(problem, fit, estimate, result);
   if (!converged) {
     result.status = iterations.solvable() && options.prior && iterations.history().empty()
                         ? IdentificationStatus::kSingularPrior
                         : IdentificationStatus::kNotConverged;
     result.message = iterations.message();
+    if (all_converged) {
+      result.status = IdentificationStatus::kContradictory;
+      result.message = "no half of the " + std::to_string(fitted.size()) + " touches agrees on an arm (" +
+                       iterations.message() + "); check planes, block and probe, and touch again";
+    }
     return;
   }
   const auto total = static_cast<int>(fitted.size());
@@ -301,6 +313,9 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
     return;
   }
   result.status = IdentificationStatus::kConverged;
+  result.errors = estimate.arm;
+  result.artefact_errors = estimate.artefact;
+  result.calibrated = apply(problem.nominal, estimate.arm);
   assess(problem, options, fit, estimate, result);
 }
 
@@ -338,17 +353,15 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
       refuse(result, std::move(*refusal));
       return result;
     }
-    const auto weak = std::ranges::count_if(result.identifiable.candidates, [](const auto& candidate) {
-      return candidate.status == ParameterStatus::kWeak;
-    });
-    if (!problem.columns && shown + static_cast<int>(weak) < result.attainable.count) {
+    if (!problem.columns && shown < result.attainable.count &&
+        shown_at_all(problem, options, sorted.fitted) < result.attainable.count) {
       result.status = IdentificationStatus::kUnobservable;
       result.message = result.rank_explanation;
       return result;
     }
     name_weak(result);
   } else if (sorted.fitted.empty()) {
-    result.message = "there is no touch to identify from";
+    result.message = "0 touches: there is nothing to identify from";
     return result;
   }
 

@@ -104,9 +104,9 @@ struct IdentificationResult {
   std::vector<double>
       singular_values;  // of W (all columns) at the nominal model, descending, the non-zero ones
   std::vector<Iteration> iterations;     // [0] is at the nominal model
-  ArmVector errors = ArmVector::Zero();  // of what was estimated; 0 elsewhere
+  ArmVector errors = ArmVector::Zero();  // of what was estimated; 0 elsewhere and unless converged
   KinematicModel calibrated;             // nominal with `errors`
-  Eigen::VectorXd artefact_errors;       // one an artefact parameter, SI
+  Eigen::VectorXd artefact_errors;       // one an artefact parameter, SI; empty unless converged
   std::vector<RejectedTouch> rejected;
   std::vector<FaceDistances> distances;  // a role and face that has touches
   std::optional<double>

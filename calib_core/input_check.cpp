@@ -20,6 +20,10 @@ constexpr double kSamePostureRadians = 1e-4;
 /// known at all.
 constexpr double kBeyondAllMeasure = 1.0;
 
+std::string compliance_name(std::size_t index) {
+  return "the compliance of joint " + std::to_string(kCompliantJoints.at(index) + 1);
+}
+
 std::string unknown_name(const IdentificationProblem& problem, const LeastSquares& fit,
                          Eigen::Index unknown) {
   if (unknown >= fit.arm_count()) {
@@ -27,8 +31,7 @@ std::string unknown_name(const IdentificationProblem& problem, const LeastSquare
   }
   const int column = fit.arm_columns()[static_cast<std::size_t>(unknown)];
   if (column < kErrorParameterCount) return error_parameters()[static_cast<std::size_t>(column)].name();
-  const auto compliance = static_cast<std::size_t>(column - kErrorParameterCount);
-  return "the compliance of joint " + std::to_string(kCompliantJoints.at(compliance) + 1);
+  return compliance_name(static_cast<std::size_t>(column - kErrorParameterCount));
 }
 
 std::string plane_name(std::size_t face) { return "plane " + std::to_string(face + 1); }
@@ -65,6 +68,17 @@ std::optional<Refusal> bad_touch(const IdentificationProblem& problem, Formulati
   return std::nullopt;
 }
 
+std::optional<Refusal> bad_arm(const IdentificationProblem& problem) {
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    if (!std::isfinite(parameter_value(problem.nominal, i))) {
+      return bad(error_parameters()[static_cast<std::size_t>(i)].name() +
+                 " of the nominal arm is not a finite number");
+    }
+  }
+  if (!problem.start.allFinite()) return bad("the errors to start from are not finite numbers");
+  return std::nullopt;
+}
+
 std::optional<Refusal> bad_planes(const std::vector<Plane>& planes) {
   for (std::size_t a = 0; a < planes.size(); ++a) {
     if (!planes[a].outward.allFinite() || !std::isfinite(planes[a].offset_m)) {
@@ -97,8 +111,18 @@ std::optional<Refusal> bad_prior(const IdentificationProblem& problem) {
   for (std::size_t i = 0; i < problem.tolerances.size(); ++i) {
     if (unfit(problem.tolerances[i])) return singular(error_parameters()[i].name(), *problem.tolerances[i]);
   }
+  for (std::size_t i = 0; i < problem.std_compliance_rad_per_nm.size(); ++i) {
+    const auto& std = problem.std_compliance_rad_per_nm[i];
+    if (unfit(std)) return singular(compliance_name(i), *std);
+  }
   for (const auto& parameter : problem.artefact.parameters) {
     if (unfit(parameter.std)) return singular(parameter.name, *parameter.std);
+  }
+  for (std::size_t i = 0; i < problem.artefact.equations.size(); ++i) {
+    const ArtefactEquation& equation = problem.artefact.equations[i];
+    const std::string name = "length " + std::to_string(i + 1);
+    if (unfit(equation.std_m)) return singular(name, equation.std_m);
+    if (!std::isfinite(equation.value_m)) return bad(name + " is not a finite number");
   }
   return std::nullopt;
 }
@@ -141,6 +165,7 @@ bool all_one_posture(const IdentificationProblem& problem, const std::vector<std
 
 std::optional<Refusal> find_bad_input(const IdentificationProblem& problem,
                                       const IdentificationOptions& options) {
+  if (auto refusal = bad_arm(problem)) return refusal;
   if (auto refusal = bad_planes(problem.artefact.contact_planes)) return refusal;
   if (auto refusal = bad_touch(problem, options.formulation)) return refusal;
   if (!std::isfinite(problem.touch_noise_m) || problem.touch_noise_m < 0.0) {
