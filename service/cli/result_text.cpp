@@ -82,13 +82,13 @@ std::string fit_text(const json& fit) {
 std::string artefact_text(const json& parameters) {
   if (parameters.empty()) return {};
   std::string lines = fmt::format("\n{:<16}{:>12}{:>12}  {:<6}{}\n", "block and probe", "value", "+- (std)",
-                                  "unit", "known from");
+                                  "unit", "status");
   for (const json& parameter : parameters) {
     const char* format = parameter.at("unit") == "rad" ? "{:.6f}" : "{:.4f}";
-    lines += fmt::format("{:<16}{:>12}{:>12}  {:<6}{}\n", text(parameter.at("name")),
-                         figure(parameter.at("value"), format),
-                         figure(parameter.at("std_uncertainty"), format), text(parameter.at("unit")),
-                         parameter.at("status") == "identified" ? "the touches" : "what was written down");
+    lines +=
+        fmt::format("{:<16}{:>12}{:>12}  {:<6}{}\n", text(parameter.at("name")),
+                    figure(parameter.at("value"), format), figure(parameter.at("std_uncertainty"), format),
+                    text(parameter.at("unit")), text(parameter.at("status")));
   }
   return lines;
 }
@@ -183,10 +183,12 @@ std::string status_text(const json& status) {
       figure(status.at("data_age_ms"), "{:.0f}", "?"));
   if (status.at("run_id").is_string()) {
     lines += fmt::format(
-        "run         {} ({}), {} of {} touches, {} identifiable, condition number {}, verdict {}\n",
+        "run         {} ({}), {} of {} touches, {} identifiable, condition number {}, tip +- {} mm, verdict "
+        "{}\n",
         text(status.at("run_id")), text(status.at("recipe")), status.at("touches_done").get<int>(),
         figure(status.at("touches_total"), "{:.0f}"), figure(status.at("identifiable_count"), "{:.0f}"),
-        figure(status.at("condition_number"), "{:.0f}"), text(status.at("verdict")));
+        figure(status.at("condition_number"), "{:.0f}"), figure(status.at("predicted_tip_rms_mm"), "{:.3f}"),
+        text(status.at("verdict")));
   }
   if (status.at("fault_code").is_string()) {
     lines += fmt::format("fault       {}: {}\n  robot     {}\n  next      {}\n",

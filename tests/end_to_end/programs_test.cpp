@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "calib_core/units.hpp"
+#include "config/arm_file.hpp"
 #include "service/exit_code.hpp"
 #include "service/store/touch_store.hpp"
 #include "tests/end_to_end/folder.hpp"
@@ -56,6 +58,9 @@ TEST_F(Programs, EndWithTwoWhenTheyAreUsedWrongly) {
       {"touchcal", "levitate"},
       {"touchcal", "identify"},
       {"touchcal", "identify", "--cell", cell, "--touches"},
+      {"touchcal", "validate", "--cell", cell},
+      {"touchcal", "export", "1"},
+      {"touchcal", "export", "one", "--arm", "-"},
       {"touchcal", "status", "--daemon", "gopher://127.0.0.1"},
       {"cs8sim"},
       {"cs8sim", "--cell", cell, "--speed", "-1"},
@@ -162,6 +167,19 @@ TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   EXPECT_EQ(cell.status().at("state"), "COMPLETE");
   const Finished shown = cell.run({"show", "1", "--json"});
   EXPECT_EQ(nlohmann::json::parse(shown.out), result);
+
+  const std::string arm_file = (cell.folder() / "arm.json").string();
+  const Finished exported = cell.run({"export", "1", "--arm", arm_file});
+  EXPECT_EQ(exported.exit_code, cell::kExitDone) << exported.err;
+  EXPECT_EQ(exported.err, "");
+  EXPECT_EQ(cell.run({"export", "1", "--arm", arm_file}).exit_code, cell::kExitUsage) << "it is there";
+  const cell::Arm arm = cell::read_arm(arm_file);
+  const auto& r0 = result.at("parameters").at(1);
+  EXPECT_NEAR(calib::mm_from_metres(arm.model.links[0].r_m),
+              r0.at("nominal").get<double>() + r0.at("error").get<double>(), 1e-9);
+  const Finished printed = cell.run({"export", "1", "--arm", "-"});
+  EXPECT_EQ(nlohmann::json::parse(printed.out).at("schema"), "touchcal/arm/1");
+  EXPECT_EQ(cell.run({"export", "2", "--arm", "-"}).exit_code, cell::kExitUsage) << "no such run";
 
   cell.daemon().signal(SIGTERM);
   EXPECT_EQ(cell.daemon().wait().exit_code, 0);

@@ -1,0 +1,153 @@
+// touchcal validate, and what touchcal identify writes besides its result: an arm file and a map.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "calib_core/validate.hpp"
+#include "config/arm_file.hpp"
+#include "service/exit_code.hpp"
+#include "tests/end_to_end/folder.hpp"
+#include "tests/end_to_end/process.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+const std::string kTouches = std::string(TOUCHCAL_SOURCE_DIR) + "/tests/data/table3-exact.touches.json";
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+class OfflineCommands : public ::testing::Test {
+ protected:
+  Finished call(std::vector<std::string> arguments, const std::vector<std::string>& more = {}) {
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Process(arguments, folder_ / "call.err").wait();
+  }
+  Finished identify(const std::vector<std::string>& more) {
+    return call({"touchcal", "identify", "--cell", cell_, "--touches", kTouches}, more);
+  }
+  Finished validate(const std::vector<std::string>& more = {}) {
+    return call({"touchcal", "validate", "--cell", cell_, "--touches", kTouches}, more);
+  }
+  std::string file(const std::string& name) { return (folder_ / name).string(); }
+
+  Folder folder_;
+  std::string cell_ = cell_file("edf");
+};
+
+void expect_one_line(const Finished& finished, int exit_code, const std::string& part) {
+  EXPECT_EQ(finished.exit_code, exit_code) << finished.err;
+  EXPECT_EQ(finished.out, "");
+  EXPECT_EQ(std::ranges::count(finished.err, '\n'), 1) << finished.err;
+  EXPECT_THAT(finished.err, HasSubstr(part));
+}
+
+TEST_F(OfflineCommands, ValidatePassesThePapersTouchesAndSaysWhyThereIsNoOtherSet) {
+  const Finished finished = validate({"--json"});
+  EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+  const json document = json::parse(finished.out);
+  EXPECT_EQ(document.at("schema"), "touchcal/validation/1");
+  EXPECT_EQ(document.at("identifiable_count"), kRank);
+  const json& same = document.at("same_touches");
+  EXPECT_EQ(same.at("passed"), true);
+  EXPECT_LT(same.at("new_error_max_si").get<double>(), calib::kSameTouchesErrorMax);
+  for (const json& parameter : same.at("parameters"))
+    EXPECT_EQ(parameter.at("new_error").is_number(), parameter.at("status") == "identified") << parameter;
+  EXPECT_EQ(document.at("planes").size(), static_cast<std::size_t>(kPlaneCount));
+  const json& other = document.at("other_touches");
+  EXPECT_EQ(other.at("done"), false);
+  EXPECT_THAT(other.at("why_not").get<std::string>(), HasSubstr("there are 0"));
+  EXPECT_EQ(document.at("planes_held_out"), json::array());
+}
+
+TEST_F(OfflineCommands, ValidateTakesAnotherSetFromAFile) {
+  json half = json::parse(read(kTouches));
+  const json all = half.at("touches");  // plane after plane
+  half["touches"] = json::array();
+  for (std::size_t i = 0; i < all.size(); i += 2) half["touches"].push_back(all[i]);
+  const auto count = static_cast<int>(half["touches"].size());
+  std::ofstream(file("half.json")) << half;
+  const Finished finished = validate({"--other", file("half.json"), "--json"});
+  EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+  const json document = json::parse(finished.out);
+  EXPECT_EQ(document.at("other_touches").at("done"), true) << document.at("other_touches").at("why_not");
+  int held_out = 0;
+  for (const json& plane : document.at("planes_held_out")) held_out += plane.at("touch_count").get<int>();
+  EXPECT_EQ(held_out, count);
+
+  const Finished text = validate({"--other", file("half.json")});
+  for (const char* part : {"B.1", "B.2", "B.3", "B.4", "validation: passed"})
+    EXPECT_THAT(text.out, HasSubstr(part));
+}
+
+TEST_F(OfflineCommands, ValidateTellsBadInputAsIdentifyDoes) {
+  expect_one_line(validate({"--other", file("none.json")}), cell::kExitBadInput, "none.json");
+  expect_one_line(validate({"--recipe", "edf-99"}), cell::kExitBadInput, "edf-99");
+  json few = json::parse(read(kTouches));
+  json& touches = few.at("touches");
+  touches.erase(touches.begin() + 5, touches.end());
+  std::ofstream(file("few.json")) << few;
+  expect_one_line(call({"touchcal", "validate", "--cell", cell_, "--touches", file("few.json")}),
+                  cell::kExitRefused, "few.json");
+  EXPECT_EQ(call({"touchcal", "validate", "--cell", cell_}).exit_code, cell::kExitUsage);
+}
+
+TEST_F(OfflineCommands, AnExportedArmReadsBackWithItsErrorsAndIsNotOverwritten) {
+  const Finished finished = identify({"--export", file("arm.json"), "--json"});
+  EXPECT_EQ(finished.exit_code, cell::kExitLimitsMissed);
+  EXPECT_THAT(finished.err, HasSubstr("not accepted"));
+  const cell::Arm arm = cell::read_arm(folder_ / "arm.json");
+  const json parameters = json::parse(finished.out).at("parameters");
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const double scale = parameters[i].at("unit") == "mm" ? 1e3 : 1.0;
+    const json& error = parameters[i].at("error");
+    const double expected =
+        parameters[i].at("nominal").get<double>() + (error.is_number() ? error.get<double>() : 0.0);
+    EXPECT_NEAR(scale * calib::parameter_value(arm.model, static_cast<int>(i)), expected, 1e-9)
+        << parameters[i];
+  }
+  const std::string first = read(folder_ / "arm.json");
+  const Finished again = identify({"--export", file("arm.json"), "--recipe", "edf-23", "--json"});
+  expect_one_line(again, cell::kExitUsage, "--force");
+  EXPECT_EQ(read(folder_ / "arm.json"), first);
+  identify({"--export", file("arm.json"), "--recipe", "edf-23", "--json", "--force"});
+  EXPECT_NE(read(folder_ / "arm.json"), first);
+  expect_one_line(identify({"--export", file("no/folder/arm.json")}), cell::kExitFailed, "no/folder");
+}
+
+TEST_F(OfflineCommands, AnArmWhoseFramesTheCellGivesItselfIsExportedWithAWarning) {
+  std::filesystem::copy(std::string(TOUCHCAL_SOURCE_DIR) + "/config", folder_ / "config",
+                        std::filesystem::copy_options::recursive);
+  cell_ = file("config/cells/edf/cell.json");
+  json cell = json::parse(read(cell_));
+  cell["frames"] = {{{"j", 0}, {"theta_deg", 0}, {"r_mm", 149.6}}};
+  std::ofstream(cell_) << cell;
+  const Finished finished = identify({"--export", file("arm.json"), "--json"});
+  EXPECT_THAT(finished.err, HasSubstr("frame 0"));
+  EXPECT_EQ(json::parse(finished.out).at("cell_frames"), json::array({0}));
+}
+
+TEST_F(OfflineCommands, TheMapHasALineForEachCell) {
+  const Finished finished = identify({"--map", file("map.csv"), "--json"});
+  const json map = json::parse(finished.out).at("tip_uncertainty").at("map");
+  std::istringstream lines(read(folder_ / "map.csv"));
+  std::string line;
+  ASSERT_TRUE(std::getline(lines, line));
+  EXPECT_EQ(line, "x_mm,y_mm,z_mm,predicted_rms_mm");
+  std::size_t count = 0;
+  for (; std::getline(lines, line); ++count) EXPECT_EQ(std::ranges::count(line, ','), 3) << line;
+  EXPECT_EQ(count, map.at("values_mm").size());
+}
+
+}  // namespace
+}  // namespace touchcal::testing
