@@ -69,7 +69,33 @@ void read_faces(const JsonValue& value, Block& block) {
   }
 }
 
-calib::KnownLength length_from_json(const JsonValue& value, const std::vector<calib::Face>& faces) {
+/// Faces written down with an uncertainty lie as far apart as a length says, within this many standard
+/// deviations.
+constexpr double kLengthDeviationsMax = 5.0;
+
+/// An estimated face may lie anywhere; two known ones must agree with the certificate.
+void demand_agreement(const JsonValue& value, const calib::KnownLength& length, const Block& block) {
+  double drawn_m = 0.0, variance = length.std_m * length.std_m;
+  const Eigen::Vector3d outward = block.faces[static_cast<std::size_t>(length.faces[0])].plane.outward;
+  for (const int index : length.faces) {
+    const auto face = static_cast<std::size_t>(index);
+    const calib::FaceUncertainty& known = block.face_uncertainties[face];
+    if (known.estimated) return;
+    const calib::Plane& plane = block.faces[face].plane;
+    const double along_m = plane.offset_m * plane.outward.dot(outward);
+    drawn_m = face == static_cast<std::size_t>(length.faces[0]) ? along_m : drawn_m - along_m;
+    variance += known.std_offset_m * known.std_offset_m;
+  }
+  const auto rounded_mm = [](double m) { return plain_number(std::round(m * 1e9) / 1e6); };
+  const double off_m = std::abs(length.value_m - std::abs(drawn_m));
+  if (off_m <= kLengthDeviationsMax * std::sqrt(variance) + kFaceCenterErrorMaxMetres) return;
+  value.fail("is " + rounded_mm(off_m) + " mm from what the two faces' offsets give, " +
+             rounded_mm(std::abs(drawn_m)) +
+             " mm; correct the value, the offsets or their standard deviations");
+}
+
+calib::KnownLength length_from_json(const JsonValue& value, const Block& block) {
+  const auto& faces = block.faces;
   const JsonObject object = value.object({"planes", "value_mm", "std_mm"});
   calib::KnownLength length;
   const JsonValue planes = object.at("planes");
@@ -85,6 +111,7 @@ calib::KnownLength length_from_json(const JsonValue& value, const std::vector<ca
   }
   length.value_m = object.metres("value", kPositive);
   length.std_m = object.metres("std", kNotNegative);
+  demand_agreement(object.at("value_mm"), length, block);
   return length;
 }
 
@@ -122,7 +149,7 @@ Block read_block(const std::filesystem::path& file) {
   read_faces(object.at("faces"), block);
   if (const auto lengths = object.find("lengths")) {
     for (const JsonValue& item : lengths->items(0, kFaceCountMax)) {
-      block.lengths.push_back(length_from_json(item, block.faces));
+      block.lengths.push_back(length_from_json(item, block));
     }
   }
   block.solids = boxes_from_json(object.at("solids"));

@@ -132,6 +132,8 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kBlock, "/lengths/0/planes", json({3, 3}), "/lengths/0/planes", "twice"},
         Spoiled{kBlock, "/lengths/0/planes", json({2, 3}), "/lengths/0/planes", "not parallel"},
         Spoiled{kBlock, "/lengths/0/value_mm", 0, "/lengths/0/value_mm", "over 0"},
+        Spoiled{kBlock, "/lengths/0/value_mm", 150.05, "/lengths/0/value_mm", "0.05 mm from what"},
+        Spoiled{kBlock, "/lengths/1/value_mm", 149.95, "/lengths/1/value_mm", "offsets give, 150 mm"},
         Spoiled{kBlock, "/temperature_c", std::nullopt, "/std_temperature_k", "without \"temperature_c\""},
         Spoiled{kBlock, "/std_temperature_k", std::nullopt, "", "\"std_temperature_k\" is missing"},
         Spoiled{kBlock, "/solids/0/max_mm", json({75, -200, 75}), "/solids/0", "not below max_mm"},
