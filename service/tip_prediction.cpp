@@ -1,7 +1,6 @@
 #include "service/tip_prediction.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace cell {
 namespace {
@@ -38,8 +37,9 @@ calib::UncertaintyMap predicted_map(const calib::TipMap& map, const calib::Certa
 
 std::optional<double> predicted_rms_m(const calib::TipRegion& region, const calib::Certainty& certainty) {
   for (const auto& direction : certainty.unknown_directions.colwise()) {
-    if (!(std::sqrt(direction.dot(region.mean_square * direction)) <= kUnknownMattersMetres))
-      return std::nullopt;
+    // Squares: those of no motion at all may come out a little under 0.
+    const double square = direction.dot(region.mean_square * direction);
+    if (!(square <= kUnknownMattersMetres * kUnknownMattersMetres)) return std::nullopt;
   }
   return region.rms_m(certainty.covariance());
 }
