@@ -88,8 +88,8 @@ TEST(Gravity, IsNoticedByARigidModelAndTakenUpByACompliantOne) {
   }
 }
 
-// The planner keeps to postures of a few kinds, in which four kinematic errors do what the droop does: most
-// often nothing is there to notice.
+// The planner keeps to postures of a few kinds, in which kinematic errors do what the droop does: most often
+// there is nothing to notice.
 TEST(Gravity, IsTakenUpByACompliantModelWhereItHidesInPlannedTouches) {
   const cell::Cell cell = shipped_cell("demo");
   const std::vector<Touch> planned = planned_touches(cell, cell.recipes.at("edf-25"));
