@@ -1,5 +1,7 @@
 #include "service/http/json_view.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "service/http/json_figures.hpp"
 
 namespace cell {

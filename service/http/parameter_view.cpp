@@ -1,7 +1,11 @@
 #include "service/http/parameter_view.hpp"
 
+#include <array>
+#include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
+#include "calib_core/units.hpp"
 #include "service/http/json_figures.hpp"
 #include "service/verdict.hpp"
 

@@ -1,7 +1,10 @@
 #include "service/http/result_view.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "calib_core/units.hpp"
 #include "service/http/json_figures.hpp"
 #include "service/http/parameter_view.hpp"
 #include "service/verdict.hpp"

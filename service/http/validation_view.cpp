@@ -1,5 +1,7 @@
 #include "service/http/validation_view.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "service/http/json_figures.hpp"
 #include "service/http/parameter_view.hpp"
 #include "service/http/result_view.hpp"
