@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace cell {
@@ -161,11 +162,14 @@ std::string result_text(const json& result) {
   lines += planes_text(result.at("planes"), "distances of the fitted touches from the block's origin");
   lines += planes_text(result.at("planes_held_out"), "distances of the held-out touches");
   lines += planes_text(result.at("planes_proof"), "distances of the proof touches");
-  for (const json& warning : result.at("warnings")) lines += fmt::format("\nwarning: {}\n", text(warning));
   const json& verdict = result.at("verdict");
+  const json& reasons = verdict.at("reasons");
+  for (const json& warning : result.at("warnings")) {
+    if (std::ranges::find(reasons, warning) == reasons.end())
+      lines += fmt::format("\nwarning: {}\n", text(warning));
+  }
   lines += verdict.at("accepted").get<bool>() ? "\nverdict: accepted\n" : "\nverdict: rejected\n";
-  for (const json& reason : verdict.at("reasons"))
-    lines += fmt::format("  - {}\n", reason.get<std::string>());
+  for (const json& reason : reasons) lines += fmt::format("  - {}\n", reason.get<std::string>());
   return lines;
 }
 
