@@ -136,10 +136,9 @@ std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vecto
 
 }  // namespace
 
-Linearisation linearise_whole(const IdentificationProblem& problem, const IdentificationOptions& options,
-                              LeastSquares& fit, const Estimate& estimate) {
-  LeastSquares everything(problem, options, all_arm_columns(), fit.touches());
-  everything.keep(fit.kept());
+Linearisation linearise_whole(const IdentificationOptions& options, LeastSquares& fit,
+                              const Estimate& estimate) {
+  LeastSquares everything(fit, options, all_arm_columns());
   everything.linearise(estimate);
   Linearisation whole{everything.touch_information(), everything.touch_gradient(), {}, {}};
   for (const int column : fit.arm_columns()) whole.estimated.push_back(column);
@@ -163,7 +162,7 @@ std::optional<LackOfFit> lack_of_fit(const IdentificationProblem& problem, Least
   result.chi_square = fit.chi_square(estimate);
   result.degrees_of_freedom = degrees;
   result.p = survival(result.chi_square, degrees);
-  const Eigen::VectorXd leverages = fit.leverages();
+  const Eigen::VectorXd& leverages = fit.leverages();
   const std::size_t faces = problem.artefact.contact_planes.size();
   std::vector<double> sum(faces, 0.0), freedom(faces, 0.0);
   for (Eigen::Index row = 0; row < leverages.size(); ++row) {

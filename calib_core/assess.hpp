@@ -14,8 +14,8 @@ struct Linearisation {
 };
 
 /// `fit` must have been solved at `estimate`.
-Linearisation linearise_whole(const IdentificationProblem& problem, const IdentificationOptions& options,
-                              LeastSquares& fit, const Estimate& estimate);
+Linearisation linearise_whole(const IdentificationOptions& options, LeastSquares& fit,
+                              const Estimate& estimate);
 
 /// Nothing without a declared noise or without a degree of freedom.
 std::optional<LackOfFit> lack_of_fit(const IdentificationProblem& problem, LeastSquares& fit,

@@ -9,8 +9,8 @@ namespace calib {
 
 /// A parameter is held when the declared noise alone would give it a larger standard deviation than this,
 /// found along with those before it, those after it known: a guess, not a result.
-inline constexpr double kWeakLengthMetres = 3e-3;
-inline constexpr double kWeakAngleRadians = 5e-3;
+inline constexpr double kWeakLengthMetres = 1e-3;
+inline constexpr double kWeakAngleRadians = 3e-3;
 
 /// What touches well spread over all faces, reachable or not, would show.
 IdentifiableSet attainable_set(const KinematicModel& nominal, const Artefact& artefact,

@@ -47,18 +47,37 @@ LeastSquares::LeastSquares(const IdentificationProblem& problem, const Identific
       unit_columns_(options.weights == ColumnScaling::kUnitNorm),
       precision_(prior_precision(problem, arm_columns_, options.prior)) {
   if (problem.touch_noise_m > 0.0) noise_unit_m_ = problem.touch_noise_m;
-  const auto rows = static_cast<Eigen::Index>(touches_.size());
-  const Eigen::Index unknowns = precision_.size();
-  planes_ = problem.artefact.contact_planes;
-  rows_.resize(rows, unknowns);
-  residuals_m_.resize(rows);
-  weighted_residuals_.resize(rows);
-  step_.setZero(unknowns);
   for (const std::size_t touch : touches_) {
     joints_.push_back(prepare(problem.nominal.gains, problem.touches[touch].joints));
   }
   set_weights(options.formulation);
   keep(std::vector<bool>(touches_.size(), true));
+  size_memory();
+}
+
+LeastSquares::LeastSquares(const LeastSquares& other, const IdentificationOptions& options,
+                           std::vector<int> arm_columns)
+    : problem_(other.problem_),
+      arm_columns_(std::move(arm_columns)),
+      touches_(other.touches_),
+      kept_(other.kept_),
+      kept_count_(other.kept_count_),
+      unit_columns_(other.unit_columns_),
+      weights_differ_(other.weights_differ_),
+      noise_unit_m_(other.noise_unit_m_),
+      weights_(other.weights_),
+      precision_(prior_precision(problem_, arm_columns_, options.prior)),
+      joints_(other.joints_) {
+  size_memory();
+}
+
+void LeastSquares::size_memory() {
+  const auto rows = static_cast<Eigen::Index>(touches_.size());
+  planes_ = problem_.artefact.contact_planes;
+  rows_.resize(rows, precision_.size());
+  residuals_m_.resize(rows);
+  weighted_residuals_.resize(rows);
+  step_.setZero(precision_.size());
 }
 
 void LeastSquares::set_weights(Formulation formulation) {
@@ -156,6 +175,7 @@ void LeastSquares::linearise(const Estimate& estimate) {
 }
 
 bool LeastSquares::solve() {
+  leverages_.resize(0);
   column_scale_ = information_.diagonal();
   if (!column_scale_.allFinite() || (column_scale_.array() <= 0.0).any()) return false;
   if (unit_columns_) {
@@ -217,10 +237,12 @@ int LeastSquares::degrees_of_freedom() const {
          static_cast<int>(precision_.size());
 }
 
-Eigen::VectorXd LeastSquares::leverages() {
+const Eigen::VectorXd& LeastSquares::leverages() {
+  if (leverages_.size() == rows_.rows()) return leverages_;
   Eigen::MatrixXd half = column_scale_.asDiagonal() * rows_.transpose();
   cholesky_.matrixL().solveInPlace(half);
-  return half.colwise().squaredNorm();
+  leverages_ = half.colwise().squaredNorm();
+  return leverages_;
 }
 
 double LeastSquares::extreme_ratio(const Eigen::MatrixXd& gram) {

@@ -28,6 +28,9 @@ class LeastSquares {
   LeastSquares(const IdentificationProblem& problem, const IdentificationOptions& options,
                std::vector<int> arm_columns, std::vector<std::size_t> touches);
 
+  /// The same touches, kept or not, with other columns of the arm.
+  LeastSquares(const LeastSquares& other, const IdentificationOptions& options, std::vector<int> arm_columns);
+
   /// Touches that are not kept have rows and residuals, but no say.
   void keep(const std::vector<bool>& kept);
 
@@ -66,7 +69,7 @@ class LeastSquares {
   /// Terms of that sum less unknowns.
   [[nodiscard]] int degrees_of_freedom() const;
   /// After solve(): how much of each touch's own variance the fit takes up, for weights of unit noise.
-  [[nodiscard]] Eigen::VectorXd leverages();
+  const Eigen::VectorXd& leverages();
 
   /// sigma_max / sigma_min (eq. 16) of the touches' rows in these columns of the arm, and after columns of
   /// unit norm. `positions` index arm_columns().
@@ -77,6 +80,7 @@ class LeastSquares {
   Conditions conditions(const std::vector<Eigen::Index>& positions);
 
  private:
+  void size_memory();
   void set_weights(Formulation formulation);
   void set_planes(const Estimate& estimate);
   void fill_row(Eigen::Index row, const PreparedModel& model);
@@ -98,7 +102,7 @@ class LeastSquares {
   Eigen::MatrixXd rows_, kept_rows_;
   Eigen::VectorXd residuals_m_, weighted_residuals_;
   Eigen::MatrixXd touch_information_, information_, scaled_;
-  Eigen::VectorXd touch_gradient_, gradient_, column_scale_, step_;
+  Eigen::VectorXd touch_gradient_, gradient_, column_scale_, step_, leverages_;
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
   Eigen::MatrixXd gram_, unit_gram_;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;

@@ -144,7 +144,7 @@ std::optional<TrimmedFit> least_trimmed_squares(const Eigen::MatrixXd& rows, con
 }
 
 Eigen::VectorXd studentized(LeastSquares& fit) {
-  const Eigen::VectorXd leverages = fit.leverages();
+  const Eigen::VectorXd& leverages = fit.leverages();
   Eigen::VectorXd result(leverages.size());
   for (Eigen::Index row = 0; row < result.size(); ++row) {
     const bool kept = fit.kept()[static_cast<std::size_t>(row)];

@@ -16,7 +16,7 @@ namespace calib {
 namespace {
 
 /// How many possible touches a face is given to choose from, and how many poses are tried for them.
-constexpr int kCandidatesPerTouch = 32;
+constexpr int kCandidatesPerTouch = 64;
 constexpr int kCandidatesMin = 240;
 constexpr int kPosesPerCandidate = 20;
 

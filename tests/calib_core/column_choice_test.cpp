@@ -90,8 +90,8 @@ TEST_P(Tilts, OfWhatTheyHardlyShowNothingIsPrinted) {
   const std::vector<int> weak = weak_ones(result);
   // Several parameters may share a weak direction, and all of them are held.
   EXPECT_GE(weak.size() + result.identifiable.columns.size(), 25u);
-  EXPECT_EQ(result.identifiable.columns.size() < 25u, tilt_deg <= 3.0);
-  EXPECT_EQ(weak.empty(), tilt_deg > 3.0);
+  EXPECT_EQ(result.identifiable.columns.size() < 25u, tilt_deg <= 10.0);
+  EXPECT_EQ(weak.empty(), tilt_deg > 10.0);
   std::string names;
   for (const int column : weak) {
     const std::string name = error_parameters()[static_cast<std::size_t>(column)].name();
@@ -106,11 +106,11 @@ TEST_P(Tilts, OfWhatTheyHardlyShowNothingIsPrinted) {
   if (tilt_deg <= 3.0) {
     EXPECT_THAT(result.rank_explanation, HasSubstr("degrees everywhere"));
   }
-  // What is printed is no guess.
+  // What is printed is no guess, whatever makes it uncertain.
   for (const int column : result.identifiable.columns) {
     const bool is_length = error_parameters()[static_cast<std::size_t>(column)].is_length();
-    const double of_noise = std::sqrt(result.certainty->sources.front().covariance(column, column));
-    EXPECT_LT(of_noise, 3.0 * (is_length ? kWeakLengthMetres : kWeakAngleRadians)) << column;
+    const double std = std::sqrt(result.certainty->identified(column, column));
+    EXPECT_LE(std, is_length ? kWeakLengthMetres : kWeakAngleRadians) << column;
   }
 }
 
