@@ -94,8 +94,8 @@ void add_priors(const IdentificationProblem& problem, const IdentificationOption
 }
 
 /// Errors that were not estimated: each is there within its tolerance, and moves what was estimated.
-void add_unseen(const IdentificationProblem& problem, const LeastSquares& fit, const Linearisation& whole,
-                Budget& budget, Certainty& result) {
+void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
+                const LeastSquares& fit, const Linearisation& whole, Budget& budget, Certainty& result) {
   std::vector<ArmVector> unknown;
   for (int column = 0; column < kErrorParameterCount; ++column) {
     if (std::ranges::find(fit.arm_columns(), column) != fit.arm_columns().end()) continue;
@@ -105,8 +105,11 @@ void add_unseen(const IdentificationProblem& problem, const LeastSquares& fit, c
     for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
       direction[fit.arm_columns()[i]] -= moved[static_cast<Eigen::Index>(i)];
     }
+    const ParameterStatus status = identifiable.candidates[static_cast<std::size_t>(column)].status;
+    const bool held = status == ParameterStatus::kWeak || status == ParameterStatus::kExcluded;
     if (const auto& tolerance = problem.tolerances[static_cast<std::size_t>(column)]) {
-      result.unseen.noalias() += *tolerance * *tolerance * direction * direction.transpose();
+      (held ? result.held : result.unseen).noalias() +=
+          *tolerance * *tolerance * direction * direction.transpose();
     } else {
       result.unseen_without_tolerance.push_back(column);
       unknown.push_back(direction);
@@ -116,6 +119,7 @@ void add_unseen(const IdentificationProblem& problem, const LeastSquares& fit, c
   for (std::size_t i = 0; i < unknown.size(); ++i) {
     result.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown[i];
   }
+  if (!result.held.isZero(0.0)) budget.source("held").covariance = result.held;
   budget.source("unseen").covariance = result.unseen;
 }
 
@@ -186,8 +190,8 @@ std::optional<double> estimated_noise_m(const LeastSquares& fit, const Estimate&
 }
 
 Certainty certainty(const IdentificationProblem& problem, const IdentificationOptions& options,
-                    const LeastSquares& fit, const Linearisation& whole, const Estimate& estimate,
-                    const std::optional<LackOfFit>& misfit) {
+                    const IdentifiableSet& identifiable, const LeastSquares& fit, const Linearisation& whole,
+                    const Estimate& estimate, const std::optional<LackOfFit>& misfit) {
   Certainty result;
   const auto estimated = estimated_noise_m(fit, estimate);
   const bool believed = problem.touch_noise_m > 0.0 &&
@@ -203,10 +207,11 @@ Certainty certainty(const IdentificationProblem& problem, const IdentificationOp
   Budget budget(fit, covariance);
   budget.add("touch_noise", of_noise);
   add_priors(problem, options, fit, budget);
-  add_unseen(problem, fit, whole, budget, result);
+  add_unseen(problem, identifiable, fit, whole, budget, result);
   result.sources = budget.take();
   for (const UncertaintySource& source : result.sources) {
-    if (source.name != "unseen") result.identified += source.covariance;
+    const bool of_fit = source.name != "unseen" && source.name != "held";
+    if (of_fit) result.identified += source.covariance;
   }
   result.artefact_std = (covariance.diagonal().tail(estimate.artefact.size())).cwiseSqrt();
   result.correlations = strongest(result.identified, fit.arm_columns());

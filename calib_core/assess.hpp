@@ -27,7 +27,7 @@ std::optional<double> estimated_noise_m(const LeastSquares& fit, const Estimate&
 /// Covariances by propagation: of touches, of everything that is known with an uncertainty only, and of what
 /// the touches do not see, each through the gain of the fit that was made.
 Certainty certainty(const IdentificationProblem& problem, const IdentificationOptions& options,
-                    const LeastSquares& fit, const Linearisation& whole, const Estimate& estimate,
-                    const std::optional<LackOfFit>& misfit);
+                    const IdentifiableSet& identifiable, const LeastSquares& fit, const Linearisation& whole,
+                    const Estimate& estimate, const std::optional<LackOfFit>& misfit);
 
 }  // namespace calib

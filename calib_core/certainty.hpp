@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -33,21 +34,27 @@ struct Correlation {
 
 /// How sure the identified errors are. Covariances are of true less identified errors, metres and radians. An
 /// identified error stands for a combination (itself and what is grouped into it): `identified` is of that
-/// combination. What is grouped, excluded or held is unknown within the maker's tolerances: `unseen`.
+/// combination. An error that was excluded or held is there all the same, within the maker's tolerances, and
+/// falsifies the others: `held`. What is grouped or without effect is unknown within them too: `unseen`.
 struct Certainty {
   double noise_m = 0.0;             // of a touch, as used: declared, or estimated when it is not believed
   double degrees_of_freedom = 0.0;  // of that noise; infinite when declared
   double coverage_factor = 0.0;     // 95 %, Student
   ArmMatrix identified = ArmMatrix::Zero();
+  ArmMatrix held = ArmMatrix::Zero();
   ArmMatrix unseen = ArmMatrix::Zero();
   std::vector<int> unseen_without_tolerance;  // unseen errors of which nobody says how large they may be
   Eigen::Matrix<double, kArmParameterCount, Eigen::Dynamic> unknown_directions;  // one a member of that list
-  std::vector<UncertaintySource> sources;                                        // they add up to both
+  std::vector<UncertaintySource> sources;                                        // they add up to all three
   Eigen::VectorXd artefact_std;
   std::vector<Correlation> correlations;  // the strongest, strongest first
 
   /// All of it: what a prediction at any pose and for any tool needs.
-  [[nodiscard]] ArmMatrix covariance() const { return identified + unseen; }
+  [[nodiscard]] ArmMatrix covariance() const { return identified + held + unseen; }
+  /// One standard deviation of an identified error (or compliance), by its index in ArmVector.
+  [[nodiscard]] double std_error(int index) const {
+    return std::sqrt(identified(index, index) + held(index, index));
+  }
 };
 
 }  // namespace calib

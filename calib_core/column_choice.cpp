@@ -77,14 +77,17 @@ std::vector<Touch> well_spread_touches(std::size_t face_count) {
 }
 
 /// |R_ii| under which the declared noise gives a parameter more than a weak one's standard deviation.
-WeakDiagonals weak_diagonals(const IdentificationProblem& problem, const Eigen::MatrixXd& rows,
+WeakDiagonals weak_diagonals(const IdentificationProblem& problem, const std::vector<std::size_t>& touches,
                              Formulation formulation) {
   WeakDiagonals weak{};
   double noise = problem.touch_noise_m;
-  if (formulation == Formulation::kPlaneCoefficients && rows.rows() > 0) {
-    double sum = 0.0;
-    for (const Plane& plane : problem.artefact.contact_planes) sum += 1.0 / std::abs(plane.offset_m);
-    noise *= sum / static_cast<double>(problem.artefact.contact_planes.size());
+  if (formulation == Formulation::kPlaneCoefficients && !touches.empty()) {
+    double squares = 0.0;
+    for (const std::size_t touch : touches) {
+      const auto face = static_cast<std::size_t>(problem.touches[touch].face);
+      squares += 1.0 / std::pow(problem.artefact.contact_planes[face].offset_m, 2);
+    }
+    noise *= std::sqrt(squares / static_cast<double>(touches.size()));
   }
   for (std::size_t i = 0; i < weak.size(); ++i) {
     weak[i] = noise / (error_parameters()[i].is_length() ? kWeakLengthMetres : kWeakAngleRadians);
@@ -130,7 +133,7 @@ IdentifiableSet choose_columns(const IdentificationProblem& problem, const Ident
   const ChoiceMatrix matrix =
       choice_matrix(problem.nominal, problem.artefact, pick(problem.touches, touches), options.formulation);
   WeakDiagonals weak{};
-  if (options.hold_weak) weak = weak_diagonals(problem, matrix.kinematic, options.formulation);
+  if (options.hold_weak) weak = weak_diagonals(problem, touches, options.formulation);
   return choose_identifiable(matrix.kinematic, options.identifiability, weak, matrix.leading);
 }
 

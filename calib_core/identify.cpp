@@ -77,8 +77,10 @@ void assess(const IdentificationProblem& problem, const IdentificationOptions& o
             const Estimate& estimate, IdentificationResult& result) {
   result.noise_estimated_m = estimated_noise_m(fit, estimate);
   result.lack_of_fit = lack_of_fit(problem, fit, estimate);
+  if (problem.touch_noise_m <= 0.0 && !result.noise_estimated_m) return;  // nothing to be sure from
   const Linearisation whole = linearise_whole(options, fit, estimate);
-  result.certainty = certainty(problem, options, fit, whole, estimate, result.lack_of_fit);
+  result.certainty =
+      certainty(problem, options, result.identifiable, fit, whole, estimate, result.lack_of_fit);
   result.scale = check_scale(problem, options, fit, whole, *result.certainty, estimate);
 }
 
@@ -134,6 +136,7 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
 /// standard deviation: late columns make those before them uncertain, which the choice cannot see.
 std::optional<int> weakest(const IdentificationResult& result) {
   std::optional<int> weakest;
+  if (!result.certainty) return weakest;
   double most = 1.0;
   for (const int column : result.identifiable.columns) {
     const double limit = error_parameters()[static_cast<std::size_t>(column)].is_length() ? kWeakLengthMetres
@@ -146,20 +149,47 @@ std::optional<int> weakest(const IdentificationResult& result) {
   return weakest;
 }
 
-/// Solves; holds what comes out as a guess, one after the other, and solves again.
-void solve_and_hold(const IdentificationProblem& problem, const IdentificationOptions& options,
-                    const Sorted& sorted, IdentificationResult& result) {
+Refusal nothing_shown(std::size_t touch_count) {
+  return {IdentificationStatus::kUnobservable,
+          "none of the parameters is shown by these " + std::to_string(touch_count) +
+              " touches well enough for the declared noise; spread them over faces, postures and tilts"};
+}
+
+std::vector<std::size_t> without(std::vector<std::size_t> touches,
+                                 const std::vector<RejectedTouch>& rejected) {
+  std::erase_if(touches, [&](std::size_t touch) {
+    return std::ranges::find(rejected, touch, &RejectedTouch::touch) != rejected.end();
+  });
+  return touches;
+}
+
+/// Solves; holds what comes out as a guess, one after the other, and solves again. `result` is taken as it is
+/// before the first solution.
+IdentificationResult solve_and_hold(const IdentificationProblem& problem,
+                                    const IdentificationOptions& options,
+                                    const std::vector<std::size_t>& fitted,
+                                    const IdentificationResult& before) {
   const bool may_hold = options.hold_weak && !options.prior && !problem.columns;
-  for (;;) {
-    result.rejected = sorted.wrong_plane;
-    solve(problem, options, sorted.fitted, result);
-    if (result.status != IdentificationStatus::kConverged) return;
+  IdentificationResult result = before;
+  solve(problem, options, fitted, result);
+  IdentificationOptions settled = options;  // which touches belong together is known from the first solution
+  settled.robust = false;
+  while (result.status == IdentificationStatus::kConverged) {
     const auto guess = may_hold ? weakest(result) : std::nullopt;
     if (!guess) break;
-    std::erase(result.identifiable.columns, *guess);
-    result.identifiable.candidates[static_cast<std::size_t>(*guess)].status = ParameterStatus::kWeak;
+    IdentificationResult next = before;
+    next.identifiable = result.identifiable;
+    std::erase(next.identifiable.columns, *guess);
+    next.identifiable.candidates[static_cast<std::size_t>(*guess)].status = ParameterStatus::kWeak;
+    next.rejected = result.rejected;
+    if (next.identifiable.columns.empty()) {
+      refuse(next, nothing_shown(fitted.size()));
+      return next;
+    }
+    solve(problem, settled, without(fitted, result.rejected), next);
+    result = std::move(next);
   }
-  if (!result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
+  return result;
 }
 
 }  // namespace
@@ -193,7 +223,15 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
   const auto shown = static_cast<int>(result.identifiable.columns.size());
   if (!options.prior) {
     if (auto refusal = find_too_little(problem, sorted.fitted, result.attainable.count)) {
+      if (!sorted.wrong_plane.empty()) {
+        refusal->message += "; " + std::to_string(sorted.wrong_plane.size()) +
+                            " others are on another plane than their own, look at the planes' numbers";
+      }
       refuse(result, std::move(*refusal));
+      return result;
+    }
+    if (shown == 0) {
+      refuse(result, nothing_shown(sorted.fitted.size()));
       return result;
     }
     if (!problem.columns && shown < result.attainable.count &&
@@ -212,8 +250,13 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
   const Eigen::VectorXd sigma = largest_singular_values(
       observe(problem.nominal, problem.artefact.contact_planes, touches, options.formulation).matrix, shown);
   result.singular_values.assign(sigma.begin(), sigma.end());
-  solve_and_hold(problem, options, sorted, result);
+  result = solve_and_hold(problem, options, sorted.fitted, result);
   if (!options.prior) name_weak(result);
+  if (result.scale && !result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
+  if (!problem.columns && result.identifiable.columns.size() < static_cast<std::size_t>(shown)) {
+    result.singular_values.resize(result.identifiable.columns.size());
+    result.rank_explanation = explain_rank(problem, sorted.fitted, result.identifiable, result.attainable);
+  }
   result.distances = face_distances(problem, result);
   return result;
 }

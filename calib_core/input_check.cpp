@@ -97,7 +97,7 @@ std::optional<Refusal> bad_planes(const std::vector<Plane>& planes) {
   return std::nullopt;
 }
 
-std::optional<Refusal> bad_prior(const IdentificationProblem& problem) {
+std::optional<Refusal> bad_prior(const IdentificationProblem& problem, const IdentificationOptions& options) {
   const auto singular = [](const std::string& name, double std) {
     std::ostringstream value;
     value << std;
@@ -108,7 +108,11 @@ std::optional<Refusal> bad_prior(const IdentificationProblem& problem) {
   const auto unfit = [](const std::optional<double>& std) {
     return std && !(*std > 0.0 && std::isfinite(*std));
   };
+  const auto& excluded = options.identifiability.excluded;
   for (std::size_t i = 0; i < problem.tolerances.size(); ++i) {
+    // Without the prior a tolerance only says what the unseen errors may be: 0 is that there are none.
+    const bool is_prior = options.prior && std::ranges::find(excluded, static_cast<int>(i)) == excluded.end();
+    if (!is_prior && problem.tolerances[i] == 0.0) continue;
     if (unfit(problem.tolerances[i])) return singular(error_parameters()[i].name(), *problem.tolerances[i]);
   }
   for (std::size_t i = 0; i < problem.std_compliance_rad_per_nm.size(); ++i) {
@@ -177,7 +181,14 @@ std::optional<Refusal> find_bad_input(const IdentificationProblem& problem,
         "what is known with an uncertainty can only be weighed against a known noise of a touch; "
         "give touch_noise_mm");
   }
-  return bad_prior(problem);
+  if (problem.columns) {
+    const std::vector<int>& columns = *problem.columns;
+    const bool in_order = std::ranges::adjacent_find(columns, std::ranges::greater_equal{}) == columns.end();
+    if (!in_order || (!columns.empty() && (columns.front() < 0 || columns.back() >= kErrorParameterCount))) {
+      return bad("the columns that were chosen before are no ascending list of error parameters");
+    }
+  }
+  return bad_prior(problem, options);
 }
 
 Sorted sort_touches(const IdentificationProblem& problem, const IdentificationOptions& options) {

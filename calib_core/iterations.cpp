@@ -47,7 +47,9 @@ bool Iterations::run(Estimate& estimate, bool with_conditions) {
     fit_.linearise(estimate);
     if (!fit_.solve()) {
       solvable_ = std::isfinite(fit_.residual_rms_m());
-      message_ = solvable_ ? "the touches and the priors leave a direction open at step " +
+      message_ = solvable_ ? "the touches and the standard deviations that are given leave a direction open "
+                             "(touch more, or give what "
+                             "fits) at step " +
                                  std::to_string(i + 1) + history_text()
                            : "the iteration left the finite numbers at step " + std::to_string(i + 1) +
                                  history_text();

@@ -136,7 +136,7 @@ std::optional<TrimmedFit> least_trimmed_squares(const Eigen::MatrixXd& rows, con
       if (concentration.objective() >= before * (1.0 - 1e-9)) break;
       before = concentration.objective();
     }
-    if (winner && concentration.objective() >= least) continue;
+    if (!solution.allFinite() || (winner && concentration.objective() >= least)) continue;
     least = concentration.objective();
     winner = TrimmedFit{solution, concentration.core()};
   }

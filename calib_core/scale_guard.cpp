@@ -1,5 +1,6 @@
 #include "calib_core/scale_guard.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -12,6 +13,10 @@ namespace {
 
 /// What nobody promises may be this large (metres, radians): free, as good as.
 constexpr double kFreeStd = 1.0;
+constexpr double kExactStd = 1e-12;  // of what is promised to be exact
+
+/// Planes that miss a common point by less than this (metres) meet in it.
+constexpr double kCommonPointMetres = 1e-6;
 
 /// A parameter of which the touches say less than this share of its variance is not judged by them.
 constexpr double kInformedShareMin = 1e-6;
@@ -106,11 +111,11 @@ class Guard {
         const bool estimated = std::ranges::find(columns, i) != columns.end();
         std = estimated
                   ? problem.std_compliance_rad_per_nm[static_cast<std::size_t>(i - kErrorParameterCount)]
-                  : 1e-12;
+                  : kExactStd;
       } else if (error_parameters()[static_cast<std::size_t>(i)].group() != ParameterGroup::kPlace) {
         std = problem.tolerances[static_cast<std::size_t>(i)];
       }
-      precision_[i] = 1.0 / std::pow(std.value_or(kFreeStd), 2);
+      precision_[i] = 1.0 / std::pow(std::max(std.value_or(kFreeStd), kExactStd), 2);
     }
     for (std::size_t k = 0; k < problem.artefact.parameters.size(); ++k) {
       const double std = problem.artefact.parameters[k].std.value_or(kFreeStd);
@@ -123,17 +128,77 @@ class Guard {
   Eigen::LLT<Eigen::MatrixXd> cholesky_;
 };
 
+std::vector<std::size_t> touched_faces(const IdentificationProblem& problem, const LeastSquares& fit) {
+  std::vector<std::size_t> touched;
+  for (std::size_t face = 0; face < problem.artefact.contact_planes.size(); ++face) {
+    const bool any = std::ranges::any_of(fit.touches(), [&](std::size_t index) {
+      return static_cast<std::size_t>(problem.touches[index].face) == face;
+    });
+    if (any) touched.push_back(face);
+  }
+  return touched;
+}
+
+/// The faces whose place is known: those whose offset has no parameter, or one with a standard deviation, or
+/// that a certified length ties to another.
+bool is_placed(const Artefact& artefact, std::size_t face) {
+  for (std::size_t k = 0; k < artefact.parameters.size(); ++k) {
+    const ArtefactParameter& parameter = artefact.parameters[k];
+    if (parameter.kind != ArtefactKind::kFaceOffset || parameter.shifts[face].constant == 0.0) continue;
+    const bool tied = std::ranges::any_of(artefact.equations, [&](const ArtefactEquation& equation) {
+      return std::ranges::any_of(equation.weights,
+                                 [&](const auto& w) { return static_cast<std::size_t>(w.first) == k; });
+    });
+    return parameter.std || tied;
+  }
+  return true;
+}
+
+/// Whether the touched faces hold a length: planes that all meet in one point are met by an arm of any size.
+bool holds_a_length(const IdentificationProblem& problem, const LeastSquares& fit) {
+  std::vector<Plane> placed;
+  for (const std::size_t face : touched_faces(problem, fit)) {
+    if (is_placed(problem.artefact, face)) placed.push_back(problem.artefact.contact_planes[face]);
+  }
+  Eigen::MatrixXd normals(static_cast<Eigen::Index>(placed.size()), 3);
+  Eigen::VectorXd offsets(normals.rows());
+  for (Eigen::Index row = 0; row < normals.rows(); ++row) {
+    normals.row(row) = placed[static_cast<std::size_t>(row)].outward;
+    offsets[row] = placed[static_cast<std::size_t>(row)].offset_m;
+  }
+  if (placed.empty()) return false;
+  const Eigen::Vector3d point = normals.completeOrthogonalDecomposition().solve(offsets);
+  return (normals * point - offsets).lpNorm<Eigen::Infinity>() > kCommonPointMetres;
+}
+
+/// No touch says anything of the scale: it is the nominal arm's, within the tolerances.
+ScaleCheck without_length(const IdentificationProblem& problem) {
+  ScaleCheck check{.source = ScaleSource::kPrior};
+  const ArmVector lengths = lengths_of(problem.nominal);
+  double information = 0.0;
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    const auto& parameter = error_parameters()[static_cast<std::size_t>(i)];
+    const auto& tolerance = problem.tolerances[static_cast<std::size_t>(i)];
+    if (lengths[i] == 0.0 || parameter.group() == ParameterGroup::kPlace || !tolerance) continue;
+    information += std::pow(lengths[i] / std::max(*tolerance, kExactStd), 2);
+  }
+  check.std_relative =
+      1.0 / std::sqrt(information);  // infinite where nobody promises anything: shown as unknown
+  check.warning =
+      "no length was touched: the touched faces all meet in one point, which an arm of any size can touch; "
+      "the "
+      "scale is that of the nominal arm, so touch a face that lies opposite to another";
+  return check;
+}
+
 /// Faces that look the same way give a length in which the ball cancels; so do two outside lengths of
 /// different size.
 ScaleSource source_of(const IdentificationProblem& problem, const IdentificationOptions& options,
                       const LeastSquares& fit) {
   if (options.prior) return ScaleSource::kPrior;
   std::vector<Plane> touched;
-  for (std::size_t face = 0; face < problem.artefact.contact_planes.size(); ++face) {
-    const bool any = std::ranges::any_of(fit.touches(), [&](std::size_t index) {
-      return static_cast<std::size_t>(problem.touches[index].face) == face;
-    });
-    if (any) touched.push_back(problem.artefact.contact_planes[face]);
+  for (const std::size_t face : touched_faces(problem, fit)) {
+    touched.push_back(problem.artefact.contact_planes[face]);
   }
   std::vector<double> outside;
   for (std::size_t a = 0; a < touched.size(); ++a) {
@@ -183,12 +248,14 @@ double ball_error_for(const ArmVector& own, const LeastSquares& fit, double stre
 ScaleCheck check_scale(const IdentificationProblem& problem, const IdentificationOptions& options,
                        const LeastSquares& fit, const Linearisation& whole, const Certainty& certainty,
                        const Estimate& estimate) {
+  if (!holds_a_length(problem, fit)) return without_length(problem);
   ScaleCheck check;
   check.source = source_of(problem, options, fit);
   const ArmVector own = own_lengths(problem.nominal, fit.arm_columns());
   if (own.squaredNorm() > 0.0) {
     // Not of what is grouped: that trades one parameter for another and stretches nothing.
-    check.std_relative = std::sqrt(own.dot(certainty.identified * own)) / own.squaredNorm();
+    check.std_relative =
+        std::sqrt(own.dot((certainty.identified + certainty.held) * own)) / own.squaredNorm();
   }
   const double ratio = certainty.noise_m > 0.0 ? certainty.noise_m / fit.noise_unit_m() : 1.0;
   const Guard guard(problem, fit, whole, ratio, estimate);

@@ -39,7 +39,8 @@ Repetition repeat(const IdentificationProblem& problem, const IdentificationOpti
                         .iteration_count = static_cast<int>(again.iterations.size())};
   if (!repetition.done()) return repetition;
   repetition.new_errors = again.errors - problem.start;
-  repetition.std_new_errors = again.certainty->identified.diagonal();  // variances as yet
+  repetition.std_new_errors =
+      (again.certainty->identified + again.certainty->held).diagonal();  // variances as yet
   return repetition;
 }
 
@@ -55,7 +56,8 @@ Repetition repeat_with_others(const IdentificationProblem& problem, const Identi
   Repetition repetition = repeat(from_calibrated(problem, result, std::move(touches)), options);
   if (repetition.done()) {
     repetition.std_new_errors =
-        (repetition.std_new_errors + result.certainty->identified.diagonal()).cwiseSqrt();
+        (repetition.std_new_errors + (result.certainty->identified + result.certainty->held).diagonal())
+            .cwiseSqrt();
   }
   return repetition;
 }

@@ -110,7 +110,7 @@ calib::KnownLength length_from_json(const JsonValue& value, const Block& block) 
     planes.fail("the two planes are not parallel; a length lies between parallel faces");
   }
   length.value_m = object.metres("value", kPositive);
-  length.std_m = object.metres("std", kNotNegative);
+  length.std_m = object.metres("std", kPositive);
   demand_agreement(object.at("value_mm"), length, block);
   return length;
 }

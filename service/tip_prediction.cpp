@@ -7,6 +7,7 @@ namespace {
 
 constexpr int kMapPostureCount = 4000;
 constexpr double kMapCellMetres = 0.1;
+constexpr double kMapCellsMax = 2000.0;  // a larger box gets coarser cells
 
 TipRegions::Regions regions_of(const Cell& cell, const calib::ToolCentre& tool) {
   const calib::JointRanges& ranges = cell.arm.joint_ranges;
@@ -59,9 +60,11 @@ const std::map<std::string, TipRegions::Regions>& TipRegions::tools() const {
 
 const calib::TipMap& TipRegions::map() const {
   if (!map_) {
+    const double volume_m3 = (cell_.workspace_box.max_m - cell_.workspace_box.min_m).prod();
+    const double edge_m = std::max(kMapCellMetres, std::cbrt(volume_m3 / kMapCellsMax));
     const auto postures = calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box,
                                                  std::nullopt, kMapPostureCount);
-    map_ = calib::make_tip_map(cell_.arm.model, postures, calib::divide(cell_.workspace_box, kMapCellMetres));
+    map_ = calib::make_tip_map(cell_.arm.model, postures, calib::divide(cell_.workspace_box, edge_m));
   }
   return *map_;
 }

@@ -23,6 +23,16 @@ void judge_fit(const calib::IdentificationResult& result, const AcceptanceLimits
     reasons.push_back(fmt::format("the condition number is {:.0f}, the limit {:.0f}",
                                   result.iterations.back().condition_number, limits.condition_number_max));
   }
+  for (std::size_t face = 0; result.lack_of_fit && face < result.lack_of_fit->p_of_face.size(); ++face) {
+    // One plane of several is unlikely by chance that much more often.
+    const double p = result.lack_of_fit->p_of_face[face];
+    const auto faces = static_cast<double>(result.lack_of_fit->p_of_face.size());
+    if (p * faces >= limits.lack_of_fit_p_min) continue;
+    reasons.push_back(
+        fmt::format("lack of fit on plane {}: its residuals are no touch noise as declared (p = {:.1g}); "
+                    "look at this face",
+                    face + 1, p));
+  }
   if (result.lack_of_fit && !(result.lack_of_fit->p >= limits.lack_of_fit_p_min)) {
     reasons.push_back(fmt::format(
         "lack of fit: the residuals are no touch noise as declared (they say {:.1f} um; p = {:.1g}, at least "
@@ -50,6 +60,13 @@ void judge_set(const calib::IdentificationResult& result, const calib::Identific
         is_estimated(options, result.identifiable, i))
       continue;
     held += (held.empty() ? "" : ", ") + calib::error_parameters()[index].name();
+  }
+  const auto shown = static_cast<int>(result.identifiable.columns.size());
+  if (options.prior && shown < result.attainable.count) {
+    reasons.push_back(
+        fmt::format("incomplete set: the touches show {} of {} parameters, the rest is the prior's word",
+                    shown, result.attainable.count));
+    return;
   }
   if (!held.empty()) reasons.push_back("incomplete set: these touches hardly show " + held);
 }

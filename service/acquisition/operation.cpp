@@ -133,7 +133,8 @@ void Operation::publish() {
     const calib::IdentificationResult& latest = run_->latest();
     if (run_->touches_done() > 0)
       status_.identifiable_count = static_cast<int>(latest.identifiable.columns.size());
-    if (!latest.iterations.empty()) status_.condition_number = latest.iterations.back().condition_number;
+    if (latest.status == calib::IdentificationStatus::kConverged)
+      status_.condition_number = latest.iterations.back().condition_number;
     status_.predicted_tip_rms_m = run_->predicted_tip_rms_m();
     if (is_active(status_.state)) {
       if (const calib::PlannedTouch* next = run_->next()) status_.plane = next->face + 1;

@@ -20,6 +20,11 @@ ExitCode validate_command(const ValidateArguments& arguments, bool json) {
   const TouchesFile file = read_touches(arguments.touches_file, cell);
   TouchesFile other;
   if (!arguments.other_file.empty()) other = read_touches(arguments.other_file, cell);
+  if (!arguments.other_file.empty() && other.touches.empty()) {
+    fmt::print(stderr, "{}: has no touches to validate with; give the other set\n",
+               arguments.other_file);
+    return kExitRefused;
+  }
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
   problem.touches = file.touches;
   const calib::Validation validation = calib::validate(problem, recipe.identification, other.touches);
@@ -32,6 +37,10 @@ ExitCode validate_command(const ValidateArguments& arguments, bool json) {
     tell_warnings(file.warnings);
     tell_warnings(other.warnings);
     fmt::print("{}", validation_text(nlohmann::json::parse(document)));
+  }
+  if (!arguments.other_file.empty() && !validation.other_touches.done()) {
+    fmt::print(stderr, "{}: {}\n", arguments.other_file, validation.other_touches.message);
+    return kExitRefused;
   }
   return validation.passed() ? kExitDone : kExitLimitsMissed;
 }

@@ -68,7 +68,7 @@ std::array<Json, calib::kErrorParameterCount> carried(const calib::IdentifiableS
 /// One standard deviation of an estimated arm parameter, SI.
 std::optional<double> std_of(const calib::IdentificationResult& result, int index) {
   if (!result.certainty) return std::nullopt;
-  return std::sqrt(result.certainty->identified(index, index));
+  return result.certainty->std_error(index);
 }
 
 Json interval_json(int index, double error, std::optional<double> std, const calib::Certainty* certainty) {

@@ -52,7 +52,7 @@ const char* source_name(calib::ScaleSource source) {
 
 Json scale_json(const std::optional<calib::ScaleCheck>& scale) {
   if (!scale) {
-    return {{"source", "block"},
+    return {{"source", nullptr},
             {"std_uncertainty_ppm", nullptr},
             {"stretch_ppm", nullptr},
             {"significance", nullptr},

@@ -100,7 +100,7 @@ TEST_P(Tilts, OfWhatTheyHardlyShowNothingIsPrinted) {
     ASSERT_FALSE(result.warnings.empty());
     EXPECT_THAT(result.warnings.front(), HasSubstr(name));
     const double tolerance = problem.tolerances[static_cast<std::size_t>(column)].value();
-    EXPECT_NEAR(std::sqrt(result.certainty->unseen(column, column)), tolerance, 1e-9) << name;
+    EXPECT_NEAR(result.certainty->std_error(column), tolerance, 1e-9) << name;
   }
   RecordProperty("held", names);
   if (tilt_deg <= 3.0) {
