@@ -79,6 +79,32 @@ TEST(RankExplanation, OfWeakTiltsDoesNotHideThatAPlaneWasNotTouched) {
   }
 }
 
+TEST(Scale, OfFacesThatMeetInOnePointIsTheNominalArms) {
+  // A cell of three faces only: an arm of any size can touch them.
+  IdentificationProblem problem = touched({.count = 100, .faces = {0, 1, 2}});
+  problem.artefact.contact_planes.resize(3);
+  problem.attainable.reset();
+  const auto result = identify(problem, {});
+  ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+  ASSERT_TRUE(result.scale);
+  EXPECT_EQ(result.scale->source, ScaleSource::kPrior);
+  EXPECT_THAT(result.scale->warning, HasSubstr("no length was touched"));
+  EXPECT_EQ(result.scale->stretch_relative, 0.0);
+}
+
+TEST(HeldErrors, MakeTheOthersUncertainByWhatTheyMayBe) {
+  IdentificationProblem problem = touched({.count = 100});
+  IdentificationOptions options;
+  const auto free = identify(problem, options);
+  const int d3 = error_parameter_index("d3").value(), r4 = error_parameter_index("r4").value();
+  options.identifiability.excluded = {d3};
+  const auto held = identify(problem, options);
+  ASSERT_EQ(held.status, IdentificationStatus::kConverged) << held.message;
+  EXPECT_GT(held.certainty->held(r4, r4), 0.0);
+  EXPECT_GT(held.certainty->std_error(r4), std::sqrt(held.certainty->identified(r4, r4)));
+  EXPECT_TRUE(free.certainty->held.isZero(0.0));
+}
+
 class Tilts : public ::testing::TestWithParam<double> {};
 
 TEST_P(Tilts, OfWhatTheyHardlyShowNothingIsPrinted) {
