@@ -13,8 +13,26 @@ namespace {
 constexpr double kSameBranchRadians = 1e-3;
 /// Samples of a joint move's tool speed.
 constexpr int kSpeedSamples = 16;
+/// A joint move's steepest place is looked for in pieces that turn all joints together by this much.
+constexpr double kPieceRadians = 0.1;
 /// Bodies reach this far beyond the frames' origins.
 constexpr double kBodyMarginMetres = 0.05;
+
+/// Bound on the tool's way per share of a joint move, at its steepest place.
+double steepest_m(const Plant& plant, const calib::JointVector& from, const calib::JointVector& to) {
+  const calib::JointVector move = to - from;
+  const double turn_rad = move.cwiseAbs().sum();
+  const int pieces = std::max(1, static_cast<int>(std::ceil(turn_rad / kPieceRadians)));
+  double steepest = 0.0;
+  for (int i = 0; i <= pieces; ++i) {
+    const calib::JointVector here = from + (static_cast<double>(i) / pieces) * move;
+    const calib::Chain chain = calib::forward_chain(plant.nominal, here);
+    steepest = std::max(steepest, (calib::tip_jacobian(plant.nominal, chain) * move).norm());
+  }
+  // Between two places the tool's velocity leaves the straight join of theirs by its curvature's eighth.
+  const double piece_rad = turn_rad / pieces;
+  return steepest + piece_rad * piece_rad / 8.0 * sweep_bound_m(plant, from, to);
+}
 
 }  // namespace
 
@@ -57,6 +75,24 @@ double tip_distance_m(const Plant& plant, const calib::JointVector& from, const 
   return (calib::forward_kinematics(plant.nominal, to).translation() -
           calib::forward_kinematics(plant.nominal, from).translation())
       .norm();
+}
+
+PathSlope path_slope(const Plant& plant, const Stretch& stretch) {
+  const auto segments = static_cast<double>(stretch.path.size() - 1);
+  const double segments_per_share = segments * std::abs(stretch.to - stretch.from);
+  const auto first = static_cast<std::size_t>(std::min(stretch.from, stretch.to) * segments);
+  const double end = std::min(segments, std::ceil(std::max(stretch.from, stretch.to) * segments));
+  const auto last = static_cast<std::size_t>(end);
+  PathSlope slope;
+  for (std::size_t i = first; i < last; ++i) {
+    const calib::JointVector& here = stretch.path[i];
+    const calib::JointVector& next = stretch.path[i + 1];
+    slope.tip_m = std::max(slope.tip_m, segments_per_share * steepest_m(plant, here, next));
+    const double slowest_joint_s =
+        ((next - here).cwiseAbs().array() / plant.joint_speeds_max.array()).maxCoeff();
+    slope.joint_seconds = std::max(slope.joint_seconds, segments_per_share * slowest_joint_s);
+  }
+  return slope;
 }
 
 double duration_s(const Plant& plant, const Stretch& stretch, double speed_m_s) {

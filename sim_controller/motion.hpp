@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "calib_core/joint_vector.hpp"
@@ -24,6 +25,9 @@ struct Stretch {
   [[nodiscard]] double progress(double share) const { return from + (to - from) * share; }
 };
 
+/// Number of the run-time error when a motion leaves the arm's reach or ranges.
+inline constexpr std::int32_t kImpossibleMoveError = 150;
+
 /// Spacing of the postures on a straight line; joint moves between them leave the line by 0.1 um at most.
 inline constexpr double kLineSpacingMetres = 0.5e-3;
 
@@ -39,6 +43,14 @@ StraightLine straight_line(const Plant& plant, const calib::JointVector& from, c
 
 /// How far the nominal tool centre is between two postures.
 double tip_distance_m(const Plant& plant, const calib::JointVector& from, const calib::JointVector& to);
+
+/// The steepest place of a stretch, per unit of its share.
+struct PathSlope {
+  double tip_m = 0.0;          // way of the nominal tool centre
+  double joint_seconds = 0.0;  // what the slowest joint would need at its full speed
+};
+
+PathSlope path_slope(const Plant& plant, const Stretch& stretch);
 
 /// Seconds for a stretch from standstill to standstill: the tool centre nowhere above `speed_m_s` (with its
 /// ramps at kAccelerationMetresPerSecond2), no joint above its own speed. Progress is taken as even in time.

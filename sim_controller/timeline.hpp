@@ -18,9 +18,6 @@ struct Leg {
   double duration_s = 0.0;
 };
 
-/// Number of the run-time error when a line leaves the arm's reach or ranges.
-inline constexpr std::int32_t kImpossibleMoveError = 150;
-
 /// The latched contact of a search, and where the arm came to rest behind it.
 struct Capture {
   calib::JointVector contact;
