@@ -226,6 +226,8 @@ void Link::take(const Message& message) {
           take_state(body);
         } else if constexpr (std::is_same_v<Body, Fault>) {
           fail(LinkErrorKind::kFault, fault_text(body));
+        } else if constexpr (std::is_same_v<Body, Permit>) {
+          latest_permit_ = body;
         } else if constexpr (std::is_same_v<Body, Accepted>) {
           if (waiting_ == nullptr || waiting_->sequence != message.sequence) return unexpected();
           waiting_->accepted = true;

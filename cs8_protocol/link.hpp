@@ -101,6 +101,7 @@ class Link : public std::enable_shared_from_this<Link> {
   std::uint32_t last_sequence_ = 0;
   std::uint32_t last_answered_ = 0;
   std::optional<State> latest_state_;
+  std::optional<Permit> latest_permit_;
   std::optional<Clock::time_point> heard_at_;
   Waiting* waiting_ = nullptr;
 };

@@ -14,7 +14,7 @@
 /// `visit` names the fields in wire order; codec.cpp reads and writes through it, so the two cannot drift.
 namespace cs8 {
 
-inline constexpr std::uint8_t kProtocolVersion = 1;
+inline constexpr std::uint8_t kProtocolVersion = 2;
 inline constexpr std::size_t kHeaderSize = 10;
 inline constexpr std::size_t kPayloadSizeMax = 512;
 inline constexpr std::size_t kViaCountMax = 5;
@@ -32,6 +32,8 @@ enum class MessageType : std::uint8_t {
   kStop = 6,
   kResultQuery = 7,
   kResultAcknowledge = 8,
+  kBegin = 9,
+  kFinish = 10,
   // controller -> host
   kWelcome = 65,
   kState = 66,
@@ -41,6 +43,7 @@ enum class MessageType : std::uint8_t {
   kMoveResult = 70,
   kResultUnknown = 71,
   kFault = 72,
+  kPermit = 73,
 };
 
 /// Why a command was refused before anything moved.
@@ -61,6 +64,11 @@ enum class RejectReason : std::int32_t {
   kBadField = 14,        // a speed or deadline that makes no sense; `detail` is the payload word, from 1
   kNothingToRetract = 15,
   kRetractPending = 16,  // StateFlag::kRetractDue is set: only a retract is allowed
+  kNotPermitted = 17,  // nobody at the cell confirmed the run, or the permit is lost; `detail` is the Permit
+  kProbeInputs = 18,   // the two probe inputs disagree; `detail` is contact + 2 * loop
+  kCellOpen = 19,
+  kTouchTestMissing = 20,  // the stylus was not touched by hand since the start or since the cell was open
+  kTaskFailed = 21,        // a task of the application ended with a run-time error; `detail` is its number
 };
 
 /// How a motion command ended.
@@ -77,6 +85,8 @@ enum class Outcome : std::int32_t {
   kMotionError = 10,       // error_number says which run-time error (out of reach, singular line, ...)
   kDeadline = 11,          // not done within deadline_ms: stopped
   kOvertravel = 12,        // the arm stopped farther behind the trigger than the stylus may bend
+  kProbeFault = 13,        // the two probe inputs disagreed: a cable is cut or shorted
+  kTaskFailed = 14,        // a task of the application ended; error_number says with which run-time error
 };
 
 /// What the controller is doing in a motion command, and how far it got.
@@ -84,6 +94,25 @@ enum class Phase : std::int32_t { kIdle = 0, kTravel = 1, kApproach = 2, kSearch
 
 /// Where the joints of a contact come from.
 enum class CaptureSource : std::int32_t { kNone = 0, kLatched = 1, kPolled = 2 };
+
+/// Whether motion commands are taken: a person at the cell confirms each run.
+enum class PermitState : std::int32_t {
+  kNone = 0,         // nothing moves
+  kAwaited = 1,      // Begin was taken, the confirmation input is watched
+  kGranted = 2,      // touch, travel and retract are taken
+  kRetractOnly = 3,  // a command was broken off: the way back from a face is all that is left
+};
+
+/// Why the permit is what it is.
+enum class PermitReason : std::int32_t {
+  kNone = 0,            // it was asked for or confirmed
+  kRefused = 1,         // Begin was refused; `detail` is the RejectReason
+  kNotConfirmed = 2,    // nobody confirmed in time
+  kFinished = 3,        // by Finish
+  kBrokenOff = 4,       // a command ended by a stop, an unexpected contact, a deadline or an error
+  kPermissionLost = 5,  // mode, power, hold, emergency stop, or the cell was opened
+  kProbeFault = 6,      // the probe inputs disagree
+};
 
 enum class WorkingMode : std::int32_t { kNone = 0, kManual = 1, kTest = 2, kLocal = 3, kRemote = 4 };
 
@@ -96,7 +125,26 @@ enum StateFlag : std::uint32_t {
   kQueueEmpty = 1u << 4,
   kProbeTouched = 1u << 5,
   kRetractDue = 1u << 6,  // a touch left its clear posture and did not come back to it: only kRetract moves
+  kProbeLoopClosed = 1u << 7,  // second probe input: closed while the stylus is free and the cable whole
+  kTouchTested = 1u << 8,      // the stylus was touched by hand since the start and since the cell was open
+  kCellClosed = 1u << 9,
 };
+
+/// Both probe inputs at once. Two wires that say the same thing in opposite ways: a cut or shorted cable
+/// is neither free nor touched.
+struct ProbeInputs {
+  bool contact = false;  // latch input: on when touched
+  bool loop = true;      // normally-closed loop: on when free
+  [[nodiscard]] constexpr bool free() const { return !contact && loop; }
+  [[nodiscard]] constexpr bool touched() const { return contact && !loop; }
+  [[nodiscard]] constexpr bool agree() const { return contact != loop; }
+  friend constexpr bool operator==(const ProbeInputs&, const ProbeInputs&) = default;
+};
+
+/// The inputs as State's flags tell them.
+constexpr ProbeInputs probe_inputs(std::uint32_t flags) {
+  return {(flags & kProbeTouched) != 0, (flags & kProbeLoopClosed) != 0};
+}
 
 /// Why the controller closes the connection.
 enum class FaultCode : std::int32_t {
@@ -108,6 +156,7 @@ enum class FaultCode : std::int32_t {
   kOccupied = 6,     // another host is connected; this connection alone is closed
   kWrongSide = 7,    // a message only the controller sends; `detail` is the type
   kBadValue = 8,     // a count outside its range; `detail` is the payload word, from 1
+  kStopping = 9,     // the application is being ended at the pendant
 };
 
 // ---- host -> controller ----
@@ -133,7 +182,8 @@ struct Heartbeat {
 };
 
 /// One guarded touch, carried out whole: joint moves through `via` to `clear`, to `approach`, a straight line
-/// to `search_end` until the probe trips, back to `approach`, back to `clear`. Answered once, by TouchResult.
+/// to `search_end` until the probe trips, a little back and slowly there again, back to `approach`, back to
+/// `clear`. Answered once, by TouchResult.
 struct Touch {
   static constexpr MessageType kType = MessageType::kTouch;
   std::int32_t via_count{};  // how many of `via` are used
@@ -144,11 +194,13 @@ struct Touch {
   std::int32_t travel_speed_um_s{};    // cap of the tool centre's speed on the way to `clear`
   std::int32_t approach_speed_um_s{};  // clear <-> approach, and the retract
   std::int32_t search_speed_um_s{};
-  std::uint32_t deadline_ms{};  // of the whole command
+  std::int32_t second_speed_um_s{};   // of the second, slow touch; 0 for none
+  std::int32_t second_backoff_dmm{};  // how far back from the first stop it begins, 10^-4 mm
+  std::uint32_t deadline_ms{};        // of the whole command
   template <class Self, class Fields>
   static constexpr void visit(Self& m, Fields& fields) {
     fields(m.via_count, m.via, m.clear, m.approach, m.search_end, m.travel_speed_um_s, m.approach_speed_um_s,
-           m.search_speed_um_s, m.deadline_ms);
+           m.search_speed_um_s, m.second_speed_um_s, m.second_backoff_dmm, m.deadline_ms);
   }
 };
 
@@ -206,6 +258,25 @@ struct ResultAcknowledge {
   }
 };
 
+/// Asks for a run: the controller waits for a person's confirmation at the cell, `confirm_within_ms` at most.
+/// Answered by Permit, at once and at each change. Touch, Travel and Retract are taken with a permit only.
+struct Begin {
+  static constexpr MessageType kType = MessageType::kBegin;
+  std::uint32_t run{};                // the host's number of the run, for the pendant and the logs
+  std::uint32_t confirm_within_ms{};  // brought into 1000..30000
+  template <class Self, class Fields>
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.run, m.confirm_within_ms);
+  }
+};
+
+/// The run is over: the permit is given back.
+struct Finish {
+  static constexpr MessageType kType = MessageType::kFinish;
+  template <class Self, class Fields>
+  static constexpr void visit(Self&, Fields&) {}
+};
+
 // ---- controller -> host ----
 
 using Text16 = std::array<char, 16>;  // printable ASCII, padded with NUL
@@ -260,10 +331,13 @@ struct State {
   std::uint32_t active_sequence{};  // the running command, 0 for none
   Phase phase{};
   std::int32_t task_error{};  // run-time error number of a task of the application, 0 for none
+  PermitState permit{};
+  std::int32_t move_id_milli{};  // progress of the queued moves, 1/1000 of a move: for logs
+  std::uint32_t overruns{};      // periods that the application's tasks did not finish in, since its start
   template <class Self, class Fields>
   static constexpr void visit(Self& m, Fields& fields) {
     fields(m.session, m.clock_ms, m.flags, m.mode, m.mode_status, m.emergency_stop, m.monitor_speed_percent,
-           m.joints, m.active_sequence, m.phase, m.task_error);
+           m.joints, m.active_sequence, m.phase, m.task_error, m.permit, m.move_id_milli, m.overruns);
   }
 };
 
@@ -290,18 +364,22 @@ struct TouchResult {
   static constexpr MessageType kType = MessageType::kTouchResult;
   Outcome outcome{};
   Phase phase{};                  // reached when it ended early
-  CaptureSource source{};         // kNone unless the probe tripped in the search
-  JointsMicrodeg contact{};       // joints at the trigger; all 0 when source is kNone
+  CaptureSource source{};         // kNone unless the probe tripped in the (last) search
+  JointsMicrodeg contact{};       // joints at the trigger: the second touch's, when there was to be one
   JointsMicrodeg stopped{};       // joints where the arm came to rest behind it
-  std::int32_t overtravel_dmm{};  // tool centre's way between both, 10^-4 mm
-  std::int32_t search_speed_um_s{};
+  std::int32_t overtravel_dmm{};  // tool centre's way between both, 10^-4 mm; the longer one of two touches
+  std::int32_t search_speed_um_s{};  // at which `contact` was made
   std::int32_t monitor_speed_percent{};
   std::uint32_t contact_clock_ms{};
-  std::int32_t error_number{};  // run-time error for kMotionError, else 0
+  std::int32_t error_number{};     // run-time error for kMotionError and kTaskFailed, else 0
+  CaptureSource first_source{};    // of the first touch when a second was to follow, else kNone
+  JointsMicrodeg first_contact{};  // as contact
+  std::uint32_t edges{};           // of the latch input from the trigger to standstill: 1 without bounce
   template <class Self, class Fields>
   static constexpr void visit(Self& m, Fields& fields) {
     fields(m.outcome, m.phase, m.source, m.contact, m.stopped, m.overtravel_dmm, m.search_speed_um_s,
-           m.monitor_speed_percent, m.contact_clock_ms, m.error_number);
+           m.monitor_speed_percent, m.contact_clock_ms, m.error_number, m.first_source, m.first_contact,
+           m.edges);
   }
 };
 
@@ -339,9 +417,22 @@ struct Fault {
   }
 };
 
-using Payload =
-    std::variant<Hello, Heartbeat, Touch, Travel, Retract, Stop, ResultQuery, ResultAcknowledge, Welcome,
-                 State, Accepted, Rejected, TouchResult, MoveResult, ResultUnknown, Fault>;
+/// What became of Begin, at once and at each change.
+struct Permit {
+  static constexpr MessageType kType = MessageType::kPermit;
+  std::uint32_t run{};  // Begin's
+  PermitState state{};
+  PermitReason reason{};
+  std::int32_t detail{};  // the RejectReason for kRefused, else 0
+  template <class Self, class Fields>
+  static constexpr void visit(Self& m, Fields& fields) {
+    fields(m.run, m.state, m.reason, m.detail);
+  }
+};
+
+using Payload = std::variant<Hello, Heartbeat, Touch, Travel, Retract, Stop, ResultQuery, ResultAcknowledge,
+                             Begin, Finish, Welcome, State, Accepted, Rejected, TouchResult, MoveResult,
+                             ResultUnknown, Fault, Permit>;
 
 /// `sequence` is the command's number in a motion command and in all that answers it or a query about it, a
 /// counter in State, else 0.

@@ -21,6 +21,10 @@ std::string_view name(MessageType type) {
       return "result_query";
     case MessageType::kResultAcknowledge:
       return "result_acknowledge";
+    case MessageType::kBegin:
+      return "begin";
+    case MessageType::kFinish:
+      return "finish";
     case MessageType::kWelcome:
       return "welcome";
     case MessageType::kState:
@@ -37,6 +41,8 @@ std::string_view name(MessageType type) {
       return "result_unknown";
     case MessageType::kFault:
       return "fault";
+    case MessageType::kPermit:
+      return "permit";
   }
   return {};
 }
@@ -75,6 +81,16 @@ std::string_view name(RejectReason reason) {
       return "nothing_to_retract";
     case RejectReason::kRetractPending:
       return "retract_pending";
+    case RejectReason::kNotPermitted:
+      return "not_permitted";
+    case RejectReason::kProbeInputs:
+      return "probe_inputs";
+    case RejectReason::kCellOpen:
+      return "cell_open";
+    case RejectReason::kTouchTestMissing:
+      return "touch_test_missing";
+    case RejectReason::kTaskFailed:
+      return "task_failed";
   }
   return {};
 }
@@ -105,6 +121,10 @@ std::string_view name(Outcome outcome) {
       return "deadline";
     case Outcome::kOvertravel:
       return "overtravel";
+    case Outcome::kProbeFault:
+      return "probe_fault";
+    case Outcome::kTaskFailed:
+      return "task_failed";
   }
   return {};
 }
@@ -171,6 +191,42 @@ std::string_view name(FaultCode code) {
       return "wrong_side";
     case FaultCode::kBadValue:
       return "bad_value";
+    case FaultCode::kStopping:
+      return "stopping";
+  }
+  return {};
+}
+
+std::string_view name(PermitState state) {
+  switch (state) {
+    case PermitState::kNone:
+      return "none";
+    case PermitState::kAwaited:
+      return "awaited";
+    case PermitState::kGranted:
+      return "granted";
+    case PermitState::kRetractOnly:
+      return "retract_only";
+  }
+  return {};
+}
+
+std::string_view name(PermitReason reason) {
+  switch (reason) {
+    case PermitReason::kNone:
+      return "none";
+    case PermitReason::kRefused:
+      return "refused";
+    case PermitReason::kNotConfirmed:
+      return "not_confirmed";
+    case PermitReason::kFinished:
+      return "finished";
+    case PermitReason::kBrokenOff:
+      return "broken_off";
+    case PermitReason::kPermissionLost:
+      return "permission_lost";
+    case PermitReason::kProbeFault:
+      return "probe_fault";
   }
   return {};
 }

@@ -15,5 +15,7 @@ std::string_view name(Phase phase);
 std::string_view name(CaptureSource source);
 std::string_view name(WorkingMode mode);
 std::string_view name(FaultCode code);
+std::string_view name(PermitState state);
+std::string_view name(PermitReason reason);
 
 }  // namespace cs8

@@ -17,7 +17,12 @@ constexpr std::int32_t kJointWords = calib::kJointCount;
 constexpr std::int32_t kAfterViaWord = 2 + kJointWords * static_cast<std::int32_t>(cs8::kViaCountMax);
 constexpr std::int32_t kTouchSearchEndWord = kAfterViaWord + 2 * kJointWords;
 constexpr std::int32_t kTouchSpeedsWord = kAfterViaWord + 3 * kJointWords;
+constexpr std::int32_t kTouchDeadlineWord = kTouchSpeedsWord + 5;
 constexpr std::int32_t kTravelSpeedWord = kAfterViaWord + kJointWords;
+
+constexpr std::int32_t kApproachSpeedMaxUmS = 20'000;
+constexpr std::int32_t kBackoffMinDmm = 5'000;
+constexpr std::int32_t kBackoffMaxDmm = 50'000;
 
 /// Ends of a search nearer than this leave it no direction.
 constexpr double kSearchLengthMinMetres = 1e-6;
@@ -29,6 +34,19 @@ std::optional<cs8::Rejected> bad_unless(bool good, std::int32_t word) {
 
 std::optional<cs8::Rejected> bad_via_count(std::int32_t count) {
   return bad_unless(count >= 0 && count <= static_cast<std::int32_t>(cs8::kViaCountMax), kViaCountWord);
+}
+
+std::optional<cs8::Rejected> bad_approach_speed(std::int32_t speed_um_s, std::int32_t word) {
+  return bad_unless(speed_um_s > 0 && speed_um_s <= kApproachSpeedMaxUmS, word);
+}
+
+std::optional<cs8::Rejected> bad_second_touch(const cs8::Touch& command) {
+  const std::int32_t speed = command.second_speed_um_s;
+  if (auto bad = bad_unless(speed >= 0 && speed <= command.search_speed_um_s, kTouchSpeedsWord + 3))
+    return bad;
+  const std::int32_t backoff = command.second_backoff_dmm;
+  return bad_unless(speed == 0 || (backoff >= kBackoffMinDmm && backoff <= kBackoffMaxDmm),
+                    kTouchSpeedsWord + 4);
 }
 
 /// In wire units, so that a posture exactly on its limit is in range.
@@ -72,9 +90,10 @@ std::vector<calib::JointVector> joints_from_wire(std::span<const cs8::JointsMicr
 std::optional<cs8::Rejected> refusal(const Plant& plant, const cs8::Touch& command) {
   if (auto bad = bad_via_count(command.via_count)) return bad;
   if (auto bad = bad_unless(command.travel_speed_um_s > 0, kTouchSpeedsWord)) return bad;
-  if (auto bad = bad_unless(command.approach_speed_um_s > 0, kTouchSpeedsWord + 1)) return bad;
+  if (auto bad = bad_approach_speed(command.approach_speed_um_s, kTouchSpeedsWord + 1)) return bad;
   if (auto bad = bad_unless(command.search_speed_um_s > 0, kTouchSpeedsWord + 2)) return bad;
-  if (auto bad = bad_unless(command.deadline_ms > 0, kTouchSpeedsWord + 3)) return bad;
+  if (auto bad = bad_second_touch(command)) return bad;
+  if (auto bad = bad_unless(command.deadline_ms > 0, kTouchDeadlineWord)) return bad;
   auto postures = used_via(command);
   postures.insert(postures.end(), {command.clear, command.approach, command.search_end});
   if (auto bad = out_of_range(plant, postures)) return bad;
@@ -91,7 +110,7 @@ std::optional<cs8::Rejected> refusal(const Plant& plant, const cs8::Travel& comm
 }
 
 std::optional<cs8::Rejected> refusal(const Plant&, const cs8::Retract& command) {
-  if (auto bad = bad_unless(command.approach_speed_um_s > 0, 1)) return bad;
+  if (auto bad = bad_approach_speed(command.approach_speed_um_s, 1)) return bad;
   return bad_unless(command.deadline_ms > 0, 2);
 }
 

@@ -90,6 +90,8 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
       return OutcomeFault{{FaultCode::kTouchDeadline, where}};
     case cs8::Outcome::kOvertravel:
       return OutcomeFault{{FaultCode::kOvertravel, {}}};
+    case cs8::Outcome::kProbeFault:
+    case cs8::Outcome::kTaskFailed:
     case cs8::Outcome::kMotionError:
       break;
   }

@@ -113,10 +113,10 @@ TEST_F(ClientTest, JointRangesThatDifferByRoundingAreTaken) {
 
 TEST_F(ClientTest, AnotherProtocolVersionIsRefusedWhetherItShowsInTheFrameOrIsTold) {
   auto frame = encode({0, welcome()});
-  frame[2] = 2;
+  frame[2] = kProtocolVersion + 1;
   const LinkError shown = refused_handshake(frame);
   EXPECT_EQ(shown.kind, LinkErrorKind::kIncompatible);
-  EXPECT_THAT(shown.text, HasSubstr("version 2"));
+  EXPECT_THAT(shown.text, HasSubstr("version " + std::to_string(kProtocolVersion + 1)));
 }
 
 TEST_F(ClientTest, AVersionFaultIsIncompatible) {

@@ -68,7 +68,7 @@ Bytes words(std::initializer_list<const char*> parts) {
 }
 
 TEST(Codec, HelloHasTheBytesWorkedByHand) {
-  expect_golden({0, Hello{500}}, hex("54 43 01 01 00 00 00 00 04 00 f4 01 00 00"));
+  expect_golden({0, Hello{500}}, hex("54 43 02 01 00 00 00 00 04 00 f4 01 00 00"));
 }
 
 TEST(Codec, TouchHasTheBytesWorkedByHand) {
@@ -81,16 +81,18 @@ TEST(Codec, TouchHasTheBytesWorkedByHand) {
   touch.travel_speed_um_s = 250000;   // 0x0003d090
   touch.approach_speed_um_s = 20000;  // 0x4e20
   touch.search_speed_um_s = 8000;     // 0x1f40
+  touch.second_speed_um_s = 2000;     // 0x07d0
+  touch.second_backoff_dmm = 20000;   // 0x4e20
   touch.deadline_ms = 120000;         // 0x0001d4c0
-  // 212 payload bytes = 0x00d4; sequence 0x01020304
+  // 220 payload bytes = 0x00dc; sequence 0x01020304
   expect_golden(
       {0x01020304, touch},
-      joined({hex("54 43 01 03 04 03 02 01 d4 00"), hex("01 00 00 00"),
+      joined({hex("54 43 02 03 04 03 02 01 dc 00"), hex("01 00 00 00"),
               words({kOneDegree, kMinusOneDegree, kNinetyDegrees, kMinusNinetyDegrees, kZero, "01 00 00 00"}),
               Bytes(4 * 24, 0), words({kOneDegree, kZero, kZero, kZero, kZero, kZero}),
               words({kZero, kOneDegree, kZero, kZero, kZero, kZero}),
               words({kZero, kZero, kZero, kZero, kZero, kMinusOneDegree}),
-              hex("90 d0 03 00 20 4e 00 00 40 1f 00 00 c0 d4 01 00")}));
+              hex("90 d0 03 00 20 4e 00 00 40 1f 00 00 d0 07 00 00 20 4e 00 00 c0 d4 01 00")}));
 }
 
 TEST(Codec, TouchResultHasTheBytesWorkedByHand) {
@@ -103,14 +105,19 @@ TEST(Codec, TouchResultHasTheBytesWorkedByHand) {
                            .search_speed_um_s = 8000,
                            .monitor_speed_percent = 100,
                            .contact_clock_ms = 0xfedcba98,
-                           .error_number = 0};
-  // 80 payload bytes = 0x0050
+                           .error_number = 0,
+                           .first_source = CaptureSource::kPolled,
+                           .first_contact = {0, 0, -90000000, 90000000, 0, 1000000},
+                           .edges = 2};
+  // 112 payload bytes = 0x0070
   expect_golden(
       {17, result},
-      joined({hex("54 43 01 45 11 00 00 00 50 00"), hex("01 00 00 00 04 00 00 00 01 00 00 00"),
+      joined({hex("54 43 02 45 11 00 00 00 70 00"), hex("01 00 00 00 04 00 00 00 01 00 00 00"),
               words({kOneDegree, kMinusOneDegree, kNinetyDegrees, kMinusNinetyDegrees, kZero, "01 00 00 00"}),
               words({kMinusOneDegree, kOneDegree, kZero, kZero, kZero, kZero}),
-              hex("00 05 00 00 40 1f 00 00 64 00 00 00 98 ba dc fe 00 00 00 00")}));
+              hex("00 05 00 00 40 1f 00 00 64 00 00 00 98 ba dc fe 00 00 00 00 02 00 00 00"),
+              words({kZero, kZero, kMinusNinetyDegrees, kNinetyDegrees, kZero, kOneDegree}),
+              hex("02 00 00 00")}));
 }
 
 TEST(Codec, StateHasTheBytesWorkedByHand) {
@@ -124,14 +131,17 @@ TEST(Codec, StateHasTheBytesWorkedByHand) {
                     .joints = {1000000, -1000000, 90000000, -90000000, 0, 0},
                     .active_sequence = 17,
                     .phase = Phase::kSearch,
-                    .task_error = 150};
-  // 64 payload bytes = 0x0040
+                    .task_error = 150,
+                    .permit = PermitState::kGranted,
+                    .move_id_milli = 3500,  // 0x0dac
+                    .overruns = 1};
+  // 76 payload bytes = 0x004c
   expect_golden(
       {256, state},
-      joined({hex("54 43 01 42 00 01 00 00 40 00"),
+      joined({hex("54 43 02 42 00 01 00 00 4c 00"),
               hex("03 00 00 00 00 00 01 00 1d 00 00 00 04 00 00 00 00 00 00 00 02 00 00 00 64 00 00 00"),
               words({kOneDegree, kMinusOneDegree, kNinetyDegrees, kMinusNinetyDegrees, kZero, kZero}),
-              hex("11 00 00 00 03 00 00 00 96 00 00 00")}));
+              hex("11 00 00 00 03 00 00 00 96 00 00 00 02 00 00 00 ac 0d 00 00 01 00 00 00")}));
 }
 
 TEST(Codec, WelcomeHasTheBytesWorkedByHand) {
@@ -151,13 +161,23 @@ TEST(Codec, WelcomeHasTheBytesWorkedByHand) {
   // 116 payload bytes = 0x0074
   expect_golden(
       {0, welcome},
-      joined({hex("54 43 01 41 00 00 00 00 74 00"), hex("74 6f 75 63 68 63 61 6c 00 00 00 00 00 00 00 00"),
+      joined({hex("54 43 02 41 00 00 00 00 74 00"), hex("74 6f 75 63 68 63 61 6c 00 00 00 00 00 00 00 00"),
               hex("74 78 39 30 00 00 00 00 00 00 00 00 00 00 00 00"),
               hex("10 27 00 00 2e 14 01 00 05 00 00 00 0c 00 00 00 0c 00 00 00 f4 01 00 00 01 00 00 00"),
               words({kMinusNinetyDegrees, kMinusNinetyDegrees, kMinusNinetyDegrees}),
               words({kMinusOneDegree, kMinusOneDegree, kMinusOneDegree}),
               words({kNinetyDegrees, kNinetyDegrees, kNinetyDegrees, kOneDegree, kOneDegree, kOneDegree}),
               hex("80 1a 06 00 20 4e 00 00")}));
+}
+
+TEST(Codec, BeginAndPermitHaveTheBytesWorkedByHand) {
+  expect_golden({0, Begin{.run = 258, .confirm_within_ms = 30000}},  // 0x0102, 0x7530
+                hex("54 43 02 09 00 00 00 00 08 00 02 01 00 00 30 75 00 00"));
+  expect_golden({0, Finish{}}, hex("54 43 02 0a 00 00 00 00 00 00"));
+  const Permit permit{258, PermitState::kNone, PermitReason::kRefused,
+                      static_cast<std::int32_t>(RejectReason::kTouchTestMissing)};  // 20
+  expect_golden({0, permit},
+                hex("54 43 02 49 00 00 00 00 10 00 02 01 00 00 00 00 00 00 01 00 00 00 14 00 00 00"));
 }
 
 TEST(Codec, EveryMessageComesBackAsItWent) {
@@ -231,9 +251,9 @@ TEST(Codec, BytesThatAreNoFrameAreRefused) {
 
 TEST(Codec, AnotherVersionIsRefusedAndToldOurs) {
   Bytes frame = encode({0, Hello{500}});
-  frame[2] = 2;
+  frame[2] = kProtocolVersion + 1;
   const DecodeError error = expect_refused(frame);
-  EXPECT_EQ(error, (DecodeError{DecodeErrorKind::kVersion, {}, 2}));
+  EXPECT_EQ(error, (DecodeError{DecodeErrorKind::kVersion, {}, kProtocolVersion + 1}));
   EXPECT_EQ(fault_for(error).code, FaultCode::kVersion);
   EXPECT_EQ(fault_for(error).detail, kProtocolVersion);
 }
@@ -259,16 +279,18 @@ std::set<std::int32_t> from_to(std::int32_t first, std::int32_t last) {
 
 TEST(Codec, AnEnumerationTakesItsListedValuesAndNoOther) {
   const std::vector<EnumWord> enum_words{
-      {MessageType::kState, 4, from_to(0, 4)},       {MessageType::kState, 15, from_to(0, 4)},
-      {MessageType::kRejected, 1, from_to(1, 16)},   {MessageType::kTouchResult, 1, from_to(1, 12)},
-      {MessageType::kTouchResult, 2, from_to(0, 4)}, {MessageType::kTouchResult, 3, from_to(0, 2)},
-      {MessageType::kMoveResult, 1, from_to(1, 12)}, {MessageType::kMoveResult, 2, from_to(0, 4)},
-      {MessageType::kFault, 1, from_to(1, 8)}};
+      {MessageType::kState, 4, from_to(0, 4)},        {MessageType::kState, 15, from_to(0, 4)},
+      {MessageType::kRejected, 1, from_to(1, 21)},    {MessageType::kTouchResult, 1, from_to(1, 14)},
+      {MessageType::kTouchResult, 2, from_to(0, 4)},  {MessageType::kTouchResult, 3, from_to(0, 2)},
+      {MessageType::kMoveResult, 1, from_to(1, 14)},  {MessageType::kMoveResult, 2, from_to(0, 4)},
+      {MessageType::kFault, 1, from_to(1, 9)},        {MessageType::kState, 17, from_to(0, 3)},
+      {MessageType::kTouchResult, 21, from_to(0, 2)}, {MessageType::kPermit, 2, from_to(0, 3)},
+      {MessageType::kPermit, 3, from_to(0, 6)}};
   for (const Message& message : one_of_each()) {
     for (const EnumWord& field : enum_words) {
       if (field.type != type_of(message)) continue;
       for (const std::int32_t value :
-           {-2147483647 - 1, -1, 0, 1, 2, 3, 4, 5, 8, 9, 12, 13, 16, 17, 256, 2147483647}) {
+           {-2147483647 - 1, -1, 0, 1, 2, 3, 4, 5, 6, 7, 9, 10, 14, 15, 21, 22, 256, 2147483647}) {
         SCOPED_TRACE(std::string(name(field.type)) + " word " + std::to_string(field.word) + " = " +
                      std::to_string(value));
         Bytes frame = encode(message);

@@ -195,14 +195,17 @@ struct Table {
   const char* heading;
   std::size_t columns;
 };
-Table table_of(RejectReason) { return {"8. Reject reasons", 4}; }
-Table table_of(Outcome) { return {"9. Outcomes", 4}; }
-Table table_of(FaultCode) { return {"10. Fault codes", 4}; }
+Table table_of(RejectReason) { return {"9. Reject reasons", 4}; }
+Table table_of(Outcome) { return {"10. Outcomes", 4}; }
+Table table_of(FaultCode) { return {"11. Fault codes", 4}; }
 Table table_of(Phase) { return {"Phases", 3}; }
 Table table_of(CaptureSource) { return {"Sources of a contact", 3}; }
 Table table_of(WorkingMode) { return {"Working modes", 3}; }
+Table table_of(PermitState) { return {"Permit states", 3}; }
+Table table_of(PermitReason) { return {"Permit reasons", 3}; }
 
-using Enumerations = ::testing::Types<RejectReason, Outcome, FaultCode, Phase, CaptureSource, WorkingMode>;
+using Enumerations = ::testing::Types<RejectReason, Outcome, FaultCode, Phase, CaptureSource, WorkingMode,
+                                      PermitState, PermitReason>;
 TYPED_TEST_SUITE(ProtocolPageTable, Enumerations);
 
 TYPED_TEST(ProtocolPageTable, ListsExactlyTheValuesThatTheCodecTakes) {

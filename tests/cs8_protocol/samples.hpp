@@ -20,6 +20,8 @@ inline std::vector<Message> one_of_each() {
               .travel_speed_um_s = 250000,
               .approach_speed_um_s = 20000,
               .search_speed_um_s = 8000,
+              .second_speed_um_s = 2000,
+              .second_backoff_dmm = 20000,
               .deadline_ms = 120000};
   Travel travel{
       .via_count = 5, .target = joints_from(600), .travel_speed_um_s = 250001, .deadline_ms = 4000000000u};
@@ -50,7 +52,10 @@ inline std::vector<Message> one_of_each() {
                     .joints = joints_from(-5),
                     .active_sequence = 9,
                     .phase = Phase::kSearch,
-                    .task_error = 150};
+                    .task_error = 150,
+                    .permit = PermitState::kRetractOnly,
+                    .move_id_milli = 3500,
+                    .overruns = 77};
   const TouchResult touch_result{.outcome = Outcome::kContact,
                                  .phase = Phase::kRetract,
                                  .source = CaptureSource::kPolled,
@@ -60,7 +65,10 @@ inline std::vector<Message> one_of_each() {
                                  .search_speed_um_s = 8000,
                                  .monitor_speed_percent = 99,
                                  .contact_clock_ms = 654321,
-                                 .error_number = -1};
+                                 .error_number = -1,
+                                 .first_source = CaptureSource::kLatched,
+                                 .first_contact = joints_from(4000),
+                                 .edges = 3};
   const MoveResult move_result{.outcome = Outcome::kMotionError,
                                .phase = Phase::kTravel,
                                .joints = joints_from(3000),
@@ -73,6 +81,8 @@ inline std::vector<Message> one_of_each() {
           {0, Stop{}},
           {0, ResultQuery{4}},
           {0, ResultAcknowledge{5}},
+          {0, Begin{31, 30000}},
+          {0, Finish{}},
           {0, welcome},
           {4294967295u, state},
           {6, Accepted{}},
@@ -80,7 +90,8 @@ inline std::vector<Message> one_of_each() {
           {8, touch_result},
           {9, move_result},
           {10, ResultUnknown{10}},
-          {0, Fault{FaultCode::kLength, 12}}};
+          {0, Fault{FaultCode::kLength, 12}},
+          {0, Permit{31, PermitState::kNone, PermitReason::kRefused, 20}}};
 }
 
 /// Messages are words without padding (codec.cpp holds that), so their memory tells whether they are the

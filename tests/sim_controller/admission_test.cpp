@@ -81,18 +81,25 @@ TEST_F(Admission, RefusesFieldsThatMakeNoSenseAndNamesTheWord) {
     command.*field = value;
     return command;
   };
-  // A payload of 53 words: via_count, 5 x 6, 3 x 6, three speeds, the deadline.
+  // A payload of 55 words: via_count, 5 x 6, 3 x 6, three speeds, the second touch's two, the deadline.
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::via_count, 6)), 1);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::via_count, -1)), 1);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::search_end, touch().approach)), 44);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::travel_speed_um_s, 0)), 50);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::approach_speed_um_s, -1)), 51);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::search_speed_um_s, 0)), 52);
-  EXPECT_EQ(word(changed(touch(), &cs8::Touch::deadline_ms, 0u)), 53);
+  EXPECT_EQ(word(changed(touch(), &cs8::Touch::approach_speed_um_s, 20'001)), 51);
+  EXPECT_EQ(word(changed(touch(), &cs8::Touch::second_speed_um_s, -1)), 53);
+  EXPECT_EQ(word(changed(touch(), &cs8::Touch::second_speed_um_s, touch().search_speed_um_s + 1)), 53);
+  cs8::Touch twice = touch();
+  twice.second_speed_um_s = 2000;
+  EXPECT_EQ(word(changed(twice, &cs8::Touch::second_backoff_dmm, 4'999)), 54);
+  EXPECT_EQ(word(changed(twice, &cs8::Touch::second_backoff_dmm, 50'001)), 54);
+  EXPECT_EQ(word(changed(touch(), &cs8::Touch::deadline_ms, 0u)), 55);
   const cs8::Travel travel = travel_command(beside_park());
   EXPECT_EQ(word(changed(travel, &cs8::Travel::travel_speed_um_s, 0)), 38);
   EXPECT_EQ(word(changed(travel, &cs8::Travel::deadline_ms, 0u)), 39);
-  EXPECT_EQ(cs8::payload_size(cs8::MessageType::kTouch), 53u * 4u);
+  EXPECT_EQ(cs8::payload_size(cs8::MessageType::kTouch), 55u * 4u);
   EXPECT_EQ(cs8::payload_size(cs8::MessageType::kTravel), 39u * 4u);
 }
 
