@@ -1,5 +1,7 @@
 #include "config/truth.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -10,6 +12,21 @@
 
 namespace cell {
 namespace {
+
+constexpr NumberRange kCompliances{.min = 0.0, .max = 1e-4};
+constexpr NumberRange kSmallAngles{.min = 0.0, .max = 0.01};
+constexpr NumberRange kPeriods{.min = 0.0, .max = 10'000.0};
+/// A ripple's steepest share of the joint's own motion; with more a joint would all but stand still.
+constexpr double kRippleSlopeMax = 0.1;
+constexpr NumberRange kExpansions{0.0, 1e-3};
+constexpr NumberRange kKelvins{-50.0, 50.0};
+constexpr NumberRange kTimeConstants{1.0, 1e6};
+constexpr NumberRange kFaceOffsetsMm{-10.0, 10.0};
+constexpr NumberRange kProbePartsMm{-1.0, 1.0};
+constexpr NumberRange kNoiseMm{0.0, 1.0};
+constexpr std::size_t kFaceCountMax = 100;
+/// A face belongs to the side of a solid that it lies on to this much.
+constexpr double kSameSideMetres = 1e-6;
 
 /// "r0_mm", "theta0_rad" or "theta0_deg"; the error goes in SI units into its place.
 int read_error(const std::string& key, const JsonValue& value, calib::ErrorVector& errors) {
@@ -29,21 +46,185 @@ int read_error(const std::string& key, const JsonValue& value, calib::ErrorVecto
   return *index;
 }
 
+void read_errors(const JsonValue& value, calib::ErrorVector& errors) {
+  std::set<int> given;
+  for (const auto& [key, member] : value.members()) {
+    if (!given.insert(read_error(key, member, errors)).second) {
+      member.fail("this error is given in two units; keep one of them");
+    }
+  }
+}
+
+calib::JointVector six(const JsonValue& value, const NumberRange& range) {
+  calib::JointVector numbers;
+  const auto items = value.items(calib::kJointCount, calib::kJointCount);
+  for (int i = 0; i < calib::kJointCount; ++i) numbers[i] = items[static_cast<std::size_t>(i)].number(range);
+  return numbers;
+}
+
+void read_droop(const JsonObject& object, Truth& truth) {
+  Droop& droop = truth.droop.emplace();
+  const auto compliances =
+      object.at("compliance_rad_per_nm").items(calib::kComplianceCount, calib::kComplianceCount);
+  for (std::size_t i = 0; i < calib::kComplianceCount; ++i)
+    droop.compliance_rad_per_nm[i] = compliances[i].number(kCompliances);
+}
+
+void read_ripple(const JsonObject& object, Truth& truth) {
+  const auto joints = object.at("joints").items(calib::kJointCount, calib::kJointCount);
+  for (std::size_t i = 0; i < calib::kJointCount; ++i) {
+    const JsonObject joint =
+        joints[i].object({"amplitude_rad", "periods_per_turn", "phase_deg", "phase_rad"});
+    Ripple& ripple = truth.ripple[i];
+    ripple.amplitude_rad = joint.at("amplitude_rad").number(kSmallAngles);
+    ripple.periods_per_turn = joint.at("periods_per_turn").number(kPeriods);
+    ripple.phase_rad = joint.radians("phase");
+    if (ripple.amplitude_rad * ripple.periods_per_turn > kRippleSlopeMax)
+      joints[i].fail("amplitude x periods is over " + plain_number(kRippleSlopeMax) +
+                     "; no gear is as uneven");
+  }
+}
+
+void read_backlash(const JsonObject& object, Truth& truth) {
+  truth.backlash_rad = six(object.at("width_rad"), kSmallAngles);
+}
+
+void read_thermal(const JsonObject& object, Truth& truth) {
+  truth.warming = {.arm_expansion_per_k = object.at("arm_expansion_per_k").number(kExpansions),
+                   .arm_rise_k = object.at("arm_rise_k").number(kKelvins),
+                   .arm_time_constant_s = object.at("arm_time_constant_s").number(kTimeConstants),
+                   .block_warmer_k = object.at("block_warmer_k").number(kKelvins)};
+}
+
+void read_block_offsets(const JsonObject& object, Truth& truth) {
+  for (const JsonValue& item : object.at("offsets_mm").items(1, kFaceCountMax))
+    truth.face_offsets_m.push_back(calib::metres_from_mm(item.number(kFaceOffsetsMm)));
+}
+
+void read_true_probe(const JsonObject& object, Truth& truth) {
+  TrueProbe& probe = truth.probe;
+  probe.stylus_radius_m = object.find_metres("stylus_radius", kNotNegative);
+  probe.pretravel_m = object.find_metres("pretravel", kProbePartsMm);
+  probe.pretravel_tilt_m = object.find_metres("pretravel_tilt", kProbePartsMm).value_or(0.0);
+  probe.lobes_m = object.find_metres("lobes", kProbePartsMm).value_or(0.0);
+  probe.lobe_direction_rad = object.find_radians("lobe_direction").value_or(0.0);
+  probe.noise_m = object.find_metres("noise", kNoiseMm);
+}
+
+void read_repeatability(const JsonObject& object, Truth& truth) {
+  truth.repeatability_rad = six(object.at("std_rad"), kSmallAngles);
+}
+
+void read_encoder(const JsonObject& object, Truth& truth) {
+  constexpr NumberRange kSteps{.min = 0.0, .max = 1.0};
+  truth.encoder_step_rad = object.find_radians("step", kSteps).value_or(0.0);
+}
+
+/// An effect as it stands in the file under its name. It is read whether it is on or not.
+void read_effect(const JsonObject& document, std::string_view name,
+                 std::initializer_list<std::string_view> known_keys, void (*read)(const JsonObject&, Truth&),
+                 Truth& truth) {
+  const auto value = document.find(name);
+  if (!value) return;
+  const JsonObject object = value->object(known_keys);
+  const auto on = object.find("on");
+  Truth with_it = truth;
+  read(object, with_it);
+  if (!on || on->boolean()) truth = std::move(with_it);
+}
+
+void read_effects(const JsonObject& object, Truth& truth) {
+  read_effect(object, "droop", {"on", "compliance_rad_per_nm"}, read_droop, truth);
+  read_effect(object, "ripple", {"on", "joints"}, read_ripple, truth);
+  read_effect(object, "backlash", {"on", "width_rad"}, read_backlash, truth);
+  read_effect(object, "thermal",
+              {"on", "arm_expansion_per_k", "arm_rise_k", "arm_time_constant_s", "block_warmer_k"},
+              read_thermal, truth);
+  read_effect(object, "block", {"on", "offsets_mm"}, read_block_offsets, truth);
+  read_effect(object, "probe",
+              {"on", "stylus_radius_mm", "pretravel_mm", "pretravel_tilt_mm", "lobes_mm",
+               "lobe_direction_deg", "lobe_direction_rad", "noise_mm"},
+              read_true_probe, truth);
+  read_effect(object, "repeatability", {"on", "std_rad"}, read_repeatability, truth);
+  read_effect(object, "encoder", {"on", "step_deg", "step_rad"}, read_encoder, truth);
+}
+
+bool is_rigid(const nlohmann::json& document) {
+  return document.is_object() && document.contains("schema") && document.at("schema") == kRigidTruthSchema;
+}
+
+/// Moves the side of a solid that the face lies on; false when there is none.
+bool move_side(const calib::Face& face, double offset_m, std::vector<calib::Box>& solids) {
+  int axis = 0;
+  face.plane.outward.cwiseAbs().maxCoeff(&axis);
+  const bool outward_is_up = face.plane.outward[axis] > 0.0;
+  for (calib::Box& solid : solids) {
+    const double beyond_m = (solid.min_m - face.center_m).cwiseMax(face.center_m - solid.max_m).maxCoeff();
+    double& side_m = outward_is_up ? solid.max_m[axis] : solid.min_m[axis];
+    if (std::abs(side_m - face.center_m[axis]) > kSameSideMetres || beyond_m > kSameSideMetres) continue;
+    side_m += outward_is_up ? offset_m : -offset_m;
+    return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Truth read_truth(const std::filesystem::path& file) {
   const std::string source = file.string();
-  const nlohmann::json document = read_json_file(file);
-  const JsonObject object = JsonValue(source, document).document(kTruthSchema, {"schema", "name", "errors"});
+  const nlohmann::json json = read_json_file(file);
+  const JsonValue document(source, json);
+  const bool rigid = is_rigid(json);
+  const JsonObject object =
+      rigid ? document.document(kRigidTruthSchema, {"schema", "name", "errors"})
+            : document.document(kTruthSchema, {"schema", "name", "errors", "droop", "ripple", "backlash",
+                                               "thermal", "block", "probe", "repeatability", "encoder"});
   Truth truth;
   truth.name = object.at("name").text();
-  std::set<int> given;
-  for (const auto& [key, value] : object.at("errors").members()) {
-    if (!given.insert(read_error(key, value, truth.errors)).second) {
-      value.fail("this error is given in two units; keep one of them");
-    }
-  }
+  truth.file = file;
+  read_errors(object.at("errors"), truth.errors);
+  if (!rigid) read_effects(object, truth);
   return truth;
+}
+
+std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
+  std::vector<calib::Box> solids = block.solids;
+  if (!truth.face_offsets_m.empty() && truth.face_offsets_m.size() != block.faces.size()) {
+    throw ConfigError(truth.file.string(), "/block/offsets_mm",
+                      "has " + std::to_string(truth.face_offsets_m.size()) + " numbers, the block has " +
+                          std::to_string(block.faces.size()) + " planes; give one a plane");
+  }
+  for (std::size_t i = 0; i < truth.face_offsets_m.size(); ++i) {
+    if (move_side(block.faces[i], truth.face_offsets_m[i], solids)) continue;
+    throw ConfigError(
+        truth.file.string(), "/block/offsets_mm/" + std::to_string(i),
+        "plane " + std::to_string(i + 1) + " lies on no side of the block's solids; leave \"block\" out");
+  }
+  constexpr double kReferenceCelsius = 20.0;
+  const double rise_k =
+      block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius + truth.warming.block_warmer_k;
+  const double growth = 1.0 + block.thermal_expansion_per_k * rise_k;
+  for (calib::Box& solid : solids) {
+    solid.min_m *= growth;
+    solid.max_m *= growth;
+  }
+  return solids;
+}
+
+calib::KinematicModel true_model(const Truth& truth, const Arm& arm) {
+  calib::KinematicModel model = calib::apply(arm.model, truth.errors);
+  if (!truth.droop) return model;
+  const auto has_mass = [](const calib::PointMass& mass) { return mass.mass_kg != 0.0; };
+  if (std::ranges::none_of(model.masses, has_mass)) {
+    throw ConfigError(
+        truth.file.string(), "/droop",
+        "the arm " + in_quotes(arm.name) + " has no masses; give its file \"gravity\" or leave this out");
+  }
+  for (std::size_t i = 0; i < calib::kComplianceCount; ++i) {
+    model.compliance_rad_per_nm[static_cast<std::size_t>(calib::kCompliantJoints[i])] =
+        truth.droop->compliance_rad_per_nm[i];
+  }
+  return model;
 }
 
 }  // namespace cell

@@ -1,22 +1,77 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "calib_core/collision.hpp"
 #include "calib_core/error_parameters.hpp"
+#include "calib_core/joint_vector.hpp"
+#include "config/cell.hpp"
 
 namespace cell {
 
-inline constexpr std::string_view kTruthSchema = "touchcal/truth/1";
+inline constexpr std::string_view kTruthSchema = "touchcal/truth/2";
+inline constexpr std::string_view kRigidTruthSchema = "touchcal/truth/1";  // name and errors only
 
-/// What the simulated arm hides: its true errors. The true model is calib::apply(arm.model, errors).
-struct Truth {
-  std::string name;
-  calib::ErrorVector errors = calib::ErrorVector::Zero();  // metres and radians; those not in the file are 0
+/// The arm gives way under its own weight: compliance of joints 2 and 3 in place of the arm file's.
+struct Droop {
+  std::array<double, calib::kComplianceCount> compliance_rad_per_nm{};
 };
 
-/// ConfigError.
+/// A gear's uneven transmission: the joint stands amplitude * sin(periods * position + phase) too far.
+struct Ripple {
+  double amplitude_rad = 0.0;
+  double periods_per_turn = 0.0;
+  double phase_rad = 0.0;
+};
+
+struct Warming {
+  double arm_expansion_per_k = 0.0;
+  double arm_rise_k = 0.0;           // what the arm's temperature approaches while it is powered, cold = 0
+  double arm_time_constant_s = 1.0;  // of that, and of cooling down
+  double block_warmer_k = 0.0;       // than the block's file says; with the expansion of that file
+};
+
+/// What the probe really is. Pre-travel = pretravel_m + s^2 (tilt_m + lobes_m cos 3 (a -
+/// lobe_direction_rad)), s the sine of the angle between stylus axis and the push on the ball, a the push's
+/// direction about R_7's z.
+struct TrueProbe {
+  std::optional<double> stylus_radius_m;  // nothing: the probe file's
+  std::optional<double> pretravel_m;      // nothing: the probe file's
+  double pretravel_tilt_m = 0.0;
+  double lobes_m = 0.0;
+  double lobe_direction_rad = 0.0;
+  std::optional<double> noise_m;  // one standard deviation of a trip; nothing: the cell's touch_noise_mm
+};
+
+/// What the simulated cell hides. What is nothing or 0 is as the cell's files say.
+struct Truth {
+  std::string name;
+  std::filesystem::path file;
+  calib::ErrorVector errors = calib::ErrorVector::Zero();  // metres and radians; those not in the file are 0
+  std::optional<Droop> droop;
+  std::array<Ripple, calib::kJointCount> ripple{};
+  calib::JointVector backlash_rad = calib::JointVector::Zero();  // width of the play
+  Warming warming;
+  std::vector<double> face_offsets_m;  // of each plane outwards, against the block's file; empty: none
+  TrueProbe probe;
+  calib::JointVector repeatability_rad = calib::JointVector::Zero();  // one standard deviation of a stop
+  double encoder_step_rad = 0.0;
+};
+
+/// ConfigError. An effect with "on": false is checked and left out.
 Truth read_truth(const std::filesystem::path& file);
+
+/// The block's solids where they really stand: faces by their true offsets, then as warm as the block is.
+/// ConfigError when the offsets do not fit the block.
+std::vector<calib::Box> true_solids(const Truth& truth, const Block& block);
+
+/// The arm without its effects by temperature and joint: errors and droop. ConfigError when the arm's file
+/// has no masses to droop under.
+calib::KinematicModel true_model(const Truth& truth, const Arm& arm);
 
 }  // namespace cell

@@ -7,6 +7,7 @@
 #include "calib_core/joint_vector.hpp"
 #include "calib_core/kinematic_model.hpp"
 #include "config/cell.hpp"
+#include "config/truth.hpp"
 
 namespace sim {
 
@@ -29,12 +30,16 @@ struct Plant {
   calib::JointVector start_joints;  // where the arm stands at the start, and after the operator freed it
   calib::CollisionScene scene;      // all bodies but the stylus ball: the ball may touch, the others collide
   double trip_distance_m = 0.0;     // of the ball's centre from the nearest obstacle: radius - pre-travel
+                                    // along the stylus
   double overtravel_m = 0.0;        // what the stylus bends before it breaks
   double touch_noise_m = 0.0;       // one standard deviation of the trip distance in a search
   double stop_latency_s = kStopLatencySeconds;  // what it really takes; longer in tests of overtravel
+  cell::Truth hidden;  // what differs from touch to touch or from tick to tick; the rest is in the above
 };
 
-/// The cell with an arm that has `errors` on top of its nominal parameters.
+/// The cell with everything that `truth` hides. ConfigError when the truth does not fit the cell.
+Plant make_plant(const cell::Cell& cell, const cell::Truth& truth);
+/// The cell with an arm that has `errors` on top of its nominal parameters, and nothing else.
 Plant make_plant(const cell::Cell& cell, const calib::ErrorVector& errors);
 
 /// Way from the edge to standstill at `speed_m_s`.
