@@ -14,7 +14,10 @@ namespace cs8 {
 // ---- calls that wait ----
 
 Link::Waiting::Waiting(Link& on_link, std::uint32_t of_sequence, MessageType wants)
-    : link(on_link), sequence(of_sequence), wanted(wants), alarm(on_link.executor_) {
+    : Pending{asio::steady_timer(on_link.executor_), "command " + std::to_string(of_sequence)},
+      link(on_link),
+      sequence(of_sequence),
+      wanted(wants) {
   if (link.waiting_ != nullptr)
     throw std::logic_error("cs8::Client: a second call while one waits for its answer");
   link.waiting_ = this;
@@ -22,8 +25,7 @@ Link::Waiting::Waiting(Link& on_link, std::uint32_t of_sequence, MessageType wan
 
 Link::Waiting::~Waiting() {
   link.waiting_ = nullptr;
-  if (!answer)
-    link.fail(LinkErrorKind::kClosed, "a call that waited for the controller's answer was given up");
+  if (!done) link.fail(LinkErrorKind::kClosed, "a call that waited for the controller's answer was given up");
 }
 
 bool Link::Waiting::takes(const Answer& offered) const {
@@ -33,20 +35,32 @@ bool Link::Waiting::takes(const Answer& offered) const {
   return is_query ? type != MessageType::kRejected : type == MessageType::kRejected;
 }
 
-asio::awaitable<void> Link::wait(Waiting& waiting, Clock::time_point accept_by, Clock::time_point answer_by) {
-  while (!waiting.answer && !error_) {
-    const auto deadline = waiting.accepted ? answer_by : std::min(accept_by, answer_by);
+Link::Asking::Asking(Link& on_link, std::uint32_t for_run)
+    : Pending{asio::steady_timer(on_link.executor_), "begin of run " + std::to_string(for_run)},
+      link(on_link),
+      run(for_run) {
+  if (link.asking_ != nullptr) throw std::logic_error("cs8::Client: a second begin() while one waits");
+  link.asking_ = this;
+}
+
+Link::Asking::~Asking() {
+  link.asking_ = nullptr;
+  if (!done) link.fail(LinkErrorKind::kClosed, "a call that waited for the confirmation was given up");
+}
+
+asio::awaitable<void> Link::wait(Pending& pending, Clock::time_point accept_by, Clock::time_point answer_by) {
+  while (!pending.done && !error_) {
+    const auto deadline = pending.accepted ? answer_by : std::min(accept_by, answer_by);
     if (Clock::now() >= deadline) {
       fail(LinkErrorKind::kUnanswered,
-           "command " + std::to_string(waiting.sequence) +
-               (waiting.accepted ? " was accepted, but no result came within its deadline"
-                                 : " was not answered within its deadline"));
+           pending.what + (pending.accepted ? " was accepted, but no result came within its deadline"
+                                            : " was not answered within its deadline"));
       co_await asio::post(executor_, asio::use_awaitable);  // the loss is told before the call ends
       co_return;
     }
-    waiting.alarm.expires_at(deadline);
+    pending.alarm.expires_at(deadline);
     boost::system::error_code woken;
-    co_await waiting.alarm.async_wait(asio::redirect_error(asio::use_awaitable, woken));
+    co_await pending.alarm.async_wait(asio::redirect_error(asio::use_awaitable, woken));
   }
 }
 
@@ -85,6 +99,20 @@ asio::awaitable<QueryReply> Link::query(std::shared_ptr<Link> link, std::uint32_
   if (const auto* touch = std::get_if<TouchResult>(&*waiting.answer)) co_return *touch;
   if (const auto* move = std::get_if<MoveResult>(&*waiting.answer)) co_return *move;
   co_return std::get<ResultUnknown>(*waiting.answer);
+}
+
+asio::awaitable<PermitReply> Link::begin(std::shared_ptr<Link> link, std::uint32_t run,
+                                         std::chrono::milliseconds confirm_within) {
+  if (!link || !link->is_up()) co_return not_connected(link.get());
+  Asking asking(*link, run);
+  link->runs_begun_.insert(run);
+  const Begin question{run, static_cast<std::uint32_t>(confirm_within.count())};
+  link->send(Message{0, question});
+  const auto now = Clock::now();
+  co_await link->wait(asking, now + link->options_.answer_deadline,
+                      now + confirm_within + link->options_.result_margin);
+  if (!asking.done) co_return *link->error_;
+  co_return asking.decision;
 }
 
 LinkError Link::not_connected(const Link* link) {
@@ -132,6 +160,16 @@ asio::awaitable<MoveReply> Client::retract(Retract command) {
 asio::awaitable<QueryReply> Client::query(std::uint32_t sequence, std::chrono::milliseconds deadline) {
   return Link::query(link_, sequence, deadline);
 }
+
+asio::awaitable<PermitReply> Client::begin(std::uint32_t run, std::chrono::milliseconds confirm_within) {
+  return Link::begin(link_, run, confirm_within);
+}
+
+void Client::finish() {
+  if (connected()) link_->send(Message{0, Finish{}});
+}
+
+std::optional<Permit> Client::latest_permit() const { return link_ ? link_->latest_permit() : std::nullopt; }
 
 void Client::stop() {
   if (connected()) link_->send(Message{0, Stop{}});

@@ -24,7 +24,7 @@ enum class LinkErrorKind {
   kSilent,            // nothing was heard for the heartbeat timeout, or the controller does not read
   kProtocol,    // bytes that are no frame, a message of the wrong side, an answer to nothing that was asked
   kFault,       // the controller said why it closes the connection
-  kUnanswered,  // the controller lives but did not answer a command or query within its deadline
+  kUnanswered,  // the controller lives but did not answer a command, query or Begin within its deadline
   kClosed,      // close() on this side
 };
 
@@ -49,13 +49,14 @@ struct ClientOptions {
   std::chrono::milliseconds connect_deadline{2000};  // TCP connection and handshake together
   std::chrono::milliseconds heartbeat_period{100};
   std::chrono::milliseconds heartbeat_timeout{500};  // of both sides
-  std::chrono::milliseconds answer_deadline{2000};   // until a command is accepted or rejected
-  std::chrono::milliseconds result_margin{2000};     // added to a command's own deadline_ms
+  std::chrono::milliseconds answer_deadline{2000};   // until a command or Begin is taken or refused
+  std::chrono::milliseconds result_margin{2000};     // added to a command's or confirmation's own deadline
 };
 
 /// Called from the io_context, never from inside a call of the client. They may close or destroy the client.
 struct ClientHooks {
   std::function<void(const State&)> on_state;
+  std::function<void(const Permit&)> on_permit;  // each one, also when nobody waits for it any more
   std::function<void(const LinkError&)>
       on_loss;  // once per connection, before a waiting call ends; not after close()
 };
@@ -70,6 +71,7 @@ struct Reply {
 using TouchReply = Reply<TouchResult>;
 using MoveReply = Reply<MoveResult>;
 using QueryReply = std::variant<TouchResult, MoveResult, ResultUnknown, LinkError>;
+using PermitReply = std::variant<Permit, LinkError>;
 using ConnectReply = std::variant<Welcome, LinkError>;
 
 class Link;
@@ -78,8 +80,8 @@ class Link;
 ///
 /// Every failure of the link ends the call that waits with a LinkError and closes the socket, on which the
 /// controller stops; what was asked is then found out by connect() and query(). One motion command or query
-/// at a time: a second one is std::logic_error. Every wait has a deadline, so do not block the thread for
-/// long. A result is not acknowledged here: the owner does it when it is stored.
+/// at a time, and one begin() beside it: a second one is std::logic_error. Every wait has a deadline, so do
+/// not block the thread for long. A result is not acknowledged here: the owner does it when it is stored.
 class Client {
  public:
   explicit Client(boost::asio::any_io_executor executor, ClientOptions options = {}, ClientHooks hooks = {});
@@ -95,6 +97,15 @@ class Client {
   /// Ends the connection; a call that waits ends with kClosed. Nothing is called back afterwards.
   void close();
   [[nodiscard]] bool connected() const;
+
+  /// Asks for a run. The reply's state is kGranted once a person confirmed at the cell, else kNone with the
+  /// reason; kAwaited in between is told to on_permit. A permit is lost with the connection and may be
+  /// withdrawn at any time: see on_permit and latest_permit().
+  boost::asio::awaitable<PermitReply> begin(std::uint32_t run, std::chrono::milliseconds confirm_within);
+  /// Gives the permit back; ends a begin() that waits. Nothing when not connected.
+  void finish();
+  /// The newest Permit of this connection.
+  [[nodiscard]] std::optional<Permit> latest_permit() const;
 
   /// The newest State of this connection, and when the controller was last heard.
   [[nodiscard]] std::optional<State> latest_state() const;

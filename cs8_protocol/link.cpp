@@ -204,7 +204,9 @@ void Link::fail(LinkErrorKind kind, std::string text) {
       if (on_loss) on_loss(*self->error_);
     });
   }
-  if (waiting_ != nullptr) waiting_->alarm.cancel();  // last: the loss is told before the call ends
+  // Last: the loss is told before the calls end.
+  if (waiting_ != nullptr) waiting_->alarm.cancel();
+  if (asking_ != nullptr) asking_->alarm.cancel();
 }
 
 void Link::close() {
@@ -227,7 +229,7 @@ void Link::take(const Message& message) {
         } else if constexpr (std::is_same_v<Body, Fault>) {
           fail(LinkErrorKind::kFault, fault_text(body));
         } else if constexpr (std::is_same_v<Body, Permit>) {
-          latest_permit_ = body;
+          if (!take_permit(body)) unexpected();
         } else if constexpr (std::is_same_v<Body, Accepted>) {
           if (waiting_ == nullptr || waiting_->sequence != message.sequence) return unexpected();
           waiting_->accepted = true;
@@ -253,6 +255,33 @@ void Link::take_state(const State& state) {
   if (on_state) on_state(state);
 }
 
+/// A permit may be told again and withdrawn at any time; it is granted only to who waits for it.
+bool Link::take_permit(const Permit& permit) {
+  if (!runs_begun_.contains(permit.run)) return false;
+  const bool to_asking = asking_ != nullptr && !asking_->done && asking_->run == permit.run;
+  if (to_asking) {
+    const bool refused = permit.state == PermitState::kNone && permit.reason == PermitReason::kRefused;
+    if (permit.state == PermitState::kAwaited) {
+      asking_->accepted = true;
+      asking_->alarm.cancel();
+    } else if (asking_->accepted || refused) {
+      asking_->done = true;
+      asking_->decision = permit;
+      asking_->alarm.cancel();
+    } else if (permit.state == PermitState::kGranted) {
+      return false;
+    }  // else the end of an earlier permit, told before this Begin was read
+  } else if (permit.state == PermitState::kGranted) {
+    const bool again =
+        latest_permit_ && latest_permit_->run == permit.run && latest_permit_->state == PermitState::kGranted;
+    if (!again) return false;
+  }
+  latest_permit_ = permit;
+  const auto on_permit = hooks_.on_permit;  // a copy, as for on_loss
+  if (on_permit) on_permit(permit);
+  return true;
+}
+
 /// Answers are matched by their sequence alone. A result that was answered before, or that ends the command
 /// which was open when this connection began, may come again unasked: it is stored there until it is
 /// acknowledged.
@@ -262,6 +291,7 @@ bool Link::take_answer(std::uint32_t sequence, const Answer& answer) {
   if (waiting_ != nullptr && waiting_->sequence == sequence && !waiting_->answer) {
     if (!waiting_->takes(answer)) return false;
     waiting_->answer = answer;
+    waiting_->done = true;
     if (is_result) last_answered_ = sequence;
     waiting_->alarm.cancel();
     return true;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -41,6 +42,8 @@ class Link : public std::enable_shared_from_this<Link> {
   static asio::awaitable<Reply<Result>> command(std::shared_ptr<Link> link, Command body);
   static asio::awaitable<QueryReply> query(std::shared_ptr<Link> link, std::uint32_t sequence,
                                            std::chrono::milliseconds deadline);
+  static asio::awaitable<PermitReply> begin(std::shared_ptr<Link> link, std::uint32_t run,
+                                            std::chrono::milliseconds confirm_within);
 
   void send(const Message& message);
   void fail(LinkErrorKind kind, std::string text);
@@ -49,13 +52,22 @@ class Link : public std::enable_shared_from_this<Link> {
   [[nodiscard]] bool is_up() const { return established_ && !error_; }
   [[nodiscard]] std::uint32_t last_sequence() const { return last_sequence_; }
   [[nodiscard]] const std::optional<State>& latest_state() const { return latest_state_; }
+  [[nodiscard]] const std::optional<Permit>& latest_permit() const { return latest_permit_; }
   [[nodiscard]] std::optional<Clock::time_point> heard_at() const { return heard_at_; }
 
  private:
   using Answer = std::variant<TouchResult, MoveResult, ResultUnknown, Rejected>;
 
+  /// A call that waits for the controller.
+  struct Pending {
+    asio::steady_timer alarm;  // its deadline; cancelled to wake the call
+    std::string what;          // is asked for, in words
+    bool accepted = false;
+    bool done = false;
+  };
+
   /// The one call that waits for an answer; lives in its coroutine.
-  struct Waiting {
+  struct Waiting : Pending {
     Waiting(Link& on_link, std::uint32_t of_sequence, MessageType wants);
     ~Waiting();
     Waiting(const Waiting&) = delete;
@@ -65,13 +77,23 @@ class Link : public std::enable_shared_from_this<Link> {
     Link& link;
     const std::uint32_t sequence;
     const MessageType wanted;  // kTouchResult, kMoveResult, or kResultUnknown for a query
-    asio::steady_timer alarm;  // its deadline; cancelled to wake the call
-    bool accepted = false;
     std::optional<Answer> answer;
   };
 
-  /// Returns when `waiting` has its answer or the link is down.
-  asio::awaitable<void> wait(Waiting& waiting, Clock::time_point accept_by, Clock::time_point answer_by);
+  /// The one begin() that waits for its permit; lives in its coroutine.
+  struct Asking : Pending {
+    Asking(Link& on_link, std::uint32_t for_run);
+    ~Asking();
+    Asking(const Asking&) = delete;
+    Asking& operator=(const Asking&) = delete;
+
+    Link& link;
+    const std::uint32_t run;
+    Permit decision;
+  };
+
+  /// Returns when `pending` is done or the link is down.
+  asio::awaitable<void> wait(Pending& pending, Clock::time_point accept_by, Clock::time_point answer_by);
 
   static LinkError not_connected(const Link* link);
   void greet(const DecodeResult& frame, const ExpectedController& expected);
@@ -84,6 +106,7 @@ class Link : public std::enable_shared_from_this<Link> {
 
   void take(const Message& message);
   void take_state(const State& state);
+  bool take_permit(const Permit& permit);                          // false: nobody asked for it
   bool take_answer(std::uint32_t sequence, const Answer& answer);  // false: it answers nothing
 
   asio::any_io_executor executor_;
@@ -103,7 +126,9 @@ class Link : public std::enable_shared_from_this<Link> {
   std::optional<State> latest_state_;
   std::optional<Permit> latest_permit_;
   std::optional<Clock::time_point> heard_at_;
+  std::set<std::uint32_t> runs_begun_;  // on this connection
   Waiting* waiting_ = nullptr;
+  Asking* asking_ = nullptr;
 };
 
 }  // namespace cs8
