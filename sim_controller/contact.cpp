@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <variant>
 
@@ -30,6 +31,26 @@ double bisect_trip(const Plant& plant, const calib::JointVector& from, const cal
   return touched;
 }
 
+/// Unit vector from the box's nearest point to a point outside; inside, out through the nearest side.
+Eigen::Vector3d outward(const calib::Box& box, const Eigen::Vector3d& point_m) {
+  const Eigen::Vector3d way = point_m - point_m.cwiseMax(box.min_m).cwiseMin(box.max_m);
+  if (!way.isZero(0.0)) return way.normalized();
+  const Eigen::Vector3d below = box.min_m - point_m, above = point_m - box.max_m;
+  int axis = 0;
+  below.cwiseMax(above).maxCoeff(&axis);
+  return above[axis] > below[axis] ? Eigen::Vector3d::Unit(axis).eval()
+                                   : (-Eigen::Vector3d::Unit(axis)).eval();
+}
+
+/// Pre-travel beside that of a push along the stylus; `push` on the ball in R_7, a unit vector.
+double sideways_pretravel_m(const cell::TrueProbe& probe, const Eigen::Vector3d& push) {
+  if (probe.pretravel_tilt_m == 0.0 && probe.lobes_m == 0.0) return 0.0;
+  const double direction_rad = std::atan2(push.y(), push.x());
+  return push.head<2>().squaredNorm() *
+         (probe.pretravel_tilt_m +
+          probe.lobes_m * std::cos(3.0 * (direction_rad - probe.lobe_direction_rad)));
+}
+
 }  // namespace
 
 double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m) {
@@ -44,6 +65,49 @@ double trip_gap_m(const Plant& plant, const calib::JointVector& joints, double n
   for (const calib::Box& box : plant.scene.obstacles)
     distance_m = std::min(distance_m, box_distance_m(box, ball));
   return distance_m - (plant.trip_distance_m + noise_m);
+}
+
+double trip_gap_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool, double noise_m) {
+  const Eigen::Vector3d ball = block_from_tool.translation();
+  double gap_m = std::numeric_limits<double>::infinity();
+  for (const calib::Box& box : plant.scene.obstacles) {
+    const Eigen::Vector3d push = block_from_tool.linear().transpose() * outward(box, ball);
+    const double trip_distance_m =
+        plant.trip_distance_m + noise_m - sideways_pretravel_m(plant.hidden.probe, push);
+    gap_m = std::min(gap_m, box_distance_m(box, ball) - trip_distance_m);
+  }
+  return gap_m;
+}
+
+Room room_around(const calib::CollisionScene& scene, const calib::Chain& chain, int yielding) {
+  std::vector<calib::Segment> placed;
+  placed.reserve(scene.bodies.size());
+  double way_m = std::numeric_limits<double>::infinity();
+  const std::string *nearest = nullptr, *to = nullptr;
+  const auto consider = [&](double pair_way_m, const std::string& body, const std::string& other) {
+    if (pair_way_m >= way_m) return;
+    way_m = pair_way_m;
+    nearest = &body;
+    to = &other;
+  };
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const calib::Capsule& body = scene.bodies[i];
+    const calib::Segment& here = placed.emplace_back(calib::place(body, chain));
+    if (static_cast<int>(i) == yielding) continue;
+    for (const calib::Box& obstacle : scene.obstacles) {
+      consider(calib::segment_box_distance_m(here, obstacle) - body.radius_m, body.name, obstacle.name);
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const calib::Capsule& other = scene.bodies[j];
+      if (calib::are_neighbours(body, other)) continue;
+      const double apart_m =
+          calib::segment_distance_m(here.from_m, here.to_m, placed[j].from_m, placed[j].to_m) -
+          body.radius_m - other.radius_m;
+      consider(0.5 * apart_m, body.name, other.name);  // both move
+    }
+  }
+  if (way_m > 0.0) return {way_m, ""};
+  return {way_m, *nearest + " hit " + *to};
 }
 
 std::optional<double> find_trip(const Plant& plant, const Path& path, double noise_m) {

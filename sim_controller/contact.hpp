@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 
 #include "calib_core/collision.hpp"
 #include "sim_controller/motion.hpp"
@@ -20,6 +21,19 @@ double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m);
 /// What is left of the true ball's way to the trip: distance of its centre from the nearest obstacle, less
 /// (trip distance + noise). Positive noise trips early, farther out of the material. Not positive: touched.
 double trip_gap_m(const Plant& plant, const calib::JointVector& joints, double noise_m);
+
+/// The same of a tool that stands at R_7, with a pre-travel that depends on the direction of the push.
+double trip_gap_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool, double noise_m);
+
+/// How far every body may go before any two can meet; when that is not positive, which two touch.
+struct Room {
+  double way_m = 0.0;
+  std::string hit;  // "stem hit block"
+};
+
+/// Bodies against obstacles and against each other, but for neighbours and the body with the index
+/// `yielding`.
+Room room_around(const calib::CollisionScene& scene, const calib::Chain& chain, int yielding);
 
 /// Progress on the path where the true ball first trips, on the touched side of the edge, or nothing; 0 when
 /// it trips at once.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "cs8_protocol/codec.hpp"
 #include "cs8_protocol/wire_units.hpp"
@@ -339,13 +338,6 @@ Replies step(const Plant& plant, ControllerState& state, const Event& event, Tim
   Step step(plant, state, now);
   std::visit(step, event);
   return std::move(step.replies);
-}
-
-double gaussian(std::mt19937_64& chance) {
-  // Box and Muller; std::normal_distribution differs between libraries.
-  const auto uniform = [&chance] { return (static_cast<double>(chance() >> 11) + 0.5) * 0x1p-53; };
-  const double radius = std::sqrt(-2.0 * std::log(uniform()));
-  return radius * std::cos(2.0 * std::numbers::pi * uniform());
 }
 
 }  // namespace sim

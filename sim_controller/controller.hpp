@@ -13,6 +13,7 @@
 #include "cs8_protocol/messages.hpp"
 #include "sim_controller/plant.hpp"
 #include "sim_controller/timeline.hpp"
+#include "sim_controller/world.hpp"
 
 /// The controller's side of the protocol as a step: what happened and when goes in, what is sent comes out.
 /// The rules are those of cs8_protocol/PROTOCOL.md. No sockets, no clock; chance and time are handed in.
@@ -103,8 +104,5 @@ ControllerState make_controller(const Plant& plant, const ControllerOptions& opt
 
 /// `now` never goes back from one step to the next.
 Replies step(const Plant& plant, ControllerState& state, const Event& event, TimePoint now);
-
-/// One value with mean 0 and standard deviation 1, the same from the same generator on every machine.
-double gaussian(std::mt19937_64& chance);
 
 }  // namespace sim

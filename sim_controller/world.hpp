@@ -28,7 +28,8 @@ struct World {
   calib::PreparedModel arm;  // the true model at prepared_rise_k
   double prepared_rise_k = 0.0;
   calib::JointVector tip_levers_m;   // a joint's turn by 1 rad moves the ball no farther
-  calib::JointVector body_levers_m;  // ... and no point of a body
+  calib::JointVector body_levers_m;  // ... and no point of a body, or of the ball
+  int stylus_body = -1;              // of the scene's bodies; -1: none
   double to_edge_m = -1.0;  // the ball is at least this far from where it trips or lets go; negative: unknown
   double to_hit_m = -1.0;   // bodies may go this far before two can meet; negative: unknown
   bool deflected = false;   // the material holds the stylus off its seat
@@ -65,5 +66,8 @@ void begin_search(const Plant& plant, World& world, std::mt19937_64& chance);
 /// Simulated time passes without ticks (the controller does that when nothing can happen): the arm warms up
 /// while powered, else cools down. sense() does it for its own tick.
 void pass(const Plant& plant, World& world, double seconds);
+
+/// One value with mean 0 and standard deviation 1, the same from the same generator on every machine.
+double gaussian(std::mt19937_64& chance);
 
 }  // namespace sim
