@@ -70,7 +70,7 @@ int run(const Arguments& arguments) {
   boost::asio::io_context io;
   std::optional<sim::Server> server;
   try {
-    server.emplace(io, endpoint.host, endpoint.port, sim::make_plant(cell, truth.errors), options);
+    server.emplace(io, endpoint.host, endpoint.port, sim::make_plant(cell, truth), options);
   } catch (const boost::system::system_error& error) {
     std::cerr << "cs8sim: cannot listen on " << endpoint.host << ':' << endpoint.port << ": "
               << error.code().message() << "; give another address with --listen\n";
@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
       ->type_name("HOST:PORT")
       ->check(check_listen);
   app.add_option("--truth", arguments.truth_file,
-                 "the arm's true errors; default: truth.json beside the cell file")
+                 "what the cell hides; default: truth.json beside the cell file")
       ->type_name("FILE");
   app.add_option("--seed", arguments.seed, "of the touch noise")->type_name("N")->capture_default_str();
   app.add_option("--speed", arguments.speed, "simulated against wall time; max: motions take no time")

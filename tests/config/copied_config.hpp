@@ -11,6 +11,7 @@ inline constexpr const char* kProbe = "cells/demo/probe.json";
 inline constexpr const char* kRecipe = "recipes/edf-25.json";
 inline constexpr const char* kCell = "cells/demo/cell.json";
 inline constexpr const char* kTruth = "cells/demo/truth.json";
+inline constexpr const char* kRealTruth = "cells/demo/truth-real.json";
 
 /// A copy of the shipped configuration to spoil: the demo cell, whose files have every kind of entry.
 class CopiedConfig : public testing::Test {

@@ -18,6 +18,8 @@ using testing::HasSubstr;
 
 using ReadConfig = CopiedConfig;
 
+bool is_truth(const std::string& file) { return file == kTruth || file == kRealTruth; }
+
 /// `value` put at `at` (nothing: what is there is taken away) must be refused at `pointer` with `said`.
 struct Spoiled {
   const char* file;
@@ -49,7 +51,7 @@ TEST_P(SpoiledEntry, IsRefusedInOneLineWithFilePointerAndRemedy) {
   const Spoiled& spoiled = GetParam();
   edit(spoiled.file, [&](json& document) { spoil(document, spoiled); });
   const ConfigError error = error_of([&] {
-    if (std::string(spoiled.file).ends_with("truth.json")) {
+    if (is_truth(spoiled.file)) {
       read_truth(path(spoiled.file));
     } else {
       static_cast<void>(read());
@@ -219,6 +221,35 @@ INSTANTIATE_TEST_SUITE_P(
                     Spoiled{kTruth, "/errors/theta0_deg", 1, "/errors/theta0_rad", "two units"},
                     Spoiled{kTruth, "/errors/r0_mm", nullptr, "/errors/r0_mm", "is null"}));
 
+INSTANTIATE_TEST_SUITE_P(
+    Effects, SpoiledEntry,
+    testing::Values(
+        Spoiled{kTruth, "/droop", json::object(), "/droop", "unknown key"},  // of a file of version 1
+        Spoiled{kRealTruth, "/droop/compliance_rad_per_nm", json({1e-6}), "/droop/compliance_rad_per_nm",
+                "2"},
+        Spoiled{kRealTruth, "/droop/compliance_rad_per_nm/1", 1e-3, "/droop/compliance_rad_per_nm/1",
+                "0 to 0.0001"},
+        Spoiled{kRealTruth, "/droop/on", "yes", "/droop/on", "is a text"},
+        Spoiled{kRealTruth, "/ripple/joints/5", std::nullopt, "/ripple/joints", "6"},
+        Spoiled{kRealTruth, "/ripple/joints/2/phase_deg", std::nullopt, "/ripple/joints/2",
+                "\"phase_deg\" is missing"},
+        Spoiled{kRealTruth, "/ripple/joints/2/periods_per_turn", -1, "/ripple/joints/2/periods_per_turn",
+                "0 to 10000"},
+        Spoiled{kRealTruth, "/ripple/joints/2/periods_per_turn", 9000, "/ripple/joints/2", "no gear"},
+        Spoiled{kRealTruth, "/backlash/width_rad", json({1e-5, 1e-5}), "/backlash/width_rad", "6"},
+        Spoiled{kRealTruth, "/backlash/width_rad/3", -1e-5, "/backlash/width_rad/3", "0 to 0.01"},
+        Spoiled{kRealTruth, "/thermal/arm_time_constant_s", 0, "/thermal/arm_time_constant_s", "1 to"},
+        Spoiled{kRealTruth, "/thermal/arm_rise_k", 400, "/thermal/arm_rise_k", "-50 to 50"},
+        Spoiled{kRealTruth, "/thermal/arm_rise_k", std::nullopt, "/thermal", "\"arm_rise_k\" is missing"},
+        Spoiled{kRealTruth, "/block/offsets_mm/0", 11, "/block/offsets_mm/0", "-10 to 10"},
+        Spoiled{kRealTruth, "/probe/lobes_mm", 2, "/probe/lobes_mm", "-1 to 1"},
+        Spoiled{kRealTruth, "/probe/noise_mm", -0.001, "/probe/noise_mm", "0 to 1"},
+        Spoiled{kRealTruth, "/probe/lobe_direction_rad", 1, "/probe/lobe_direction_rad", "keep one"},
+        Spoiled{kRealTruth, "/repeatability/std_rad", std::nullopt, "/repeatability",
+                "\"std_rad\" is missing"},
+        Spoiled{kRealTruth, "/encoder/step_deg", 2, "/encoder/step_deg", "0 to 1"},
+        Spoiled{kRealTruth, "/surprise", 1, "/surprise", "unknown key"}));
+
 /// Pointers of everything in a document but its root.
 std::vector<json::json_pointer> places_in(const json& value,
                                           const json::json_pointer& here = json::json_pointer("")) {
@@ -241,10 +272,11 @@ class EveryEntry : public ReadConfig, public testing::WithParamInterface<const c
   [[nodiscard]] ConfigError error_with(const json& document) const {
     const std::filesystem::path file = folder_.write(GetParam(), document.dump());
     return error_of(
-        [&] { GetParam() == kTruth ? static_cast<void>(read_truth(file)) : static_cast<void>(read()); });
+        [&] { is_truth(GetParam()) ? static_cast<void>(read_truth(file)) : static_cast<void>(read()); });
   }
 };
-INSTANTIATE_TEST_SUITE_P(Files, EveryEntry, testing::Values(kArm, kBlock, kProbe, kRecipe, kCell, kTruth));
+INSTANTIATE_TEST_SUITE_P(Files, EveryEntry,
+                         testing::Values(kArm, kBlock, kProbe, kRecipe, kCell, kTruth, kRealTruth));
 
 TEST_P(EveryEntry, ThatIsNullIsRefusedAtItsPlace) {
   const json whole = json_of(path(GetParam()));
@@ -284,7 +316,7 @@ TEST_P(EveryEntry, ThatIsCutOffAnywhereIsRefused) {
   for (std::size_t length = 0; length < whole.size(); length += 7) {
     folder_.write(GetParam(), whole.substr(0, length));
     const ConfigError error = error_of([&] {
-      GetParam() == kTruth ? static_cast<void>(read_truth(path(kTruth))) : static_cast<void>(read());
+      is_truth(GetParam()) ? static_cast<void>(read_truth(path(GetParam()))) : static_cast<void>(read());
     });
     EXPECT_THAT(error.source(), EndsWith(GetParam())) << length;
   }

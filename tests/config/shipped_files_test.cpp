@@ -133,8 +133,11 @@ TEST(DemoCell, TouchesThePlateAsAFifthFaceWithABall) {
             cell.block.solids[0].max_m.x());  // beside the block
 }
 
-TEST(DemoCell, TruthIsARealArmWithAllErrors) {
-  const Truth truth = truth_of("demo");
+class DemoTruth : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(Both, DemoTruth, testing::Values("truth.json", "truth-real.json"));
+
+TEST_P(DemoTruth, IsARealArmWithAllErrors) {
+  const Truth truth = read_truth(kSourceDir / "config/cells/demo" / GetParam());
   for (std::size_t i = 0; i < calib::kErrorParameterCount; ++i) {
     const calib::ErrorParameter& parameter = calib::error_parameters()[i];
     const double error = std::abs(truth.errors[static_cast<Eigen::Index>(i)]);
