@@ -56,19 +56,21 @@ void finish_move(Drives& drives) {
   drop_queue(drives);
 }
 
-/// The rate at the end of a tick that does not finish the move: as near to `wanted_rate` as the ramps allow,
-/// and no faster than what can still stop at the move's end.
-double next_rate(const Drives& drives, double wanted_rate, double remaining) {
+/// Deceleration of a stop: of a hold the move's own, of a reset a harder one.
+double stop_deceleration(const Drives& drives) {
   const Move& move = drives.queue.front();
+  if (!drives.braking) return move.acceleration;
+  const double harder = kResetDecelerationMetresPerSecond2 / kAccelerationMetresPerSecond2;
+  return std::max(harder * move.acceleration, move.top_rate / kResetSeconds);
+}
+
+/// The rate after a tick that does not end in standstill: as near to the wanted one as the ramps allow, and
+/// no faster than what can still stop at the move's end.
+double next_rate(const Drives& drives, double wanted_rate, double remaining) {
   const double dt = kTickSeconds;
   const double v = drives.rate;
-  if (drives.braking) {
-    const double factor = kResetDecelerationMetresPerSecond2 / kAccelerationMetresPerSecond2;
-    const double brake = std::max(factor * move.acceleration, move.top_rate / kResetSeconds);
-    return std::max(0.0, v - brake * dt);
-  }
-  const double a = move.acceleration;
-  const double ramped = std::clamp(wanted_rate, v - a * dt, v + a * dt);
+  const double a = drives.queue.front().acceleration;
+  const double ramped = std::clamp(wanted_rate, v - stop_deceleration(drives) * dt, v + a * dt);
   // (v + v1) dt / 2 + v1^2 / 2a = remaining, solved for v1.
   const double stoppable = a * (std::sqrt(dt * dt / 4.0 + (2.0 * remaining - v * dt) / a) - dt / 2.0);
   return std::max(0.0, std::min(ramped, stoppable));
@@ -113,38 +115,42 @@ void reset_motion(Drives& drives) {
 }
 
 TickMotion tick(Drives& drives, double monitor_speed_percent, bool permitted) {
-  TickMotion motion;
-  motion.from = drives.joints;
-  motion.to = drives.joints;
-  if (drives.queue.empty() || (drives.rate == 0.0 && !permitted)) {
+  const bool goes_on = permitted && monitor_speed_percent > 0.0 && !drives.braking;
+  TickMotion motion{.from = drives.joints, .to = drives.joints};
+  if (drives.queue.empty() || (drives.rate == 0.0 && !goes_on)) {
     drives.standing_ticks = std::min(drives.standing_ticks + 1, kSettledTicks);
     return motion;
   }
 
   const Move& move = drives.queue.front();
   const double remaining = 1.0 - drives.progress;
-  const double slowing = drives.rate * kTickSeconds / 2.0;  // way of a tick that brakes to standstill
-  const bool ends = remaining <= slowing + kProgressSmall;
+  const double stop_s = drives.rate / stop_deceleration(drives);
+  const double slowing = drives.rate * kTickSeconds / 2.0;  // way of a whole tick that ends in standstill
+  bool arrives = false;
+  motion.rate_from = drives.rate;
+  if (!goes_on && stop_s <= kTickSeconds) {
+    motion.moving_share = stop_s / kTickSeconds;
+  } else if (remaining <= slowing + kProgressSmall) {
+    arrives = true;
+    if (slowing > 0.0) motion.moving_share = std::min(1.0, remaining / slowing);
+  } else {
+    motion.rate_to =
+        next_rate(drives, goes_on ? move.top_rate * monitor_speed_percent / 100.0 : 0.0, remaining);
+  }
+  const double way = (motion.rate_from + motion.rate_to) / 2.0 * motion.moving_share * kTickSeconds;
+
   motion.path = move.path;
   motion.path_from = move.along_path(drives.progress);
-  motion.rate_from = drives.rate;
-  if (ends) {
-    motion.moving_share = slowing > 0.0 ? std::min(1.0, remaining / slowing) : 1.0;
-    drives.progress = 1.0;
-  } else {
-    const double wanted = permitted ? move.top_rate * monitor_speed_percent / 100.0 : 0.0;
-    motion.rate_to = next_rate(drives, wanted, remaining);
-    drives.progress += (motion.rate_from + motion.rate_to) * kTickSeconds / 2.0;
-  }
-  motion.path_to = move.along_path(drives.progress);
-  drives.joints = posture(*move.path, motion.path_to);
+  drives.progress = arrives ? 1.0 : std::min(1.0, drives.progress + way);
   drives.rate = motion.rate_to;
   drives.standing_ticks = 0;
-  motion.to = drives.joints;
+  motion.path_to = move.along_path(drives.progress);
+  motion.to = posture(*move.path, motion.path_to);
+  drives.joints = motion.to;
 
   if (drives.braking && drives.rate == 0.0) {
     finish_reset(drives);
-  } else if (ends) {
+  } else if (arrives) {
     finish_move(drives);
   }
   return motion;

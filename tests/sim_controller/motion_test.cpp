@@ -80,6 +80,30 @@ TEST(Duration, IsNotUnderWhatTheSlowestJointNeeds) {
   EXPECT_NEAR(duration_s(plant, {{plant.start_joints, turned}}, 0.25), 1.0 / plant.joint_speeds_max[5], 1e-9);
 }
 
+TEST(PathSlope, OfATurnOfJoint1IsItsArc) {
+  const Plant plant = testing::perfect_plant("demo");
+  const calib::JointVector& from = plant.start_joints;
+  calib::JointVector to = from;
+  to[0] += 1.0;
+  calib::JointVector across = from;
+  across[0] += std::numbers::pi;
+  const double radius_m = tip_distance_m(plant, from, across) / 2.0;
+  const PathSlope slope = path_slope(plant, {{from, to}});
+  EXPECT_GE(slope.tip_m, radius_m);
+  EXPECT_LT(slope.tip_m, 1.005 * radius_m);
+  EXPECT_NEAR(slope.joint_seconds, 1.0 / plant.joint_speeds_max[0], 1e-12);
+  const PathSlope quarter_back = path_slope(plant, {{from, to}, 0.75, 0.5});
+  EXPECT_NEAR(quarter_back.tip_m, slope.tip_m / 4.0, 1e-12);
+  EXPECT_NEAR(quarter_back.joint_seconds, slope.joint_seconds / 4.0, 1e-12);
+}
+
+TEST(PathSlope, OfALineIsItsLength) {
+  const Plant plant = testing::perfect_plant("demo");
+  const auto touch = aimed_touch(testing::read_cell("demo"), {.face = 0, .tilt_rad = 0.7});
+  const StraightLine line = straight_line(plant, touch.motion.approach, touch.motion.search_end);
+  EXPECT_NEAR(path_slope(plant, {line.path}).tip_m, line.length_m, 2e-3 * line.length_m);
+}
+
 TEST(SweepBound, IsNeverLessThanTheWayOfTheTip) {
   const Plant plant = testing::true_plant("demo");
   std::mt19937_64 chance(5);
