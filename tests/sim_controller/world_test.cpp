@@ -309,6 +309,7 @@ TEST(World, LetsGoOfTheBallOnTheWayBackAndTripsAgain) {
   for (int again = 0; again < 3; ++again) {
     ASSERT_TRUE(ride.search(touch.motion));
     EXPECT_EQ(ride.world.probe.inputs, (ProbeInputs{true, false}));
+    movel(ride.plant, ride.drives, ride.drives.joints, 0.008);
     reset_motion(ride.drives);
     while (!is_settled(ride.drives)) ride.tick();
     EXPECT_TRUE(ride.world.deflected);

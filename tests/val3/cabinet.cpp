@@ -42,6 +42,7 @@ double Cabinet::queue_move(const Joint& to, const Mdesc& mdesc, const Eigen::Iso
     from_ = joints_deg;
     progress_ = 0;
     move_id_ = moves_queued_;
+    queued_by_ = caller;
   }
   queue_.push_back({to, duration_s});
   dropped_.reset();
@@ -87,6 +88,7 @@ void Cabinet::advance_motion() {
 }
 
 void Cabinet::step() {
+  queued_by_ = nullptr;
   advance_motion();
   if (world) world(*this);
   if (armed_.empty()) return;

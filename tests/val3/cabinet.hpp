@@ -65,11 +65,15 @@ struct Cabinet {
   /// way, whichever takes longer.
   double queue_move(const Joint& to, const Mdesc& mdesc, const Eigen::Isometry3d& flange_from_tool);
   void reset_motion();
-  [[nodiscard]] bool is_empty() const { return queue_.empty(); }
+  /// A task may still see an empty queue in the tick in which another one queued the first move.
+  [[nodiscard]] bool is_empty() const {
+    return queue_.empty() || (queued_by_ != nullptr && queued_by_ != caller);
+  }
   [[nodiscard]] bool is_settled() const { return rate_ == 0 && still_s_ >= kTickSeconds; }
   [[nodiscard]] double move_id() const { return move_id_ + progress_; }
   [[nodiscard]] bool can_move() const { return powered && !held && !stopped && emergency_stop == 0; }
-  bool stopped = false;  // by stopMove
+  bool stopped = false;          // by stopMove
+  const void* caller = nullptr;  // the task that is on
 
   // Latch
   void arm_latch(const std::string& link);
@@ -83,7 +87,8 @@ struct Cabinet {
   [[nodiscard]] Joint last_queued() const;
 
   std::deque<Move> queue_;
-  std::optional<Move> dropped_;  // what the arm stops in after a reset
+  const void* queued_by_ = nullptr;  // the task that queued the first move in this tick
+  std::optional<Move> dropped_;      // what the arm stops in after a reset
   Joint from_{};
   double progress_ = 0;  // of the first move
   double rate_ = 0;      // 0 stands, 1 nominal

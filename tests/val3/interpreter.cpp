@@ -301,6 +301,7 @@ Value Interpreter::instruction(Task& task, const Expression& e) {
   const Instruction* known = find_instruction(e.text);
   if (known == nullptr) throw RuntimeError(82, "no instruction " + e.text);
   if (!known->run) return task_instruction(task, e);
+  cabinet_.caller = &task;
   Call call{.cabinet = cabinet_, .application = application_};
   call.values.resize(e.parts.size());
   call.places.resize(e.parts.size());

@@ -25,7 +25,7 @@ class SmallProject {
   SmallProject& operator=(const SmallProject&) = delete;
 
   SmallProject& number(const std::string& variable, int size = 1) { return data(variable, "num", "", size); }
-  SmallProject& flag(const std::string& variable) { return data(variable, "bool", ""); }
+  SmallProject& flag(const std::string& variable, int size = 1) { return data(variable, "bool", "", size); }
   SmallProject& data(const std::string& variable, const std::string& type, const std::string& values,
                      int size = 1) {
     data_ += "<Data name=\"" + variable + "\" access=\"private\" xsi:type=\"array\" type=\"" + type +

@@ -168,6 +168,21 @@ TEST(Arm, LatchKeepsTheJointsOfTheEdgeWhileTheArmStopsBehindIt) {
   EXPECT_LT(run.get<Joint>("j", 1)[0], 6.0);
 }
 
+TEST(Arm, AnotherTaskMaySeeAnEmptyQueueForAMoment) {
+  SmallProject project;
+  project.data("j", "jointRx", "<Value key=\"0\" j1=\"10\"/>")
+      .data("m", "mdesc", kMoveData)
+      .flag("b", 4)
+      .flag("bOver");
+  project.program("look", "b[1]=isEmpty()\ndelay(0)\nb[2]=isEmpty()");
+  project.program("start", "taskCreate \"look\",10,look()\nmovej(j,flange,m)\nb[0]=isEmpty()");
+  Running run(project);
+  run.ticks(3);
+  EXPECT_FALSE(run.get<bool>("b", 0));
+  EXPECT_TRUE(run.get<bool>("b", 1));
+  EXPECT_FALSE(run.get<bool>("b", 2));
+}
+
 TEST(Arm, HeldItKeepsItsQueueAndAResetForgetsIt) {
   SmallProject project;
   project.data("j", "jointRx", "<Value key=\"0\" j1=\"10\"/>").data("m", "mdesc", kMoveData).flag("b");
