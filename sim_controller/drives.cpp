@@ -20,7 +20,6 @@ calib::JointVector end_of(const Drives& drives) {
 }
 
 void push(const Plant& plant, Drives& drives, Stretch stretch, double tip_speed_m_s, bool ends_in_error) {
-  if (drives.braking) return;
   const PathSlope slope = path_slope(plant, stretch);
   // A move without length takes its tick or two all the same.
   double top_rate = 1.0 / kTickSeconds;
@@ -91,6 +90,7 @@ calib::JointVector TickMotion::at(double share) const {
 }
 
 void movej(const Plant& plant, Drives& drives, const calib::JointVector& target, double tip_speed_m_s) {
+  if (drives.braking) return;
   const calib::JointVector from = end_of(drives);
   const bool possible = plant.joint_ranges.contains(target);
   push(plant, drives, {{from, possible ? target : from}}, tip_speed_m_s, !possible);
@@ -103,6 +103,7 @@ void movel(const Plant& plant, Drives& drives, const calib::JointVector& target,
 }
 
 void follow(const Plant& plant, Drives& drives, Stretch stretch, double tip_speed_m_s) {
+  if (drives.braking) return;
   if ((stretch.at(0.0) - end_of(drives)).cwiseAbs().maxCoeff() > kJumpMaxRadians)
     throw std::logic_error("a path is to be followed that does not begin where the arm is");
   push(plant, drives, std::move(stretch), tip_speed_m_s, false);

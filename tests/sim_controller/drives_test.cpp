@@ -261,6 +261,8 @@ TEST(ResetMotion, SwallowsMotionsUntilTheArmStands) {
   reset_motion(drives);
   movej(plant(), drives, plant().start_joints, 0.25);
   movel(plant(), drives, search().approach, 0.25);
+  follow(plant(), drives, {{search().search_end, search().approach}}, 0.25);
+  EXPECT_EQ(drives.queue.size(), 1U);  // the search
   while (drives.braking) tick(drives, 100.0, true);
   EXPECT_TRUE(drives.queue.empty());
   movel(plant(), drives, search().approach, 0.02);
