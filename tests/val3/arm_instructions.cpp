@@ -33,6 +33,10 @@ void check(const Mdesc& m) {
 Value queue(Call& c, const Joint& to) {
   const Mdesc& descriptor = c.value<Mdesc>(2);
   check(descriptor);
+  if (auto& left = c.cabinet.moves_until_error; left && (*left)-- == 0) {
+    left.reset();
+    throw RuntimeError(kErrorImpossibleMove, "a move that a test wants to be impossible");
+  }
   if (!c.cabinet.arm.in_range(to)) throw RuntimeError(kErrorImpossibleMove, "a move out of the joint ranges");
   return c.cabinet.queue_move(to, descriptor, isometry(c.value<Tool>(1).trsf));
 }

@@ -22,7 +22,10 @@ std::filesystem::path project_path() {
   return std::filesystem::path(TOUCHCAL_SOURCE_DIR) / "cs8_protocol/val3/touchcal/touchcal.pjx";
 }
 
-Bench::Bench(Hardware hardware) : loaded_(load(project_path())), interpreter(loaded_.application, cabinet) {
+Bench::Bench(Hardware hardware)
+    : loaded_(load(project_path())),
+      cabinet(cabinet_of(hardware)),
+      interpreter(loaded_.application, cabinet) {
   for (const Problem& problem : loaded_.problems) ADD_FAILURE() << problem.message();
   for (const char* input : {kContact, kLoop, kClosed, kConfirm}) cabinet.inputs[link(input)] = false;
   if (hardware.latch) cabinet.latch_inputs.insert(link(kContact));
@@ -36,6 +39,26 @@ Bench::Bench(Hardware hardware) : loaded_(load(project_path())), interpreter(loa
   update_inputs();
   interpreter.start();
   seconds(0.1);
+}
+
+Cabinet Bench::cabinet_of(Hardware hardware) {
+  Cabinet cabinet;
+  cabinet.clock_s = hardware.clock_s;
+  return cabinet;
+}
+
+void Bench::spoil_globals(const std::set<std::string>& kept) {
+  for (const auto& [name, global] : loaded_.application.globals) {
+    if (global.line == 0 || name.starts_with("k") || kept.contains(name)) continue;
+    for (std::size_t i = 0; i < global.place.size(); ++i) {
+      const Place place = global.place.element(static_cast<double>(i));
+      if (global.type == Type::kNum) place.write(12345.5);
+      if (global.type == Type::kBool) place.write(!std::get<bool>(place.read()));
+      if (global.type == Type::kString) place.write(std::string("left from before"));
+      if (global.type == Type::kJoint) place.write(Joint{200, 200, 200, 200, 200, 200});
+      if (global.type == Type::kMdesc) place.write(Mdesc{.decel = 1});
+    }
+  }
 }
 
 std::string Bench::link(const std::string& variable) const {

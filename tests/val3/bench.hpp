@@ -19,6 +19,7 @@ class Bench {
  public:
   struct Hardware {
     bool latch = true;
+    double clock_s = 0;  // since the controller was switched on
   };
   explicit Bench(Hardware hardware);
   Bench() : Bench(Hardware{}) {}
@@ -92,12 +93,17 @@ class Bench {
     return std::get<T>(loaded_.application.globals.at(name).place.read());
   }
 
+  /// Every variable of the application that is no constant and no link gets a value that makes no sense, but
+  /// for `kept`.
+  void spoil_globals(const std::set<std::string>& kept);
+
   Loaded loaded_;
   Cabinet cabinet;
   Interpreter interpreter;
   bool heartbeats = true;
 
  private:
+  static Cabinet cabinet_of(Hardware hardware);
   [[nodiscard]] std::string link(const std::string& variable) const;
   void update_inputs();
   void read_frames();

@@ -93,7 +93,7 @@ void Cabinet::step() {
   if (world) world(*this);
   if (armed_.empty()) return;
   const bool input = inputs.at(armed_);
-  if (input && !armed_input_) {
+  if (input && !armed_input_ && !latch_blind) {
     latched = joints_deg;
     armed_.clear();
   }

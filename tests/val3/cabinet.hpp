@@ -43,10 +43,11 @@ struct Cabinet {
   int emergency_stop = 0;
   double monitor_speed = 100;
   std::string version = "s7.7.2";
-  double clock_s = 0;
+  double clock_s = 0;                                // set before the start, it counts on from there
   std::map<std::string, bool, std::less<>> inputs;   // by link
   std::map<std::string, bool, std::less<>> outputs;  // by link
   std::set<std::string, std::less<>> latch_inputs;   // those with latch hardware
+  bool latch_blind = false;                          // takes the command and never captures
   std::map<std::string, Socket, std::less<>> sockets;
   /// What clearBuffer does to a living connection is to be confirmed on a controller: both are tested.
   bool clear_buffer_closes = true;
@@ -61,6 +62,7 @@ struct Cabinet {
     Joint to{};
     double duration_s = 0;  // at monitor speed 100 %
   };
+  std::optional<int> moves_until_error;  // so many moves are taken, then one ends its task with error 150
   /// Appends a move and returns its id. The duration is that of the slowest joint or of the tool centre's
   /// way, whichever takes longer.
   double queue_move(const Joint& to, const Mdesc& mdesc, const Eigen::Isometry3d& flange_from_tool);

@@ -66,7 +66,7 @@ void Interpreter::tick() {
   std::erase_if(tasks_, [](const Task& task) { return task.status == -1; });
   for (int i = 0; i < static_cast<int>(std::round(kTickSeconds / kStepSeconds)); ++i) cabinet_.step();
   ++ticks_;
-  cabinet_.clock_s = static_cast<double>(ticks_) * kTickSeconds;
+  cabinet_.clock_s = clock_before_s_ + static_cast<double>(ticks_) * kTickSeconds;
 }
 
 void Interpreter::run(Task& task, int statements) {

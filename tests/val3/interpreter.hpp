@@ -47,7 +47,7 @@ class Interpreter {
   /// Both must outlive it. The application's variables are used as they are: a second start finds them as the
   /// first run left them.
   Interpreter(const Application& application, Cabinet& cabinet, Limits limits = {})
-      : application_(application), cabinet_(cabinet), limits_(limits) {}
+      : application_(application), cabinet_(cabinet), limits_(limits), clock_before_s_(cabinet.clock_s) {}
 
   /// The main task NAME~ begins with `start`; `stop` runs in a task of its own, as when the operator ends the
   /// application.
@@ -62,6 +62,7 @@ class Interpreter {
   [[nodiscard]] std::vector<std::string> tasks() const;
   /// Makes a task fail as if its current statement had raised `error`.
   void fail_task(std::string_view name, int error);
+  void set_limits(const Limits& limits) { limits_ = limits; }
   /// Most statements that a task, living or dead, took between two waits.
   [[nodiscard]] const std::map<std::string, int>& most_statements() const { return most_statements_; }
 
@@ -90,6 +91,7 @@ class Interpreter {
   Limits limits_;
   std::list<Task> tasks_;
   std::map<std::string, int> most_statements_;
+  double clock_before_s_;
   long ticks_ = 0;
 };
 
