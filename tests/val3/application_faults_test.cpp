@@ -194,6 +194,17 @@ TEST(ApplicationFaults, TheSecondTouchBeginsNotBeyondApproach) {
   EXPECT_GT(highest, -0.01);
 }
 
+TEST(ApplicationFaults, BeginWhileACommandRunsEndsItWithItsPermit) {
+  Bench bench;
+  into_touch(bench, -15);
+  bench.send(0, Begin{.run = 2, .confirm_within_ms = 5000});
+  const Permit permit = bench.expect<Permit>(0);
+  EXPECT_EQ(permit.state, PermitState::kNone);
+  EXPECT_EQ(permit.detail, static_cast<std::int32_t>(RejectReason::kBusy));
+  EXPECT_EQ(bench.expect<TouchResult>(1, 0.3).outcome, Outcome::kStopped);
+  EXPECT_LT(bench.depth_mm(), -10);
+}
+
 TEST(ApplicationTime, StopBeginsToSlowDownWithin20Milliseconds) {
   Bench bench;
   into_touch(bench, -10);

@@ -27,10 +27,11 @@ Bench::Bench(Hardware hardware)
       cabinet(cabinet_of(hardware)),
       interpreter(loaded_.application, cabinet) {
   for (const Problem& problem : loaded_.problems) ADD_FAILURE() << problem.message();
-  for (const char* input : {kContact, kLoop, kClosed, kConfirm}) cabinet.inputs[link(input)] = false;
+  inputs_ = {&cabinet.inputs[link(kContact)], &cabinet.inputs[link(kLoop)], &cabinet.inputs[link(kClosed)],
+             &cabinet.inputs[link(kConfirm)]};
   if (hardware.latch) cabinet.latch_inputs.insert(link(kContact));
   loaded_.application.globals.at(kHasLatch).place.write(hardware.latch);
-  cabinet.sockets[link(kSocket)];
+  socket_ = &cabinet.sockets[link(kSocket)];
   cabinet.joints_deg = kApproachDeg;
   z_of_approach_m_ = cabinet.arm.world_from_flange(kApproachDeg).translation().z();
   const cs8::JointsMicrodeg clear = at_depth(-20);
@@ -70,8 +71,6 @@ std::string Bench::link(const std::string& variable) const {
   return std::get<Dio>(value).link;
 }
 
-Socket& Bench::socket() { return cabinet.sockets.at(link(kSocket)); }
-
 std::string Bench::log() const {
   std::string all;
   for (const std::string& line : cabinet.log) all += line + '\n';
@@ -86,10 +85,10 @@ void Bench::update_inputs() {
     const double behind = depth - *face_mm;
     if (behind > wires.bounce_mm && behind < 2 * wires.bounce_mm) touched = false;
   }
-  cabinet.inputs[link(kContact)] = wires.contact.value_or(touched);
-  cabinet.inputs[link(kLoop)] = wires.loop.value_or(!touched);
-  cabinet.inputs[link(kClosed)] = cell_closed;
-  cabinet.inputs[link(kConfirm)] = confirm_key;
+  *inputs_[0] = wires.contact.value_or(touched);
+  *inputs_[1] = wires.loop.value_or(!touched);
+  *inputs_[2] = cell_closed;
+  *inputs_[3] = confirm_key;
 }
 
 void Bench::ticks(int count) {
@@ -124,6 +123,7 @@ void Bench::read_frames() {
       state_ = *state;
       ++states_seen_;
     } else {
+      if (const auto* permit = std::get_if<cs8::Permit>(&message.payload)) permit_ = permit->state;
       inbox_.push_back(message);
     }
   }
@@ -132,6 +132,7 @@ void Bench::read_frames() {
 bool Bench::connect() {
   if (!socket().connect()) return false;
   read_ = 0;
+  permit_ = cs8::PermitState::kNone;
   inbox_.clear();
   return true;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <optional>
@@ -58,6 +59,8 @@ class Bench {
   cs8::State state();
   [[nodiscard]] int states_seen() const { return states_seen_; }
   void expect_silence(double s);
+  /// As the newest Permit of this connection said; none without one.
+  [[nodiscard]] cs8::PermitState permit() { return connected() ? permit_ : cs8::PermitState::kNone; }
 
   // The person at the cell.
   void
@@ -86,7 +89,7 @@ class Bench {
   [[nodiscard]] cs8::Touch touch() const;
   [[nodiscard]] cs8::Travel travel_to(double depth_mm) const;
 
-  [[nodiscard]] Socket& socket();
+  [[nodiscard]] Socket& socket() { return *socket_; }
   [[nodiscard]] std::string log() const;
   template <class T>
   T variable(const std::string& name) {
@@ -108,12 +111,15 @@ class Bench {
   void update_inputs();
   void read_frames();
 
+  std::array<bool*, 4> inputs_{};  // of the cabinet: contact, loop, closed, confirm
+  Socket* socket_ = nullptr;
   double z_of_approach_m_ = 0;
   bool was_touched_ = false;
   int ticks_ = 0;
   int states_seen_ = 0;
   std::size_t read_ = 0;  // of what the socket gave the host
   std::optional<cs8::State> state_;
+  cs8::PermitState permit_{};
   std::deque<cs8::Message> inbox_;
 };
 
