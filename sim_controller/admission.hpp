@@ -6,7 +6,6 @@
 #include "calib_core/joint_vector.hpp"
 #include "cs8_protocol/messages.hpp"
 #include "sim_controller/plant.hpp"
-#include "sim_controller/timeline.hpp"
 
 namespace sim {
 
@@ -21,6 +20,15 @@ std::int32_t search_speed_max_um_s(const Plant& plant);
 
 calib::JointVector joints_from_wire(const cs8::JointsMicrodeg& joints);
 cs8::JointsMicrodeg wire_from_joints(const calib::JointVector& joints);
+
+struct TouchMotion {
+  std::vector<calib::JointVector> waypoints;  // the last is the clear posture
+  calib::JointVector approach;
+  calib::JointVector search_end;
+  double travel_speed_m_s = 0.0;
+  double approach_speed_m_s = 0.0;
+  double search_speed_m_s = 0.0;
+};
 
 /// Commands in SI units. Only for commands that were not refused.
 TouchMotion touch_motion(const cs8::Touch& command);

@@ -4,16 +4,24 @@
 #include <cmath>
 
 #include "cs8_protocol/codec.hpp"
-#include "cs8_protocol/wire_units.hpp"
 #include "sim_controller/admission.hpp"
-#include "sim_controller/contact.hpp"
+#include "sim_controller/readiness.hpp"
 #include "sim_controller/reports.hpp"
 
 namespace sim {
 namespace {
 
 using cs8::Outcome;
+using cs8::PermitReason;
+using cs8::PermitState;
 using cs8::RejectReason;
+
+/// At speed max no event simulates more than this: whatever goes on longer goes on with the next event.
+constexpr int kTicksAtOnceMax = static_cast<int>(600.0 / kTickSeconds);
+
+TimePoint::duration tick_period(double speed) {
+  return std::chrono::ceil<TimePoint::duration>(std::chrono::duration<double>(kTickSeconds / speed));
+}
 
 /// One step: the state it changes and what it sends.
 class Step {
@@ -30,12 +38,13 @@ class Step {
 
   void operator()(const ConnectionClosed&) {
     advance();
-    lose_link(now_);
+    lose_link();
   }
 
   void operator()(const Tick& tick) {
     if (tick.bytes_waiting) state_.last_heard = now_;
     advance();
+    report_state();
   }
 
   void operator()(const cs8::Message& message) {
@@ -46,6 +55,7 @@ class Step {
       return fault(cs8::FaultCode::kWrongSide, static_cast<std::int32_t>(type));
     if (!state_.greeted && type != cs8::MessageType::kHello) return fault(cs8::FaultCode::kNoHandshake, 0);
     std::visit([&](const auto& payload) { take(message.sequence, payload); }, message.payload);
+    report_state();
   }
 
   Replies replies;
@@ -58,47 +68,44 @@ class Step {
     state_.heartbeat_timeout = std::clamp(std::chrono::milliseconds(hello.heartbeat_timeout_ms),
                                           kHeartbeatTimeoutMin, kHeartbeatTimeoutMax);
     state_.next_state = now_ + kStatePeriod;
-    if (state_.operator_called) free_arm();
+    if (state_.operator_called) called_to_free_arm(state_.person);
+    state_.operator_called = false;
     send(0, welcome(plant_, state_, open_sequence(), now_));
   }
 
   void take(std::uint32_t, const cs8::Heartbeat&) {}
 
+  void take(std::uint32_t, const cs8::Begin& begin) {
+    const bool key_is_on = state_.cabinet.panel.confirm_key;
+    if (const auto reason = refusal_of_begin()) {
+      tell(refuse(state_.permit, begin, *reason));
+      if (*reason == RejectReason::kTouchTestMissing) asked_for_touch_test(state_.person);
+      return;
+    }
+    tell(await(state_.permit, begin, key_is_on, now_));
+    asked_to_confirm(state_.person);
+  }
+
+  void take(std::uint32_t, const cs8::Finish&) {
+    if (running()) break_off(state_.cabinet, *running(), Outcome::kStopped);
+    tell(withdraw(state_.permit, PermitReason::kFinished));
+  }
+
   void take(std::uint32_t sequence, const cs8::Touch& command) {
-    if (!admit(sequence, command)) return;
-    const double noise_m = plant_.touch_noise_m * gaussian(state_.chance);
-    start(sequence, command, touch_timeline(plant_, state_.joints, touch_motion(command), noise_m));
-    state_.running->search_speed_um_s = command.search_speed_um_s;
-    state_.running->approach_speed_m_s = cs8::metres_per_second_from_um_s(command.approach_speed_um_s);
+    if (admit(sequence, command)) start(command, begin_touch(plant_, state_.cabinet, sequence, command));
   }
 
   void take(std::uint32_t sequence, const cs8::Travel& command) {
-    if (!admit(sequence, command)) return;
-    const double speed_m_s = cs8::metres_per_second_from_um_s(command.travel_speed_um_s);
-    start(sequence, command, travel_timeline(plant_, state_.joints, travel_waypoints(command), speed_m_s));
+    if (admit(sequence, command)) start(command, begin_travel(plant_, state_.cabinet, sequence, command));
   }
 
   void take(std::uint32_t sequence, const cs8::Retract& command) {
     if (!admit(sequence, command)) return;
-    const double speed_m_s = cs8::metres_per_second_from_um_s(command.approach_speed_um_s);
-    start(sequence, command, retract_timeline(plant_, state_.way_out, speed_m_s));
+    start(command, begin_retract(plant_, state_.cabinet, state_.motion.way_out, sequence, command));
   }
 
   void take(std::uint32_t, const cs8::Stop&) {
-    if (!state_.running) return;
-    RunningCommand& running = *state_.running;
-    const Place place = here();
-    if (place.phase != cs8::Phase::kSearch) return cut(now_, Outcome::kStopped);
-    // Back to the approach posture first; the rest of the way out stays open to a Retract.
-    std::vector<Stretch> way_out = way_out_from(running.timeline.legs, place.leg, place.share);
-    Timeline back = retract_timeline(plant_, {way_out.front()}, running.approach_speed_m_s);
-    back.outcome = Outcome::kStopped;
-    back.phase = cs8::Phase::kSearch;
-    back.way_out.assign(way_out.begin() + 1, way_out.end());
-    running.timeline = std::move(back);
-    running.started = now_;
-    state_.joints = place.joints;
-    finish_if_over();
+    if (running()) break_off(state_.cabinet, *running(), Outcome::kStopped);
   }
 
   void take(std::uint32_t, const cs8::ResultQuery& query) {
@@ -120,17 +127,56 @@ class Step {
 
   // ---- admission ----
 
-  std::uint32_t open_sequence() const {
-    if (state_.running) return state_.running->sequence;
+  std::optional<RunningCommand>& running() { return state_.motion.running; }
+
+  std::uint32_t open_sequence() {
+    if (running()) return running()->sequence;
     return state_.stored_result ? state_.stored_result->sequence : 0;
   }
 
   void repeat_answer() {
-    if (state_.running) {
-      send(state_.running->sequence, cs8::Accepted{});
+    if (running()) {
+      send(running()->sequence, cs8::Accepted{});
     } else {
       replies.messages.push_back(*state_.stored_result);
     }
+  }
+
+  /// A command or a run cannot begin before the one before is done with.
+  std::optional<RejectReason> refusal_of_another() {
+    if (running()) return RejectReason::kBusy;
+    if (state_.stored_result) return RejectReason::kResultUnacknowledged;
+    return std::nullopt;
+  }
+
+  std::optional<RejectReason> refusal_of_begin() {
+    if (const auto reason = refusal_of_another()) return reason;
+    if (const auto rejected = cabinet_refusal(state_.cabinet)) return rejected->reason;
+    // Behind a touch that was broken off the stylus may be bent: the way back is all that moves first.
+    if (state_.motion.way_out.empty()) {
+      if (const auto rejected = probe_refusal(state_.cabinet)) return rejected->reason;
+    } else if (state_.cabinet.probe_disagrees()) {
+      return RejectReason::kProbeInputs;
+    }
+    if (state_.cabinet.touch_test != TouchTest::kDone) return RejectReason::kTouchTestMissing;
+    return std::nullopt;
+  }
+
+  std::optional<cs8::Rejected> refusal_of_motion(std::uint32_t sequence, bool is_retract) {
+    const auto because = [](RejectReason reason, std::int32_t detail = 0) {
+      return cs8::Rejected{reason, detail};
+    };
+    if (sequence <= state_.last_sequence) return because(RejectReason::kStaleSequence);
+    if (const auto reason = refusal_of_another()) return because(*reason);
+    if (auto rejected = cabinet_refusal(state_.cabinet)) return rejected;
+    const PermitState permit = state_.permit.permit.state;
+    if (permit != PermitState::kGranted && !(is_retract && permit == PermitState::kRetractOnly)) {
+      return because(RejectReason::kNotPermitted, static_cast<std::int32_t>(permit));
+    }
+    const bool near_a_face = !state_.motion.way_out.empty();
+    if (near_a_face && !is_retract) return because(RejectReason::kRetractPending);
+    if (!near_a_face && is_retract) return because(RejectReason::kNothingToRetract);
+    return std::nullopt;
   }
 
   /// Answers a repeated or refused command; true when it is to be carried out.
@@ -140,197 +186,162 @@ class Step {
       repeat_answer();
       return false;
     }
-    auto rejected = refusal_now(sequence, Command::kType);
+    constexpr bool kIsRetract = Command::kType == cs8::MessageType::kRetract;
+    auto rejected = refusal_of_motion(sequence, kIsRetract);
     if (!rejected) rejected = refusal(plant_, command);
-    if (!rejected && Command::kType != cs8::MessageType::kRetract &&
-        trip_gap_m(plant_, state_.joints, 0.0) <= 0.0) {
-      rejected = cs8::Rejected{RejectReason::kProbeTriggered, 0};
-    }
+    if (!rejected && !kIsRetract) rejected = probe_refusal(state_.cabinet);
     if (rejected) send(sequence, *rejected);
     return !rejected;
   }
 
-  /// What the controller's present state has against a motion command.
-  std::optional<cs8::Rejected> refusal_now(std::uint32_t sequence, cs8::MessageType type) const {
-    const auto because = [](RejectReason reason, std::int32_t detail = 0) {
-      return cs8::Rejected{reason, detail};
-    };
-    const Panel& panel = state_.panel;
-    const bool is_retract = type == cs8::MessageType::kRetract;
-    if (sequence <= state_.last_sequence) return because(RejectReason::kStaleSequence);
-    if (state_.running) return because(RejectReason::kBusy);
-    if (state_.stored_result) return because(RejectReason::kResultUnacknowledged);
-    if (panel.emergency_stop != 0) return because(RejectReason::kEmergencyStop);
-    if (panel.mode != cs8::WorkingMode::kRemote) return because(RejectReason::kNotRemote);
-    if (!panel.powered) return because(RejectReason::kNotPowered);
-    if (panel.held) return because(RejectReason::kHold);
-    if (!panel.arm_calibrated) return because(RejectReason::kNotCalibrated);
-    if (panel.monitor_speed_percent != 100) {
-      return because(RejectReason::kMonitorSpeed, panel.monitor_speed_percent);
-    }
-    if (!state_.way_out.empty() && !is_retract) return because(RejectReason::kRetractPending);
-    if (state_.way_out.empty() && is_retract) return because(RejectReason::kNothingToRetract);
-    return std::nullopt;
-  }
-
   template <class Command>
-  void start(std::uint32_t sequence, const Command& command, Timeline timeline) {
-    RunningCommand running;
-    running.sequence = sequence;
-    running.type = Command::kType;
-    running.timeline = std::move(timeline);
-    running.started = now_;
-    running.deadline = now_ + std::chrono::milliseconds(command.deadline_ms);
-    state_.running = std::move(running);
-    state_.last_sequence = sequence;
-    send(sequence, cs8::Accepted{});
+  void start(const Command& command, RunningCommand begun) {
+    begun.deadline = now_ + std::chrono::milliseconds(command.deadline_ms);
+    state_.last_sequence = begun.sequence;
+    send(begun.sequence, cs8::Accepted{});
+    running() = std::move(begun);
   }
 
   // ---- time ----
 
-  /// All that was due until now, in the order in which it was due.
+  /// Ticks and what is due between them until now, in the order in which it was due.
   void advance() {
-    if (state_.power_due && now_ >= *state_.power_due) {
-      state_.panel.powered = true;
-      state_.power_due.reset();
+    if (std::isinf(state_.speed)) {
+      links_until(now_);
+      for (int i = 0; i < kTicksAtOnceMax && !rests(); ++i) tick_at(now_);
+      return;
     }
-    const TimePoint silent_at = state_.last_heard + state_.heartbeat_timeout;
-    if (state_.running) {
-      const bool deadline_first = !state_.connected || state_.running->deadline <= silent_at;
-      const TimePoint cut_at = deadline_first ? state_.running->deadline : silent_at;
-      if (end_of_running() <= std::min(now_, cut_at)) {
-        finish();
-      } else if (cut_at <= now_) {
-        cut(cut_at, deadline_first ? Outcome::kDeadline : Outcome::kHeartbeatLost);
-      } else if (!motion_permitted()) {
-        cut(now_, Outcome::kPermissionLost);
+    const auto period = tick_period(state_.speed);
+    while (state_.next_tick <= now_) {
+      links_until(state_.next_tick);
+      if (rests()) {
+        const TimePoint until = std::min(now_, next_link_event());
+        const auto ticks = std::max<std::int64_t>(1, (until - state_.next_tick) / period);
+        rest(plant_, state_.cabinet, ticks);
+        state_.next_tick += ticks * period;
+      } else {
+        tick_at(state_.next_tick);
+        state_.next_tick += period;
       }
     }
-    if (state_.connected && now_ >= silent_at) {
-      lose_link(silent_at);
+    links_until(now_);
+  }
+
+  /// Nothing moves and nobody does anything: ticks change nothing but the warmth.
+  bool rests() {
+    const Cabinet& cabinet = state_.cabinet;
+    const bool inputs_known = cabinet.probe_free() || cabinet.probe_touched() || cabinet.probe_disagrees();
+    return !running() && cabinet.arm_rests() && inputs_known && state_.person.plan.empty() &&
+           cabinet.world.probe.bounce_steps == 0 && cabinet.world.probe.vibration_steps == 0 &&
+           cabinet.world.probe.troubles.vibration_s <= 0.0 && looked_at_;
+  }
+
+  TimePoint silent_at() const { return state_.last_heard + state_.heartbeat_timeout; }
+
+  TimePoint next_link_event() const {
+    TimePoint next = TimePoint::max();
+    if (state_.connected) next = silent_at();
+    if (state_.permit.permit.state == PermitState::kAwaited) next = std::min(next, state_.permit.confirm_by);
+    return next;
+  }
+
+  /// Silence, deadlines and confirmations that are over at a wall time.
+  void links_until(TimePoint at) {
+    if (state_.connected && at >= silent_at()) {
+      lose_link();
       replies.close = true;
     }
-    if (state_.greeted && now_ >= state_.next_state) {
-      send_state();
-      state_.next_state = now_ + kStatePeriod;
+    if (running() && at >= running()->deadline) break_off(state_.cabinet, *running(), Outcome::kDeadline);
+    tell(expire(state_.permit, at));
+  }
+
+  void tick_at(TimePoint at) {
+    looked_at_ = true;
+    Cabinet& cabinet = state_.cabinet;
+    tick(plant_, state_.person, cabinet);
+    const CabinetTick seen = tick(plant_, cabinet);
+    if (cabinet.jogged) {  // an operator took the way out over
+      cabinet.jogged = false;
+      state_.motion.way_out.clear();
+    }
+    watch_permission();
+    if (running() && step(plant_, cabinet, state_.motion, seen, at)) finish();
+    tell(watch_key(state_.permit, cabinet.panel.confirm_key));
+  }
+
+  void watch_permission() {
+    Cabinet& cabinet = state_.cabinet;
+    if (cabinet.probe_disagrees()) tell(withdraw(state_.permit, PermitReason::kProbeFault));
+    if (!motion_permitted(cabinet.panel)) {
+      tell(withdraw(state_.permit, PermitReason::kPermissionLost));
+      if (running()) break_off(cabinet, *running(), Outcome::kPermissionLost);
+    }
+    if (cabinet.task_error != 0) {  // the supervisor's
+      if (running()) break_off(cabinet, *running(), Outcome::kTaskFailed, cabinet.task_error);
+      tell(withdraw(state_.permit, PermitReason::kBrokenOff));
     }
   }
 
-  bool motion_permitted() const {
-    const Panel& panel = state_.panel;
-    return panel.powered && !panel.held && panel.emergency_stop == 0 &&
-           panel.mode == cs8::WorkingMode::kRemote;
-  }
+  // ---- ends ----
 
-  TimePoint end_of_running() const {
-    const std::chrono::duration<double> wall(state_.running->timeline.duration_s() / state_.speed);
-    return state_.running->started + std::chrono::ceil<TimePoint::duration>(wall);
-  }
-
-  /// Simulated time of a running command at a wall time before its end.
-  double simulated_s(const RunningCommand& running, TimePoint at) const {
-    return std::chrono::duration<double>(at - running.started).count() * state_.speed;
-  }
-
-  Place here() const {
-    if (!state_.running) return {0, 1.0, cs8::Phase::kIdle, state_.joints};
-    return place_at(state_.running->timeline, simulated_s(*state_.running, now_), state_.joints);
-  }
-
-  // ---- ends of motion ----
-
-  void finish_if_over() {
-    if (end_of_running() <= now_) finish();
-  }
-
-  /// The running command ends as its timeline says.
   void finish() {
-    const RunningCommand running = *std::move(state_.running);
-    const Timeline& timeline = running.timeline;
-    state_.running.reset();
-    state_.joints = place_at(timeline, timeline.duration_s(), state_.joints).joints;
-    state_.way_out = timeline.way_out;
-    if (timeline.outcome == Outcome::kCollision) {
-      state_.panel.powered = false;
-      replies.warning = timeline.collision;
-    }
-    const bool on_known_way = !state_.way_out.empty() || trip_gap_m(plant_, state_.joints, 0.0) > 0.0;
-    state_.operator_called = timeline.outcome == Outcome::kCollision || !on_known_way;
-    store_result(running, timeline.outcome, timeline.phase, timeline.capture);
+    const RunningCommand ended = *std::move(running());
+    running().reset();
+    const bool retract_due = !state_.motion.way_out.empty();
+    const bool near_something = !retract_due && !state_.cabinet.probe_free();
+    if (ended.outcome == Outcome::kCollision) replies.warning = ended.collision;
+    state_.operator_called = ended.outcome == Outcome::kCollision ||
+                             (ended.outcome == Outcome::kUnexpectedContact && near_something);
+    state_.stored_result = result(state_, ended);
+    if (state_.greeted) replies.messages.push_back(*state_.stored_result);
+    tell(after_command(state_.permit, ended.outcome, retract_due));
   }
 
-  /// The running command is ended by something else, and the arm stops where it is.
-  void cut(TimePoint at, Outcome outcome) {
-    const RunningCommand running = *std::move(state_.running);
-    state_.running.reset();
-    const Timeline& timeline = running.timeline;
-    const double time_s = simulated_s(running, at);
-    const Place place = place_at(timeline, time_s, state_.joints);
-    state_.joints = place.joints;
-    state_.way_out =
-        timeline.legs.empty() ? std::vector<Stretch>{} : way_out_from(timeline.legs, place.leg, place.share);
-    if (place.phase == cs8::Phase::kRetract) {  // one to the approach posture has the rest still before it
-      state_.way_out.insert(state_.way_out.end(), timeline.way_out.begin(), timeline.way_out.end());
-    }
-    const bool captured = timeline.capture && timeline.capture->at_s <= time_s;
-    store_result(running, outcome, place.phase, captured ? timeline.capture : std::nullopt);
-  }
-
-  void store_result(const RunningCommand& running, Outcome outcome, cs8::Phase phase,
-                    const std::optional<Capture>& capture) {
-    cs8::Message result{running.sequence, {}};
-    if (running.type == cs8::MessageType::kTouch) {
-      result.payload = touch_result(state_, running, {outcome, phase, capture});
-    } else {
-      result.payload = move_result(state_, running, {outcome, phase, capture});
-    }
-    state_.stored_result = result;
-    if (state_.greeted) replies.messages.push_back(result);
-  }
-
-  void free_arm() {
-    state_.operator_called = false;
-    state_.joints = plant_.start_joints;
-    state_.way_out.clear();
-    state_.power_due = now_ + std::chrono::duration_cast<TimePoint::duration>(
-                                  std::chrono::duration<double>(kPowerUpSeconds / state_.speed));
-  }
-
-  // ---- the connection ----
-
-  void lose_link(TimePoint at) {
+  void lose_link() {
     state_.connected = false;
     state_.greeted = false;
-    if (state_.running) cut(at, Outcome::kHeartbeatLost);
+    state_.permit = {};
+    if (running()) break_off(state_.cabinet, *running(), Outcome::kHeartbeatLost);
   }
 
   void fault(cs8::FaultCode code, std::int32_t detail) {
-    lose_link(now_);
+    lose_link();
     send(0, cs8::Fault{code, detail});
     replies.close = true;
+  }
+
+  // ---- what is told ----
+
+  void tell(const std::optional<cs8::Permit>& changed) {
+    if (changed && state_.greeted) send(0, *changed);
   }
 
   void send(std::uint32_t sequence, cs8::Payload payload) {
     replies.messages.push_back({sequence, std::move(payload)});
   }
 
-  void send_state() { send(++state_.state_counter, state_report(plant_, state_, here(), now_)); }
+  void report_state() {
+    if (!state_.greeted || now_ < state_.next_state) return;
+    send(++state_.state_counter, state_report(state_, now_));
+    state_.next_state = now_ + kStatePeriod;
+  }
 
   const Plant& plant_;
   ControllerState& state_;
   TimePoint now_;
+  bool looked_at_ = false;  // a first tick sees what was changed from outside
 };
 
 }  // namespace
 
 ControllerState make_controller(const Plant& plant, const ControllerOptions& options, TimePoint now) {
   ControllerState state;
-  state.chance.seed(options.seed);
   state.speed = options.speed;
+  state.next_tick = now;
+  state.cabinet = make_cabinet(plant, options.seed);
+  state.person.duties = options.duties;
+  start(state.person);
   state.session = options.session;
-  state.joints = plant.start_joints;
-  state.power_due = now + std::chrono::duration_cast<TimePoint::duration>(
-                              std::chrono::duration<double>(kPowerUpSeconds / options.speed));
   return state;
 }
 
@@ -338,6 +349,18 @@ Replies step(const Plant& plant, ControllerState& state, const Event& event, Tim
   Step step(plant, state, now);
   std::visit(step, event);
   return std::move(step.replies);
+}
+
+void restart_application(ControllerState& state) {
+  ++state.session;
+  state.motion = {};
+  reset_motion(state.cabinet.drives);
+  state.permit = {};
+  state.last_sequence = 0;
+  state.stored_result.reset();
+  state.cabinet.touch_test = TouchTest::kNone;
+  state.cabinet.task_error = 0;
+  state.cabinet.overruns = 0;
 }
 
 }  // namespace sim

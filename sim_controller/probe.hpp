@@ -2,19 +2,14 @@
 
 #include <optional>
 
+#include "cs8_protocol/messages.hpp"
+
 namespace sim {
 
 /// Resolution of the latch: levels and edges are known in steps of this length.
 inline constexpr double kLatchSeconds = 0.0002;
 
-/// The probe is read twice: (contact, loop) is (0, 1) free and (1, 0) touched. Anything else: inputs
-/// disagree.
-struct ProbeInputs {
-  bool contact = false;  // the latch input: 1 = touched
-  bool loop = true;      // normally closed, on a second input: 1 = closed = free
-
-  friend bool operator==(const ProbeInputs&, const ProbeInputs&) = default;
-};
+using cs8::ProbeInputs;
 
 enum class StylusTrouble {
   kNone,

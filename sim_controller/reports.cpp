@@ -1,13 +1,14 @@
 #include "sim_controller/reports.hpp"
 
+#include <algorithm>
+
 #include "cs8_protocol/wire_units.hpp"
 #include "sim_controller/admission.hpp"
-#include "sim_controller/contact.hpp"
 
 namespace sim {
 namespace {
 
-constexpr std::uint32_t kApplicationVersion = 100;  // 0.1.0
+constexpr std::uint32_t kApplicationVersion = 200;  // 0.2.0
 constexpr std::uint32_t kLanguageVersion = 70702;   // s7.7.2
 
 std::uint32_t clock_ms(TimePoint now) {
@@ -15,8 +16,34 @@ std::uint32_t clock_ms(TimePoint now) {
       std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch()).count());
 }
 
-std::int32_t error_number(const RunningCommand& command, const Ending& ending) {
-  return ending.outcome == cs8::Outcome::kMotionError ? command.timeline.error_number : 0;
+/// The joints as the wire has them; 0 without a capture.
+cs8::JointsMicrodeg contact_joints(const std::optional<Capture>& capture) {
+  return capture ? wire_from_joints(capture->contact) : cs8::JointsMicrodeg{};
+}
+
+cs8::CaptureSource source_of(const std::optional<Capture>& capture) {
+  return capture ? capture->source : cs8::CaptureSource::kNone;
+}
+
+cs8::TouchResult touch_result(const ControllerState& state, const RunningCommand& ended,
+                              const cs8::Touch& order) {
+  cs8::TouchResult result;
+  result.outcome = ended.outcome;
+  result.phase = ended.broken_in;
+  result.source = source_of(ended.last);
+  result.contact = contact_joints(ended.last);
+  result.stopped = wire_from_joints(ended.last ? ended.last->stopped : state.cabinet.drives.joints);
+  result.first_source = source_of(ended.first);
+  result.first_contact = contact_joints(ended.first);
+  const double first_m = ended.first ? ended.first->overtravel_m : 0.0;
+  const double last_m = ended.last ? ended.last->overtravel_m : 0.0;
+  result.overtravel_dmm = cs8::dmm_from_metres(std::max(first_m, last_m));
+  result.search_speed_um_s = ended.first ? order.second_speed_um_s : order.search_speed_um_s;
+  result.monitor_speed_percent = state.cabinet.panel.monitor_speed_percent;
+  if (ended.last) result.contact_clock_ms = clock_ms(ended.last->at);
+  result.error_number = ended.error_number;
+  result.edges = ended.edges;
+  return result;
 }
 
 }  // namespace
@@ -40,8 +67,10 @@ cs8::Welcome welcome(const Plant& plant, const ControllerState& state, std::uint
   return message;
 }
 
-cs8::State state_report(const Plant& plant, const ControllerState& state, const Place& place, TimePoint now) {
-  const Panel& panel = state.panel;
+cs8::State state_report(const ControllerState& state, TimePoint now) {
+  const Cabinet& cabinet = state.cabinet;
+  const Panel& panel = cabinet.panel;
+  const auto& running = state.motion.running;
   cs8::State report;
   report.session = state.session;
   report.clock_ms = clock_ms(now);
@@ -49,44 +78,34 @@ cs8::State state_report(const Plant& plant, const ControllerState& state, const 
   flag(cs8::kPowered, panel.powered);
   flag(cs8::kHeld, panel.held);
   flag(cs8::kArmCalibrated, panel.arm_calibrated);
-  flag(cs8::kSettled, !state.running);
-  flag(cs8::kQueueEmpty, !state.running);
-  flag(cs8::kProbeTouched, trip_gap_m(plant, place.joints, 0.0) <= 0.0);
-  flag(cs8::kRetractDue, !state.way_out.empty());
+  flag(cs8::kSettled, !running && cabinet.arm_rests());
+  flag(cs8::kQueueEmpty, is_empty(cabinet.drives));
+  flag(cs8::kProbeTouched, cabinet.world.probe.inputs.contact);
+  flag(cs8::kProbeLoopClosed, cabinet.world.probe.inputs.loop);
+  flag(cs8::kRetractDue, !running && !state.motion.way_out.empty());
+  flag(cs8::kTouchTested, cabinet.touch_test == TouchTest::kDone);
+  flag(cs8::kCellClosed, panel.cell_closed);
   report.mode = panel.mode;
   report.mode_status = panel.mode_status;
   report.emergency_stop = panel.emergency_stop;
   report.monitor_speed_percent = panel.monitor_speed_percent;
-  report.joints = wire_from_joints(place.joints);
-  report.active_sequence = state.running ? state.running->sequence : 0;
-  report.phase = place.phase;
+  report.joints = wire_from_joints(cabinet.drives.joints);
+  report.active_sequence = running ? running->sequence : 0;
+  report.phase = running ? phase_of(running->stage) : cs8::Phase::kIdle;
+  report.task_error = cabinet.task_error;
+  report.permit = state.permit.permit.state;
+  report.move_id_milli = static_cast<std::int32_t>(move_id(cabinet.drives) * 1e3);
+  report.overruns = cabinet.overruns;
   return report;
 }
 
-cs8::TouchResult touch_result(const ControllerState& state, const RunningCommand& command,
-                              const Ending& ending) {
-  cs8::TouchResult result;
-  result.outcome = ending.outcome;
-  result.phase = ending.phase;
-  result.source = ending.capture ? cs8::CaptureSource::kLatched : cs8::CaptureSource::kNone;
-  result.stopped = wire_from_joints(state.joints);
-  if (const auto& capture = ending.capture) {
-    result.contact = wire_from_joints(capture->contact);
-    result.stopped = wire_from_joints(capture->stopped);
-    result.overtravel_dmm = cs8::dmm_from_metres(capture->overtravel_m);
-    const std::chrono::duration<double> wall(capture->at_s / state.speed);
-    result.contact_clock_ms =
-        clock_ms(command.started + std::chrono::duration_cast<TimePoint::duration>(wall));
+cs8::Message result(const ControllerState& state, const RunningCommand& ended) {
+  if (const auto* order = std::get_if<cs8::Touch>(&ended.order)) {
+    return {ended.sequence, touch_result(state, ended, *order)};
   }
-  result.search_speed_um_s = command.search_speed_um_s;
-  result.monitor_speed_percent = state.panel.monitor_speed_percent;
-  result.error_number = error_number(command, ending);
-  return result;
-}
-
-cs8::MoveResult move_result(const ControllerState& state, const RunningCommand& command,
-                            const Ending& ending) {
-  return {ending.outcome, ending.phase, wire_from_joints(state.joints), error_number(command, ending)};
+  const cs8::MoveResult moved{ended.outcome, ended.broken_in, wire_from_joints(state.cabinet.drives.joints),
+                              ended.error_number};
+  return {ended.sequence, moved};
 }
 
 }  // namespace sim

@@ -106,10 +106,10 @@ TEST_F(Admission, RefusesFieldsThatMakeNoSenseAndNamesTheWord) {
 TEST_F(Admission, RefusesWhatTheCabinetDoesNotPermit) {
   Bench bench = Bench::ready(plant());
   const auto rejection_with = [&bench](auto change) {
-    const Panel before = bench.state.panel;
-    change(bench.state.panel);
+    const Panel before = bench.state.cabinet.panel;
+    change(bench.state.cabinet.panel);
     const auto reason = bench.rejection(1, touch());
-    bench.state.panel = before;
+    bench.state.cabinet.panel = before;
     return reason;
   };
   EXPECT_EQ(rejection_with([](Panel& p) { p.mode = cs8::WorkingMode::kManual; }), RejectReason::kNotRemote);
@@ -122,12 +122,27 @@ TEST_F(Admission, RefusesWhatTheCabinetDoesNotPermit) {
 }
 
 TEST_F(Admission, RefusesToMoveWithATouchedProbe) {
-  Plant touched = plant();
-  const Timeline timeline = touch_timeline(plant(), motion().waypoints.back(), motion(), 0.0);
-  touched.start_joints = timeline.capture->stopped;
-  Bench bench = Bench::ready(touched);
+  Bench bench = Bench::ready(plant());
+  bench.state.cabinet.world.probe.troubles.stylus = StylusTrouble::kStaysTouched;
+  bench.pass(milliseconds(20));
   EXPECT_EQ(bench.rejection(1, touch()), RejectReason::kProbeTriggered);
   EXPECT_TRUE(bench.flag(cs8::kProbeTouched));
+}
+
+TEST_F(Admission, RefusesToMoveWithProbeInputsThatDisagreeWhicheverWireIsAtFault) {
+  const auto inputs = [](WireTrouble contact, WireTrouble loop) {
+    Bench bench = Bench::ready(plant());
+    bench.state.cabinet.world.probe.troubles.contact_wire = contact;
+    bench.state.cabinet.world.probe.troubles.loop_wire = loop;
+    bench.pass(milliseconds(4));
+    return bench.answer<cs8::Rejected>(1, touch());
+  };
+  const cs8::Rejected cut = inputs(WireTrouble::kNone, WireTrouble::kCut);
+  EXPECT_EQ(cut.reason, RejectReason::kProbeInputs);
+  EXPECT_EQ(cut.detail, 0);
+  const cs8::Rejected shorted = inputs(WireTrouble::kShorted, WireTrouble::kNone);
+  EXPECT_EQ(shorted.reason, RejectReason::kProbeInputs);
+  EXPECT_EQ(shorted.detail, 3);
 }
 
 TEST_F(Admission, RefusesARetractWithNothingToRetractFrom) {

@@ -8,8 +8,10 @@
 #include "calib_core/units.hpp"
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
+#include "sim_controller/admission.hpp"
+#include "sim_controller/contact.hpp"
+#include "sim_controller/motion.hpp"
 #include "sim_controller/plant.hpp"
-#include "sim_controller/timeline.hpp"
 
 namespace sim::testing {
 
@@ -80,13 +82,24 @@ inline AimedTouch aimed_touch(const cell::Cell& cell, const Aim& aim) {
                               nominal.joint_ranges.contains(*approach) && nominal.joint_ranges.contains(*end);
         const TouchMotion motion{{*clear}, *approach, *end, 0.25, 0.02, 0.008};
         if (!in_range) continue;
-        const cs8::Outcome outcome = touch_timeline(nominal, *clear, motion, 0.0).outcome;
-        if (outcome == cs8::Outcome::kCollision || outcome == cs8::Outcome::kMotionError) continue;
+        const StraightLine line = straight_line(nominal, *approach, *end);
+        const double until = find_trip(nominal, line.path, 0.0).value_or(1.0);
+        if (!line.complete || find_hit(nominal, {*clear, *approach}, 1.0) ||
+            find_hit(nominal, line.path, until))
+          continue;
         return {motion, face, plane};
       }
     }
   }
   throw std::logic_error("no posture for the touch of this test");
+}
+
+/// Where the search trips, if it does.
+inline std::optional<calib::JointVector> search_contact(const Plant& plant, const TouchMotion& motion,
+                                                        double noise_m = 0.0) {
+  const StraightLine line = straight_line(plant, motion.approach, motion.search_end);
+  const auto trip = find_trip(plant, line.path, noise_m);
+  return trip ? std::optional(posture(line.path, *trip)) : std::nullopt;
 }
 
 inline Eigen::Vector3d tip_m(const calib::KinematicModel& model, const calib::JointVector& joints) {

@@ -48,12 +48,25 @@ class Bench {
   explicit Bench(Plant on_plant, ControllerOptions options = {})
       : plant(std::move(on_plant)), state(make_controller(plant, options, now)) {}
 
-  /// Connected, greeted and powered.
+  /// Connected and greeted; the probe was touched by hand, the run is confirmed.
   static Bench ready(Plant plant, ControllerOptions options = {}) {
     Bench bench(std::move(plant), options);
     bench.connect();
-    while (!bench.state.panel.powered) bench.pass(milliseconds(20));
+    bench.permit();
     return bench;
+  }
+
+  /// Asks for a run until it is confirmed.
+  void permit() {
+    const auto granted = [this] { return state.permit.permit.state == cs8::PermitState::kGranted; };
+    for (int i = 0; i < 100 && !granted(); ++i) {
+      while (!state.cabinet.panel.powered) pass(milliseconds(20));
+      send(0, cs8::Begin{.run = 1, .confirm_within_ms = 30'000});
+      do {
+        pass(milliseconds(20));
+      } while (!granted() && !state.person.plan.empty());
+    }
+    if (!granted()) throw std::logic_error("the run is not confirmed");
   }
 
   std::vector<cs8::Message> happen(const Event& event) {
@@ -103,21 +116,21 @@ class Bench {
   /// Lets time pass until the running command has its result.
   template <class Result>
   Result result() {
-    for (int i = 0; i < 10'000 && state.running; ++i) pass(milliseconds(20));
+    for (int i = 0; i < 10'000 && state.motion.running; ++i) pass(milliseconds(20));
     return std::get<Result>(state.stored_result.value().payload);
   }
 
   /// Takes a touch into the given phase, or to its end for kIdle.
   void touch_until(std::uint32_t sequence, const TouchMotion& motion, cs8::Phase phase) {
     answer<cs8::Accepted>(sequence, touch_command(motion));
-    while (state.running && place().phase != phase) pass(milliseconds(20));
+    while (state.motion.running && this->phase() != phase) pass(milliseconds(20));
   }
 
-  Place place() const {
-    const double elapsed_s =
-        std::chrono::duration<double>(now - state.running->started).count() * state.speed;
-    return place_at(state.running->timeline, elapsed_s, state.joints);
+  cs8::Phase phase() const {
+    const auto& running = state.motion.running;
+    return running ? phase_of(running->stage) : cs8::Phase::kIdle;
   }
+  const calib::JointVector& joints() const { return state.cabinet.drives.joints; }
 
   std::optional<cs8::State> last_state() const {
     for (auto message = sent.rbegin(); message != sent.rend(); ++message) {

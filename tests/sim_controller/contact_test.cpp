@@ -31,9 +31,9 @@ TEST(Contact, PutsTheTrueBallWherePlaneRadiusPretravelAndNoiseSay) {
     for (int face = 0; face < static_cast<int>(cell.block.faces.size()); ++face) {
       for (const double noise_m : {0.0, 37e-6, -37e-6}) {
         const auto touch = aimed_touch(cell, {.face = face, .tilt_rad = 0.7});
-        const Timeline timeline = touch_timeline(plant, touch.motion.waypoints.back(), touch.motion, noise_m);
-        ASSERT_EQ(timeline.outcome, cs8::Outcome::kContact) << name << " face " << face << timeline.collision;
-        const auto sent = joints_from_wire(wire_from_joints(timeline.capture->contact));
+        const auto contact = testing::search_contact(plant, touch.motion, noise_m);
+        ASSERT_TRUE(contact) << name << " face " << face;
+        const auto sent = joints_from_wire(wire_from_joints(*contact));
         EXPECT_NEAR(calib::signed_distance_m(touch.contact_plane, tip_m(plant.truth, sent)), noise_m,
                     kWireResolutionMetres)
             << name << " face " << face;
@@ -48,27 +48,24 @@ TEST(Contact, ComesEarlierByExactlyTheLengthThatTheTrueToolIsLonger) {
   errors[*calib::error_parameter_index("r7")] = 1e-3;
   const Plant longer = make_plant(cell, errors);
   const auto touch = aimed_touch(cell, {.tilt_rad = 0.0});
-  const Timeline timeline = touch_timeline(longer, touch.motion.waypoints.back(), touch.motion, 0.0);
-  ASSERT_TRUE(timeline.capture);
-  EXPECT_NEAR(calib::signed_distance_m(touch.contact_plane, tip_m(longer.nominal, timeline.capture->contact)),
-              1e-3, 1e-8);
+  const auto contact = testing::search_contact(longer, touch.motion);
+  ASSERT_TRUE(contact);
+  EXPECT_NEAR(calib::signed_distance_m(touch.contact_plane, tip_m(longer.nominal, *contact)), 1e-3, 1e-8);
 }
 
 TEST(Contact, LiesOnTheNominalArmsSearchLineWhateverTheTruthIs) {
   const cell::Cell cell = testing::read_cell("demo");
   const Plant plant = testing::true_plant("demo");
   const auto touch = aimed_touch(cell, {.face = 3, .tilt_rad = 0.7});
-  const Timeline timeline = touch_timeline(plant, touch.motion.waypoints.back(), touch.motion, 0.0);
-  ASSERT_TRUE(timeline.capture);
+  const auto contact = testing::search_contact(plant, touch.motion);
+  ASSERT_TRUE(contact);
   const Eigen::Vector3d start = tip_m(plant.nominal, touch.motion.approach);
-  const Eigen::Vector3d way = tip_m(plant.nominal, timeline.capture->contact) - start;
+  const Eigen::Vector3d way = tip_m(plant.nominal, *contact) - start;
   const Eigen::Vector3d off = way + touch.face.plane.outward * -touch.face.plane.outward.dot(way);
   EXPECT_LT(off.norm(), 1e-6);
   // The truth of the cell is millimetres away from nominal: the contact is not where the nominal ball meets
   // the face.
-  EXPECT_GT(std::abs(calib::signed_distance_m(touch.contact_plane,
-                                              tip_m(plant.nominal, timeline.capture->contact))),
-            1e-4);
+  EXPECT_GT(std::abs(calib::signed_distance_m(touch.contact_plane, tip_m(plant.nominal, *contact))), 1e-4);
 }
 
 TEST(Contact, OfABallBesideTheFaceIsOnTheEdge) {
@@ -77,9 +74,9 @@ TEST(Contact, OfABallBesideTheFaceIsOnTheEdge) {
   const double beside_m = 0.002;
   const calib::Face& face = cell.block.faces[2];
   const auto touch = aimed_touch(cell, {.u_m = face.half_extent_m.x() + beside_m, .tilt_rad = 0.0});
-  const Timeline timeline = touch_timeline(plant, touch.motion.waypoints.back(), touch.motion, 0.0);
-  ASSERT_EQ(timeline.outcome, cs8::Outcome::kContact);
-  const double height_m = calib::signed_distance_m(face.plane, tip_m(plant.truth, timeline.capture->contact));
+  const auto contact = testing::search_contact(plant, touch.motion);
+  ASSERT_TRUE(contact);
+  const double height_m = calib::signed_distance_m(face.plane, tip_m(plant.truth, *contact));
   EXPECT_NEAR(std::hypot(height_m, beside_m), plant.trip_distance_m, 1e-7);
   EXPECT_LT(height_m, plant.trip_distance_m - 1e-4);
 }
@@ -89,10 +86,8 @@ TEST(Contact, IsMissedBySearchBesideTheBlock) {
   const Plant plant = testing::perfect_plant("demo");
   const auto touch =
       aimed_touch(cell, {.u_m = cell.block.faces[2].half_extent_m.x() + 0.005, .tilt_rad = 0.0});
-  const Timeline timeline = touch_timeline(plant, touch.motion.waypoints.back(), touch.motion, 0.0);
-  EXPECT_EQ(timeline.outcome, cs8::Outcome::kNoContact);
-  EXPECT_FALSE(timeline.capture);
-  EXPECT_LT((timeline.legs.back().stretch.at(1.0) - touch.motion.waypoints.back()).norm(), 1e-12);
+  const auto contact = testing::search_contact(plant, touch.motion);
+  EXPECT_FALSE(contact);
 }
 
 TEST(FindTrip, FindsAThinObstacleThatTheBallOnlyPasses) {

@@ -55,6 +55,19 @@ class Host {
     co_return co_await next_as<cs8::Welcome>();
   }
 
+  /// Greets and asks for a run until it is confirmed.
+  asio::awaitable<void> permit() {
+    co_await greet();
+    for (;;) {
+      const cs8::Begin begin{1, 30'000};
+      co_await send(0, begin);
+      cs8::Permit told = co_await next_as<cs8::Permit>();
+      if (told.state == cs8::PermitState::kAwaited) told = co_await next_as<cs8::Permit>();
+      if (told.state == cs8::PermitState::kGranted) co_return;
+      co_await cs8::read_frame(socket_);  // a State: time has passed
+    }
+  }
+
   /// True when the connection ends without another message.
   asio::awaitable<bool> ends() {
     try {
@@ -108,8 +121,7 @@ TEST_F(ServerTest, ATouchGoesOverTheWire) {
   serve();
   play([this]() -> asio::awaitable<void> {
     Host host = this->host();
-    const cs8::Welcome welcome = co_await host.greet();
-    EXPECT_EQ(cs8::text_of(welcome.arm), "tx90");
+    co_await host.permit();
     co_await host.send(1, touch());
     co_await host.next_as<cs8::Accepted>();
     const cs8::Message result = co_await host.next();
@@ -122,7 +134,7 @@ TEST_F(ServerTest, ASecondHostIsToldSoAndTheFirstStays) {
   serve();
   play([this]() -> asio::awaitable<void> {
     Host first = host();
-    co_await first.greet();
+    co_await first.permit();
     Host second = host();
     EXPECT_EQ((co_await second.next_as<cs8::Fault>()).code, cs8::FaultCode::kOccupied);
     EXPECT_TRUE(co_await second.ends());
@@ -177,15 +189,13 @@ TEST_F(ServerTest, BytesThatAreNoFrameGetTheirFaultAndTheNextHostIsServed) {
 }
 
 TEST_F(ServerTest, AHostThatLeavesInTheMiddleOfATouchFindsItStopped) {
-  serve({}, 1.0);
+  serve({}, 20.0);
   play([this]() -> asio::awaitable<void> {
     {
       Host first = host();
-      co_await first.greet();
-      for (;;) {  // until the power is there
-        co_await first.send(1, touch());
-        if (std::holds_alternative<cs8::Accepted>((co_await first.next()).payload)) break;
-      }
+      co_await first.permit();
+      co_await first.send(1, touch());
+      co_await first.next_as<cs8::Accepted>();
     }
     for (;;) {
       Host again = host();
@@ -194,7 +204,9 @@ TEST_F(ServerTest, AHostThatLeavesInTheMiddleOfATouchFindsItStopped) {
       if (!std::holds_alternative<cs8::Welcome>(answer.payload)) continue;
       EXPECT_EQ(std::get<cs8::Welcome>(answer.payload).open_sequence, 1u);
       co_await again.send(0, cs8::ResultQuery{1});
-      EXPECT_EQ((co_await again.next_as<cs8::TouchResult>()).outcome, cs8::Outcome::kHeartbeatLost);
+      cs8::Message found = co_await again.next();
+      if (std::holds_alternative<cs8::Accepted>(found.payload)) found = co_await again.next();  // it brakes
+      EXPECT_EQ(std::get<cs8::TouchResult>(found.payload).outcome, cs8::Outcome::kHeartbeatLost);
       co_return;
     }
   });
@@ -215,7 +227,7 @@ TEST_F(ServerTest, PlannedFaultsHappenAtTheirMessage) {
     serve({planned.planned});
     play([this, &planned]() -> asio::awaitable<void> {
       Host host = this->host();
-      co_await host.greet();
+      co_await host.permit();
       co_await host.send(1, touch());
       co_await host.next_as<cs8::Accepted>();
       EXPECT_EQ((co_await host.next()).sequence, 1u);
@@ -253,7 +265,7 @@ TEST_F(ServerTest, ASilentControllerSendsNothingAndServesTheNextHost) {
   play([this]() -> asio::awaitable<void> {
     {
       Host host = this->host();
-      co_await host.greet();
+      co_await host.permit();
       co_await host.send(1, touch());
       co_await host.send(0,
                          cs8::Hello{200});  // no answer; after 200 ms the controller hears nothing and closes

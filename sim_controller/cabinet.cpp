@@ -1,0 +1,80 @@
+#include "sim_controller/cabinet.hpp"
+
+#include <algorithm>
+
+namespace sim {
+namespace {
+
+/// History of the inputs is not counted beyond this.
+constexpr int kTicksMax = 1'000'000;
+
+void count_inputs(Cabinet& cabinet) {
+  const ProbeInputs& inputs = cabinet.world.probe.inputs;
+  const auto count = [](int& ticks, bool on) { ticks = on ? std::min(ticks + 1, kTicksMax) : 0; };
+  count(cabinet.free_ticks, inputs.free());
+  count(cabinet.touched_ticks, inputs.touched());
+  count(cabinet.disagree_ticks, !inputs.agree());
+}
+
+/// The test counts where a hand can be at the stylus: the arm without power, or in manual mode.
+void watch_touch_test(Cabinet& cabinet) {
+  const bool by_hand = !cabinet.panel.powered || cabinet.panel.mode == cs8::WorkingMode::kManual;
+  switch (cabinet.touch_test) {
+    case TouchTest::kNone:
+      if (by_hand && cabinet.probe_free()) cabinet.touch_test = TouchTest::kFree;
+      break;
+    case TouchTest::kFree:
+    case TouchTest::kTouched:
+      if (!by_hand) {
+        cabinet.touch_test = TouchTest::kNone;
+      } else if (cabinet.touch_test == TouchTest::kFree && cabinet.probe_touched()) {
+        cabinet.touch_test = TouchTest::kTouched;
+      } else if (cabinet.touch_test == TouchTest::kTouched && cabinet.probe_free()) {
+        cabinet.touch_test = TouchTest::kDone;
+      }
+      break;
+    case TouchTest::kDone:
+      break;
+  }
+  if (cabinet.probe_disagrees()) cabinet.touch_test = TouchTest::kNone;
+}
+
+}  // namespace
+
+bool motion_permitted(const Panel& panel) {
+  return panel.powered && !panel.held && panel.emergency_stop == 0 &&
+         panel.mode == cs8::WorkingMode::kRemote && panel.cell_closed;
+}
+
+Cabinet make_cabinet(const Plant& plant, std::uint64_t seed) {
+  Cabinet cabinet;
+  cabinet.drives.joints = plant.start_joints;
+  cabinet.world = make_world(plant);
+  cabinet.chance.seed(seed);
+  return cabinet;
+}
+
+CabinetTick tick(const Plant& plant, Cabinet& cabinet) {
+  CabinetTick seen;
+  const bool permitted = cabinet.drives.braking || motion_permitted(cabinet.panel);
+  seen.motion = tick(cabinet.drives, cabinet.panel.monitor_speed_percent, permitted);
+  cabinet.world.powered = cabinet.panel.powered;
+  seen.sensed = sense(plant, cabinet.world, seen.motion);
+  if (seen.sensed.collision) {
+    cabinet.panel.powered = false;
+    cabinet.drives = Drives{.joints = seen.motion.to};
+  }
+  count_inputs(cabinet);
+  watch_touch_test(cabinet);
+  return seen;
+}
+
+void rest(const Plant& plant, Cabinet& cabinet, std::int64_t ticks) {
+  pass(plant, cabinet.world, static_cast<double>(ticks) * kTickSeconds);
+  const int more = static_cast<int>(std::min<std::int64_t>(ticks, kTicksMax));
+  for (int* history : {&cabinet.free_ticks, &cabinet.touched_ticks, &cabinet.disagree_ticks}) {
+    if (*history > 0) *history = std::min(*history + more, kTicksMax);
+  }
+}
+
+}  // namespace sim

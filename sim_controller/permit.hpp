@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+
+#include "cs8_protocol/messages.hpp"
+#include "sim_controller/motion_task.hpp"
+
+/// Whether motion commands are taken: PROTOCOL.md section 7.
+namespace sim {
+
+/// The time for a confirmation that a host asks for is brought into this range.
+inline constexpr std::uint32_t kConfirmWithinMinMs = 1'000;
+inline constexpr std::uint32_t kConfirmWithinMaxMs = 30'000;
+
+struct PermitHolder {
+  cs8::Permit permit;  // as it was told last
+  TimePoint confirm_by{};
+  bool key_was_on = false;
+};
+
+/// Begin was found right: the key is watched from now on. It comes back as what is told to the host.
+cs8::Permit await(PermitHolder& holder, const cs8::Begin& begin, bool key_is_on, TimePoint now);
+cs8::Permit refuse(PermitHolder& holder, const cs8::Begin& begin, cs8::RejectReason reason);
+
+/// The key, once a tick; granted when it goes from off to on.
+std::optional<cs8::Permit> watch_key(PermitHolder& holder, bool key_is_on);
+/// The time for the confirmation is over.
+std::optional<cs8::Permit> expire(PermitHolder& holder, TimePoint now);
+/// Takes it away, if there is one.
+std::optional<cs8::Permit> withdraw(PermitHolder& holder, cs8::PermitReason reason);
+/// After a command: one that was broken off leaves the way back at most.
+std::optional<cs8::Permit> after_command(PermitHolder& holder, cs8::Outcome outcome, bool retract_due);
+
+}  // namespace sim
