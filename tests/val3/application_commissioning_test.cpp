@@ -1,0 +1,117 @@
+// What INSTALL.md promises for the first run, and small promises of the page that a commissioning would meet.
+#include <gtest/gtest.h>
+
+#include "cs8_protocol/names.hpp"
+#include "tests/val3/bench.hpp"
+
+namespace val3 {
+namespace {
+
+using namespace cs8;
+
+constexpr double kFaceMm = 8.0;
+
+/// Runs one tick at a time until the touch answers; the deepest place on the way.
+double deepest_mm(Bench& bench, TouchResult& result, double& seconds) {
+  double deepest = bench.depth_mm();
+  const double begin_s = bench.cabinet.clock_s;
+  for (int left = 100000; left > 0; --left) {
+    const auto message = bench.next(kTickSeconds);
+    deepest = std::max(deepest, bench.depth_mm());
+    if (!message) continue;
+    if (const auto* answer = std::get_if<TouchResult>(&message->payload)) {
+      result = *answer;
+      break;
+    }
+  }
+  seconds = bench.cabinet.clock_s - begin_s;
+  return deepest;
+}
+
+TEST(ApplicationCommissioning, ADryRunGoesSlowlyToEachApproachAndTouchesNothing) {
+  double usual_s = 0;
+  double dry_s = 0;
+  TouchResult result;
+  {
+    Bench bench;
+    bench.make_ready();
+    bench.send(1, bench.touch());
+    EXPECT_NEAR(deepest_mm(bench, result, usual_s), 20, 0.1) << "there is no face";
+  }
+  Bench bench;
+  bench.loaded_.application.globals.at("kDryRun").place.write(true);
+  bench.make_ready();
+  bench.send(1, bench.touch());
+  EXPECT_NEAR(deepest_mm(bench, result, dry_s), 0, 0.1);
+  EXPECT_EQ(result.outcome, Outcome::kNoContact) << name(result.outcome);
+  EXPECT_EQ(result.source, CaptureSource::kNone);
+  EXPECT_EQ(bench.state().flags & kRetractDue, 0u);
+  // clear to approach and back are 40 mm at a tenth of 20 mm/s
+  EXPECT_GT(dry_s, 20.0);
+  EXPECT_LT(usual_s, 10.0);
+}
+
+TEST(ApplicationCommissioning, EdgesAreCountedToStandstillOnly) {
+  Bench bench;
+  bench.face_mm = kFaceMm;
+  bench.make_ready();
+  bench.send(1, bench.touch());
+  bench.expect<Accepted>(1);
+  // the stylus bounces on its way back
+  for (int left = 10000; bench.state().phase != Phase::kRetract && left > 0; --left) bench.ticks(1);
+  for (int i = 0; i < 3; ++i) {
+    bench.wires.contact = true;
+    bench.wires.loop = false;
+    bench.ticks(2);
+    bench.wires.contact.reset();
+    bench.wires.loop.reset();
+    bench.ticks(2);
+  }
+  const TouchResult result = bench.expect<TouchResult>(1, 30);
+  EXPECT_EQ(result.outcome, Outcome::kContact) << name(result.outcome);
+  EXPECT_EQ(result.edges, 1u);
+}
+
+TEST(ApplicationCommissioning, ABentStylusIsBroughtBackWithAPersonsWord) {
+  Bench bench;
+  bench.face_mm = kFaceMm;
+  bench.make_ready();
+  bench.send(1, bench.touch());
+  bench.expect<Accepted>(1);
+  for (int left = 5000; bench.depth_mm() < kFaceMm && left > 0; --left) bench.ticks(1);
+  bench.disconnect();
+  bench.seconds(1);
+  bench.greet();
+  bench.send(0, ResultAcknowledge{1});
+  EXPECT_NE(bench.state().flags & kRetractDue, 0u);
+  EXPECT_NE(bench.state().flags & kProbeTouched, 0u);
+  bench.make_ready();
+  bench.send(2, bench.touch());
+  EXPECT_EQ(bench.expect<Rejected>(2).reason, RejectReason::kRetractPending);
+  bench.send(2, Retract{20000, 30000});
+  bench.expect<Accepted>(2);
+  EXPECT_EQ(bench.expect<MoveResult>(2, 10).outcome, Outcome::kArrived);
+  EXPECT_NEAR(bench.depth_mm(), -20, 0.001);
+}
+
+TEST(ApplicationCommissioning, AHostThatAsksFasterThanItIsAnsweredIsAnsweredAllTheSame) {
+  Bench bench;
+  bench.greet();
+  constexpr std::uint32_t kQuestions = 200;
+  for (std::uint32_t i = 1; i <= kQuestions; ++i) bench.send(0, ResultQuery{i});
+  for (std::uint32_t i = 1; i <= kQuestions; ++i)
+    ASSERT_EQ(bench.expect<ResultUnknown>(i).command_sequence, i) << bench.log();
+}
+
+TEST(ApplicationCommissioning, AHostThatDoesNotReadIsDropped) {
+  Bench bench;
+  bench.greet();
+  bench.socket().room = 0;
+  for (std::uint32_t i = 1; i <= 200; ++i) bench.send(0, ResultQuery{i});
+  bench.seconds(1);
+  EXPECT_FALSE(bench.connected());
+  EXPECT_EQ(bench.variable<double>("nTaskError"), 0);
+}
+
+}  // namespace
+}  // namespace val3
