@@ -144,6 +144,8 @@ bool JsonValue::boolean() const {
   return value_->get<bool>();
 }
 
+bool JsonValue::is_text() const { return value_->is_string(); }
+
 std::string JsonValue::text() const {
   if (!value_->is_string()) fail("is " + kind_of(*value_) + "; give a text");
   std::string text = value_->get<std::string>();

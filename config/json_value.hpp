@@ -52,6 +52,7 @@ class JsonValue {
   [[nodiscard]] int integer(int min, int max) const;
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] std::string text() const;  // not empty, no control characters
+  [[nodiscard]] bool is_text() const;      // for what may be a text or something else
 
   /// An array of exactly Count numbers, each at most kNumberMax in size.
   template <int Count>

@@ -11,8 +11,11 @@
 #include <csignal>
 #include <iostream>
 
+#include "config/fault_file.hpp"
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
+#include "sim_controller/control.hpp"
+#include "sim_controller/fault_names.hpp"
 #include "sim_controller/server.hpp"
 
 namespace {
@@ -26,6 +29,8 @@ struct Arguments {
   std::string cell_file;
   std::string truth_file;
   std::string listen;
+  std::string faults_file;
+  std::string control;
   std::uint64_t seed = 1;
   std::string speed = "1";
 };
@@ -66,18 +71,41 @@ int run(const Arguments& arguments) {
       std::chrono::duration_cast<std::chrono::seconds>(std::chrono::system_clock::now().time_since_epoch())
           .count());
   options.log = spdlog::default_logger();
+  if (!arguments.faults_file.empty()) {
+    const cell::FaultFile faults = cell::read_faults(arguments.faults_file);
+    options.faults = sim::planned(faults.faults);
+    options.duties = faults.duties;
+  }
 
   boost::asio::io_context io;
   std::optional<sim::Server> server;
-  try {
-    server.emplace(io, endpoint.host, endpoint.port, sim::make_plant(cell, truth), options);
-  } catch (const boost::system::system_error& error) {
-    std::cerr << "cs8sim: cannot listen on " << endpoint.host << ':' << endpoint.port << ": "
-              << error.code().message() << "; give another address with --listen\n";
+  std::optional<sim::Control> control;
+  const auto listen = [](const cell::Endpoint& at, const char* option, const auto& begin) {
+    try {
+      begin();
+    } catch (const boost::system::system_error& error) {
+      std::cerr << "cs8sim: cannot listen on " << at.host << ':' << at.port << ": " << error.code().message()
+                << "; give another address with " << option << '\n';
+      return false;
+    }
+    return true;
+  };
+  if (!listen(endpoint, "--listen", [&] {
+        server.emplace(io, endpoint.host, endpoint.port, sim::make_plant(cell, truth), options);
+      })) {
     return kRefused;
   }
+  if (!arguments.control.empty()) {
+    const cell::Endpoint at = *cell::parse_endpoint(arguments.control);
+    const auto answer = [&server](std::string_view line) { return sim::answer_control_line(*server, line); };
+    if (!listen(at, "--control", [&] { control.emplace(io, at.host, at.port, answer); })) return kRefused;
+    std::cerr << "control on " << at.host << ':' << control->port() << std::endl;
+  }
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
-  signals.async_wait([&server](boost::system::error_code, int) { server->stop(); });
+  signals.async_wait([&](boost::system::error_code, int) {
+    server->stop();
+    if (control) control->stop();
+  });
   std::cout << "listening on " << endpoint.host << ':' << server->port() << std::endl;
   spdlog::info("cell {}, truth {}, seed {}, speed {}", cell.name, truth.name, arguments.seed,
                arguments.speed);
@@ -101,6 +129,12 @@ int main(int argc, char** argv) {
   app.add_option("--truth", arguments.truth_file,
                  "what the cell hides; default: truth.json beside the cell file")
       ->type_name("FILE");
+  app.add_option("--faults", arguments.faults_file, "what goes wrong, and what the operator leaves undone")
+      ->type_name("FILE");
+  app.add_option("--control", arguments.control,
+                 "takes faults while it runs, a line of JSON each; port 0 takes a free one")
+      ->type_name("HOST:PORT")
+      ->check(check_listen);
   app.add_option("--seed", arguments.seed, "of the touch noise")->type_name("N")->capture_default_str();
   app.add_option("--speed", arguments.speed, "simulated against wall time; max: motions take no time")
       ->type_name("X|max")

@@ -8,13 +8,14 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <deque>
 #include <set>
 
 #include "cs8_protocol/codec.hpp"
 #include "cs8_protocol/framing.hpp"
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
+#include "sim_controller/connection.hpp"
+#include "sim_controller/reports.hpp"
 
 namespace sim {
 namespace {
@@ -23,25 +24,10 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 
 constexpr std::chrono::milliseconds kTickPeriod{4};
-/// How long a closed connection is still read, so that the last message is not lost to a reset.
-constexpr std::chrono::milliseconds kLingerMax{500};
-/// A State is dropped when this many frames wait to be sent.
-constexpr std::size_t kStateQueueMax = 4;
-/// A host that does not read is closed when this many frames wait.
-constexpr std::size_t kQueueMax = 1000;
+/// Between two tries to listen again.
+constexpr std::chrono::milliseconds kListenRetry{100};
 /// With those that are being turned away.
 constexpr std::size_t kConnectionsMax = 50;
-constexpr std::size_t kGarbageSize = 64;
-
-struct Connection {
-  explicit Connection(tcp::socket accepted) : socket(std::move(accepted)), linger(socket.get_executor()) {}
-
-  tcp::socket socket;
-  asio::steady_timer linger;
-  std::deque<std::vector<std::uint8_t>> queue;  // the first is being written
-  bool closing = false;                         // no more frames are taken; closed when the queue is empty
-  bool silent = false;
-};
 
 using ConnectionPtr = std::shared_ptr<Connection>;
 
@@ -52,10 +38,12 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
   Core(asio::io_context& io, const std::string& host, std::uint16_t port, Plant plant, ServerOptions options)
       : acceptor_(io, tcp::resolver(io).resolve(host, std::to_string(port)).begin()->endpoint()),
         timer_(io),
+        refuse_timer_(io),
         plant_(std::move(plant)),
         clock_(std::move(options.clock)),
         log_(std::move(options.log)),
-        faults_(std::move(options.faults)),
+        plan_(std::move(options.faults)),
+        duties_(options.duties),
         state_(make_controller(plant_, options.controller, clock_())) {}
 
   void start() {
@@ -63,14 +51,23 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     asio::co_spawn(acceptor_.get_executor(), tick_on(shared_from_this()), asio::detached);
   }
 
-  [[nodiscard]] std::uint16_t port() const { return port_; }
+  [[nodiscard]] std::uint16_t port() const { return endpoint_.port(); }
 
   void stop() {
     boost::system::error_code ignored;
     stopped_ = true;
     acceptor_.close(ignored);
     timer_.cancel();
-    for (const ConnectionPtr& connection : connections_) close_now(*connection);
+    refuse_timer_.cancel();
+    for (const ConnectionPtr& connection : connections_) connection->close_now();
+  }
+
+  void inject(const PlannedFault& fault) { plan_.add(fault); }
+
+  void change(const cell::OperatorChange& change) { duties_ = cell::changed(duties_, change); }
+
+  [[nodiscard]] cs8::State report() const {
+    return state_report(plant_, state_, {0, 1.0, cs8::Phase::kIdle, state_.joints}, clock_());
   }
 
  private:
@@ -81,8 +78,23 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
       boost::system::error_code error;
       tcp::socket socket(self->acceptor_.get_executor());
       co_await self->acceptor_.async_accept(socket, asio::redirect_error(asio::use_awaitable, error));
-      if (error == asio::error::operation_aborted || self->stopped_) co_return;
+      if (self->stopped_) co_return;
       if (!error) self->take(std::move(socket));
+      if (!self->acceptor_.is_open()) co_await self->listen_again();
+    }
+  }
+
+  /// After kRefuse. Somebody else may have taken the port in between: it is asked for until it is free.
+  asio::awaitable<void> listen_again() {
+    boost::system::error_code error;
+    while (!stopped_ && !acceptor_.is_open()) {
+      co_await refuse_timer_.async_wait(asio::redirect_error(asio::use_awaitable, error));
+      if (stopped_ || std::chrono::steady_clock::now() < refuse_timer_.expiry()) continue;
+      try {
+        acceptor_ = tcp::acceptor(acceptor_.get_executor(), endpoint_);
+      } catch (const boost::system::system_error&) {
+        refuse_timer_.expires_after(kListenRetry);
+      }
     }
   }
 
@@ -97,9 +109,10 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
 
   static asio::awaitable<void> serve(std::shared_ptr<Core> self, ConnectionPtr connection) {
     try {
-      while (!connection->closing) {
+      while (!connection->closing()) {
         const cs8::DecodeResult frame = co_await cs8::read_frame(connection->socket);
-        if (connection->closing) break;
+        if (connection->closing()) break;
+        if (connection->half_open()) co_await connection->left_alone();
         if (const auto* message = std::get_if<cs8::Message>(&frame)) {
           self->receive(connection, *message);
         } else {
@@ -111,35 +124,17 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
       std::array<std::uint8_t, 4096> bytes{};
       for (;;) co_await connection->socket.async_read_some(asio::buffer(bytes), asio::use_awaitable);
     } catch (const boost::system::system_error&) {
-      // The host, kLingerMax or stop() ended it.
+      // The host, a linger time or stop() ended it.
     }
     self->release(connection);
-    close_now(*connection);
+    connection->close_now();
     self->connections_.erase(connection);
   }
 
-  /// Takes no more frames and ends the connection once the queue is sent and the host has closed, or after
-  /// kLingerMax. The place is free for another host at once.
+  /// Ends the connection behind what waits to be sent. The place is free for another host at once.
   void begin_close(const ConnectionPtr& connection) {
-    if (connection->closing) return;
-    connection->closing = true;
     release(connection);
-    if (connection->queue.empty()) end_sending(*connection);
-    connection->linger.expires_after(kLingerMax);
-    connection->linger.async_wait([connection](boost::system::error_code error) {
-      if (!error) close_now(*connection);
-    });
-  }
-
-  static void end_sending(Connection& connection) {
-    boost::system::error_code ignored;
-    connection.socket.shutdown(tcp::socket::shutdown_send, ignored);
-  }
-
-  static void close_now(Connection& connection) {
-    boost::system::error_code ignored;
-    connection.linger.cancel();
-    connection.socket.close(ignored);
+    connection->begin_close();
   }
 
   void take(tcp::socket socket) {
@@ -153,21 +148,59 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     } else {
       host_ = connection;
       handle(ConnectionOpened{});
+      strike(plan_.meet_connection());
     }
     asio::co_spawn(acceptor_.get_executor(), serve(shared_from_this(), connection), asio::detached);
   }
 
   void receive(const ConnectionPtr& connection, cs8::Message message) {
-    if (const auto fault = faults_.next(cs8::type_of(message))) {
-      if (misbehave(connection, *fault, message)) return;
+    for (const LinkFault& fault : plan_.meet(cs8::type_of(message))) {
+      switch (fault.kind) {
+        case Fault::kDrop:
+          return;
+        case Fault::kWrongSequence:
+          alter(fault.kind, message, last_result_);
+          break;
+        case Fault::kDuplicate:
+          handle(message);
+          break;
+        case Fault::kDelay:
+          return connection->later(fault.seconds, [this, connection, message] {
+            if (host_ == connection) handle(message);
+          });
+        default:
+          strike({fault});
+          if (connection->closing() || connection->half_open() || fault.kind == Fault::kGarbage) return;
+      }
     }
     handle(message);
     handle(Tick{});  // a motion that takes no time is over at once
   }
 
+  /// Faults of the connection, as they come.
+  void strike(const std::vector<LinkFault>& faults) {
+    for (const LinkFault& fault : faults) {
+      if (fault.kind == Fault::kRefuse) stop_listening(fault.seconds);
+      if (!host_) continue;
+      const ConnectionPtr host = host_;
+      if (fault.kind == Fault::kCloseSocket) host->close_now();
+      if (fault.kind == Fault::kHalfOpen) host->go_half_open();
+      if (fault.kind == Fault::kGoSilent) host->go_silent();
+      if (fault.kind == Fault::kStopStates) host->stop_states(fault.seconds);
+      if (fault.kind == Fault::kGarbage) host->send(garbage(), false);
+    }
+  }
+
+  void stop_listening(double seconds) {
+    boost::system::error_code ignored;
+    refuse_timer_.expires_after(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
+    acceptor_.close(ignored);
+  }
+
   void refuse(const ConnectionPtr& connection, const cs8::Fault& fault) {
     if (log_) log_->info("connection closed: {}", cs8::name(fault.code));
-    send(connection, {0, fault});
+    connection->send(cs8::encode({0, fault}), false);
     begin_close(connection);
   }
 
@@ -175,6 +208,9 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     boost::system::error_code error;
     const bool waiting = host_ && host_->socket.available(error) > 0 && !error;
     handle(Tick{waiting});
+    for (const Misfortune& due : plan_.pass(std::chrono::duration<double>(kTickPeriod).count())) {
+      if (const auto* fault = std::get_if<LinkFault>(&due)) strike({*fault});
+    }
   }
 
   /// The connection is no longer the host's.
@@ -196,61 +232,16 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
   }
 
   void send_with_faults(const ConnectionPtr& connection, cs8::Message message) {
-    if (const auto fault = faults_.next(cs8::type_of(message))) {
-      if (misbehave(connection, *fault, message)) return;
+    const bool is_state = std::holds_alternative<cs8::State>(message.payload);
+    const std::vector<LinkFault> faults = plan_.meet(cs8::type_of(message));
+    for (const LinkFault& fault : faults) {
+      alter(fault.kind, message, last_result_);
+      if (fault.kind != Fault::kCloseSocket && fault.kind != Fault::kGarbage) strike({fault});
     }
-    send(connection, message);
-  }
-
-  /// Does what the fault says; true when the message is lost.
-  bool misbehave(const ConnectionPtr& connection, Fault fault, cs8::Message& message) {
-    switch (fault) {
-      case Fault::kCloseSocket:
-        connection->closing = true;
-        close_now(*connection);
-        return true;
-      case Fault::kGoSilent:
-        connection->silent = true;
-        return false;
-      case Fault::kGarbage:
-        enqueue(connection, std::vector<std::uint8_t>(kGarbageSize, 0xA5));
-        return true;
-      case Fault::kDrop:
-        return true;
-      case Fault::kWrongSequence:
-        message.sequence += kSequenceOffset;
-        return false;
-    }
-    throw std::logic_error("an unlisted fault");
-  }
-
-  void send(const ConnectionPtr& connection, const cs8::Message& message) {
-    if (std::holds_alternative<cs8::State>(message.payload) && connection->queue.size() >= kStateQueueMax)
-      return;
-    enqueue(connection, cs8::encode(message));
-  }
-
-  void enqueue(const ConnectionPtr& connection, std::vector<std::uint8_t> bytes) {
-    if (connection->silent || connection->closing) return;
-    if (connection->queue.size() >= kQueueMax) {
-      connection->closing = true;
-      return close_now(*connection);
-    }
-    connection->queue.push_back(std::move(bytes));
-    if (connection->queue.size() == 1) write_first(connection);
-  }
-
-  static void write_first(const ConnectionPtr& connection) {
-    asio::async_write(connection->socket, asio::buffer(connection->queue.front()),
-                      [connection](boost::system::error_code error, std::size_t) {
-                        if (error) return close_now(*connection);
-                        connection->queue.pop_front();
-                        if (!connection->queue.empty()) {
-                          write_first(connection);
-                        } else if (connection->closing) {
-                          end_sending(*connection);
-                        }
-                      });
+    if (const auto* result = std::get_if<cs8::TouchResult>(&message.payload)) last_result_ = *result;
+    std::vector<std::uint8_t> frame = cs8::encode(message);
+    for (const LinkFault& fault : faults) spoil(fault.kind, frame);
+    connection->send_with(faults, std::move(frame), is_state);
   }
 
   void log_result(const cs8::Message& message) const {
@@ -263,11 +254,14 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
 
   tcp::acceptor acceptor_;
   asio::steady_timer timer_;
-  std::uint16_t port_ = acceptor_.local_endpoint().port();
+  asio::steady_timer refuse_timer_;
+  tcp::endpoint endpoint_ = acceptor_.local_endpoint();
   Plant plant_;
   std::function<TimePoint()> clock_;
   std::shared_ptr<spdlog::logger> log_;
-  FaultPlan faults_;
+  FaultPlan plan_;
+  cell::OperatorDuties duties_;
+  std::optional<cs8::TouchResult> last_result_;
   ControllerState state_;
   ConnectionPtr host_;                   // the one that is served
   std::set<ConnectionPtr> connections_;  // with those that are being turned away
@@ -285,5 +279,11 @@ Server::~Server() { stop(); }
 std::uint16_t Server::port() const { return core_->port(); }
 
 void Server::stop() { core_->stop(); }
+
+void Server::inject(const PlannedFault& fault) { core_->inject(fault); }
+
+void Server::change(const cell::OperatorChange& change) { core_->change(change); }
+
+cs8::State Server::report() const { return core_->report(); }
 
 }  // namespace sim

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "config/fault_file.hpp"
 #include "sim_controller/controller.hpp"
 #include "sim_controller/fault_plan.hpp"
 #include "sim_controller/plant.hpp"
@@ -20,6 +21,7 @@ namespace sim {
 struct ServerOptions {
   ControllerOptions controller;
   std::vector<PlannedFault> faults;
+  cell::OperatorDuties duties;
   std::function<TimePoint()> clock = std::chrono::steady_clock::now;
   std::shared_ptr<spdlog::logger> log;  // may be null
 };
@@ -39,6 +41,13 @@ class Server {
 
   /// Closes every socket; nothing of the server stays in the io_context.
   void stop();
+
+  /// One fault more; it counts messages and touches from now on.
+  void inject(const PlannedFault& fault);
+  /// What the operator does unasked from now on.
+  void change(const cell::OperatorChange& change);
+  /// What the controller would report now.
+  [[nodiscard]] cs8::State report() const;
 
  private:
   class Core;

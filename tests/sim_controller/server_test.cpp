@@ -234,12 +234,13 @@ TEST_F(ServerTest, PlannedFaultsHappenAtTheirMessage) {
       co_await host.send(0, cs8::ResultAcknowledge{1});
       co_await host.send(2, touch());
       if (planned.connection_ends) {
-        if (planned.planned.on == MessageType::kTouchResult) co_await host.next_as<cs8::Accepted>();
+        if (std::get<MessageType>(planned.planned.on) == MessageType::kTouchResult)
+          co_await host.next_as<cs8::Accepted>();
         EXPECT_TRUE(co_await host.ends());
         co_return;
       }
       co_await host.next_as<cs8::Accepted>();
-      switch (planned.planned.fault) {
+      switch (std::get<LinkFault>(planned.planned.what).kind) {
         case Fault::kGarbage:
           try {
             co_await host.next();

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <list>
+#include <memory>
+#include <vector>
+
+#include "sim_controller/link_faults.hpp"
+
+namespace sim {
+
+/// One connection of the server and what waits to be sent on it, with everything that a planned fault makes
+/// of it. Kept alive by the handlers that run on it.
+class Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  explicit Connection(boost::asio::ip::tcp::socket accepted);
+
+  boost::asio::ip::tcp::socket socket;
+
+  /// No more frames are taken, and none are read.
+  [[nodiscard]] bool closing() const { return closing_; }
+  [[nodiscard]] bool half_open() const { return half_open_; }
+
+  /// Waits its turn. A State is left out when others wait, or a fault wants it so.
+  void send(std::vector<std::uint8_t> frame, bool is_state);
+  /// The same with the faults that meet this frame; its bytes are as they shall be.
+  void send_with(const std::vector<LinkFault>& faults, std::vector<std::uint8_t> frame, bool is_state);
+
+  void go_silent() { silent_ = true; }
+  void stop_states(double seconds);  // 0: for good
+  /// As if the cable were pulled: from here nothing is sent, not even the end. The socket is closed a minute
+  /// later.
+  void go_half_open();
+  /// Until a half-open connection is closed; it ends with a system_error then.
+  boost::asio::awaitable<void> left_alone();
+
+  /// Does it when so much time has passed, unless the connection is closed before.
+  void later(double seconds, std::function<void()> act);
+
+  /// Sends what waits, then ends the connection: when the other side closes too, or after half a second.
+  void begin_close();
+  void close_now();
+
+ private:
+  void enqueue(std::vector<std::uint8_t> bytes);
+  void hold(std::vector<std::uint8_t> frame, double seconds);
+  void write_first();
+  void end_sending();
+
+  boost::asio::steady_timer linger_;
+  std::list<boost::asio::steady_timer> timers_;  // of later()
+  std::deque<std::vector<std::uint8_t>> queue_;  // the first is being written
+  std::vector<std::vector<std::uint8_t>> held_;  // late frames, in their order
+  std::vector<std::uint8_t> glued_;              // goes before the next frame, in one write
+  std::chrono::steady_clock::time_point states_from_{};
+  bool closing_ = false;
+  bool silent_ = false;
+  bool half_open_ = false;
+};
+
+}  // namespace sim
