@@ -206,7 +206,7 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
 
   void tick() {
     boost::system::error_code error;
-    const bool waiting = host_ && host_->socket.available(error) > 0 && !error;
+    const bool waiting = host_ && !host_->half_open() && host_->socket.available(error) > 0 && !error;
     handle(Tick{waiting});
     for (const Misfortune& due : plan_.pass(std::chrono::duration<double>(kTickPeriod).count())) {
       if (const auto* fault = std::get_if<LinkFault>(&due)) strike({*fault});

@@ -26,7 +26,7 @@ using testing::touch_command;
 
 constexpr std::chrono::seconds kPatience{20};
 /// What the host waits for, in the order of the times.
-constexpr cs8::ClientOptions kWaits{.connect_deadline = milliseconds(500),
+constexpr cs8::ClientOptions kWaits{.connect_deadline = milliseconds(250),
                                     .heartbeat_period = milliseconds(50),
                                     .heartbeat_timeout = milliseconds(300),
                                     .answer_deadline = milliseconds(600),
@@ -113,6 +113,7 @@ class LinkFaults : public ::testing::Test {
   }
 
   void meet(const Case& link_case) {
+    if (HasFatalFailure()) return;  // something of the case before may still run
     SCOPED_TRACE(link_case.fault);
     io_.restart();
     lost_.reset();
@@ -138,9 +139,12 @@ class LinkFaults : public ::testing::Test {
     if (failure) std::rethrow_exception(failure);
     ASSERT_TRUE(done) << "waits for something that does not come";
     ASSERT_EQ(lost_.has_value(), link_case.lost.has_value()) << (lost_ ? lost_->text : "goes on");
-    if (lost_) EXPECT_EQ(lost_->kind, *link_case.lost) << lost_->text;
     EXPECT_EQ(touch, link_case.touch);
-    if (!lost_) EXPECT_EQ(outcomes_.size(), 3U);
+    if (lost_) {
+      EXPECT_EQ(lost_->kind, *link_case.lost) << lost_->text;
+    } else {
+      EXPECT_EQ(outcomes_.size(), 3U);
+    }
   }
 
   void meet_all(const std::vector<Case>& cases) {
@@ -174,7 +178,7 @@ TEST_F(LinkFaults, AtTheConnection) {
 TEST_F(LinkFaults, InTheHandshake) {
   meet_all({{R"({"fault":"drop","on":"hello"})", LinkErrorKind::kHandshakeTimeout},
             {R"({"fault":"close","on":"hello"})", LinkErrorKind::kPeerClosed},
-            {R"({"fault":"drop","on":"welcome"})", LinkErrorKind::kHandshakeTimeout},
+            {R"({"fault":"drop","on":"welcome"})", LinkErrorKind::kProtocol},
             {R"({"fault":"close_mid_frame","on":"welcome"})", LinkErrorKind::kPeerClosed},
             {R"({"fault":"half_open","on":"welcome"})", LinkErrorKind::kHandshakeTimeout},
             {R"({"fault":"garbage","on":"welcome"})", LinkErrorKind::kProtocol},
@@ -186,8 +190,8 @@ TEST_F(LinkFaults, InTheHandshake) {
             {R"({"fault":"wrong_application","on":"welcome"})", LinkErrorKind::kIncompatible},
             {R"({"fault":"wrong_limits","on":"welcome"})", LinkErrorKind::kIncompatible},
             {R"({"fault":"wrong_session","on":"welcome"})", LinkErrorKind::kProtocol},
-            {R"({"fault":"delay","on":"welcome","ms":480})", {}},
-            {R"({"fault":"delay","on":"welcome","ms":520})", LinkErrorKind::kHandshakeTimeout}});
+            {R"({"fault":"delay","on":"hello","ms":230})", {}},
+            {R"({"fault":"delay","on":"hello","ms":270})", LinkErrorKind::kHandshakeTimeout}});
 }
 
 TEST_F(LinkFaults, AtATouch) {
