@@ -48,10 +48,10 @@ struct DeclaredFault {
 
 /// What the simulated operator does unasked.
 struct OperatorDuties {
-  bool powers_up = true;      // also after a stop
-  bool touches_probe = true;  // the touch test by hand, and closes the cell behind him
-  bool confirms = true;       // presses the confirmation key when a run asks for it
-  bool frees_arm = true;      // takes the arm off what it ran into, and mends the probe
+  bool powers_up = true;      // at the start
+  bool touches_probe = true;  // when the application asks for the touch test
+  bool confirms = true;       // when the application waits for it
+  bool frees_arm = true;      // after a collision or an unexpected contact, when a host says Hello
 };
 
 /// What is not there stays as it is.

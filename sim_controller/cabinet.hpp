@@ -21,6 +21,7 @@ struct Panel {
   std::int32_t monitor_speed_percent = 100;
   bool cell_closed = true;
   bool confirm_key = false;
+  bool confirm_key_stuck = false;  // it does not go off any more
 };
 
 /// Motion needs all of these, from its first tick to its last.

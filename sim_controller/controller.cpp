@@ -231,9 +231,10 @@ class Step {
   bool rests() {
     const Cabinet& cabinet = state_.cabinet;
     const bool inputs_known = cabinet.probe_free() || cabinet.probe_touched() || cabinet.probe_disagrees();
-    return !running() && cabinet.arm_rests() && inputs_known && state_.person.plan.empty() &&
-           cabinet.world.probe.bounce_steps == 0 && cabinet.world.probe.vibration_steps == 0 &&
-           cabinet.world.probe.troubles.vibration_s <= 0.0 && looked_at_;
+    return !running() && is_empty(cabinet.drives) && is_settled(cabinet.drives) && inputs_known &&
+           state_.person.plan.empty() && !state_.plan.waits() && cabinet.world.probe.bounce_steps == 0 &&
+           cabinet.world.probe.vibration_steps == 0 && cabinet.world.probe.troubles.vibration_s <= 0.0 &&
+           looked_at_;
   }
 
   TimePoint silent_at() const { return state_.last_heard + state_.heartbeat_timeout; }
@@ -257,6 +258,7 @@ class Step {
 
   void tick_at(TimePoint at) {
     looked_at_ = true;
+    suffer();
     Cabinet& cabinet = state_.cabinet;
     tick(plant_, state_.person, cabinet);
     const CabinetTick seen = tick(plant_, cabinet);
@@ -267,6 +269,28 @@ class Step {
     watch_permission();
     if (running() && step(plant_, cabinet, state_.motion, seen, at)) finish();
     tell(watch_key(state_.permit, cabinet.panel.confirm_key));
+  }
+
+  /// What goes wrong in this tick.
+  void suffer() {
+    const bool is_touch = running() && std::holds_alternative<cs8::Touch>(running()->order);
+    state_.plan.follow(is_touch ? running()->sequence : 0,
+                       is_touch ? phase_of(running()->stage) : cs8::Phase::kIdle);
+    for (const Misfortune& due : state_.plan.pass(kTickSeconds)) {
+      if (const auto* of_link = std::get_if<LinkFault>(&due)) {
+        replies.link_faults.push_back(*of_link);
+        if (of_link->kind == Fault::kCloseSocket) lose_link();
+      } else if (const auto* act = std::get_if<Act>(&due)) {
+        if (*act == Act::kJogHome && running()) perform(plant_, state_.cabinet, Act::kManualMode);
+        perform(plant_, state_.cabinet, *act);
+      } else {
+        const Trouble& trouble = std::get<Trouble>(due);
+        if (trouble.kind == TroubleKind::kRestarts && state_.connected) {
+          fault(cs8::FaultCode::kStopping, 0);
+        }
+        apply(trouble, state_);
+      }
+    }
   }
 
   void watch_permission() {

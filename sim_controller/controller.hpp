@@ -11,6 +11,7 @@
 
 #include "cs8_protocol/messages.hpp"
 #include "sim_controller/cabinet.hpp"
+#include "sim_controller/fault_plan.hpp"
 #include "sim_controller/motion_task.hpp"
 #include "sim_controller/operator.hpp"
 #include "sim_controller/permit.hpp"
@@ -50,6 +51,7 @@ struct ControllerState {
   TimePoint last_heard;
   TimePoint next_state;
   std::uint32_t state_counter = 0;
+  FaultPlan plan;  // what is to go wrong; it stays over restarts
 };
 
 /// Hosts may ask for a heartbeat timeout in this range; others get the nearest.
@@ -68,8 +70,9 @@ using Event = std::variant<ConnectionOpened, ConnectionClosed, Tick, cs8::Messag
 
 struct Replies {
   std::vector<cs8::Message> messages;
-  bool close = false;   // the connection, after the messages
-  std::string warning;  // for the log: a body hit something
+  bool close = false;                  // the connection, after the messages
+  std::string warning;                 // for the log: a body hit something
+  std::vector<LinkFault> link_faults;  // that are due, after the messages
 };
 
 ControllerState make_controller(const Plant& plant, const ControllerOptions& options, TimePoint now);

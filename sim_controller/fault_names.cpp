@@ -15,7 +15,7 @@ enum class Figure { kNone, kTime, kTimeOrNone, kError, kPercent, kTimes };
 
 struct Entry {
   std::string_view name;
-  std::variant<Fault, TroubleKind> what;
+  std::variant<Fault, TroubleKind, Act> what;
   Figure figure = Figure::kNone;
 };
 
@@ -67,7 +67,24 @@ constexpr std::array kTable{
     Entry{"collision", TroubleKind::kCollision},
     Entry{"never_settles", TroubleKind::kNeverSettles},
     Entry{"settles", TroubleKind::kSettles},
-    // the operator
+    // people
+    Entry{"power_on", Act::kPowerOn},
+    Entry{"power_off", Act::kPowerOff},
+    Entry{"manual_mode", Act::kManualMode},
+    Entry{"local_mode", Act::kLocalMode},
+    Entry{"remote_mode", Act::kRemoteMode},
+    Entry{"open_cell", Act::kOpenCell},
+    Entry{"close_cell", Act::kCloseCell},
+    Entry{"touch_stylus", Act::kTouchStylus},
+    Entry{"release_stylus", Act::kReleaseStylus},
+    Entry{"press_confirm", Act::kPressConfirm},
+    Entry{"release_confirm", Act::kReleaseConfirm},
+    Entry{"hold", Act::kHold},
+    Entry{"move", Act::kMove},
+    Entry{"emergency_stop", Act::kEmergencyStop},
+    Entry{"release_emergency_stop", Act::kReleaseEmergencyStop},
+    Entry{"acknowledge_emergency_stop", Act::kAcknowledgeEmergencyStop},
+    Entry{"jog_home", Act::kJogHome},
     Entry{"confirms_late", TroubleKind::kConfirmsLate, Figure::kTime},
     Entry{"confirmation_key_stuck", TroubleKind::kConfirmationKeyStuck},
 };
@@ -165,6 +182,8 @@ PlannedFault planned(const cell::DeclaredFault& declared) {
   if (const auto* of_link = std::get_if<Fault>(&entry.what)) {
     demand_message(declared, *of_link, on);
     fault.what = LinkFault{*of_link, seconds};
+  } else if (const auto* act = std::get_if<Act>(&entry.what)) {
+    fault.what = *act;
   } else {
     fault.what = Trouble{std::get<TroubleKind>(entry.what), number, seconds};
   }

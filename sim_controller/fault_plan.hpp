@@ -8,6 +8,7 @@
 
 #include "cs8_protocol/messages.hpp"
 #include "sim_controller/link_faults.hpp"
+#include "sim_controller/operator.hpp"
 #include "sim_controller/troubles.hpp"
 
 namespace sim {
@@ -22,7 +23,7 @@ struct AtTouch {         // a touch comes to this phase
 /// A message type: just before the controller takes such a message, or just before it sends one.
 using Trigger = std::variant<AtOnce, AtConnection, AtTouch, cs8::MessageType>;
 
-using Misfortune = std::variant<LinkFault, Trouble>;
+using Misfortune = std::variant<LinkFault, Trouble, Act>;
 
 /// One fault, at the nth time its trigger comes since it was planned; counts from 1.
 struct PlannedFault {
@@ -52,6 +53,8 @@ class FaultPlan {
   /// What is due when so much simulated time has passed since the last call, in the order it was planned;
   /// each once. To be asked at each tick.
   std::vector<Misfortune> pass(double seconds);
+  /// Something is due after some more time.
+  [[nodiscard]] bool waits() const { return !waiting_.empty(); }
 
  private:
   struct Counted {

@@ -74,7 +74,7 @@ int run(const Arguments& arguments) {
   if (!arguments.faults_file.empty()) {
     const cell::FaultFile faults = cell::read_faults(arguments.faults_file);
     options.faults = sim::planned(faults.faults);
-    options.duties = faults.duties;
+    options.controller.duties = faults.duties;
   }
 
   boost::asio::io_context io;

@@ -31,7 +31,7 @@ void asked_for_touch_test(Operator& person) {
 
 void asked_to_confirm(Operator& person) {
   if (!person.duties.confirms) return;
-  person.plan.push_back({kConfirmSeconds, Act::kPressConfirm});
+  person.plan.push_back({person.confirms_after_s, Act::kPressConfirm});
   person.plan.push_back({0.3, Act::kReleaseConfirm});
 }
 
@@ -75,7 +75,7 @@ void perform(const Plant& plant, Cabinet& cabinet, Act act) {
       panel.confirm_key = true;
       break;
     case Act::kReleaseConfirm:
-      panel.confirm_key = false;
+      panel.confirm_key = panel.confirm_key_stuck;
       break;
     case Act::kHold:
       panel.held = true;

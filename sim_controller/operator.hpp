@@ -2,6 +2,7 @@
 
 #include <deque>
 
+#include "config/fault_file.hpp"
 #include "sim_controller/cabinet.hpp"
 #include "sim_controller/plant.hpp"
 
@@ -29,13 +30,7 @@ enum class Act {
   kJogHome,  // frees the arm and brings it to its start posture
 };
 
-/// What the person does by himself.
-struct OperatorDuties {
-  bool powers_up = true;      // at the start
-  bool touches_probe = true;  // when the application asks for the touch test
-  bool confirms = true;       // when the application waits for it
-  bool frees_arm = true;      // after a collision or an unexpected contact, when a host says Hello
-};
+using cell::OperatorDuties;
 
 /// Enabling power takes a CS8 two to five seconds.
 inline constexpr double kPowerUpSeconds = 2.5;
@@ -49,6 +44,7 @@ struct PlannedAct {
 
 struct Operator {
   OperatorDuties duties;
+  double confirms_after_s = kConfirmSeconds;
   std::deque<PlannedAct> plan;
 };
 

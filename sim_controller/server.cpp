@@ -42,9 +42,9 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
         plant_(std::move(plant)),
         clock_(std::move(options.clock)),
         log_(std::move(options.log)),
-        plan_(std::move(options.faults)),
-        duties_(options.duties),
-        state_(make_controller(plant_, options.controller, clock_())) {}
+        state_(make_controller(plant_, options.controller, clock_())) {
+    state_.plan = FaultPlan(std::move(options.faults));
+  }
 
   void start() {
     asio::co_spawn(acceptor_.get_executor(), accept_all(shared_from_this()), asio::detached);
@@ -62,13 +62,13 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     for (const ConnectionPtr& connection : connections_) connection->close_now();
   }
 
-  void inject(const PlannedFault& fault) { plan_.add(fault); }
+  void inject(const PlannedFault& fault) { state_.plan.add(fault); }
 
-  void change(const cell::OperatorChange& change) { duties_ = cell::changed(duties_, change); }
-
-  [[nodiscard]] cs8::State report() const {
-    return state_report(plant_, state_, {0, 1.0, cs8::Phase::kIdle, state_.joints}, clock_());
+  void change(const cell::OperatorChange& change) {
+    state_.person.duties = cell::changed(state_.person.duties, change);
   }
+
+  [[nodiscard]] cs8::State report() const { return state_report(state_, clock_()); }
 
  private:
   // Each coroutine holds the core, so that it may end after the Server object.
@@ -148,13 +148,13 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     } else {
       host_ = connection;
       handle(ConnectionOpened{});
-      strike(plan_.meet_connection());
+      strike(state_.plan.meet_connection());
     }
     asio::co_spawn(acceptor_.get_executor(), serve(shared_from_this(), connection), asio::detached);
   }
 
   void receive(const ConnectionPtr& connection, cs8::Message message) {
-    for (const LinkFault& fault : plan_.meet(cs8::type_of(message))) {
+    for (const LinkFault& fault : state_.plan.meet(cs8::type_of(message))) {
       switch (fault.kind) {
         case Fault::kDrop:
           return;
@@ -208,9 +208,6 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     boost::system::error_code error;
     const bool waiting = host_ && !host_->half_open() && host_->socket.available(error) > 0 && !error;
     handle(Tick{waiting});
-    for (const Misfortune& due : plan_.pass(std::chrono::duration<double>(kTickPeriod).count())) {
-      if (const auto* fault = std::get_if<LinkFault>(&due)) strike({*fault});
-    }
   }
 
   /// The connection is no longer the host's.
@@ -228,12 +225,13 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
       log_result(message);
       if (host) send_with_faults(host, message);
     }
+    strike(replies.link_faults);
     if (host && replies.close) begin_close(host);
   }
 
   void send_with_faults(const ConnectionPtr& connection, cs8::Message message) {
     const bool is_state = std::holds_alternative<cs8::State>(message.payload);
-    const std::vector<LinkFault> faults = plan_.meet(cs8::type_of(message));
+    const std::vector<LinkFault> faults = state_.plan.meet(cs8::type_of(message));
     for (const LinkFault& fault : faults) {
       alter(fault.kind, message, last_result_);
       if (fault.kind != Fault::kCloseSocket && fault.kind != Fault::kGarbage) strike({fault});
@@ -259,8 +257,6 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
   Plant plant_;
   std::function<TimePoint()> clock_;
   std::shared_ptr<spdlog::logger> log_;
-  FaultPlan plan_;
-  cell::OperatorDuties duties_;
   std::optional<cs8::TouchResult> last_result_;
   ControllerState state_;
   ConnectionPtr host_;                   // the one that is served

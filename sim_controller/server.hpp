@@ -21,7 +21,6 @@ namespace sim {
 struct ServerOptions {
   ControllerOptions controller;
   std::vector<PlannedFault> faults;
-  cell::OperatorDuties duties;
   std::function<TimePoint()> clock = std::chrono::steady_clock::now;
   std::shared_ptr<spdlog::logger> log;  // may be null
 };

@@ -2,7 +2,9 @@
 
 namespace sim {
 
-/// What can be wrong with the probe, the controller or the people at the cell.
+struct ControllerState;
+
+/// What can be wrong with the probe, the controller or the confirmation at the cell.
 enum class TroubleKind {
   // The probe.
   kStylusSticks,        // from the next trip on it does not seat again
@@ -19,16 +21,16 @@ enum class TroubleKind {
   // The controller.
   kTaskDies,        // `number`: with this run-time error
   kOverruns,        // `number`: so many periods more were not met
-  kRestarts,        // the application is started anew, in a new session
   kMonitorSpeed,    // `number`: percent
   kReferencesLost,  // joint positions are not referenced
   kReferencesFound,
-  kMotionError,   // `number`: the drives give up with this run-time error
+  kMotionError,   // `number`: the running motion ends with this run-time error
   kCollision,     // following error: the power is cut
   kNeverSettles,  // the arm is never said to stand
   kSettles,       // that is over
-  // The operator.
-  kConfirmsLate,          // `seconds` from being asked, in place of his usual time
+  kRestarts,      // the application is ended at the pendant and started anew, in a new session
+  // The confirmation.
+  kConfirmsLate,          // `seconds` from being asked to the pressed key
   kConfirmationKeyStuck,  // pressed, for good
 };
 
@@ -37,5 +39,8 @@ struct Trouble {
   int number = 0;
   double seconds = 0.0;  // simulated
 };
+
+/// Between two ticks. Of a restart only what the application forgets: its connection is the caller's.
+void apply(const Trouble& trouble, ControllerState& state);
 
 }  // namespace sim

@@ -66,10 +66,12 @@ class LinkFaults : public ::testing::Test {
     co_return co_await client_.connect(there, expected);
   }
 
-  /// Until the arm may move.
+  /// Until the run is confirmed.
   asio::awaitable<void> make_ready() {
-    while (client_.connected() &&
-           !(client_.latest_state() && (client_.latest_state()->flags & cs8::kPowered) != 0)) {
+    while (client_.connected()) {
+      const cs8::PermitReply reply = co_await client_.begin(1, milliseconds(1000));
+      const auto* permit = std::get_if<cs8::Permit>(&reply);
+      if (permit == nullptr || permit->state == cs8::PermitState::kGranted) co_return;
       co_await next_state();
     }
   }

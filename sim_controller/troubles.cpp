@@ -1,0 +1,105 @@
+#include "sim_controller/troubles.hpp"
+
+#include "sim_controller/controller.hpp"
+
+namespace sim {
+namespace {
+
+/// True when it was one of the probe's.
+bool apply_to_probe(const Trouble& trouble, ProbeTroubles& probe) {
+  switch (trouble.kind) {
+    case TroubleKind::kStylusSticks:
+      probe.stylus = StylusTrouble::kSticks;
+      return true;
+    case TroubleKind::kStylusStaysTouched:
+      probe.stylus = StylusTrouble::kStaysTouched;
+      return true;
+    case TroubleKind::kStylusNeverTouches:
+      probe.stylus = StylusTrouble::kNeverTouches;
+      return true;
+    case TroubleKind::kProbeBounces:
+      probe.bounces = trouble.number;
+      return true;
+    case TroubleKind::kVibration:
+      probe.vibration_s = trouble.seconds;
+      return true;
+    case TroubleKind::kLatchLost:
+      probe.latch_loses_edges = true;
+      return true;
+    case TroubleKind::kContactCut:
+      probe.contact_wire = WireTrouble::kCut;
+      return true;
+    case TroubleKind::kContactShort:
+      probe.contact_wire = WireTrouble::kShorted;
+      return true;
+    case TroubleKind::kLoopCut:
+      probe.loop_wire = WireTrouble::kCut;
+      return true;
+    case TroubleKind::kLoopShort:
+      probe.loop_wire = WireTrouble::kShorted;
+      return true;
+    case TroubleKind::kProbeMended:
+      probe = {};
+      return true;
+    default:
+      return false;
+  }
+}
+
+void collide(ControllerState& state) {
+  state.cabinet.panel.powered = false;
+  if (!state.motion.running) return;
+  break_off(state.cabinet, *state.motion.running, cs8::Outcome::kCollision);
+  state.motion.running->collision = "following error";
+  state.motion.way_out.clear();  // the operator frees the arm
+}
+
+}  // namespace
+
+void apply(const Trouble& trouble, ControllerState& state) {
+  Cabinet& cabinet = state.cabinet;
+  if (apply_to_probe(trouble, cabinet.world.probe.troubles)) return;
+  switch (trouble.kind) {
+    case TroubleKind::kTaskDies:
+      cabinet.task_error = trouble.number;
+      break;
+    case TroubleKind::kOverruns:
+      cabinet.overruns += static_cast<std::uint32_t>(trouble.number);
+      break;
+    case TroubleKind::kMonitorSpeed:
+      cabinet.panel.monitor_speed_percent = trouble.number;
+      break;
+    case TroubleKind::kReferencesLost:
+      cabinet.panel.arm_calibrated = false;
+      break;
+    case TroubleKind::kReferencesFound:
+      cabinet.panel.arm_calibrated = true;
+      break;
+    case TroubleKind::kMotionError:
+      if (state.motion.running)
+        break_off(cabinet, *state.motion.running, cs8::Outcome::kMotionError, trouble.number);
+      break;
+    case TroubleKind::kCollision:
+      collide(state);
+      break;
+    case TroubleKind::kNeverSettles:
+      cabinet.never_settles = true;
+      break;
+    case TroubleKind::kSettles:
+      cabinet.never_settles = false;
+      break;
+    case TroubleKind::kRestarts:
+      restart_application(state);
+      break;
+    case TroubleKind::kConfirmsLate:
+      state.person.confirms_after_s = trouble.seconds;
+      break;
+    case TroubleKind::kConfirmationKeyStuck:
+      cabinet.panel.confirm_key = cabinet.panel.confirm_key_stuck = true;
+      break;
+    default:  // the probe's
+      break;
+  }
+}
+
+}  // namespace sim
