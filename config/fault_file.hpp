@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -80,7 +81,7 @@ using ControlRequest = std::variant<DeclaredFault, OperatorChange, ShowState>;
 /// One line: a fault, {"operator":{...}} or {"show":"state"}. ConfigError, whatever the bytes are.
 ControlRequest parse_control_line(std::string_view line);
 
-using ShownValue = std::pair<std::string, std::variant<bool, double, std::string>>;
+using ShownValue = std::pair<std::string, std::variant<bool, std::int64_t, std::string>>;
 
 /// {"ok":true}, with {"state":{...}} when there is something to show.
 std::string control_answer(const std::vector<ShownValue>& state = {});

@@ -30,12 +30,12 @@ asio::awaitable<void> answer(tcp::socket& socket, std::string line) {
 
 std::vector<cell::ShownValue> shown(const cs8::State& state) {
   const auto has = [&state](cs8::StateFlag flag) { return (state.flags & flag) != 0; };
-  return {{"session", static_cast<double>(state.session)},
+  return {{"session", std::int64_t{state.session}},
           {"mode", std::string(cs8::name(state.mode))},
           {"powered", has(cs8::kPowered)},
           {"held", has(cs8::kHeld)},
-          {"emergency_stop", static_cast<double>(state.emergency_stop)},
-          {"monitor_speed_percent", static_cast<double>(state.monitor_speed_percent)},
+          {"emergency_stop", std::int64_t{state.emergency_stop}},
+          {"monitor_speed_percent", std::int64_t{state.monitor_speed_percent}},
           {"arm_calibrated", has(cs8::kArmCalibrated)},
           {"settled", has(cs8::kSettled)},
           {"probe_touched", has(cs8::kProbeTouched)},
@@ -43,11 +43,11 @@ std::vector<cell::ShownValue> shown(const cs8::State& state) {
           {"touch_tested", has(cs8::kTouchTested)},
           {"cell_closed", has(cs8::kCellClosed)},
           {"retract_due", has(cs8::kRetractDue)},
-          {"active_sequence", static_cast<double>(state.active_sequence)},
+          {"active_sequence", std::int64_t{state.active_sequence}},
           {"phase", std::string(cs8::name(state.phase))},
           {"permit", std::string(cs8::name(state.permit))},
-          {"task_error", static_cast<double>(state.task_error)},
-          {"overruns", static_cast<double>(state.overruns)}};
+          {"task_error", std::int64_t{state.task_error}},
+          {"overruns", std::int64_t{state.overruns}}};
 }
 
 }  // namespace
