@@ -78,6 +78,8 @@ class Step {
   void take(std::uint32_t, const cs8::Begin& begin) {
     const bool key_is_on = state_.cabinet.panel.confirm_key;
     if (const auto reason = refusal_of_begin()) {
+      // A new run while one moves: the permit goes, and with it the motion.
+      if (running()) break_off(state_.cabinet, *running(), Outcome::kStopped);
       tell(refuse(state_.permit, begin, *reason));
       if (*reason == RejectReason::kTouchTestMissing) asked_for_touch_test(state_.person);
       return;
@@ -150,6 +152,7 @@ class Step {
   }
 
   std::optional<RejectReason> refusal_of_begin() {
+    if (state_.cabinet.task_error != 0) return RejectReason::kTaskFailed;
     if (const auto reason = refusal_of_another()) return reason;
     if (const auto rejected = cabinet_refusal(state_.cabinet)) return rejected->reason;
     // Behind a touch that was broken off the stylus may be bent: the way back is all that moves first.

@@ -208,6 +208,13 @@ TEST_F(Permit, FinishStopsARunningCommandFirst) {
   EXPECT_EQ(bench.rejection(2, touch()), RejectReason::kResultUnacknowledged);
 }
 
+TEST_F(Permit, BeginWhileACommandRunsIsRefusedAndEndsIt) {
+  Bench bench = Bench::ready(plant());
+  bench.touch_until(1, motion(), Phase::kSearch);
+  EXPECT_EQ(refusal(bench), RejectReason::kBusy);
+  EXPECT_EQ(bench.result<cs8::TouchResult>().outcome, cs8::Outcome::kStopped);
+}
+
 TEST_F(Permit, OfABrokenOffTouchIsForTheWayBackOnly) {
   Bench bench = Bench::ready(plant());
   bench.touch_until(1, motion(), Phase::kSearch);
