@@ -36,21 +36,24 @@ constexpr std::size_t size_of_payload() {
   return counter.size;
 }
 
+/// There must be room for as many bytes as the fields take.
 class Writer {
  public:
-  explicit Writer(std::vector<std::uint8_t>& buffer) : buffer_(buffer) {}
+  explicit Writer(std::uint8_t* bytes) : at_(bytes) {}
 
   template <class... Field>
   void operator()(const Field&... fields) {
     (put(fields), ...);
   }
 
+ private:
   template <class Number>
   requires std::is_integral_v<Number>
   void put(Number number) {
     for (std::size_t i = 0; i < sizeof(Number); ++i) {
-      buffer_.push_back(static_cast<std::uint8_t>(static_cast<std::uint32_t>(number) >> (8 * i)));
+      at_[i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(number) >> (8 * i));
     }
+    at_ += sizeof(Number);
   }
   template <class Enum>
   requires std::is_enum_v<Enum>
@@ -60,8 +63,7 @@ class Writer {
     for (const Element& element : elements) put(element);
   }
 
- private:
-  std::vector<std::uint8_t>& buffer_;
+  std::uint8_t* at_;
 };
 
 /// The bytes must be as many as the fields take.
@@ -170,7 +172,9 @@ std::vector<std::uint8_t> encode(const Message& message) {
 void encode(const Message& message, std::vector<std::uint8_t>& buffer) {
   std::visit(
       [&]<class Body>(const Body& body) {
-        Writer writer(buffer);
+        const std::size_t before = buffer.size();
+        buffer.resize(before + kHeaderSize + size_of_payload<Body>());
+        Writer writer(buffer.data() + before);
         writer(kMagic[0], kMagic[1], kProtocolVersion, Body::kType, message.sequence,
                static_cast<std::uint16_t>(size_of_payload<Body>()));
         Body::visit(body, writer);
