@@ -50,7 +50,7 @@ struct Probe {
   double std_stylus_radius_m = 0.0;
   double std_pretravel_m = 0.0;
   double overtravel_m = 0.0;
-  double calibration_speed_m_s = 0.0;  // of a search; the pre-travel holds at this speed only
+  double calibration_speed_m_s = 0.0;  // of a contact; the pre-travel holds at this speed only
   std::vector<calib::Capsule>
       bodies;  // in frame 7: its origin is the ball's centre, its z axis points out of the tip
 };
@@ -70,11 +70,29 @@ struct PlaceTolerance {
   double angle_rad = 0.0;
 };
 
+/// A touch that found its face is made again, slowly: from a little before where the first one stopped.
+struct SecondTouch {
+  double speed_m_s = 0.0;
+  double backoff_m = 0.0;
+};
+
 struct Speeds {
   double travel_m_s = 0.0;
-  double approach_m_s = 0.0;
+  double approach_m_s = 0.0;  // of all that is near to a face and no search
   double search_m_s = 0.0;
+  std::optional<SecondTouch> second;  // nothing: the first contact counts
+
+  /// At which the contact that counts is made.
+  [[nodiscard]] double contact_m_s() const { return second ? second->speed_m_s : search_m_s; }
 };
+
+/// An arm that a contact stops goes on for v t + v^2 / 2a: t until it begins to brake, then this
+/// deceleration.
+inline constexpr double kStopLatencySeconds = 0.008;
+inline constexpr double kStopDecelerationMetresPerSecond2 = 0.5;
+constexpr double stop_distance_m(double speed_m_s) {
+  return speed_m_s * kStopLatencySeconds + speed_m_s * speed_m_s / (2.0 * kStopDecelerationMetresPerSecond2);
+}
 
 struct Deadlines {
   std::chrono::milliseconds connect{};

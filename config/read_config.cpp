@@ -118,19 +118,46 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value) {
   return limits;
 }
 
+constexpr NumberRange kApproachSpeeds{.min = kPositive.min, .max = 20.0};  // mm/s: a hand can be taken away
+constexpr NumberRange kSearchSpeeds{.min = kPositive.min,
+                                    .max = 8.0};          // mm/s: what touch probes are made for
+constexpr NumberRange kBackoffs{.min = 0.5, .max = 5.0};  // mm
+
+/// A speed at which the probe may touch something: the arm stops within half of what the stylus may bend.
+double touching_speed_m_s(const JsonValue& value, const NumberRange& range_mm_s, const Probe& probe) {
+  const double speed_m_s = metres_from_mm(value.number(range_mm_s));
+  if (stop_distance_m(speed_m_s) > probe.overtravel_m / 2) {
+    value.fail("the arm goes on for " + plain_number(calib::mm_from_metres(stop_distance_m(speed_m_s))) +
+               " mm after a contact at this speed, more than half the probe's overtravel_mm; go slower");
+  }
+  return speed_m_s;
+}
+
+std::optional<SecondTouch> second_touch_from_json(const JsonObject& object, const Probe& probe) {
+  const auto speed = object.find("second_mm_s");
+  if (!speed) {
+    if (const auto backoff = object.find("second_backoff_mm"))
+      backoff->fail("there is no second touch without \"second_mm_s\"; add it or remove this");
+    return std::nullopt;
+  }
+  const NumberRange not_over_the_first{.min = kPositive.min,
+                                       .max = object.at("search_mm_s").number(kSearchSpeeds)};
+  return SecondTouch{.speed_m_s = touching_speed_m_s(*speed, not_over_the_first, probe),
+                     .backoff_m = object.metres("second_backoff", kBackoffs)};
+}
+
 Speeds speeds_from_json(const JsonValue& value, const Probe& probe) {
-  const JsonObject object = value.object({"travel_mm_s", "approach_mm_s", "search_mm_s"});
-  const auto speed = [&object](std::string_view key) {
-    return metres_from_mm(object.at(key).number(kPositive));
-  };
-  const Speeds speeds{.travel_m_s = speed("travel_mm_s"),
-                      .approach_m_s = speed("approach_mm_s"),
-                      .search_m_s = speed("search_mm_s")};
-  if (!probe.tip_is_contact_point && speeds.search_m_s != probe.calibration_speed_m_s) {
-    object.at("search_mm_s")
+  const JsonObject object =
+      value.object({"travel_mm_s", "approach_mm_s", "search_mm_s", "second_mm_s", "second_backoff_mm"});
+  const Speeds speeds{.travel_m_s = metres_from_mm(object.at("travel_mm_s").number(kPositive)),
+                      .approach_m_s = touching_speed_m_s(object.at("approach_mm_s"), kApproachSpeeds, probe),
+                      .search_m_s = touching_speed_m_s(object.at("search_mm_s"), kSearchSpeeds, probe),
+                      .second = second_touch_from_json(object, probe)};
+  if (!probe.tip_is_contact_point && speeds.contact_m_s() != probe.calibration_speed_m_s) {
+    object.at(speeds.second ? "second_mm_s" : "search_mm_s")
         .fail(
             "is not the probe's calibration_speed_mm_s, at which alone its pre-travel holds; "
-            "search at that speed or calibrate the probe at this one");
+            "touch at that speed or calibrate the probe at this one");
   }
   return speeds;
 }

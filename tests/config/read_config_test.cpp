@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "calib_core/units.hpp"
 #include "config/truth.hpp"
 #include "copied_config.hpp"
 
@@ -202,7 +203,16 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kCell, "/unknown_place_std", json({{"length_mm", 5}, {"angle_rad", 0}}),
                 "/unknown_place_std/angle_rad", "over 0"},
         Spoiled{kCell, "/speeds/travel_mm_s", 0, "/speeds/travel_mm_s", "over 0"},
-        Spoiled{kCell, "/speeds/search_mm_s", 10, "/speeds/search_mm_s", "pre-travel"},
+        Spoiled{kCell, "/speeds/search_mm_s", 8.1, "/speeds/search_mm_s", "8"},
+        Spoiled{kCell, "/speeds/search_mm_s", 1.5, "/speeds/second_mm_s", "1.5"},
+        Spoiled{kCell, "/speeds/approach_mm_s", 20.1, "/speeds/approach_mm_s", "20"},
+        Spoiled{kCell, "/speeds/second_mm_s", 1.5, "/speeds/second_mm_s", "pre-travel"},
+        Spoiled{kCell, "/speeds/second_mm_s", 0, "/speeds/second_mm_s", "0"},
+        Spoiled{kCell, "/speeds/second_mm_s", std::nullopt, "/speeds/second_backoff_mm", "no second touch"},
+        Spoiled{kCell, "/speeds/second_backoff_mm", std::nullopt, "/speeds",
+                "\"second_backoff_mm\" is missing"},
+        Spoiled{kCell, "/speeds/second_backoff_mm", 0.4, "/speeds/second_backoff_mm", "give 0.5 to 5"},
+        Spoiled{kCell, "/speeds/second_backoff_mm", 5.1, "/speeds/second_backoff_mm", "give 0.5 to 5"},
         Spoiled{kCell, "/deadlines/connect_ms", 0, "/deadlines/connect_ms", "whole number from 1"},
         Spoiled{kCell, "/controller/port", 65536, "/controller/port", "0 to 65535"},
         Spoiled{kCell, "/controller/host", std::nullopt, "/controller", "\"host\" is missing"},
@@ -323,6 +333,36 @@ TEST_P(EveryEntry, ThatIsCutOffAnywhereIsRefused) {
 }
 
 TEST_F(ReadConfig, TheCopyIsReadAsLongAsNothingIsSpoiled) { EXPECT_EQ(read().name, "demo"); }
+
+TEST_F(ReadConfig, ASpeedAtWhichTheStylusWouldBendTooFarIsRefused) {
+  const Speeds speeds = read().speeds;
+  const auto with_overtravel = [&](double overtravel_m) {
+    edit(kProbe, [&](json& document) { document["overtravel_mm"] = calib::mm_from_metres(overtravel_m); });
+  };
+  with_overtravel(2.001 * stop_distance_m(speeds.approach_m_s));
+  EXPECT_EQ(read().speeds.approach_m_s, speeds.approach_m_s);
+  with_overtravel(1.999 * stop_distance_m(speeds.approach_m_s));
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/speeds/approach_mm_s");
+  edit(kCell, [](json& document) { document["speeds"]["approach_mm_s"] = 1; });
+  with_overtravel(1.999 * stop_distance_m(speeds.search_m_s));
+  const ConfigError error = error_of([&] { static_cast<void>(read()); });
+  EXPECT_EQ(error.pointer(), "/speeds/search_mm_s");
+  EXPECT_THAT(error.message(), HasSubstr("overtravel_mm; go slower"));
+}
+
+TEST_F(ReadConfig, WithoutASecondTouchTheFirstOneCounts) {
+  EXPECT_EQ(read().speeds.contact_m_s(), read().speeds.second.value().speed_m_s);
+  edit(kCell, [](json& document) {
+    document["speeds"].erase("second_mm_s");
+    document["speeds"].erase("second_backoff_mm");
+  });
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/speeds/search_mm_s")
+      << "the pre-travel";
+  edit(kProbe, [](json& document) { document["calibration_speed_mm_s"] = 8; });
+  const Speeds speeds = read().speeds;
+  EXPECT_FALSE(speeds.second);
+  EXPECT_EQ(speeds.contact_m_s(), speeds.search_m_s);
+}
 
 TEST_F(ReadConfig, FilesThatCannotBeReadAreNamed) {
   const auto what = [](const std::filesystem::path& file) {
