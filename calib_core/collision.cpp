@@ -69,7 +69,7 @@ std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain,
     const Segment& here = placed.emplace_back(place(body, chain));
     for (const Box& obstacle : scene.obstacles) {
       const double distance_m = segment_box_distance_m(here, obstacle) - body.radius_m;
-      if (!(distance_m >= clearance_m)) return Clash{body.name, obstacle.name, distance_m};
+      if (!(distance_m >= clearance_m + body.margin_m)) return Clash{body.name, obstacle.name, distance_m};
     }
     for (std::size_t j = 0; j < i; ++j) {
       const Capsule& other = scene.bodies[j];

@@ -18,6 +18,7 @@ struct Capsule {
   Eigen::Vector3d from_m;
   Eigen::Vector3d to_m;
   double radius_m = 0.0;
+  double margin_m = 0.0;  // kept to obstacles beyond the clearance that is asked for
 };
 
 /// An obstacle: a box with edges along R_-1's axes.
@@ -75,8 +76,8 @@ inline constexpr double kSelfClearanceMetres = 0.01;
 
 inline double self_clearance_m(double clearance_m) { return std::min(clearance_m, kSelfClearanceMetres); }
 
-/// The first pair nearer than `clearance_m` (obstacles) or self_clearance_m() of it (arm against itself), or
-/// nothing. Neighbours (are_neighbours) never clash with each other.
+/// The first pair nearer than `clearance_m` and the body's margin (obstacles) or self_clearance_m() of it
+/// (arm against itself), or nothing. Neighbours (are_neighbours) never clash with each other.
 std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain, double clearance_m);
 
 }  // namespace calib

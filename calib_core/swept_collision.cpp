@@ -77,7 +77,8 @@ std::optional<Clash> find_clash_on_way(const CollisionScene& scene, const Kinema
     double step = std::numeric_limits<double>::infinity();
     for (const Pair& pair : pairs) {
       const double apart_m = distance_m(pair, chain);
-      const double spare_m = apart_m - (pair.obstacle ? clearance_m : self_clearance_m(clearance_m));
+      const double spare_m =
+          apart_m - (pair.obstacle ? clearance_m + pair.body->margin_m : self_clearance_m(clearance_m));
       if (!(spare_m >= 0.0)) {  // not-a-number is not clear either
         return Clash{pair.body->name, pair.obstacle ? pair.obstacle->name : pair.other_body->name, apart_m};
       }

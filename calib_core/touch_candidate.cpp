@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kRangeMarginRad = 1.0 * kRadiansPerDegree;
 constexpr double kLineStepMetres = 0.010;
+/// A search begins at least so far before its face, and ends so far behind it.
+constexpr double kStandoffMinMetres = 0.015;
 constexpr double kSamePlaneMetres = 1e-6;
 
 /// How far a box reaches along a direction.
@@ -144,8 +146,9 @@ TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, Un
 
 TouchHeights touch_heights(double nominal_miss_m) {
   // 3 mm over the miss: the ball is off the face when the search begins and the true face within its reach.
-  const double standoff_m = nominal_miss_m + 0.003;
-  return {.approach_m = standoff_m, .clear_m = standoff_m + 0.025, .search_end_m = -standoff_m};
+  const double standoff_m = std::max(nominal_miss_m + 0.003, kStandoffMinMetres);
+  // The way into the slow zone is a slow one.
+  return {.approach_m = standoff_m, .clear_m = standoff_m + kSlowZoneMetres, .search_end_m = -standoff_m};
 }
 
 TouchedFace find_touched(const PlanningProblem& problem, int face) {
@@ -176,7 +179,8 @@ std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& proble
   if (!clear) return line.trouble();
   const auto search_end = line.follow(joints, 0.0, heights.search_end_m);
   if (!search_end) return line.trouble();
-  if (!is_near_park({problem.nominal, problem.scene, problem.park_joints, problem.nominal_miss_m}, *clear)) {
+  const CollisionScene scene = travel_scene(problem);
+  if (!is_near_park({problem.nominal, scene, problem.park_joints, problem.nominal_miss_m}, *clear)) {
     return "no clear way from the park posture";
   }
   return PlannedTouch{.face = around.face,

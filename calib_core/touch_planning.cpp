@@ -9,6 +9,7 @@
 
 #include "calib_core/error_parameters.hpp"
 #include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/swept_collision.hpp"
 #include "calib_core/touch_candidate.hpp"
 #include "calib_core/touch_selection.hpp"
 
@@ -162,9 +163,19 @@ TouchPlan choose(const PlanningProblem& problem, const std::vector<PlannedTouch>
 
 }  // namespace
 
+CollisionScene travel_scene(const PlanningProblem& problem) {
+  CollisionScene scene = problem.scene;
+  const Eigen::Vector3d tip = Eigen::Vector3d::Zero();
+  scene.bodies.push_back({"tip", kFrameCount - 1, tip, tip, problem.stylus.radius_m});
+  for (Capsule& body : scene.bodies) {
+    if (body.frame == kFrameCount - 1) body.margin_m = kSlowZoneMetres + kSweptErrorMaxMetres;
+  }
+  return scene;
+}
+
 std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& problem) {
   const Chain parked = forward_chain(problem.nominal, problem.park_joints);
-  if (const auto clash = find_clash(problem.scene, parked, problem.nominal_miss_m)) {
+  if (const auto clash = find_clash(travel_scene(problem), parked, problem.nominal_miss_m)) {
     return PlanningFailure{.reason = "the " + clash->body + " is too near the " + clash->other +
                                      " in the park posture"};
   }
@@ -190,7 +201,8 @@ std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& pro
 
 std::optional<std::vector<JointVector>> find_transfer(const PlanningProblem& problem, const JointVector& from,
                                                       const JointVector& to) {
-  return find_way({problem.nominal, problem.scene, problem.park_joints, problem.nominal_miss_m}, from, to);
+  const CollisionScene scene = travel_scene(problem);
+  return find_way({problem.nominal, scene, problem.park_joints, problem.nominal_miss_m}, from, to);
 }
 
 }  // namespace calib

@@ -61,6 +61,13 @@ struct PlanningFailure {
   std::string reason;
 };
 
+/// Anything that may be touched has a zone this wide around it in which the probe (all bodies of frame 7, and
+/// the tip) goes at approach speed: travel stays out of it, also with an arm that is off by the nominal miss.
+inline constexpr double kSlowZoneMetres = 0.025;
+
+/// The problem's scene with the margins that travel between touches keeps.
+CollisionScene travel_scene(const PlanningProblem& problem);
+
 /// Finds postures for the touches asked for (see touch_candidate.hpp for what a touch must keep clear of),
 /// takes those that tell most of the kinematic errors (fit) and others apart from them (held out), and puts
 /// them in an order that shows all parameters early and then travels little. Any touch can follow any other:

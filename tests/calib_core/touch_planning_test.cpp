@@ -9,6 +9,7 @@
 #include "calib_core/identifiability.hpp"
 #include "calib_core/inverse_kinematics.hpp"
 #include "calib_core/observation_matrix.hpp"
+#include "calib_core/swept_collision.hpp"
 #include "tests/calib_core/tx90.hpp"
 
 namespace calib {
@@ -208,6 +209,26 @@ TEST_P(EveryPlan, HasAClearWayFromEachTouchToTheNextAlsoForAnArmThatMisses) {
                                 problem_.nominal_miss_m - 1e-3));
         ASSERT_FALSE(find_clash(problem_.scene, forward_chain(truth, joints), 0.0));
       }
+    }
+  }
+}
+
+TEST_P(EveryPlan, TravelsOutsideTheSlowZone) {
+  CollisionScene probe{.obstacles = problem_.scene.obstacles};
+  for (const Capsule& body : travel_scene(problem_).bodies) {
+    if (body.frame != kFrameCount - 1) continue;
+    probe.bodies.push_back(body);
+    probe.bodies.back().margin_m = 0.0;
+  }
+  for (const PlannedTouch& touch : touches_) {
+    const auto between = find_transfer(problem_, problem_.park_joints, touch.clear_joints);
+    ASSERT_TRUE(between);
+    std::vector<JointVector> way{problem_.park_joints};
+    way.insert(way.end(), between->begin(), between->end());
+    way.push_back(touch.clear_joints);
+    for (std::size_t leg = 1; leg < way.size(); ++leg) {
+      EXPECT_FALSE(find_clash_on_way(probe, problem_.nominal, way[leg - 1], way[leg],
+                                     problem_.nominal_miss_m + kSlowZoneMetres));
     }
   }
 }
