@@ -65,18 +65,28 @@ asio::awaitable<void> Link::wait(Pending& pending, Clock::time_point accept_by, 
 }
 
 template <class Result, class Command>
-asio::awaitable<Reply<Result>> Link::command(std::shared_ptr<Link> link, Command body) {
+asio::awaitable<Reply<Result>> Link::command(std::shared_ptr<Link> link, const Command& body) {
+  std::uint32_t sequence = 0;
+  if (link && link->is_up() && link->waiting_ == nullptr) {
+    sequence = ++link->last_sequence_;
+    link->send(Message{sequence, body});
+  }
+  return answer_to<Result>(std::move(link), sequence, std::chrono::milliseconds(body.deadline_ms));
+}
+
+template <class Result>
+asio::awaitable<Reply<Result>> Link::answer_to(std::shared_ptr<Link> link, std::uint32_t sequence,
+                                               std::chrono::milliseconds deadline) {
   Reply<Result> reply;
-  if (!link || !link->is_up()) {
+  if (sequence == 0 && (!link || !link->is_up())) {
     reply.answer = not_connected(link.get());
     co_return reply;
   }
-  Waiting waiting(*link, link->last_sequence_ + 1, Result::kType);
-  reply.sequence = ++link->last_sequence_;
-  link->send(Message{reply.sequence, body});
+  Waiting waiting(*link, sequence, Result::kType);  // throws when a call waits already
+  reply.sequence = sequence;
   const auto now = Clock::now();
   co_await link->wait(waiting, now + link->options_.answer_deadline,
-                      now + std::chrono::milliseconds(body.deadline_ms) + link->options_.result_margin);
+                      now + deadline + link->options_.result_margin);
   if (!waiting.answer) {
     reply.answer = *link->error_;
   } else if (const auto* rejected = std::get_if<Rejected>(&*waiting.answer)) {

@@ -114,6 +114,7 @@ class Client {
   /// The number the next motion command will have, to be stored before it is sent; 0 when not connected.
   [[nodiscard]] std::uint32_t next_sequence() const;
 
+  /// Motion commands are sent when these are called, before they return; await the reply at once.
   boost::asio::awaitable<TouchReply> touch(Touch command);
   boost::asio::awaitable<MoveReply> travel(Travel command);
   boost::asio::awaitable<MoveReply> retract(Retract command);

@@ -65,6 +65,7 @@ asio::awaitable<ConnectReply> Link::open(std::shared_ptr<Link> link, tcp::endpoi
     co_await link->socket_.async_connect(endpoint, asio::use_awaitable);
     tcp_connected = true;
     link->socket_.set_option(tcp::no_delay(true));
+    link->socket_.non_blocking(true);
     link->send(Message{0, Hello{static_cast<std::uint32_t>(link->options_.heartbeat_timeout.count())}});
     const DecodeResult frame = co_await read_frame(link->socket_);
     if (!link->error_) link->greet(frame, expected);
@@ -177,6 +178,11 @@ void Link::send(const Message& message) {
 
 void Link::flush() {
   if (error_ || !in_flight_.empty() || outgoing_.empty()) return;
+  // At once, as far as the socket takes it: the caller may be busy for a while before anything else runs.
+  boost::system::error_code ignored;
+  const std::size_t written = socket_.write_some(asio::buffer(outgoing_), ignored);
+  outgoing_.erase(outgoing_.begin(), outgoing_.begin() + static_cast<std::ptrdiff_t>(written));
+  if (outgoing_.empty()) return;
   in_flight_.swap(outgoing_);
   asio::async_write(socket_, asio::buffer(in_flight_),
                     [self = shared_from_this()](const boost::system::error_code& error, std::size_t) {

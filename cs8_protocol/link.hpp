@@ -39,7 +39,7 @@ class Link : public std::enable_shared_from_this<Link> {
   static asio::awaitable<ConnectReply> open(std::shared_ptr<Link> link, tcp::endpoint endpoint,
                                             ExpectedController expected);
   template <class Result, class Command>
-  static asio::awaitable<Reply<Result>> command(std::shared_ptr<Link> link, Command body);
+  static asio::awaitable<Reply<Result>> command(std::shared_ptr<Link> link, const Command& body);
   static asio::awaitable<QueryReply> query(std::shared_ptr<Link> link, std::uint32_t sequence,
                                            std::chrono::milliseconds deadline);
   static asio::awaitable<PermitReply> begin(std::shared_ptr<Link> link, std::uint32_t run,
@@ -91,6 +91,11 @@ class Link : public std::enable_shared_from_this<Link> {
     const std::uint32_t run;
     Permit decision;
   };
+
+  /// The rest of command(), once its bytes are gone; `sequence` is 0 when they are not.
+  template <class Result>
+  static asio::awaitable<Reply<Result>> answer_to(std::shared_ptr<Link> link, std::uint32_t sequence,
+                                                  std::chrono::milliseconds deadline);
 
   /// Returns when `pending` is done or the link is down.
   asio::awaitable<void> wait(Pending& pending, Clock::time_point accept_by, Clock::time_point answer_by);

@@ -22,15 +22,25 @@ const calib::PlannedTouch* Run::next() const {
   return touches_done() < touches_total() ? &plan_.touches[touches_.size()] : nullptr;
 }
 
+const calib::PlannedTouch* Run::after_next() const {
+  return touches_done() + 1 < touches_total() ? &plan_.touches[touches_.size() + 1] : nullptr;
+}
+
 void Run::add(TouchStore& store, const StoredTouch& touch) {
   store.append_touch(id_, touch);
   touches_.push_back(touch);
   problem_.touches.push_back(to_touch(touch));
+}
+
+bool Run::identify() {
+  if (identified_count_ == touches_.size()) return false;
+  identified_count_ = touches_.size();
   latest_ = calib::identify(problem_, recipe_.identification);
   predicted_tip_rms_m_.reset();
   if (latest_.certainty) {
     predicted_tip_rms_m_ = predicted_rms_m(regions_.tip().workspace_box, *latest_.certainty);
   }
+  return true;
 }
 
 }  // namespace cell

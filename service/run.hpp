@@ -33,12 +33,16 @@ class Run {
   /// The touch to make now, or null when all are made.
   [[nodiscard]] const calib::PlannedTouch* next() const;
 
-  /// Stores the touch, then counts it and identifies anew from all touches. Throws what the store throws; the
-  /// touch does not count then.
+  /// The one behind it, or null.
+  [[nodiscard]] const calib::PlannedTouch* after_next() const;
+
+  /// Stores the touch, then counts it. Throws what the store throws; the touch does not count then.
   void add(TouchStore& store, const StoredTouch& touch);
+  /// Makes latest() from all touches; false when it is. Apart from add(), as it takes its time.
+  bool identify();
 
   [[nodiscard]] const std::vector<StoredTouch>& touches() const { return touches_; }
-  /// What latest() was identified from.
+  /// What identify() works on.
   [[nodiscard]] const calib::IdentificationProblem& problem() const { return problem_; }
   [[nodiscard]] const calib::IdentificationResult& latest() const { return latest_; }
   /// Predicted over the workspace box; nothing as long as there is no honest figure.
@@ -52,6 +56,7 @@ class Run {
   calib::TouchPlan plan_;
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
+  std::size_t identified_count_ = 0;  // of the touches
   calib::IdentificationResult latest_;
   std::optional<double> predicted_tip_rms_m_;
 };

@@ -29,6 +29,7 @@ asio::awaitable<void> Operation::wait_for_wake(std::chrono::milliseconds at_most
 
 asio::awaitable<void> Operation::drive() {
   while (!shutting_down_ || is_active(status_.state)) {
+    if (status_.state != State::kExecute) identify();
     switch (status_.state) {
       case State::kResetting:
         co_await reset();
@@ -78,10 +79,10 @@ asio::awaitable<void> Operation::drive() {
 
 asio::awaitable<bool> Operation::plan() {
   const Recipe& recipe = run_->recipe();
+  planning_ = planning_problem(cell_, recipe);
   if (!plans_.contains(recipe.name)) {
-    const calib::PlanningProblem problem = planning_problem(cell_, recipe);
     co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
-    const auto outcome = calib::plan_touches(problem);
+    const auto outcome = calib::plan_touches(planning_);
     co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
     if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome)) {
       const std::string found = failure->wanted == 0
@@ -110,29 +111,42 @@ asio::awaitable<void> Operation::start_run() {
   if (planned && status_.state == State::kStarting) apply(Event::kDone);
 }
 
+/// The way from where the arm stands; nothing when there is none or another state was entered.
+asio::awaitable<std::optional<std::vector<calib::JointVector>>> Operation::way_to(
+    const calib::PlannedTouch& planned) {
+  if (standing_ && way_ahead_) co_return std::exchange(way_ahead_, {});
+  identify();
+  const auto from = co_await standing_joints();
+  if (status_.state != State::kExecute) co_return std::nullopt;
+  if (!from) {
+    co_await wait_for_wake(20ms);  // the link is gone, and its loss is about to be told
+    co_return std::nullopt;
+  }
+  auto way = calib::find_transfer(planning_, *from, planned.clear_joints);
+  if (!way) {
+    raise({FaultCode::kNoSafeWay,
+           fmt::format("to touch {} on plane {}", run_->touches_done() + 1, planned.face + 1)},
+          Event::kAbortFault);
+  }
+  co_return way;
+}
+
+/// One touch. The arm does not wait for arithmetic: what the touch before tells and the way to the touch
+/// behind are worked out while it moves.
 asio::awaitable<void> Operation::make_next_touch() {
   const calib::PlannedTouch* planned = run_->next();
   if (!planned) {
     apply(Event::kDone);
     co_return;
   }
-  const auto from = co_await standing_joints();
-  if (status_.state != State::kExecute) co_return;
-  if (!from) {
-    co_await wait_for_wake(20ms);  // the link is gone, and its loss is about to be told
-    co_return;
-  }
-  const auto via =
-      calib::find_transfer(planning_problem(cell_, run_->recipe()), *from, planned->clear_joints);
-  if (!via) {
-    raise({FaultCode::kNoSafeWay,
-           fmt::format("to touch {} on plane {}", run_->touches_done() + 1, planned->face + 1)},
-          Event::kAbortFault);
-    co_return;
-  }
+  const auto via = co_await way_to(*planned);
+  if (!via) co_return;
   standing_.reset();
   open_touch_ = OpenTouch{session_, client_.next_sequence(), *planned};
-  const cs8::TouchReply reply = co_await client_.touch(touch_command(cell_, *planned, *via));
+  auto answer = client_.touch(touch_command(cell_, *planned, *via));
+  identify();
+  look_ahead(*planned);
+  const cs8::TouchReply reply = co_await std::move(answer);
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     open_touch_.reset();
     const OutcomeFault refused = fault_of(*rejected);
@@ -140,6 +154,18 @@ asio::awaitable<void> Operation::make_next_touch() {
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
     take_contact(*planned, reply, *result);
   }  // a lost link has been told by lose()
+}
+
+void Operation::look_ahead(const calib::PlannedTouch& from) {
+  way_ahead_.reset();
+  if (const calib::PlannedTouch* behind = run_->after_next())
+    way_ahead_ = calib::find_transfer(planning_, from.clear_joints, behind->clear_joints);
+}
+
+/// The result of all touches so far, unless it is there.
+void Operation::identify() {
+  if (!run_ || !run_->identify()) return;
+  publish();
 }
 
 /// A contact counts once it is stored; only then may the controller forget it.
@@ -163,7 +189,6 @@ void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::Touc
   if (!keep_touch(planned, result)) return;
   acknowledge(reply.sequence);
   standing_ = planned.clear_joints;
-  publish();
 }
 
 /// A command that came neither to its end nor to a fault was stopped, as somebody asked; nobody else may.
@@ -178,6 +203,7 @@ void Operation::expect_stop(cs8::Outcome outcome) {
 /// A contact of a run that is over: its stored result follows, its verdict does not change.
 bool Operation::keep_late_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result) {
   if (!keep_touch(planned, result)) return false;
+  identify();
   try {
     if (const auto document = result_json()) store_.set_result_json(run_->id(), *document);
   } catch (const std::exception& error) {
@@ -242,7 +268,7 @@ asio::awaitable<void> Operation::complete_run() {
 asio::awaitable<bool> Operation::park() {
   const auto from = co_await standing_joints();
   if (!from || status_.state != State::kCompleting) co_return false;
-  const auto via = calib::find_transfer(planning_problem(cell_, run_->recipe()), *from, cell_.park_joints);
+  const auto via = calib::find_transfer(planning_, *from, cell_.park_joints);
   if (!via) {
     raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kAbortFault);
     co_return false;

@@ -105,6 +105,10 @@ class Operation {
   boost::asio::awaitable<void> start_run();
   boost::asio::awaitable<bool> plan();
   boost::asio::awaitable<void> make_next_touch();
+  boost::asio::awaitable<std::optional<std::vector<calib::JointVector>>> way_to(
+      const calib::PlannedTouch& planned);
+  void look_ahead(const calib::PlannedTouch& from);
+  void identify();
   bool keep_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result);
   void take_contact(const calib::PlannedTouch& planned, const cs8::TouchReply& reply,
                     const cs8::TouchResult& result);
@@ -146,8 +150,11 @@ class Operation {
   bool run_open_ = false;      // begun in the store, not finished there
   std::chrono::system_clock::time_point run_began_;
   std::map<std::string, calib::TouchPlan> plans_;  // by recipe; the same problem gives the same plan
+  calib::PlanningProblem planning_;                // of the run
   std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
-  std::uint32_t session_ = 0;                   // of the controller's application
+  /// The way to the next touch, found while the arm makes the one before; as long as the arm is there.
+  std::optional<std::vector<calib::JointVector>> way_ahead_;
+  std::uint32_t session_ = 0;  // of the controller's application
   std::optional<OpenTouch> open_touch_;
   std::chrono::steady_clock::time_point told_at_;  // when the controller told its newest state
   std::int32_t task_error_ = 0;                    // as it told then

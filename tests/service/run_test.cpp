@@ -41,6 +41,9 @@ TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
     EXPECT_EQ(run_.next()->face, touch.face);
     run_.add(store_, stored(++number, touch));
     EXPECT_EQ(run_.touches_done(), number);
+    EXPECT_EQ(run_.latest().fitted_touch_count, number - 1) << "not yet";
+    run_.identify();
+    EXPECT_EQ(run_.latest().fitted_touch_count, number);
     EXPECT_EQ(run_.predicted_tip_rms_m().has_value(), run_.latest().certainty.has_value()) << number;
   }
   EXPECT_TRUE(run_.complete());
@@ -55,6 +58,7 @@ TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
   run_.add(store_, stored(1, table3_touches()[0]));
   EXPECT_THROW(run_.add(store_, stored(1, table3_touches()[1])), std::exception);
   EXPECT_EQ(run_.touches_done(), 1);
+  run_.identify();
   EXPECT_EQ(run_.latest().fitted_touch_count, 1);
   EXPECT_EQ(store_.touches(run_.id()).size(), 1u);
 }
