@@ -48,6 +48,10 @@ cs8::Touch touch_command(const Cell& cell, const calib::PlannedTouch& planned,
   command.travel_speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.travel_m_s);
   command.approach_speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.approach_m_s);
   command.search_speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.search_m_s);
+  if (const auto& second = cell.speeds.second) {
+    command.second_speed_um_s = cs8::um_s_from_metres_per_second(second->speed_m_s);
+    command.second_backoff_dmm = cs8::dmm_from_metres(second->backoff_m);
+  }
   command.deadline_ms = static_cast<std::uint32_t>(cell.deadlines.command.count());
   return command;
 }
@@ -109,13 +113,16 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
       kMendedAtTheCell.contains(rejected.reason)};
 }
 
-std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
-                                       const cs8::TouchResult& result) {
-  if (result.source == cs8::CaptureSource::kNone) return "it comes without captured joints";
-  const calib::JointVector joints = from_wire(result.contact);
-  const Eigen::Vector3d tip = calib::forward_kinematics(cell.arm.model, joints).translation();
-  const Eigen::Vector3d planned_tip = calib::forward_kinematics(cell.arm.model, planned.joints).translation();
-  const Eigen::Vector3d off = tip - planned_tip;
+namespace {
+
+Eigen::Vector3d tip_in_block_m(const Cell& cell, const calib::JointVector& joints) {
+  return calib::forward_kinematics(cell.arm.model, joints).translation();
+}
+
+/// How the tip is not on the way of the search; nothing when it is.
+std::optional<std::string> off_the_search(const Cell& cell, const calib::PlannedTouch& planned,
+                                          const Eigen::Vector3d& tip_m) {
+  const Eigen::Vector3d off = tip_m - tip_in_block_m(cell, planned.joints);
   const double along = off.dot(planned.search_direction);
   const double aside = (off - along * planned.search_direction).norm();
   // The controller moves the nominal ball on the search line: the contact lies on it, between both its ends.
@@ -125,6 +132,27 @@ std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTou
   return fmt::format(
       "its tip is {:.3f} mm beside the search line and {:.3f} mm from the planned touch along it",
       calib::mm_from_metres(aside), calib::mm_from_metres(along));
+}
+
+/// Two touches of one place by an arm that repeats to 0.03 mm, the first at search speed.
+constexpr double kContactSpreadMaxMetres = 1e-4;
+
+}  // namespace
+
+std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
+                                       const cs8::TouchResult& result) {
+  if (result.source == cs8::CaptureSource::kNone) return "it comes without captured joints";
+  const Eigen::Vector3d tip_m = tip_in_block_m(cell, from_wire(result.contact));
+  if (auto off = off_the_search(cell, planned, tip_m)) return off;
+  if (!cell.speeds.second) return std::nullopt;
+  if (result.first_source == cs8::CaptureSource::kNone)
+    return "it comes without the first of its two touches";
+  const Eigen::Vector3d first_tip_m = tip_in_block_m(cell, from_wire(result.first_contact));
+  if (const auto off = off_the_search(cell, planned, first_tip_m)) return "of its first touch, " + *off;
+  const double spread_m = (tip_m - first_tip_m).norm();
+  if (spread_m <= kContactSpreadMaxMetres) return std::nullopt;
+  return fmt::format("its two touches are {:.3f} mm apart, over {:.1f} mm", calib::mm_from_metres(spread_m),
+                     calib::mm_from_metres(kContactSpreadMaxMetres));
 }
 
 }  // namespace cell

@@ -28,14 +28,20 @@ calib::PlannedTouch planned_touch() {
           .search_length_m = 0.03};
 }
 
-/// What a contact is reported as when the nominal tip is `off_m` from the planned touch.
-cs8::TouchResult contact(const Eigen::Vector3d& off_m) {
+cs8::JointsMicrodeg joints_off(const Eigen::Vector3d& off_m) {
   const calib::JointVector& start = planned_touch().joints;
   Eigen::Isometry3d pose = calib::forward_kinematics(edf().arm.model, start);
   pose.translation() += off_m;
+  return to_wire(calib::solve_near(edf().arm.model, pose, start).value());
+}
+
+/// What a contact is reported as when the nominal tip is `off_m` from the planned touch, both times.
+cs8::TouchResult contact(const Eigen::Vector3d& off_m) {
   return {.outcome = cs8::Outcome::kContact,
           .source = cs8::CaptureSource::kLatched,
-          .contact = to_wire(calib::solve_near(edf().arm.model, pose, start).value())};
+          .contact = joints_off(off_m),
+          .first_source = cs8::CaptureSource::kLatched,
+          .first_contact = joints_off(off_m)};
 }
 
 TEST(WireJoints, GoThereAndBackWithoutAStep) {
@@ -70,7 +76,16 @@ TEST(TouchCommand, CarriesPosturesSpeedsAndDeadlineOfPlanAndCell) {
   EXPECT_EQ(command.travel_speed_um_s, cs8::um_s_from_metres_per_second(edf().speeds.travel_m_s));
   EXPECT_EQ(command.approach_speed_um_s, cs8::um_s_from_metres_per_second(edf().speeds.approach_m_s));
   EXPECT_EQ(command.search_speed_um_s, cs8::um_s_from_metres_per_second(edf().speeds.search_m_s));
+  const SecondTouch second = edf().speeds.second.value();
+  EXPECT_EQ(command.second_speed_um_s, cs8::um_s_from_metres_per_second(second.speed_m_s));
+  EXPECT_EQ(command.second_backoff_dmm, cs8::dmm_from_metres(second.backoff_m));
   EXPECT_EQ(command.deadline_ms, edf().deadlines.command.count());
+}
+
+TEST(TouchCommand, NoSecondTouchIsAskedForWhereTheCellHasNone) {
+  Cell cell = edf();
+  cell.speeds.second.reset();
+  EXPECT_EQ(touch_command(cell, planned_touch(), {}).second_speed_um_s, 0);
 }
 
 TEST(TouchCommand, TheLongestWayFits) {
@@ -164,6 +179,27 @@ TEST(Implausible, AContactBesideTheLineIsTold) {
   EXPECT_EQ(implausible(edf(), planned, contact(5e-5 * aside)), std::nullopt);
   EXPECT_THAT(implausible(edf(), planned, contact(0.001 * aside)).value_or(""),
               HasSubstr("1.000 mm beside the search line"));
+}
+
+TEST(Implausible, TwoTouchesOfOnePlaceLieTogether) {
+  const calib::PlannedTouch planned = planned_touch();
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.first_contact = joints_off(9e-5 * planned.search_direction);
+  EXPECT_EQ(implausible(edf(), planned, result), std::nullopt);
+  result.first_contact = joints_off(1.1e-4 * planned.search_direction);
+  EXPECT_EQ(implausible(edf(), planned, result), "its two touches are 0.110 mm apart, over 0.1 mm");
+}
+
+TEST(Implausible, AFirstTouchThatIsMissingOrElsewhereIsTold) {
+  const calib::PlannedTouch planned = planned_touch();
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.first_contact = joints_off(0.001 * planned.search_direction.unitOrthogonal());
+  EXPECT_THAT(implausible(edf(), planned, result).value_or(""), HasSubstr("of its first touch"));
+  result.first_source = cs8::CaptureSource::kNone;
+  EXPECT_THAT(implausible(edf(), planned, result).value_or(""), HasSubstr("without the first"));
+  Cell once = edf();
+  once.speeds.second.reset();
+  EXPECT_EQ(implausible(once, planned, result), std::nullopt);
 }
 
 TEST(Implausible, AContactBeyondEitherEndOfTheSearchIsTold) {
