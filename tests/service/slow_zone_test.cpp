@@ -76,7 +76,7 @@ TEST_P(SlowZone, EveryMoveInItIsSlowAndEverySearchSlowerAndLongEnough) {
     EXPECT_LE(command.approach_speed_um_s, cs8::um_s_from_metres_per_second(kSlowSpeedMax));
     EXPECT_LE(command.search_speed_um_s, cs8::um_s_from_metres_per_second(kSearchSpeedMax));
     EXPECT_LE(command.second_speed_um_s, command.search_speed_um_s);
-    const auto tip_m = [&](const calib::JointVector& joints) {
+    const auto tip_m = [&](const calib::JointVector& joints) -> Eigen::Vector3d {
       return calib::forward_kinematics(cell_.arm.model, joints).translation();
     };
     const double standoff_m = (tip_m(touch.approach_joints) - tip_m(touch.joints)).norm();
