@@ -98,6 +98,8 @@ struct Deadlines {
   std::chrono::milliseconds connect{};
   std::chrono::milliseconds heartbeat_timeout{};  // both sides: silence longer than this is a lost link
   std::chrono::milliseconds command{};            // one touch or travel, as the controller keeps it
+  std::chrono::milliseconds ready{600'000};       // for people: touch test, closed cell, power, remote mode
+  std::chrono::milliseconds confirm{30'000};      // and then the confirmation at the cell
 };
 
 struct Cell {

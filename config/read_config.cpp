@@ -163,14 +163,21 @@ Speeds speeds_from_json(const JsonValue& value, const Probe& probe) {
 }
 
 Deadlines deadlines_from_json(const JsonValue& value) {
-  const JsonObject object = value.object({"connect_ms", "heartbeat_timeout_ms", "command_ms"});
+  const JsonObject object =
+      value.object({"connect_ms", "heartbeat_timeout_ms", "command_ms", "ready_ms", "confirm_ms"});
   constexpr int kHourMs = 3'600'000;
+  constexpr int kConfirmMinMs = 1'000;  // what a controller takes
+  constexpr int kConfirmMaxMs = 30'000;
   const auto deadline = [&object](std::string_view key) {
     return std::chrono::milliseconds(object.at(key).integer(1, kHourMs));
   };
-  return {.connect = deadline("connect_ms"),
-          .heartbeat_timeout = deadline("heartbeat_timeout_ms"),
-          .command = deadline("command_ms")};
+  Deadlines deadlines{.connect = deadline("connect_ms"),
+                      .heartbeat_timeout = deadline("heartbeat_timeout_ms"),
+                      .command = deadline("command_ms")};
+  if (object.has("ready_ms")) deadlines.ready = deadline("ready_ms");
+  if (const auto confirm = object.find("confirm_ms"))
+    deadlines.confirm = std::chrono::milliseconds(confirm->integer(kConfirmMinMs, kConfirmMaxMs));
+  return deadlines;
 }
 
 Endpoint endpoint_from_json(const JsonValue& value) {

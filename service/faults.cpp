@@ -29,6 +29,20 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kRecipeUnreachable, "recipe_unreachable",
                "the recipe's touches cannot be planned in this cell", "nothing moved",
                "change the place of the block, the tilt limit or the recipe"},
+    FaultEntry{FaultCode::kNotReady, "not_ready", "the cell was not made ready in time", "nothing moved",
+               "make the cell ready, then touchcal resume where a run is on hold, else touchcal reset and "
+               "start a new run"},
+    FaultEntry{FaultCode::kTouchTestMissing, "touch_test_missing",
+               "nobody touched the stylus by hand since the cell was last open", "nothing moved",
+               "touch the stylus by hand in manual mode or with power off, leave and close the cell, then "
+               "touchcal resume where a run is on hold, else touchcal reset and start a new run"},
+    FaultEntry{FaultCode::kCellOpen, "cell_open", "the cell is open", "nothing moved",
+               "touch the stylus by hand, leave and close the cell, then touchcal resume where a run is on "
+               "hold, else touchcal reset and start a new run"},
+    FaultEntry{FaultCode::kNotConfirmed, "not_confirmed", "nobody confirmed the run at the cell in time",
+               "nothing moved",
+               "touchcal resume where a run is on hold, else touchcal reset and start a new run; then press "
+               "the confirmation key at the cell within 30 s"},
     FaultEntry{FaultCode::kTouchRejected, "touch_rejected", "the controller refused a command",
                "nothing moved",
                "remove the cause at the cell, then touchcal resume to try this touch again, or touchcal "
@@ -45,14 +59,20 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kProbeStuck, "probe_stuck", "the probe still reads touched after the retract",
                "the arm retracted and stands clear of the face; nothing was recorded",
                "free the stylus, then touchcal resume to try this touch again, or touchcal stop"},
+    FaultEntry{FaultCode::kProbeFault, "probe_fault",
+               "the two inputs of the probe disagree: a cable is cut or shorted",
+               "the arm did not start, or stopped at once and stands there; nothing was recorded",
+               "mend the probe's cable, connector or interface and touch the stylus by hand, then touchcal "
+               "resume where a run is on hold, touchcal clear where it was aborted, touchcal reset and start "
+               "a new run"},
     FaultEntry{FaultCode::kOvertravel, "overtravel", "the arm stopped too far behind the trigger",
                "the arm stopped and retracted",
                "check the stylus and lower the search speed, then touchcal clear, "
                "touchcal reset and start a new run"},
     FaultEntry{FaultCode::kPermissionLost, "permission_lost",
-               "power, mode, hold or emergency stop took the permission to move",
+               "power, mode, hold, emergency stop or an opened cell took the permission to move",
                "the arm stopped and stands where it was",
-               "restore power and remote mode, then touchcal clear, "
+               "restore power and remote mode, close the cell, then touchcal clear, "
                "touchcal reset and start a new run"},
     FaultEntry{FaultCode::kCollision, "collision", "the arm ran into something",
                "the drives cut out; the arm stands where it was",
@@ -61,6 +81,10 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kMotionError, "motion_error", "the controller could not carry out a motion",
                "the arm stopped and stands where it was",
                "look up the controller's error number, then touchcal clear, "
+               "touchcal reset and start a new run"},
+    FaultEntry{FaultCode::kTaskFailed, "task_failed", "a task of the controller's application ended",
+               "the arm stopped and stands where it was",
+               "note the error number, stop and start the application at the pendant, then touchcal clear, "
                "touchcal reset and start a new run"},
     FaultEntry{FaultCode::kTouchDeadline, "touch_deadline", "a touch took longer than its deadline",
                "the arm was stopped and stands where it was",

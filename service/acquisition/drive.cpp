@@ -44,10 +44,12 @@ asio::awaitable<void> Operation::drive() {
         co_await complete_run();
         break;
       case State::kStopping:
+        client_.finish();
         close_run("stopped");
         apply(Event::kDone);
         break;
       case State::kAborting:
+        client_.finish();
         close_run("aborted");
         apply(Event::kDone);
         break;
@@ -55,8 +57,7 @@ asio::awaitable<void> Operation::drive() {
         apply(Event::kDone);
         break;
       case State::kUnholding:
-        standing_.reset();  // on hold the arm may have been moved by hand
-        apply(Event::kDone);
+        co_await resume_run();
         break;
       case State::kClearing:
         // Whatever stopped the arm, the controller is met anew before the next run.
@@ -108,7 +109,15 @@ asio::awaitable<bool> Operation::plan() {
 asio::awaitable<void> Operation::start_run() {
   standing_.reset();
   const bool planned = co_await plan();
-  if (planned && status_.state == State::kStarting) apply(Event::kDone);
+  if (!planned || status_.state != State::kStarting) co_return;
+  const bool permitted = co_await get_permission();
+  if (permitted) apply(Event::kDone);
+}
+
+asio::awaitable<void> Operation::resume_run() {
+  standing_.reset();  // on hold the arm may have been moved by hand
+  const bool permitted = co_await get_permission();
+  if (permitted) apply(Event::kDone);
 }
 
 /// The way from where the arm stands; nothing when there is none or another state was entered.
@@ -261,6 +270,7 @@ asio::awaitable<void> Operation::complete_run() {
   if (result.status != calib::IdentificationStatus::kConverged) {
     status_.fault = Fault{FaultCode::kNotIdentifiable, result.message};
   }
+  client_.finish();
   close_run("complete");
   apply(Event::kDone);
 }

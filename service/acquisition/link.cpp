@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
 #include "service/acquisition/operation.hpp"
@@ -25,6 +26,31 @@ constexpr auto kLongestPause = 2000ms;
 /// An arm that rests says so within this time.
 constexpr auto kSettleMax = 10s;
 
+/// The addresses behind a name, or why there are none.
+struct LookUp {
+  explicit LookUp(const asio::any_io_executor& executor) : resolver(executor), waited(executor) {}
+  asio::ip::tcp::resolver resolver;
+  asio::steady_timer waited;
+  boost::system::error_code failure = asio::error::timed_out;
+  asio::ip::tcp::resolver::results_type found;
+};
+
+/// A look-up cannot be broken off: the answer to one that takes too long comes to nobody.
+asio::awaitable<std::shared_ptr<LookUp>> look_up(asio::any_io_executor executor, Endpoint endpoint,
+                                                 std::chrono::milliseconds at_most) {
+  auto look = std::make_shared<LookUp>(executor);
+  look->waited.expires_after(at_most);
+  look->resolver.async_resolve(endpoint.host, std::to_string(endpoint.port),
+                               [look](const boost::system::error_code& failure, const auto& found) {
+                                 look->failure = failure;
+                                 look->found = found;
+                                 look->waited.cancel();
+                               });
+  boost::system::error_code ignored;
+  co_await look->waited.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  co_return look;
+}
+
 }  // namespace
 
 asio::awaitable<void> Operation::reset() {
@@ -43,15 +69,13 @@ asio::awaitable<void> Operation::reset() {
 
 /// Tries until there is a link or the state changes. Nothing moves by it.
 asio::awaitable<void> Operation::connect() {
-  asio::ip::tcp::resolver resolver(executor_);
   const State state = status_.state;
   for (auto pause = std::chrono::milliseconds(kFirstPause); status_.state == state && !shutting_down_;
        pause = std::min(2 * pause, std::chrono::milliseconds(kLongestPause))) {
-    boost::system::error_code failure;
-    const auto found = co_await resolver.async_resolve(endpoint_.host, std::to_string(endpoint_.port),
-                                                       asio::redirect_error(asio::use_awaitable, failure));
+    const auto look = co_await look_up(executor_, endpoint_, cell_.deadlines.connect);
+    const auto found = look->found;
     cs8::ConnectReply reply = cs8::LinkError{cs8::LinkErrorKind::kUnreachable,
-                                             fmt::format("{}: {}", endpoint_.host, failure.message())};
+                                             fmt::format("{}: {}", endpoint_.host, look->failure.message())};
     const cs8::ExpectedController expected{.arm = cell_.arm.name,
                                            .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
                                            .upper_limits = to_wire(cell_.arm.joint_ranges.upper)};

@@ -72,6 +72,7 @@ Operation::Operation(asio::any_io_executor executor, const Cell& cell, TouchStor
       clock_(std::move(clock)),
       client_(executor, client_options(cell.deadlines),
               {.on_state = [this](const cs8::State& state) { hear(state); },
+               .on_permit = [this](const cs8::Permit& permit) { hear_permit(permit); },
                .on_loss = [this](const cs8::LinkError& error) { lose(error); }}),
       wake_(executor),
       ended_(executor, asio::steady_timer::time_point::max()) {
@@ -104,6 +105,7 @@ void Operation::enter(State state) {
   status_.state = state;
   status_.since = now_text();
   if (state == State::kStopping || state == State::kAborting) client_.stop();
+  if (asking_) client_.finish();
   publish();
   wake_.cancel();
 }
@@ -155,17 +157,26 @@ ControllerView Operation::controller_view() const {
   view.powered = (state->flags & cs8::kPowered) != 0;
   view.emergency_stop = state->emergency_stop != 0;
   view.mode = std::string(cs8::name(state->mode));
+  view.cell_closed = (state->flags & cs8::kCellClosed) != 0;
+  view.touch_tested = (state->flags & cs8::kTouchTested) != 0;
+  view.permit = std::string(cs8::name(state->permit));
+  const cs8::ProbeInputs probe = cs8::probe_inputs(state->flags);
+  if (probe.agree()) {
+    view.probe = probe.free() ? "free" : "touched";
+  } else {
+    view.probe = inputs_disagree_count_ > 1 ? std::optional("fault") : status_.controller.probe;
+  }
   return view;
 }
 
 void Operation::hear(const cs8::State& state) {
+  // The two inputs of a probe may change up to 20 ms apart, the time between two states.
+  inputs_disagree_count_ = cs8::probe_inputs(state.flags).agree() ? 0 : inputs_disagree_count_ + 1;
   if (status_.controller != controller_view()) publish();
-  if (status_.state == State::kResetting) wake_.cancel();
+  if (status_.state == State::kResetting || status_.waiting_for) wake_.cancel();
   told_at_ = std::chrono::steady_clock::now();
   if (std::exchange(task_error_, state.task_error) != state.task_error && state.task_error != 0) {
-    raise({FaultCode::kMotionError,
-           fmt::format("a task of the application ended with error {}", state.task_error)},
-          Event::kAbortFault);
+    raise({FaultCode::kTaskFailed, fmt::format("run-time error {}", state.task_error)}, Event::kAbortFault);
   }
 }
 

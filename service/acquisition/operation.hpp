@@ -17,6 +17,7 @@
 #include "calib_core/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "cs8_protocol/client.hpp"
+#include "service/acquisition/readiness.hpp"
 #include "service/acquisition/state_machine.hpp"
 #include "service/acquisition/status.hpp"
 #include "service/run.hpp"
@@ -94,15 +95,25 @@ class Operation {
   void raise(Fault fault, Event event);
   void publish();
   void hear(const cs8::State& state);
+  void hear_permit(const cs8::Permit& permit);
   void lose(const cs8::LinkError& error);
   [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
   [[nodiscard]] ControllerView controller_view() const;
   [[nodiscard]] std::string now_text() const;
 
+  // a person's word before anything moves (permission.cpp)
+  boost::asio::awaitable<bool> get_permission();
+  boost::asio::awaitable<void> wait_until_readier(std::optional<cs8::State> told,
+                                                  std::chrono::steady_clock::time_point at_latest);
+  void wait_for(const Awaited* awaited);
+  [[nodiscard]] bool is_permitted() const;
+  [[nodiscard]] std::uint32_t permit_number() const;
+
   // what the states do (drive.cpp, link.cpp)
   boost::asio::awaitable<void> drive();
   boost::asio::awaitable<void> reset();
   boost::asio::awaitable<void> start_run();
+  boost::asio::awaitable<void> resume_run();
   boost::asio::awaitable<bool> plan();
   boost::asio::awaitable<void> make_next_touch();
   boost::asio::awaitable<std::optional<std::vector<calib::JointVector>>> way_to(
@@ -158,6 +169,8 @@ class Operation {
   std::optional<OpenTouch> open_touch_;
   std::chrono::steady_clock::time_point told_at_;  // when the controller told its newest state
   std::int32_t task_error_ = 0;                    // as it told then
+  int inputs_disagree_count_ = 0;                  // newest states of the controller in a row
+  bool asking_ = false;                            // for a permit
   bool shutting_down_ = false;
   bool driving_ = false;
 };

@@ -146,6 +146,10 @@ std::optional<State> after_command(State state, Command command) {
 
 State after_event(State state, Event event) {
   if (event == Event::kAbortFault) return is_active(state) ? State::kAborting : state;
+  if (event == Event::kNotReadyFault) {
+    if (state == State::kUnholding) return State::kHolding;
+    return state == State::kStarting ? State::kStopping : state;
+  }
   if (event == Event::kHoldFault) return state == State::kExecute ? State::kHolding : state;
   if (event == Event::kLinkDown) {
     if (is_active(state)) return State::kAborting;

@@ -32,8 +32,9 @@ enum class State {
 enum class Command { kStart, kPause, kResume, kStop, kAbort, kClear, kReset, kAcknowledge };
 
 /// What happens inside: the acting state is done, or something went wrong that a person can mend on the spot
-/// (hold) or that ends the run (abort).
-enum class Event { kDone, kHoldFault, kAbortFault, kLinkDown };
+/// (hold) or that ends the run (abort), or nobody made the cell ready in time (a start ends, a run on hold
+/// stays there).
+enum class Event { kDone, kHoldFault, kAbortFault, kNotReadyFault, kLinkDown };
 
 std::string_view state_name(State state);        // "EXECUTE"
 std::string_view command_name(Command command);  // "pause"

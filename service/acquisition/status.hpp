@@ -17,6 +17,10 @@ struct ControllerView {
   std::optional<bool> powered;
   std::optional<std::string> mode;
   std::optional<bool> emergency_stop;
+  std::optional<bool> cell_closed;
+  std::optional<bool> touch_tested;   // the stylus, by hand
+  std::optional<std::string> permit;  // "granted": the run was confirmed at the cell
+  std::optional<std::string> probe;   // "free", "touched", "fault"
 
   bool operator==(const ControllerView&) const = default;
 };
@@ -25,6 +29,7 @@ struct ControllerView {
 /// daemon's start, which `instance_id` names.
 struct Status {
   State state = State::kStopped;
+  std::optional<std::string> waiting_for;  // of a person at the cell: "touch_test" (readiness.hpp)
   std::optional<std::int64_t> run_id;
   std::optional<std::string> recipe;
   int touches_done = 0;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "calib_core/plane.hpp"
 #include "calib_core/units.hpp"
@@ -95,7 +94,9 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
     case cs8::Outcome::kOvertravel:
       return OutcomeFault{{FaultCode::kOvertravel, {}}};
     case cs8::Outcome::kProbeFault:
+      return OutcomeFault{{FaultCode::kProbeFault, where}};
     case cs8::Outcome::kTaskFailed:
+      return OutcomeFault{{FaultCode::kTaskFailed, fmt::format("run-time error {} {}", error_number, where)}};
     case cs8::Outcome::kMotionError:
       break;
   }
@@ -103,14 +104,28 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
 }
 
 OutcomeFault fault_of(const cs8::Rejected& rejected) {
-  static const std::set<cs8::RejectReason> kMendedAtTheCell{
-      cs8::RejectReason::kNotRemote,     cs8::RejectReason::kNotPowered,
-      cs8::RejectReason::kHold,          cs8::RejectReason::kEmergencyStop,
-      cs8::RejectReason::kNotCalibrated, cs8::RejectReason::kProbeTriggered,
-      cs8::RejectReason::kMonitorSpeed};
-  return {
-      {FaultCode::kTouchRejected, fmt::format("{} (detail {})", cs8::name(rejected.reason), rejected.detail)},
-      kMendedAtTheCell.contains(rejected.reason)};
+  const std::string why = fmt::format("{} (detail {})", cs8::name(rejected.reason), rejected.detail);
+  switch (rejected.reason) {
+    case cs8::RejectReason::kProbeInputs:
+      return {{FaultCode::kProbeFault, why}, true};
+    case cs8::RejectReason::kCellOpen:
+      return {{FaultCode::kCellOpen, {}}, true};
+    case cs8::RejectReason::kTouchTestMissing:
+      return {{FaultCode::kTouchTestMissing, {}}, true};
+    case cs8::RejectReason::kTaskFailed:
+      return {{FaultCode::kTaskFailed, fmt::format("run-time error {}", rejected.detail)}};
+    case cs8::RejectReason::kNotRemote:
+    case cs8::RejectReason::kNotPowered:
+    case cs8::RejectReason::kHold:
+    case cs8::RejectReason::kEmergencyStop:
+    case cs8::RejectReason::kNotCalibrated:
+    case cs8::RejectReason::kProbeTriggered:
+    case cs8::RejectReason::kMonitorSpeed:
+    case cs8::RejectReason::kNotPermitted:
+      return {{FaultCode::kTouchRejected, why}, true};
+    default:
+      return {{FaultCode::kTouchRejected, why}};
+  }
 }
 
 namespace {

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "service/acquisition/readiness.hpp"
+
 namespace cell {
 namespace {
 
@@ -13,6 +15,8 @@ using nlohmann::json;
 constexpr int kBarWidth = 30;
 
 std::string figures(const json& status) {
+  if (status.at("waiting_for").is_string())
+    return fmt::format("waiting: {}", awaited_words(status.at("waiting_for").get<std::string>()));
   std::string text =
       status.at("touches_total").is_number()
           ? fmt::format("{}/{}", status.at("touches_done").get<int>(), status.at("touches_total").get<int>())
@@ -54,8 +58,10 @@ void Progress::show(const json& status) {
     line_open_ = true;
   } else {
     const int tenth = total > 0 ? done * 10 / total : 0;
-    if (state == last_state_ && tenth == last_tenth_) return;
+    const std::string awaited = status.at("waiting_for").is_string() ? status.at("waiting_for") : "";
+    if (state == last_state_ && tenth == last_tenth_ && awaited == last_awaited_) return;
     last_tenth_ = tenth;
+    last_awaited_ = awaited;
     fmt::print("{:<11} {}\n", state, figures(status));
   }
   last_state_ = state;

@@ -22,6 +22,7 @@ class Progress {
   bool line_open_ = false;
   std::string last_state_;
   std::string last_fault_;
+  std::string last_awaited_;
   int last_tenth_ = -1;
 };
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "service/acquisition/readiness.hpp"
+
 namespace cell {
 namespace {
 
@@ -174,17 +176,23 @@ std::string result_text(const json& result) {
 }
 
 std::string status_text(const json& status) {
+  const auto text_or_unknown = [](const json& value) { return value.is_string() ? text(value) : "unknown"; };
   std::string lines = fmt::format("state       {}\n", text(status.at("state")));
   const bool connected = status.at("controller_connected").get<bool>();
   const auto yes_no = [](const json& value, const char* yes, const char* no) {
     return value.is_boolean() ? (value.get<bool>() ? yes : no) : "unknown";
   };
   lines += fmt::format(
-      "controller  {}, power {}, mode {}, emergency stop {}, data {} ms old\n",
+      "controller  {}, power {}, mode {}, emergency stop {}, data {} ms old\n"
+      "cell        {}, touch test {}, probe {}, permit {}\n",
       connected ? "connected" : "not connected", yes_no(status.at("controller_powered"), "on", "off"),
-      status.at("controller_mode").is_string() ? text(status.at("controller_mode")) : "unknown",
-      yes_no(status.at("controller_estop"), "ACTIVE", "none"),
-      figure(status.at("data_age_ms"), "{:.0f}", "?"));
+      text_or_unknown(status.at("controller_mode")), yes_no(status.at("controller_estop"), "ACTIVE", "none"),
+      figure(status.at("data_age_ms"), "{:.0f}", "?"),
+      yes_no(status.at("controller_cell_closed"), "closed", "OPEN"),
+      yes_no(status.at("controller_touch_tested"), "made", "missing"), text_or_unknown(status.at("probe")),
+      text_or_unknown(status.at("controller_permit")));
+  if (status.at("waiting_for").is_string())
+    lines += fmt::format("waiting     {}\n", awaited_words(text(status.at("waiting_for"))));
   if (status.at("run_id").is_string()) {
     lines += fmt::format(
         "run         {} ({}), {} of {} touches, {} identifiable, condition number {}, tip +- {} mm, verdict "

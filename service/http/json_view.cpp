@@ -48,6 +48,7 @@ Json run_json(const StoredRun& run) {
 
 std::string status_document(const Status& status) {
   Json document{{"state", state_name(status.state)},
+                {"waiting_for", value_or_null(status.waiting_for)},
                 {"run_id", id_or_null(status.run_id)},
                 {"recipe", value_or_null(status.recipe)},
                 {"touches_done", status.touches_done},
@@ -61,7 +62,11 @@ std::string status_document(const Status& status) {
                 {"controller_connected", status.controller.connected},
                 {"controller_powered", value_or_null(status.controller.powered)},
                 {"controller_mode", value_or_null(status.controller.mode)},
-                {"controller_estop", value_or_null(status.controller.emergency_stop)}};
+                {"controller_estop", value_or_null(status.controller.emergency_stop)},
+                {"controller_cell_closed", value_or_null(status.controller.cell_closed)},
+                {"controller_touch_tested", value_or_null(status.controller.touch_tested)},
+                {"controller_permit", value_or_null(status.controller.permit)},
+                {"probe", value_or_null(status.controller.probe)}};
   const FaultEntry* entry = status.fault ? &describe(status.fault->code) : nullptr;
   document["fault_code"] = entry ? Json(entry->name) : Json(nullptr);
   document["fault_message"] = entry ? Json(status.fault->message()) : Json(nullptr);

@@ -214,6 +214,8 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kCell, "/speeds/second_backoff_mm", 0.4, "/speeds/second_backoff_mm", "give 0.5 to 5"},
         Spoiled{kCell, "/speeds/second_backoff_mm", 5.1, "/speeds/second_backoff_mm", "give 0.5 to 5"},
         Spoiled{kCell, "/deadlines/connect_ms", 0, "/deadlines/connect_ms", "whole number from 1"},
+        Spoiled{kCell, "/deadlines/ready_ms", 0, "/deadlines/ready_ms", "whole number from 1"},
+        Spoiled{kCell, "/deadlines/confirm_ms", 30001, "/deadlines/confirm_ms", "from 1000 to 30000"},
         Spoiled{kCell, "/controller/port", 65536, "/controller/port", "0 to 65535"},
         Spoiled{kCell, "/controller/host", std::nullopt, "/controller", "\"host\" is missing"},
         Spoiled{kCell, "/workspace_box/min_mm", json({1, 2}), "/workspace_box/min_mm",

@@ -20,14 +20,20 @@ std::optional<FaultCode> next_code(FaultCode code) {
     case FaultCode::kProtocolError:
     case FaultCode::kLinkLost:
     case FaultCode::kRecipeUnreachable:
+    case FaultCode::kNotReady:
+    case FaultCode::kTouchTestMissing:
+    case FaultCode::kCellOpen:
+    case FaultCode::kNotConfirmed:
     case FaultCode::kTouchRejected:
     case FaultCode::kNoContact:
     case FaultCode::kUnexpectedContact:
     case FaultCode::kProbeStuck:
+    case FaultCode::kProbeFault:
     case FaultCode::kOvertravel:
     case FaultCode::kPermissionLost:
     case FaultCode::kCollision:
     case FaultCode::kMotionError:
+    case FaultCode::kTaskFailed:
     case FaultCode::kTouchDeadline:
     case FaultCode::kImplausibleTouch:
     case FaultCode::kNoSafeWay:

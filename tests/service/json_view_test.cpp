@@ -15,6 +15,7 @@ namespace {
 using nlohmann::json;
 
 const Shape kQuietStatus{{"state", "string"},
+                         {"waiting_for", "null"},
                          {"run_id", "null"},
                          {"recipe", "null"},
                          {"touches_done", "number"},
@@ -29,6 +30,10 @@ const Shape kQuietStatus{{"state", "string"},
                          {"controller_powered", "null"},
                          {"controller_mode", "null"},
                          {"controller_estop", "null"},
+                         {"controller_cell_closed", "null"},
+                         {"controller_touch_tested", "null"},
+                         {"controller_permit", "null"},
+                         {"probe", "null"},
                          {"fault_code", "null"},
                          {"fault_message", "null"},
                          {"fault_robot_action", "null"},
@@ -47,6 +52,7 @@ TEST(StatusDocument, HasTheContractsFieldsWhenNothingIsKnown) {
 TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   Status busy;
   busy.state = State::kHeld;
+  busy.waiting_for = "confirmation";
   busy.run_id = 7;
   busy.recipe = "edf-25";
   busy.touches_done = 3;
@@ -60,6 +66,10 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.controller.powered = true;
   busy.controller.mode = "remote";
   busy.controller.emergency_stop = false;
+  busy.controller.cell_closed = true;
+  busy.controller.touch_tested = true;
+  busy.controller.permit = "awaited";
+  busy.controller.probe = "free";
   busy.fault = Fault{FaultCode::kNoContact, ""};
   busy.last_accepted_run_id = 6;
   busy.last_accepted_at = "then";

@@ -14,7 +14,8 @@ using enum State;
 
 constexpr std::array kCommands{Command::kStart, Command::kPause, Command::kResume, Command::kStop,
                                Command::kAbort, Command::kClear, Command::kReset,  Command::kAcknowledge};
-constexpr std::array kEvents{Event::kDone, Event::kHoldFault, Event::kAbortFault, Event::kLinkDown};
+constexpr std::array kEvents{Event::kDone, Event::kHoldFault, Event::kAbortFault, Event::kNotReadyFault,
+                             Event::kLinkDown};
 
 struct Row {
   State state;
@@ -30,39 +31,39 @@ constexpr std::nullopt_t no = std::nullopt;
 const std::array kTable{
     // state            start      pause      resume       stop       abort      clear      reset       acknowledge
     Row{kStopped,       {no,        no,        no,          kStopped,  kStopped,  no,        kResetting, kStopped},
-                        {kStopped, kStopped, kStopped, kStopped}},
+                        {kStopped, kStopped, kStopped, kStopped, kStopped}},
     Row{kResetting,     {no,        no,        no,          kStopped,  kResetting, no,       kResetting, kResetting},
-                        {kIdle, kResetting, kResetting, kResetting}},
+                        {kIdle, kResetting, kResetting, kResetting, kResetting}},
     Row{kIdle,          {kStarting, no,        no,          kStopped,  kIdle,     no,        kIdle,      kIdle},
-                        {kIdle, kIdle, kIdle, kResetting}},
+                        {kIdle, kIdle, kIdle, kIdle, kResetting}},
     Row{kStarting,      {no,        no,        no,          kStopping, kAborting, no,        no,         kStarting},
-                        {kExecute, kStarting, kAborting, kAborting}},
+                        {kExecute, kStarting, kAborting, kStopping, kAborting}},
     Row{kExecute,       {no,        kHolding,  kExecute,    kStopping, kAborting, no,        no,         kExecute},
-                        {kCompleting, kHolding, kAborting, kAborting}},
+                        {kCompleting, kHolding, kAborting, kExecute, kAborting}},
     Row{kCompleting,    {no,        no,        no,          kStopping, kAborting, no,        no,         kCompleting},
-                        {kComplete, kCompleting, kAborting, kAborting}},
+                        {kComplete, kCompleting, kAborting, kCompleting, kAborting}},
     Row{kComplete,      {kStarting, no,        no,          kStopped,  kComplete, no,        kResetting, kComplete},
-                        {kComplete, kComplete, kComplete, kComplete}},
+                        {kComplete, kComplete, kComplete, kComplete, kComplete}},
     Row{kHolding,       {no,        kHolding,  no,          kStopping, kAborting, no,        no,         kHolding},
-                        {kHeld, kHolding, kAborting, kAborting}},
+                        {kHeld, kHolding, kAborting, kHolding, kAborting}},
     Row{kHeld,          {no,        kHeld,     kUnholding,  kStopping, kAborting, no,        no,         kHeld},
-                        {kHeld, kHeld, kAborting, kAborting}},
+                        {kHeld, kHeld, kAborting, kHeld, kAborting}},
     Row{kUnholding,     {no,        kHolding,  kUnholding,  kStopping, kAborting, no,        no,         kUnholding},
-                        {kExecute, kUnholding, kAborting, kAborting}},
+                        {kExecute, kUnholding, kAborting, kHolding, kAborting}},
     Row{kSuspending,    {no,        no,        no,          kStopping, kAborting, no,        no,         kSuspending},
-                        {kSuspended, kSuspending, kAborting, kAborting}},
+                        {kSuspended, kSuspending, kAborting, kSuspending, kAborting}},
     Row{kSuspended,     {no,        no,        no,          kStopping, kAborting, no,        no,         kSuspended},
-                        {kSuspended, kSuspended, kAborting, kAborting}},
+                        {kSuspended, kSuspended, kAborting, kSuspended, kAborting}},
     Row{kUnsuspending,  {no,        no,        no,          kStopping, kAborting, no,        no,         kUnsuspending},
-                        {kExecute, kUnsuspending, kAborting, kAborting}},
+                        {kExecute, kUnsuspending, kAborting, kUnsuspending, kAborting}},
     Row{kStopping,      {no,        no,        no,          kStopping, kAborting, no,        no,         kStopping},
-                        {kStopped, kStopping, kAborting, kAborting}},
+                        {kStopped, kStopping, kAborting, kStopping, kAborting}},
     Row{kAborting,      {no,        no,        no,          kAborting, kAborting, no,        no,         kAborting},
-                        {kAborted, kAborting, kAborting, kAborting}},
+                        {kAborted, kAborting, kAborting, kAborting, kAborting}},
     Row{kAborted,       {no,        no,        no,          kAborted,  kAborted,  kClearing, no,         kAborted},
-                        {kAborted, kAborted, kAborted, kAborted}},
+                        {kAborted, kAborted, kAborted, kAborted, kAborted}},
     Row{kClearing,      {no,        no,        no,          kClearing, kClearing, kClearing, no,         kClearing},
-                        {kStopped, kClearing, kClearing, kClearing}},
+                        {kStopped, kClearing, kClearing, kClearing, kClearing}},
 };
 // clang-format on
 

@@ -121,7 +121,9 @@ TEST(FaultOf, EveryOutcomeThatIsNoSuccessIsItsFault) {
       {cs8::Outcome::kCollision, FaultCode::kCollision},
       {cs8::Outcome::kMotionError, FaultCode::kMotionError},
       {cs8::Outcome::kDeadline, FaultCode::kTouchDeadline},
-      {cs8::Outcome::kOvertravel, FaultCode::kOvertravel}};
+      {cs8::Outcome::kOvertravel, FaultCode::kOvertravel},
+      {cs8::Outcome::kProbeFault, FaultCode::kProbeFault},
+      {cs8::Outcome::kTaskFailed, FaultCode::kTaskFailed}};
   std::size_t successes = 0;
   std::size_t outcomes = 0;
   for (int value = 0; value < 256; ++value) {
