@@ -18,6 +18,8 @@ constexpr int kTouchCount = 100;
 constexpr int kPostureCount = 500;
 constexpr double kNoticedP = 0.001;
 constexpr int kSeedsWrongMax = 1;
+/// Where touches hardly show a compliance it is held, and a part of the droop stays in the residuals.
+constexpr int kSeedsWrongOnPlanMax = 2;
 constexpr double kTipErrorMedianMaxMetres = 0.25e-3;
 
 /// The arm with both joints just as soft that their largest droop over the touches is kDroopRad.
@@ -95,7 +97,7 @@ TEST(Gravity, IsTakenUpByACompliantModelWhereItHidesInPlannedTouches) {
   const std::vector<Touch> planned = planned_touches(cell, cell.recipes.at("edf-25"));
   ASSERT_EQ(planned.size(), static_cast<std::size_t>(kTouchCount));
   const Tally tally = calibrate(cell, [&](UniformChance&) { return planned; });
-  EXPECT_LE(tally.noticed_compliant, kSeedsWrongMax);
+  EXPECT_LE(tally.noticed_compliant, kSeedsWrongOnPlanMax);
   EXPECT_LE(median(tally.compliant_m), kTipErrorMedianMaxMetres);
   EXPECT_GT(median(tally.rigid_m), median(tally.compliant_m));
   tally.report("the plan's touches");
