@@ -234,6 +234,8 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     const std::vector<LinkFault> faults = state_.plan.meet(cs8::type_of(message));
     for (const LinkFault& fault : faults) {
       alter(fault.kind, message, last_result_);
+      // A result that is wrong is the one the controller has, whoever asks again.
+      if (target_of(fault.kind) == FaultTarget::kResult) state_.stored_result = message;
       if (fault.kind != Fault::kCloseSocket && fault.kind != Fault::kGarbage) strike({fault});
     }
     if (const auto* result = std::get_if<cs8::TouchResult>(&message.payload)) last_result_ = *result;

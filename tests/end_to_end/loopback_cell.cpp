@@ -6,7 +6,9 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "config/fault_file.hpp"
 #include "service/http/json_view.hpp"
+#include "sim_controller/fault_names.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
 
 namespace touchcal::testing {
@@ -52,6 +54,10 @@ void LoopbackCell::serve(sim::Plant plant, sim::ServerOptions options) {
   server_.reset();
   server_ = std::make_unique<sim::Server>(io_, "127.0.0.1", port_, std::move(plant), std::move(options));
   port_ = server_->port();
+}
+
+void LoopbackCell::inject(const std::string& line) {
+  server_->inject(sim::planned(std::get<cell::DeclaredFault>(cell::parse_control_line(line))));
 }
 
 void LoopbackCell::launch(std::optional<std::uint16_t> port) {

@@ -32,6 +32,8 @@ class LoopbackCell {
   void serve(std::vector<sim::PlannedFault> faults = {}, double speed = sim::kSpeedMax);
   void serve(sim::Plant plant, sim::ServerOptions options);
   void stop_serving() { server_.reset(); }
+  /// A fault of the simulated cell, written as in a line of its control connection.
+  void inject(const std::string& line);
   [[nodiscard]] sim::Plant true_plant() const;
   [[nodiscard]] std::uint16_t port() const { return port_; }
 
