@@ -20,7 +20,7 @@ enum class LinkErrorKind {
   kUnreachable,       // no TCP connection
   kHandshakeTimeout,  // no connection or no Welcome within the deadline
   kIncompatible,      // another protocol version, application, arm or other joint ranges
-  kPeerClosed,        // the controller or the network ended the connection
+  kPeerClosed,        // the controller, its application's end or the network ended the connection
   kSilent,            // nothing was heard for the heartbeat timeout, or the controller does not read
   kProtocol,    // bytes that are no frame, a message of the wrong side, an answer to nothing that was asked
   kFault,       // the controller said why it closes the connection

@@ -233,7 +233,8 @@ void Link::take(const Message& message) {
         if constexpr (std::is_same_v<Body, State>) {
           take_state(body);
         } else if constexpr (std::is_same_v<Body, Fault>) {
-          fail(LinkErrorKind::kFault, fault_text(body));
+          const bool is_leaving = body.code == FaultCode::kStopping;
+          fail(is_leaving ? LinkErrorKind::kPeerClosed : LinkErrorKind::kFault, fault_text(body));
         } else if constexpr (std::is_same_v<Body, Permit>) {
           if (!take_permit(body)) unexpected();
         } else if constexpr (std::is_same_v<Body, Accepted>) {

@@ -204,7 +204,8 @@ std::vector<Unmet> Operation::unmet_preconditions() const {
   if (flag(cs8::kHeld)) unmet.push_back({"hold", "release the hold on the pendant"});
   if (!flag(cs8::kArmCalibrated))
     unmet.push_back({"not_calibrated", "let the controller find its joint zeros"});
-  if (flag(cs8::kProbeTouched))
+  // Behind a search that was broken off the face may hold the stylus: the run's first motion takes it off.
+  if (flag(cs8::kProbeTouched) && !flag(cs8::kRetractDue))
     unmet.push_back({"probe_touched", "the probe reads touched: free it or check its cable"});
   if (state->task_error != 0) {
     unmet.push_back(

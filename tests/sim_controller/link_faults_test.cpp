@@ -276,6 +276,10 @@ TEST_F(LinkFaults, AResultUnderAnotherTouchsNumberIsNotTheLinksToNotice) {
   EXPECT_GT(std::abs(joints(1)[0] - joints(0)[0]), 10'000'000);
 }
 
+TEST_F(LinkFaults, AnApplicationThatIsEndedAtThePendantEndsTheConnectionAndItsSession) {
+  meet({R"({"fault":"restart","touch":2})", LinkErrorKind::kPeerClosed, Touch::kNotMade});
+}
+
 TEST_F(LinkFaults, AHostThatIsNotHeardIsLeft) {
   serve(R"({"fault":"drop","on":"heartbeat","count":"every"})");
   bool done = false;
