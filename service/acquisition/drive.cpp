@@ -111,6 +111,7 @@ asio::awaitable<void> Operation::start_run() {
   const bool planned = co_await plan();
   if (!planned || status_.state != State::kStarting) co_return;
   const bool permitted = co_await get_permission();
+  run_began_ = clock_();
   if (permitted) apply(Event::kDone);
 }
 

@@ -252,7 +252,6 @@ std::variant<Started, Refusal> Operation::start(const std::string& recipe,
   run_.emplace(id, tip_regions_, found->second, now_text());
   run_open_ = true;
   run_finished_ = false;
-  run_began_ = clock_();
   status_.fault.reset();
   status_.verdict = Verdict::kNone;
   enter(State::kStarting);

@@ -157,11 +157,11 @@ class Operation {
 
   Status status_;
   std::optional<Run> run_;
-  bool run_finished_ = false;  // complete, and stored as such
-  bool run_open_ = false;      // begun in the store, not finished there
-  std::chrono::system_clock::time_point run_began_;
-  std::map<std::string, calib::TouchPlan> plans_;  // by recipe; the same problem gives the same plan
-  calib::PlanningProblem planning_;                // of the run
+  bool run_finished_ = false;                        // complete, and stored as such
+  bool run_open_ = false;                            // begun in the store, not finished there
+  std::chrono::system_clock::time_point run_began_;  // to touch
+  std::map<std::string, calib::TouchPlan> plans_;    // by recipe; the same problem gives the same plan
+  calib::PlanningProblem planning_;                  // of the run
   std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
   /// The way to the next touch, found while the arm makes the one before; as long as the arm is there.
   std::optional<std::vector<calib::JointVector>> way_ahead_;
