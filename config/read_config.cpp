@@ -118,6 +118,7 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value) {
   return limits;
 }
 
+constexpr NumberRange kTravelSpeeds{.min = kPositive.min, .max = 250.0};   // mm/s: what the controller takes
 constexpr NumberRange kApproachSpeeds{.min = kPositive.min, .max = 20.0};  // mm/s: a hand can be taken away
 constexpr NumberRange kSearchSpeeds{.min = kPositive.min,
                                     .max = 8.0};          // mm/s: what touch probes are made for
@@ -149,7 +150,7 @@ std::optional<SecondTouch> second_touch_from_json(const JsonObject& object, cons
 Speeds speeds_from_json(const JsonValue& value, const Probe& probe) {
   const JsonObject object =
       value.object({"travel_mm_s", "approach_mm_s", "search_mm_s", "second_mm_s", "second_backoff_mm"});
-  const Speeds speeds{.travel_m_s = metres_from_mm(object.at("travel_mm_s").number(kPositive)),
+  const Speeds speeds{.travel_m_s = metres_from_mm(object.at("travel_mm_s").number(kTravelSpeeds)),
                       .approach_m_s = touching_speed_m_s(object.at("approach_mm_s"), kApproachSpeeds, probe),
                       .search_m_s = touching_speed_m_s(object.at("search_mm_s"), kSearchSpeeds, probe),
                       .second = second_touch_from_json(object, probe)};

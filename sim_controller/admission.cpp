@@ -20,6 +20,7 @@ constexpr std::int32_t kTouchSpeedsWord = kAfterViaWord + 3 * kJointWords;
 constexpr std::int32_t kTouchDeadlineWord = kTouchSpeedsWord + 5;
 constexpr std::int32_t kTravelSpeedWord = kAfterViaWord + kJointWords;
 
+constexpr std::int32_t kTravelSpeedMaxUmS = 250'000;
 constexpr std::int32_t kApproachSpeedMaxUmS = 20'000;
 constexpr std::int32_t kBackoffMinDmm = 5'000;
 constexpr std::int32_t kBackoffMaxDmm = 50'000;
@@ -34,6 +35,10 @@ std::optional<cs8::Rejected> bad_unless(bool good, std::int32_t word) {
 
 std::optional<cs8::Rejected> bad_via_count(std::int32_t count) {
   return bad_unless(count >= 0 && count <= static_cast<std::int32_t>(cs8::kViaCountMax), kViaCountWord);
+}
+
+std::optional<cs8::Rejected> bad_travel_speed(std::int32_t speed_um_s, std::int32_t word) {
+  return bad_unless(speed_um_s > 0 && speed_um_s <= kTravelSpeedMaxUmS, word);
 }
 
 std::optional<cs8::Rejected> bad_approach_speed(std::int32_t speed_um_s, std::int32_t word) {
@@ -89,7 +94,7 @@ std::vector<calib::JointVector> joints_from_wire(std::span<const cs8::JointsMicr
 
 std::optional<cs8::Rejected> refusal(const Plant& plant, const cs8::Touch& command) {
   if (auto bad = bad_via_count(command.via_count)) return bad;
-  if (auto bad = bad_unless(command.travel_speed_um_s > 0, kTouchSpeedsWord)) return bad;
+  if (auto bad = bad_travel_speed(command.travel_speed_um_s, kTouchSpeedsWord)) return bad;
   if (auto bad = bad_approach_speed(command.approach_speed_um_s, kTouchSpeedsWord + 1)) return bad;
   if (auto bad = bad_unless(command.search_speed_um_s > 0, kTouchSpeedsWord + 2)) return bad;
   if (auto bad = bad_second_touch(command)) return bad;
@@ -102,7 +107,7 @@ std::optional<cs8::Rejected> refusal(const Plant& plant, const cs8::Touch& comma
 
 std::optional<cs8::Rejected> refusal(const Plant& plant, const cs8::Travel& command) {
   if (auto bad = bad_via_count(command.via_count)) return bad;
-  if (auto bad = bad_unless(command.travel_speed_um_s > 0, kTravelSpeedWord)) return bad;
+  if (auto bad = bad_travel_speed(command.travel_speed_um_s, kTravelSpeedWord)) return bad;
   if (auto bad = bad_unless(command.deadline_ms > 0, kTravelSpeedWord + 1)) return bad;
   auto postures = used_via(command);
   postures.push_back(command.target);

@@ -42,7 +42,7 @@ void watch_touch_test(Cabinet& cabinet) {
 }  // namespace
 
 bool motion_permitted(const Panel& panel) {
-  return panel.powered && !panel.held && panel.emergency_stop == 0 &&
+  return panel.powered && !panel.held && panel.arm_calibrated && panel.emergency_stop == 0 &&
          panel.mode == cs8::WorkingMode::kRemote && panel.cell_closed;
 }
 

@@ -76,7 +76,6 @@ class Step {
   void take(std::uint32_t, const cs8::Heartbeat&) {}
 
   void take(std::uint32_t, const cs8::Begin& begin) {
-    const bool key_is_on = state_.cabinet.panel.confirm_key;
     if (const auto reason = refusal_of_begin()) {
       // A new run while one moves: the permit goes, and with it the motion.
       if (running()) break_off(state_.cabinet, *running(), Outcome::kStopped);
@@ -84,11 +83,12 @@ class Step {
       if (*reason == RejectReason::kTouchTestMissing) asked_for_touch_test(state_.person);
       return;
     }
-    tell(await(state_.permit, begin, key_is_on, now_));
+    tell(await(state_.permit, begin, now_));
     asked_to_confirm(state_.person);
   }
 
   void take(std::uint32_t, const cs8::Finish&) {
+    if (state_.permit.permit.state == PermitState::kNone) return;
     if (running()) break_off(state_.cabinet, *running(), Outcome::kStopped);
     tell(withdraw(state_.permit, PermitReason::kFinished));
   }
@@ -269,8 +269,10 @@ class Step {
       cabinet.jogged = false;
       state_.motion.way_out.clear();
     }
-    watch_permission();
+    // A collision takes the power too: the command tells the cause.
+    if (!seen.sensed.collision) watch_permission();
     if (running() && step(plant_, cabinet, state_.motion, seen, at)) finish();
+    watch_permission();
     tell(watch_key(state_.permit, cabinet.panel.confirm_key));
   }
 

@@ -86,7 +86,6 @@ class Step {
     running_.outcome = Outcome::kCollision;
     running_.broken_in = phase_of(running_.stage);
     running_.collision = *seen_.sensed.collision;
-    way_out_.clear();  // the operator frees the arm
     return true;
   }
 
@@ -149,6 +148,8 @@ class Step {
   }
 
   bool search() {
+    running_.monitor_speed_percent =
+        std::min(running_.monitor_speed_percent, cabinet_.panel.monitor_speed_percent);
     if (not_free()) {
       running_.last = Capture{.at = at_};
       running_.stop_in_ticks =
@@ -242,9 +243,21 @@ class Step {
   }
 
   bool retract() {
+    if (back_tripped()) {
+      break_off(cabinet_, running_, Outcome::kUnexpectedContact);
+      return false;
+    }
     if (!cabinet_.arm_rests()) return false;
     way_out_.erase(way_out_.begin());
     return next_stretch();
+  }
+
+  /// The way back of a touch is watched from where the probe has seated again; a Retract may go with a bent
+  /// stylus.
+  bool back_tripped() {
+    if (std::holds_alternative<cs8::Retract>(running_.order)) return false;
+    running_.seated = running_.seated || cabinet_.probe_free();
+    return running_.seated && not_free();
   }
 
   bool last_reseat() {

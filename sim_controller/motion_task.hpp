@@ -57,6 +57,8 @@ struct RunningCommand {
   std::int32_t error_number = 0;
   std::optional<Capture> first;  // when there are to be two
   std::optional<Capture> last;
+  bool seated = false;  // the probe was free again on the way back: from there it is watched
+  std::int32_t monitor_speed_percent = 100;  // the lowest in a search
   bool latch_armed = false;
   std::uint32_t edges = 0;  // of the latch input, since the trigger
   int stop_in_ticks = 0;    // from the trigger to the brakes

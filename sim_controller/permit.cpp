@@ -31,11 +31,11 @@ bool breaks_off(cs8::Outcome outcome) {
 
 }  // namespace
 
-cs8::Permit await(PermitHolder& holder, const cs8::Begin& begin, bool key_is_on, TimePoint now) {
+cs8::Permit await(PermitHolder& holder, const cs8::Begin& begin, TimePoint now) {
   holder.permit.run = begin.run;
   const std::uint32_t within = std::clamp(begin.confirm_within_ms, kConfirmWithinMinMs, kConfirmWithinMaxMs);
   holder.confirm_by = now + std::chrono::milliseconds(within);
-  holder.key_was_on = key_is_on;
+  holder.key_ready = false;
   return change(holder, PermitState::kAwaited, PermitReason::kNone);
 }
 
@@ -45,9 +45,11 @@ cs8::Permit refuse(PermitHolder& holder, const cs8::Begin& begin, cs8::RejectRea
 }
 
 std::optional<cs8::Permit> watch_key(PermitHolder& holder, bool key_is_on) {
-  const bool pressed = key_is_on && !holder.key_was_on;
-  holder.key_was_on = key_is_on;
-  if (!pressed || holder.permit.state != PermitState::kAwaited) return std::nullopt;
+  holder.key_on_ticks = key_is_on ? std::min(holder.key_on_ticks + 1, kSteadyTicks) : 0;
+  holder.key_off_ticks = key_is_on ? 0 : std::min(holder.key_off_ticks + 1, kSteadyTicks);
+  if (holder.permit.state != PermitState::kAwaited) return std::nullopt;
+  holder.key_ready = holder.key_ready || holder.key_off_ticks == kSteadyTicks;
+  if (!holder.key_ready || holder.key_on_ticks < kSteadyTicks) return std::nullopt;
   return change(holder, PermitState::kGranted, PermitReason::kNone);
 }
 

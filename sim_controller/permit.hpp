@@ -15,14 +15,16 @@ inline constexpr std::uint32_t kConfirmWithinMaxMs = 30'000;
 struct PermitHolder {
   cs8::Permit permit;  // as it was told last
   TimePoint confirm_by{};
-  bool key_was_on = false;
+  int key_off_ticks = kSteadyTicks;  // how long the confirmation key has been so
+  int key_on_ticks = 0;
+  bool key_ready = false;  // it was off since Begin
 };
 
 /// Begin was found right: the key is watched from now on. It comes back as what is told to the host.
-cs8::Permit await(PermitHolder& holder, const cs8::Begin& begin, bool key_is_on, TimePoint now);
+cs8::Permit await(PermitHolder& holder, const cs8::Begin& begin, TimePoint now);
 cs8::Permit refuse(PermitHolder& holder, const cs8::Begin& begin, cs8::RejectReason reason);
 
-/// The key, once a tick; granted when it goes from off to on.
+/// The key, once a tick; granted when it goes from off to on, each for 20 ms.
 std::optional<cs8::Permit> watch_key(PermitHolder& holder, bool key_is_on);
 /// The time for the confirmation is over.
 std::optional<cs8::Permit> expire(PermitHolder& holder, TimePoint now);

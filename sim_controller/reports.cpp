@@ -8,7 +8,7 @@
 namespace sim {
 namespace {
 
-constexpr std::uint32_t kApplicationVersion = 200;  // 0.2.0
+constexpr std::uint32_t kApplicationVersion = 100;  // 0.1.0
 constexpr std::uint32_t kLanguageVersion = 70702;   // s7.7.2
 
 std::uint32_t clock_ms(TimePoint now) {
@@ -39,7 +39,7 @@ cs8::TouchResult touch_result(const ControllerState& state, const RunningCommand
   const double last_m = ended.last ? ended.last->overtravel_m : 0.0;
   result.overtravel_dmm = cs8::dmm_from_metres(std::max(first_m, last_m));
   result.search_speed_um_s = ended.first ? order.second_speed_um_s : order.search_speed_um_s;
-  result.monitor_speed_percent = state.cabinet.panel.monitor_speed_percent;
+  result.monitor_speed_percent = ended.monitor_speed_percent;
   if (ended.last) result.contact_clock_ms = clock_ms(ended.last->at);
   result.error_number = ended.error_number;
   result.edges = ended.edges;
@@ -82,7 +82,7 @@ cs8::State state_report(const ControllerState& state, TimePoint now) {
   flag(cs8::kQueueEmpty, is_empty(cabinet.drives));
   flag(cs8::kProbeTouched, cabinet.world.probe.inputs.contact);
   flag(cs8::kProbeLoopClosed, cabinet.world.probe.inputs.loop);
-  flag(cs8::kRetractDue, !running && !state.motion.way_out.empty());
+  flag(cs8::kRetractDue, !state.motion.way_out.empty());
   flag(cs8::kTouchTested, cabinet.touch_test == TouchTest::kDone);
   flag(cs8::kCellClosed, panel.cell_closed);
   report.mode = panel.mode;

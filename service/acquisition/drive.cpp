@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cs8_protocol/names.hpp"
+#include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/operation.hpp"
 #include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"
@@ -233,6 +234,12 @@ bool Operation::keep_touch(const calib::PlannedTouch& planned, const cs8::TouchR
                        .source = result.source,
                        .overtravel_dmm = result.overtravel_dmm,
                        .captured_at = now_text()});
+    const bool polled = result.source == cs8::CaptureSource::kPolled;
+    spdlog::log(polled ? spdlog::level::warn : spdlog::level::info,
+                "run {} touch {} on plane {}: {}{}, {} edge(s), overtravel {:.3f} mm", run_->id(),
+                run_->touches_done(), planned.face + 1, cs8::name(result.source),
+                polled ? ", late by up to 4 ms of its speed: check the latch" : "", result.edges,
+                cs8::metres_from_dmm(result.overtravel_dmm) * 1e3);
     return true;
   } catch (const std::exception& error) {
     raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);

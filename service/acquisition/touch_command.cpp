@@ -157,6 +157,9 @@ constexpr double kContactSpreadMaxMetres = 1e-4;
 std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
                                        const cs8::TouchResult& result) {
   if (result.source == cs8::CaptureSource::kNone) return "it comes without captured joints";
+  if (result.monitor_speed_percent != 100)
+    return fmt::format("the monitor speed was {} % in the search: the pre-travel holds at 100 %",
+                       result.monitor_speed_percent);
   const Eigen::Vector3d tip_m = tip_in_block_m(cell, from_wire(result.contact));
   if (auto off = off_the_search(cell, planned, tip_m)) return off;
   if (!cell.speeds.second) return std::nullopt;

@@ -88,6 +88,7 @@ TEST_F(Admission, RefusesFieldsThatMakeNoSenseAndNamesTheWord) {
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::travel_speed_um_s, 0)), 50);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::approach_speed_um_s, -1)), 51);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::search_speed_um_s, 0)), 52);
+  EXPECT_EQ(word(changed(touch(), &cs8::Touch::travel_speed_um_s, 250'001)), 50);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::approach_speed_um_s, 20'001)), 51);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::second_speed_um_s, -1)), 53);
   EXPECT_EQ(word(changed(touch(), &cs8::Touch::second_speed_um_s, touch().search_speed_um_s + 1)), 53);

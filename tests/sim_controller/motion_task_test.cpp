@@ -124,6 +124,37 @@ TEST_F(MotionTask, AProbeThatDoesNotSeatAgainIsStuckAndNoMeasurement) {
   }
 }
 
+TEST_F(MotionTask, AnEdgeOnTheWayBackIsAnUnexpectedContactOnceTheProbeWasFree) {
+  const auto result = touched(touch(), Phase::kRetract,
+                              [](Cabinet& cabinet) { cabinet.world.probe.troubles.vibration_s = 0.001; });
+  EXPECT_EQ(result.outcome, Outcome::kContact) << "it is still on the face: that is its way off";
+  Bench bench = Bench::ready(plant());
+  bench.touch_until(1, motion(), Phase::kRetract);
+  while (!bench.state.cabinet.probe_free()) bench.pass(milliseconds(4));
+  bench.pass(milliseconds(8));
+  bench.state.cabinet.world.probe.troubles.vibration_s = 0.001;
+  const auto met = bench.result<cs8::TouchResult>();
+  EXPECT_EQ(met.outcome, Outcome::kUnexpectedContact);
+  EXPECT_EQ(met.phase, Phase::kRetract);
+  bench.pass(milliseconds(20));
+  EXPECT_TRUE(bench.flag(cs8::kRetractDue));
+}
+
+TEST_F(MotionTask, TheLowestMonitorSpeedOfTheSearchIsToldWithTheContact) {
+  Bench bench = Bench::ready(plant());
+  bench.touch_until(1, motion(), Phase::kSearch);
+  bench.state.cabinet.panel.monitor_speed_percent = 50;
+  bench.pass(milliseconds(40));
+  bench.state.cabinet.panel.monitor_speed_percent = 100;
+  EXPECT_EQ(bench.result<cs8::TouchResult>().monitor_speed_percent, 50);
+}
+
+TEST_F(MotionTask, LostReferencesEndTheCommand) {
+  const auto result =
+      touched(touch(), Phase::kSearch, [](Cabinet& cabinet) { cabinet.panel.arm_calibrated = false; });
+  EXPECT_EQ(result.outcome, Outcome::kPermissionLost);
+}
+
 TEST_F(MotionTask, ATaskThatDiesEndsTheCommandWithItsNumber) {
   for (const Phase phase : {Phase::kTravel, Phase::kApproach, Phase::kSearch, Phase::kRetract}) {
     const auto result = touched(touch(), phase, [](Cabinet& cabinet) { cabinet.task_error = 123; });

@@ -30,6 +30,7 @@ class Permit : public testing::DemoTouch {
     return bench;
   }
   static void act(Bench& bench, Act what, milliseconds then = milliseconds(100)) {
+    bench.pass(milliseconds(20));
     perform(bench.plant, bench.state.cabinet, what);
     bench.pass(then);
   }
