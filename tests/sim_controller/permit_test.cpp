@@ -114,8 +114,10 @@ TEST_F(Permit, TheTouchTestCountsWithoutPowerOrInManualModeOnly) {
 TEST_F(Permit, ATouchShorterThanTwentyMillisecondsIsNoTouchTest) {
   Bench bench = alone();
   bench.pass(milliseconds(100));
-  act(bench, Act::kTouchStylus, milliseconds(12));
-  act(bench, Act::kReleaseStylus);
+  perform(bench.plant, bench.state.cabinet, Act::kTouchStylus);
+  bench.pass(milliseconds(12));
+  perform(bench.plant, bench.state.cabinet, Act::kReleaseStylus);
+  bench.pass(milliseconds(100));
   EXPECT_FALSE(bench.flag(cs8::kTouchTested));
 }
 
