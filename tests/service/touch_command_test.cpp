@@ -40,6 +40,7 @@ cs8::TouchResult contact(const Eigen::Vector3d& off_m) {
   return {.outcome = cs8::Outcome::kContact,
           .source = cs8::CaptureSource::kLatched,
           .contact = joints_off(off_m),
+          .monitor_speed_percent = 100,
           .first_source = cs8::CaptureSource::kLatched,
           .first_contact = joints_off(off_m)};
 }
@@ -173,6 +174,12 @@ TEST(Implausible, AContactWithoutCapturedJointsIsNone) {
   cs8::TouchResult result = contact({0, 0, 0});
   result.source = cs8::CaptureSource::kNone;
   EXPECT_THAT(implausible(edf(), planned_touch(), result).value_or(""), HasSubstr("without captured joints"));
+}
+
+TEST(Implausible, AContactAtAnotherMonitorSpeedIsNone) {
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.monitor_speed_percent = 50;
+  EXPECT_THAT(implausible(edf(), planned_touch(), result).value_or(""), HasSubstr("monitor speed was 50 %"));
 }
 
 TEST(Implausible, AContactBesideTheLineIsTold) {
