@@ -37,9 +37,9 @@ constexpr std::uint32_t kTouchDeadlineMs = 600;
 enum class Touch { kNone, kNotMade, kWaits };
 
 struct Case {
-  std::string fault;                  // a line of the control connection
-  std::optional<LinkErrorKind> lost;  // nothing: the client goes on as if nothing were
-  Touch touch = Touch::kNone;
+  std::string fault;                          // a line of the control connection
+  std::optional<LinkErrorKind> lost;          // nothing: the client goes on as if nothing were
+  std::optional<Touch> touch = Touch::kNone;  // nothing: it depends on when the fault comes
 };
 
 class LinkFaults : public ::testing::Test {
@@ -141,7 +141,7 @@ class LinkFaults : public ::testing::Test {
     if (failure) std::rethrow_exception(failure);
     ASSERT_TRUE(done) << "waits for something that does not come";
     ASSERT_EQ(lost_.has_value(), link_case.lost.has_value()) << (lost_ ? lost_->text : "goes on");
-    EXPECT_EQ(touch, link_case.touch);
+    if (link_case.touch) EXPECT_EQ(touch, *link_case.touch);
     if (lost_) {
       EXPECT_EQ(lost_->kind, *link_case.lost) << lost_->text;
     } else {
@@ -249,15 +249,15 @@ TEST_F(LinkFaults, ThatOnlyShapeTheStreamAreNotNoticed) {
   }
 }
 
-TEST_F(LinkFaults, AtAState) {
+TEST_F(LinkFaults, AtAState) {  // states come by the clock: which touch is open then is not known
   meet_all({{R"({"fault":"drop","on":"state","count":3})", {}},
-            {R"({"fault":"drop","on":"state","count":"every"})", LinkErrorKind::kSilent},
+            {R"({"fault":"drop","on":"state","count":"every"})", LinkErrorKind::kSilent, std::nullopt},
             {R"({"fault":"duplicate","on":"state","count":"every"})", {}},
-            {R"({"fault":"stop_states","on":"state","count":2})", LinkErrorKind::kSilent},
+            {R"({"fault":"stop_states","on":"state","count":2})", LinkErrorKind::kSilent, std::nullopt},
             {R"({"fault":"stop_states","on":"state","count":2,"ms":200})", {}},
-            {R"({"fault":"wrong_session","on":"state","count":2})", LinkErrorKind::kProtocol},
-            {R"({"fault":"garbage","on":"state","count":2})", LinkErrorKind::kProtocol},
-            {R"({"fault":"half_open","on":"state","count":2})", LinkErrorKind::kSilent}});
+            {R"({"fault":"wrong_session","on":"state","count":2})", LinkErrorKind::kProtocol, std::nullopt},
+            {R"({"fault":"garbage","on":"state","count":2})", LinkErrorKind::kProtocol, std::nullopt},
+            {R"({"fault":"half_open","on":"state","count":2})", LinkErrorKind::kSilent, std::nullopt}});
 }
 
 TEST_F(LinkFaults, AtTheAcknowledgement) {
