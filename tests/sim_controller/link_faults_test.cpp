@@ -141,7 +141,9 @@ class LinkFaults : public ::testing::Test {
     if (failure) std::rethrow_exception(failure);
     ASSERT_TRUE(done) << "waits for something that does not come";
     ASSERT_EQ(lost_.has_value(), link_case.lost.has_value()) << (lost_ ? lost_->text : "goes on");
-    if (link_case.touch) EXPECT_EQ(touch, *link_case.touch);
+    if (link_case.touch) {
+      EXPECT_EQ(touch, *link_case.touch);
+    }
     if (lost_) {
       EXPECT_EQ(lost_->kind, *link_case.lost) << lost_->text;
     } else {
