@@ -125,4 +125,15 @@ Artefact exact_artefact(std::vector<Plane> contact_planes) {
   return artefact;
 }
 
+void place_planes(const Artefact& artefact, const Eigen::VectorXd& errors, std::vector<Plane>& planes) {
+  planes.assign(artefact.contact_planes.begin(), artefact.contact_planes.end());
+  for (Eigen::Index k = 0; k < errors.size(); ++k) {
+    const auto& shifts = artefact.parameters[static_cast<std::size_t>(k)].shifts;
+    for (std::size_t face = 0; face < planes.size(); ++face) {
+      planes[face].offset_m -= errors[k] * shifts[face].constant;
+      planes[face].outward += errors[k] * shifts[face].per_metre;
+    }
+  }
+}
+
 }  // namespace calib

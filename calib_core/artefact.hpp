@@ -73,6 +73,11 @@ struct Artefact {
   std::vector<ArtefactEquation> equations;
 };
 
+/// The contact planes with these errors of the parameters: as they are written down but for what is wrong
+/// with them. Takes no memory when `planes` has room. The normals are not brought back to unit length: to
+/// first order they are.
+void place_planes(const Artefact& artefact, const Eigen::VectorXd& errors, std::vector<Plane>& planes);
+
 /// The contact planes at the block's temperature, and the parameters that are not exactly known, faces first.
 Artefact describe(const ArtefactKnowledge& knowledge);
 

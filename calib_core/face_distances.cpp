@@ -12,21 +12,10 @@ double rms(const Eigen::VectorXd& values) {
 
 }  // namespace
 
-std::vector<Plane> estimated_planes(const Artefact& artefact, const Eigen::VectorXd& artefact_errors) {
-  std::vector<Plane> planes = artefact.contact_planes;
-  for (Eigen::Index k = 0; k < artefact_errors.size(); ++k) {
-    const auto& shifts = artefact.parameters[static_cast<std::size_t>(k)].shifts;
-    for (std::size_t face = 0; face < planes.size(); ++face) {
-      planes[face].offset_m -= artefact_errors[k] * shifts[face].constant;
-      planes[face].outward += artefact_errors[k] * shifts[face].per_metre;
-    }
-  }
-  return planes;
-}
-
 std::vector<FaceDistances> face_distances(const IdentificationProblem& problem,
                                           const IdentificationResult& result) {
-  const std::vector<Plane> planes = estimated_planes(problem.artefact, result.artefact_errors);
+  std::vector<Plane> planes;
+  place_planes(problem.artefact, result.artefact_errors, planes);
   const Eigen::VectorXd nominal =
       signed_distances_m(problem.nominal, problem.artefact.contact_planes, problem.touches);
   const Eigen::VectorXd calibrated = signed_distances_m(result.calibrated, planes, problem.touches);

@@ -99,18 +99,6 @@ void LeastSquares::keep(const std::vector<bool>& kept) {
   kept_count_ = static_cast<int>(std::accumulate(kept.begin(), kept.end(), 0));
 }
 
-void LeastSquares::set_planes(const Estimate& estimate) {
-  planes_.assign(problem_.artefact.contact_planes.begin(), problem_.artefact.contact_planes.end());
-  for (std::size_t k = 0; k < problem_.artefact.parameters.size(); ++k) {
-    const double value = estimate.artefact[static_cast<Eigen::Index>(k)];
-    const auto& shifts = problem_.artefact.parameters[k].shifts;
-    for (std::size_t face = 0; face < shifts.size(); ++face) {
-      planes_[face].offset_m -= value * shifts[face].constant;
-      planes_[face].outward += value * shifts[face].per_metre;
-    }
-  }
-}
-
 void LeastSquares::fill_row(Eigen::Index row, const PreparedModel& model) {
   const Touch& touch = problem_.touches[touches_[static_cast<std::size_t>(row)]];
   const auto face = static_cast<std::size_t>(touch.face);
@@ -153,7 +141,7 @@ void LeastSquares::add_priors(const Estimate& estimate) {
 
 void LeastSquares::linearise(const Estimate& estimate) {
   const PreparedModel model = prepare(apply(problem_.nominal, estimate.arm));
-  set_planes(estimate);
+  place_planes(problem_.artefact, estimate.artefact, planes_);
   for (Eigen::Index row = 0; row < rows_.rows(); ++row) fill_row(row, model);
 
   const bool all = kept_count_ == static_cast<int>(kept_.size());

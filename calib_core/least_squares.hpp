@@ -82,7 +82,6 @@ class LeastSquares {
  private:
   void size_memory();
   void set_weights(Formulation formulation);
-  void set_planes(const Estimate& estimate);
   void fill_row(Eigen::Index row, const PreparedModel& model);
   void add_priors(const Estimate& estimate);
   double extreme_ratio(const Eigen::MatrixXd& gram);

@@ -84,8 +84,9 @@ struct Truth {
 
 inline Truth truth_of(const IdentificationProblem& cell, const ErrorVector& errors,
                       const Eigen::VectorXd& artefact_errors) {
-  return {errors, artefact_errors, apply(cell.nominal, errors),
-          estimated_planes(cell.artefact, artefact_errors)};
+  Truth truth{errors, artefact_errors, apply(cell.nominal, errors), {}};
+  place_planes(cell.artefact, artefact_errors, truth.planes);
+  return truth;
 }
 
 /// A face estimated in place is 0.5 mm and 1 mrad from its drawing.
