@@ -22,7 +22,7 @@ constexpr int kCandidatesMin = 240;
 constexpr int kPosesPerCandidate = 20;
 
 int candidates_wanted(const TouchRequest& request) {
-  return std::max(kCandidatesPerTouch * (request.fit_count + request.held_out_count), kCandidatesMin);
+  return std::max(kCandidatesPerTouch * (request.fit_max + request.held_out_count), kCandidatesMin);
 }
 
 /// How often each thing stood in the way.
@@ -140,7 +140,7 @@ TouchPlan choose(const PlanningProblem& problem, const std::vector<PlannedTouch>
   for (const PlannedTouch& candidate : candidates) faces.push_back(candidate.face);
   std::vector<Quota> fit_quotas, held_out_quotas;
   for (const TouchRequest& request : problem.requests) {
-    fit_quotas.push_back({request.face, request.fit_count});
+    fit_quotas.push_back({request.face, request.fit_max});
     held_out_quotas.push_back({request.face, request.held_out_count});
   }
   const Eigen::MatrixXd rows = observation_rows(problem, candidates);
@@ -173,11 +173,19 @@ CollisionScene travel_scene(const PlanningProblem& problem) {
   return scene;
 }
 
-std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& problem) {
+double TouchPlan::duration_s() const {
+  double sum = park_s;
+  for (const PlannedTouch& touch : touches) sum += touch.travel_s + touch.touch_s;
+  return sum;
+}
+
+std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& problem,
+                                                      const PlanningProgress&) {
   const Chain parked = forward_chain(problem.nominal, problem.park_joints);
   if (const auto clash = find_clash(travel_scene(problem), parked, problem.nominal_miss_m)) {
-    return PlanningFailure{.reason = "the " + clash->body + " is too near the " + clash->other +
-                                     " in the park posture"};
+    return PlanningFailure{
+        .kind = PlanningFailure::Kind::kPark,
+        .reason = "the " + clash->body + " is too near the " + clash->other + " in the park posture"};
   }
   UniformChance chance(problem.seed);
   std::vector<PlannedTouch> candidates;
@@ -187,7 +195,7 @@ std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& pro
     }
     Troubles troubles;
     std::vector<PlannedTouch> found = find_candidates(problem, request, chance, troubles);
-    const int wanted = request.fit_count + request.held_out_count;
+    const int wanted = request.fit_max + request.held_out_count;
     if (static_cast<int>(found.size()) < wanted) {
       return PlanningFailure{.face = request.face,
                              .found = static_cast<int>(found.size()),

@@ -1,19 +1,30 @@
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/touch_planning.hpp"
 
 namespace cell {
+
+/// What a criterion is called in files and documents.
+inline constexpr std::array<std::pair<calib::PlanCriterion, std::string_view>, 4> kCriterionNames{
+    {{calib::PlanCriterion::kTipInBox, "tip_box"},
+     {calib::PlanCriterion::kTipInJointRanges, "tip_joint_ranges"},
+     {calib::PlanCriterion::kInformation, "information"},
+     {calib::PlanCriterion::kConditionNumber, "condition_number"}}};
 
 /// Which touches a run makes and how they are identified.
 struct Recipe {
   std::string name;
   std::string description;
   std::vector<int> faces;  // indices into the block's faces
-  int fit_per_face = 0;
+  int fit_per_face = 0;    // exactly so many on each of them; 0: goal.fit_count in all, spread as is best
   int held_out_per_face = 0;
+  calib::PlanGoal goal;
   calib::IdentificationOptions identification;
 };
 

@@ -3,27 +3,67 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "calib_core/units.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
+#include "config/recipe.hpp"
 
 namespace cell {
 namespace {
 
-constexpr int kTouchesPerPlaneMax = 10'000;
+/// Fitted touches of a recipe, and held-out ones.
+constexpr int kTouchesMax = 2'000;
 constexpr int kIterationsMax = 1'000;
 
-void read_touch_counts(const JsonValue& value, int face_count, Recipe& recipe) {
-  const JsonObject object = value.object({"planes", "fit_per_plane", "held_out_per_plane"});
-  for (const JsonValue& plane : object.at("planes").items(1, static_cast<std::size_t>(face_count))) {
+/// `"all"`, or the planes by number.
+std::vector<int> faces_from_json(const JsonValue& value, int face_count) {
+  std::vector<int> faces;
+  if (value.is_text()) {
+    if (value.text() != "all")
+      value.fail("is " + in_quotes(value.text()) + R"(; give "all" or a list of planes)");
+    for (int face = 0; face < face_count; ++face) faces.push_back(face);
+    return faces;
+  }
+  for (const JsonValue& plane : value.items(1, static_cast<std::size_t>(face_count))) {
     const int face = plane.integer(1, face_count) - 1;
-    if (std::find(recipe.faces.begin(), recipe.faces.end(), face) != recipe.faces.end()) {
+    if (std::find(faces.begin(), faces.end(), face) != faces.end()) {
       plane.fail("this plane is there twice; name it once");
     }
-    recipe.faces.push_back(face);
+    faces.push_back(face);
   }
-  recipe.fit_per_face = object.at("fit_per_plane").integer(1, kTouchesPerPlaneMax);
-  recipe.held_out_per_face = object.at("held_out_per_plane").integer(0, kTouchesPerPlaneMax);
+  return faces;
+}
+
+calib::PlanCriterion criterion_from_json(const JsonValue& value) {
+  const std::string name = value.text();
+  for (const auto& [criterion, known] : kCriterionNames) {
+    if (name == known) return criterion;
+  }
+  value.fail("is " + in_quotes(name) +
+             R"(; give "tip_box", "tip_joint_ranges", "information" or "condition_number")");
+}
+
+void read_touch_counts(const JsonValue& value, int face_count, Recipe& recipe) {
+  const JsonObject object =
+      value.object({"planes", "fit_per_plane", "fit", "held_out_per_plane", "criterion", "tip_rms_max_mm"});
+  recipe.faces = faces_from_json(object.at("planes"), face_count);
+  const int planes = static_cast<int>(recipe.faces.size());
+  const auto in_all = object.find("fit");
+  if (in_all && object.find("fit_per_plane"))
+    in_all->fail(R"(stands beside "fit_per_plane"; give one of them)");
+  if (in_all) {
+    recipe.goal.fit_count = in_all->integer(planes, kTouchesMax);
+  } else {
+    recipe.fit_per_face = object.at("fit_per_plane").integer(1, kTouchesMax / planes);
+  }
+  recipe.held_out_per_face = object.at("held_out_per_plane").integer(0, kTouchesMax / planes);
+  if (const auto criterion = object.find("criterion"))
+    recipe.goal.criterion = criterion_from_json(*criterion);
+  if (const auto accuracy = object.find("tip_rms_max_mm")) {
+    if (!in_all) accuracy->fail(R"(needs "fit", how many touches there may be, in place of "fit_per_plane")");
+    recipe.goal.tip_rms_max_m = calib::metres_from_mm(accuracy->number({.min = 1e-12}));
+  }
 }
 
 std::vector<int> parameters_from_json(const JsonValue& value) {

@@ -34,7 +34,7 @@ PlanningProblem problem_of(double ball_radius_m, double tilt_max_deg, int face_c
                           .park_joints = tx90::park_joints(),
                           .tilt_max_rad = radians_from_degrees(tilt_max_deg)};
   for (int face = 0; face < face_count; ++face) {
-    problem.requests.push_back({face, kFitPerFace, kHeldOutPerFace});
+    problem.requests.push_back({face, kFitPerFace, kFitPerFace, kHeldOutPerFace});
   }
   return problem;
 }
@@ -286,7 +286,7 @@ TEST(TouchPlanning, SaysThatTheJointRangesStandInTheWay) {
 
 TEST(TouchPlanning, NamesTheBodyAndTheObstacleThatStandInTheWay) {
   PlanningProblem problem = problem_of(0.003, 70, 3);
-  problem.requests = {{2, 5, 0}};
+  problem.requests = {{2, 5, 5, 0}};
   problem.scene.obstacles.push_back({"lid", {-0.1, -0.260, -0.1}, {0.1, -0.250, 0.1}});
   const PlanningFailure failure = failure_of(problem);
   EXPECT_EQ(failure.face, 2);
@@ -301,7 +301,7 @@ TEST(TouchPlanning, SaysThatTheParkPostureIsNotClear) {
 
 TEST(TouchPlanning, RefusesAFaceThatDoesNotExist) {
   PlanningProblem problem = problem_of(0.0, 45, 4);
-  problem.requests = {{5, 1, 0}};
+  problem.requests = {{5, 1, 1, 0}};
   EXPECT_THROW(plan_touches(problem), std::logic_error);
 }
 
