@@ -25,6 +25,12 @@ int candidates_wanted(const TouchRequest& request) {
   return std::max(kCandidatesPerTouch * (request.fit_max + request.held_out_count), kCandidatesMin);
 }
 
+/// The even share of a face whose number is free.
+int fit_count(const PlanningProblem& problem, const TouchRequest& request) {
+  return std::clamp(problem.goal.fit_count / static_cast<int>(problem.requests.size()), request.fit_min,
+                    request.fit_max);
+}
+
 /// How often each thing stood in the way.
 class Troubles {
  public:
@@ -140,7 +146,7 @@ TouchPlan choose(const PlanningProblem& problem, const std::vector<PlannedTouch>
   for (const PlannedTouch& candidate : candidates) faces.push_back(candidate.face);
   std::vector<Quota> fit_quotas, held_out_quotas;
   for (const TouchRequest& request : problem.requests) {
-    fit_quotas.push_back({request.face, request.fit_max});
+    fit_quotas.push_back({request.face, fit_count(problem, request)});
     held_out_quotas.push_back({request.face, request.held_out_count});
   }
   const Eigen::MatrixXd rows = observation_rows(problem, candidates);
@@ -195,7 +201,7 @@ std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& pro
     }
     Troubles troubles;
     std::vector<PlannedTouch> found = find_candidates(problem, request, chance, troubles);
-    const int wanted = request.fit_max + request.held_out_count;
+    const int wanted = fit_count(problem, request) + request.held_out_count;
     if (static_cast<int>(found.size()) < wanted) {
       return PlanningFailure{.face = request.face,
                              .found = static_cast<int>(found.size()),

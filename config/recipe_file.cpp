@@ -61,7 +61,7 @@ void read_touch_counts(const JsonValue& value, int face_count, Recipe& recipe) {
   if (const auto criterion = object.find("criterion"))
     recipe.goal.criterion = criterion_from_json(*criterion);
   if (const auto accuracy = object.find("tip_rms_max_mm")) {
-    if (!in_all) accuracy->fail(R"(needs "fit", how many touches there may be, in place of "fit_per_plane")");
+    if (!in_all) accuracy->fail(R"(has no end beside "fit_per_plane"; give "fit", how many touches there may be at most)");
     recipe.goal.tip_rms_max_m = calib::metres_from_mm(accuracy->number({.min = 1e-12}));
   }
 }

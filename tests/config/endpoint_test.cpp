@@ -1,7 +1,7 @@
 
-#include <gtest/gtest.h>
-
 #include "config/endpoint.hpp"
+
+#include <gtest/gtest.h>
 
 namespace cell {
 namespace {

@@ -167,5 +167,19 @@ TEST(Recipes, CountTouchesAndOrderColumnsAsThePaper) {
       testing::ElementsAre(calib::error_parameter_index("alpha4"), calib::error_parameter_index("alpha5")));
 }
 
+TEST(Recipes, SpreadTheirTouchesOverAllPlanesOfTheCell) {
+  for (const auto& [cell_name, faces] : {std::pair("edf", 4), std::pair("demo", 5)}) {
+    const Cell cell = shipped(cell_name);
+    for (const auto& [name, fit_count] : {std::pair("quick", 40), std::pair("best", 100)}) {
+      const Recipe& recipe = cell.recipes.at(name);
+      EXPECT_EQ(std::ssize(recipe.faces), faces);
+      EXPECT_EQ(recipe.fit_per_face, 0);
+      EXPECT_EQ(recipe.goal.fit_count, fit_count);
+      EXPECT_EQ(recipe.goal.criterion, calib::PlanCriterion::kTipInBox);
+      EXPECT_EQ(recipe.held_out_per_face, 10);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cell
