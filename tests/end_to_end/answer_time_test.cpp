@@ -49,17 +49,20 @@ double bare_commit_ms(const std::filesystem::path& folder) {
   return high_percentile(times_ms);
 }
 
-/// The simulated controller and a cable to it, on a thread of their own: they keep working while the daemon
-/// does.
+/// The simulated controller and a cable to it, each on a thread of its own: the cable's clock does not wait
+/// for what the controller works out, nor for the daemon.
 class FarSide {
  public:
   FarSide(const LoopbackCell& loop)
-      : server_(io_, "127.0.0.1", 0, loop.true_plant(), {.controller = {.speed = kSimulatedSpeed}}),
-        relay_(io_, server_.port(), [this](const cs8::Message& message) { watch(message); }),
-        thread_([this] { io_.run(); }) {}
+      : server_(server_io_, "127.0.0.1", 0, loop.true_plant(), {.controller = {.speed = kSimulatedSpeed}}),
+        relay_(relay_io_, server_.port(), [this](const cs8::Message& message) { watch(message); }),
+        server_thread_([this] { server_io_.run(); }),
+        relay_thread_([this] { relay_io_.run(); }) {}
   ~FarSide() {
-    boost::asio::post(io_, [this] { io_.stop(); });
-    thread_.join();
+    server_io_.stop();
+    relay_io_.stop();
+    server_thread_.join();
+    relay_thread_.join();
   }
   FarSide(const FarSide&) = delete;
   FarSide& operator=(const FarSide&) = delete;
@@ -84,13 +87,15 @@ class FarSide {
     }
   }
 
-  boost::asio::io_context io_{1};
+  boost::asio::io_context server_io_{1};
+  boost::asio::io_context relay_io_{1};
   sim::Server server_;
   std::optional<Clock::time_point> result_seen_;
   std::mutex mutex_;
   std::vector<double> answers_ms_;
   Relay relay_;
-  std::thread thread_;
+  std::thread server_thread_;
+  std::thread relay_thread_;
 };
 
 TEST(FiguresOfTheAnswer, EveryTouchIsFollowedByTheNextCommandAndTheTimeIsTold) {
