@@ -269,10 +269,14 @@ class Step {
       cabinet.jogged = false;
       state_.motion.way_out.clear();
     }
-    // A collision takes the power too: the command tells the cause.
-    if (!seen.sensed.collision) watch_permission();
-    if (running() && step(plant_, cabinet, state_.motion, seen, at)) finish();
+    // A collision takes the power too: the command ends with the cause before anybody looks at the
+    // permission.
+    const auto carry_out = [&] {
+      if (running() && step(plant_, cabinet, state_.motion, seen, at)) finish();
+    };
+    if (seen.sensed.collision) carry_out();
     watch_permission();
+    if (!seen.sensed.collision) carry_out();
     tell(watch_key(state_.permit, cabinet.panel.confirm_key));
   }
 
