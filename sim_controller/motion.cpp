@@ -11,8 +11,6 @@ namespace {
 
 /// A line that ends this far from its target posture went through another branch of the arm.
 constexpr double kSameBranchRadians = 1e-3;
-/// Samples of a joint move's tool speed.
-constexpr int kSpeedSamples = 16;
 /// A joint move's steepest place is looked for in pieces that turn all joints together by this much.
 constexpr double kPieceRadians = 0.1;
 /// Bodies reach this far beyond the frames' origins.
@@ -93,25 +91,6 @@ PathSlope path_slope(const Plant& plant, const Stretch& stretch) {
     slope.joint_seconds = std::max(slope.joint_seconds, segments_per_share * slowest_joint_s);
   }
   return slope;
-}
-
-double duration_s(const Plant& plant, const Stretch& stretch, double speed_m_s) {
-  double step_max_m = 0.0;
-  double joint_time_s = 0.0;
-  calib::JointVector previous = stretch.at(0.0);
-  for (int i = 1; i <= kSpeedSamples; ++i) {
-    const calib::JointVector next = stretch.at(static_cast<double>(i) / kSpeedSamples);
-    step_max_m = std::max(step_max_m, tip_distance_m(plant, previous, next));
-    const double slowest_joint_s =
-        ((next - previous).cwiseAbs().array() / plant.joint_speeds_max.array()).maxCoeff();
-    joint_time_s = std::max(joint_time_s, kSpeedSamples * slowest_joint_s);
-    previous = next;
-  }
-  const double length_m = kSpeedSamples * step_max_m;
-  const double a = kAccelerationMetresPerSecond2;
-  const double tip_time_s = length_m > speed_m_s * speed_m_s / a ? length_m / speed_m_s + speed_m_s / a
-                                                                 : 2.0 * std::sqrt(length_m / a);
-  return std::max(tip_time_s, joint_time_s);
 }
 
 double sweep_bound_m(const Plant& plant, const calib::JointVector& from, const calib::JointVector& to) {

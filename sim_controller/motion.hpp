@@ -52,10 +52,6 @@ struct PathSlope {
 
 PathSlope path_slope(const Plant& plant, const Stretch& stretch);
 
-/// Seconds for a stretch from standstill to standstill: the tool centre nowhere above `speed_m_s` (with its
-/// ramps at kAccelerationMetresPerSecond2), no joint above its own speed. Progress is taken as even in time.
-double duration_s(const Plant& plant, const Stretch& stretch, double speed_m_s);
-
 /// Bound on the way of any point of the arm, out to the stylus ball and the bodies around it, on a straight
 /// joint move between two postures; of either model.
 double sweep_bound_m(const Plant& plant, const calib::JointVector& from, const calib::JointVector& to);

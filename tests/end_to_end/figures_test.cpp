@@ -15,11 +15,11 @@
 #include "service/acquisition/touch_command.hpp"
 #include "service/run.hpp"
 #include "sim_controller/admission.hpp"
-#include "sim_controller/contact.hpp"
 #include "sim_controller/controller.hpp"
 #include "sim_controller/motion.hpp"
 #include "tests/end_to_end/held_out.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
+#include "tests/sim_controller/whole_path.hpp"
 
 namespace touchcal::testing {
 namespace {
@@ -58,7 +58,7 @@ class Figures : public ::testing::TestWithParam<const char*> {
     std::mt19937_64 chance(seed);
     calib::IdentificationProblem problem = problem_;
     for (std::size_t i = 0; i < plan_.touches.size(); ++i) {
-      const auto trip = sim::find_trip(plant_, searches_[i], noise_m * sim::gaussian(chance));
+      const auto trip = sim::testing::find_trip(plant_, searches_[i], noise_m * sim::gaussian(chance));
       if (!trip) throw std::runtime_error("touch " + std::to_string(i + 1) + " met nothing");
       const auto captured = cell::to_wire(sim::posture(searches_[i], *trip));
       problem.touches.push_back({plan_.touches[i].face, cell::from_wire(captured), plan_.touches[i].role});

@@ -9,9 +9,9 @@
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
 #include "sim_controller/admission.hpp"
-#include "sim_controller/contact.hpp"
 #include "sim_controller/motion.hpp"
 #include "sim_controller/plant.hpp"
+#include "tests/sim_controller/whole_path.hpp"
 
 namespace sim::testing {
 

@@ -97,10 +97,10 @@ TEST(FindTrip, FindsAThinObstacleThatTheBallOnlyPasses) {
   plant.scene.obstacles = {
       {"wire", middle - Eigen::Vector3d::Constant(5e-4), middle + Eigen::Vector3d::Constant(5e-4)}};
   plant.trip_distance_m = 0.0;
-  const auto trip = find_trip(plant, path, 0.0);
+  const auto trip = testing::find_trip(plant, path, 0.0);
   ASSERT_TRUE(trip);
-  EXPECT_LE(trip_gap_m(plant, posture(path, *trip), 0.0), 0.0);
-  EXPECT_GT(trip_gap_m(plant, posture(path, *trip - 1e-7), 0.0), 0.0);
+  EXPECT_LE(testing::trip_gap_m(plant, posture(path, *trip), 0.0), 0.0);
+  EXPECT_GT(testing::trip_gap_m(plant, posture(path, *trip - 1e-7), 0.0), 0.0);
   EXPECT_LT(*trip, 0.5);
 }
 

@@ -64,22 +64,6 @@ TEST(StraightLine, EndsWhereAJointReachesItsLimit) {
   EXPECT_TRUE(plant.joint_ranges.contains(cut.path.back()));
 }
 
-TEST(Duration, HasTheSpeedCapAndBothRamps) {
-  const Plant plant = testing::perfect_plant("demo");
-  const auto touch = aimed_touch(testing::read_cell("demo"), {});
-  const StraightLine line = straight_line(plant, touch.motion.approach, touch.motion.search_end);
-  const double speed = 0.008;
-  EXPECT_NEAR(duration_s(plant, {line.path}, speed),
-              line.length_m / speed + speed / kAccelerationMetresPerSecond2, 1e-3);
-}
-
-TEST(Duration, IsNotUnderWhatTheSlowestJointNeeds) {
-  const Plant plant = testing::perfect_plant("demo");
-  calib::JointVector turned = plant.start_joints;
-  turned[5] += 1.0;  // the tip is on joint 6's axis and stays where it is
-  EXPECT_NEAR(duration_s(plant, {{plant.start_joints, turned}}, 0.25), 1.0 / plant.joint_speeds_max[5], 1e-9);
-}
-
 TEST(PathSlope, OfATurnOfJoint1IsItsArc) {
   const Plant plant = testing::perfect_plant("demo");
   const calib::JointVector& from = plant.start_joints;
