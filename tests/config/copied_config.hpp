@@ -13,6 +13,8 @@ inline constexpr const char* kCell = "cells/demo/cell.json";
 inline constexpr const char* kTruth = "cells/demo/truth.json";
 inline constexpr const char* kRealTruth = "cells/demo/truth-real.json";
 
+inline bool is_truth(const std::string& file) { return file == kTruth || file == kRealTruth; }
+
 /// A copy of the shipped configuration to spoil: the demo cell, whose files have every kind of entry.
 class CopiedConfig : public testing::Test {
  protected:

@@ -125,10 +125,7 @@ class FailingStore : public ::testing::Test {
   }
 
   void leave_and_run_anew() {
-    loop_.command(Command::kClear);
-    loop_.run_until(State::kStopped);
-    loop_.command(Command::kReset);
-    loop_.run_until(State::kIdle);
+    loop_.leave_aborted();
     const std::int64_t next = loop_.start();
     loop_.run_until_over();
     EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();

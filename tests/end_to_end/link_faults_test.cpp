@@ -67,10 +67,7 @@ void meet(const Case& link_case, std::uint32_t nth, int before) {
   EXPECT_EQ(stored.verdict, "incomplete");
   EXPECT_EQ(stored.fault_code, link_case.expected);
 
-  loop.command(Command::kClear);
-  loop.run_until(State::kStopped);
-  loop.command(Command::kReset);
-  loop.run_until(State::kIdle);
+  loop.leave_aborted();
   expect_touches_once(loop, id, kept);
   const std::int64_t next = loop.start();
   loop.run_until_over();
@@ -165,10 +162,7 @@ TEST(LinkFaults, ACablePulledInASearchLeavesTheStylusAtTheFaceAndTheNextRunTakes
   expect_touches_once(loop, id, loop.status().touches_done);
 
   asked.clear();
-  loop.command(Command::kClear);
-  loop.run_until(State::kStopped);
-  loop.command(Command::kReset);
-  loop.run_until(State::kIdle);
+  loop.leave_aborted();
   const std::int64_t next = loop.start();
   loop.run_until_touches(2);
   expect_touches_once(loop, next, 2);

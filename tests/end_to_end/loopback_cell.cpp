@@ -100,6 +100,13 @@ void LoopbackCell::command(cell::Command command) {
   if (const auto refusal = operation_->command(command)) throw std::runtime_error(refusal->detail);
 }
 
+void LoopbackCell::leave_aborted() {
+  command(cell::Command::kClear);
+  run_until(cell::State::kStopped);
+  command(cell::Command::kReset);
+  run_until(cell::State::kIdle);
+}
+
 bool LoopbackCell::is_refused(cell::Command command) { return operation_->command(command).has_value(); }
 
 std::string LoopbackCell::fault_name() const {

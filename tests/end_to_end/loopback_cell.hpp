@@ -51,6 +51,8 @@ class LoopbackCell {
   std::int64_t start(const std::string& recipe = kShortRecipe);
   /// std::runtime_error with the reason when it was refused.
   void command(cell::Command command);
+  /// From ABORTED to IDLE, as an operator goes: clear, then reset.
+  void leave_aborted();
   [[nodiscard]] bool is_refused(cell::Command command);
 
   [[nodiscard]] cell::Operation& operation() { return *operation_; }

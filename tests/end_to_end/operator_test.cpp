@@ -80,10 +80,7 @@ TEST_F(Operator, AnAbortedRunIsLeftByClearAndReset) {
   EXPECT_EQ(loop_.status().verdict, cell::Verdict::kIncomplete);
   expect_touches_once(loop_, id, loop_.status().touches_done);
   EXPECT_TRUE(loop_.is_refused(Command::kReset));
-  loop_.command(Command::kClear);
-  loop_.run_until(State::kStopped);
-  loop_.command(Command::kReset);
-  loop_.run_until(State::kIdle);
+  loop_.leave_aborted();
 }
 
 TEST_F(Operator, AStopInASearchTakesTheStylusBackAndTheNextRunBeginsWithTheRestOfTheWay) {

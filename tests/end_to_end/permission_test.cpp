@@ -125,10 +125,7 @@ TEST_F(Permission, AfterALostLinkNothingMovesWithoutANewConfirmation) {
   loop_.run_until_touches(3);
   relay_->pull();
   loop_.run_until(State::kAborted);
-  loop_.command(Command::kClear);
-  loop_.run_until(State::kStopped);
-  loop_.command(Command::kReset);
-  loop_.run_until(State::kIdle);
+  loop_.leave_aborted();
   const std::int64_t next = loop_.start();
   loop_.run_until_over();
   EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();

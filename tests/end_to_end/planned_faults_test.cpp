@@ -43,16 +43,17 @@ class PlannedFaults : public ::testing::Test {
 // A stylus that a face holds cannot be tested by hand, and a controller that started anew knows no way back:
 // there the operator moves the arm.
 
-/// The run is over; `made` touches are in the store once the controller was asked, and the next run is a
-/// whole one when people have mended what was wrong.
-struct Aborting {
+/// A fault, what the operator reads of it, how many touches are in the store once the controller was asked,
+/// and what people do against it.
+struct Case {
   const char* fault;
   const char* expected;  // fault code
   int made = kFaulty - 1;
   std::vector<std::string> mends;
 };
 
-class Aborted : public PlannedFaults, public ::testing::WithParamInterface<Aborting> {};
+/// The run is over, and the next one is whole when people have mended what was wrong.
+class Aborted : public PlannedFaults, public ::testing::WithParamInterface<Case> {};
 
 TEST_P(Aborted, ARunSaysWhyAndTheNextOneIsWhole) {
   SCOPED_TRACE(GetParam().fault);
@@ -64,10 +65,7 @@ TEST_P(Aborted, ARunSaysWhyAndTheNextOneIsWhole) {
   expect_touches_once(loop_, id, kFaulty - 1);
 
   mend(GetParam().mends);
-  loop_.command(Command::kClear);
-  loop_.run_until(State::kStopped);
-  loop_.command(Command::kReset);
-  loop_.run_until(State::kIdle);
+  loop_.leave_aborted();
   expect_touches_once(loop_, id, GetParam().made);
   const std::int64_t next = loop_.start();
   loop_.run_until_over();
@@ -79,102 +77,95 @@ TEST_P(Aborted, ARunSaysWhyAndTheNextOneIsWhole) {
 INSTANTIATE_TEST_SUITE_P(
     Link, Aborted,
     ::testing::Values(
-        Aborting{R"({"fault":"close","touch":5})", "link_lost"},
-        Aborting{R"({"fault":"close","touch":5,"phase":"travel","after_ms":40})", "link_lost"},
-        Aborting{R"({"fault":"close_mid_frame","on":"accepted","count":5})", "link_lost", kFaulty},
-        Aborting{R"({"fault":"close_mid_frame","on":"touch_result","count":5})", "link_lost", kFaulty},
-        Aborting{R"({"fault":"half_open","on":"touch_result","count":5})", "link_lost", kFaulty},
-        Aborting{R"({"fault":"half_open","on":"touch","count":5})", "link_lost"},
-        Aborting{R"({"fault":"wrong_version","on":"touch_result","count":5})", "protocol_error", kFaulty},
-        Aborting{R"({"fault":"unknown_type","on":"touch_result","count":5})", "protocol_error", kFaulty},
-        Aborting{R"({"fault":"bad_length","on":"touch_result","count":5})", "protocol_error", kFaulty},
-        Aborting{R"({"fault":"bad_value","on":"touch_result","count":5})", "protocol_error", kFaulty}));
+        Case{R"({"fault":"close","touch":5})", "link_lost"},
+        Case{R"({"fault":"close","touch":5,"phase":"travel","after_ms":40})", "link_lost"},
+        Case{R"({"fault":"close_mid_frame","on":"accepted","count":5})", "link_lost", kFaulty},
+        Case{R"({"fault":"close_mid_frame","on":"touch_result","count":5})", "link_lost", kFaulty},
+        Case{R"({"fault":"half_open","on":"touch_result","count":5})", "link_lost", kFaulty},
+        Case{R"({"fault":"half_open","on":"touch","count":5})", "link_lost"},
+        Case{R"({"fault":"wrong_version","on":"touch_result","count":5})", "protocol_error", kFaulty},
+        Case{R"({"fault":"unknown_type","on":"touch_result","count":5})", "protocol_error", kFaulty},
+        Case{R"({"fault":"bad_length","on":"touch_result","count":5})", "protocol_error", kFaulty},
+        Case{R"({"fault":"bad_value","on":"touch_result","count":5})", "protocol_error", kFaulty}));
 
 INSTANTIATE_TEST_SUITE_P(
     Probe, Aborted,
-    ::testing::Values(Aborting{R"({"fault":"touch_stylus","touch":5,"phase":"approach"})",
-                               "unexpected_contact",
-                               kFaulty - 1,
-                               {R"({"fault":"release_stylus"})"}},
-                      Aborting{R"({"fault":"vibration","touch":5,"phase":"travel","ms":1,"after_ms":40})",
-                               "unexpected_contact"},
-                      Aborting{R"({"fault":"contact_cut","touch":5})",
-                               "probe_fault",
-                               kFaulty - 1,
-                               {R"({"fault":"probe_mended"})", R"({"fault":"jog_home"})"}},
-                      Aborting{R"({"fault":"contact_short","touch":5,"phase":"travel"})",
-                               "probe_fault",
-                               kFaulty - 1,
-                               {R"({"fault":"probe_mended"})"}},
-                      Aborting{R"({"fault":"loop_cut","touch":5,"phase":"approach"})",
-                               "probe_fault",
-                               kFaulty - 1,
-                               {R"({"fault":"probe_mended"})"}},
-                      Aborting{R"({"fault":"loop_short","touch":5})",
-                               "probe_fault",
-                               kFaulty - 1,
-                               {R"({"fault":"probe_mended"})", R"({"fault":"jog_home"})"}}));
+    ::testing::Values(Case{R"({"fault":"touch_stylus","touch":5,"phase":"approach"})",
+                           "unexpected_contact",
+                           kFaulty - 1,
+                           {R"({"fault":"release_stylus"})"}},
+                      Case{R"({"fault":"vibration","touch":5,"phase":"travel","ms":1,"after_ms":40})",
+                           "unexpected_contact"},
+                      Case{R"({"fault":"contact_cut","touch":5})",
+                           "probe_fault",
+                           kFaulty - 1,
+                           {R"({"fault":"probe_mended"})", R"({"fault":"jog_home"})"}},
+                      Case{R"({"fault":"contact_short","touch":5,"phase":"travel"})",
+                           "probe_fault",
+                           kFaulty - 1,
+                           {R"({"fault":"probe_mended"})"}},
+                      Case{R"({"fault":"loop_cut","touch":5,"phase":"approach"})",
+                           "probe_fault",
+                           kFaulty - 1,
+                           {R"({"fault":"probe_mended"})"}},
+                      Case{R"({"fault":"loop_short","touch":5})",
+                           "probe_fault",
+                           kFaulty - 1,
+                           {R"({"fault":"probe_mended"})", R"({"fault":"jog_home"})"}}));
 
 INSTANTIATE_TEST_SUITE_P(
     Controller, Aborted,
     ::testing::Values(
-        Aborting{R"({"fault":"task_dies","touch":5,"error":150})",
-                 "task_failed",
-                 kFaulty - 1,
-                 {R"({"fault":"restart"})", R"({"fault":"jog_home"})"}},
-        Aborting{R"({"fault":"restart","touch":5})", "link_lost", kFaulty - 1, {R"({"fault":"jog_home"})"}},
-        Aborting{R"({"fault":"motion_error","touch":5,"error":120})", "motion_error"},
-        Aborting{R"({"fault":"never_settles","touch":5})",
-                 "motion_error",
-                 kFaulty - 1,
-                 {R"({"fault":"settles"})"}},
-        Aborting{R"({"fault":"collision","touch":5})", "collision"},
-        Aborting{R"({"fault":"stale_result","on":"touch_result","count":5})", "implausible_touch"},
-        Aborting{R"({"fault":"wrong_joints","on":"touch_result","count":5})", "implausible_touch"}));
+        Case{R"({"fault":"task_dies","touch":5,"error":150})",
+             "task_failed",
+             kFaulty - 1,
+             {R"({"fault":"restart"})", R"({"fault":"jog_home"})"}},
+        Case{R"({"fault":"restart","touch":5})", "link_lost", kFaulty - 1, {R"({"fault":"jog_home"})"}},
+        Case{R"({"fault":"motion_error","touch":5,"error":120})", "motion_error"},
+        Case{R"({"fault":"never_settles","touch":5})",
+             "motion_error",
+             kFaulty - 1,
+             {R"({"fault":"settles"})"}},
+        Case{R"({"fault":"collision","touch":5})", "collision"},
+        Case{R"({"fault":"stale_result","on":"touch_result","count":5})", "implausible_touch"},
+        Case{R"({"fault":"wrong_joints","on":"touch_result","count":5})", "implausible_touch"}));
 
 INSTANTIATE_TEST_SUITE_P(
     People, Aborted,
     ::testing::Values(
-        Aborting{R"({"fault":"hold","touch":5})", "permission_lost", kFaulty - 1, {R"({"fault":"move"})"}},
-        Aborting{R"({"fault":"references_lost","touch":5})",
-                 "permission_lost",
-                 kFaulty - 1,
-                 {R"({"fault":"references_found"})"}},
-        Aborting{R"({"fault":"power_off","touch":5})",
-                 "permission_lost",
-                 kFaulty - 1,
-                 {R"({"fault":"power_on"})"}},
-        Aborting{R"({"fault":"emergency_stop","touch":5})",
-                 "permission_lost",
-                 kFaulty - 1,
-                 {R"({"fault":"release_emergency_stop"})", R"({"fault":"acknowledge_emergency_stop"})",
-                  R"({"fault":"power_on"})"}},
-        Aborting{R"({"fault":"manual_mode","touch":5})",
-                 "permission_lost",
-                 kFaulty - 1,
-                 {R"({"fault":"remote_mode"})", R"({"fault":"power_on"})"}},
-        Aborting{R"({"fault":"local_mode","touch":5,"phase":"retract"})",
-                 "permission_lost",
-                 kFaulty - 1,
-                 {R"({"fault":"remote_mode"})", R"({"fault":"power_on"})"}},
-        Aborting{R"({"fault":"open_cell","touch":5})",
-                 "permission_lost",
-                 kFaulty - 1,
-                 {R"({"fault":"close_cell"})"}},
-        Aborting{R"({"fault":"jog_home","touch":5})",
-                 "permission_lost",
-                 kFaulty - 1,
-                 {R"({"fault":"remote_mode"})", R"({"fault":"power_on"})"}}));
+        Case{R"({"fault":"hold","touch":5})", "permission_lost", kFaulty - 1, {R"({"fault":"move"})"}},
+        Case{R"({"fault":"references_lost","touch":5})",
+             "permission_lost",
+             kFaulty - 1,
+             {R"({"fault":"references_found"})"}},
+        Case{R"({"fault":"power_off","touch":5})",
+             "permission_lost",
+             kFaulty - 1,
+             {R"({"fault":"power_on"})"}},
+        Case{R"({"fault":"emergency_stop","touch":5})",
+             "permission_lost",
+             kFaulty - 1,
+             {R"({"fault":"release_emergency_stop"})", R"({"fault":"acknowledge_emergency_stop"})",
+              R"({"fault":"power_on"})"}},
+        Case{R"({"fault":"manual_mode","touch":5})",
+             "permission_lost",
+             kFaulty - 1,
+             {R"({"fault":"remote_mode"})", R"({"fault":"power_on"})"}},
+        Case{R"({"fault":"local_mode","touch":5,"phase":"retract"})",
+             "permission_lost",
+             kFaulty - 1,
+             {R"({"fault":"remote_mode"})", R"({"fault":"power_on"})"}},
+        Case{R"({"fault":"open_cell","touch":5})",
+             "permission_lost",
+             kFaulty - 1,
+             {R"({"fault":"close_cell"})"}},
+        Case{R"({"fault":"jog_home","touch":5})",
+             "permission_lost",
+             kFaulty - 1,
+             {R"({"fault":"remote_mode"})", R"({"fault":"power_on"})"}}));
 
-/// The run waits with this fault and goes on when the cause is gone.
-struct Holding {
-  const char* fault;
-  const char* expected;  // fault code
-  int made;
-  std::vector<std::string> mends;
-};
-
-class Held : public PlannedFaults, public ::testing::WithParamInterface<Holding> {};
+/// The run waits with the fault and goes on when the cause is gone.
+class Held : public PlannedFaults, public ::testing::WithParamInterface<Case> {};
 
 TEST_P(Held, ARunWaitsForAPersonAndGoesOn) {
   SCOPED_TRACE(GetParam().fault);
@@ -191,15 +182,15 @@ TEST_P(Held, ARunWaitsForAPersonAndGoesOn) {
 
 INSTANTIATE_TEST_SUITE_P(
     AtTouchFive, Held,
-    ::testing::Values(Holding{R"({"fault":"probe_stuck","touch":5})",
-                              "probe_stuck",
-                              kFaulty - 1,
-                              {R"({"fault":"probe_mended"})"}},
-                      Holding{R"({"fault":"vibration","touch":5,"ms":1})", "no_contact", kFaulty - 1, {}},
-                      Holding{R"({"fault":"monitor_speed","touch":5,"phase":"retract","percent":50})",
-                              "touch_rejected",
-                              kFaulty,
-                              {R"({"fault":"monitor_speed","percent":100})"}}));
+    ::testing::Values(Case{R"({"fault":"probe_stuck","touch":5})",
+                           "probe_stuck",
+                           kFaulty - 1,
+                           {R"({"fault":"probe_mended"})"}},
+                      Case{R"({"fault":"vibration","touch":5,"ms":1})", "no_contact", kFaulty - 1, {}},
+                      Case{R"({"fault":"monitor_speed","touch":5,"phase":"retract","percent":50})",
+                           "touch_rejected",
+                           kFaulty,
+                           {R"({"fault":"monitor_speed","percent":100})"}}));
 
 class Unhurt : public PlannedFaults, public ::testing::WithParamInterface<const char*> {};
 

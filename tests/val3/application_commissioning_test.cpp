@@ -2,14 +2,12 @@
 #include <gtest/gtest.h>
 
 #include "cs8_protocol/names.hpp"
-#include "tests/val3/bench.hpp"
+#include "tests/val3/touch_steps.hpp"
 
 namespace val3 {
 namespace {
 
 using namespace cs8;
-
-constexpr double kFaceMm = 8.0;
 
 /// Runs one tick at a time until the touch answers; the deepest place on the way.
 double deepest_mm(Bench& bench, TouchResult& result, double& seconds) {
@@ -88,10 +86,7 @@ TEST(ApplicationCommissioning, ABentStylusIsBroughtBackWithAPersonsWord) {
   bench.make_ready();
   bench.send(2, bench.touch());
   EXPECT_EQ(bench.expect<Rejected>(2).reason, RejectReason::kRetractPending);
-  bench.send(2, Retract{20000, 30000});
-  bench.expect<Accepted>(2);
-  EXPECT_EQ(bench.expect<MoveResult>(2, 10).outcome, Outcome::kArrived);
-  EXPECT_NEAR(bench.depth_mm(), -20, 0.001);
+  expect_way_back(bench, 2);
 }
 
 TEST(ApplicationCommissioning, AHostThatAsksFasterThanItIsAnsweredIsAnsweredAllTheSame) {
