@@ -137,6 +137,22 @@ IdentifiableSet choose_columns(const IdentificationProblem& problem, const Ident
   return choose_identifiable(matrix.kinematic, options.identifiability, weak, matrix.leading);
 }
 
+std::vector<int> estimated_columns(const IdentificationOptions& options, const IdentifiableSet& chosen) {
+  std::vector<int> columns = chosen.columns;
+  if (options.prior) {
+    columns.clear();
+    for (int i = 0; i < kErrorParameterCount; ++i) {
+      if (std::ranges::find(options.identifiability.excluded, i) == options.identifiability.excluded.end()) {
+        columns.push_back(i);
+      }
+    }
+  }
+  for (int i = 0; options.stiffness && i < kComplianceCount; ++i) {
+    columns.push_back(kErrorParameterCount + i);
+  }
+  return columns;
+}
+
 std::optional<double> tilt_spread_rad(const IdentificationProblem& problem,
                                       const std::vector<std::size_t>& touches, int face) {
   std::vector<Eigen::Vector3d> axes;

@@ -23,6 +23,10 @@ Attainable attainable_parameters(const IdentificationProblem& problem, const Ide
 IdentifiableSet choose_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
                                const std::vector<std::size_t>& touches);
 
+/// What is estimated, indices into ArmVector: the chosen columns, or with the prior all that are not
+/// excluded; with stiffness the compliances too.
+std::vector<int> estimated_columns(const IdentificationOptions& options, const IdentifiableSet& chosen);
+
 /// Why not more is seen: the stylus, or what is wrong with the touches. One sentence or two.
 std::string explain_rank(const IdentificationProblem& problem, const std::vector<std::size_t>& touches,
                          const IdentifiableSet& identifiable, const Attainable& attainable);

@@ -13,23 +13,6 @@
 namespace calib {
 namespace {
 
-/// What is estimated: the chosen columns, or with the prior all that are not excluded.
-std::vector<int> estimated_columns(const IdentificationOptions& options, const IdentifiableSet& chosen) {
-  std::vector<int> columns = chosen.columns;
-  if (options.prior) {
-    columns.clear();
-    for (int i = 0; i < kErrorParameterCount; ++i) {
-      if (std::ranges::find(options.identifiability.excluded, i) == options.identifiability.excluded.end()) {
-        columns.push_back(i);
-      }
-    }
-  }
-  for (int i = 0; options.stiffness && i < kComplianceCount; ++i) {
-    columns.push_back(kErrorParameterCount + i);
-  }
-  return columns;
-}
-
 /// How many parameters the touches show, however weakly: several of them may share one weak direction.
 int shown_at_all(const IdentificationProblem& problem, IdentificationOptions options,
                  const std::vector<std::size_t>& touches) {
