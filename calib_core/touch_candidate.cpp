@@ -13,8 +13,6 @@ namespace {
 
 constexpr double kRangeMarginRad = 1.0 * kRadiansPerDegree;
 constexpr double kLineStepMetres = 0.010;
-/// A search begins at least so far before its face, and ends so far behind it.
-constexpr double kStandoffMinMetres = 0.015;
 constexpr double kSamePlaneMetres = 1e-6;
 
 /// How far a box reaches along a direction.
@@ -49,7 +47,8 @@ std::string find_trouble(const PlanningProblem& problem, const TouchedFace& arou
     for (std::size_t i = 0; i < problem.scene.obstacles.size(); ++i) {
       if (height_m < 0.0 && around.is_behind[i]) continue;
       const Box& obstacle = problem.scene.obstacles[i];
-      if (segment_box_distance_m(placed, obstacle) - body.radius_m >= problem.nominal_miss_m) continue;
+      const double apart_m = segment_box_distance_m(placed, obstacle) - body.radius_m;
+      if (apart_m >= problem.nominal_miss_m + body.margin_m) continue;
       const bool may_be_near = body.frame == kFrameCount - 1 && static_cast<int>(i) == around.touched;
       if (may_be_near && is_over_face(body, placed, plane)) continue;
       return describe(body.name, obstacle.name, problem.nominal_miss_m);
@@ -144,9 +143,9 @@ TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, Un
   return pose;
 }
 
-TouchHeights touch_heights(double nominal_miss_m) {
+TouchHeights touch_heights(double nominal_miss_m, double standoff_min_m) {
   // 3 mm over the miss: the ball is off the face when the search begins and the true face within its reach.
-  const double standoff_m = std::max(nominal_miss_m + 0.003, kStandoffMinMetres);
+  const double standoff_m = std::max(nominal_miss_m + 0.003, standoff_min_m);
   // The way into the slow zone is a slow one.
   return {.approach_m = standoff_m, .clear_m = standoff_m + kSlowZoneMetres, .search_end_m = -standoff_m};
 }
@@ -170,7 +169,7 @@ TouchedFace find_touched(const PlanningProblem& problem, int face) {
 
 std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& problem, const TouchedFace& around,
                                                    const TouchPose& pose, const JointVector& joints) {
-  const TouchHeights heights = touch_heights(problem.nominal_miss_m);
+  const TouchHeights heights = touch_heights(problem.nominal_miss_m, problem.standoff_min_m);
   LineOfTouch line(problem, around, pose);
   if (!line.check(joints, 0.0)) return line.trouble();
   const auto approach = line.follow(joints, 0.0, heights.approach_m);

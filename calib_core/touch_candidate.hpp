@@ -37,7 +37,7 @@ struct TouchHeights {
   double clear_m = 0.0;
   double search_end_m = 0.0;  // negative: where a search that meets nothing would end
 };
-TouchHeights touch_heights(double nominal_miss_m);
+TouchHeights touch_heights(double nominal_miss_m, double standoff_min_m);
 
 /// The face to touch and what stands around it.
 struct TouchedFace {

@@ -174,7 +174,7 @@ CollisionScene travel_scene(const PlanningProblem& problem) {
   const Eigen::Vector3d tip = Eigen::Vector3d::Zero();
   scene.bodies.push_back({"tip", kFrameCount - 1, tip, tip, problem.stylus.radius_m});
   for (Capsule& body : scene.bodies) {
-    if (body.frame == kFrameCount - 1) body.margin_m = kSlowZoneMetres + kSweptErrorMaxMetres;
+    if (body.frame == kFrameCount - 1) body.margin_m += kSlowZoneMetres + kSweptErrorMaxMetres;
   }
   return scene;
 }

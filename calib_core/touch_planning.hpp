@@ -73,6 +73,8 @@ struct PlanningProblem {
   PlanGoal goal;
   JointVector park_joints;        // where a run begins and ends; free of obstacles
   double nominal_miss_m = 0.012;  // how far the arm may miss: sizes clearance and search
+  /// A search begins at least so far before its face and ends so far behind it. Less once touches aim.
+  double standoff_min_m = 0.015;
   double tilt_max_rad = 0.0;
   std::uint64_t seed = 1;        // of the candidates; the same problem gives the same plan
   int candidate_count = 20'000;  // touches that can be made, to choose from

@@ -1,0 +1,349 @@
+#include "calib_core/aim.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/swept_collision.hpp"
+#include "calib_core/touch_candidate.hpp"
+
+namespace calib {
+namespace {
+
+constexpr double kSigmas = 3.0;
+constexpr double kTouchNoiseMetres = 1e-4;
+constexpr double kErrorShare = 1.0 / 6.0;  // of the nominal miss; per metre for an angle
+constexpr double kPlaceShare = 1.0 / 2.0;
+constexpr double kPlaceLeverMetres = 0.6;  // from the block's middle to where a turn of the block is felt
+
+constexpr double kGateSigmas = 5.0;
+constexpr double kTakeBackSigmas = 3.0;
+constexpr double kDroppedShareMax = 0.2;
+/// What the others do not tell of a touch at all cannot contradict them.
+constexpr double kOwnShareMin = 1e-3;
+constexpr std::size_t kRecentTouches = 8;
+
+constexpr int kStepsMax = 4;
+constexpr double kStepSmall = 1e-4;  // metres and radians: what is left is its square
+
+double believable_std(const ErrorParameter& parameter, double nominal_miss_m) {
+  if (parameter.group() != ParameterGroup::kPlace) return kErrorShare * nominal_miss_m;
+  return kPlaceShare * nominal_miss_m / (parameter.is_length() ? 1.0 : kPlaceLeverMetres);
+}
+
+/// The problem's knowledge with errors as large as the nominal miss says.
+IdentificationProblem widened(const PlanningProblem& problem) {
+  IdentificationProblem knowledge = problem.knowledge;
+  knowledge.nominal = problem.nominal;
+  knowledge.touches.clear();
+  knowledge.touch_noise_m = std::hypot(kTouchNoiseMetres, problem.knowledge.touch_noise_m);
+  for (std::size_t i = 0; i < kErrorParameterCount; ++i) {
+    knowledge.tolerances[i] = std::max(believable_std(error_parameters()[i], problem.nominal_miss_m),
+                                       knowledge.tolerances[i].value_or(0.0));
+  }
+  for (ArtefactParameter& parameter : knowledge.artefact.parameters) {
+    if (parameter.std) continue;
+    const bool turns = parameter.kind == ArtefactKind::kFaceTilt;
+    parameter.std = kPlaceShare * problem.nominal_miss_m / (turns ? kPlaceLeverMetres : 1.0);
+  }
+  return knowledge;
+}
+
+std::vector<int> columns_of(const IdentificationProblem& knowledge) {
+  std::vector<int> columns(kErrorParameterCount);
+  std::iota(columns.begin(), columns.end(), 0);
+  for (int i = 0; i < kComplianceCount; ++i) {
+    if (knowledge.std_compliance_rad_per_nm[static_cast<std::size_t>(i)])
+      columns.push_back(kErrorParameterCount + i);
+  }
+  return columns;
+}
+
+LeastSquares fit_of(const IdentificationProblem& knowledge, const std::vector<int>& columns) {
+  std::vector<std::size_t> touches(knowledge.touches.size());
+  std::iota(touches.begin(), touches.end(), std::size_t{0});
+  return {knowledge, {.prior = true}, columns, std::move(touches)};
+}
+
+Estimate nothing_wrong(const IdentificationProblem& knowledge) {
+  return {.arm = ArmVector::Zero(),
+          .artefact = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(knowledge.artefact.parameters.size()))};
+}
+
+Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> cholesky(scale.asDiagonal() * information * scale.asDiagonal());
+  return scale.asDiagonal() *
+         cholesky.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())) *
+         scale.asDiagonal();
+}
+
+/// 3 sigma of a point in the worst direction.
+double worst_spread_m(const PreparedModel& prepared, const Chain& chain, const Eigen::Vector3d& point_m,
+                      int frame, const std::vector<int>& columns, const Eigen::MatrixXd& covariance) {
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> slopes =
+      point_arm_derivatives(prepared, chain, point_m, frame)(Eigen::all, columns);
+  const Eigen::Matrix3d spread = slopes * covariance.topLeftCorner(count, count) * slopes.transpose();
+  const auto eigenvalues =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread, Eigen::EigenvaluesOnly).eigenvalues();
+  return kSigmas * std::sqrt(std::max(0.0, eigenvalues[2]));
+}
+
+double within_bounds_m(double miss_m, double nominal_miss_m) {
+  return std::min(std::max(miss_m, kPredictedMissMinMetres), nominal_miss_m);
+}
+
+/// The planned touch in its pose, as a problem's model and miss make it.
+std::variant<PlannedTouch, std::string> remade(const PlanningProblem& problem, TouchPose pose,
+                                               const PlannedTouch& planned) {
+  const auto joints = solve_near(problem.nominal, pose.block_from_tip, planned.joints);
+  if (!joints) return "out of reach";
+  auto made = make_touch(problem, find_touched(problem, planned.face), pose, *joints);
+  if (auto* touch = std::get_if<PlannedTouch>(&made)) {
+    touch->role = planned.role;
+    touch->predicted_miss_m = problem.nominal_miss_m;
+    touch->touch_s = planned.touch_s;
+    touch->travel_s = planned.travel_s;
+  }
+  return made;
+}
+
+TouchPose pose_of(const PlanningProblem& problem, const PlannedTouch& planned) {
+  return {forward_kinematics(problem.nominal, planned.joints), planned.tilt_rad};
+}
+
+bool is_clear(const PlanningProblem& problem, const CollisionScene& scene, const JointVector& joints,
+              double clearance_m) {
+  return !find_clash(scene, forward_chain(problem.nominal, joints), clearance_m);
+}
+
+/// Where a transfer that begins or ends there can begin or end: the posture itself when it is clear, else the
+/// nearest one along the normal that is, when the way there comes no nearer than the posture itself.
+std::optional<JointVector> lifted(const PlanningProblem& problem, const TransferEnd& end) {
+  const CollisionScene scene = travel_scene(problem);
+  if (is_clear(problem, scene, end.joints, problem.nominal_miss_m)) return end.joints;
+  if (!end.outward) return std::nullopt;
+  double spare_m = problem.nominal_miss_m;
+  while (spare_m > 0.0 && !is_clear(problem, scene, end.joints, spare_m)) spare_m -= 0.001;
+  const Eigen::Isometry3d here = forward_kinematics(problem.nominal, end.joints);
+  constexpr int kLiftsMax = 12;
+  constexpr double kLiftMetres = 0.003;
+  JointVector joints = end.joints;
+  for (int lift = 1; lift <= kLiftsMax; ++lift) {
+    Eigen::Isometry3d higher = here;
+    higher.pretranslate(lift * kLiftMetres * *end.outward);
+    const auto next = solve_near(problem.nominal, higher, joints);
+    if (!next || !problem.joint_ranges.contains(*next)) return std::nullopt;
+    joints = *next;
+    if (!is_clear(problem, scene, joints, problem.nominal_miss_m)) continue;
+    const double kept_m = std::max(0.0, spare_m) - kSweptErrorMaxMetres;
+    const bool way_is_clear =
+        !find_clash_on_way(scene, problem.nominal, end.joints, joints, std::max(0.0, kept_m));
+    return way_is_clear ? std::optional(joints) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::vector<JointVector>> find_lifted_transfer(const PlanningProblem& problem,
+                                                             const TransferEnd& from, const TransferEnd& to) {
+  const auto begin = lifted(problem, from), end = lifted(problem, to);
+  if (!begin || !end) return std::nullopt;
+  auto way = find_transfer(problem, *begin, *end);
+  if (!way) return std::nullopt;
+  if (*begin != from.joints) way->insert(way->begin(), *begin);
+  if (*end != to.joints) way->push_back(*end);
+  if (way->size() > kAimedTransferPosturesMax) return std::nullopt;
+  return way;
+}
+
+}  // namespace
+
+Aim::Aim(const PlanningProblem& problem)
+    : knowledge_(widened(problem)),
+      columns_(columns_of(knowledge_)),
+      nominal_miss_m_(problem.nominal_miss_m),
+      estimate_(nothing_wrong(knowledge_)),
+      model_(problem.nominal) {
+  LeastSquares fit = fit_of(knowledge_, columns_);
+  fit.linearise(estimate_);
+  covariance_ = inverse_of(fit.information());
+}
+
+AimedContact Aim::add(const Touch& touch) {
+  knowledge_.touches.push_back(touch);
+  kept_.push_back(true);
+  LeastSquares fit = fit_of(knowledge_, columns_);
+  fit.keep(kept_);
+  fit.linearise(estimate_);
+  const Eigen::Index last = fit.rows().rows() - 1;
+  const Eigen::VectorXd row = fit.rows().row(last);
+  const double std_m = fit.noise_unit_m() * std::sqrt(1.0 + row.dot(covariance_ * row));
+  AimedContact contact{.miss_m = fit.residuals_m()[last],
+                       .predicted_miss_m = within_bounds_m(kSigmas * std_m * inflation(), nominal_miss_m_)};
+  surprises_.push_back(std::abs(contact.miss_m) / std_m);
+
+  solve(fit);
+  while (drop_one(fit)) solve(fit);
+  contact.contradicts = !kept_.back();
+  covariance_ = inverse_of(fit.information());
+  take_back(fit);
+  model_ = apply(knowledge_.nominal, estimate_.arm);
+  return contact;
+}
+
+void Aim::solve(LeastSquares& fit) {
+  for (int step = 0; step < kStepsMax && fit.solve(); ++step) {
+    estimate_ = fit.stepped(std::move(estimate_));
+    fit.linearise(estimate_);
+    if (fit.step().norm() < kStepSmall) break;
+  }
+}
+
+bool Aim::drop_one(LeastSquares& fit) {
+  const auto count = static_cast<double>(kept_.size());
+  const auto dropped = static_cast<double>(std::ranges::count(kept_, false));
+  if (dropped + 1.0 > std::max(1.0, kDroppedShareMax * count)) return false;
+  const Eigen::VectorXd& leverages = fit.leverages();
+  double most = kGateSigmas;
+  std::optional<std::size_t> worst;
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double own_share = 1.0 - leverages[row];
+    if (!kept_[i] || own_share < kOwnShareMin) continue;
+    const double off = std::abs(fit.residuals_m()[row]) / (fit.noise_unit_m() * std::sqrt(own_share));
+    if (off <= most) continue;
+    most = off;
+    worst = i;
+  }
+  if (!worst) return false;
+  kept_[*worst] = false;
+  fit.keep(kept_);
+  fit.linearise(estimate_);
+  return true;
+}
+
+void Aim::take_back(const LeastSquares& fit) {
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (kept_[i]) continue;
+    const auto index = static_cast<Eigen::Index>(i);
+    const Eigen::VectorXd row = fit.rows().row(index);
+    const double std_m = fit.noise_unit_m() * std::sqrt(1.0 + row.dot(covariance_ * row));
+    kept_[i] = std::abs(fit.residuals_m()[index]) < kTakeBackSigmas * std_m;
+  }
+}
+
+double Aim::inflation() const {
+  const std::size_t first = kept_.size() - std::min(kept_.size(), kRecentTouches);
+  const auto dropped = std::count(kept_.begin() + static_cast<std::ptrdiff_t>(first), kept_.end(), false);
+  double most = kSigmas;
+  for (std::size_t i = first; i < surprises_.size(); ++i) {
+    // One wrong trigger says nothing of the arm; two of them do.
+    if (kept_[i] || dropped > 1) most = std::max(most, surprises_[i]);
+  }
+  return most / kSigmas;
+}
+
+double Aim::spread_m(const JointVector& joints, const Capsule* body) const {
+  const PreparedModel prepared = prepare(model_);
+  const Chain chain = forward_chain(prepared, joints);
+  if (!body) {
+    return worst_spread_m(prepared, chain, chain.tip_in_block_m(), kFrameCount - 1, columns_, covariance_);
+  }
+  const Segment placed = place(*body, chain);
+  return std::max(worst_spread_m(prepared, chain, placed.from_m, body->frame, columns_, covariance_),
+                  worst_spread_m(prepared, chain, placed.to_m, body->frame, columns_, covariance_));
+}
+
+double Aim::predicted_miss_m(const JointVector& joints) const {
+  return within_bounds_m(spread_m(joints, nullptr) * inflation(), nominal_miss_m_);
+}
+
+std::optional<PlanningProblem> Aim::aimed_problem(const PlanningProblem& problem,
+                                                  std::span<const JointVector> postures) const {
+  double miss_m = 0.0;
+  for (const JointVector& joints : postures) miss_m = std::max(miss_m, predicted_miss_m(joints));
+  if (miss_m >= nominal_miss_m_) return std::nullopt;
+  PlanningProblem aimed = problem;
+  aimed.nominal = model_;
+  aimed.nominal_miss_m = miss_m;
+  aimed.standoff_min_m = kAimedStandoffMinMetres;
+  for (Capsule& body : aimed.scene.bodies) {
+    double body_miss_m = 0.0;
+    for (const JointVector& joints : postures)
+      body_miss_m = std::max(body_miss_m, spread_m(joints, &body) * inflation());
+    body.margin_m += std::max(0.0, std::min(body_miss_m, nominal_miss_m_) - miss_m);
+  }
+  return aimed;
+}
+
+double Aim::face_shift_m(int face, const Eigen::Vector3d& point_m) const {
+  std::vector<Plane> planes;
+  place_planes(knowledge_.artefact, estimate_.artefact, planes);
+  const auto index = static_cast<std::size_t>(face);
+  return signed_distance_m(knowledge_.artefact.contact_planes[index], point_m) -
+         signed_distance_m(planes[index], point_m);
+}
+
+std::variant<PlannedTouch, std::string> nominal_touch(const PlanningProblem& problem,
+                                                      const PlannedTouch& planned) {
+  return remade(problem, pose_of(problem, planned), planned);
+}
+
+std::variant<PlannedTouch, std::string> aim_touch(const PlanningProblem& problem, const Aim& aim,
+                                                  const PlannedTouch& planned) {
+  const auto aimed = aim.aimed_problem(problem, std::span(&planned.joints, 1));
+  if (!aimed) return nominal_touch(problem, planned);
+  TouchPose pose = pose_of(problem, planned);
+  const Plane& plane = problem.faces[static_cast<std::size_t>(planned.face)].plane;
+  const Eigen::Vector3d shift_m =
+      aim.face_shift_m(planned.face, pose.block_from_tip.translation()) * plane.outward;
+  pose.block_from_tip.pretranslate(shift_m);
+  return remade(*aimed, pose, planned);
+}
+
+std::optional<std::vector<JointVector>> find_aimed_transfer(const PlanningProblem& problem, const Aim& aim,
+                                                            const TransferEnd& from, const TransferEnd& to) {
+  std::vector<JointVector> postures{from.joints, to.joints};
+  constexpr int kTriesMax = 3;
+  for (int attempt = 0; attempt < kTriesMax; ++attempt) {
+    const auto aimed = aim.aimed_problem(problem, postures);
+    if (!aimed) break;
+    auto way = find_lifted_transfer(*aimed, from, to);
+    if (!way) break;
+    const bool is_farther_off = std::ranges::any_of(
+        *way, [&](const JointVector& via) { return aim.predicted_miss_m(via) > aimed->nominal_miss_m; });
+    if (!is_farther_off) return way;
+    postures.insert(postures.end(), way->begin(), way->end());
+  }
+  return find_lifted_transfer(problem, from, to);
+}
+
+std::vector<double> predicted_misses_m(const PlanningProblem& problem,
+                                       std::span<const PlannedTouch> touches) {
+  IdentificationProblem knowledge = widened(problem);
+  const std::vector<int> columns = columns_of(knowledge);
+  for (const PlannedTouch& touch : touches)
+    knowledge.touches.push_back({.face = touch.face, .joints = touch.joints});
+  LeastSquares fit = fit_of(knowledge, columns);
+  fit.keep(std::vector<bool>(touches.size(), false));
+  fit.linearise(nothing_wrong(knowledge));
+  Eigen::MatrixXd covariance = inverse_of(fit.information());
+
+  const PreparedModel prepared = prepare(problem.nominal);
+  std::vector<double> misses_m;
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const Chain chain = forward_chain(prepared, touches[i].joints);
+    misses_m.push_back(within_bounds_m(
+        worst_spread_m(prepared, chain, chain.tip_in_block_m(), kFrameCount - 1, columns, covariance),
+        problem.nominal_miss_m));
+    const Eigen::VectorXd row = fit.rows().row(static_cast<Eigen::Index>(i));
+    const Eigen::VectorXd moved = covariance * row;
+    covariance -= moved * moved.transpose() / (1.0 + row.dot(moved));
+  }
+  return misses_m;
+}
+
+}  // namespace calib
