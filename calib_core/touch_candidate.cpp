@@ -49,7 +49,7 @@ std::string find_trouble(const PlanningProblem& problem, const TouchedFace& arou
       const Box& obstacle = problem.scene.obstacles[i];
       const double apart_m = segment_box_distance_m(placed, obstacle) - body.radius_m;
       if (apart_m >= problem.nominal_miss_m + body.margin_m) continue;
-      const bool may_be_near = body.frame == kFrameCount - 1 && static_cast<int>(i) == around.touched;
+      const bool may_be_near = body.frame == kFrameCount - 1 && around.is_behind[i];
       if (may_be_near && is_over_face(body, placed, plane)) continue;
       return describe(body.name, obstacle.name, problem.nominal_miss_m);
     }

@@ -52,11 +52,10 @@ TouchedFace find_touched(const PlanningProblem& problem, int face);
 ///
 /// The orientation is kept on a straight line along the normal, from `clear` to the search end; on it, every
 /// 10 mm at most, the joints are in range (less one degree) and away from singular postures, and
-/// - everything keeps the nominal miss to every obstacle, as the true arm may be that far from the nominal
-/// one;
-/// - the probe's bodies need not keep it to the touched solid, as its own contact ends the search: it is
-/// enough
-///   that each stays over the face's plane by kOrientationMiss times its distance from the ball, which the
+/// - everything keeps the nominal miss (and its own margin) to every obstacle, as the true arm may be that far
+///   from the nominal one;
+/// - the probe's bodies need not keep it to the obstacles of TouchedFace::is_behind, as the contact ends the
+///   search before the face: it is enough that each stays over the face's plane by kOrientationMiss times its distance from the ball, which the
 ///   ball's place does not change, and if it does not (beside an edge), that it keeps the nominal miss;
 /// - behind the contact the obstacles of TouchedFace::is_behind do not count: the true ball is stopped before
 ///   any body gets nearer to them than at the contact.
