@@ -80,6 +80,15 @@ Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& information) {
          scale.asDiagonal();
 }
 
+/// Covariance of the unknowns before the first touch.
+Eigen::MatrixXd prior_covariance(IdentificationProblem knowledge, const std::vector<int>& columns) {
+  knowledge.touches.assign(1, Touch{});  // a problem without rows has no size; this one has no say
+  LeastSquares fit = fit_of(knowledge, columns);
+  fit.keep({false});
+  fit.linearise(nothing_wrong(knowledge));
+  return inverse_of(fit.information());
+}
+
 /// 3 sigma of a point in the worst direction.
 double worst_spread_m(const PreparedModel& prepared, const Chain& chain, const Eigen::Vector3d& point_m,
                       int frame, const std::vector<int>& columns, const Eigen::MatrixXd& covariance) {
@@ -97,18 +106,16 @@ double within_bounds_m(double miss_m, double nominal_miss_m) {
 }
 
 /// The planned touch in its pose, as a problem's model and miss make it.
-std::variant<PlannedTouch, std::string> remade(const PlanningProblem& problem, TouchPose pose,
-                                               const PlannedTouch& planned) {
+std::variant<AimedTouch, std::string> remade(PlanningProblem problem, const TouchPose& pose,
+                                             const PlannedTouch& planned) {
   const auto joints = solve_near(problem.nominal, pose.block_from_tip, planned.joints);
   if (!joints) return "out of reach";
   auto made = make_touch(problem, find_touched(problem, planned.face), pose, *joints);
-  if (auto* touch = std::get_if<PlannedTouch>(&made)) {
-    touch->role = planned.role;
-    touch->predicted_miss_m = problem.nominal_miss_m;
-    touch->touch_s = planned.touch_s;
-    touch->travel_s = planned.travel_s;
-  }
-  return made;
+  if (auto* trouble = std::get_if<std::string>(&made)) return std::move(*trouble);
+  PlannedTouch& touch = std::get<PlannedTouch>(made);
+  touch.role = planned.role;
+  touch.predicted_miss_m = problem.nominal_miss_m;
+  return AimedTouch{std::move(touch), std::move(problem)};
 }
 
 TouchPose pose_of(const PlanningProblem& problem, const PlannedTouch& planned) {
@@ -126,11 +133,13 @@ std::optional<JointVector> lifted(const PlanningProblem& problem, const Transfer
   const CollisionScene scene = travel_scene(problem);
   if (is_clear(problem, scene, end.joints, problem.nominal_miss_m)) return end.joints;
   if (!end.outward) return std::nullopt;
-  double spare_m = problem.nominal_miss_m;
-  while (spare_m > 0.0 && !is_clear(problem, scene, end.joints, spare_m)) spare_m -= 0.001;
+  // No slow zone here: the arm is in it, or goes into it.
+  double kept_m = problem.nominal_miss_m;
+  while (kept_m > 0.0 && !is_clear(problem, problem.scene, end.joints, kept_m))
+    kept_m -= kSweptErrorMaxMetres;
   const Eigen::Isometry3d here = forward_kinematics(problem.nominal, end.joints);
-  constexpr int kLiftsMax = 12;
-  constexpr double kLiftMetres = 0.003;
+  constexpr int kLiftsMax = 20;
+  constexpr double kLiftMetres = 0.004;
   JointVector joints = end.joints;
   for (int lift = 1; lift <= kLiftsMax; ++lift) {
     Eigen::Isometry3d higher = here;
@@ -138,24 +147,37 @@ std::optional<JointVector> lifted(const PlanningProblem& problem, const Transfer
     const auto next = solve_near(problem.nominal, higher, joints);
     if (!next || !problem.joint_ranges.contains(*next)) return std::nullopt;
     joints = *next;
-    if (!is_clear(problem, scene, joints, problem.nominal_miss_m)) continue;
-    const double kept_m = std::max(0.0, spare_m) - kSweptErrorMaxMetres;
-    const bool way_is_clear =
-        !find_clash_on_way(scene, problem.nominal, end.joints, joints, std::max(0.0, kept_m));
-    return way_is_clear ? std::optional(joints) : std::nullopt;
+    if (find_clash_on_way(problem.scene, problem.nominal, end.joints, joints,
+                          std::max(0.0, kept_m - kSweptErrorMaxMetres))) {
+      return std::nullopt;
+    }
+    if (is_clear(problem, scene, joints, problem.nominal_miss_m)) return joints;
   }
   return std::nullopt;
 }
 
 std::optional<std::vector<JointVector>> find_lifted_transfer(const PlanningProblem& problem,
                                                              const TransferEnd& from, const TransferEnd& to) {
-  const auto begin = lifted(problem, from), end = lifted(problem, to);
-  if (!begin || !end) return std::nullopt;
+  const auto begin = lifted(problem, from);
+  if (!begin) return std::nullopt;
+  const auto end = lifted(problem, to);
+  if (!end) return std::nullopt;
   auto way = find_transfer(problem, *begin, *end);
   if (!way) return std::nullopt;
   if (*begin != from.joints) way->insert(way->begin(), *begin);
   if (*end != to.joints) way->push_back(*end);
   if (way->size() > kAimedTransferPosturesMax) return std::nullopt;
+  return way;
+}
+
+/// Out and in on ways that were clear when the ends were made.
+std::optional<std::vector<JointVector>> through_park(const PlanningProblem& problem, const TransferEnd& from,
+                                                     const TransferEnd& to) {
+  auto way = find_transfer(from.made_with ? *from.made_with : problem, from.joints, problem.park_joints);
+  const auto in = find_transfer(to.made_with ? *to.made_with : problem, problem.park_joints, to.joints);
+  if (!way || !in || way->size() + 1 + in->size() > kAimedTransferPosturesMax) return std::nullopt;
+  way->push_back(problem.park_joints);
+  way->insert(way->end(), in->begin(), in->end());
   return way;
 }
 
@@ -166,11 +188,8 @@ Aim::Aim(const PlanningProblem& problem)
       columns_(columns_of(knowledge_)),
       nominal_miss_m_(problem.nominal_miss_m),
       estimate_(nothing_wrong(knowledge_)),
-      model_(problem.nominal) {
-  LeastSquares fit = fit_of(knowledge_, columns_);
-  fit.linearise(estimate_);
-  covariance_ = inverse_of(fit.information());
-}
+      model_(problem.nominal),
+      covariance_(prior_covariance(knowledge_, columns_)) {}
 
 AimedContact Aim::add(const Touch& touch) {
   knowledge_.touches.push_back(touch);
@@ -287,21 +306,25 @@ double Aim::face_shift_m(int face, const Eigen::Vector3d& point_m) const {
          signed_distance_m(planes[index], point_m);
 }
 
-std::variant<PlannedTouch, std::string> nominal_touch(const PlanningProblem& problem,
-                                                      const PlannedTouch& planned) {
+std::variant<AimedTouch, std::string> nominal_touch(const PlanningProblem& problem,
+                                                    const PlannedTouch& planned) {
   return remade(problem, pose_of(problem, planned), planned);
 }
 
-std::variant<PlannedTouch, std::string> aim_touch(const PlanningProblem& problem, const Aim& aim,
-                                                  const PlannedTouch& planned) {
-  const auto aimed = aim.aimed_problem(problem, std::span(&planned.joints, 1));
+std::variant<AimedTouch, std::string> aim_touch(const PlanningProblem& problem, const Aim& aim,
+                                                const PlannedTouch& planned) {
+  auto aimed = aim.aimed_problem(problem, std::span(&planned.joints, 1));
   if (!aimed) return nominal_touch(problem, planned);
   TouchPose pose = pose_of(problem, planned);
   const Plane& plane = problem.faces[static_cast<std::size_t>(planned.face)].plane;
   const Eigen::Vector3d shift_m =
       aim.face_shift_m(planned.face, pose.block_from_tip.translation()) * plane.outward;
   pose.block_from_tip.pretranslate(shift_m);
-  return remade(*aimed, pose, planned);
+  return remade(std::move(*aimed), pose, planned);
+}
+
+TransferEnd end_of(const AimedTouch& touch) {
+  return {touch.touch.clear_joints, -touch.touch.search_direction, &touch.problem};
 }
 
 std::optional<std::vector<JointVector>> find_aimed_transfer(const PlanningProblem& problem, const Aim& aim,
@@ -310,15 +333,15 @@ std::optional<std::vector<JointVector>> find_aimed_transfer(const PlanningProble
   constexpr int kTriesMax = 3;
   for (int attempt = 0; attempt < kTriesMax; ++attempt) {
     const auto aimed = aim.aimed_problem(problem, postures);
-    if (!aimed) break;
-    auto way = find_lifted_transfer(*aimed, from, to);
+    const double miss_m = aimed ? aimed->nominal_miss_m : problem.nominal_miss_m;
+    auto way = find_lifted_transfer(aimed ? *aimed : problem, from, to);
     if (!way) break;
-    const bool is_farther_off = std::ranges::any_of(
-        *way, [&](const JointVector& via) { return aim.predicted_miss_m(via) > aimed->nominal_miss_m; });
+    const bool is_farther_off =
+        std::ranges::any_of(*way, [&](const JointVector& via) { return aim.predicted_miss_m(via) > miss_m; });
     if (!is_farther_off) return way;
     postures.insert(postures.end(), way->begin(), way->end());
   }
-  return find_lifted_transfer(problem, from, to);
+  return through_park(problem, from, to);
 }
 
 std::vector<double> predicted_misses_m(const PlanningProblem& problem,
@@ -327,10 +350,10 @@ std::vector<double> predicted_misses_m(const PlanningProblem& problem,
   const std::vector<int> columns = columns_of(knowledge);
   for (const PlannedTouch& touch : touches)
     knowledge.touches.push_back({.face = touch.face, .joints = touch.joints});
+  Eigen::MatrixXd covariance = prior_covariance(knowledge, columns);
+  if (touches.empty()) return {};
   LeastSquares fit = fit_of(knowledge, columns);
-  fit.keep(std::vector<bool>(touches.size(), false));
   fit.linearise(nothing_wrong(knowledge));
-  Eigen::MatrixXd covariance = inverse_of(fit.information());
 
   const PreparedModel prepared = prepare(problem.nominal);
   std::vector<double> misses_m;

@@ -80,22 +80,32 @@ class Aim {
   Eigen::MatrixXd covariance_;  // of the unknowns: columns_, then the artefact
 };
 
+/// A touch that was aimed, and what it was made with: the arm as it was believed to be and how far off, by
+/// which its approach, its search and a way to the park posture are clear.
+struct AimedTouch {
+  PlannedTouch touch;
+  PlanningProblem problem;
+};
+
 /// The planned touch at the same point of its face and in the same orientation, aimed with all that is known;
 /// its approach, search and clear posture follow the predicted miss. As long as the nominal arm is as good,
 /// it is the planned touch with the nominal miss. Or in a few words why it cannot be made.
-std::variant<PlannedTouch, std::string> aim_touch(const PlanningProblem& problem, const Aim& aim,
-                                                  const PlannedTouch& planned);
+std::variant<AimedTouch, std::string> aim_touch(const PlanningProblem& problem, const Aim& aim,
+                                                const PlannedTouch& planned);
 
 /// The planned touch as the nominal arm makes it when nothing is known: with the nominal miss.
-std::variant<PlannedTouch, std::string> nominal_touch(const PlanningProblem& problem,
-                                                      const PlannedTouch& planned);
+std::variant<AimedTouch, std::string> nominal_touch(const PlanningProblem& problem,
+                                                    const PlannedTouch& planned);
 
-/// Where a transfer begins or ends: a posture and the direction in which its last or next touch leaves the
-/// face.
+/// Where a transfer begins or ends: a posture, the direction in which its last or next touch leaves the face,
+/// and the problem with which a way from there to the park posture is known to be clear (null: the nominal
+/// one), which must outlive this.
 struct TransferEnd {
   JointVector joints;
   std::optional<Eigen::Vector3d> outward;
+  const PlanningProblem* made_with = nullptr;
 };
+TransferEnd end_of(const AimedTouch& touch);
 
 /// find_transfer for an arm that is known as far as `aim` says, clear by the largest predicted miss on the
 /// way. An end that is nearer to its face than that (the touch has told where the face really is) is first
