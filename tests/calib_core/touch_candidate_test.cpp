@@ -111,7 +111,7 @@ TEST(TouchCandidate, RefusesAProbeThatLeansIntoTheFace) {
 
 TEST(TouchCandidate, RefusesAnObstacleBesideTheTouch) {
   TopTouch touch(40);
-  const Eigen::Vector3d beside(0.0, -0.150, 0.010);
+  const Eigen::Vector3d beside(0.0, -0.152, 0.010);  // 2 mm over the face
   touch.problem.scene.obstacles.push_back({"clamp", beside, beside + Eigen::Vector3d::Constant(0.005)});
   EXPECT_EQ(touch.trouble(), "the stem is within 12 mm of the clamp");
 }
