@@ -21,6 +21,7 @@ class Piece {
         counted_from_(counted_from),
         begin_(begin),
         end_(end),
+        repeats_(repeats(order)),
         faults_(faults(order)) {}
 
   /// One round of changes; false when none helped.
@@ -55,18 +56,23 @@ class Piece {
     std::vector<int> faces;
     faces.reserve(end_ - counted_from_);
     for (std::size_t i = counted_from_; i < end_; ++i) faces.push_back(problem_.faces[order[i]]);
-    const auto same = [&](std::size_t before) {
-      return before > 0 && before + 1 < order.size() &&
-             problem_.faces[order[before]] == problem_.faces[order[before + 1]];
-    };
-    return interleaving_faults(faces) + (same(counted_from_ - 1) ? 1 : 0) + (same(end_ - 1) ? 1 : 0);
+    return interleaving_faults(faces);
+  }
+  /// How often a face follows itself, the stops at both ends of the piece included.
+  [[nodiscard]] int repeats(const std::vector<std::size_t>& order) const {
+    int count = 0;
+    for (std::size_t i = std::max<std::size_t>(counted_from_, 1); i < std::min(end_ + 1, order.size()); ++i) {
+      if (problem_.faces[order[i]] == problem_.faces[order[i - 1]]) ++count;
+    }
+    return count;
   }
 
   /// Takes the changed order when it is interleaved as well as the present one.
   bool take(double saved_s, std::vector<std::size_t>& changed) {
     if (saved_s <= kWorthItSeconds) return false;
-    const int changed_faults = faults(changed);
-    if (changed_faults > faults_) return false;
+    const int changed_repeats = repeats(changed), changed_faults = faults(changed);
+    if (changed_repeats > repeats_ || changed_faults > faults_) return false;
+    repeats_ = changed_repeats;
     faults_ = changed_faults;
     order_.swap(changed);
     return true;
@@ -120,7 +126,7 @@ class Piece {
   const WayProblem& problem_;
   std::vector<std::size_t>& order_;
   std::size_t counted_from_, begin_, end_;
-  int faults_;
+  int repeats_, faults_;
   std::vector<std::size_t> changed_;
 };
 

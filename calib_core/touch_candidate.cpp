@@ -189,7 +189,8 @@ std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& proble
                       .search_end_joints = *search_end,
                       .search_direction = -line.face().plane.outward,
                       .search_length_m = heights.approach_m - heights.search_end_m,
-                      .tilt_rad = pose.tilt_rad};
+                      .tilt_rad = pose.tilt_rad,
+                      .predicted_miss_m = problem.nominal_miss_m};
 }
 
 }  // namespace calib

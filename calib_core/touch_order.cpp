@@ -255,24 +255,15 @@ class WayFinder {
   [[nodiscard]] End end(const PlannedTouch& touch) const {
     return {touch.clear_joints, touch.predicted_miss_m > 0.0 ? touch.predicted_miss_m : nominal_miss_m_};
   }
-  [[nodiscard]] End park() const { return {problem_.park_joints, 0.0}; }
+  [[nodiscard]] End park() const { return {problem_.park_joints, std::numeric_limits<double>::infinity()}; }
 
+  /// Both ends are clear by the smaller miss, for which there is a way; see PlannedTouch::predicted_miss_m.
   std::optional<std::vector<JointVector>> find(const End& from, const End& to) {
-    if (auto way = find(from, to, std::max(from.miss_m, to.miss_m))) return way;
-    auto there = find(from, park(), from.miss_m);
-    const auto back = find(park(), to, to.miss_m);
-    if (!there || !back || there->size() + back->size() + 1 > kTransferPosturesMax) return std::nullopt;
-    there->push_back(problem_.park_joints);
-    there->insert(there->end(), back->begin(), back->end());
-    return there;
-  }
-
- private:
-  std::optional<std::vector<JointVector>> find(const End& from, const End& to, double miss_m) {
-    problem_.nominal_miss_m = miss_m;
+    problem_.nominal_miss_m = std::min(from.miss_m, to.miss_m);
     return find_transfer(problem_, from.joints, to.joints);
   }
 
+ private:
   PlanningProblem problem_;
   double nominal_miss_m_;
 };

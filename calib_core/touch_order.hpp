@@ -15,10 +15,9 @@ namespace calib {
 std::vector<PlannedTouch> put_in_order(const PlanningProblem& problem, std::vector<PlannedTouch> touches);
 
 /// The touches in the order given, with their ways and predicted times (PlannedTouch::via, travel_s, touch_s;
-/// TouchPlan::park_via, park_s). A way keeps the larger predicted miss of its two touches, the problem's
-/// nominal one at a touch that has none; where that leaves none, it goes through the park posture, to and
-/// from there with each touch's own. Nothing when there is no way, which does not happen with touches made by
-/// make_touch.
+/// TouchPlan::park_via, park_s). A way keeps the smaller predicted miss of its two touches, the problem's
+/// nominal one at a touch that has none. Nothing when there is no way, which does not happen with touches
+/// made by make_touch.
 std::optional<TouchPlan> find_ways(const PlanningProblem& problem, std::vector<PlannedTouch> touches);
 
 }  // namespace calib

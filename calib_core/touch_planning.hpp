@@ -32,8 +32,9 @@ struct PlannedTouch {
   Eigen::Vector3d search_direction;  // unit, in R_-1: into the face
   double search_length_m = 0.0;
   double tilt_rad = 0.0;  // stylus axis to inward normal
-  double predicted_miss_m =
-      0.0;  // 3 sigma of where the ball is when its turn comes; sizes clearance and search
+  /// 3 sigma of where the ball is when its turn comes, or at the touch before or behind if that is more, so
+  /// that both ways can keep it; sizes clearance and search.
+  double predicted_miss_m = 0.0;
   std::vector<JointVector> via;  // way to clear_joints from the touch before (the park posture at first)
   double travel_s = 0.0;         // predicted time of that way
   double touch_s = 0.0;          // ... and of the touch, from clear_joints and back

@@ -7,6 +7,8 @@
 #include <map>
 #include <set>
 
+#include "calib_core/aim.hpp"
+#include "calib_core/artefact.hpp"
 #include "calib_core/identifiability.hpp"
 #include "calib_core/inverse_kinematics.hpp"
 #include "calib_core/observation_matrix.hpp"
@@ -22,8 +24,15 @@ constexpr int kHeldOutPerFace = 10;
 struct PlannedCell {
   PlanningProblem problem;
   TouchPlan plan;
+  std::vector<PlannedTouch> unaimed;  // the plan's touches as an arm makes them of which nothing is known
   double condition_number_max = 0.0;
 };
+
+std::vector<Plane> contact_planes(const PlanningProblem& problem) {
+  std::vector<Plane> planes;
+  for (const Face& face : problem.faces) planes.push_back(contact_plane(face, problem.stylus));
+  return planes;
+}
 
 PlanningProblem problem_of(double ball_radius_m, double tilt_max_deg, int face_count) {
   PlanningProblem problem{.nominal = paper::nominal(),
@@ -32,7 +41,15 @@ PlanningProblem problem_of(double ball_radius_m, double tilt_max_deg, int face_c
                           .stylus = {.radius_m = ball_radius_m},
                           .scene = tx90::scene(ball_radius_m),
                           .park_joints = tx90::park_joints(),
-                          .tilt_max_rad = radians_from_degrees(tilt_max_deg)};
+                          .tilt_max_rad = radians_from_degrees(tilt_max_deg),
+                          .candidate_count = 4000,
+                          .identification = {.identifiability = {.tried_last = paper::tried_last()}},
+                          .workspace_box = {"in front", {-0.3, -0.5, -0.25}, {0.3, 0.0, 0.55}}};
+  problem.goal.fit_count = face_count * kFitPerFace;
+  problem.knowledge.nominal = problem.nominal;
+  problem.knowledge.artefact = exact_artefact(contact_planes(problem));
+  problem.knowledge.touch_noise_m = 20e-6;
+  problem.knowledge.tolerances.fill(1e-3);
   for (int face = 0; face < face_count; ++face) {
     problem.requests.push_back({face, kFitPerFace, kFitPerFace, kHeldOutPerFace});
   }
@@ -42,7 +59,10 @@ PlanningProblem problem_of(double ball_radius_m, double tilt_max_deg, int face_c
 PlannedCell planned(PlanningProblem problem, double condition_number_max) {
   auto plan = plan_touches(problem);
   if (const auto* failure = std::get_if<PlanningFailure>(&plan)) throw std::runtime_error(failure->reason);
-  return {std::move(problem), std::get<TouchPlan>(std::move(plan)), condition_number_max};
+  PlannedCell cell{problem, std::get<TouchPlan>(std::move(plan)), {}, condition_number_max};
+  for (const PlannedTouch& touch : cell.plan.touches)
+    cell.unaimed.push_back(std::get<AimedTouch>(nominal_touch(problem, touch)).touch);
+  return cell;
 }
 
 /// The paper's cell: the tip is the contact point, tilts to 45 degrees.
@@ -61,6 +81,7 @@ class EveryPlan : public testing::TestWithParam<const PlannedCell& (*)()> {
  protected:
   const PlanningProblem& problem_ = GetParam()().problem;
   const std::vector<PlannedTouch>& touches_ = GetParam()().plan.touches;
+  const std::vector<PlannedTouch>& unaimed_ = GetParam()().unaimed;
   const double condition_number_max_ = GetParam()().condition_number_max;
 
   [[nodiscard]] const Face& face_of(const PlannedTouch& touch) const {
@@ -71,8 +92,7 @@ class EveryPlan : public testing::TestWithParam<const PlannedCell& (*)()> {
 
   /// W of the first touches and its identifiable columns.
   [[nodiscard]] Eigen::MatrixXd identifiable_columns(std::size_t count) const {
-    std::vector<Plane> planes;
-    for (const Face& face : problem_.faces) planes.push_back(contact_plane(face, problem_.stylus));
+    const std::vector<Plane> planes = contact_planes(problem_);
     std::vector<Touch> made;
     for (std::size_t i = 0; i < count; ++i) made.push_back({touches_[i].face, touches_[i].joints});
     const Eigen::MatrixXd matrix =
@@ -86,10 +106,45 @@ INSTANTIATE_TEST_SUITE_P(TouchPlanning, EveryPlan, testing::Values(&edf, &demo),
 
 TEST_P(EveryPlan, InterleavesTheFacesAndFitsBeforeItHoldsOut) {
   ASSERT_EQ(touches_.size(), problem_.requests.size() * (kFitPerFace + kHeldOutPerFace));
+  std::map<std::pair<int, TouchRole>, int> counts;
   for (std::size_t i = 0; i < touches_.size(); ++i) {
-    EXPECT_EQ(touches_[i].face, static_cast<int>(i % problem_.requests.size()));
     EXPECT_EQ(touches_[i].role, i < fit_count() ? TouchRole::kFit : TouchRole::kHeldOut);
+    if (i > 0) {
+      EXPECT_NE(touches_[i].face, touches_[i - 1].face) << i;
+    }
+    ++counts[{touches_[i].face, touches_[i].role}];
   }
+  for (const TouchRequest& request : problem_.requests) {
+    EXPECT_EQ((counts[{request.face, TouchRole::kFit}]), kFitPerFace);
+    EXPECT_EQ((counts[{request.face, TouchRole::kHeldOut}]), kHeldOutPerFace);
+  }
+}
+
+TEST_P(EveryPlan, BeginsWithTheNominalMissAndEndsWithASmallOne) {
+  EXPECT_EQ(touches_.front().predicted_miss_m, problem_.nominal_miss_m);
+  EXPECT_LT(touches_.back().predicted_miss_m, 0.25 * problem_.nominal_miss_m);
+  for (const PlannedTouch& touch : touches_) EXPECT_LE(touch.predicted_miss_m, problem_.nominal_miss_m);
+}
+
+TEST_P(EveryPlan, StatesEachWayAndItsTime) {
+  PlanningProblem problem = problem_;
+  JointVector standing = problem_.park_joints;
+  double sum_s = GetParam()().plan.park_s;
+  for (const PlannedTouch& touch : touches_) {
+    std::vector<JointVector> way{standing};
+    way.insert(way.end(), touch.via.begin(), touch.via.end());
+    way.push_back(touch.clear_joints);
+    EXPECT_LE(touch.via.size(), kTransferPosturesMax);
+    EXPECT_NEAR(touch.travel_s, way_time_s(prepare(problem.nominal), problem.motion, way), 1e-9);
+    // The touch before may have had the smaller miss: both keep at least the least possible one.
+    for (std::size_t leg = 1; leg < way.size(); ++leg) {
+      EXPECT_FALSE(find_clash_on_way(travel_scene(problem), problem.nominal, way[leg - 1], way[leg],
+                                     kPredictedMissMinMetres - kSweptErrorMaxMetres));
+    }
+    standing = touch.clear_joints;
+    sum_s += touch.travel_s + touch.touch_s;
+  }
+  EXPECT_NEAR(GetParam()().plan.duration_s(), sum_s, 1e-6);
 }
 
 TEST_P(EveryPlan, StaysInTheJointRanges) {
@@ -102,8 +157,9 @@ TEST_P(EveryPlan, StaysInTheJointRanges) {
 }
 
 TEST_P(EveryPlan, TouchesTheFaceOnAStraightLineAlongItsNormal) {
-  const double standoff_m = problem_.nominal_miss_m + 0.003;
   for (const PlannedTouch& touch : touches_) {
+    const bool is_aimed = touch.predicted_miss_m < problem_.nominal_miss_m;
+    const double standoff_m = std::max(touch.predicted_miss_m + 0.003, is_aimed ? 0.005 : 0.015);
     const Face& face = face_of(touch);
     const Eigen::Isometry3d contact = forward_kinematics(problem_.nominal, touch.joints);
     EXPECT_NEAR(signed_distance_m(contact_plane(face, problem_.stylus), contact.translation()), 0.0, 1e-9);
@@ -111,9 +167,13 @@ TEST_P(EveryPlan, TouchesTheFaceOnAStraightLineAlongItsNormal) {
     EXPECT_LE(touch.tilt_rad, problem_.tilt_max_rad);
     EXPECT_EQ(touch.search_direction, -face.plane.outward);
     EXPECT_DOUBLE_EQ(touch.search_length_m, 2.0 * standoff_m);
+    const Eigen::Isometry3d clear = forward_kinematics(problem_.nominal, touch.clear_joints);
+    EXPECT_LT((clear.linear() - contact.linear()).norm(), 1e-8);
+    EXPECT_GE(face.plane.outward.dot(clear.translation() - contact.translation()),
+              standoff_m + kSlowZoneMetres - 1e-9);
+    EXPECT_LT((touch.clear_joints - touch.joints).cwiseAbs().maxCoeff(), 0.6) << "another branch";
     for (const auto& [joints, height_m] :
-         {std::pair(touch.clear_joints, standoff_m + 0.025), std::pair(touch.approach_joints, standoff_m),
-          std::pair(touch.search_end_joints, -standoff_m)}) {
+         {std::pair(touch.approach_joints, standoff_m), std::pair(touch.search_end_joints, -standoff_m)}) {
       Eigen::Isometry3d expected = contact;
       expected.pretranslate(height_m * face.plane.outward);
       EXPECT_LT((forward_kinematics(problem_.nominal, joints).matrix() - expected.matrix()).norm(), 1e-8);
@@ -125,7 +185,7 @@ TEST_P(EveryPlan, TouchesTheFaceOnAStraightLineAlongItsNormal) {
 TEST_P(EveryPlan, KeepsTheArmClearFromTheClearPostureToTheContact) {
   CollisionScene arm = problem_.scene;
   std::erase_if(arm.bodies, [](const Capsule& body) { return body.frame == 7; });
-  for (const PlannedTouch& touch : touches_) {
+  for (const PlannedTouch& touch : unaimed_) {
     EXPECT_FALSE(find_clash(problem_.scene, forward_chain(problem_.nominal, touch.clear_joints),
                             problem_.nominal_miss_m));
     for (const auto& [from, to] : {std::pair(touch.clear_joints, touch.approach_joints),
@@ -142,7 +202,7 @@ TEST_P(EveryPlan, AnArmThatMissesAsInTheTableMeetsItsFaceAndNothingElse) {
   const KinematicModel truth = apply(problem_.nominal, paper::table3());
   CollisionScene all_but_ball = problem_.scene;
   std::erase_if(all_but_ball.bodies, [](const Capsule& body) { return body.name == "ball"; });
-  for (const PlannedTouch& touch : touches_) {
+  for (const PlannedTouch& touch : unaimed_) {
     const Plane plane = contact_plane(face_of(touch), problem_.stylus);
     Eigen::Isometry3d pose = forward_kinematics(problem_.nominal, touch.approach_joints);
     JointVector joints = touch.approach_joints;
@@ -196,7 +256,7 @@ TEST_P(EveryPlan, HoldsOutTouchesThatAreSpreadAndNotAmongTheFitted) {
 TEST_P(EveryPlan, HasAClearWayFromEachTouchToTheNextAlsoForAnArmThatMisses) {
   const KinematicModel truth = apply(problem_.nominal, paper::table3());
   std::vector<JointVector> stops{problem_.park_joints};
-  for (const PlannedTouch& touch : touches_) stops.push_back(touch.clear_joints);
+  for (const PlannedTouch& touch : unaimed_) stops.push_back(touch.clear_joints);
   stops.push_back(problem_.park_joints);
   for (std::size_t i = 1; i < stops.size(); ++i) {
     const auto between = find_transfer(problem_, stops[i - 1], stops[i]);
@@ -226,7 +286,7 @@ TEST_P(EveryPlan, TravelsOutsideTheSlowZone) {
     probe.bodies.push_back(body);
     probe.bodies.back().margin_m = 0.0;
   }
-  for (const PlannedTouch& touch : touches_) {
+  for (const PlannedTouch& touch : unaimed_) {
     const auto between = find_transfer(problem_, problem_.park_joints, touch.clear_joints);
     ASSERT_TRUE(between);
     std::vector<JointVector> way{problem_.park_joints};
@@ -240,7 +300,7 @@ TEST_P(EveryPlan, TravelsOutsideTheSlowZone) {
 }
 
 TEST(TouchPlanning, AnyTouchCanFollowAnyOther) {
-  const auto& touches = demo().plan.touches;
+  const auto& touches = demo().unaimed;
   for (std::size_t i = 0; i < touches.size(); i += 7) {
     for (std::size_t j = 3; j < touches.size(); j += 11) {
       EXPECT_TRUE(find_transfer(demo().problem, touches[i].clear_joints, touches[j].clear_joints));
@@ -249,7 +309,8 @@ TEST(TouchPlanning, AnyTouchCanFollowAnyOther) {
 }
 
 TEST(TouchPlanning, GivesTheSamePlanForTheSameSeedAndAnotherForAnother) {
-  PlanningProblem problem = problem_of(0.0, 45, 2);
+  PlanningProblem problem = problem_of(0.0, 45, 4);
+  problem.candidate_count = 1000;
   const auto joints_of = [](const PlanningProblem& asked) {
     std::vector<JointVector> joints;
     for (const PlannedTouch& touch : planned(asked, 0).plan.touches) joints.push_back(touch.joints);
@@ -287,6 +348,7 @@ TEST(TouchPlanning, SaysThatTheJointRangesStandInTheWay) {
 TEST(TouchPlanning, NamesTheBodyAndTheObstacleThatStandInTheWay) {
   PlanningProblem problem = problem_of(0.003, 70, 3);
   problem.requests = {{2, 5, 5, 0}};
+  problem.goal.fit_count = 5;
   problem.scene.obstacles.push_back({"lid", {-0.1, -0.260, -0.1}, {0.1, -0.250, 0.1}});
   const PlanningFailure failure = failure_of(problem);
   EXPECT_EQ(failure.face, 2);
