@@ -15,6 +15,9 @@ namespace {
 
 /// Poses tried for each candidate wanted.
 constexpr int kPosesPerCandidate = 20;
+/// Of the poses, those on the rim of what may be touched. 20,000 such candidates are as good as 80,000 even
+/// ones.
+constexpr double kRimShare = 0.7;
 /// Poses between two reports of progress.
 constexpr int kPosesInARow = 256;
 
@@ -56,7 +59,7 @@ class FaceSearch {
   void try_pose(std::vector<TouchCandidate>& candidates) {
     ++poses_;
     const TouchPose pose =
-        sample_touch_pose(problem_, problem_.faces[static_cast<std::size_t>(face_)], chance_);
+        sample_touch_pose(problem_, problem_.faces[static_cast<std::size_t>(face_)], chance_, kRimShare);
     const auto postures = postures_of(problem_, pose);
     if (postures.empty()) refuse(why_no_posture(problem_, pose));
     for (const JointVector& joints : postures) {

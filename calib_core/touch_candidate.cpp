@@ -119,14 +119,19 @@ class LineOfTouch {
 
 }  // namespace
 
-TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, UniformChance& chance) {
+TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, UniformChance& chance,
+                            double rim_share) {
+  const auto on_rim = [&] { return rim_share > 0.0 && chance() < rim_share; };
   const auto along = [&](const Eigen::Vector3d& edge, double half_extent_m) -> Eigen::Vector3d {
-    return (2.0 * chance() - 1.0) * std::max(half_extent_m - problem.nominal_miss_m, 0.0) * edge;
+    const double even = 2.0 * chance() - 1.0;
+    const double place = on_rim() ? std::copysign(1.0, even) : even;
+    return place * std::max(half_extent_m - problem.nominal_miss_m, 0.0) * edge;
   };
   const Eigen::Vector3d& outward = face.plane.outward;
   const Eigen::Vector3d on_u = along(face.edge_u, face.half_extent_m.x());
   const Eigen::Vector3d on_v = along(face.edge_v(), face.half_extent_m.y());
-  const double tilt_rad = chance() * problem.tilt_max_rad;
+  const double even_tilt = chance();
+  const double tilt_rad = (on_rim() ? std::cbrt(even_tilt) : even_tilt) * problem.tilt_max_rad;
   const double direction_rad = chance() * 2.0 * std::numbers::pi;
   const double turn_rad = chance() * 2.0 * std::numbers::pi;
 

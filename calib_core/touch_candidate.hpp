@@ -28,8 +28,11 @@ struct TouchPose {
 };
 
 /// A point on the face, at least the nominal miss inside its rectangle, a tilt from 0 to the cell's limit in
-/// any direction and a turn about the stylus, all evenly spread.
-TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, UniformChance& chance);
+/// any direction and a turn about the stylus, all evenly spread. With a `rim_share` so many of the places are
+/// as far out as they may be, along either edge, and so many of the tilts nearer to the limit: what tells
+/// most is found there.
+TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, UniformChance& chance,
+                            double rim_share = 0.0);
 
 /// The heights of a touch over its contact plane, along the outward normal; metres.
 struct TouchHeights {
@@ -52,11 +55,13 @@ TouchedFace find_touched(const PlanningProblem& problem, int face);
 ///
 /// The orientation is kept on a straight line along the normal, from `clear` to the search end; on it, every
 /// 10 mm at most, the joints are in range (less one degree) and away from singular postures, and
-/// - everything keeps the nominal miss (and its own margin) to every obstacle, as the true arm may be that far
+/// - everything keeps the nominal miss (and its own margin) to every obstacle, as the true arm may be that
+/// far
 ///   from the nominal one;
 /// - the probe's bodies need not keep it to the obstacles of TouchedFace::is_behind, as the contact ends the
-///   search before the face: it is enough that each stays over the face's plane by kOrientationMiss times its distance from the ball, which the
-///   ball's place does not change, and if it does not (beside an edge), that it keeps the nominal miss;
+///   search before the face: it is enough that each stays over the face's plane by kOrientationMiss times its
+///   distance from the ball, which the ball's place does not change, and if it does not (beside an edge),
+///   that it keeps the nominal miss;
 /// - behind the contact the obstacles of TouchedFace::is_behind do not count: the true ball is stopped before
 ///   any body gets nearer to them than at the contact.
 std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& problem, const TouchedFace& around,

@@ -16,8 +16,8 @@
 namespace calib {
 namespace {
 
-constexpr int kRoundsMax = 12;
-constexpr double kWorthIt = 3e-4;
+constexpr int kRoundsMax = 20;
+constexpr double kWorthIt = 3e-5;
 
 /// What is known of an unknown before any touch, where nothing is: this share of what one touch tells of it
 /// on average. Enough for an inverse, nothing beside the touches.
