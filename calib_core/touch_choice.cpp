@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <sstream>
 #include <stdexcept>
 
 #include "calib_core/assess.hpp"
@@ -12,6 +13,7 @@
 #include "calib_core/tip_uncertainty.hpp"
 #include "calib_core/touch_exchange.hpp"
 #include "calib_core/touch_selection.hpp"
+#include "calib_core/units.hpp"
 
 namespace calib {
 namespace {
@@ -110,15 +112,39 @@ class Chooser {
 
   /// Nothing when the region holds no posture.
   [[nodiscard]] std::optional<double> tip_rms_m() const {
-    std::vector<Touch> touches;
-    for (const std::size_t i : chosen()) touches.push_back(touch_of(candidates_[i]));
-    return region_.rms_m(expected_.figures(std::move(touches)).certainty.covariance());
+    return region_.rms_m(expected_.figures(touches()).certainty.covariance());
+  }
+
+  /// Whether a tip error is asked for that no posture has.
+  [[nodiscard]] bool is_region_missing() const {
+    return region_.posture_count == 0 && (by_tip() || problem_.goal.tip_rms_max_m);
+  }
+
+  /// What is chosen, and that it is not enough.
+  [[nodiscard]] ChoiceFailure not_enough() const {
+    const Certainty certainty = expected_.figures(touches()).certainty;
+    const auto rms_m = [&](const UncertaintySource& source) { return *region_.rms_m(source.covariance); };
+    const UncertaintySource& most = *std::ranges::max_element(certainty.sources, {}, rms_m);
+    const double best_m = *region_.rms_m(certainty.covariance());
+    std::ostringstream reason;
+    reason.precision(3);
+    reason << chosen().size() << " touches leave " << mm_from_metres(best_m) << " mm rms "
+           << (problem_.goal.criterion == PlanCriterion::kTipInJointRanges ? "over the joint ranges"
+                                                                           : "in the workspace box")
+           << ", most of it from " << most.name << " (" << mm_from_metres(rms_m(most)) << " mm)";
+    return {best_m, reason.str()};
   }
 
  private:
   [[nodiscard]] bool by_tip() const {
     return problem_.goal.criterion == PlanCriterion::kTipInBox ||
            problem_.goal.criterion == PlanCriterion::kTipInJointRanges;
+  }
+
+  [[nodiscard]] std::vector<Touch> touches() const {
+    std::vector<Touch> touches;
+    for (const std::size_t i : chosen()) touches.push_back(touch_of(candidates_[i]));
+    return touches;
   }
 
   static Touch touch_of(const TouchCandidate& candidate) {
@@ -182,12 +208,9 @@ std::optional<ChoiceFailure> settle_fewest(const PlanningProblem& problem, Choos
   const double wanted_m = *problem.goal.tip_rms_max_m;
   const auto reaches = [&](int count) {
     chooser.settle(count);
-    const auto rms_m = chooser.tip_rms_m();
-    return rms_m && *rms_m <= wanted_m;
+    return chooser.tip_rms_m().value() <= wanted_m;
   };
-  if (!reaches(problem.goal.fit_count)) {
-    return ChoiceFailure{chooser.tip_rms_m(), {}};
-  }
+  if (!reaches(problem.goal.fit_count)) return chooser.not_enough();
   std::vector<std::size_t> enough = chooser.chosen();
   int too_few = least - 1;
   while (std::ssize(enough) - too_few > 1) {
@@ -244,6 +267,10 @@ std::variant<TouchChoice, ChoiceFailure> choose_touches(const PlanningProblem& p
                                                         const std::function<void(double)>& progress) {
   Expectation expected(problem);
   Chooser chooser(problem, candidates, expected);
+  if (chooser.is_region_missing()) {
+    return ChoiceFailure{
+        .reason = "no posture in the joint ranges has the tip in the region that it is to be right in"};
+  }
   if (progress) progress(0.2);
   if (problem.goal.tip_rms_max_m) {
     if (auto failure = settle_fewest(problem, chooser, least_count(problem, expected))) return *failure;

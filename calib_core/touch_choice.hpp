@@ -25,14 +25,14 @@ struct TouchChoice {
   std::vector<std::size_t> fit;       // in no order
   std::vector<std::size_t> held_out;  // apart from the fitted ones and from each other, faces in turn
   /// Predicted over the region of the criterion, the workspace box for those that have none; metres. Nothing
-  /// when no posture has the tip in that box.
+  /// when no posture has the tip in that box and the criterion does not ask for it.
   std::optional<double> tip_rms_m;
 };
 
-/// The wanted accuracy cannot be had.
+/// The wanted accuracy cannot be had, or there is no posture that it could be had in.
 struct ChoiceFailure {
-  std::optional<double> best_tip_rms_m;  // with all touches that are allowed; nothing as in TouchChoice
-  std::string reason;                    // one sentence
+  std::optional<double> best_tip_rms_m;  // with all touches that are allowed
+  std::string reason;                    // what they leave and where most of it comes from
 };
 
 /// Chooses by problem.goal: greedily, then by exchange of single touches (Fedorov, Theory of Optimal

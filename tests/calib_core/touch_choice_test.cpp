@@ -1,5 +1,6 @@
 #include "calib_core/touch_choice.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -203,16 +204,20 @@ TEST(TouchChoice, TellsTheBestThatCanBeHadWhenAnAccuracyCannot) {
   const auto* failure = std::get_if<ChoiceFailure>(&answer);
   ASSERT_NE(failure, nullptr);
   EXPECT_DOUBLE_EQ(failure->best_tip_rms_m.value(), best_m);
+  EXPECT_THAT(failure->reason,
+              testing::MatchesRegex("40 touches leave 0\\.[0-9]+ mm rms over the joint ranges, "
+                                    "most of it from touch_noise \\(0\\.[0-9]+ mm\\)"));
 }
 
-TEST(TouchChoice, HasNoFigureForABoxOutOfReach) {
+TEST(TouchChoice, RefusesABoxOutOfReach) {
   PlanningProblem problem = problem_by(PlanCriterion::kTipInBox);
   problem.workspace_box = {"far", {5.0, 5.0, 5.0}, {6.0, 6.0, 6.0}};
-  problem.goal.tip_rms_max_m = 1e-4;
   const auto answer = choose_touches(problem, candidates());
   const auto* failure = std::get_if<ChoiceFailure>(&answer);
   ASSERT_NE(failure, nullptr);
   EXPECT_EQ(failure->best_tip_rms_m, std::nullopt);
+  problem.goal.criterion = PlanCriterion::kConditionNumber;  // which asks nothing of the box
+  EXPECT_EQ(chosen(problem).tip_rms_m, std::nullopt);
 }
 
 TEST(TouchChoice, RefusesAFaceWithFewerCandidatesThanItNeeds) {
