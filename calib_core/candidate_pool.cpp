@@ -4,9 +4,10 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string>
+#include <variant>
 
 #include "calib_core/inverse_kinematics.hpp"
 
@@ -21,93 +22,87 @@ constexpr double kRimShare = 0.7;
 /// Poses between two reports of progress.
 constexpr int kPosesInARow = 256;
 
-bool differ_by_whole_turns(const JointVector& a, const JointVector& b) {
-  constexpr double kSameRad = 1e-6;
-  return std::ranges::all_of(JointVector(a - b), [](double difference) {
-    return std::abs(std::remainder(difference, 2.0 * std::numbers::pi)) < kSameRad;
-  });
-}
-
-/// One posture a branch: of those that differ by whole turns only the one nearest to the park posture.
-std::vector<JointVector> postures_of(const PlanningProblem& problem, const TouchPose& pose) {
-  std::vector<JointVector> all =
-      inverse_kinematics(problem.nominal, problem.joint_ranges, pose.block_from_tip);
-  std::ranges::stable_sort(all, {},
-                           [&](const JointVector& joints) { return (joints - problem.park_joints).norm(); });
-  std::vector<JointVector> branches;
-  for (const JointVector& joints : all) {
-    const bool is_new = std::ranges::none_of(
-        branches, [&](const JointVector& branch) { return differ_by_whole_turns(joints, branch); });
-    if (is_new) branches.push_back(joints);
+/// The same posture as near to `wanted` as whole turns bring it within the ranges; nothing when no turn does.
+std::optional<JointVector> turned_into(const JointRanges& ranges, const JointVector& turns,
+                                       const JointVector& wanted, JointVector joints) {
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const double turn = turns[joint];
+    double& angle = joints[joint];
+    angle += turn * std::nearbyint((wanted[joint] - angle) / turn);
+    if (angle < ranges.lower[joint]) angle += turn * std::ceil((ranges.lower[joint] - angle) / turn);
+    if (angle > ranges.upper[joint]) angle -= turn * std::ceil((angle - ranges.upper[joint]) / turn);
   }
-  return branches;
-}
-
-std::string why_no_posture(const PlanningProblem& problem, const TouchPose& pose) {
-  const JointVector half_turn = JointVector::Constant(std::numbers::pi);
-  const bool reachable =
-      !inverse_kinematics(problem.nominal, {-half_turn, half_turn}, pose.block_from_tip).empty();
-  return reachable ? "joint ranges" : "out of reach";
+  return ranges.contains(joints) ? std::optional(joints) : std::nullopt;
 }
 
 /// Tries poses of one face.
 class FaceSearch {
  public:
-  FaceSearch(const PlanningProblem& problem, int face, UniformChance& chance)
-      : problem_(problem), face_(face), around_(find_touched(problem, face)), chance_(chance) {}
+  FaceSearch(const PlanningProblem& problem, const TouchMaker& maker, int face, UniformChance& chance)
+      : problem_(problem), maker_(maker), around_(find_touched(problem, face)), chance_(chance) {
+    effort_.face = face;
+  }
 
   void try_pose(std::vector<TouchCandidate>& candidates) {
     ++poses_;
-    const TouchPose pose =
-        sample_touch_pose(problem_, problem_.faces[static_cast<std::size_t>(face_)], chance_, kRimShare);
-    const auto postures = postures_of(problem_, pose);
-    if (postures.empty()) refuse(why_no_posture(problem_, pose));
-    for (const JointVector& joints : postures) {
-      const auto touch = make_touch(problem_, around_, pose, joints);
-      if (const auto* trouble = std::get_if<std::string>(&touch)) {
-        refuse(*trouble);
+    const TouchPose pose = sample_touch_pose(problem_, problem_.faces[static_cast<std::size_t>(effort_.face)],
+                                             chance_, kRimShare);
+    const Postures branches = maker_.inverse().solve(pose.block_from_tip);
+    int in_range = 0;
+    for (const JointVector& branch : branches) {
+      const auto joints =
+          turned_into(problem_.joint_ranges, maker_.inverse().turns(), problem_.park_joints, branch);
+      if (!joints) continue;
+      ++in_range;
+      ++effort_.tried;
+      const auto touch = maker_.make(around_, pose, *joints);
+      if (const auto* refusal = std::get_if<Refusal>(&touch)) {
+        ++refusals_[*refusal];
       } else {
-        ++tried_;
-        ++feasible_;
-        candidates.push_back({face_, pose, joints, std::get<PlannedTouch>(touch).clear_joints});
+        ++effort_.feasible;
+        candidates.push_back({effort_.face, pose, *joints, std::get<PlannedTouch>(touch).clear_joints});
       }
     }
+    if (in_range > 0) return;
+    ++effort_.tried;
+    ++(branches.empty() ? out_of_reach_ : out_of_ranges_);
   }
 
   [[nodiscard]] int poses() const { return poses_; }
-  [[nodiscard]] int feasible() const { return feasible_; }
+  [[nodiscard]] int feasible() const { return effort_.feasible; }
 
   [[nodiscard]] FaceEffort effort() const {
-    FaceEffort effort{.face = face_, .tried = tried_, .feasible = feasible_};
-    for (const auto& [reason, count] : troubles_) effort.obstructions.push_back({reason, count});
+    std::map<std::string, int> counts;  // causes that read alike are one
+    for (const auto& [refusal, count] : refusals_) counts[describe(problem_, refusal)] += count;
+    if (out_of_reach_ > 0) counts["out of reach"] += out_of_reach_;
+    if (out_of_ranges_ > 0) counts["joint ranges"] += out_of_ranges_;
+    FaceEffort effort = effort_;
+    for (const auto& [reason, count] : counts) effort.obstructions.push_back({reason, count});
     std::ranges::stable_sort(effort.obstructions, std::ranges::greater{}, &Obstruction::count);
     return effort;
   }
 
  private:
-  void refuse(const std::string& trouble) {
-    ++tried_;
-    ++troubles_[trouble];
-  }
-
   const PlanningProblem& problem_;
-  int face_;
+  const TouchMaker& maker_;
   TouchedFace around_;
   UniformChance& chance_;
-  int poses_ = 0, tried_ = 0, feasible_ = 0;
-  std::map<std::string, int> troubles_;
+  int poses_ = 0, out_of_reach_ = 0, out_of_ranges_ = 0;
+  FaceEffort effort_;
+  std::map<Refusal, int> refusals_;
 };
 
 }  // namespace
 
 CandidatePool find_candidates(const PlanningProblem& problem, const PlanningProgress& progress) {
+  const TouchMaker maker(problem);
   UniformChance chance(problem.seed);
   std::vector<FaceSearch> searches;
   for (const TouchRequest& request : problem.requests) {
     if (request.face < 0 || static_cast<std::size_t>(request.face) >= problem.faces.size()) {
       throw std::logic_error("touches are wanted on a face that does not exist");
     }
-    searches.emplace_back(problem, request.face, chance);
+    searches.emplace_back(problem, maker, request.face, chance);
   }
 
   CandidatePool pool;

@@ -11,7 +11,7 @@ Segment place(const Capsule& body, const Chain& chain) {
   return {block_from_frame * body.from_m, block_from_frame * body.to_m};
 }
 
-double segment_box_distance_m(const Segment& segment, const Box& box) {
+Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box) {
   const Eigen::Vector3d way = segment.to_m - segment.from_m;
   // From the box to a point: how far the point is outside it, axis by axis.
   const auto outside = [&](double t) -> Eigen::Vector3d {
@@ -21,8 +21,8 @@ double segment_box_distance_m(const Segment& segment, const Box& box) {
   // Half the derivative of the squared distance: continuous, never falling, linear between the places where
   // the segment crosses one of the box's six planes. Its zero is the nearest point.
   const auto slope = [&](double t) { return outside(t).dot(way); };
-  if (slope(0.0) >= 0.0) return outside(0.0).norm();
-  if (slope(1.0) <= 0.0) return outside(1.0).norm();
+  if (slope(0.0) >= 0.0) return outside(0.0);
+  if (slope(1.0) <= 0.0) return outside(1.0);
 
   double before = 0.0, after = 1.0;
   double slope_before = slope(0.0), slope_after = slope(1.0);
@@ -37,7 +37,19 @@ double segment_box_distance_m(const Segment& segment, const Box& box) {
     }
   }
   const double nearest = before - slope_before * (after - before) / (slope_after - slope_before);
-  return outside(nearest).norm();
+  return outside(nearest);
+}
+
+double segment_box_distance_m(const Segment& segment, const Box& box) {
+  return segment_box_gap_m(segment, box).norm();
+}
+
+bool is_apart(const Segment& segment, const Box& box, double distance_m) {
+  const auto before =
+      segment.from_m.cwiseMax(segment.to_m) - box.min_m;  // negative: all of it before the box
+  const auto behind = segment.from_m.cwiseMin(segment.to_m) - box.max_m;
+  if (std::max(behind.maxCoeff(), -before.minCoeff()) >= distance_m) return true;
+  return segment_box_distance_m(segment, box) >= distance_m;
 }
 
 double capsule_box_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, double radius_m,
@@ -61,6 +73,14 @@ double segment_distance_m(const Eigen::Vector3d& from_a, const Eigen::Vector3d& 
   return (apart + on_a * a - on_b * b).norm();
 }
 
+bool is_apart(const Segment& a, const Segment& b, double distance_m) {
+  // Of spheres around them: |a| + |b| + 2 distance at most, twice as large.
+  const double lengths_m = (a.to_m - a.from_m).norm() + (b.to_m - b.from_m).norm();
+  const double needed_m = lengths_m + 2.0 * distance_m;
+  if ((a.from_m + a.to_m - b.from_m - b.to_m).squaredNorm() >= needed_m * needed_m) return true;
+  return segment_distance_m(a.from_m, a.to_m, b.from_m, b.to_m) >= distance_m;
+}
+
 std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain, double clearance_m) {
   std::vector<Segment> placed;
   placed.reserve(scene.bodies.size());
@@ -68,15 +88,16 @@ std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain,
     const Capsule& body = scene.bodies[i];
     const Segment& here = placed.emplace_back(place(body, chain));
     for (const Box& obstacle : scene.obstacles) {
-      const double distance_m = segment_box_distance_m(here, obstacle) - body.radius_m;
-      if (!(distance_m >= clearance_m + body.margin_m)) return Clash{body.name, obstacle.name, distance_m};
+      if (is_apart(here, obstacle, body.radius_m + clearance_m + body.margin_m)) continue;
+      return Clash{body.name, obstacle.name, segment_box_distance_m(here, obstacle) - body.radius_m};
     }
     for (std::size_t j = 0; j < i; ++j) {
       const Capsule& other = scene.bodies[j];
+      const double radii_m = body.radius_m + other.radius_m;
       if (are_neighbours(body, other)) continue;
-      const double distance_m = segment_distance_m(here.from_m, here.to_m, placed[j].from_m, placed[j].to_m) -
-                                body.radius_m - other.radius_m;
-      if (!(distance_m >= self_clearance_m(clearance_m))) return Clash{body.name, other.name, distance_m};
+      if (is_apart(here, placed[j], radii_m + self_clearance_m(clearance_m))) continue;
+      return Clash{body.name, other.name,
+                   segment_distance_m(here.from_m, here.to_m, placed[j].from_m, placed[j].to_m) - radii_m};
     }
   }
   return std::nullopt;

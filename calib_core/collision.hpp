@@ -58,8 +58,14 @@ inline bool are_neighbours(const Capsule& a, const Capsule& b) {
   return std::abs(a.frame - b.frame) <= kNeighbourFrames;
 }
 
+/// From a box to the nearest point of a segment, zero when they meet. Exact but for rounding.
+Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box);
+
 /// Shortest distance between a segment and a box, 0 when they meet. Exact but for rounding.
 double segment_box_distance_m(const Segment& segment, const Box& box);
+
+/// segment_box_distance_m() >= distance_m, mostly without working it out; false for what is not a number.
+bool is_apart(const Segment& segment, const Box& box, double distance_m);
 
 /// Distance between the surface of a capsule given by its end points in R_-1 and a box; negative inside is
 /// not promised to be exact, only to be <= 0.
@@ -69,6 +75,9 @@ double capsule_box_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector
 /// Shortest distance between two segments, either of which may be a point.
 double segment_distance_m(const Eigen::Vector3d& from_a, const Eigen::Vector3d& to_a,
                           const Eigen::Vector3d& from_b, const Eigen::Vector3d& to_b);
+
+/// segment_distance_m() >= distance_m, mostly without working it out; false for what is not a number.
+bool is_apart(const Segment& a, const Segment& b, double distance_m);
 
 /// The arm's bodies keep this distance from each other wherever a clearance is asked for that is not smaller:
 /// an arm that is not nominal has its own bodies a few millimetres elsewhere, but they move together.

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "calib_core/inverse_kinematics.hpp"
-#include "calib_core/transfer.hpp"
 #include "calib_core/units.hpp"
 
 namespace calib {
@@ -14,6 +12,9 @@ namespace {
 constexpr double kRangeMarginRad = 1.0 * kRadiansPerDegree;
 constexpr double kLineStepMetres = 0.010;
 constexpr double kSamePlaneMetres = 1e-6;
+/// How often `clear` is moved away from what is near, and how far from where the face alone would have it.
+constexpr int kClearMovesMax = 4;
+constexpr double kClearMoveMaxMetres = 0.100;
 
 /// How far a box reaches along a direction.
 double reach_m(const Box& box, const Eigen::Vector3d& direction) {
@@ -33,91 +34,45 @@ bool is_over_face(const Capsule& body, const Segment& placed, const Plane& face)
   return end_is_over(placed.from_m, body.from_m.norm()) && end_is_over(placed.to_m, body.to_m.norm());
 }
 
-std::string describe(const std::string& body, const std::string& obstacle, double clearance_m) {
-  return "the " + body + " is within " + std::to_string(std::lround(mm_from_metres(clearance_m))) +
-         " mm of the " + obstacle;
-}
-
-/// Why the arm cannot be here in a touch; empty when it can.
-std::string find_trouble(const PlanningProblem& problem, const TouchedFace& around, const Chain& chain,
-                         double height_m) {
-  const Plane& plane = problem.faces[static_cast<std::size_t>(around.face)].plane;
-  for (const Capsule& body : problem.scene.bodies) {
-    const Segment placed = place(body, chain);
-    for (std::size_t i = 0; i < problem.scene.obstacles.size(); ++i) {
-      if (height_m < 0.0 && around.is_behind[i]) continue;
-      const Box& obstacle = problem.scene.obstacles[i];
-      const double apart_m = segment_box_distance_m(placed, obstacle) - body.radius_m;
-      if (apart_m >= problem.nominal_miss_m + body.margin_m) continue;
-      const bool may_be_near = body.frame == kFrameCount - 1 && around.is_behind[i];
-      if (may_be_near && is_over_face(body, placed, plane)) continue;
-      return describe(body.name, obstacle.name, problem.nominal_miss_m);
-    }
-  }
-  const CollisionScene arm_alone{.bodies = problem.scene.bodies};
-  const auto clash = find_clash(arm_alone, chain, kSelfClearanceMetres);
-  return clash ? "the " + clash->body + " hits the " + clash->other : "";
-}
-
+/// Whether a straight motion of the tip asks for a joint faster than kJointRateMax. With v = A q1 + B q2 and
+/// 0 = C q1 + D q2 (joints 1 to 3 and 4 to 6): the largest singular value of the 6 x 3 matrix q = R v.
 bool is_singular(const KinematicModel& model, const Chain& chain) {
-  const Eigen::Matrix<double, 6, 6> joints_from_pose = pose_jacobian(model, chain).inverse();
-  const Eigen::Matrix3d rates = joints_from_pose.leftCols<3>().transpose() * joints_from_pose.leftCols<3>();
-  const double fastest =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(rates, Eigen::EigenvaluesOnly).eigenvalues().maxCoeff();
-  return !(fastest < kJointRateMax * kJointRateMax);
+  const auto jacobian = pose_jacobian(model, chain);
+  const Eigen::Matrix3d wrist_from_arm =
+      -jacobian.bottomRightCorner<3, 3>().inverse() * jacobian.bottomLeftCorner<3, 3>();
+  const Eigen::Matrix3d arm_rates =
+      (jacobian.topLeftCorner<3, 3>() + jacobian.topRightCorner<3, 3>() * wrist_from_arm).inverse();
+  const Eigen::Matrix3d wrist_rates = wrist_from_arm * arm_rates;
+  // Below the limit if limit^2 - R^T R is positive definite: by its leading minors.
+  const Eigen::Matrix3d spare = kJointRateMax * kJointRateMax * Eigen::Matrix3d::Identity() -
+                                arm_rates.transpose() * arm_rates - wrist_rates.transpose() * wrist_rates;
+  return !(spare(0, 0) > 0.0 && spare.topLeftCorner<2, 2>().determinant() > 0.0 && spare.determinant() > 0.0);
 }
 
-/// Follows the touch's line in either direction and keeps what was wrong.
-class LineOfTouch {
- public:
-  LineOfTouch(const PlanningProblem& problem, const TouchedFace& around, const TouchPose& pose)
-      : problem_(problem), around_(around), pose_(pose) {}
-
-  /// From the last height to this one, in steps; nothing when the touch cannot be made, see trouble().
-  std::optional<JointVector> follow(const JointVector& start, double from_m, double to_m) {
-    const auto steps = std::max<long>(std::lround(std::ceil(std::abs(to_m - from_m) / kLineStepMetres)), 1);
-    JointVector joints = start;
-    for (long step = 1; step <= steps; ++step) {
-      const double height_m =
-          from_m + (to_m - from_m) * static_cast<double>(step) / static_cast<double>(steps);
-      Eigen::Isometry3d block_from_tip = pose_.block_from_tip;
-      block_from_tip.pretranslate(height_m * face().plane.outward);
-      const auto next = solve_near(problem_.nominal, block_from_tip, joints);
-      if (!next) {
-        trouble_ = "out of reach along the search";
-        return std::nullopt;
-      }
-      joints = *next;
-      if (!check(joints, height_m)) return std::nullopt;
-    }
-    return joints;
-  }
-
-  bool check(const JointVector& joints, double height_m) {
-    const Chain chain = forward_chain(problem_.nominal, joints);
-    const JointVector margin = JointVector::Constant(kRangeMarginRad);
-    if (!JointRanges{problem_.joint_ranges.lower + margin, problem_.joint_ranges.upper - margin}.contains(
-            joints)) {
-      trouble_ = "joint ranges";
-    } else if (is_singular(problem_.nominal, chain)) {
-      trouble_ = "postures near a singular one";
-    } else {
-      trouble_ = find_trouble(problem_, around_, chain, height_m);
-    }
-    return trouble_.empty();
-  }
-
-  [[nodiscard]] const std::string& trouble() const { return trouble_; }
-  [[nodiscard]] const Face& face() const { return problem_.faces[static_cast<std::size_t>(around_.face)]; }
-
- private:
-  const PlanningProblem& problem_;
-  const TouchedFace& around_;
-  const TouchPose& pose_;
-  std::string trouble_;
-};
+bool is_probe(const Capsule& body) { return body.frame == kFrameCount - 1; }
 
 }  // namespace
+
+std::string describe(const PlanningProblem& problem, const Refusal& refusal) {
+  const auto body = [&](std::size_t index) { return "the " + problem.scene.bodies[index].name; };
+  switch (refusal.cause) {
+    case Refusal::Cause::kJointRanges:
+      return "joint ranges";
+    case Refusal::Cause::kSingular:
+      return "postures near a singular one";
+    case Refusal::Cause::kOutOfReach:
+      return "out of reach along the search";
+    case Refusal::Cause::kNearObstacle:
+      return body(refusal.body) + " is within " +
+             std::to_string(std::lround(mm_from_metres(problem.nominal_miss_m))) + " mm of the " +
+             problem.scene.obstacles[refusal.other].name;
+    case Refusal::Cause::kHitsItself:
+      return body(refusal.body) + " hits " + body(refusal.other);
+    case Refusal::Cause::kNoWay:
+      break;
+  }
+  return "no clear way from the park posture";
+}
 
 TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, UniformChance& chance,
                             double rim_share) {
@@ -172,30 +127,185 @@ TouchedFace find_touched(const PlanningProblem& problem, int face) {
   return around;
 }
 
+TouchMaker::TouchMaker(const PlanningProblem& problem)
+    : problem_(problem),
+      prepared_(prepare(problem.nominal)),
+      inverse_(problem.nominal),
+      ranges_(problem.joint_ranges),
+      travel_scene_(travel_scene(problem)),
+      space_(problem.nominal, travel_scene_, problem.park_joints, problem.nominal_miss_m) {
+  ranges_.lower.array() += kRangeMarginRad;
+  ranges_.upper.array() -= kRangeMarginRad;
+}
+
+/// One touch in the making: goes its way in either direction and keeps what was wrong.
+class TouchMaker::LineOfTouch {
+ public:
+  LineOfTouch(const TouchMaker& maker, const TouchedFace& around, const TouchPose& pose)
+      : maker_(maker), problem_(maker.problem_), around_(around), pose_(pose) {}
+
+  /// From the contact's posture straight to a height, in steps.
+  std::optional<JointVector> follow(const JointVector& contact, double to_m) {
+    const int steps = steps_over(to_m);
+    JointVector joints = contact;
+    for (int step = 1; step <= steps; ++step) {
+      const double height_m = to_m * step / steps;
+      const auto next = maker_.inverse_.follow(moved(height_m * face().plane.outward), joints);
+      if (!next) return refuse({Refusal::Cause::kOutOfReach});
+      joints = *next;
+      if (!check(joints, height_m)) return std::nullopt;
+    }
+    return joints;
+  }
+
+  /// Out of the slow zone from the approach posture, and a way from there.
+  std::optional<JointVector> leave(const JointVector& approach, const TouchHeights& heights) {
+    const Eigen::Vector3d straight_m = heights.clear_m * face().plane.outward;
+    Eigen::Vector3d off_m = straight_m;
+    for (int moves = 0; moves <= kClearMovesMax; ++moves) {
+      const auto clear = maker_.inverse_.follow(moved(off_m), approach);
+      if (!clear || !is_in_range(*clear)) break;
+      const Eigen::Vector3d away_m = out_of_slow_zone_m(*clear);
+      if (away_m.isZero()) {
+        const double way_m = (off_m - heights.approach_m * face().plane.outward).norm();
+        if (!check_move(approach, *clear, way_m, heights.approach_m)) return std::nullopt;
+        if (!is_near_park(maker_.space_, *clear)) break;
+        return clear;
+      }
+      off_m += away_m;
+      if ((off_m - straight_m).norm() > kClearMoveMaxMetres) break;
+    }
+    return refuse({Refusal::Cause::kNoWay});
+  }
+
+  bool check(const JointVector& joints, double height_m) {
+    refusal_ = is_in_range(joints) ? find_refusal(joints, height_m) : Refusal{Refusal::Cause::kJointRanges};
+    return !refusal_;
+  }
+
+  [[nodiscard]] Refusal refusal() const { return refusal_.value(); }
+
+ private:
+  static int steps_over(double way_m) {
+    return std::max(static_cast<int>(std::ceil(std::abs(way_m) / kLineStepMetres)), 1);
+  }
+
+  [[nodiscard]] const Face& face() const { return problem_.faces[static_cast<std::size_t>(around_.face)]; }
+
+  [[nodiscard]] Eigen::Isometry3d moved(const Eigen::Vector3d& off_m) const {
+    Eigen::Isometry3d block_from_tip = pose_.block_from_tip;
+    block_from_tip.translation() += off_m;
+    return block_from_tip;
+  }
+
+  [[nodiscard]] bool is_in_range(const JointVector& joints) const { return maker_.ranges_.contains(joints); }
+
+  std::nullopt_t refuse(const Refusal& refusal) {
+    refusal_ = refusal;
+    return std::nullopt;
+  }
+
+  /// A straight joint move, without its beginning.
+  bool check_move(const JointVector& from, const JointVector& to, double way_m, double height_m) {
+    const int steps = steps_over(way_m);
+    for (int step = 1; step <= steps; ++step) {
+      if (!check(from + (to - from) * step / steps, height_m)) return false;
+    }
+    return true;
+  }
+
+  /// Where to move the tip so that the body deepest in its slow zone leaves it; zero when all are out.
+  [[nodiscard]] Eigen::Vector3d out_of_slow_zone_m(const JointVector& joints) const {
+    constexpr double kToSpareMetres = 1e-4;
+    const Chain chain = forward_chain(maker_.prepared_, joints);
+    double missing_m = 0.0;
+    Eigen::Vector3d away = Eigen::Vector3d::Zero();
+    for (const Capsule& body : maker_.travel_scene_.bodies) {
+      if (!is_probe(body)) continue;
+      const Segment placed = place(body, chain);
+      const double needed_m = body.radius_m + body.margin_m + problem_.nominal_miss_m;
+      for (const Box& obstacle : problem_.scene.obstacles) {
+        if (is_apart(placed, obstacle, needed_m + missing_m)) continue;
+        const Eigen::Vector3d gap_m = segment_box_gap_m(placed, obstacle);
+        if (needed_m - gap_m.norm() <= missing_m) continue;
+        missing_m = needed_m - gap_m.norm();
+        away = gap_m.normalized();
+      }
+    }
+    return missing_m > 0.0 ? Eigen::Vector3d((missing_m + kToSpareMetres) * away) : Eigen::Vector3d::Zero();
+  }
+
+  [[nodiscard]] std::optional<Refusal> find_refusal(const JointVector& joints, double height_m) const {
+    const Chain chain = forward_chain(maker_.prepared_, joints);
+    if (is_singular(problem_.nominal, chain)) return Refusal{Refusal::Cause::kSingular};
+    const auto& bodies = problem_.scene.bodies;
+    std::vector<Segment> placed;
+    placed.reserve(bodies.size());
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      placed.push_back(place(bodies[i], chain));
+      if (const auto obstacle = find_obstacle(bodies[i], placed[i], height_m)) {
+        return Refusal{Refusal::Cause::kNearObstacle, i, *obstacle};
+      }
+    }
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (are_neighbours(bodies[i], bodies[j])) continue;
+        const double apart_m = bodies[i].radius_m + bodies[j].radius_m + kSelfClearanceMetres;
+        if (!is_apart(placed[i], placed[j], apart_m)) return Refusal{Refusal::Cause::kHitsItself, i, j};
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// The first that a body is too near to.
+  [[nodiscard]] std::optional<std::size_t> find_obstacle(const Capsule& body, const Segment& placed,
+                                                         double height_m) const {
+    const auto& obstacles = problem_.scene.obstacles;
+    for (std::size_t i = 0; i < obstacles.size(); ++i) {
+      if (height_m < 0.0 && around_.is_behind[i]) continue;
+      if (is_apart(placed, obstacles[i], body.radius_m + body.margin_m + problem_.nominal_miss_m)) continue;
+      const bool may_be_near = is_probe(body) && around_.is_behind[i];
+      if (may_be_near && is_over_face(body, placed, face().plane)) continue;
+      return i;
+    }
+    return std::nullopt;
+  }
+
+  const TouchMaker& maker_;
+  const PlanningProblem& problem_;
+  const TouchedFace& around_;
+  const TouchPose& pose_;
+  std::optional<Refusal> refusal_;
+};
+
+std::variant<PlannedTouch, Refusal> TouchMaker::make(const TouchedFace& around, const TouchPose& pose,
+                                                     const JointVector& joints) const {
+  const TouchHeights heights = touch_heights(problem_.nominal_miss_m, problem_.standoff_min_m);
+  LineOfTouch line(*this, around, pose);
+  if (!line.check(joints, 0.0)) return line.refusal();
+  const auto approach = line.follow(joints, heights.approach_m);
+  if (!approach) return line.refusal();
+  const auto search_end = line.follow(joints, heights.search_end_m);
+  if (!search_end) return line.refusal();
+  const auto clear = line.leave(*approach, heights);
+  if (!clear) return line.refusal();
+  return PlannedTouch{
+      .face = around.face,
+      .joints = joints,
+      .clear_joints = *clear,
+      .approach_joints = *approach,
+      .search_end_joints = *search_end,
+      .search_direction = -problem_.faces[static_cast<std::size_t>(around.face)].plane.outward,
+      .search_length_m = heights.approach_m - heights.search_end_m,
+      .tilt_rad = pose.tilt_rad,
+      .predicted_miss_m = problem_.nominal_miss_m};
+}
+
 std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& problem, const TouchedFace& around,
                                                    const TouchPose& pose, const JointVector& joints) {
-  const TouchHeights heights = touch_heights(problem.nominal_miss_m, problem.standoff_min_m);
-  LineOfTouch line(problem, around, pose);
-  if (!line.check(joints, 0.0)) return line.trouble();
-  const auto approach = line.follow(joints, 0.0, heights.approach_m);
-  if (!approach) return line.trouble();
-  const auto clear = line.follow(*approach, heights.approach_m, heights.clear_m);
-  if (!clear) return line.trouble();
-  const auto search_end = line.follow(joints, 0.0, heights.search_end_m);
-  if (!search_end) return line.trouble();
-  const CollisionScene scene = travel_scene(problem);
-  if (!is_near_park({problem.nominal, scene, problem.park_joints, problem.nominal_miss_m}, *clear)) {
-    return "no clear way from the park posture";
-  }
-  return PlannedTouch{.face = around.face,
-                      .joints = joints,
-                      .clear_joints = *clear,
-                      .approach_joints = *approach,
-                      .search_end_joints = *search_end,
-                      .search_direction = -line.face().plane.outward,
-                      .search_length_m = heights.approach_m - heights.search_end_m,
-                      .tilt_rad = pose.tilt_rad,
-                      .predicted_miss_m = problem.nominal_miss_m};
+  auto touch = TouchMaker(problem).make(around, pose, joints);
+  if (const auto* refusal = std::get_if<Refusal>(&touch)) return describe(problem, *refusal);
+  return std::get<PlannedTouch>(std::move(touch));
 }
 
 }  // namespace calib

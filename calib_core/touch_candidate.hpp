@@ -1,13 +1,17 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <compare>
+#include <cstddef>
 #include <cstdint>
 #include <random>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "calib_core/inverse_kinematics.hpp"
 #include "calib_core/touch_planning.hpp"
+#include "calib_core/transfer.hpp"
 
 namespace calib {
 
@@ -51,19 +55,58 @@ struct TouchedFace {
 };
 TouchedFace find_touched(const PlanningProblem& problem, int face);
 
-/// The whole touch in one posture of the pose, or in a few words why it cannot be made.
-///
-/// The orientation is kept on a straight line along the normal, from `clear` to the search end; on it, every
-/// 10 mm at most, the joints are in range (less one degree) and away from singular postures, and
-/// - everything keeps the nominal miss (and its own margin) to every obstacle, as the true arm may be that
-/// far
-///   from the nominal one;
-/// - the probe's bodies need not keep it to the obstacles of TouchedFace::is_behind, as the contact ends the
-///   search before the face: it is enough that each stays over the face's plane by kOrientationMiss times its
-///   distance from the ball, which the ball's place does not change, and if it does not (beside an edge),
-///   that it keeps the nominal miss;
-/// - behind the contact the obstacles of TouchedFace::is_behind do not count: the true ball is stopped before
-///   any body gets nearer to them than at the contact.
+/// What kept a touch from being made.
+struct Refusal {
+  enum class Cause { kJointRanges, kSingular, kOutOfReach, kNearObstacle, kHitsItself, kNoWay };
+  Cause cause = Cause::kJointRanges;
+  std::size_t body = 0;   // of the scene, for the two that name one
+  std::size_t other = 0;  // obstacle or body
+  auto operator<=>(const Refusal&) const = default;
+};
+
+/// In a few words: "joint ranges", "the forearm is within 12 mm of the table".
+std::string describe(const PlanningProblem& problem, const Refusal& refusal);
+
+/// Makes the touches of one problem, which must outlive it. Holds what no touch changes.
+class TouchMaker {
+ public:
+  explicit TouchMaker(const PlanningProblem& problem);
+
+  /// The whole touch in one posture of the pose.
+  ///
+  /// The orientation is kept. The touch and the search are on a straight line along the normal, from
+  /// `approach` to the search end; from `approach` a straight joint move leads to `clear`, which lies at
+  /// least kSlowZoneMetres farther out and from there away from all that the probe would have in its slow
+  /// zone. On the whole way, every 10 mm at most, the joints are in range (less one degree) and away from
+  /// singular postures, and
+  /// - everything keeps the nominal miss (and its own margin) to every obstacle, as the true arm may be that
+  ///   far from the nominal one;
+  /// - the probe's bodies need not keep it to the obstacles of TouchedFace::is_behind, as the contact ends
+  /// the
+  ///   search before the face: it is enough that each stays over the face's plane by kOrientationMiss times
+  ///   its distance from the ball, which the ball's place does not change, and if it does not (beside an
+  ///   edge), that it keeps the nominal miss;
+  /// - behind the contact the obstacles of TouchedFace::is_behind do not count: the true ball is stopped
+  /// before
+  ///   any body gets nearer to them than at the contact.
+  /// From `clear` a way leads to the park posture: see is_near_park.
+  [[nodiscard]] std::variant<PlannedTouch, Refusal> make(const TouchedFace& around, const TouchPose& pose,
+                                                         const JointVector& joints) const;
+
+  [[nodiscard]] const InverseKinematics& inverse() const { return inverse_; }
+
+ private:
+  class LineOfTouch;
+
+  const PlanningProblem& problem_;
+  PreparedModel prepared_;
+  InverseKinematics inverse_;
+  JointRanges ranges_;
+  CollisionScene travel_scene_;
+  TransferSpace space_;
+};
+
+/// TouchMaker for a single touch; a text where it cannot be made.
 std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& problem, const TouchedFace& around,
                                                    const TouchPose& pose, const JointVector& joints);
 

@@ -20,8 +20,8 @@
 
 namespace calib {
 
-/// One touch to make. Approach, search end and clear posture keep the orientation that `joints` has; they lie
-/// on the face's outward normal through the touched point.
+/// One touch to make. Approach, search end and clear posture keep the orientation that `joints` has; the first
+/// two lie on the face's outward normal through the touched point, the last where TouchMaker puts it.
 struct PlannedTouch {
   int face = 0;
   TouchRole role = TouchRole::kFit;

@@ -4,8 +4,6 @@
 #include <map>
 #include <utility>
 
-#include "calib_core/swept_collision.hpp"
-
 namespace calib {
 namespace {
 
@@ -16,14 +14,10 @@ std::vector<JointVector> raised_postures(const TransferSpace& space, const Joint
   std::vector<JointVector> raised;
   for (const auto& moved : kRaisingJoints) {
     JointVector posture = joints;
-    for (const int joint : moved) posture[joint] = space.park_joints[joint];
+    for (const int joint : moved) posture[joint] = space.park_joints()[joint];
     raised.push_back(posture);
   }
   return raised;
-}
-
-bool is_clear(const TransferSpace& space, const JointVector& from, const JointVector& to) {
-  return !find_clash_on_way(space.scene, space.model, from, to, space.clearance_m);
 }
 
 using Way = std::vector<std::size_t>;  // indices of postures, both ends included
@@ -59,7 +53,7 @@ std::vector<Way> possible_ways(std::size_t raised_count) {
 
 std::optional<std::vector<JointVector>> find_way(const TransferSpace& space, const JointVector& from,
                                                  const JointVector& to) {
-  std::vector<JointVector> postures{from, to, space.park_joints};
+  std::vector<JointVector> postures{from, to, space.park_joints()};
   for (const JointVector& end : {from, to}) {
     for (const JointVector& raised : raised_postures(space, end)) postures.push_back(raised);
   }
@@ -69,7 +63,7 @@ std::optional<std::vector<JointVector>> find_way(const TransferSpace& space, con
   std::map<std::pair<std::size_t, std::size_t>, bool> known;
   const auto move_is_clear = [&](std::size_t a, std::size_t b) {
     const auto [entry, is_new] = known.try_emplace({a, b}, false);
-    if (is_new) entry->second = is_clear(space, postures[a], postures[b]);
+    if (is_new) entry->second = space.is_clear(postures[a], postures[b]);
     return entry->second;
   };
   for (const Way& way : ways) {
@@ -85,9 +79,9 @@ std::optional<std::vector<JointVector>> find_way(const TransferSpace& space, con
 
 bool is_near_park(const TransferSpace& space, const JointVector& joints) {
   for (const JointVector& raised : raised_postures(space, joints)) {
-    if (is_clear(space, joints, raised) && is_clear(space, raised, space.park_joints)) return true;
+    if (space.is_clear(joints, raised) && space.is_clear(raised, space.park_joints())) return true;
   }
-  return is_clear(space, joints, space.park_joints);
+  return space.is_clear(joints, space.park_joints());
 }
 
 }  // namespace calib

@@ -6,15 +6,27 @@
 #include "calib_core/collision.hpp"
 #include "calib_core/joint_vector.hpp"
 #include "calib_core/kinematic_model.hpp"
+#include "calib_core/swept_collision.hpp"
 
 namespace calib {
 
-/// What the arm moves in between two touches.
-struct TransferSpace {
-  const KinematicModel& model;
-  const CollisionScene& scene;
-  const JointVector& park_joints;  // free of obstacles, the arm raised
-  double clearance_m = 0.0;        // kept by every body to every obstacle
+/// What the arm moves in between touches. Made once for many ways.
+class TransferSpace {
+ public:
+  /// `clearance_m` is kept by every body to every obstacle; the park posture is free of obstacles, with the
+  /// arm raised.
+  TransferSpace(const KinematicModel& model, const CollisionScene& scene, const JointVector& park_joints,
+                double clearance_m)
+      : collision_(scene, model, clearance_m), park_joints_(park_joints) {}
+
+  [[nodiscard]] bool is_clear(const JointVector& from, const JointVector& to) const {
+    return !collision_.find_clash(from, to);
+  }
+  [[nodiscard]] const JointVector& park_joints() const { return park_joints_; }
+
+ private:
+  SweptCollision collision_;
+  JointVector park_joints_;
 };
 
 /// A way has at most this many postures between its ends.

@@ -47,15 +47,64 @@ void expect_every_posture_found(const KinematicModel& model, int count, double d
     const Eigen::Isometry3d pose = forward_kinematics(model, joints);
     const auto solutions = inverse_kinematics(model, ranges, pose);
     ASSERT_LT(nearest(solutions, joints), 1e-9) << joints.transpose();
-    for (const JointVector& solution : solutions) {
-      ASSERT_TRUE(ranges.contains(solution));
-      ASSERT_LT(pose_error(model, solution, pose), 2 * kPoseErrorMax) << joints.transpose();
+    for (std::size_t i = 0; i < solutions.size(); ++i) {
+      ASSERT_TRUE(ranges.contains(solutions[i]));
+      ASSERT_LT(pose_error(model, solutions[i], pose), 2 * kPoseErrorMax) << joints.transpose();
+      for (std::size_t j = 0; j < i; ++j) {
+        ASSERT_GT((solutions[i] - solutions[j]).norm(), 1e-6) << "twice: " << joints.transpose();
+      }
     }
   }
 }
 
+/// Without the whole turns that lie between them.
+double turned_distance(const JointVector& a, const JointVector& b) {
+  JointVector apart = a - b;
+  for (double& angle : apart) angle = std::remainder(angle, kTurn);
+  return apart.norm();
+}
+
 TEST(InverseKinematics, FindsThePostureEachPoseWasMadeFrom) {
-  expect_every_posture_found(paper::nominal(), 20000, 1e-4);
+  expect_every_posture_found(paper::nominal(), 100'000, 1e-4);
+}
+
+TEST(InverseKinematics, FindsEveryPostureThatNewtonFindsFromAnywhere) {
+  std::mt19937_64 chance(2);
+  const KinematicModel model = paper::nominal();
+  const JointRanges everywhere{JointVector::Constant(-kTurn / 2), JointVector::Constant(kTurn / 2)};
+  const InverseKinematics inverse(model);
+  int met = 0, there = 0;
+  for (int i = 0; i < 50; ++i) {
+    const JointVector joints = random_joints(chance, everywhere);
+    if (!is_regular(model, joints, 1e-3)) continue;
+    const Eigen::Isometry3d pose = forward_kinematics(model, joints);
+    const Postures found = inverse.solve(pose);
+    std::vector<bool> is_met(found.size(), false);
+    for (int start = 0; start < 100; ++start) {
+      const auto reached = solve_near(model, pose, random_joints(chance, everywhere));
+      if (!reached) continue;
+      const auto known = std::ranges::find_if(
+          found, [&](const JointVector& each) { return turned_distance(each, *reached) < 1e-6; });
+      ASSERT_NE(known, found.end()) << reached->transpose();
+      is_met[static_cast<std::size_t>(known - found.begin())] = true;
+    }
+    met += static_cast<int>(std::ranges::count(is_met, true));
+    there += static_cast<int>(found.size());
+  }
+  EXPECT_GT(met, there * 9 / 10) << "Newton met too few to say that there are no others";
+}
+
+TEST(InverseKinematics, FollowsTheBranchItStartedOn) {
+  std::mt19937_64 chance(3);
+  const InverseKinematics inverse(paper::nominal());
+  const JointRanges ranges = tx90::joint_ranges();
+  for (int i = 0; i < 10'000; ++i) {
+    const JointVector joints = random_joints(chance, ranges);
+    if (!is_regular(paper::nominal(), joints, 1e-4)) continue;
+    const auto followed = inverse.follow(forward_kinematics(paper::nominal(), joints), joints);
+    ASSERT_TRUE(followed);
+    ASSERT_LT((*followed - joints).norm(), 1e-9) << joints.transpose();
+  }
 }
 
 TEST(InverseKinematics, FindsItForEverySignAndOffsetOfTheFamily) {
@@ -102,6 +151,32 @@ TEST(InverseKinematics, ReachesThePoseWithTheWristStraight) {
   const auto solutions = inverse_kinematics(model, tx90::joint_ranges(), pose);
   ASSERT_FALSE(solutions.empty());
   for (const JointVector& joints : solutions) EXPECT_LT(pose_error(model, joints, pose), 2 * kPoseErrorMax);
+}
+
+void expect_reached_once(const JointVector& joints) {
+  const KinematicModel model = paper::nominal();
+  const Eigen::Isometry3d pose = forward_kinematics(model, joints);
+  const Postures found = InverseKinematics(model).solve(pose);
+  EXPECT_FALSE(found.empty()) << joints.transpose();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_LT(pose_error(model, found[i], pose), kPoseErrorMax) << joints.transpose();
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GT((found[i] - found[j]).norm(), 1e-12);
+  }
+}
+
+TEST(InverseKinematics, ReachesPosesWhereBranchesMeet) {
+  expect_reached_once(tx90::degrees(20, 10, 0, 30, 40, 50));    // the elbow straight
+  expect_reached_once(tx90::degrees(20, 10, 0, 30, 0, 50));     // the wrist too
+  expect_reached_once(tx90::degrees(20, 10, 70, 30, 180, 50));  // the wrist folded
+  // The wrist's centre over joint 1's axis: as near to it as the shoulder's offset allows.
+  const auto reach_m = [](double joint2_rad) {
+    return 0.050 + 0.425 * (std::sin(joint2_rad) + std::sin(joint2_rad + radians_from_degrees(60)));
+  };
+  double low = radians_from_degrees(-60), high = 0.0;
+  for (int i = 0; i < 60; ++i) (reach_m(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
+  JointVector over_axis = tx90::degrees(20, 0, 60, 30, 40, 50);
+  over_axis[1] = low;
+  expect_reached_once(over_axis);
 }
 
 TEST(InverseKinematics, HasNothingForAPoseOutOfReach) {

@@ -349,7 +349,7 @@ TEST(TouchPlanning, NamesTheBodyAndTheObstacleThatStandInTheWay) {
   PlanningProblem problem = problem_of(0.003, 70, 3);
   problem.requests = {{2, 5, 5, 0}};
   problem.goal.fit_count = 5;
-  problem.scene.obstacles.push_back({"lid", {-0.1, -0.260, -0.1}, {0.1, -0.250, 0.1}});
+  problem.scene.obstacles.push_back({"lid", {-0.1, -0.220, -0.1}, {0.1, -0.210, 0.1}});
   const PlanningFailure failure = failure_of(problem);
   EXPECT_EQ(failure.face, 2);
   EXPECT_EQ(failure.reason, "the tool holder is within 12 mm of the lid");

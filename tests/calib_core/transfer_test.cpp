@@ -8,6 +8,8 @@
 namespace calib {
 namespace {
 
+constexpr double kClearanceMetres = 0.012;
+
 class Transfer : public testing::Test {
  protected:
   void expect_clear(const JointVector& from, const std::vector<JointVector>& between,
@@ -16,7 +18,7 @@ class Transfer : public testing::Test {
     auto stops = between;
     stops.push_back(to);
     for (const JointVector& next : stops) {
-      EXPECT_FALSE(find_clash_on_way(scene_, model_, at, next, space_.clearance_m));
+      EXPECT_FALSE(find_clash_on_way(scene_, model_, at, next, kClearanceMetres));
       at = next;
     }
   }
@@ -24,7 +26,7 @@ class Transfer : public testing::Test {
   KinematicModel model_ = paper::nominal();
   CollisionScene scene_ = tx90::scene(0.003);
   JointVector park_ = tx90::park_joints();
-  TransferSpace space_{model_, scene_, park_, 0.012};
+  TransferSpace space_{model_, scene_, park_, kClearanceMetres};
   // On either side of the block, lower than its top.
   JointVector left_ = tx90::degrees(-30, 15, 90, 0, 70, 0);
   JointVector right_ = tx90::degrees(30, 15, 90, 0, 70, 0);
@@ -37,7 +39,7 @@ TEST_F(Transfer, IsEmptyWhenTheDirectMoveIsClear) {
 }
 
 TEST_F(Transfer, GoesOverTheBlockWhenItStandsInTheWay) {
-  ASSERT_TRUE(find_clash_on_way(scene_, model_, left_, right_, space_.clearance_m));
+  ASSERT_TRUE(find_clash_on_way(scene_, model_, left_, right_, kClearanceMetres));
   const auto way = find_way(space_, left_, right_);
   ASSERT_TRUE(way);
   EXPECT_FALSE(way->empty());
@@ -60,13 +62,14 @@ TEST_F(Transfer, FindsNoWayOutOfACage) {
   const Eigen::Vector3d tip = forward_kinematics(model_, left_).translation();
   scene_.obstacles.push_back(
       {"cage", tip + Eigen::Vector3d(-0.3, -0.1, -0.3), tip + Eigen::Vector3d(0.3, -0.09, 0.3)});
-  EXPECT_FALSE(find_way(space_, left_, right_));
-  EXPECT_FALSE(is_near_park(space_, left_));
+  const TransferSpace caged(model_, scene_, park_, kClearanceMetres);
+  EXPECT_FALSE(find_way(caged, left_, right_));
+  EXPECT_FALSE(is_near_park(caged, left_));
 }
 
 TEST_F(Transfer, FindsNoWayFromAStartInsideTheClearance) {
   const JointVector near_table = tx90::degrees(0, 60, 90, 0, 0, 0);
-  ASSERT_TRUE(find_clash(scene_, forward_chain(model_, near_table), space_.clearance_m));
+  ASSERT_TRUE(find_clash(scene_, forward_chain(model_, near_table), kClearanceMetres));
   EXPECT_FALSE(find_way(space_, near_table, park_));
 }
 
