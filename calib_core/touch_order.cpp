@@ -19,7 +19,7 @@ namespace {
 /// The first touches are chosen for what they tell: so many times as there are identifiable parameters.
 constexpr double kTellingShare = 1.2;
 /// What a second of travel has to add to the logarithm of the information's determinant.
-constexpr double kWorthOfASecond = 0.25;
+constexpr double kWorthOfASecond = 0.1;
 /// Information before the first touch, in columns of touches' size: small against that of any touch.
 constexpr double kRidge = 1e-6;
 constexpr double kRankTolerance = 1e-9;
