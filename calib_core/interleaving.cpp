@@ -1,7 +1,6 @@
 #include "calib_core/interleaving.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 
 namespace calib {
@@ -9,8 +8,9 @@ namespace {
 
 int face_count(std::span<const int> faces) { return faces.empty() ? 0 : std::ranges::max(faces) + 1; }
 
-double share(int wanted, int total, int taken) {
-  return static_cast<double>(wanted) * static_cast<double>(taken) / static_cast<double>(total);
+bool is_ahead(int done, int wanted, int total, int taken) {
+  const double share = static_cast<double>(wanted) * static_cast<double>(taken) / static_cast<double>(total);
+  return done - share > kInterleavingSlack;
 }
 
 }  // namespace
@@ -23,11 +23,9 @@ int interleaving_faults(std::span<const int> faces) {
   int faults = 0;
   for (std::size_t i = 0; i < faces.size(); ++i) {
     if (i > 0 && faces[i] == faces[i - 1]) ++faults;
-    ++done[static_cast<std::size_t>(faces[i])];
-    for (std::size_t face = 0; face < count; ++face) {
-      const double even = share(wanted[face], total, static_cast<int>(i) + 1);
-      if (std::abs(done[face] - even) > kInterleavingSlack) ++faults;
-    }
+    const auto face = static_cast<std::size_t>(faces[i]);
+    ++done[face];
+    if (is_ahead(done[face], wanted[face], total, static_cast<int>(i) + 1)) ++faults;
   }
   return faults;
 }
@@ -40,12 +38,9 @@ Interleaving::Interleaving(std::span<const int> faces, int before)
   for (const int face : faces) ++wanted_[static_cast<std::size_t>(face)];
 }
 
-bool Interleaving::keeps_shares(int face) const {
-  for (std::size_t other = 0; other < wanted_.size(); ++other) {
-    const int done = done_[other] + (static_cast<int>(other) == face ? 1 : 0);
-    if (std::abs(done - share(wanted_[other], total_, taken_ + 1)) > kInterleavingSlack) return false;
-  }
-  return true;
+bool Interleaving::keeps_share(int face) const {
+  const auto index = static_cast<std::size_t>(face);
+  return !is_ahead(done_[index] + 1, wanted_[index], total_, taken_ + 1);
 }
 
 /// With this face next, the rest can go on without a face following itself.
@@ -70,8 +65,15 @@ std::vector<int> Interleaving::next_faces() const {
     if (!good.empty()) due = std::move(good);
   };
   narrow([&](int face) { return face != last_; });
-  narrow([&](int face) { return leaves_others_between(face); });
-  narrow([&](int face) { return keeps_shares(face); });
+  if (std::ranges::any_of(due, [&](int face) { return leaves_others_between(face); })) {
+    narrow([&](int face) { return leaves_others_between(face); });
+    narrow([&](int face) { return keeps_share(face); });
+  } else if (!due.empty()) {  // of the face that has too many as many as can be come between the others
+    const auto left = [&](int face) {
+      return wanted_[static_cast<std::size_t>(face)] - done_[static_cast<std::size_t>(face)];
+    };
+    due = {*std::ranges::max_element(due, {}, left)};
+  }
   return due;
 }
 

@@ -5,13 +5,12 @@
 
 namespace calib {
 
-/// How far a sequence of faces is from interleaved: how often a face follows itself, and how often one is
-/// more than kInterleavingSlack touches ahead of its even share. 0 is interleaved; where a face has more
-/// touches than all others together some remain.
-int interleaving_faults(std::span<const int> faces);
-
-/// Touches that a face may be ahead of its share of all touches so far, or behind it.
+/// Touches that a face may be ahead of its even share of those so far.
 inline constexpr double kInterleavingSlack = 2.0;
+
+/// How far a sequence of faces is from interleaved: how often a face follows itself, and how often one is
+/// more than kInterleavingSlack ahead. Where a face has more touches than all others together some are left.
+int interleaving_faults(std::span<const int> faces);
 
 /// Builds a sequence of faces, touch by touch, that ends interleaved as far as the counts allow.
 class Interleaving {
@@ -25,7 +24,7 @@ class Interleaving {
   void take(int face);
 
  private:
-  [[nodiscard]] bool keeps_shares(int face) const;
+  [[nodiscard]] bool keeps_share(int face) const;
   [[nodiscard]] bool leaves_others_between(int face) const;
 
   std::vector<int> wanted_, done_;

@@ -62,11 +62,11 @@ TEST(Interleaving, OfOneFaceIsThatFace) {
   EXPECT_EQ(interleaved({0, 0, 0}, chance), (std::vector{0, 0, 0}));
 }
 
-TEST(Interleaving, FaultsAreFacesThatFollowThemselvesAndThoseAheadOrBehind) {
+TEST(Interleaving, FaultsAreFacesThatFollowThemselvesAndThoseAhead) {
   EXPECT_EQ(interleaving_faults(std::vector{0, 1, 0, 1}), 0);
   EXPECT_EQ(interleaving_faults(std::vector{0, 0, 1, 1}), 2);
-  // Behind the fifth to seventh touch both faces are more than two from their half.
-  EXPECT_EQ(interleaving_faults(faces_with({6, 6})), 10 + 2 * 3);
+  // Face 0 is 2.5 ahead of its half with its fifth touch, and 3 with its sixth.
+  EXPECT_EQ(interleaving_faults(faces_with({6, 6})), 10 + 2);
   EXPECT_EQ(interleaving_faults({}), 0);
 }
 

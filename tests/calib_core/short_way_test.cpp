@@ -59,7 +59,8 @@ TEST(ShortWay, KeepsTheStopsAroundAndAllOfItsOwn) {
   shorten_way(circle.problem(), circle.order, 1, 10, 20);
   EXPECT_LT(way_s(circle.problem(), circle.order), way_s(circle.problem(), given));
   for (std::size_t i = 0; i < given.size(); ++i) {
-    if (i < 10 || i >= 20) EXPECT_EQ(circle.order[i], given[i]) << i;
+    const bool is_around = i < 10 || i >= 20;
+    EXPECT_TRUE(!is_around || circle.order[i] == given[i]) << i;
   }
   EXPECT_TRUE(std::is_permutation(given.begin(), given.end(), circle.order.begin()));
 }
