@@ -1,9 +1,11 @@
 #include "service/run.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "config/identification_problem.hpp"
 #include "service/acquisition/touch_command.hpp"
+#include "service/further_touches.hpp"
 
 namespace cell {
 
@@ -18,12 +20,43 @@ Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string 
       started_at_(std::move(started_at)),
       problem_(identification_problem(regions.cell(), recipe_)) {}
 
-const calib::PlannedTouch* Run::next() const {
-  return touches_done() < touches_total() ? &plan_.touches[touches_.size()] : nullptr;
+void Run::set_plan(calib::TouchPlan plan) {
+  plan_ = std::move(plan);
+  put_off_.assign(plan_.touches.size(), false);
 }
 
-const calib::PlannedTouch* Run::after_next() const {
-  return touches_done() + 1 < touches_total() ? &plan_.touches[touches_.size() + 1] : nullptr;
+const calib::PlannedTouch* Run::next() const { return planned(touches_made()); }
+
+const calib::PlannedTouch* Run::planned(std::size_t index) const {
+  return index < plan_.touches.size() ? &plan_.touches[index] : nullptr;
+}
+
+bool Run::put_off(std::size_t index) {
+  std::size_t last = index;
+  for (std::size_t i = index; i < plan_.touches.size(); ++i) {
+    if (plan_.touches[i].role == plan_.touches[index].role) last = i;
+  }
+  if (put_off_[index] || last == index) return false;
+  put_off_[index] = true;
+  const auto rotate = [&](auto& values) {
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(index);
+    std::rotate(from, from + 1, values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
+  };
+  rotate(plan_.touches);
+  rotate(put_off_);
+  return true;
+}
+
+int Run::drop_fitted(std::size_t first) {
+  const std::size_t before = plan_.touches.size();
+  if (first >= before) return 0;
+  const auto from = plan_.touches.begin() + static_cast<std::ptrdiff_t>(first);
+  plan_.touches.erase(
+      std::remove_if(from, plan_.touches.end(),
+                     [](const calib::PlannedTouch& touch) { return touch.role == calib::TouchRole::kFit; }),
+      plan_.touches.end());
+  put_off_.assign(plan_.touches.size(), false);
+  return static_cast<int>(before - plan_.touches.size());
 }
 
 void Run::add(TouchStore& store, const StoredTouch& touch) {
@@ -37,10 +70,43 @@ bool Run::identify() {
   identified_count_ = touches_.size();
   latest_ = calib::identify(problem_, recipe_.identification);
   predicted_tip_rms_m_.reset();
+  more_would_bring_.reset();
   if (latest_.certainty) {
     predicted_tip_rms_m_ = predicted_rms_m(regions_.tip().workspace_box, *latest_.certainty);
+    more_would_bring_ = weigh_more_touches();
   }
   return true;
+}
+
+bool Run::sees_all() const {
+  return latest_.status == calib::IdentificationStatus::kConverged &&
+         static_cast<int>(latest_.identifiable.columns.size()) >= latest_.attainable.count;
+}
+
+bool Run::is_good_enough() const {
+  if (!recipe_.goal.tip_rms_max_m || !latest_.certainty || !sees_all()) return false;
+  if (latest_.lack_of_fit && !(latest_.lack_of_fit->p >= calib::kLackOfFitWidens)) return false;
+  const bool over_ranges = recipe_.goal.criterion == calib::PlanCriterion::kTipInJointRanges;
+  const auto rms_m =
+      over_ranges ? predicted_rms_m(regions_.tip().joint_ranges, *latest_.certainty) : predicted_tip_rms_m_;
+  return rms_m && *rms_m <= *recipe_.goal.tip_rms_max_m;
+}
+
+std::optional<std::string> Run::weigh_more_touches() const {
+  if (!predicted_tip_rms_m_ || !sees_all()) return std::nullopt;
+  std::vector<calib::Touch> candidates;
+  const auto add_from = [&](std::size_t first) {
+    for (std::size_t i = first; i < plan_.touches.size(); ++i) {
+      const calib::PlannedTouch& touch = plan_.touches[i];
+      if (touch.role == calib::TouchRole::kFit) candidates.push_back({touch.face, touch.joints});
+    }
+  };
+  add_from(touches_made());
+  if (candidates.empty()) add_from(0);
+  const auto further = best_further_touches(problem_, recipe_.identification, latest_, candidates,
+                                            regions_.tip().workspace_box, *predicted_tip_rms_m_);
+  if (!further) return std::nullopt;
+  return describe(*further, *predicted_tip_rms_m_);
 }
 
 }  // namespace cell

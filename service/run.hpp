@@ -26,15 +26,21 @@ class Run {
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
   [[nodiscard]] const std::string& started_at() const { return started_at_; }
 
-  void set_plan(calib::TouchPlan plan) { plan_ = std::move(plan); }
+  void set_plan(calib::TouchPlan plan);
   [[nodiscard]] int touches_total() const { return static_cast<int>(plan_.touches.size()); }
   [[nodiscard]] int touches_done() const { return static_cast<int>(touches_.size()); }
   [[nodiscard]] bool complete() const { return touches_total() > 0 && touches_done() == touches_total(); }
   /// The touch to make now, or null when all are made.
   [[nodiscard]] const calib::PlannedTouch* next() const;
 
-  /// The one behind it, or null.
-  [[nodiscard]] const calib::PlannedTouch* after_next() const;
+  /// The touch at a place of the plan, from 0, or null behind the last.
+  [[nodiscard]] const calib::PlannedTouch* planned(std::size_t index) const;
+  /// How many places of the plan are behind the run: the place of next().
+  [[nodiscard]] std::size_t touches_made() const { return touches_.size(); }
+  /// The touch at this place comes behind all others of its role. False when it did before, or is the last.
+  bool put_off(std::size_t index);
+  /// Leaves out the touches to fit from this place on; how many.
+  int drop_fitted(std::size_t first);
 
   /// Stores the touch, then counts it. Throws what the store throws; the touch does not count then.
   void add(TouchStore& store, const StoredTouch& touch);
@@ -47,18 +53,28 @@ class Run {
   [[nodiscard]] const calib::IdentificationResult& latest() const { return latest_; }
   /// Predicted over the workspace box; nothing as long as there is no honest figure.
   [[nodiscard]] std::optional<double> predicted_tip_rms_m() const { return predicted_tip_rms_m_; }
+  /// The accuracy that the recipe asks for is reached: the predicted tip error is within it, every parameter
+  /// that can be seen is, and the residuals are touch noise. Never where the recipe asks for none.
+  [[nodiscard]] bool is_good_enough() const;
+  /// What would lower predicted_tip_rms_m() most, in words; nothing before all is seen.
+  [[nodiscard]] const std::optional<std::string>& more_would_bring() const { return more_would_bring_; }
 
  private:
+  [[nodiscard]] bool sees_all() const;
+  [[nodiscard]] std::optional<std::string> weigh_more_touches() const;
+
   std::int64_t id_;
   const TipRegions& regions_;
   Recipe recipe_;
   std::string started_at_;
   calib::TouchPlan plan_;
+  std::vector<bool> put_off_;  // one a planned touch
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
   std::size_t identified_count_ = 0;  // of the touches
   calib::IdentificationResult latest_;
   std::optional<double> predicted_tip_rms_m_;
+  std::optional<std::string> more_would_bring_;
 };
 
 }  // namespace cell

@@ -103,6 +103,7 @@ asio::awaitable<bool> Operation::plan() {
     raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
     co_return false;
   }
+  begin_aim();
   publish();
   co_return true;
 }
@@ -122,55 +123,33 @@ asio::awaitable<void> Operation::resume_run() {
   if (permitted) apply(Event::kDone);
 }
 
-/// The way from where the arm stands; nothing when there is none or another state was entered.
-asio::awaitable<std::optional<std::vector<calib::JointVector>>> Operation::way_to(
-    const calib::PlannedTouch& planned) {
-  if (standing_ && way_ahead_) co_return std::exchange(way_ahead_, {});
-  identify();
-  const auto from = co_await standing_joints();
-  if (status_.state != State::kExecute) co_return std::nullopt;
-  if (!from) {
-    co_await wait_for_wake(20ms);  // the link is gone, and its loss is about to be told
-    co_return std::nullopt;
-  }
-  auto way = calib::find_transfer(planning_, *from, planned.clear_joints);
-  if (!way) {
-    raise({FaultCode::kNoSafeWay,
-           fmt::format("to touch {} on plane {}", run_->touches_done() + 1, planned.face + 1)},
-          Event::kAbortFault);
-  }
-  co_return way;
-}
-
 /// One touch. The arm does not wait for arithmetic: what the touch before tells and the way to the touch
 /// behind are worked out while it moves.
 asio::awaitable<void> Operation::make_next_touch() {
-  const calib::PlannedTouch* planned = run_->next();
-  if (!planned) {
+  if (!run_->next()) {
     apply(Event::kDone);
     co_return;
   }
-  const auto via = co_await way_to(*planned);
-  if (!via) co_return;
+  const bool ready = co_await prepare_touch();
+  if (!ready) co_return;
+  const std::vector<calib::JointVector> via = std::move(ahead_->via);
+  made_ = std::move(ahead_->aimed);
+  ahead_.reset();
+  const calib::PlannedTouch touch = made_->touch;
   standing_.reset();
-  open_touch_ = OpenTouch{session_, client_.next_sequence(), *planned};
-  auto answer = client_.touch(touch_command(cell_, *planned, *via));
+  open_touch_ = OpenTouch{session_, client_.next_sequence(), touch};
+  auto answer = client_.touch(touch_command(cell_, touch, via));
   identify();
-  look_ahead(*planned);
+  learn();
+  look_ahead();
   const cs8::TouchReply reply = co_await std::move(answer);
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     open_touch_.reset();
     const OutcomeFault refused = fault_of(*rejected);
     raise(refused.fault, refused.holds ? Event::kHoldFault : Event::kAbortFault);
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
-    take_contact(*planned, reply, *result);
+    take_contact(touch, reply, *result);
   }  // a lost link has been told by lose()
-}
-
-void Operation::look_ahead(const calib::PlannedTouch& from) {
-  way_ahead_.reset();
-  if (const calib::PlannedTouch* behind = run_->after_next())
-    way_ahead_ = calib::find_transfer(planning_, from.clear_joints, behind->clear_joints);
 }
 
 /// The result of all touches so far, unless it is there.
@@ -286,7 +265,8 @@ asio::awaitable<void> Operation::complete_run() {
 asio::awaitable<bool> Operation::park() {
   const auto from = co_await standing_joints();
   if (!from || status_.state != State::kCompleting) co_return false;
-  const auto via = calib::find_transfer(planning_, *from, cell_.park_joints);
+  const auto via = calib::find_aimed_transfer(planning_, *aim_, leaving(*from),
+                                              {cell_.park_joints, std::nullopt, nullptr});
   if (!via) {
     raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kAbortFault);
     co_return false;

@@ -127,6 +127,7 @@ void Operation::publish() {
   status_.identifiable_count.reset();
   status_.condition_number.reset();
   status_.predicted_tip_rms_m.reset();
+  status_.more_would_bring.reset();
   status_.eta_s.reset();
   status_.plane.reset();
   if (run_) {
@@ -138,6 +139,7 @@ void Operation::publish() {
     if (latest.status == calib::IdentificationStatus::kConverged)
       status_.condition_number = latest.iterations.back().condition_number;
     status_.predicted_tip_rms_m = run_->predicted_tip_rms_m();
+    status_.more_would_bring = run_->more_would_bring();
     if (is_active(status_.state)) {
       if (const calib::PlannedTouch* next = run_->next()) status_.plane = next->face + 1;
       if (run_->touches_done() > 0) {

@@ -14,6 +14,7 @@
 #include <variant>
 #include <vector>
 
+#include "calib_core/aim.hpp"
 #include "calib_core/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "cs8_protocol/client.hpp"
@@ -116,9 +117,6 @@ class Operation {
   boost::asio::awaitable<void> resume_run();
   boost::asio::awaitable<bool> plan();
   boost::asio::awaitable<void> make_next_touch();
-  boost::asio::awaitable<std::optional<std::vector<calib::JointVector>>> way_to(
-      const calib::PlannedTouch& planned);
-  void look_ahead(const calib::PlannedTouch& from);
   void identify();
   bool keep_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result);
   void take_contact(const calib::PlannedTouch& planned, const cs8::TouchReply& reply,
@@ -136,11 +134,28 @@ class Operation {
   bool keep_late_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result);
   void close_run(const std::string& outcome);
 
+  /// A touch as it is about to be commanded, and the way to it.
+  struct PreparedTouch {
+    calib::AimedTouch aimed;
+    std::vector<calib::JointVector> via;
+  };
+
+  // which touch comes next, aimed with what the touches before it told (aiming.cpp)
+  void begin_aim();
+  void learn();
+  boost::asio::awaitable<bool> prepare_touch();
+  void look_ahead();
+  void stop_when_good_enough(std::size_t first);
+  std::optional<PreparedTouch> prepared(std::size_t index, const calib::TransferEnd& from);
+  [[nodiscard]] std::optional<PreparedTouch> with_way(std::variant<calib::AimedTouch, std::string> made,
+                                                      const calib::TransferEnd& from) const;
+  [[nodiscard]] calib::TransferEnd leaving(const calib::JointVector& joints) const;
+
   /// A touch whose result was not acknowledged yet: the controller still has it.
   struct OpenTouch {
     std::uint32_t session = 0;
     std::uint32_t sequence = 0;
-    calib::PlannedTouch planned;
+    calib::PlannedTouch planned;  // as it was aimed
   };
 
   boost::asio::any_io_executor executor_;
@@ -163,8 +178,10 @@ class Operation {
   std::map<std::string, calib::TouchPlan> plans_;    // by recipe; the same problem gives the same plan
   calib::PlanningProblem planning_;                  // of the run
   std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
-  /// The way to the next touch, found while the arm makes the one before; as long as the arm is there.
-  std::optional<std::vector<calib::JointVector>> way_ahead_;
+  std::optional<calib::Aim> aim_;               // of the run
+  std::optional<calib::AimedTouch> made_;       // commanded last
+  /// The next touch, found while the arm makes the one before; as long as the arm is there.
+  std::optional<PreparedTouch> ahead_;
   std::uint32_t session_ = 0;  // of the controller's application
   std::optional<OpenTouch> open_touch_;
   std::chrono::steady_clock::time_point told_at_;  // when the controller told its newest state

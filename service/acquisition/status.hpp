@@ -37,7 +37,8 @@ struct Status {
   std::optional<int> plane;  // of the touch under way, from 1
   std::optional<int> identifiable_count;
   std::optional<double> condition_number;
-  std::optional<double> predicted_tip_rms_m;  // over the workspace box
+  std::optional<double> predicted_tip_rms_m;    // over the workspace box
+  std::optional<std::string> more_would_bring;  // "8 more on plane 5: 0.21 to 0.15 mm"
   std::optional<double> eta_s;
   Verdict verdict = Verdict::kNone;
   ControllerView controller;

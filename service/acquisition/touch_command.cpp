@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib_core/aim.hpp"
 #include "calib_core/plane.hpp"
 #include "calib_core/units.hpp"
 #include "cs8_protocol/names.hpp"
@@ -13,7 +14,7 @@
 namespace cell {
 namespace {
 
-static_assert(calib::kTransferPosturesMax <= cs8::kViaCountMax, "a way fits into a command");
+static_assert(calib::kAimedTransferPosturesMax <= cs8::kViaCountMax, "a way fits into a command");
 
 template <class Command>
 void set_via(Command& command, const std::vector<calib::JointVector>& via) {
@@ -137,16 +138,19 @@ Eigen::Vector3d tip_in_block_m(const Cell& cell, const calib::JointVector& joint
 /// How the tip is not on the way of the search; nothing when it is.
 std::optional<std::string> off_the_search(const Cell& cell, const calib::PlannedTouch& planned,
                                           const Eigen::Vector3d& tip_m) {
-  const Eigen::Vector3d off = tip_m - tip_in_block_m(cell, planned.joints);
-  const double along = off.dot(planned.search_direction);
-  const double aside = (off - along * planned.search_direction).norm();
-  // The controller moves the nominal ball on the search line: the contact lies on it, between both its ends.
+  // The controller moves its nominal ball on a straight line, whatever arm the touch was aimed with: the
+  // contact lies on it, between both its ends.
+  const Eigen::Vector3d begin_m = tip_in_block_m(cell, planned.approach_joints);
+  const Eigen::Vector3d search_m = tip_in_block_m(cell, planned.search_end_joints) - begin_m;
+  const Eigen::Vector3d direction = search_m.normalized();
+  const Eigen::Vector3d off = tip_m - (begin_m + 0.5 * search_m);
+  const double along = off.dot(direction);
+  const double aside = (off - along * direction).norm();
   constexpr double kAsideMax = 1e-4;
-  const double half = planned.search_length_m / 2 + kAsideMax;
+  const double half = search_m.norm() / 2 + kAsideMax;
   if (aside <= kAsideMax && std::abs(along) <= half) return std::nullopt;
-  return fmt::format(
-      "its tip is {:.3f} mm beside the search line and {:.3f} mm from the planned touch along it",
-      calib::mm_from_metres(aside), calib::mm_from_metres(along));
+  return fmt::format("its tip is {:.3f} mm beside the search line and {:.3f} mm from its middle along it",
+                     calib::mm_from_metres(aside), calib::mm_from_metres(along));
 }
 
 /// Two touches of one place by an arm that repeats to 0.03 mm, the first at search speed.

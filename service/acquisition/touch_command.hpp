@@ -36,9 +36,9 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
 /// The same of a command that was refused: it holds when a person at the cell can remove the reason.
 OutcomeFault fault_of(const cs8::Rejected& rejected);
 
-/// Why a reported contact cannot be the one that was asked for, or nothing: the nominal model's ball must be
-/// on the way of the search, as far off as the uncalibrated arm may miss; where a second touch is made, both
-/// are, and close together.
+/// Why a reported contact cannot be the one that was commanded, or nothing: the nominal model's ball must be
+/// on the line from the approach posture to the search's end; where a second touch is made, both are, and
+/// close together.
 std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
                                        const cs8::TouchResult& result);
 

@@ -202,6 +202,8 @@ std::string status_text(const json& status) {
         figure(status.at("condition_number"), "{:.0f}"), figure(status.at("predicted_tip_rms_mm"), "{:.3f}"),
         text(status.at("verdict")));
   }
+  if (status.at("more_would_bring").is_string())
+    lines += fmt::format("more        {}\n", text(status.at("more_would_bring")));
   if (status.at("fault_code").is_string()) {
     lines += fmt::format("fault       {}: {}\n  robot     {}\n  next      {}\n",
                          text(status.at("fault_code")), text(status.at("fault_message")),

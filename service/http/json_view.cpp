@@ -57,6 +57,7 @@ std::string status_document(const Status& status) {
                 {"identifiable_count", value_or_null(status.identifiable_count)},
                 {"condition_number", number(status.condition_number)},
                 {"predicted_tip_rms_mm", number_mm(status.predicted_tip_rms_m)},
+                {"more_would_bring", value_or_null(status.more_would_bring)},
                 {"eta_s", number(status.eta_s)},
                 {"verdict", verdict_name(status.verdict)},
                 {"controller_connected", status.controller.connected},

@@ -24,6 +24,7 @@ const Shape kQuietStatus{{"state", "string"},
                          {"identifiable_count", "null"},
                          {"condition_number", "null"},
                          {"predicted_tip_rms_mm", "null"},
+                         {"more_would_bring", "null"},
                          {"eta_s", "null"},
                          {"verdict", "string"},
                          {"controller_connected", "boolean"},
@@ -61,6 +62,7 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.identifiable_count = 3;
   busy.condition_number = 12.5;
   busy.predicted_tip_rms_m = 6e-5;
+  busy.more_would_bring = "8 more on plane 5: 0.21 to 0.15 mm";
   busy.eta_s = 30.0;
   busy.controller.connected = true;
   busy.controller.powered = true;

@@ -15,6 +15,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
+/// Where the nominal tip is `off_m` from where these joints have it.
+calib::JointVector nominal_joints_off(const calib::JointVector& start, const Eigen::Vector3d& off_m) {
+  Eigen::Isometry3d pose = calib::forward_kinematics(edf().arm.model, start);
+  pose.translation() += off_m;
+  return calib::solve_near(edf().arm.model, pose, start).value();
+}
+
 /// A touch in the middle of a search of 30 mm.
 calib::PlannedTouch planned_touch() {
   const calib::Touch& touch = table3_touches().front();
@@ -22,17 +29,14 @@ calib::PlannedTouch planned_touch() {
   return {.face = touch.face,
           .joints = touch.joints,
           .clear_joints = calib::JointVector::Constant(0.1),
-          .approach_joints = calib::JointVector::Constant(0.2),
-          .search_end_joints = calib::JointVector::Constant(0.3),
+          .approach_joints = nominal_joints_off(touch.joints, 0.015 * plane.outward),
+          .search_end_joints = nominal_joints_off(touch.joints, -0.015 * plane.outward),
           .search_direction = -plane.outward,
           .search_length_m = 0.03};
 }
 
 cs8::JointsMicrodeg joints_off(const Eigen::Vector3d& off_m) {
-  const calib::JointVector& start = planned_touch().joints;
-  Eigen::Isometry3d pose = calib::forward_kinematics(edf().arm.model, start);
-  pose.translation() += off_m;
-  return to_wire(calib::solve_near(edf().arm.model, pose, start).value());
+  return to_wire(nominal_joints_off(planned_touch().joints, off_m));
 }
 
 /// What a contact is reported as when the nominal tip is `off_m` from the planned touch, both times.
