@@ -2,12 +2,12 @@
 // simulated cell's own geometry says what is met. No sockets.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cstdio>
 #include <random>
 
 #include "calib_core/aim.hpp"
 #include "calib_core/units.hpp"
-#include "sim_controller/contact.hpp"
 #include "sim_controller/motion.hpp"
 #include "sim_controller/plant.hpp"
 #include "sim_controller/world.hpp"
@@ -22,6 +22,8 @@ constexpr int kRunCount = 200;
 constexpr double kNominalMissMetres = 0.026;
 constexpr int kFitPerFace = 8;
 constexpr int kHeldOutPerFace = 2;
+/// Of the touches that may miss by more than the three standard deviations predicted of them.
+constexpr double kBeyondShareMax = 0.003;
 
 cell::Cell cell_that_misses_much() {
   cell::Cell cell = shipped_cell("demo");
@@ -80,14 +82,15 @@ ErrorVector draw_arm(const Planned& planned, UniformChance& chance) {
 }
 
 struct Flight {
-  std::string trouble;  // "the forearm hit table on the way to touch 3"; empty: none
-  std::vector<AimedContact> contacts;
-  std::vector<double> predicted_m;  // of the commanded touch
-  std::vector<double> off_m;        // of the true ball from where it was aimed to be, at the contact posture
-  std::vector<double> searched_m;   // search lengths
-  int through_park = 0, remade = 0;
+  std::string trouble;              // "the forearm hit table on the way to touch 3"; empty: none
+  std::vector<double> predicted_m;  // miss of each touch, as it was commanded
+  std::vector<double> off_m;        // how far the true ball was from where the touch wanted it
+  std::vector<double> searched_m;   // length of its search
+  double learning_s = 0.0;          // of this machine, in Aim::add
 };
 
+/// One run as the daemon makes it: the next touch is aimed while the arm makes the one before, with all that
+/// is known by then.
 class SimulatedRun {
  public:
   SimulatedRun(const Planned& planned, const ErrorVector& errors, std::uint64_t seed)
@@ -97,120 +100,131 @@ class SimulatedRun {
         chance_(seed) {}
 
   Flight fly() {
-    std::optional<AimedTouch> last;
-    for (std::size_t i = 0; i < planned_.plan.touches.size() && flight_.trouble.empty(); ++i) {
-      const PlannedTouch& planned = planned_.plan.touches[i];
+    const std::size_t count = planned_.plan.touches.size();
+    std::optional<AimedTouch> touch = prepare(0, {planned_.problem.park_joints, std::nullopt, nullptr});
+    for (std::size_t i = 0; i < count && touch && flight_.trouble.empty(); ++i) {
+      sim::Path way = way_;
+      learn();
+      std::optional<AimedTouch> next;
+      if (i + 1 < count) next = prepare(i + 1, end_of(*touch));
       const std::string name =
-          " of touch " + std::to_string(i + 1) + " on plane " + std::to_string(planned.face + 1);
-      auto made = aim_touch(planned_.problem, aim_, planned);
-      if (std::get_if<std::string>(&made)) {
-        ++flight_.remade;
-        made = nominal_touch(planned_.problem, planned);
-      }
-      if (const auto* trouble = std::get_if<std::string>(&made)) {
-        flight_.trouble = *trouble + name;
-        break;
-      }
-      const AimedTouch& aimed = std::get<AimedTouch>(made);
-      const PlannedTouch& touch = aimed.touch;
-      const TransferEnd here = last ? end_of(*last) : TransferEnd{planned_.problem.park_joints, {}, nullptr};
-      const auto way = find_aimed_transfer(planned_.problem, aim_, here, end_of(aimed));
-      if (!way) {
-        flight_.trouble = "no way to the start" + name;
-        break;
-      }
-      flight_.through_park += std::ranges::find(*way, planned_.problem.park_joints) != way->end();
-      sim::Path path{here.joints};
-      path.insert(path.end(), way->begin(), way->end());
-      path.push_back(touch.clear_joints);
-      travel(path, "on the way to the start" + name);
-      travel({touch.clear_joints, touch.approach_joints}, "in the approach" + name);
-      if (flight_.trouble.empty()) search(touch, name);
-      last = aimed;
+          " touch " + std::to_string(i + 1) + " on plane " + std::to_string(touch->touch.face + 1);
+      travel(way, "on the way to" + name);
+      travel({touch->touch.clear_joints, touch->touch.approach_joints}, "in the approach of" + name);
+      if (flight_.trouble.empty()) search(*touch, name);
+      touch = std::move(next);
     }
     return flight_;
   }
 
  private:
-  void travel(const sim::Path& path, const std::string& where) {
-    if (!flight_.trouble.empty()) return;
-    if (const auto hit = sim::testing::find_hit(plant_, path, 1.0))
-      flight_.trouble = "the " + hit->clash.body + " hit " + hit->clash.other + " " + where;
-    if (sim::testing::find_trip(plant_, path, 0.0)) flight_.trouble = "the ball touched something " + where;
+  void learn() {
+    const auto start = std::chrono::steady_clock::now();
+    if (captured_) aim_.add(*captured_);
+    captured_.reset();
+    flight_.learning_s += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
-  void search(const PlannedTouch& touch, const std::string& name) {
+  std::optional<AimedTouch> prepare(std::size_t index, const TransferEnd& from) {
+    const PlannedTouch& planned = planned_.plan.touches[index];
+    for (auto made : {aim_touch(planned_.problem, aim_, planned), nominal_touch(planned_.problem, planned)}) {
+      auto* aimed = std::get_if<AimedTouch>(&made);
+      if (!aimed) continue;
+      const auto via = find_aimed_transfer(planned_.problem, aim_, from, end_of(*aimed));
+      if (!via) continue;
+      way_ = {from.joints};
+      way_.insert(way_.end(), via->begin(), via->end());
+      way_.push_back(aimed->touch.clear_joints);
+      return std::move(*aimed);
+    }
+    flight_.trouble = "touch " + std::to_string(index + 1) + " can neither be aimed nor made as planned";
+    return std::nullopt;
+  }
+
+  void travel(const sim::Path& path, const std::string& where) {
+    if (!flight_.trouble.empty()) return;
+    if (const auto hit = sim::testing::find_hit(plant_, path, 1.0)) {
+      flight_.trouble = "the " + hit->clash.body + " hit " + hit->clash.other + " " + where;
+    } else if (sim::testing::find_trip(plant_, path, 0.0)) {
+      flight_.trouble = "the ball touched something " + where;
+    }
+  }
+
+  void search(const AimedTouch& aimed, const std::string& name) {
+    const PlannedTouch& touch = aimed.touch;
     const double noise_m = planned_.cell.touch_noise_m * sim::gaussian(chance_);
     const sim::StraightLine line = sim::straight_line(plant_, touch.approach_joints, touch.search_end_joints);
     const auto trip = sim::testing::find_trip(plant_, line.path, noise_m);
     if (!trip || *trip <= 0.0) {
-      flight_.trouble = "missed face in the search" + name;
+      flight_.trouble = "no face was met by" + name;
       return;
     }
     if (const auto hit = sim::testing::find_hit(plant_, line.path, *trip))
-      flight_.trouble = "the " + hit->clash.body + " hit " + hit->clash.other + " in the search" + name;
-    const JointVector contact = sim::posture(line.path, *trip);
-    const Eigen::Vector3d ball_m = forward_chain(plant_.truth, contact).tip_in_block_m();
+      flight_.trouble = "the " + hit->clash.body + " hit " + hit->clash.other + " in the search of" + name;
+    captured_ = Touch{.face = touch.face, .joints = sim::posture(line.path, *trip)};
     const Face& face = planned_.problem.faces[static_cast<std::size_t>(touch.face)];
-    const double off_m = signed_distance_m(contact_plane(face, planned_.problem.stylus), ball_m);
-    if (std::abs(off_m) > 5.0 * planned_.cell.touch_noise_m)
-      flight_.trouble = "another face was met in the search" + name;
+    const Eigen::Vector3d ball_m = forward_chain(plant_.truth, captured_->joints).tip_in_block_m();
+    if (std::abs(signed_distance_m(contact_plane(face, planned_.problem.stylus), ball_m)) >
+        6.0 * planned_.cell.touch_noise_m)
+      flight_.trouble = "another face was met by" + name;
     flight_.predicted_m.push_back(touch.predicted_miss_m);
     flight_.searched_m.push_back(line.length_m);
-    const KinematicModel& aimed = touch.predicted_miss_m < kNominalMissMetres ? aim_.model() : plant_.nominal;
-    flight_.off_m.push_back((forward_chain(aimed, touch.joints).tip_in_block_m() -
+    flight_.off_m.push_back((forward_chain(aimed.problem.nominal, touch.joints).tip_in_block_m() -
                              forward_chain(plant_.truth, touch.joints).tip_in_block_m())
                                 .norm());
-    flight_.contacts.push_back(aim_.add({.face = touch.face, .joints = contact}));
   }
 
   const Planned& planned_;
   sim::Plant plant_;
   Aim aim_;
   std::mt19937_64 chance_;
+  sim::Path way_;                  // to the touch prepared last
+  std::optional<Touch> captured_;  // not learnt yet
   Flight flight_;
 };
 
+double share_of(const std::vector<double>& sorted, double share) {
+  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+}
+
 TEST(FiguresOfAiming, ArmsUpToTwiceAsFarOffAsTable3sMeetEveryFaceAndNothingElse) {
   const Planned planned;
-  std::vector<double> worst_off_m(planned.plan.touches.size()),
-      worst_predicted_m = worst_off_m, least_predicted_m = worst_off_m, worst_share = worst_off_m;
-  std::vector<std::vector<double>> off(planned.plan.touches.size()), pred = off;
-  int through_park = 0, remade = 0, contradictions = 0, over = 0, all = 0;
-  double searched_m = 0.0, planned_m = 0.0;
-  for (int run = 0; run < kRunCount; ++run) {
-    UniformChance chance(static_cast<std::uint64_t>(run) + 1);
-    const Flight flight =
-        SimulatedRun(planned, draw_arm(planned, chance), static_cast<std::uint64_t>(run) + 1).fly();
-    EXPECT_EQ(flight.trouble, "") << "seed " << run + 1;
-    remade += flight.remade;
-    through_park += flight.through_park;
-    for (std::size_t i = 0; i < flight.off_m.size(); ++i) {
-      off[i].push_back(flight.off_m[i]);
-      pred[i].push_back(flight.predicted_m[i]);
-      contradictions += flight.contacts[i].contradicts;
-      over += flight.off_m[i] > flight.predicted_m[i];
-      worst_share[i] = std::max(worst_share[i], flight.off_m[i] / flight.predicted_m[i]);
-      ++all;
+  const std::size_t count = planned.plan.touches.size();
+  std::vector<std::vector<double>> off_m(count), predicted_m(count);
+  double searched_m = 0.0, planned_m = 0.0, learning_s = 0.0;
+  int beyond = 0;
+  for (int run = 1; run <= kRunCount; ++run) {
+    const auto seed = static_cast<std::uint64_t>(run);
+    UniformChance chance(seed);
+    const Flight flight = SimulatedRun(planned, draw_arm(planned, chance), seed).fly();
+    EXPECT_EQ(flight.trouble, "") << "seed " << seed;
+    ASSERT_EQ(flight.off_m.size(), count) << "seed " << seed;
+    learning_s += flight.learning_s;
+    for (std::size_t i = 0; i < count; ++i) {
+      off_m[i].push_back(flight.off_m[i]);
+      predicted_m[i].push_back(flight.predicted_m[i]);
       searched_m += flight.searched_m[i];
       planned_m += planned.plan.touches[i].search_length_m;
+      beyond += flight.off_m[i] > flight.predicted_m[i];
     }
   }
-  for (std::size_t i = 0; i < off.size(); ++i) {
-    if (off[i].empty()) continue;
-    std::ranges::sort(off[i]);
-    std::ranges::sort(pred[i]);
-    const auto n = off[i].size();
+  for (std::size_t i = 0; i < count; ++i) {
+    std::ranges::sort(off_m[i]);
+    std::ranges::sort(predicted_m[i]);
     std::printf(
-        "touch %2zu: off 50%% %.2f 95%% %.2f worst %.2f mm; predicted 50%% %.2f least %.2f most %.2f; worst "
-        "share %.2f\n",
-        i + 1, 1e3 * off[i][n / 2], 1e3 * off[i][n * 95 / 100], 1e3 * off[i].back(), 1e3 * pred[i][n / 2],
-        1e3 * pred[i].front(), 1e3 * pred[i].back(), worst_share[i]);
+        "touch %2zu: missed by %5.2f mm in the median, %5.2f (95 %%), %5.2f at worst; predicted %5.2f mm\n",
+        i + 1, mm_from_metres(share_of(off_m[i], 0.5)), mm_from_metres(share_of(off_m[i], 0.95)),
+        mm_from_metres(off_m[i].back()), mm_from_metres(share_of(predicted_m[i], 0.5)));
   }
+  const double touches = static_cast<double>(count) * kRunCount;
+  const double saved_s = 0.5 * (planned_m - searched_m) / touches / planned.problem.motion.search_m_s;
   std::printf(
-      "through park %d, remade %d, contradictions %d, off by more than predicted %d of %d; search length "
-      "%.1f mm a touch, %.1f planned\n",
-      through_park, remade, contradictions, over, all, 1e3 * searched_m / all, 1e3 * planned_m / all);
+      "%d of %.0f touches missed by more than predicted; a search is %.1f mm long, %.1f as planned: %.1f s "
+      "less a "
+      "touch until the face; %.2f ms to learn from a touch\n",
+      beyond, touches, mm_from_metres(searched_m / touches), mm_from_metres(planned_m / touches), saved_s,
+      1e3 * learning_s / touches);
+  EXPECT_LE(beyond, kBeyondShareMax * touches);
 }
 
 }  // namespace
