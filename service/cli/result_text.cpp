@@ -202,14 +202,18 @@ std::string status_text(const json& status) {
         figure(status.at("condition_number"), "{:.0f}"), figure(status.at("predicted_tip_rms_mm"), "{:.3f}"),
         text(status.at("verdict")));
   }
-  if (status.at("more_would_bring").is_string())
-    lines += fmt::format("more        {}\n", text(status.at("more_would_bring")));
+  lines += more_text(status);
   if (status.at("fault_code").is_string()) {
     lines += fmt::format("fault       {}: {}\n  robot     {}\n  next      {}\n",
                          text(status.at("fault_code")), text(status.at("fault_message")),
                          text(status.at("fault_robot_action")), text(status.at("fault_next_step")));
   }
   return lines;
+}
+
+std::string more_text(const json& status) {
+  const json& more = status.at("more_would_bring");
+  return more.is_string() ? fmt::format("more        {}\n", text(more)) : "";
 }
 
 std::string runs_text(const json& runs) {

@@ -12,6 +12,9 @@ std::string result_text(const nlohmann::json& result);
 /// The status document in a few lines.
 std::string status_text(const nlohmann::json& status);
 
+/// What more touches would bring, of a status document: a line, or nothing.
+std::string more_text(const nlohmann::json& status);
+
 /// The history as a table, newest first.
 std::string runs_text(const nlohmann::json& runs);
 

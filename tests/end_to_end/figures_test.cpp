@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "calib_core/aim.hpp"
 #include "calib_core/identify.hpp"
 #include "calib_core/touch_planning.hpp"
 #include "calib_core/units.hpp"
@@ -47,9 +48,17 @@ class Figures : public ::testing::TestWithParam<const char*> {
         plant_(sim::make_plant(cell_, shipped_truth(GetParam()))),
         plan_(plan_of(cell_)),
         problem_(cell::identification_problem(cell_, cell_.recipes.at(kRecipe))) {
+    // As in a run, the touches before a touch aim it.
+    const calib::PlanningProblem planning = cell::planning_problem(cell_, cell_.recipes.at(kRecipe));
+    calib::Aim aim(planning);
     for (const calib::PlannedTouch& planned : plan_.touches) {
-      const sim::TouchMotion motion = sim::touch_motion(cell::touch_command(cell_, planned, {}));
+      auto made = calib::aim_touch(planning, aim, planned);
+      if (std::holds_alternative<std::string>(made)) made = calib::nominal_touch(planning, planned);
+      const calib::PlannedTouch& touch = std::get<calib::AimedTouch>(made).touch;
+      const sim::TouchMotion motion = sim::touch_motion(cell::touch_command(cell_, touch, {}));
       searches_.push_back(sim::straight_line(plant_, motion.approach, motion.search_end).path);
+      const auto trip = sim::testing::find_trip(plant_, searches_.back(), 0.0);
+      if (trip) aim.add({.face = planned.face, .joints = sim::posture(searches_.back(), *trip)});
     }
   }
 

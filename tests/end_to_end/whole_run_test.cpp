@@ -1,5 +1,5 @@
 // Whole runs over loopback: what a customer sees when nothing goes wrong.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <set>
 
@@ -66,6 +66,31 @@ TEST_P(WholeRun, EndsCompleteWithThePromisedFiguresAndOnlyTableThreeIsFlagged) {
   EXPECT_EQ(stored.touches_done, kTouchCount);
   EXPECT_FALSE(stored.fault_code);
   EXPECT_TRUE(loop_.store().result_json(run_id_) == loop_.operation().result_json());
+}
+
+TEST_P(WholeRun, ItTellsWhatMoreTouchesWouldBring) {
+  EXPECT_THAT(loop_.status().more_would_bring.value_or(""),
+              ::testing::MatchesRegex("8 more on plane [1-5]: .* to .* mm"));
+}
+
+TEST_P(WholeRun, ARunThatIsAccurateEnoughLeavesOutTheOtherTouchesToFitAndHoldsOutAll) {
+  cell::Recipe recipe = loop_.cell.recipes.at(kRecipe);
+  recipe.name = "enough";
+  recipe.goal.tip_rms_max_m = 3.0 * loop_.status().predicted_tip_rms_m.value();
+  LoopbackCell loop(GetParam());
+  loop.cell.recipes.emplace(recipe.name, recipe);
+  loop.serve();
+  loop.launch();
+  loop.run_until(State::kIdle);
+  const std::int64_t run_id = loop.start(recipe.name);
+  loop.run_until_over();
+  EXPECT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
+  const cell::Run& run = *loop.operation().run();
+  EXPECT_LT(run.touches_total(), kTouchCount);
+  EXPECT_EQ(run.touches_done(), run.touches_total());
+  EXPECT_EQ(loop.store().run(run_id).value().touches_total, run.touches_total());
+  EXPECT_EQ(held_out(run.latest()).touch_count, kPlaneCount * kHeldOutPerPlane);
+  EXPECT_LE(loop.status().predicted_tip_rms_m.value_or(1.0), *recipe.goal.tip_rms_max_m);
 }
 
 TEST_P(WholeRun, AnotherStartsStraightFromItsEnd) {

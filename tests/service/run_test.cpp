@@ -1,6 +1,6 @@
 #include "service/run.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <numbers>
 
@@ -61,6 +61,66 @@ TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
   run_.identify();
   EXPECT_EQ(run_.latest().fitted_touch_count, 1);
   EXPECT_EQ(store_.touches(run_.id()).size(), 1u);
+}
+
+TEST_F(RunTest, ATouchThatIsPutOffComesBehindTheOthersOfItsRoleOnce) {
+  const std::size_t count = static_cast<std::size_t>(run_.touches_total());
+  const calib::JointVector put_off = run_.planned(3)->joints;
+  const calib::JointVector behind = run_.planned(4)->joints;
+  EXPECT_TRUE(run_.put_off(3));
+  EXPECT_EQ(run_.planned(3)->joints, behind);
+  EXPECT_EQ(run_.planned(count - 1)->joints, put_off);
+  EXPECT_FALSE(run_.put_off(count - 1)) << "it is the last";
+  EXPECT_TRUE(run_.put_off(count - 2));
+  EXPECT_FALSE(run_.put_off(count - 2)) << "it was put off before";
+  EXPECT_EQ(run_.planned(count), nullptr);
+}
+
+TEST_F(RunTest, TellsWhatMoreTouchesWouldBringOnceAllIsSeen) {
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches()) {
+    run_.add(store_, stored(++number, touch));
+    if (number == 30) {
+      run_.identify();
+      EXPECT_FALSE(run_.more_would_bring());
+    }
+  }
+  run_.identify();
+  EXPECT_THAT(run_.more_would_bring().value_or(""),
+              ::testing::MatchesRegex("8 more on plane [1-4]: .* to .* mm"));
+}
+
+TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
+  Recipe asking = edf().recipes.at("edf-25");
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches()) run_.add(store_, stored(++number, touch));
+  run_.identify();
+  const double reached_m = run_.predicted_tip_rms_m().value();
+  EXPECT_FALSE(run_.is_good_enough()) << "nothing was asked for";
+  for (const double share : {0.9, 1.1}) {
+    asking.goal.tip_rms_max_m = share * reached_m;
+    cell::Run run(store_.begin_run({.recipe = "edf-25"}), regions_, asking, "start");
+    EXPECT_FALSE(run.is_good_enough());
+    number = 0;
+    for (const calib::Touch& touch : table3_touches()) run.add(store_, stored(++number, touch));
+    run.identify();
+    EXPECT_EQ(run.is_good_enough(), share > 1.0);
+  }
+}
+
+TEST_F(RunTest, TouchesLeftOutAreThoseToFitFromThereOn) {
+  const int before = run_.touches_total();
+  EXPECT_EQ(run_.drop_fitted(static_cast<std::size_t>(before)), 0);
+  calib::TouchPlan plan;
+  for (const calib::TouchRole role :
+       {calib::TouchRole::kFit, calib::TouchRole::kFit, calib::TouchRole::kFit, calib::TouchRole::kHeldOut}) {
+    plan.touches.emplace_back();
+    plan.touches.back().role = role;
+  }
+  run_.set_plan(plan);
+  EXPECT_EQ(run_.drop_fitted(1), 2);
+  EXPECT_EQ(run_.touches_total(), 2);
+  EXPECT_EQ(run_.planned(1)->role, calib::TouchRole::kHeldOut);
 }
 
 TEST_F(RunTest, WithoutAPlanNothingIsCompleteAndNothingIsNext) {

@@ -12,10 +12,10 @@
 namespace cell {
 namespace {
 
-constexpr double kSlowSpeedMax = 0.020;    // m/s, near to anything that may be touched
-constexpr double kSearchSpeedMax = 0.008;  // m/s
-constexpr double kStandoffMin = 0.015;     // m, before a face that nobody has touched yet
-constexpr double kSearchMin = 0.030;       // m
+constexpr double kSlowSpeedMax = 0.020;      // m/s, near to anything that may be touched
+constexpr double kSearchSpeedMax = 0.008;    // m/s
+constexpr double kStandoffMin = 0.015;       // m, before a face as long as no touch has aimed
+constexpr double kAimedStandoffMin = 0.005;  // m, later
 constexpr double kLookEveryMetres = 0.005;
 constexpr double kReachMetres = 1.3;  // no point of the arm is farther from a joint's axis
 
@@ -54,20 +54,23 @@ INSTANTIATE_TEST_SUITE_P(Cells, SlowZone, ::testing::Values("edf", "demo"),
                          [](const auto& each) { return std::string(each.param); });
 
 TEST_P(SlowZone, TravelStaysOutOfItAlsoWithAnArmThatMisses) {
-  const double distance_m = 0.025 + cell_.nominal_miss_m;
-  std::vector<calib::JointVector> stops{cell_.park_joints};
-  for (const calib::PlannedTouch& touch : plan_.touches) stops.push_back(touch.clear_joints);
-  stops.push_back(cell_.park_joints);
-  for (std::size_t i = 1; i < stops.size(); ++i) {
-    const auto via = calib::find_transfer(problem_, stops[i - 1], stops[i]);
-    ASSERT_TRUE(via) << "to stop " << i;
-    calib::JointVector at = stops[i - 1];
-    for (const calib::JointVector& next : *via) {
-      EXPECT_TRUE(stays_out(at, next, distance_m)) << "to stop " << i;
+  calib::JointVector at = cell_.park_joints;
+  double miss_m = plan_.touches.front().predicted_miss_m;
+  const auto follow = [&](std::vector<calib::JointVector> way, const calib::JointVector& to,
+                          double miss_there_m, const std::string& name) {
+    way.push_back(to);
+    for (const calib::JointVector& next : way) {
+      EXPECT_TRUE(stays_out(at, next, 0.025 + std::min(miss_m, miss_there_m))) << name;
       at = next;
     }
-    EXPECT_TRUE(stays_out(at, stops[i], distance_m)) << "to stop " << i;
+    miss_m = miss_there_m;
+  };
+  for (std::size_t i = 0; i < plan_.touches.size(); ++i) {
+    const calib::PlannedTouch& touch = plan_.touches[i];
+    EXPECT_GT(touch.predicted_miss_m, 0.0);
+    follow(touch.via, touch.clear_joints, touch.predicted_miss_m, "to touch " + std::to_string(i + 1));
   }
+  follow(plan_.park_via, cell_.park_joints, miss_m, "to the park posture");
 }
 
 TEST_P(SlowZone, EveryMoveInItIsSlowAndEverySearchSlowerAndLongEnough) {
@@ -80,8 +83,10 @@ TEST_P(SlowZone, EveryMoveInItIsSlowAndEverySearchSlowerAndLongEnough) {
       return calib::forward_kinematics(cell_.arm.model, joints).translation();
     };
     const double standoff_m = (tip_m(touch.approach_joints) - tip_m(touch.joints)).norm();
-    EXPECT_GE(standoff_m, std::max(kStandoffMin, cell_.nominal_miss_m) - 1e-6);
-    EXPECT_GE(touch.search_length_m, std::max(kSearchMin, 2 * cell_.nominal_miss_m) - 1e-6);
+    const bool is_aimed = touch.predicted_miss_m < cell_.nominal_miss_m;
+    const double least_m = std::max(is_aimed ? kAimedStandoffMin : kStandoffMin, touch.predicted_miss_m);
+    EXPECT_GE(standoff_m, least_m - 1e-6);
+    EXPECT_GE(touch.search_length_m, 2 * least_m - 1e-6);
   }
   EXPECT_LE(retract_command(cell_).approach_speed_um_s, cs8::um_s_from_metres_per_second(kSlowSpeedMax));
 }
