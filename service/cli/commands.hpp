@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "service/cli/api_client.hpp"
 #include "service/exit_code.hpp"
@@ -29,6 +30,22 @@ struct ValidateArguments {
 };
 /// The paper's validations; kExitLimitsMissed when the same touches give another arm.
 ExitCode validate_command(const ValidateArguments& arguments, bool json);
+
+/// More touches than anybody waits for.
+inline constexpr int kFitCountMax = 2'000;
+
+struct PlanArguments {
+  std::filesystem::path cell_file;
+  std::string recipe;                    // the cell's default when empty
+  std::optional<int> fit_count;          // touches to fit over all planes, in place of the recipe's
+  std::string criterion;                 // one of kCriterionNames; the recipe's when empty
+  std::optional<double> tip_rms_max_mm;  // the fewest touches that reach it
+  std::vector<double> workspace_box_mm;  // min and max, six numbers; the cell's when empty
+  std::string file;                      // where the plan document is written, if anywhere
+  bool overwrite = false;                // that one
+};
+/// Plans touches and tells what they are predicted to give; kExitRefused when there is no plan.
+ExitCode plan_command(const PlanArguments& arguments, bool json);
 
 /// Starts a run and watches it to its end.
 ExitCode run_command(const ApiClient& daemon, const std::string& recipe, bool json);

@@ -34,6 +34,7 @@ class CommandLine {
     app_.require_subcommand(1);
     add_identify();
     add_validate();
+    add_plan();
     auto* run = add_for_daemon(
         "run", "start a run and watch it to its end",
         [this](const cell::ApiClient& daemon) { return cell::run_command(daemon, recipe_, json_); });
@@ -98,6 +99,30 @@ class CommandLine {
     validate->callback([this] { action_ = [this] { return cell::validate_command(validate_, json_); }; });
   }
 
+  void add_plan() {
+    auto* plan = app_.add_subcommand("plan", "plan touches and tell what they will show (offline)");
+    plan->add_option("--cell", plan_.cell_file, "cell file")->required();
+    plan->add_option("--recipe", plan_.recipe, "the recipe; default: the cell's first");
+    plan->add_option("--fit", plan_.fit_count, "touches to fit, over all planes, in place of the recipe's")
+        ->check(CLI::Range(1, cell::kFitCountMax));
+    std::vector<std::string> criteria;
+    for (const auto& [unused, name] : cell::kCriterionNames) criteria.emplace_back(name);
+    plan->add_option("--criterion", plan_.criterion, "what the touches are chosen for")
+        ->check(CLI::IsMember(criteria));
+    plan->add_option("--accuracy", plan_.tip_rms_max_mm,
+                     "the fewest touches, at most --fit or the recipe's, whose predicted tip error is within "
+                     "so many mm")
+        ->check(CLI::PositiveNumber);
+    plan->add_option("--workspace-box", plan_.workspace_box_mm,
+                     "where the tip is to be right: minX,minY,minZ,maxX,maxY,maxZ in R_-1, mm")
+        ->delimiter(',')
+        ->expected(6);
+    plan->add_option("--out", plan_.file, "write the plan document to this file");
+    plan->add_flag("--force", plan_.overwrite, "overwrite it");
+    plan->add_flag("--json", json_, "one JSON document on standard output");
+    plan->callback([this] { action_ = [this] { return cell::plan_command(plan_, json_); }; });
+  }
+
   CLI::App* add_for_daemon(const std::string& name, const std::string& description,
                            const std::function<cell::ExitCode(const cell::ApiClient&)>& command) {
     auto* sub = app_.add_subcommand(name, description);
@@ -118,6 +143,7 @@ class CommandLine {
   std::function<cell::ExitCode()> action_;
   cell::IdentifyArguments identify_;
   cell::ValidateArguments validate_;
+  cell::PlanArguments plan_;
   cell::ExportArguments export_;
   // Read here and not by CLI11's envname: there the environment of one subcommand would beat the flag of
   // another.

@@ -87,26 +87,6 @@ Json map_json(const Cell& cell, const std::optional<calib::UncertaintyMap>& map)
           {"values_mm", values}};
 }
 
-Json tip_json(const Cell& cell, const TipPrediction& tip) {
-  Json sources = Json::array();
-  for (const TipPrediction::OfSource& source : tip.sources) {
-    sources.push_back(
-        {{"name", source.name}, {"workspace_box_rms_mm", number_mm(source.workspace_box_rms_m)}});
-  }
-  Json tools = Json::array();
-  for (const TipPrediction::OfTool& tool : tip.tools) {
-    tools.push_back({{"name", tool.name},
-                     {"workspace_box_rms_mm", number_mm(tool.workspace_box_rms_m)},
-                     {"joint_ranges_rms_mm", number_mm(tool.joint_ranges_rms_m)}});
-  }
-  return {{"at_block_rms_mm", number_mm(tip.at_block_rms_m)},
-          {"workspace_box_rms_mm", number_mm(tip.workspace_box_rms_m)},
-          {"joint_ranges_rms_mm", number_mm(tip.joint_ranges_rms_m)},
-          {"sources", sources},
-          {"tools", tools},
-          {"map", map_json(cell, tip.map)}};
-}
-
 /// A plane without fitted touches has no p.
 Json plane_fits_json(const calib::IdentificationResult& result) {
   Json planes = Json::array();
@@ -162,6 +142,26 @@ Json plane_json(const Cell& cell, const calib::FaceDistances& face) {
 }
 
 }  // namespace
+
+Json tip_json(const Cell& cell, const TipPrediction& tip) {
+  Json sources = Json::array();
+  for (const TipPrediction::OfSource& source : tip.sources) {
+    sources.push_back(
+        {{"name", source.name}, {"workspace_box_rms_mm", number_mm(source.workspace_box_rms_m)}});
+  }
+  Json tools = Json::array();
+  for (const TipPrediction::OfTool& tool : tip.tools) {
+    tools.push_back({{"name", tool.name},
+                     {"workspace_box_rms_mm", number_mm(tool.workspace_box_rms_m)},
+                     {"joint_ranges_rms_mm", number_mm(tool.joint_ranges_rms_m)}});
+  }
+  return {{"at_block_rms_mm", number_mm(tip.at_block_rms_m)},
+          {"workspace_box_rms_mm", number_mm(tip.workspace_box_rms_m)},
+          {"joint_ranges_rms_mm", number_mm(tip.joint_ranges_rms_m)},
+          {"sources", sources},
+          {"tools", tools},
+          {"map", map_json(cell, tip.map)}};
+}
 
 Json planes_json(const Cell& cell, const std::vector<calib::FaceDistances>& distances,
                  calib::TouchRole role) {

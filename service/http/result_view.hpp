@@ -22,6 +22,9 @@ std::string result_document(const TipRegions& regions, const Recipe& recipe,
                             const calib::IdentificationProblem& problem,
                             const calib::IdentificationResult& result, const ResultContext& context);
 
+/// What is predicted of the tip: `tip_uncertainty` of a result and of a plan.
+nlohmann::ordered_json tip_json(const Cell& cell, const TipPrediction& tip);
+
 /// The distances of one role's touches, a plane at a time, along the outward normals.
 nlohmann::ordered_json planes_json(const Cell& cell, const std::vector<calib::FaceDistances>& distances,
                                    calib::TouchRole role);

@@ -1,0 +1,83 @@
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "calib_core/units.hpp"
+#include "config/read_config.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/offline.hpp"
+#include "service/cli/plan_text.hpp"
+#include "service/cli/planning_bar.hpp"
+#include "service/plan.hpp"
+
+namespace cell {
+namespace {
+
+void set_workspace_box(Cell& cell, const std::vector<double>& box_mm) {
+  if (box_mm.empty()) return;
+  const Eigen::Vector3d min_m =
+      calib::kMetresPerMillimetre * Eigen::Vector3d(box_mm[0], box_mm[1], box_mm[2]);
+  const Eigen::Vector3d max_m =
+      calib::kMetresPerMillimetre * Eigen::Vector3d(box_mm[3], box_mm[4], box_mm[5]);
+  if (!(min_m.array() < max_m.array()).all())
+    throw std::invalid_argument(
+        "--workspace-box: each of the first three numbers is below its fellow of the last three");
+  cell.workspace_box = {"as given", min_m, max_m};
+}
+
+/// The recipe with what the command line says in place of its own words.
+Recipe wanted_recipe(const Cell& cell, const PlanArguments& arguments) {
+  Recipe recipe = recipe_named(cell, arguments.recipe);
+  const int faces = static_cast<int>(recipe.faces.size());
+  const int own_count = recipe.fit_per_face > 0 ? recipe.fit_per_face * faces : recipe.goal.fit_count;
+  if (arguments.fit_count || arguments.tip_rms_max_mm) {
+    recipe.fit_per_face = 0;
+    recipe.goal.fit_count = arguments.fit_count.value_or(own_count);
+  }
+  if (recipe.fit_per_face == 0 && recipe.goal.fit_count < faces)
+    throw std::invalid_argument(
+        fmt::format("--fit {}: the recipe {} touches {} planes; give as many touches at least",
+                    recipe.goal.fit_count, recipe.name, faces));
+  if (arguments.tip_rms_max_mm) recipe.goal.tip_rms_max_m = calib::metres_from_mm(*arguments.tip_rms_max_mm);
+  const auto criterion = std::ranges::find(kCriterionNames, arguments.criterion,
+                                           &std::pair<calib::PlanCriterion, std::string_view>::second);
+  if (criterion != kCriterionNames.end()) recipe.goal.criterion = criterion->first;
+  return recipe;
+}
+
+ExitCode tell(const Cell& cell, const PlanRefusal& refusal) {
+  fmt::print(stderr, "{}: {}\n", cell.file.string(), refusal.message);
+  for (const std::string& line : effort_lines(refusal.efforts)) fmt::print(stderr, "  {}\n", line);
+  return kExitRefused;
+}
+
+}  // namespace
+
+ExitCode plan_command(const PlanArguments& arguments, bool json) {
+  if (arguments.file == "-")
+    throw std::invalid_argument("--out: standard output has the plan with --json; name a file");
+  Cell cell = read_cell(arguments.cell_file);
+  demand_revolute(cell);
+  set_workspace_box(cell, arguments.workspace_box_mm);
+  const Recipe recipe = wanted_recipe(cell, arguments);
+  const TipRegions regions(cell);
+  PlanningBar bar(isatty(STDERR_FILENO) == 1);
+  const auto outcome =
+      make_plan(regions, recipe, [&bar](std::string_view stage, double share) { bar.show(stage, share); });
+  bar.finish();
+  if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) return tell(cell, *refusal);
+  const Plan& plan = std::get<Plan>(outcome);
+  if (!arguments.file.empty()) write_whole_file(arguments.file, plan.document + "\n", arguments.overwrite);
+  if (json) {
+    fmt::print("{}\n", plan.document);
+  } else {
+    fmt::print("{}", plan_text(nlohmann::json::parse(plan.document)));
+  }
+  return kExitDone;
+}
+
+}  // namespace cell

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+namespace cell {
+
+/// A plan document (touchcal/plan/1) for people: touches a plane, what they are predicted to give, how long
+/// they take, what limits them.
+std::string plan_text(const nlohmann::json& plan);
+
+}  // namespace cell
