@@ -100,7 +100,8 @@ PlanRefusal refuse_accuracy(const TipRegions& regions, const Recipe& recipe,
   const auto best = calib::plan_touches(planning_problem(cell, as_well_as_can_be), progress);
   if (const auto* plan = std::get_if<calib::TouchPlan>(&best)) {
     std::string causes;
-    for (const ErrorShare& share : error_shares(predict_plan(regions, recipe, *plan).tip)) {
+    const PlannedIdentification planned = identify_planned(cell, recipe, *plan);
+    for (const ErrorShare& share : error_shares(predict_tip(regions, planned.problem, planned.result))) {
       if (share.share < 0.05) break;
       causes += fmt::format("{}{} {:.0f} %", causes.empty() ? "" : ", ", share.source, 100.0 * share.share);
     }
@@ -127,9 +128,9 @@ PlanRefusal refuse(const TipRegions& regions, const Recipe& recipe, const calib:
 
 }  // namespace
 
-PlanPrediction predict_plan(const TipRegions& regions, const Recipe& recipe, const calib::TouchPlan& plan) {
-  PlanPrediction prediction{.problem = identification_problem(regions.cell(), recipe)};
-  calib::IdentificationProblem& problem = prediction.problem;
+PlannedIdentification identify_planned(const Cell& cell, const Recipe& recipe, const calib::TouchPlan& plan) {
+  PlannedIdentification planned_run{.problem = identification_problem(cell, recipe), .result = {}};
+  calib::IdentificationProblem& problem = planned_run.problem;
   const calib::PreparedModel nominal = calib::prepare(problem.nominal);
   for (const calib::PlannedTouch& planned : plan.touches) {
     // A temperature or a pre-travel puts the trigger a little off the drawn face that was aimed at.
@@ -139,9 +140,8 @@ PlanPrediction predict_plan(const TipRegions& regions, const Recipe& recipe, con
   }
   calib::IdentificationOptions options = recipe.identification;
   options.robust = false;  // there is nothing to leave out
-  prediction.result = calib::identify(problem, options);
-  prediction.tip = predict_tip(regions, problem, prediction.result);
-  return prediction;
+  planned_run.result = calib::identify(problem, options);
+  return planned_run;
 }
 
 std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recipe& recipe,
@@ -152,14 +152,13 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
   if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
     return refuse(regions, recipe, *failure, progress);
   Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};
-  const PlanPrediction prediction = predict_plan(regions, recipe, plan.touches);
-  if (prediction.result.status != calib::IdentificationStatus::kConverged) {
-    return PlanRefusal{
-        .kind = PlanRefusal::Kind::kTouches,
-        .message = fmt::format("the planned touches would not do: {}", prediction.result.message),
-        .efforts = plan.touches.efforts};
+  const PlannedIdentification planned = identify_planned(cell, recipe, plan.touches);
+  if (planned.result.status != calib::IdentificationStatus::kConverged) {
+    return PlanRefusal{.kind = PlanRefusal::Kind::kTouches,
+                       .message = fmt::format("the planned touches would not do: {}", planned.result.message),
+                       .efforts = plan.touches.efforts};
   }
-  Json document = plan_json(cell, recipe, plan.touches, prediction);
+  Json document = plan_json(regions, recipe, plan.touches, planned);
   plan.id = digest(text_of(document));
   document["plan_id"] = plan.id;
   plan.document = text_of(document);

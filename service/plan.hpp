@@ -11,16 +11,13 @@
 
 namespace cell {
 
-/// What the touches of a plan are predicted to give: identify() on the fitted ones as the nominal arm would
-/// make them, exactly on the faces. `result` has the rank, the condition numbers and the uncertainties of a
-/// run that goes as planned; its errors are all 0.
-struct PlanPrediction {
+/// identify() on a plan's touches as the nominal arm would make them, exactly on the faces: rank, condition
+/// numbers and uncertainties of a run that goes as planned. The errors are all 0.
+struct PlannedIdentification {
   calib::IdentificationProblem problem;
   calib::IdentificationResult result;
-  TipPrediction tip;
 };
-
-PlanPrediction predict_plan(const TipRegions& regions, const Recipe& recipe, const calib::TouchPlan& plan);
+PlannedIdentification identify_planned(const Cell& cell, const Recipe& recipe, const calib::TouchPlan& plan);
 
 /// A plan as it is shown and as it is run.
 struct Plan {

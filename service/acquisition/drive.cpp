@@ -22,6 +22,22 @@ namespace cell {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
+namespace {
+
+/// On the planner's thread: nothing may be thrown there, the coroutine would go on beside the sockets.
+PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe) {
+  try {
+    const TipRegions regions(cell);  // those of the status are for the other thread
+    auto made = make_plan(regions, recipe);
+    if (auto* refusal = std::get_if<PlanRefusal>(&made)) return std::move(*refusal);
+    return std::make_shared<const Plan>(std::get<Plan>(std::move(made)));
+  } catch (const std::exception& error) {
+    return PlanRefusal{.message = std::string("planning failed: ") + error.what(), .efforts = {}};
+  }
+}
+
+}  // namespace
+
 asio::awaitable<void> Operation::wait_for_wake(std::chrono::milliseconds at_most) {
   wake_.expires_after(at_most);
   boost::system::error_code ignored;
@@ -79,26 +95,28 @@ asio::awaitable<void> Operation::drive() {
   }
 }
 
+asio::awaitable<PlanOutcome> Operation::plan_recipe(std::string name) {
+  if (const auto made = plans_.find(name); made != plans_.end()) co_return made->second;
+  ++plans_under_way_;
+  co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
+  const PlanOutcome made = make_outcome(cell_, cell_.recipes.at(name));
+  co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
+  --plans_under_way_;
+  plans_.emplace(name, made);
+  co_return plans_.at(name);
+}
+
 asio::awaitable<bool> Operation::plan() {
-  const Recipe& recipe = run_->recipe();
-  planning_ = planning_problem(cell_, recipe);
-  if (!plans_.contains(recipe.name)) {
-    co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
-    const auto outcome = calib::plan_touches(planning_);
-    co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
-    if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome)) {
-      const std::string found = failure->wanted == 0
-                                    ? std::string()
-                                    : fmt::format("plane {}: {} of {} touches found; ", failure->face + 1,
-                                                  failure->found, failure->wanted);
-      raise({FaultCode::kRecipeUnreachable, found + failure->reason}, Event::kAbortFault);
-      co_return false;
-    }
-    plans_.emplace(recipe.name, std::get<calib::TouchPlan>(outcome));
+  planning_ = planning_problem(cell_, run_->recipe());
+  const PlanOutcome outcome = co_await plan_recipe(run_->recipe().name);
+  if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) {
+    raise({FaultCode::kRecipeUnreachable, refusal->message}, Event::kAbortFault);
+    co_return false;
   }
-  run_->set_plan(plans_.at(recipe.name));
+  const Plan& plan = *std::get<std::shared_ptr<const Plan>>(outcome);
+  run_->set_plan(plan.touches);
   try {
-    store_.set_touches_total(run_->id(), run_->touches_total());
+    store_.set_plan(run_->id(), run_->touches_total(), plan.id, plan.document);
   } catch (const std::exception& error) {
     raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
     co_return false;

@@ -296,6 +296,19 @@ std::optional<std::string> Operation::result_json() const {
                          {.complete = run_finished_});
 }
 
+std::optional<PlanOutcome> Operation::planned(const std::string& recipe) const {
+  const auto found = plans_.find(recipe);
+  return found == plans_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::shared_ptr<const Plan> Operation::plan_with_id(const std::string& id) const {
+  for (const auto& [recipe, outcome] : plans_) {
+    const auto* plan = std::get_if<std::shared_ptr<const Plan>>(&outcome);
+    if (plan && (*plan)->id == id) return *plan;
+  }
+  return nullptr;
+}
+
 asio::awaitable<void> Operation::wait_for_change(std::uint64_t sequence, std::chrono::milliseconds wait) {
   if (status_.sequence != sequence || waiters_.size() >= kWaitersMax) co_return;
   asio::steady_timer timer(executor_, wait);

@@ -21,6 +21,7 @@
 #include "service/acquisition/readiness.hpp"
 #include "service/acquisition/state_machine.hpp"
 #include "service/acquisition/status.hpp"
+#include "service/plan.hpp"
 #include "service/run.hpp"
 #include "service/store/touch_store.hpp"
 
@@ -44,6 +45,9 @@ struct Started {
   std::int64_t run_id = 0;
   bool repeated = false;  // the same Idempotency-Key started it before
 };
+
+/// A recipe's plan, or why there is none: the same whenever it is asked for.
+using PlanOutcome = std::variant<std::shared_ptr<const Plan>, PlanRefusal>;
 
 /// A fault of the link ends by itself when there is a link again.
 bool is_link_fault(FaultCode code);
@@ -84,6 +88,14 @@ class Operation {
   [[nodiscard]] const Cell& cell() const { return cell_; }
   [[nodiscard]] const TipRegions& tip_regions() const { return tip_regions_; }
   [[nodiscard]] const TouchStore& store() const { return store_; }
+
+  /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on a thread of its own.
+  boost::asio::awaitable<PlanOutcome> plan_recipe(std::string name);
+  /// What plan_recipe() gave; nothing before. A run by this recipe makes these touches.
+  [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe) const;
+  [[nodiscard]] bool is_planning() const { return plans_under_way_ > 0; }
+  /// Null when no plan made since the daemon began has this id.
+  [[nodiscard]] std::shared_ptr<const Plan> plan_with_id(const std::string& id) const;
 
   /// Returns when the status has another sequence than `sequence`, or after `wait`.
   boost::asio::awaitable<void> wait_for_change(std::uint64_t sequence, std::chrono::milliseconds wait);
@@ -175,7 +187,8 @@ class Operation {
   bool run_finished_ = false;                        // complete, and stored as such
   bool run_open_ = false;                            // begun in the store, not finished there
   std::chrono::system_clock::time_point run_began_;  // to touch
-  std::map<std::string, calib::TouchPlan> plans_;    // by recipe; the same problem gives the same plan
+  std::map<std::string, PlanOutcome> plans_;         // by recipe
+  int plans_under_way_ = 0;                          // on the planner's thread, or waiting for it
   calib::PlanningProblem planning_;                  // of the run
   std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
   std::optional<calib::Aim> aim_;               // of the run

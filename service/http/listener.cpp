@@ -274,6 +274,10 @@ asio::awaitable<void> HttpListener::serve(tcp::socket socket) {
         stream.expires_never();
         co_await operation_.wait_for_change(wait->after, wait->wait);
       }
+      if (const auto recipe = recipe_to_plan(*request, operation_, tokens_)) {
+        stream.expires_never();
+        co_await operation_.plan_recipe(*recipe);
+      }
       response = answer(*request, operation_, tokens_);
       keep_alive = incoming.keep_alive();
     }

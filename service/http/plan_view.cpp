@@ -69,8 +69,8 @@ Json goal_json(const Recipe& recipe) {
 }
 
 /// What is predicted of the parameters: all that a result says of them but the errors.
-Json predicted_parameters_json(const Recipe& recipe, const PlanPrediction& prediction) {
-  Json parameters = parameters_json(prediction.problem, recipe.identification, prediction.result);
+Json predicted_parameters_json(const Recipe& recipe, const PlannedIdentification& planned) {
+  Json parameters = parameters_json(planned.problem, recipe.identification, planned.result);
   for (Json& parameter : parameters) {
     parameter.erase("error");
     parameter.erase("interval95");
@@ -78,8 +78,8 @@ Json predicted_parameters_json(const Recipe& recipe, const PlanPrediction& predi
   return parameters;
 }
 
-Json predicted_artefact_json(const PlanPrediction& prediction) {
-  Json parameters = artefact_parameters_json(prediction.problem, prediction.result);
+Json predicted_artefact_json(const PlannedIdentification& planned) {
+  Json parameters = artefact_parameters_json(planned.problem, planned.result);
   for (Json& parameter : parameters) parameter.erase("value");
   return parameters;
 }
@@ -163,9 +163,11 @@ std::vector<ErrorShare> error_shares(const TipPrediction& tip) {
   return shares;
 }
 
-Json plan_json(const Cell& cell, const Recipe& recipe, const calib::TouchPlan& plan,
-               const PlanPrediction& prediction) {
-  const calib::IdentificationResult& result = prediction.result;
+Json plan_json(const TipRegions& regions, const Recipe& recipe, const calib::TouchPlan& plan,
+               const PlannedIdentification& planned) {
+  const Cell& cell = regions.cell();
+  const calib::IdentificationResult& result = planned.result;
+  const TipPrediction tip = predict_tip(regions, planned.problem, result);
   const calib::Iteration& last = result.iterations.back();
   Json touches = Json::array();
   for (const calib::PlannedTouch& touch : plan.touches) touches.push_back(touch_json(cell, touch));
@@ -180,11 +182,11 @@ Json plan_json(const Cell& cell, const Recipe& recipe, const calib::TouchPlan& p
           {"identifiable_count", result.identifiable.columns.size()},
           {"condition_number", number(last.condition_number)},
           {"scaled_condition_number", number(last.scaled_condition_number)},
-          {"tip_uncertainty", tip_json(cell, prediction.tip)},
-          {"parameters", predicted_parameters_json(recipe, prediction)},
-          {"artefact_parameters", predicted_artefact_json(prediction)},
+          {"tip_uncertainty", tip_json(cell, tip)},
+          {"parameters", predicted_parameters_json(recipe, planned)},
+          {"artefact_parameters", predicted_artefact_json(planned)},
           {"duration_s", number(plan.duration_s())},
-          {"limits", limits_json(plan, prediction.tip)},
+          {"limits", limits_json(plan, tip)},
           {"warnings", result.warnings},
           {"speeds", speeds_json(cell.speeds)},
           {"park_joints_deg", joints_json(cell, cell.park_joints)},

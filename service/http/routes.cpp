@@ -6,10 +6,10 @@
 #include <charconv>
 #include <nlohmann/json.hpp>
 
-#include "config/config_error.hpp"
-#include "config/strict_json.hpp"
 #include "service/acquisition/operation.hpp"
 #include "service/http/json_view.hpp"
+#include "service/http/plan_routes.hpp"
+#include "service/http/request_body.hpp"
 #include "service/http/result_routes.hpp"
 
 namespace cell {
@@ -17,7 +17,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kBodyBytesMax = 64 * 1024;
 constexpr std::size_t kIdempotencyKeyMax = 255;
 constexpr int kRunsPageDefault = 50;
 constexpr int kRunsPageMax = 200;
@@ -160,27 +159,23 @@ HttpResponse get_of_run(const Call& call) {
     return json_response(200, touches_document(call.operation.cell(), call.operation.store().touches(*id)));
   }
   if (call.segment(2) == "arm") return get_arm(call.operation, *id);
+  if (call.segment(2) == "plan") return get_plan(call.operation, *id);
   return get_result(call.operation, *id);
 }
 
-/// The recipe named by a start's body, or what is wrong with it.
-std::variant<std::string, Problem> recipe_of(const std::string& body) {
-  try {
-    const nlohmann::json document = parse_strict_json("request body", body, kBodyBytesMax);
-    if (!document.is_object()) return Problem{.kind = "body", .detail = "an object is wanted", .pointer = ""};
-    for (const auto& [key, value] : document.items()) {
-      if (key != "recipe") {
-        return Problem{
-            .kind = "body", .detail = "unknown key; 'recipe' is known", .pointer = pointer_step(key)};
-      }
-    }
-    if (!document.contains("recipe") || !document["recipe"].is_string()) {
-      return Problem{.kind = "body", .detail = "the name of a recipe is wanted", .pointer = "/recipe"};
-    }
-    return document["recipe"].get<std::string>();
-  } catch (const ConfigError& error) {
-    return Problem{.kind = "body", .detail = error.what(), .pointer = error.pointer()};
-  }
+/// The recipe that a start's body names, itself or by a plan, or what is wrong with it.
+std::variant<std::string, Problem> recipe_of(const Call& call) {
+  constexpr std::array<std::string_view, 2> kKeys{"recipe", "plan_id"};
+  auto named = named_text(call.request.body, kKeys);
+  if (auto* problem = std::get_if<Problem>(&named)) return std::move(*problem);
+  auto& [key, text] = std::get<NamedText>(named);
+  if (key == "recipe") return std::move(text);
+  if (const auto plan = call.operation.plan_with_id(text)) return plan->recipe;
+  return Problem{.status = 404,
+                 .kind = "unknown-plan",
+                 .detail = fmt::format(
+                     "there is no plan '{}' since the daemon began; POST /api/v1/plan makes it again", text),
+                 .pointer = "/plan_id"};
 }
 
 HttpResponse post_runs(const Call& call) {
@@ -190,7 +185,7 @@ HttpResponse post_runs(const Call& call) {
         {.kind = "idempotency-key",
          .detail = fmt::format("an Idempotency-Key has 1 to {} characters", kIdempotencyKeyMax)});
   }
-  const auto recipe = recipe_of(call.request.body);
+  const auto recipe = recipe_of(call);
   if (const auto* problem = std::get_if<Problem>(&recipe)) return to_response(*problem);
   const auto outcome = call.operation.start(std::get<std::string>(recipe), key);
   if (const auto* refusal = std::get_if<Refusal>(&outcome)) return from_refusal(*refusal, call.operation);
@@ -199,6 +194,8 @@ HttpResponse post_runs(const Call& call) {
   response.headers = {{"Location", fmt::format("/api/v1/runs/{}", id)}};
   return response;
 }
+
+HttpResponse post_a_plan(const Call& call) { return post_plan(call.request, call.operation); }
 
 HttpResponse give_command(const Call& call, Command command, std::optional<std::int64_t> run_id) {
   // A stop is taken whatever comes with it.
@@ -240,6 +237,8 @@ constexpr std::array kRoutes{
     Route{"GET", "runs/*/touches", get_of_run},
     Route{"GET", "runs/*/result", get_of_run},
     Route{"GET", "runs/*/arm", get_of_run},
+    Route{"GET", "runs/*/plan", get_of_run},
+    Route{"POST", "plan", post_a_plan},
     Route{"POST", "runs/*/pause", run_command<Command::kPause>},
     Route{"POST", "runs/*/resume", run_command<Command::kResume>},
     Route{"POST", "runs/*/abort", run_command<Command::kAbort>},
@@ -328,6 +327,20 @@ std::optional<LongPoll> long_poll(const HttpRequest& request) {
   const auto sequence = integer<std::uint64_t>(after->second);
   if (!seconds || !sequence || *seconds < 0) return std::nullopt;
   return LongPoll{*sequence, std::chrono::seconds(std::min(*seconds, kWaitSecondsMax))};
+}
+
+std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Operation& operation,
+                                          const Tokens& tokens) {
+  if (request.method != "POST" || request.path != "/api/v1/plan" || operation.is_planning() ||
+      refuse_access(request, tokens) || refuse_content_type(request)) {
+    return std::nullopt;
+  }
+  constexpr std::array<std::string_view, 1> kKeys{"recipe"};
+  const auto named = named_text(request.body, kKeys);
+  const auto* recipe = std::get_if<NamedText>(&named);
+  if (!recipe || !operation.cell().recipes.contains(recipe->text) || operation.planned(recipe->text))
+    return std::nullopt;
+  return recipe->text;
 }
 
 std::vector<RouteName> route_names() {

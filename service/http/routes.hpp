@@ -58,6 +58,12 @@ struct LongPoll {
 };
 std::optional<LongPoll> long_poll(const HttpRequest& request);
 
+/// The recipe that has to be planned (Operation::plan_recipe, seconds) before a POST plan can be answered;
+/// nothing when it is not that, may not ask, has been planned, or must come again as another plan is under
+/// way.
+std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Operation& operation,
+                                          const Tokens& tokens);
+
 struct RouteName {
   std::string_view method;
   std::string_view path;  // behind /api/v1/; * stands for any one segment

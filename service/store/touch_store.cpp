@@ -7,7 +7,7 @@
 namespace cell {
 namespace {
 
-constexpr int kSchemaVersion = 1;
+constexpr int kSchemaVersion = 2;
 
 /// A longer wait for another reader would starve the heartbeat.
 constexpr int kBusyMilliseconds = 100;
@@ -38,6 +38,12 @@ CREATE TABLE touches(
   captured_at TEXT NOT NULL,
   PRIMARY KEY(run_id, number)
 ) STRICT, WITHOUT ROWID;
+)sql";
+
+/// What version 2 adds.
+constexpr const char* kPlansSchema = R"sql(
+CREATE TABLE plans(id TEXT PRIMARY KEY, document TEXT NOT NULL) STRICT;
+ALTER TABLE runs ADD COLUMN plan_id TEXT;
 )sql";
 
 constexpr const char* kRunColumns =
@@ -105,7 +111,8 @@ TouchStore::TouchStore(const std::filesystem::path& file) try
   }
   if (version < kSchemaVersion) {
     SQLite::Transaction transaction(*database_);
-    database_->exec(kSchema);
+    if (version < 1) database_->exec(kSchema);
+    database_->exec(kPlansSchema);
     database_->exec("PRAGMA user_version = " + std::to_string(kSchemaVersion));
     transaction.commit();
   }
@@ -128,11 +135,19 @@ std::int64_t TouchStore::begin_run(const NewRun& run) {
   return database_->getLastInsertRowid();
 }
 
-void TouchStore::set_touches_total(std::int64_t run_id, int touches_total) {
-  SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ? WHERE id = ?");
+void TouchStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
+                          const std::string& document) {
+  SQLite::Transaction transaction(*database_);
+  SQLite::Statement insert(*database_, "INSERT OR IGNORE INTO plans(id, document) VALUES(?, ?)");
+  insert.bind(1, plan_id);
+  insert.bind(2, document);
+  insert.exec();
+  SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ?, plan_id = ? WHERE id = ?");
   update.bind(1, touches_total);
-  update.bind(2, run_id);
+  update.bind(2, plan_id);
+  update.bind(3, run_id);
   update.exec();
+  transaction.commit();
 }
 
 void TouchStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
@@ -228,6 +243,14 @@ std::vector<StoredTouch> TouchStore::touches(std::int64_t run_id) const {
 
 std::optional<std::string> TouchStore::result_json(std::int64_t run_id) const {
   SQLite::Statement query(*database_, "SELECT result_json FROM runs WHERE id = ?");
+  query.bind(1, run_id);
+  if (!query.executeStep()) return std::nullopt;
+  return text_or_nothing(query.getColumn(0));
+}
+
+std::optional<std::string> TouchStore::plan_json(std::int64_t run_id) const {
+  SQLite::Statement query(
+      *database_, "SELECT plans.document FROM runs JOIN plans ON plans.id = runs.plan_id WHERE runs.id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return std::nullopt;
   return text_or_nothing(query.getColumn(0));

@@ -68,8 +68,10 @@ class TouchStore {
   TouchStore& operator=(const TouchStore&) = delete;
 
   std::int64_t begin_run(const NewRun& run);
-  /// How many touches the run will make, known once its plan is.
-  void set_touches_total(std::int64_t run_id, int touches_total);
+  /// What the run follows, known once it is planned: how many touches, and the plan as it was shown. A plan
+  /// that several runs follow is kept once.
+  void set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
+                const std::string& document);
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
   void finish_run(std::int64_t run_id, const RunEnd& end);
   /// Replaces the result of a run that ended.
@@ -84,6 +86,8 @@ class TouchStore {
   [[nodiscard]] std::optional<StoredRun> last_accepted() const;
   [[nodiscard]] std::vector<StoredTouch> touches(std::int64_t run_id) const;
   [[nodiscard]] std::optional<std::string> result_json(std::int64_t run_id) const;
+  /// The document of the plan that the run follows.
+  [[nodiscard]] std::optional<std::string> plan_json(std::int64_t run_id) const;
 
  private:
   std::unique_ptr<SQLite::Database> database_;

@@ -102,7 +102,7 @@ TEST_F(TouchStoreTest, ATouchNumberIsTakenOnceAndOnlyForARunThatExists) {
 TEST_F(TouchStoreTest, ARunIsRunningUntilItsEndIsStored) {
   const std::int64_t id = begin();
   store_->append_touch(id, touch(1));
-  store_->set_touches_total(id, 139);
+  store_->set_plan(id, 139, "plan", "{}");
   const StoredRun running = store_->run(id).value();
   EXPECT_EQ(running.recipe, "edf-25");
   EXPECT_EQ(running.touches_total, 139);
