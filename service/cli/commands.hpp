@@ -31,8 +31,9 @@ struct ValidateArguments {
 /// The paper's validations; kExitLimitsMissed when the same touches give another arm.
 ExitCode validate_command(const ValidateArguments& arguments, bool json);
 
-/// More touches than anybody waits for.
+/// More than anybody waits for.
 inline constexpr int kFitCountMax = 2'000;
+inline constexpr int kPlaceCountMax = 1'000;
 
 struct PlanArguments {
   std::filesystem::path cell_file;
@@ -43,8 +44,14 @@ struct PlanArguments {
   std::vector<double> workspace_box_mm;  // min and max, six numbers; the cell's when empty
   std::string file;                      // where the plan document is written, if anywhere
   bool overwrite = false;                // that one
+  bool place = false;                    // search places of the block instead
+  std::vector<double> place_min_mm;      // range of its shift, three numbers each
+  std::vector<double> place_max_mm;
+  std::vector<double> place_yaw_deg;  // range of its turn, two numbers; none when empty
+  int place_count = 24;
 };
-/// Plans touches and tells what they are predicted to give; kExitRefused when there is no plan.
+/// Plans touches and tells what they are predicted to give, or ranks places of the block; kExitRefused when
+/// there is no plan (at any place).
 ExitCode plan_command(const PlanArguments& arguments, bool json);
 
 /// Starts a run and watches it to its end.

@@ -12,6 +12,7 @@
 #include "service/cli/offline.hpp"
 #include "service/cli/plan_text.hpp"
 #include "service/cli/planning_bar.hpp"
+#include "service/http/places_view.hpp"
 #include "service/plan.hpp"
 
 namespace cell {
@@ -55,6 +56,55 @@ ExitCode tell(const Cell& cell, const PlanRefusal& refusal) {
   return kExitRefused;
 }
 
+Eigen::Vector3d metres(const std::vector<double>& mm) {
+  return calib::kMetresPerMillimetre * Eigen::Vector3d(mm[0], mm[1], mm[2]);
+}
+
+PlaceRange wanted_range(const PlanArguments& arguments) {
+  if (arguments.place_min_mm.empty() || arguments.place_max_mm.empty())
+    throw std::invalid_argument("--place: give --place-min and --place-max, the range of the block's shift");
+  PlaceRange range{.min = {.shift_m = metres(arguments.place_min_mm)},
+                   .max = {.shift_m = metres(arguments.place_max_mm)}};
+  if (!arguments.place_yaw_deg.empty()) {
+    range.min.yaw_rad = calib::radians_from_degrees(arguments.place_yaw_deg[0]);
+    range.max.yaw_rad = calib::radians_from_degrees(arguments.place_yaw_deg[1]);
+  }
+  if (!(range.min.shift_m.array() <= range.max.shift_m.array()).all() ||
+      range.min.yaw_rad > range.max.yaw_rad)
+    throw std::invalid_argument("--place: a range begins at its smaller end");
+  return range;
+}
+
+void give(const std::string& document, std::string (*text)(const nlohmann::json&),
+          const PlanArguments& arguments, bool json) {
+  if (!arguments.file.empty()) write_whole_file(arguments.file, document + "\n", arguments.overwrite);
+  fmt::print("{}", json ? document + "\n" : text(nlohmann::json::parse(document)));
+}
+
+ExitCode plan_places(const Cell& cell, const Recipe& recipe, const PlanArguments& arguments, bool json) {
+  const PlaceRange range = wanted_range(arguments);
+  PlanningBar bar(isatty(STDERR_FILENO) == 1);
+  const auto findings =
+      search_places(cell, recipe, range, {.place_count = arguments.place_count}, bar.progress());
+  bar.finish();
+  give(places_document(cell, recipe, findings), places_text, arguments, json);
+  if (findings.front().figures) return kExitDone;
+  fmt::print(stderr, "{}: at none of {} places there is a plan; where the block is now: {}\n",
+             cell.file.string(), findings.size(),
+             std::ranges::find(findings, true, &PlaceFinding::present)->reason);
+  return kExitRefused;
+}
+
+ExitCode plan_touches(const Cell& cell, const Recipe& recipe, const PlanArguments& arguments, bool json) {
+  const TipRegions regions(cell);
+  PlanningBar bar(isatty(STDERR_FILENO) == 1);
+  const auto outcome = make_plan(regions, recipe, bar.progress());
+  bar.finish();
+  if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) return tell(cell, *refusal);
+  give(std::get<Plan>(outcome).document, plan_text, arguments, json);
+  return kExitDone;
+}
+
 }  // namespace
 
 ExitCode plan_command(const PlanArguments& arguments, bool json) {
@@ -64,20 +114,8 @@ ExitCode plan_command(const PlanArguments& arguments, bool json) {
   demand_revolute(cell);
   set_workspace_box(cell, arguments.workspace_box_mm);
   const Recipe recipe = wanted_recipe(cell, arguments);
-  const TipRegions regions(cell);
-  PlanningBar bar(isatty(STDERR_FILENO) == 1);
-  const auto outcome =
-      make_plan(regions, recipe, [&bar](std::string_view stage, double share) { bar.show(stage, share); });
-  bar.finish();
-  if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) return tell(cell, *refusal);
-  const Plan& plan = std::get<Plan>(outcome);
-  if (!arguments.file.empty()) write_whole_file(arguments.file, plan.document + "\n", arguments.overwrite);
-  if (json) {
-    fmt::print("{}\n", plan.document);
-  } else {
-    fmt::print("{}", plan_text(nlohmann::json::parse(plan.document)));
-  }
-  return kExitDone;
+  return arguments.place ? plan_places(cell, recipe, arguments, json)
+                         : plan_touches(cell, recipe, arguments, json);
 }
 
 }  // namespace cell

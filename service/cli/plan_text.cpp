@@ -87,4 +87,28 @@ std::string plan_text(const json& plan) {
   return lines;
 }
 
+std::string places_text(const json& places) {
+  std::string lines = fmt::format("{:>4}{:>27}{:>10}{:>16}{:>15}{:>11}{:>12}\n", "", "shift x, y, z (mm)",
+                                  "yaw", "workspace box", "joint ranges", "condition", "duration");
+  int rank = 0;
+  for (const json& place : places.at("places")) {
+    const json& shift = place.at("shift_mm");
+    lines += fmt::format("{:>3}.{:>27}{:>6.1f} deg", ++rank,
+                         fmt::format("{:.0f}, {:.0f}, {:.0f}", shift[0].get<double>(), shift[1].get<double>(),
+                                     shift[2].get<double>()),
+                         place.at("yaw_deg").get<double>());
+    if (place.at("feasible").get<bool>()) {
+      lines += fmt::format(
+          "{:>13} mm{:>12} mm{:>11}{:>12}", figure(place.at("workspace_box_rms_mm"), "{:.3f}"),
+          figure(place.at("joint_ranges_rms_mm"), "{:.3f}"), figure(place.at("condition_number"), "{:.1f}"),
+          duration_text(place.at("duration_s").get<double>()));
+      if (place.at("fully_planned").get<bool>()) lines += "  fully planned";
+    } else {
+      lines += "  " + text(place.at("reason"));
+    }
+    lines += place.at("present").get<bool>() ? "  (where it is now)\n" : "\n";
+  }
+  return lines;
+}
+
 }  // namespace cell

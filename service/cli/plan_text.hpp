@@ -9,4 +9,7 @@ namespace cell {
 /// they take, what limits them.
 std::string plan_text(const nlohmann::json& plan);
 
+/// The places tried (touchcal/places/1) as a table, best first.
+std::string places_text(const nlohmann::json& places);
+
 }  // namespace cell

@@ -2,6 +2,8 @@
 
 #include <string_view>
 
+#include "calib_core/touch_planning.hpp"
+
 namespace cell {
 
 /// Shows on standard error how far planning is: a line drawn anew on a terminal, nothing elsewhere.
@@ -9,8 +11,11 @@ class PlanningBar {
  public:
   explicit PlanningBar(bool on_terminal) : on_terminal_(on_terminal) {}
 
-  /// `share` of all that is to be done, 0 to 1.
   void show(std::string_view stage, double share);
+  /// show(), for as long as the bar is there.
+  [[nodiscard]] calib::PlanningProgress progress() {
+    return [this](std::string_view stage, double share) { show(stage, share); };
+  }
   /// Takes the line away.
   void finish();
 

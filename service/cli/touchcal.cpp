@@ -112,12 +112,24 @@ class CommandLine {
     plan->add_option("--accuracy", plan_.tip_rms_max_mm,
                      "the fewest touches, at most --fit or the recipe's, whose predicted tip error is within "
                      "so many mm")
-        ->check(CLI::PositiveNumber);
+        ->check(CLI::Range(1e-6, 1e3));
     plan->add_option("--workspace-box", plan_.workspace_box_mm,
                      "where the tip is to be right: minX,minY,minZ,maxX,maxY,maxZ in R_-1, mm")
         ->delimiter(',')
         ->expected(6);
-    plan->add_option("--out", plan_.file, "write the plan document to this file");
+    plan->add_flag("--place", plan_.place, "search places for the block and rank them");
+    plan->add_option("--place-min", plan_.place_min_mm,
+                     "from where the block may be moved, X,Y,Z along R_-1 as it is now, mm")
+        ->delimiter(',')
+        ->expected(3);
+    plan->add_option("--place-max", plan_.place_max_mm, "and to where")->delimiter(',')->expected(3);
+    plan->add_option("--place-yaw", plan_.place_yaw_deg, "turns about R_-1's y axis to try, MIN,MAX, degrees")
+        ->delimiter(',')
+        ->expected(2);
+    plan->add_option("--places", plan_.place_count, "how many places to try")
+        ->check(CLI::Range(1, cell::kPlaceCountMax))
+        ->default_str("24");
+    plan->add_option("--out", plan_.file, "write the document to this file");
     plan->add_flag("--force", plan_.overwrite, "overwrite it");
     plan->add_flag("--json", json_, "one JSON document on standard output");
     plan->callback([this] { action_ = [this] { return cell::plan_command(plan_, json_); }; });

@@ -23,10 +23,9 @@ std::variant<NamedText, Problem> read_named_text(const nlohmann::json& document,
                      .detail = fmt::format("unknown key; {} is known", known),
                      .pointer = pointer_step(key)};
     }
-    if (document.size() > 1) {
-      return Problem{
-          .kind = "body", .detail = fmt::format("give one of {}", known), .pointer = pointer_step(key)};
-    }
+  }
+  if (document.size() > 1) {
+    return Problem{.kind = "body", .detail = fmt::format("give one of {}", known), .pointer = ""};
   }
   if (document.empty() || !document.begin()->is_string()) {
     const std::string key = document.empty() ? std::string(keys.front()) : document.begin().key();

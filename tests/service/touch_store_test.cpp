@@ -214,5 +214,27 @@ TEST_F(TouchStoreTest, AFolderThatIsNotThereIsToldByName) {
   EXPECT_THAT(refusal(file), HasSubstr(file.string()));
 }
 
+TEST_F(TouchStoreTest, RunsThatFollowOnePlanKeepItOnce) {
+  const std::int64_t first = begin(), second = begin(), unplanned = begin();
+  store_->set_plan(first, 3, "id", "the plan");
+  store_->set_plan(second, 3, "id", "the plan");
+  EXPECT_EQ(store_->plan_json(first), "the plan");
+  EXPECT_EQ(store_->plan_json(second), "the plan");
+  EXPECT_EQ(store_->plan_json(unplanned), std::nullopt);
+  EXPECT_EQ(SQLite::Database(file_.string()).execAndGet("SELECT count(*) FROM plans").getInt(), 1);
+}
+
+TEST_F(TouchStoreTest, AFileFromBeforePlansWereKeptIsTakenOver) {
+  const std::int64_t run = begin();
+  store_.reset();
+  SQLite::Database(file_.string(), SQLite::OPEN_READWRITE)
+      .exec("ALTER TABLE runs DROP COLUMN plan_id; DROP TABLE plans; PRAGMA user_version = 1");
+  store_.emplace(file_);
+  EXPECT_EQ(store_->run(run).value().recipe, "edf-25");
+  EXPECT_EQ(store_->plan_json(run), std::nullopt);
+  store_->set_plan(run, 3, "id", "the plan");
+  EXPECT_EQ(store_->plan_json(run), "the plan");
+}
+
 }  // namespace
 }  // namespace cell
