@@ -57,6 +57,28 @@ calib::Box moved(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
   return {box.name, middle_m - half_m, middle_m + half_m};
 }
 
+/// A box that is turned, in pieces of about this size, each held by a box along the new axes: so much less is
+/// taken for forbidden than by one box around all of it.
+constexpr double kPieceMetres = 0.2;
+
+std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
+  constexpr double kAlongAxes = 1e-9;
+  const Eigen::Matrix3d turn = new_from_old.linear().cwiseAbs();
+  if ((turn.rowwise().maxCoeff().array() > 1.0 - kAlongAxes).all()) return {moved(new_from_old, box)};
+  const Eigen::Vector3d extent_m = box.max_m - box.min_m;
+  const int count_x = static_cast<int>(std::ceil(extent_m.x() / kPieceMetres));
+  const int count_z = static_cast<int>(std::ceil(extent_m.z() / kPieceMetres));
+  const Eigen::Vector3d piece_m(extent_m.x() / count_x, extent_m.y(), extent_m.z() / count_z);
+  std::vector<calib::Box> pieces;
+  for (int x = 0; x < count_x; ++x) {
+    for (int z = 0; z < count_z; ++z) {
+      const Eigen::Vector3d min_m = box.min_m + Eigen::Vector3d(x * piece_m.x(), 0.0, z * piece_m.z());
+      pieces.push_back(moved(new_from_old, {box.name, min_m, min_m + piece_m}));
+    }
+  }
+  return pieces;
+}
+
 /// The i-th place, counted from 1, of a sequence that fills the range evenly.
 BlockPlace place_in(const PlaceRange& range, int i) {
   const Eigen::Vector3d share(calib::van_der_corput(i, 2), calib::van_der_corput(i, 3),
@@ -134,7 +156,11 @@ Cell with_block_at(const Cell& cell, const BlockPlace& place) {
   const auto& links = cell.arm.model.links;
   set_place(there.arm.model,
             new_from_old * calib::frame_transform(links[0]) * calib::frame_transform(links[1]));
-  for (calib::Box& box : there.keep_out_boxes) box = moved(new_from_old, box);
+  there.keep_out_boxes.clear();
+  for (const calib::Box& box : cell.keep_out_boxes) {
+    const auto pieces = moved_in_pieces(new_from_old, box);
+    there.keep_out_boxes.insert(there.keep_out_boxes.end(), pieces.begin(), pieces.end());
+  }
   there.workspace_box = moved(new_from_old, cell.workspace_box);
   return there;
 }

@@ -17,8 +17,9 @@ struct BlockPlace {
 };
 
 /// The cell with its block elsewhere. R_-1 moves with the block: faces and solids keep their coordinates, the
-/// arm's frames 0 and 1, the keep-out boxes and the workspace box get others. A box that is no longer along
-/// the axes becomes the smallest one along them that holds it.
+/// arm's frames 0 and 1, the keep-out boxes and the workspace box get others. The workspace box, when it is no
+/// longer along the axes, becomes the smallest one along them that holds it; a keep-out box becomes pieces
+/// that are such.
 Cell with_block_at(const Cell& cell, const BlockPlace& place);
 
 struct PlaceRange {

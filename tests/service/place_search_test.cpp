@@ -89,6 +89,28 @@ TEST(BlockPlaces, ABoxThatIsTurnedIsHeldByTheOneThatStandsForIt) {
   }
 }
 
+TEST(BlockPlaces, PiecesOfATurnedTableHoldAllOfItAndLittleElse) {
+  const calib::Box& table = edf().keep_out_boxes.at(0);
+  const BlockPlace place{.yaw_rad = 0.4};
+  const auto pieces = with_block_at(edf(), place).keep_out_boxes;
+  const auto is_held = [&](const Eigen::Vector3d& in_room_m) {
+    const Eigen::Vector3d point_m = old_from_new(place).inverse() * in_room_m;
+    return std::ranges::any_of(pieces, [&](const calib::Box& piece) {
+      return ((point_m - piece.min_m).array() > -1e-9).all() &&
+             ((piece.max_m - point_m).array() > -1e-9).all();
+    });
+  };
+  const Eigen::Vector3d extent_m = table.max_m - table.min_m;
+  for (int i = 1; i <= 200; ++i) {
+    const Eigen::Vector3d share(calib::van_der_corput(i, 2), calib::van_der_corput(i, 3),
+                                calib::van_der_corput(i, 5));
+    EXPECT_TRUE(is_held(table.min_m + share.cwiseProduct(extent_m)));
+  }
+  const Eigen::Vector3d beside_m(0.1, 0.0, 0.0);  // less than half of a piece
+  EXPECT_FALSE(is_held(table.max_m + beside_m));
+  EXPECT_FALSE(is_held(table.min_m - beside_m));
+}
+
 TEST(PlaceSearchFigures, RanksPlacesBySmallestErrorAndTellsWhyOthersWillNotDo) {
   const Cell& cell = edf();
   const Recipe& recipe = cell.recipes.at("edf-25");
