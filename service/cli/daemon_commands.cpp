@@ -164,7 +164,7 @@ ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool j
   const json fault = parse_reply(run).at("fault_message");
   if (fault.is_string()) fmt::print("fault: {}\n", fault.get<std::string>());
   if (result.status == 200) {
-    fmt::print("\n{}{}", result_text(parse_reply(result)), more_text(status));
+    fmt::print("\n{}", result_text(parse_reply(result)));
   } else {
     fmt::print("{}\n", parse_reply(result).value("detail", ""));
   }

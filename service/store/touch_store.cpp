@@ -150,6 +150,13 @@ void TouchStore::set_plan(std::int64_t run_id, int touches_total, const std::str
   transaction.commit();
 }
 
+void TouchStore::set_touches_total(std::int64_t run_id, int touches_total) {
+  SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ? WHERE id = ?");
+  update.bind(1, touches_total);
+  update.bind(2, run_id);
+  update.exec();
+}
+
 void TouchStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
   SQLite::Statement insert(*database_, "INSERT INTO touches VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   int index = 0;

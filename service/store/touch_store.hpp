@@ -72,6 +72,8 @@ class TouchStore {
   /// that several runs follow is kept once.
   void set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
                 const std::string& document);
+  /// A run that is accurate enough leaves out touches of its plan.
+  void set_touches_total(std::int64_t run_id, int touches_total);
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
   void finish_run(std::int64_t run_id, const RunEnd& end);
   /// Replaces the result of a run that ended.

@@ -221,9 +221,8 @@ TEST(FiguresOfAiming, ArmsUpToTwiceAsFarOffAsTable3sMeetEveryFaceAndNothingElse)
   const double saved_s = 0.5 * (unaimed_m - searched_m / touches) / planned.problem.motion.search_m_s;
   std::printf(
       "%d of %.0f touches missed by more than predicted; a search is %.1f mm long, %.1f with the nominal "
-      "miss: %.1f s "
-      "less a "
-      "touch until the face; %.2f ms to learn from a touch\n",
+      "miss: "
+      "%.1f s less a touch; %.2f ms to learn from one\n",
       beyond, touches, mm_from_metres(searched_m / touches), mm_from_metres(unaimed_m), saved_s,
       1e3 * learning_s / touches);
   EXPECT_LE(beyond, kBeyondShareMax * touches);
