@@ -3,15 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
+#include <variant>
 
-#include "calib_core/units.hpp"
+#include "calib_core/touch_planning.hpp"
+#include "config/identification_problem.hpp"
 #include "tests/sim_controller/bench.hpp"
 
 namespace sim {
 namespace {
 
-using testing::Aim;
 using testing::AimedTouch;
 using testing::Bench;
 
@@ -37,6 +39,32 @@ class MotionTime : public testing::DemoTouch {
     static const calib::PreparedModel prepared = calib::prepare(demo().arm.model);
     return prepared;
   }
+  /// Touches on each face of the cell that the arm reaches.
+  static calib::TouchPlan planned(const calib::MotionLimits& limits) {
+    constexpr int kPerFace = 7;
+    calib::PlanningProblem problem{.nominal = demo().arm.model,
+                                   .joint_ranges = demo().arm.joint_ranges,
+                                   .faces = demo().block.faces,
+                                   .stylus = demo().probe.stylus,
+                                   .scene = demo().collision_scene(),
+                                   .park_joints = demo().park_joints,
+                                   .nominal_miss_m = demo().nominal_miss_m,
+                                   .tilt_max_rad = demo().stylus_tilt_max_rad,
+                                   .candidate_count = 1'000,
+                                   .knowledge = cell::identification_problem(demo(), recipe()),
+                                   .identification = recipe().identification,
+                                   .workspace_box = demo().workspace_box,
+                                   .motion = limits};
+    problem.goal.criterion = calib::PlanCriterion::kInformation;
+    for (const int face : recipe().faces) {
+      problem.goal.fit_count += kPerFace;
+      problem.requests.push_back(
+          {.face = face, .fit_min = kPerFace, .fit_max = kPerFace, .held_out_count = 1});
+    }
+    return std::get<calib::TouchPlan>(calib::plan_touches(problem));
+  }
+  static const cell::Recipe& recipe() { return demo().recipes.at("edf-25"); }
+
   static cs8::Touch command(const TouchMotion& motion, const calib::MotionLimits& limits) {
     cs8::Touch command = testing::touch_command(motion);
     command.second_speed_um_s = cs8::um_s_from_metres_per_second(limits.second_m_s);
@@ -68,45 +96,44 @@ TEST_F(MotionTime, OfTravelIsWhatTheControllerTakes) {
   const calib::JointVector park = bench.plant.start_joints;
   for (const double turn : {0.02, 0.2, 0.6}) {
     for (int joint = 0; joint < calib::kJointCount; ++joint) {
-      calib::JointVector target = park;
-      target[joint] += turn;
-      const calib::JointVector from = bench.joints();
-      bench.answer<cs8::Accepted>(++sequence, testing::travel_command(target));
-      const double taken = taken_s(bench);
-      bench.send(0, cs8::ResultAcknowledge{sequence});
-      EXPECT_NEAR(calib::way_time_s(model(), limits(), std::array{from, target}), taken, 0.02 + 0.02 * taken)
-          << "joint " << joint + 1 << " turned by " << turn;
+      calib::JointVector turned = park;
+      turned[joint] -= turn;
+      for (const auto& [from, to] : {std::pair(park, turned), std::pair(turned, park)}) {
+        bench.answer<cs8::Accepted>(++sequence, testing::travel_command(to));
+        const double taken = taken_s(bench);
+        EXPECT_EQ(bench.result<cs8::MoveResult>().outcome, cs8::Outcome::kArrived);
+        bench.send(0, cs8::ResultAcknowledge{sequence});
+        EXPECT_NEAR(calib::way_time_s(model(), limits(), std::array{from, to}), taken, 0.02 + 0.02 * taken)
+            << "joint " << joint + 1 << " turned by " << turn;
+      }
     }
   }
 }
 
-TEST_F(MotionTime, OfTouchesAndTheirWaysIsWhatTheControllerTakes) {
+TEST_F(MotionTime, OfAPlanIsWhatTheControllerTakes) {
+  const calib::TouchPlan plan = planned(limits());
   Bench bench = Bench::ready(testing::perfect_plant("demo"));
-  const calib::JointVector park = bench.plant.start_joints;
   std::uint32_t sequence = 0;
-  double predicted_sum = 0.0, taken_sum = 0.0;
-  calib::JointVector standing = park;
-  for (const int face : {0, 1, 2, 3}) {
-    for (const double tilt_deg : {5.0, 30.0}) {
-      AimedTouch aimed =
-          testing::aimed_touch(demo(), {.face = face, .tilt_rad = calib::radians_from_degrees(tilt_deg)});
-      const calib::JointVector clear = aimed.motion.waypoints.back();
-      aimed.motion.waypoints.insert(aimed.motion.waypoints.begin(), park);
-      const double predicted = calib::way_time_s(model(), limits(), std::array{standing, park, clear}) +
-                               search_contact_touch_s(aimed, limits());
-      bench.answer<cs8::Accepted>(++sequence, command(aimed.motion, limits()));
-      const double taken = taken_s(bench);
-      ASSERT_EQ(bench.result<cs8::TouchResult>().outcome, cs8::Outcome::kContact) << face << ' ' << tilt_deg;
-      bench.send(0, cs8::ResultAcknowledge{sequence});
-      EXPECT_NEAR(predicted, taken, kOfOneTouch * taken) << "face " << face << " tilt " << tilt_deg;
-      predicted_sum += predicted;
-      taken_sum += taken;
-      standing = clear;
-    }
+  double taken_sum_s = 0.0;
+  for (const calib::PlannedTouch& touch : plan.touches) {
+    TouchMotion motion{touch.via,           touch.approach_joints, touch.search_end_joints,
+                       limits().travel_m_s, limits().approach_m_s, limits().search_m_s};
+    motion.waypoints.push_back(touch.clear_joints);
+    bench.answer<cs8::Accepted>(++sequence, command(motion, limits()));
+    const double taken = taken_s(bench);
+    ASSERT_EQ(bench.result<cs8::TouchResult>().outcome, cs8::Outcome::kContact) << "touch " << sequence;
+    bench.send(0, cs8::ResultAcknowledge{sequence});
+    EXPECT_NEAR(touch.travel_s + touch.touch_s, taken, kOfOneTouch * taken) << "touch " << sequence;
+    taken_sum_s += taken;
   }
-  EXPECT_NEAR(predicted_sum, taken_sum, kOfAPlan * taken_sum);
-  RecordProperty("predicted_s", std::to_string(predicted_sum));
-  RecordProperty("taken_s", std::to_string(taken_sum));
+  cs8::Travel park = testing::travel_command(bench.plant.start_joints);
+  park.via_count = static_cast<std::int32_t>(plan.park_via.size());
+  std::ranges::transform(plan.park_via, park.via.begin(), wire_from_joints);
+  bench.answer<cs8::Accepted>(++sequence, park);
+  taken_sum_s += taken_s(bench);
+  EXPECT_NEAR(plan.duration_s(), taken_sum_s, kOfAPlan * taken_sum_s);
+  RecordProperty("predicted_s", std::to_string(plan.duration_s()));
+  RecordProperty("taken_s", std::to_string(taken_sum_s));
 }
 
 TEST_F(MotionTime, OfATouchAloneIsWhatTheControllerTakesWithAndWithoutASecondTouch) {
