@@ -147,22 +147,21 @@ std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& pro
 
 std::optional<std::vector<JointVector>> find_transfer(const PlanningProblem& problem, const JointVector& from,
                                                       const JointVector& to) {
-  const CollisionScene scene = travel_scene(problem);
-  const auto via = find_way({problem.nominal, scene, problem.park_joints, problem.nominal_miss_m}, from, to);
+  const TransferSpace space(problem.nominal, travel_scene(problem), problem.park_joints,
+                            problem.nominal_miss_m);
+  const auto via = find_way(space, from, to);
   if (!via || via->empty()) return via;
   const PreparedModel model = prepare(problem.nominal);
-  const WayJudge judge{.is_clear =
-                           [&](const JointVector& a, const JointVector& b) {
-                             return !find_clash_on_way(scene, problem.nominal, a, b, problem.nominal_miss_m);
-                           },
-                       .seconds =
-                           [&](const JointVector& a, const JointVector& b) {
-                             return move_time_s(model, problem.motion, a, b, problem.motion.travel_m_s);
-                           }};
+  const WayJudge judge{
+      .is_clear = [&](const JointVector& a, const JointVector& b) { return space.is_clear(a, b); },
+      .seconds =
+          [&](const JointVector& a, const JointVector& b) {
+            return move_time_s(model, problem.motion, a, b, problem.motion.travel_m_s);
+          }};
   std::vector<JointVector> way{from};
   way.insert(way.end(), via->begin(), via->end());
   way.push_back(to);
-  way = tighten_way(judge, std::move(way));
+  way = tighten_way(judge, way);
   return std::vector<JointVector>(way.begin() + 1, way.end() - 1);
 }
 
