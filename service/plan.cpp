@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "calib_core/quasi_random.hpp"
 #include "calib_core/units.hpp"
@@ -68,8 +69,10 @@ PlanRefusal refuse_face(const Cell& cell, const calib::PlanningFailure& failure)
   const Eigen::Vector3d& center_m = cell.block.faces[static_cast<std::size_t>(failure.face)].center_m;
   const double nearest_mm = mm_from_metres(nearest_tip_m(cell.arm, center_m, center_m));
   const calib::FaceEffort* effort = effort_of(failure);
-  std::string message =
-      fmt::format("plane {}: {} of {} touches can be made", failure.face + 1, failure.found, failure.wanted);
+  // Fewer on this plane than it needs itself, or fewer on all together, this one having the fewest.
+  const bool over_all = effort && effort->feasible != failure.found;
+  std::string message = fmt::format("plane {}: {} of {} touches {}can be made", failure.face + 1,
+                                    failure.found, failure.wanted, over_all ? "over all planes " : "");
   if (effort) message += fmt::format(", after {} postures tried", effort->tried);
   message +=
       fmt::format("; in the way most often: {}; the tip comes as near as {:.0f} mm to the plane's centre",
@@ -79,51 +82,38 @@ PlanRefusal refuse_face(const Cell& cell, const calib::PlanningFailure& failure)
   return {.kind = PlanRefusal::Kind::kFace, .message = message, .efforts = failure.efforts};
 }
 
-std::string region_words(const Cell& cell, calib::PlanCriterion criterion) {
-  return criterion == calib::PlanCriterion::kTipInJointRanges
-             ? std::string("over the joint ranges")
-             : fmt::format("in the workspace box \"{}\"", cell.workspace_box.name);
-}
-
-/// What the best plan's error is made of says what stands in the way; more touches lessen touch_noise only.
-PlanRefusal refuse_accuracy(const TipRegions& regions, const Recipe& recipe,
-                            const calib::PlanningFailure& failure, const calib::PlanningProgress& progress) {
-  const Cell& cell = regions.cell();
-  std::string message = fmt::format(
-      "a predicted tip error of {:.4g} mm {} cannot be had with {} touches: {}",
-      mm_from_metres(recipe.goal.tip_rms_max_m.value()), region_words(cell, recipe.goal.criterion),
-      recipe.goal.fit_count,
-      failure.best_tip_rms_m ? fmt::format("the best is {:.4g} mm", mm_from_metres(*failure.best_tip_rms_m))
-                             : failure.reason);
-  Recipe as_well_as_can_be = recipe;
-  as_well_as_can_be.goal.tip_rms_max_m.reset();
-  const auto best = calib::plan_touches(planning_problem(cell, as_well_as_can_be), progress);
-  if (const auto* plan = std::get_if<calib::TouchPlan>(&best)) {
-    std::string causes;
-    const PlannedIdentification planned = identify_planned(cell, recipe, *plan);
-    for (const ErrorShare& share : error_shares(predict_tip(regions, planned.problem, planned.result))) {
-      if (share.share < 0.05) break;
-      causes += fmt::format("{}{} {:.0f} %", causes.empty() ? "" : ", ", share.source, 100.0 * share.share);
-    }
-    if (!causes.empty()) message += ", of which (in the workspace box) " + causes;
-  }
-  message +=
-      "; allow more touches (--fit) against touch_noise, better figures of block and probe against the rest";
-  return {.kind = PlanRefusal::Kind::kAccuracy, .message = message, .efforts = failure.efforts};
-}
-
-PlanRefusal refuse(const TipRegions& regions, const Recipe& recipe, const calib::PlanningFailure& failure,
-                   const calib::PlanningProgress& progress) {
+PlanRefusal refuse(const Cell& cell, const Recipe& recipe, const calib::PlanningFailure& failure) {
   switch (failure.kind) {
     case calib::PlanningFailure::Kind::kPark:
       return {.kind = PlanRefusal::Kind::kPark,
               .message = failure.reason + "; choose other park_joints_deg in the cell's file"};
     case calib::PlanningFailure::Kind::kAccuracy:
-      return refuse_accuracy(regions, recipe, failure, progress);
+      return {
+          .kind = PlanRefusal::Kind::kAccuracy,
+          .message = fmt::format(
+              "a predicted tip error of {:.4g} mm cannot be had{}: {}; allow more touches (--fit) against "
+              "touch_noise, give better figures of block and probe against the rest",
+              mm_from_metres(recipe.goal.tip_rms_max_m.value_or(0.0)),
+              failure.best_tip_rms_m
+                  ? fmt::format(", the best is {:.4g} mm", mm_from_metres(*failure.best_tip_rms_m))
+                  : std::string(),
+              failure.reason),
+          .efforts = failure.efforts};
     case calib::PlanningFailure::Kind::kFace:
       break;
   }
-  return refuse_face(regions.cell(), failure);
+  return refuse_face(cell, failure);
+}
+
+/// Touches that cannot show what they are to show; with a prior any number will do.
+std::optional<PlanRefusal> refuse_too_few(const Recipe& recipe, const calib::PlanningProblem& problem) {
+  const int needed = problem.knowledge.attainable.value().count;
+  if (recipe.identification.prior || problem.goal.fit_count >= needed) return std::nullopt;
+  return PlanRefusal{
+      .kind = PlanRefusal::Kind::kTouches,
+      .message = fmt::format("{} touches to fit, but {} parameters need at least {}: {} more are missing",
+                             problem.goal.fit_count, needed, needed, needed - problem.goal.fit_count),
+      .efforts = {}};
 }
 
 }  // namespace
@@ -148,9 +138,20 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
                                           const calib::PlanningProgress& progress) {
   const Cell& cell = regions.cell();
   if (regions.tip().workspace_box.posture_count == 0) return refuse_workspace_box(cell);
-  auto outcome = calib::plan_touches(planning_problem(cell, recipe), progress);
+  const calib::PlanningProblem problem = planning_problem(cell, recipe);
+  if (auto refusal = refuse_too_few(recipe, problem)) return std::move(*refusal);
+  std::variant<calib::TouchPlan, calib::PlanningFailure> outcome;
+  try {
+    outcome = calib::plan_touches(problem, progress);
+  } catch (
+      const std::invalid_argument& error) {  // planes that cannot show it, however often they are touched
+    return PlanRefusal{.kind = PlanRefusal::Kind::kTouches,
+                       .message = std::string(error.what()) +
+                                  "; touch more planes, or exclude the parameters that these do not show",
+                       .efforts = {}};
+  }
   if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
-    return refuse(regions, recipe, *failure, progress);
+    return refuse(cell, recipe, *failure);
   Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};
   const PlannedIdentification planned = identify_planned(cell, recipe, plan.touches);
   if (planned.result.status != calib::IdentificationStatus::kConverged) {

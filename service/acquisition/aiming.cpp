@@ -12,7 +12,6 @@ using namespace std::chrono_literals;
 
 void Operation::begin_aim() {
   aim_.emplace(planning_);
-  made_.reset();
   ahead_.reset();
 }
 
@@ -29,11 +28,13 @@ void Operation::learn() {
   }
 }
 
-/// Where the arm leaves from; a touch's clear posture is left as that touch was made.
+/// Where the arm leaves from: as the last touch was made, which may have been one of the run before. That run
+/// knew the arm better than this one does at its beginning, and may have been broken off near to something.
 calib::TransferEnd Operation::leaving(const calib::JointVector& joints) const {
   constexpr double kSamePostureRad = 1e-4;
-  if (!made_ || (joints - made_->touch.clear_joints).cwiseAbs().maxCoeff() > kSamePostureRad)
-    return {joints, std::nullopt, nullptr};
+  if (!made_) return {joints, std::nullopt, nullptr};
+  if ((joints - made_->touch.clear_joints).cwiseAbs().maxCoeff() > kSamePostureRad)
+    return {joints, std::nullopt, &made_->problem};
   return calib::end_of(*made_);
 }
 

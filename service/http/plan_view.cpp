@@ -16,9 +16,6 @@ namespace {
 
 using calib::mm_from_metres;
 
-/// Sources named in words; smaller ones are in the figures only.
-constexpr double kShareToldMin = 0.05;
-
 Json joints_json(const Cell& cell, const calib::JointVector& joints) {
   const calib::JointVector shown = joints.cwiseQuotient(joint_units(cell.arm.model));
   return std::vector<double>(shown.begin(), shown.end());

@@ -11,6 +11,9 @@ namespace cell {
 nlohmann::ordered_json plan_json(const TipRegions& regions, const Recipe& recipe,
                                  const calib::TouchPlan& plan, const PlannedIdentification& planned);
 
+/// Causes with a smaller share are in the figures only, not in words.
+inline constexpr double kShareToldMin = 0.05;
+
 /// The causes of the predicted tip error in the workspace box, largest first, with their share of its square.
 struct ErrorShare {
   std::string source;

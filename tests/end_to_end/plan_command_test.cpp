@@ -81,6 +81,9 @@ TEST_F(PlanCommand, OptionsThatMakeNoSenseAreWrongUsage) {
                                              {"--criterion", "beauty"},
                                              {"--accuracy", "0"},
                                              {"--accuracy", "-0.1"},
+                                             {"--place", "--place-max", "1,1,1"},
+                                             {"--place", "--place-min", "2,1,1", "--place-max", "1,1,1"},
+                                             {"--place", "--place-min", "1,1,1", "--place-max", "1,1"},
                                              {"--workspace-box", "1,2,3"},
                                              {"--workspace-box", "0,0,0,1,1,-1"},
                                              {"--out", "-"}}) {
@@ -119,6 +122,36 @@ TEST_F(PlanCommand, AFaceThatNoPostureReachesIsRefused) {
 TEST_F(PlanCommand, AWorkspaceBoxOutOfTheArmsRangeIsRefused) {
   expect_refused(plan({"--workspace-box", "5000,0,0,5600,500,500"}), cell::kExitRefused,
                  {"workspace box", "out of the arm's range", "mm off"});
+}
+
+TEST_F(PlanCommand, AnAccuracyThatCannotBeHadNamesTheBestAndWhatItIsMadeOf) {
+  expect_refused(plan({"--recipe", "quick", "--accuracy", "0.001"}), cell::kExitRefused,
+                 {"0.001 mm", "40 touches", "the best is", "touch_noise", "--fit"});
+}
+
+TEST_F(PlanCommand, AFinerAccuracyTakesMoreTouches) {
+  const auto fitted = [&](const std::string& accuracy_mm) {
+    const Finished finished = plan({"--recipe", "quick", "--accuracy", accuracy_mm, "--fit", "80", "--json"});
+    EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+    const json touches = json::parse(finished.out).at("touches");
+    return std::ranges::count_if(touches, [](const json& touch) { return touch.at("role") == "fit"; });
+  };
+  const auto rough = fitted("0.4"), fine = fitted("0.22");
+  EXPECT_GE(rough, kRank);
+  EXPECT_GT(fine, rough);
+  EXPECT_LE(fine, 80);
+}
+
+TEST_F(PlanCommand, PlacesOfTheBlockAreRanked) {
+  const Finished finished = plan({"--recipe", "edf-25", "--place", "--place-min", "-50,0,-50", "--place-max",
+                                  "1500,0,50", "--places", "2", "--json"});
+  EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+  const json document = json::parse(finished.out);
+  EXPECT_EQ(document.at("schema"), "touchcal/places/1");
+  const json& places = document.at("places");
+  ASSERT_EQ(places.size(), 3u) << "two and the present one";
+  EXPECT_TRUE(places[0].at("feasible").get<bool>());
+  for (const json& place : places) EXPECT_EQ(place.at("frames").size(), 2u);
 }
 
 TEST_F(PlanCommand, TouchesThatCannotShowAllParametersAreRefused) {

@@ -1,8 +1,10 @@
 // The plan that was shown is the plan that runs.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "service/http/routes.hpp"
@@ -13,7 +15,10 @@ namespace {
 
 using nlohmann::json;
 
-TEST(PlanRun, MakesTheTouchesOfThePlanThatWasShownInItsOrder) {
+/// How far joints are from where the nominal arm would have them, of an arm that misses by some 10 mm.
+constexpr double kReaimedDegMax = 3.0;
+
+TEST(PlanRun, MakesEachTouchOfThePlanThatWasShownOnce) {
   LoopbackCell loop("demo");
   loop.serve();
   loop.launch();
@@ -43,10 +48,23 @@ TEST(PlanRun, MakesTheTouchesOfThePlanThatWasShownInItsOrder) {
   EXPECT_EQ(send("GET", "runs/" + run + "/plan", "").body, shown.body);
   const json made = json::parse(send("GET", "runs/" + run + "/touches", "").body).at("touches");
   ASSERT_EQ(made.size(), plan.at("touches").size());
-  for (std::size_t i = 0; i < made.size(); ++i) {
-    EXPECT_EQ(made[i].at("plane"), plan.at("touches")[i].at("plane")) << i;
-    EXPECT_EQ(made[i].value("role", "fit"), plan.at("touches")[i].at("role")) << i;
+  // One that cannot be made as it is aimed when its turn comes is put off; none is left out or made twice.
+  json due = plan.at("touches");
+  for (const json& touch : made) {
+    const auto is_it = [&](const json& planned) {
+      if (planned.at("plane") != touch.at("plane") || planned.at("role") != touch.value("role", "fit"))
+        return false;
+      for (std::size_t joint = 0; joint < 6; ++joint) {
+        const double aimed_deg = touch.at("joints_deg")[joint], planned_deg = planned.at("joints_deg")[joint];
+        if (std::abs(aimed_deg - planned_deg) > kReaimedDegMax) return false;
+      }
+      return true;
+    };
+    const auto found = std::ranges::find_if(due, is_it);
+    ASSERT_NE(found, due.end()) << "not in the plan: " << touch;
+    due.erase(found);
   }
+  EXPECT_TRUE(due.empty());
 }
 
 }  // namespace

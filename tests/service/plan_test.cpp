@@ -25,7 +25,10 @@ const Plan& shipped_plan() {
   return plan;
 }
 
-json document() { return json::parse(shipped_plan().document); }
+const json& document() {
+  static const json parsed = json::parse(shipped_plan().document);
+  return parsed;
+}
 
 calib::JointVector joints_of(const json& joints_deg) {
   const auto six = joints_deg.get<std::array<double, calib::kJointCount>>();
@@ -162,6 +165,15 @@ TEST_F(RefusedPlan, TouchesThatAreTooFewAreRefusedWithTheNumberThatIsMissing) {
   const auto refused = std::get<PlanRefusal>(make_plan(regions, few));
   EXPECT_EQ(refused.kind, PlanRefusal::Kind::kTouches);
   EXPECT_THAT(refused.message, HasSubstr(std::to_string(25 - 3 * 4)));
+}
+
+TEST_F(RefusedPlan, PlanesThatCannotShowAllAreRefusedHoweverManyTouchesThereAre) {
+  Recipe two_planes = cell_.recipes.at("quick");
+  two_planes.faces = {0, 1};
+  const TipRegions regions(cell_);
+  const auto refused = std::get<PlanRefusal>(make_plan(regions, two_planes));
+  EXPECT_EQ(refused.kind, PlanRefusal::Kind::kTouches);
+  EXPECT_THAT(refused.message, HasSubstr("more planes"));
 }
 
 }  // namespace
