@@ -89,7 +89,7 @@ double median(std::vector<double> values) {
 
 TEST_P(Figures, HeldOutTouchesOfAHundredSeedsShowWhatIsPromised) {
   const double noise_m = cell_.touch_noise_m;
-  std::vector<double> means_m, rms_parts, removed, removed_on_worst_plane;
+  std::vector<double> means_m, rms_parts, worst_plane_parts, removed, removed_on_worst_plane;
   double condition_max = 0.0;
   std::size_t iterations_max = 0;
   for (int seed = 1; seed <= kSeedCount; ++seed) {
@@ -102,6 +102,7 @@ TEST_P(Figures, HeldOutTouchesOfAHundredSeedsShowWhatIsPromised) {
     EXPECT_GE(figures.rms_removed, kRmsRemovedMin);
     means_m.push_back(figures.mean_max_m);
     rms_parts.push_back(figures.rms_m / noise_m);
+    worst_plane_parts.push_back(figures.plane_rms_max_m / noise_m);
     removed.push_back(figures.rms_removed);
     removed_on_worst_plane.push_back(figures.rms_removed_min);
     condition_max = std::max(condition_max, result.iterations.back().condition_number);
@@ -114,9 +115,9 @@ TEST_P(Figures, HeldOutTouchesOfAHundredSeedsShowWhatIsPromised) {
   EXPECT_LE(std::ranges::count_if(rms_parts, [](double part) { return part > kHeldOutRmsMaxPart; }),
             kSeedsBeyondMax);
   EXPECT_LE(median(rms_parts), kHeldOutRmsMedianMaxPart);
-  // On one plane in one run, ten touches of declared noise may hide it: Table III misses plane 3 by 2.4 mm
-  // rms.
-  EXPECT_GE(median(removed_on_worst_plane), kRmsRemovedMin);
+  // On the worst plane only the noise is left. It alone is more than 1 % of what Table III misses plane 3 by
+  // (some 1.4 mm rms where the held-out touches are).
+  EXPECT_LE(median(worst_plane_parts), kHeldOutRmsMaxPart);
   EXPECT_LT(condition_max, kConditionNumberMax);
   EXPECT_LE(iterations_max, static_cast<std::size_t>(kIterationsMax));
   std::printf(

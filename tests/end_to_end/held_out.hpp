@@ -14,6 +14,7 @@ struct HeldOut {
   double rms_m = 0.0;            // over all held-out touches
   double rms_removed = 0.0;      // 1 - calibrated rms / nominal rms, over all held-out touches
   double rms_removed_min = 1.0;  // the least of the planes
+  double plane_rms_max_m = 0.0;  // the largest of the planes, calibrated
 };
 
 inline HeldOut held_out(const calib::IdentificationResult& result) {
@@ -26,6 +27,7 @@ inline HeldOut held_out(const calib::IdentificationResult& result) {
     figures.mean_max_m = std::max(figures.mean_max_m, std::abs(face.calibrated_mean_m));
     figures.rms_removed_min =
         std::min(figures.rms_removed_min, 1.0 - face.calibrated_rms_m / face.nominal_rms_m);
+    figures.plane_rms_max_m = std::max(figures.plane_rms_max_m, face.calibrated_rms_m);
     calibrated_squares += face.touch_count * face.calibrated_rms_m * face.calibrated_rms_m;
     nominal_squares += face.touch_count * face.nominal_rms_m * face.nominal_rms_m;
   }
