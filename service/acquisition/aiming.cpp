@@ -53,13 +53,15 @@ std::optional<Operation::PreparedTouch> Operation::with_way(std::variant<calib::
   return PreparedTouch{std::move(*aimed), std::move(*via)};
 }
 
-/// The touch at this place of the plan. One that cannot be made as it is aimed now comes behind the others;
-/// when its turn comes again it is made as planned, with the nominal miss. Nothing when that fails too.
+/// The touch at this place of the plan. One that cannot be made as it is aimed is made with the nominal miss,
+/// so that the plan's order stays; when there is no way to that either, it comes behind the others, once.
+/// Nothing when it cannot be made then.
 std::optional<Operation::PreparedTouch> Operation::prepared(std::size_t index,
                                                             const calib::TransferEnd& from) {
   while (const calib::PlannedTouch* planned = run_->planned(index)) {
     if (auto touch = with_way(calib::aim_touch(planning_, *aim_, *planned), from)) return touch;
-    if (!run_->put_off(index)) return with_way(calib::nominal_touch(planning_, *planned), from);
+    if (auto touch = with_way(calib::nominal_touch(planning_, *planned), from)) return touch;
+    if (!run_->put_off(index)) break;
   }
   return std::nullopt;
 }
