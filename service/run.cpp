@@ -47,6 +47,14 @@ bool Run::put_off(std::size_t index) {
   return true;
 }
 
+double Run::left_s(double elapsed_s) const {
+  double made_s = 0.0;
+  for (std::size_t i = 0; i < touches_made() && planned(i); ++i)
+    made_s += planned(i)->travel_s + planned(i)->touch_s;
+  const double left_s = plan_.duration_s() - made_s;
+  return made_s > 0.0 ? left_s * elapsed_s / made_s : left_s;
+}
+
 int Run::drop_fitted(std::size_t first) {
   const std::size_t before = plan_.touches.size();
   if (first >= before) return 0;

@@ -39,6 +39,9 @@ class Run {
   [[nodiscard]] std::size_t touches_made() const { return touches_.size(); }
   /// The touch at this place comes behind all others of its role. False when it did before, or is the last.
   bool put_off(std::size_t index);
+  /// Predicted time of all that is left, to the park posture: the plan's, as much longer or shorter as what
+  /// is made took in `elapsed_s`.
+  [[nodiscard]] double left_s(double elapsed_s) const;
   /// Leaves out the touches to fit from this place on; how many.
   int drop_fitted(std::size_t first);
 

@@ -144,8 +144,7 @@ void Operation::publish() {
       if (const calib::PlannedTouch* next = run_->next()) status_.plane = next->face + 1;
       if (run_->touches_done() > 0) {
         const std::chrono::duration<double> elapsed = clock_() - run_began_;
-        status_.eta_s =
-            elapsed.count() / run_->touches_done() * (run_->touches_total() - run_->touches_done());
+        status_.eta_s = run_->left_s(elapsed.count());
       }
     }
   }

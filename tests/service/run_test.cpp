@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <numbers>
 
 #include "config/identification_problem.hpp"
@@ -52,6 +53,19 @@ TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
   EXPECT_EQ(run_.latest().fitted_touch_count, number);
   EXPECT_GT(run_.predicted_tip_rms_m().value_or(0.0), 0.0);
   EXPECT_EQ(store_.touches(run_.id()).size(), table3_touches().size());
+}
+
+TEST_F(RunTest, WhatIsLeftTakesAsMuchLongerThanPlannedAsWhatIsMadeTook) {
+  calib::TouchPlan plan{.touches = std::vector<calib::PlannedTouch>(3), .park_s = 5.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    plan.touches[i].travel_s = 2.0;
+    plan.touches[i].touch_s = std::array{6.0, 4.0, 20.0}[i];
+  }
+  run_.set_plan(plan);
+  EXPECT_EQ(run_.left_s(0.0), plan.duration_s());
+  run_.add(store_, stored(1, table3_touches()[0]));
+  run_.add(store_, stored(2, table3_touches()[1]));
+  EXPECT_DOUBLE_EQ(run_.left_s(7.0), (2.0 + 20.0 + 5.0) * 7.0 / (2.0 + 6.0 + 2.0 + 4.0));
 }
 
 TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
