@@ -8,6 +8,7 @@
 #include "calib_core/inverse_kinematics.hpp"
 #include "calib_core/swept_collision.hpp"
 #include "calib_core/touch_candidate.hpp"
+#include "calib_core/units.hpp"
 
 namespace calib {
 namespace {
@@ -101,6 +102,14 @@ double worst_spread_m(const PreparedModel& prepared, const Chain& chain, const E
   return kSigmas * std::sqrt(std::max(0.0, eigenvalues[2]));
 }
 
+/// A face whose place is not known leaves the solid around it as uncertain as itself: as long as nothing here
+/// moves that with the estimate, everything keeps the nominal miss.
+bool has_estimated_face(const PlanningProblem& problem) {
+  return std::ranges::any_of(problem.knowledge.artefact.parameters, [](const ArtefactParameter& parameter) {
+    return parameter.kind == ArtefactKind::kFaceOffset && !parameter.std;
+  });
+}
+
 double within_bounds_m(double miss_m, double nominal_miss_m) {
   return std::min(std::max(miss_m, kPredictedMissMinMetres), nominal_miss_m);
 }
@@ -168,6 +177,22 @@ std::optional<std::vector<JointVector>> find_lifted_transfer(const PlanningProbl
   if (*end != to.joints) way->push_back(*end);
   if (way->size() > kAimedTransferPosturesMax) return std::nullopt;
   return way;
+}
+
+/// Postures all along a way, ends included.
+std::vector<JointVector> looked_at(const JointVector& from, const std::vector<JointVector>& via,
+                                   const JointVector& to) {
+  constexpr double kStepRad = 10.0 * kRadiansPerDegree;
+  std::vector<JointVector> stops{from};
+  stops.insert(stops.end(), via.begin(), via.end());
+  stops.push_back(to);
+  std::vector<JointVector> postures{from};
+  for (std::size_t leg = 1; leg < stops.size(); ++leg) {
+    const JointVector move = stops[leg] - stops[leg - 1];
+    const int steps = static_cast<int>(std::ceil(move.cwiseAbs().maxCoeff() / kStepRad));
+    for (int step = 1; step <= steps; ++step) postures.push_back(stops[leg - 1] + move * step / steps);
+  }
+  return postures;
 }
 
 /// Out and in on ways that were clear when the ends were made.
@@ -282,6 +307,7 @@ double Aim::predicted_miss_m(const JointVector& joints) const {
 
 std::optional<PlanningProblem> Aim::aimed_problem(const PlanningProblem& problem,
                                                   std::span<const JointVector> postures) const {
+  if (has_estimated_face(problem)) return std::nullopt;
   double miss_m = 0.0;
   for (const JointVector& joints : postures) miss_m = std::max(miss_m, predicted_miss_m(joints));
   if (miss_m >= nominal_miss_m_) return std::nullopt;
@@ -336,16 +362,18 @@ std::optional<std::vector<JointVector>> find_aimed_transfer(const PlanningProble
     const double miss_m = aimed ? aimed->nominal_miss_m : problem.nominal_miss_m;
     auto way = find_lifted_transfer(aimed ? *aimed : problem, from, to);
     if (!way) break;
-    const bool is_farther_off =
-        std::ranges::any_of(*way, [&](const JointVector& via) { return aim.predicted_miss_m(via) > miss_m; });
-    if (!is_farther_off) return way;
-    postures.insert(postures.end(), way->begin(), way->end());
+    const std::size_t known = postures.size();
+    for (const JointVector& joints : looked_at(from.joints, *way, to.joints)) {
+      if (aim.predicted_miss_m(joints) > miss_m) postures.push_back(joints);
+    }
+    if (postures.size() == known) return way;
   }
   return through_park(problem, from, to);
 }
 
 std::vector<double> predicted_misses_m(const PlanningProblem& problem,
                                        std::span<const PlannedTouch> touches) {
+  if (has_estimated_face(problem)) return std::vector<double>(touches.size(), problem.nominal_miss_m);
   IdentificationProblem knowledge = widened(problem);
   const std::vector<int> columns = columns_of(knowledge);
   for (const PlannedTouch& touch : touches)

@@ -54,7 +54,8 @@ class Aim {
 
   /// The problem of a move or touch that goes through these postures: `nominal` is the estimate, the nominal
   /// miss the largest predicted one, and a body that may be farther off than the ball has that as its margin.
-  /// Nothing when the nominal arm is as good: it misses by less there than is predicted of the estimate.
+  /// Nothing when the nominal arm is as good: it misses by less there than is predicted of the estimate; and
+  /// nothing in a cell with a face that is estimated in place, whose solid nobody knows well enough.
   [[nodiscard]] std::optional<PlanningProblem> aimed_problem(const PlanningProblem& problem,
                                                              std::span<const JointVector> postures) const;
 

@@ -2,6 +2,10 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <cmath>
+
+#include "calib_core/face.hpp"
 #include "calib_core/units.hpp"
 #include "service/acquisition/operation.hpp"
 
@@ -10,9 +14,31 @@ namespace cell {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
+namespace {
+
+/// Touches that are put off in a row before there is said to be no way.
+constexpr int kPutOffMax = 8;
+
+/// Whether a posture lies on straight joint moves through these; straight lines of the tip leave them a
+/// little.
+bool is_on(const std::vector<calib::JointVector>& way, const calib::JointVector& joints) {
+  constexpr double kOffMaxRad = 5e-3;
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    const calib::JointVector move = way[i] - way[i - 1];
+    const double length_squared = move.squaredNorm();
+    const double share =
+        length_squared > 0.0 ? std::clamp((joints - way[i - 1]).dot(move) / length_squared, 0.0, 1.0) : 0.0;
+    if ((joints - way[i - 1] - share * move).cwiseAbs().maxCoeff() <= kOffMaxRad) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 void Operation::begin_aim() {
   aim_.emplace(planning_);
   ahead_.reset();
+  missed_ = false;
 }
 
 /// The touches that the aim does not know yet.
@@ -28,14 +54,32 @@ void Operation::learn() {
   }
 }
 
-/// Where the arm leaves from: as the last touch was made, which may have been one of the run before. That run
-/// knew the arm better than this one does at its beginning, and may have been broken off near to something.
+void Operation::forget_made() {
+  made_.reset();
+  before_.reset();
+}
+
+/// Whether a contact was farther off than its search was made for: what is known of the arm is wrong there.
+bool Operation::is_surprise(const calib::JointVector& contact) const {
+  const calib::PlannedTouch& touch = made_->touch;
+  const calib::Face& face = planning_.faces[static_cast<std::size_t>(touch.face)];
+  const Eigen::Vector3d tip_m = calib::forward_kinematics(made_->problem.nominal, contact).translation();
+  return std::abs(signed_distance_m(contact_plane(face, planning_.stylus), tip_m)) > touch.predicted_miss_m;
+}
+
+/// Where the arm leaves from. At the clear posture of one of the last two touches, also of the run before, it
+/// leaves as that touch was made; broken off on the way between them, as the one that was known better, for
+/// which the way was clear. Anywhere else nothing is known.
 calib::TransferEnd Operation::leaving(const calib::JointVector& joints) const {
   constexpr double kSamePostureRad = 1e-4;
-  if (!made_) return {joints, std::nullopt, nullptr};
-  if ((joints - made_->touch.clear_joints).cwiseAbs().maxCoeff() > kSamePostureRad)
-    return {joints, std::nullopt, &made_->problem};
-  return calib::end_of(*made_);
+  const calib::PlanningProblem* known = nullptr;
+  for (const auto* touch : {&made_, &before_}) {
+    if (!*touch) continue;
+    if (((*touch)->touch.clear_joints - joints).cwiseAbs().maxCoeff() <= kSamePostureRad)
+      return calib::end_of(**touch);
+    if (!known || (*touch)->problem.nominal_miss_m < known->nominal_miss_m) known = &(*touch)->problem;
+  }
+  return {joints, std::nullopt, is_on(made_way_, joints) ? known : nullptr};
 }
 
 std::optional<Operation::PreparedTouch> Operation::with_way(std::variant<calib::AimedTouch, std::string> made,
@@ -50,7 +94,7 @@ std::optional<Operation::PreparedTouch> Operation::with_way(std::variant<calib::
     spdlog::info("no way to a touch on plane {} as it is aimed now", aimed->touch.face + 1);
     return std::nullopt;
   }
-  return PreparedTouch{std::move(*aimed), std::move(*via)};
+  return PreparedTouch{std::move(*aimed), from.joints, std::move(*via)};
 }
 
 /// The touch at this place of the plan. One that cannot be made as it is aimed is made with the nominal miss,
@@ -58,8 +102,12 @@ std::optional<Operation::PreparedTouch> Operation::with_way(std::variant<calib::
 /// Nothing when it cannot be made then.
 std::optional<Operation::PreparedTouch> Operation::prepared(std::size_t index,
                                                             const calib::TransferEnd& from) {
-  while (const calib::PlannedTouch* planned = run_->planned(index)) {
-    if (auto touch = with_way(calib::aim_touch(planning_, *aim_, *planned), from)) return touch;
+  for (int put_off = 0; put_off < kPutOffMax; ++put_off) {
+    const calib::PlannedTouch* planned = run_->planned(index);
+    if (!planned) break;
+    if (!missed_) {
+      if (auto touch = with_way(calib::aim_touch(planning_, *aim_, *planned), from)) return touch;
+    }
     if (auto touch = with_way(calib::nominal_touch(planning_, *planned), from)) return touch;
     if (!run_->put_off(index)) break;
   }

@@ -151,9 +151,13 @@ asio::awaitable<void> Operation::make_next_touch() {
   const bool ready = co_await prepare_touch();
   if (!ready) co_return;
   const std::vector<calib::JointVector> via = std::move(ahead_->via);
+  before_ = std::move(made_);
   made_ = std::move(ahead_->aimed);
-  ahead_.reset();
   const calib::PlannedTouch touch = made_->touch;
+  made_way_ = {ahead_->from};
+  made_way_.insert(made_way_.end(), via.begin(), via.end());
+  made_way_.insert(made_way_.end(), {touch.clear_joints, touch.approach_joints, touch.search_end_joints});
+  ahead_.reset();
   standing_.reset();
   open_touch_ = OpenTouch{session_, client_.next_sequence(), touch};
   auto answer = client_.touch(touch_command(cell_, touch, via));
@@ -181,6 +185,8 @@ void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::Touc
                              const cs8::TouchResult& result) {
   if (const auto fault = fault_of(result.outcome, result.phase, result.error_number)) {
     acknowledge(reply.sequence);
+    missed_ = result.outcome == cs8::Outcome::kNoContact;
+    if (result.outcome == cs8::Outcome::kCollision) forget_made();  // what was known of the arm may be wrong
     raise(fault->fault, fault->holds ? Event::kHoldFault : Event::kAbortFault);
     return;
   }
@@ -196,7 +202,10 @@ void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::Touc
   }
   if (!keep_touch(planned, result)) return;
   acknowledge(reply.sequence);
+  missed_ = false;
   standing_ = planned.clear_joints;
+  // What comes next was aimed before this was known; it is aimed again first.
+  if (is_surprise(from_wire(result.contact))) ahead_.reset();
 }
 
 /// A command that came neither to its end nor to a fault was stopped, as somebody asked; nobody else may.

@@ -149,6 +149,7 @@ class Operation {
   /// A touch as it is about to be commanded, and the way to it.
   struct PreparedTouch {
     calib::AimedTouch aimed;
+    calib::JointVector from;  // where the way begins
     std::vector<calib::JointVector> via;
   };
 
@@ -162,6 +163,8 @@ class Operation {
   [[nodiscard]] std::optional<PreparedTouch> with_way(std::variant<calib::AimedTouch, std::string> made,
                                                       const calib::TransferEnd& from) const;
   [[nodiscard]] calib::TransferEnd leaving(const calib::JointVector& joints) const;
+  void forget_made();
+  [[nodiscard]] bool is_surprise(const calib::JointVector& contact) const;
 
   /// A touch whose result was not acknowledged yet: the controller still has it.
   struct OpenTouch {
@@ -193,6 +196,9 @@ class Operation {
   std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
   std::optional<calib::Aim> aim_;               // of the run
   std::optional<calib::AimedTouch> made_;       // commanded last
+  std::optional<calib::AimedTouch> before_;     // ... and the one before
+  std::vector<calib::JointVector> made_way_;    // from where the arm stood to the end of its search
+  bool missed_ = false;  // its search met nothing: it comes again with the nominal miss
   /// The next touch, found while the arm makes the one before; as long as the arm is there.
   std::optional<PreparedTouch> ahead_;
   std::uint32_t session_ = 0;  // of the controller's application

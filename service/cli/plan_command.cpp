@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -18,15 +19,19 @@
 namespace cell {
 namespace {
 
+constexpr double kBoxMaxMetres = 100.0;
+
 void set_workspace_box(Cell& cell, const std::vector<double>& box_mm) {
   if (box_mm.empty()) return;
   const Eigen::Vector3d min_m =
       calib::kMetresPerMillimetre * Eigen::Vector3d(box_mm[0], box_mm[1], box_mm[2]);
   const Eigen::Vector3d max_m =
       calib::kMetresPerMillimetre * Eigen::Vector3d(box_mm[3], box_mm[4], box_mm[5]);
-  if (!(min_m.array() < max_m.array()).all())
+  const bool is_sane = min_m.allFinite() && max_m.allFinite() && (max_m - min_m).maxCoeff() <= kBoxMaxMetres;
+  if (!is_sane || !(min_m.array() < max_m.array()).all())
     throw std::invalid_argument(
-        "--workspace-box: each of the first three numbers is below its fellow of the last three");
+        "--workspace-box: each of the first three numbers is below its fellow of the last three, by 100 m at "
+        "most");
   cell.workspace_box = {"as given", min_m, max_m};
 }
 
@@ -43,6 +48,8 @@ Recipe wanted_recipe(const Cell& cell, const PlanArguments& arguments) {
     throw std::invalid_argument(
         fmt::format("--fit {}: the recipe {} touches {} planes; give as many touches at least",
                     recipe.goal.fit_count, recipe.name, faces));
+  if (arguments.tip_rms_max_mm && !std::isfinite(*arguments.tip_rms_max_mm))
+    throw std::invalid_argument("--accuracy: give a number of millimetres");
   if (arguments.tip_rms_max_mm) recipe.goal.tip_rms_max_m = calib::metres_from_mm(*arguments.tip_rms_max_mm);
   const auto criterion = std::ranges::find(kCriterionNames, arguments.criterion,
                                            &std::pair<calib::PlanCriterion, std::string_view>::second);

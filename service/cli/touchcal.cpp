@@ -117,16 +117,22 @@ class CommandLine {
                      "where the tip is to be right: minX,minY,minZ,maxX,maxY,maxZ in R_-1, mm")
         ->delimiter(',')
         ->expected(6);
-    plan->add_flag("--place", plan_.place, "search places for the block and rank them");
+    auto* place = plan->add_flag("--place", plan_.place, "search places for the block and rank them");
     plan->add_option("--place-min", plan_.place_min_mm,
                      "from where the block may be moved, X,Y,Z along R_-1 as it is now, mm")
         ->delimiter(',')
-        ->expected(3);
-    plan->add_option("--place-max", plan_.place_max_mm, "and to where")->delimiter(',')->expected(3);
+        ->expected(3)
+        ->needs(place);
+    plan->add_option("--place-max", plan_.place_max_mm, "and to where")
+        ->delimiter(',')
+        ->expected(3)
+        ->needs(place);
     plan->add_option("--place-yaw", plan_.place_yaw_deg, "turns about R_-1's y axis to try, MIN,MAX, degrees")
         ->delimiter(',')
-        ->expected(2);
+        ->expected(2)
+        ->needs(place);
     plan->add_option("--places", plan_.place_count, "how many places to try")
+        ->needs(place)
         ->check(CLI::Range(1, cell::kPlaceCountMax))
         ->default_str("24");
     plan->add_option("--out", plan_.file, "write the document to this file");

@@ -20,8 +20,6 @@ namespace {
 
 constexpr int kRunCount = 200;
 constexpr double kNominalMissMetres = 0.026;
-constexpr int kFitPerFace = 8;
-constexpr int kHeldOutPerFace = 2;
 /// Of the touches that may miss by more than the three standard deviations predicted of them.
 constexpr double kBeyondShareMax = 0.003;
 
@@ -39,11 +37,7 @@ struct Planned {
   TouchPlan plan;
 
   Planned() {
-    cell::Recipe recipe = cell.recipes.at("edf-25");
-    recipe.faces = {0, 1, 2, 3, 4};
-    recipe.fit_per_face = kFitPerFace;
-    recipe.held_out_per_face = kHeldOutPerFace;
-    problem = cell::planning_problem(cell, recipe);
+    problem = cell::planning_problem(cell, cell.recipes.at("quick"));
     auto outcome = plan_touches(problem);
     if (const auto* failure = std::get_if<PlanningFailure>(&outcome))
       throw std::runtime_error("plane " + std::to_string(failure->face + 1) + ": " +
