@@ -6,6 +6,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -13,6 +14,7 @@
 #include "config/arm_file.hpp"
 #include "service/exit_code.hpp"
 #include "service/store/touch_store.hpp"
+#include "sim_controller/controller.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
@@ -101,11 +103,24 @@ TEST_F(Programs, TellADaemonThatIsNotThere) {
   }
 }
 
+/// A copy of a shipped cell whose two sides may be silent for as long as the protocol allows: the machine may
+/// be busy with other tests.
+std::string patient_cell(const Folder& folder, const std::string& name) {
+  std::filesystem::copy(std::string(TOUCHCAL_SOURCE_DIR) + "/config", folder / "config",
+                        std::filesystem::copy_options::recursive);
+  const std::filesystem::path file = folder / ("config/cells/" + name + "/cell.json");
+  std::ifstream in(file);
+  nlohmann::json cell = nlohmann::json::parse(in);
+  cell.at("deadlines").at("heartbeat_timeout_ms") = sim::kHeartbeatTimeoutMax.count();
+  std::ofstream(file) << cell.dump();
+  return file.string();
+}
+
 /// A daemon and a simulated controller on a shipped cell, each on a free port.
 class RunningCell {
  public:
   RunningCell(const std::string& name, const std::string& speed)
-      : cell_file_(cell_file(name)),
+      : cell_file_(patient_cell(folder_, name)),
         controller_({"cs8sim", "--cell", cell_file_, "--listen", "127.0.0.1:0", "--speed", speed},
                     folder_ / "cs8sim.err"),
         controller_address_(controller_.wait_for_address()) {
