@@ -35,6 +35,7 @@ calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe) 
                                  .park_joints = cell.park_joints,
                                  .nominal_miss_m = cell.nominal_miss_m,
                                  .tilt_max_rad = cell.stylus_tilt_max_rad,
+                                 .candidate_count = recipe.candidate_count,
                                  .knowledge = identification_problem(cell, recipe),
                                  .identification = recipe.identification,
                                  .workspace_box = cell.workspace_box,
