@@ -73,21 +73,13 @@ Estimate nothing_wrong(const IdentificationProblem& knowledge) {
           .artefact = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(knowledge.artefact.parameters.size()))};
 }
 
-Eigen::MatrixXd inverse_of(const Eigen::MatrixXd& information) {
-  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(scale.asDiagonal() * information * scale.asDiagonal());
-  return scale.asDiagonal() *
-         cholesky.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())) *
-         scale.asDiagonal();
-}
-
 /// Covariance of the unknowns before the first touch.
 Eigen::MatrixXd prior_covariance(IdentificationProblem knowledge, const std::vector<int>& columns) {
   knowledge.touches.assign(1, Touch{});  // a problem without rows has no size; this one has no say
   LeastSquares fit = fit_of(knowledge, columns);
   fit.keep({false});
   fit.linearise(nothing_wrong(knowledge));
-  return inverse_of(fit.information());
+  return covariance_of(fit.information());
 }
 
 /// 3 sigma of a point in the worst direction.
@@ -123,7 +115,6 @@ std::variant<AimedTouch, std::string> remade(PlanningProblem problem, const Touc
   if (auto* trouble = std::get_if<std::string>(&made)) return std::move(*trouble);
   PlannedTouch& touch = std::get<PlannedTouch>(made);
   touch.role = planned.role;
-  touch.predicted_miss_m = problem.nominal_miss_m;
   return AimedTouch{std::move(touch), std::move(problem)};
 }
 
@@ -183,9 +174,7 @@ std::optional<std::vector<JointVector>> find_lifted_transfer(const PlanningProbl
 std::vector<JointVector> looked_at(const JointVector& from, const std::vector<JointVector>& via,
                                    const JointVector& to) {
   constexpr double kStepRad = 10.0 * kRadiansPerDegree;
-  std::vector<JointVector> stops{from};
-  stops.insert(stops.end(), via.begin(), via.end());
-  stops.push_back(to);
+  const std::vector<JointVector> stops = whole_way(from, via, to);
   std::vector<JointVector> postures{from};
   for (std::size_t leg = 1; leg < stops.size(); ++leg) {
     const JointVector move = stops[leg] - stops[leg - 1];
@@ -232,7 +221,7 @@ AimedContact Aim::add(const Touch& touch) {
   solve(fit);
   while (drop_one(fit)) solve(fit);
   contact.contradicts = !kept_.back();
-  covariance_ = inverse_of(fit.information());
+  covariance_ = covariance_of(fit.information());
   take_back(fit);
   model_ = apply(knowledge_.nominal, estimate_.arm);
   return contact;
@@ -290,19 +279,20 @@ double Aim::inflation() const {
   return most / kSigmas;
 }
 
-double Aim::spread_m(const JointVector& joints, const Capsule* body) const {
+double Aim::predicted_miss_m(const JointVector& joints) const {
   const PreparedModel prepared = prepare(model_);
   const Chain chain = forward_chain(prepared, joints);
-  if (!body) {
-    return worst_spread_m(prepared, chain, chain.tip_in_block_m(), kFrameCount - 1, columns_, covariance_);
-  }
-  const Segment placed = place(*body, chain);
-  return std::max(worst_spread_m(prepared, chain, placed.from_m, body->frame, columns_, covariance_),
-                  worst_spread_m(prepared, chain, placed.to_m, body->frame, columns_, covariance_));
+  const double spread_m =
+      worst_spread_m(prepared, chain, chain.tip_in_block_m(), kFrameCount - 1, columns_, covariance_);
+  return within_bounds_m(spread_m * inflation(), nominal_miss_m_);
 }
 
-double Aim::predicted_miss_m(const JointVector& joints) const {
-  return within_bounds_m(spread_m(joints, nullptr) * inflation(), nominal_miss_m_);
+double Aim::predicted_miss_m(const PreparedModel& prepared, const Chain& chain, const Capsule& body) const {
+  const Segment placed = place(body, chain);
+  const double spread_m =
+      std::max(worst_spread_m(prepared, chain, placed.from_m, body.frame, columns_, covariance_),
+               worst_spread_m(prepared, chain, placed.to_m, body.frame, columns_, covariance_));
+  return within_bounds_m(spread_m * inflation(), nominal_miss_m_);
 }
 
 std::optional<PlanningProblem> Aim::aimed_problem(const PlanningProblem& problem,
@@ -315,12 +305,16 @@ std::optional<PlanningProblem> Aim::aimed_problem(const PlanningProblem& problem
   aimed.nominal = model_;
   aimed.nominal_miss_m = miss_m;
   aimed.standoff_min_m = kAimedStandoffMinMetres;
-  for (Capsule& body : aimed.scene.bodies) {
-    double body_miss_m = 0.0;
-    for (const JointVector& joints : postures)
-      body_miss_m = std::max(body_miss_m, spread_m(joints, &body) * inflation());
-    body.margin_m += std::max(0.0, std::min(body_miss_m, nominal_miss_m_) - miss_m);
+  const PreparedModel prepared = prepare(model_);
+  std::vector<double> farther_m(aimed.scene.bodies.size(), 0.0);
+  for (const JointVector& joints : postures) {
+    const Chain chain = forward_chain(prepared, joints);
+    for (std::size_t i = 0; i < farther_m.size(); ++i) {
+      const double body_miss_m = predicted_miss_m(prepared, chain, aimed.scene.bodies[i]);
+      farther_m[i] = std::max(farther_m[i], body_miss_m - miss_m);
+    }
   }
+  for (std::size_t i = 0; i < farther_m.size(); ++i) aimed.scene.bodies[i].margin_m += farther_m[i];
   return aimed;
 }
 

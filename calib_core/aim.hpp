@@ -67,8 +67,9 @@ class Aim {
   void solve(LeastSquares& fit);
   bool drop_one(LeastSquares& fit);
   void take_back(const LeastSquares& fit);
-  /// 3 sigma of a body's middle line, or of the ball.
-  [[nodiscard]] double spread_m(const JointVector& joints, const Capsule* body) const;
+  /// The same of a body's middle line, in a posture of model().
+  [[nodiscard]] double predicted_miss_m(const PreparedModel& prepared, const Chain& chain,
+                                        const Capsule& body) const;
   [[nodiscard]] double inflation() const;
 
   IdentificationProblem knowledge_;  // with the touches and the wide tolerances

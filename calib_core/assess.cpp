@@ -149,12 +149,7 @@ Linearisation linearise_whole(const IdentificationOptions& options, LeastSquares
   for (Eigen::Index k = 0; k < estimate.artefact.size(); ++k) {
     whole.estimated.push_back(kArmParameterCount + k);
   }
-  const Eigen::VectorXd scale = fit.information().diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(scale.asDiagonal() * fit.information() * scale.asDiagonal());
-  whole.estimated_covariance =
-      scale.asDiagonal() *
-      cholesky.solve(Eigen::MatrixXd::Identity(fit.unknown_count(), fit.unknown_count())) *
-      scale.asDiagonal();
+  whole.estimated_covariance = covariance_of(fit.information());
   return whole;
 }
 

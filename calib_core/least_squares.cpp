@@ -39,6 +39,14 @@ Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std:
   return precision;
 }
 
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LLT<Eigen::MatrixXd> cholesky(scale.asDiagonal() * information * scale.asDiagonal());
+  return scale.asDiagonal() *
+         cholesky.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())) *
+         scale.asDiagonal();
+}
+
 LeastSquares::LeastSquares(const IdentificationProblem& problem, const IdentificationOptions& options,
                            std::vector<int> arm_columns, std::vector<std::size_t> touches)
     : problem_(problem),

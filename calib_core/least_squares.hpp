@@ -18,6 +18,10 @@ struct Estimate {
 Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std::vector<int>& arm_columns,
                                 bool with_tolerances);
 
+/// Inverse of an information matrix, positive definite; its rows of different units are scaled for the
+/// digits.
+Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information);
+
 /// The weighted least squares problem behind an identification, and the memory its iterations use. The
 /// unknowns are the given columns of the arm (indices into ArmVector), then every artefact parameter. Rows
 /// are divided by the declared noise (by 1 m when none is declared); in the formulation of eq. 6 they are

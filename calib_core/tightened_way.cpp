@@ -1,7 +1,8 @@
 #include "calib_core/tightened_way.hpp"
 
-#include <algorithm>
 #include <cstddef>
+
+#include "calib_core/transfer.hpp"
 
 namespace calib {
 namespace {
@@ -9,18 +10,9 @@ namespace {
 /// A posture is drawn by half of its way, a quarter and so on: each costs two looks at moves.
 constexpr int kDrawsMax = 3;
 
-/// The posture's nearest place on the straight move between its neighbours.
-JointVector straight_between(const JointVector& before, const JointVector& posture,
-                             const JointVector& behind) {
-  const JointVector move = behind - before;
-  const double length2 = move.squaredNorm();
-  if (length2 == 0.0) return before;
-  return before + std::clamp((posture - before).dot(move) / length2, 0.0, 1.0) * move;
-}
-
 JointVector draw(const WayJudge& judge, const JointVector& before, const JointVector& loose,
                  const JointVector& behind) {
-  const JointVector whole = straight_between(before, loose, behind) - loose;
+  const JointVector whole = nearest_on_move(before, behind, loose) - loose;
   JointVector drawn = loose;
   double step = 0.5;
   for (int i = 0; i < kDrawsMax; ++i, step /= 2.0) {

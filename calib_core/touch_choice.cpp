@@ -58,6 +58,9 @@ class Expectation {
   /// What priors and certified lengths tell.
   Eigen::MatrixXd prior() { return linearised({}).information(); }
 
+  /// Whether these touches determine all unknowns.
+  bool is_shown_by(std::vector<Touch> touches) { return linearised(std::move(touches)).solve(); }
+
   ExpectedFigures figures(std::vector<Touch> touches) {
     LeastSquares fit = linearised(std::move(touches));
     if (!fit.solve()) throw std::invalid_argument("the touches do not show all that is to be identified");
@@ -115,6 +118,9 @@ class Chooser {
     return region_.rms_m(expected_.figures(touches()).certainty.covariance());
   }
 
+  /// Whether the chosen touches show all that is to be identified.
+  [[nodiscard]] bool is_determined() const { return expected_.is_shown_by(touches()); }
+
   /// Whether a tip error is asked for that no posture has.
   [[nodiscard]] bool is_region_missing() const {
     return region_.posture_count == 0 && (by_tip() || problem_.goal.tip_rms_max_m);
@@ -132,7 +138,7 @@ class Chooser {
            << (problem_.goal.criterion == PlanCriterion::kTipInJointRanges ? "over the joint ranges"
                                                                            : "in the workspace box")
            << ", most of it from " << most.name << " (" << mm_from_metres(rms_m(most)) << " mm)";
-    return {best_m, reason.str()};
+    return {.best_tip_rms_m = best_m, .reason = reason.str()};
   }
 
  private:
@@ -203,14 +209,14 @@ class Chooser {
   TouchExchange exchange_;
 };
 
-/// The fewest touches, up to goal.fit_count, that reach the wanted accuracy.
+/// The fewest touches that reach the wanted accuracy; goal.fit_count are chosen already.
 std::optional<ChoiceFailure> settle_fewest(const PlanningProblem& problem, Chooser& chooser, int least) {
   const double wanted_m = *problem.goal.tip_rms_max_m;
   const auto reaches = [&](int count) {
     chooser.settle(count);
-    return chooser.tip_rms_m().value() <= wanted_m;
+    return chooser.is_determined() && chooser.tip_rms_m().value() <= wanted_m;
   };
-  if (!reaches(problem.goal.fit_count)) return chooser.not_enough();
+  if (chooser.tip_rms_m().value() > wanted_m) return chooser.not_enough();
   std::vector<std::size_t> enough = chooser.chosen();
   int too_few = least - 1;
   while (std::ssize(enough) - too_few > 1) {
@@ -272,10 +278,13 @@ std::variant<TouchChoice, ChoiceFailure> choose_touches(const PlanningProblem& p
         .reason = "no posture in the joint ranges has the tip in the region that it is to be right in"};
   }
   if (progress) progress(0.2);
+  chooser.settle(problem.goal.fit_count);
+  if (!chooser.is_determined()) {
+    return ChoiceFailure{.kind = ChoiceFailure::Kind::kPlanes,
+                         .reason = "the touches do not show all that is to be identified"};
+  }
   if (problem.goal.tip_rms_max_m) {
     if (auto failure = settle_fewest(problem, chooser, least_count(problem, expected))) return *failure;
-  } else {
-    chooser.settle(problem.goal.fit_count);
   }
   if (progress) progress(0.9);
   TouchChoice choice{.fit = chooser.chosen(), .held_out = {}, .tip_rms_m = chooser.tip_rms_m()};

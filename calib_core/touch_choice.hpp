@@ -29,8 +29,11 @@ struct TouchChoice {
   std::optional<double> tip_rms_m;
 };
 
-/// The wanted accuracy cannot be had, or there is no posture that it could be had in.
+/// The wanted accuracy cannot be had, or there is no posture that it could be had in; or the planes do not
+/// show what is to be identified, however often they are touched.
 struct ChoiceFailure {
+  enum class Kind { kAccuracy, kPlanes };
+  Kind kind = Kind::kAccuracy;
   std::optional<double> best_tip_rms_m;  // with all touches that are allowed
   std::string reason;                    // what they leave and where most of it comes from
 };

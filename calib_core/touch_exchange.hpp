@@ -43,6 +43,8 @@ class TouchExchange {
   /// Single steps; bounds are the caller's.
   void take(std::size_t candidate);
   void leave(std::size_t place);  // of chosen()
+  /// By how much taking the candidate lowers the figure.
+  [[nodiscard]] double gain(std::size_t candidate) const;
   /// The best `many` of those that may be taken, best first.
   [[nodiscard]] std::vector<std::size_t> best(std::size_t many, int count) const;
 
@@ -66,7 +68,6 @@ class TouchExchange {
     double figure = 0.0;
   };
 
-  [[nodiscard]] double gain(std::size_t candidate) const;
   [[nodiscard]] double loss(std::size_t candidate) const;
   [[nodiscard]] std::vector<bool> open_groups(int count) const;
   [[nodiscard]] std::size_t best_of(const std::vector<bool>& open) const;

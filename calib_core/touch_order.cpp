@@ -12,6 +12,7 @@
 #include "calib_core/error_parameters.hpp"
 #include "calib_core/interleaving.hpp"
 #include "calib_core/short_way.hpp"
+#include "calib_core/touch_exchange.hpp"
 
 namespace calib {
 namespace {
@@ -43,27 +44,14 @@ Eigen::MatrixXd observation_rows(const PlanningProblem& problem, std::span<const
   return rows;
 }
 
-/// What the touches so far do not tell yet: row . inverse information . row.
-class Untold {
- public:
-  explicit Untold(const Eigen::MatrixXd& rows)
-      : rows_(rows), inverse_(Eigen::MatrixXd::Identity(rows.cols(), rows.cols()) / kRidge) {}
-
-  /// Gain in the logarithm of the determinant.
-  [[nodiscard]] double gain(std::size_t touch) const {
-    const auto row = rows_.row(static_cast<Eigen::Index>(touch));
-    return std::log1p(row.dot(inverse_ * row.transpose()));
-  }
-  void take(std::size_t touch) {
-    const Eigen::VectorXd row = rows_.row(static_cast<Eigen::Index>(touch));
-    const Eigen::VectorXd direction = inverse_ * row;
-    inverse_ -= direction * direction.transpose() / (1.0 + row.dot(direction));
-  }
-
- private:
-  const Eigen::MatrixXd& rows_;
-  Eigen::MatrixXd inverse_;
-};
+/// What the touches tell together: a choice by the determinant of the information that has taken none yet.
+TouchExchange untold(const Eigen::MatrixXd& rows) {
+  const auto count = static_cast<std::size_t>(rows.rows());
+  return {rows,
+          std::vector<int>(count, 0),
+          {{.group = 0, .min = 0, .max = static_cast<int>(count)}},
+          kRidge * Eigen::MatrixXd::Identity(rows.cols(), rows.cols())};
+}
 
 /// Stops of the way: the touches in the order given, then the park posture.
 class Stops {
@@ -107,14 +95,9 @@ class Stops {
  private:
   [[nodiscard]] double real_seconds(std::size_t from, std::size_t to) const {
     const auto via = find_transfer(problem_, postures_[from], postures_[to]);
-    std::vector<JointVector> way{postures_[from]};
-    if (via) {
-      way.insert(way.end(), via->begin(), via->end());
-    } else {
-      way.push_back(problem_.park_joints);
-    }
-    way.push_back(postures_[to]);
-    return way_time_s(model_, problem_.motion, way);
+    const std::vector<JointVector> through_park{problem_.park_joints};
+    return way_time_s(model_, problem_.motion,
+                      whole_way(postures_[from], via ? *via : through_park, postures_[to]));
   }
   void set_seconds(std::size_t a, std::size_t b, double seconds) {
     seconds_(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) = seconds;
@@ -195,13 +178,13 @@ class Ordering {
     if (due.empty()) return;
     Interleaving faces(faces_of(due));
     const Eigen::MatrixXd rows = observation_rows(problem_, touches_);
-    Untold untold(rows);
+    TouchExchange told = untold(rows);
     const auto rank = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(rows).setThreshold(kRankTolerance).rank();
     const auto telling = static_cast<std::size_t>(std::ceil(kTellingShare * static_cast<double>(rank)));
     telling_end_ = 1 + std::min(due.size(), telling);
     while (order_.size() < telling_end_) {
-      untold.take(append_best(faces, due, [&](std::size_t from, std::size_t to) {
-        return untold.gain(to) - kWorthOfASecond * stops_.seconds(from, to);
+      told.take(append_best(faces, due, [&](std::size_t from, std::size_t to) {
+        return told.gain(to) - kWorthOfASecond * stops_.seconds(from, to);
       }));
     }
     append_nearest(faces, due);
@@ -287,10 +270,7 @@ std::optional<TouchPlan> find_ways(const PlanningProblem& problem, std::vector<P
     auto found = finder.find(standing, to);
     if (!found) return false;
     via = std::move(*found);
-    std::vector<JointVector> way{standing.joints};
-    way.insert(way.end(), via.begin(), via.end());
-    way.push_back(to.joints);
-    travel_s = way_time_s(model, problem.motion, way);
+    travel_s = way_time_s(model, problem.motion, whole_way(standing.joints, via, to.joints));
     standing = to;
     return true;
   };

@@ -78,13 +78,9 @@ void fit_to_misses(const PlanningProblem& problem, std::vector<PlannedTouch>& to
     aimed.nominal_miss_m = std::max({misses_m[before], misses_m[i], misses_m[behind]});
     if (aimed.nominal_miss_m == problem.nominal_miss_m) continue;
     aimed.standoff_min_m = kAimedStandoffMinMetres;
-    const TouchPose pose{.block_from_tip = forward_kinematics(problem.nominal, touches[i].joints),
-                         .tilt_rad = touches[i].tilt_rad};
-    auto touch = make_touch(aimed, find_touched(aimed, touches[i].face), pose, touches[i].joints);
-    if (auto* smaller = std::get_if<PlannedTouch>(&touch)) {
-      smaller->role = touches[i].role;
-      touches[i] = std::move(*smaller);
-    }  // else it stays as it is: larger than it need be
+    auto smaller = nominal_touch(aimed, touches[i]);
+    if (auto* touch = std::get_if<AimedTouch>(&smaller)) touches[i] = std::move(touch->touch);
+    // else it stays as it is: larger than it need be
   }
 }
 
@@ -129,11 +125,13 @@ std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& pro
     if (choosing) choosing("choosing the touches", done);
   });
   if (const auto* failure = std::get_if<ChoiceFailure>(&choice)) {
-    return PlanningFailure{.kind = PlanningFailure::Kind::kAccuracy,
-                           .wanted = problem.goal.fit_count,
-                           .best_tip_rms_m = failure->best_tip_rms_m,
-                           .reason = failure->reason,
-                           .efforts = std::move(pool.efforts)};
+    const bool by_planes = failure->kind == ChoiceFailure::Kind::kPlanes;
+    return PlanningFailure{
+        .kind = by_planes ? PlanningFailure::Kind::kPlanes : PlanningFailure::Kind::kAccuracy,
+        .wanted = problem.goal.fit_count,
+        .best_tip_rms_m = failure->best_tip_rms_m,
+        .reason = failure->reason,
+        .efforts = std::move(pool.efforts)};
   }
   if (progress) progress("ordering the touches", kPoolShare + kChoiceShare);
   auto touches = put_in_order(problem, made(problem, pool.candidates, std::get<TouchChoice>(choice)));
@@ -158,10 +156,7 @@ std::optional<std::vector<JointVector>> find_transfer(const PlanningProblem& pro
           [&](const JointVector& a, const JointVector& b) {
             return move_time_s(model, problem.motion, a, b, problem.motion.travel_m_s);
           }};
-  std::vector<JointVector> way{from};
-  way.insert(way.end(), via->begin(), via->end());
-  way.push_back(to);
-  way = tighten_way(judge, way);
+  const std::vector<JointVector> way = tighten_way(judge, whole_way(from, *via, to));
   return std::vector<JointVector>(way.begin() + 1, way.end() - 1);
 }
 

@@ -20,8 +20,8 @@
 
 namespace calib {
 
-/// One touch to make. Approach, search end and clear posture keep the orientation that `joints` has; the first
-/// two lie on the face's outward normal through the touched point, the last where TouchMaker puts it.
+/// One touch to make. Approach, search end and clear posture keep the orientation that `joints` has; the
+/// first two lie on the face's outward normal through the touched point, the last where TouchMaker puts it.
 struct PlannedTouch {
   int face = 0;
   TouchRole role = TouchRole::kFit;
@@ -113,7 +113,7 @@ struct TouchPlan {
 
 /// Nothing can be planned: what was tried, the best that can be had, what stands in the way.
 struct PlanningFailure {
-  enum class Kind { kPark, kFace, kAccuracy };
+  enum class Kind { kPark, kFace, kAccuracy, kPlanes };
   Kind kind = Kind::kFace;
   int face = 0;   // kFace: the first with too few touches
   int found = 0;  // touches that can be made there
@@ -136,9 +136,7 @@ CollisionScene travel_scene(const PlanningProblem& problem);
 /// Finds postures for the touches asked for (see touch_candidate.hpp for what a touch must keep clear of),
 /// takes those that tell most of the kinematic errors (fit) and others apart from them (held out), and puts
 /// them in an order that shows all parameters early and then travels little. Any touch can follow any other:
-/// see find_transfer. A failure names the first face with too few touches, or says that the park
-/// posture is not clear. Throws std::logic_error for a face
-/// that does not exist.
+/// see find_transfer. Throws std::logic_error for a face that does not exist.
 std::variant<TouchPlan, PlanningFailure> plan_touches(const PlanningProblem& problem,
                                                       const PlanningProgress& progress = {});
 

@@ -77,6 +77,21 @@ std::optional<std::vector<JointVector>> find_way(const TransferSpace& space, con
   return std::nullopt;
 }
 
+std::vector<JointVector> whole_way(const JointVector& from, const std::vector<JointVector>& via,
+                                   const JointVector& to) {
+  std::vector<JointVector> way{from};
+  way.insert(way.end(), via.begin(), via.end());
+  way.push_back(to);
+  return way;
+}
+
+JointVector nearest_on_move(const JointVector& from, const JointVector& to, const JointVector& joints) {
+  const JointVector move = to - from;
+  const double length_squared = move.squaredNorm();
+  if (length_squared == 0.0) return from;
+  return from + std::clamp((joints - from).dot(move) / length_squared, 0.0, 1.0) * move;
+}
+
 bool is_near_park(const TransferSpace& space, const JointVector& joints) {
   for (const JointVector& raised : raised_postures(space, joints)) {
     if (space.is_clear(joints, raised) && space.is_clear(raised, space.park_joints())) return true;

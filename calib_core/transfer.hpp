@@ -40,6 +40,13 @@ inline constexpr std::size_t kTransferPosturesMax = 4;
 std::optional<std::vector<JointVector>> find_way(const TransferSpace& space, const JointVector& from,
                                                  const JointVector& to);
 
+/// Both ends and what is between.
+std::vector<JointVector> whole_way(const JointVector& from, const std::vector<JointVector>& via,
+                                   const JointVector& to);
+
+/// The posture on the straight joint move that is nearest to this one, by the length of the joint vector.
+JointVector nearest_on_move(const JointVector& from, const JointVector& to, const JointVector& joints);
+
 /// Whether find_way leads to the park posture with at most one posture between. Two postures for which this
 /// holds always have a way from one to the other.
 bool is_near_park(const TransferSpace& space, const JointVector& joints);

@@ -2,59 +2,33 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "calib_core/column_choice.hpp"
 #include "calib_core/least_squares.hpp"
 #include "calib_core/units.hpp"
-#include "service/verdict.hpp"
+#include "service/tip_prediction.hpp"
 
 namespace cell {
 namespace {
 
 using calib::Touch;
 
-/// Columns that the result estimated.
-std::vector<int> estimated_columns(const calib::IdentificationOptions& options,
-                                   const calib::IdentificationResult& result) {
-  std::vector<int> columns;
-  for (int i = 0; i < calib::kErrorParameterCount; ++i) {
-    if (is_estimated(options, result.identifiable, i)) columns.push_back(i);
-  }
-  for (int i = 0; options.stiffness && i < calib::kComplianceCount; ++i)
-    columns.push_back(calib::kErrorParameterCount + i);
-  return columns;
-}
-
 /// Mean square of the tip's deviation over the region for this information.
 double mean_square_m2(const Eigen::MatrixXd& information, const calib::TipRegion& region,
                       const std::vector<int>& columns) {
   const auto count = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd wanted = Eigen::MatrixXd::Zero(information.rows(), count);
-  wanted.topRows(count) = region.mean_square(columns, columns);
-  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(scale.asDiagonal() * information * scale.asDiagonal());
-  const Eigen::MatrixXd solved = scale.asDiagonal() * cholesky.solve(scale.asDiagonal() * wanted);
-  return solved.topRows(count).trace();
+  return region.mean_square(columns, columns)
+      .cwiseProduct(calib::covariance_of(information).topLeftCorner(count, count))
+      .sum();
 }
 
 std::map<int, std::vector<Touch>> by_face(const std::vector<Touch>& candidates) {
   std::map<int, std::vector<Touch>> sorted;
   for (const Touch& touch : candidates) sorted[touch.face].push_back(touch);
   return sorted;
-}
-
-std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& problem,
-                                        const calib::IdentificationResult& result) {
-  std::vector<std::size_t> fitted;
-  for (std::size_t i = 0; i < problem.touches.size(); ++i) {
-    const bool rejected =
-        std::ranges::find(result.rejected, i, &calib::RejectedTouch::touch) != result.rejected.end();
-    if (problem.touches[i].role == calib::TouchRole::kFit && !rejected) fitted.push_back(i);
-  }
-  return fitted;
 }
 
 }  // namespace
@@ -76,7 +50,7 @@ std::optional<FurtherTouches> best_further_touches(const calib::IdentificationPr
       longer.touches.push_back(of_face[i % of_face.size()]);
     }
   }
-  const std::vector<int> columns = estimated_columns(options, result);
+  const std::vector<int> columns = calib::estimated_columns(options, result.identifiable);
   calib::LeastSquares fit(longer, options, columns, touches);
   std::vector<bool> kept(touches.size(), false);
   std::fill_n(kept.begin(), made, true);

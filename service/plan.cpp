@@ -99,6 +99,11 @@ PlanRefusal refuse(const Cell& cell, const Recipe& recipe, const calib::Planning
                   : std::string(),
               failure.reason),
           .efforts = failure.efforts};
+    case calib::PlanningFailure::Kind::kPlanes:
+      return {
+          .kind = PlanRefusal::Kind::kTouches,
+          .message = failure.reason + "; touch more planes, or exclude the parameters that these do not show",
+          .efforts = failure.efforts};
     case calib::PlanningFailure::Kind::kFace:
       break;
   }
@@ -140,16 +145,7 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
   if (regions.tip().workspace_box.posture_count == 0) return refuse_workspace_box(cell);
   const calib::PlanningProblem problem = planning_problem(cell, recipe);
   if (auto refusal = refuse_too_few(recipe, problem)) return std::move(*refusal);
-  std::variant<calib::TouchPlan, calib::PlanningFailure> outcome;
-  try {
-    outcome = calib::plan_touches(problem, progress);
-  } catch (
-      const std::invalid_argument& error) {  // planes that cannot show it, however often they are touched
-    return PlanRefusal{.kind = PlanRefusal::Kind::kTouches,
-                       .message = std::string(error.what()) +
-                                  "; touch more planes, or exclude the parameters that these do not show",
-                       .efforts = {}};
-  }
+  auto outcome = calib::plan_touches(problem, progress);
   if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
     return refuse(cell, recipe, *failure);
   Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};

@@ -18,12 +18,7 @@ TipRegions::Regions regions_of(const Cell& cell, const calib::ToolCentre& tool) 
 calib::TipRegion over_fitted_touches(const calib::IdentificationProblem& problem,
                                      const calib::IdentificationResult& result) {
   std::vector<calib::JointVector> postures;
-  for (std::size_t i = 0; i < problem.touches.size(); ++i) {
-    const bool rejected =
-        std::ranges::find(result.rejected, i, &calib::RejectedTouch::touch) != result.rejected.end();
-    if (problem.touches[i].role == calib::TouchRole::kFit && !rejected)
-      postures.push_back(problem.touches[i].joints);
-  }
+  for (const std::size_t i : fitted_touches(problem, result)) postures.push_back(problem.touches[i].joints);
   return calib::over_postures(problem.nominal, postures);
 }
 
@@ -35,6 +30,17 @@ calib::UncertaintyMap predicted_map(const calib::TipMap& map, const calib::Certa
 }
 
 }  // namespace
+
+std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& problem,
+                                        const calib::IdentificationResult& result) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t i = 0; i < problem.touches.size(); ++i) {
+    const bool rejected =
+        std::ranges::find(result.rejected, i, &calib::RejectedTouch::touch) != result.rejected.end();
+    if (problem.touches[i].role == calib::TouchRole::kFit && !rejected) fitted.push_back(i);
+  }
+  return fitted;
+}
 
 std::optional<double> predicted_rms_m(const calib::TipRegion& region, const calib::Certainty& certainty) {
   for (const auto& direction : certainty.unknown_directions.colwise()) {

@@ -15,6 +15,10 @@ namespace cell {
 /// with what it does to the identified errors, moves the tip there by more than this, root mean square.
 inline constexpr double kUnknownMattersMetres = 1e-3;
 
+/// The touches that a result was fitted to, indices into the problem's: those rejected are not among them.
+std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& problem,
+                                        const calib::IdentificationResult& result);
+
 /// The predicted deviation over a region, metres. Nothing when an error of unknown size matters there, or
 /// when the region holds no posture: no figure is honest then.
 std::optional<double> predicted_rms_m(const calib::TipRegion& region, const calib::Certainty& certainty);

@@ -2,10 +2,10 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "calib_core/face.hpp"
+#include "calib_core/transfer.hpp"
 #include "calib_core/units.hpp"
 #include "service/acquisition/operation.hpp"
 
@@ -24,11 +24,8 @@ constexpr int kPutOffMax = 8;
 bool is_on(const std::vector<calib::JointVector>& way, const calib::JointVector& joints) {
   constexpr double kOffMaxRad = 5e-3;
   for (std::size_t i = 1; i < way.size(); ++i) {
-    const calib::JointVector move = way[i] - way[i - 1];
-    const double length_squared = move.squaredNorm();
-    const double share =
-        length_squared > 0.0 ? std::clamp((joints - way[i - 1]).dot(move) / length_squared, 0.0, 1.0) : 0.0;
-    if ((joints - way[i - 1] - share * move).cwiseAbs().maxCoeff() <= kOffMaxRad) return true;
+    const calib::JointVector nearest = calib::nearest_on_move(way[i - 1], way[i], joints);
+    if ((joints - nearest).cwiseAbs().maxCoeff() <= kOffMaxRad) return true;
   }
   return false;
 }

@@ -154,9 +154,8 @@ asio::awaitable<void> Operation::make_next_touch() {
   before_ = std::move(made_);
   made_ = std::move(ahead_->aimed);
   const calib::PlannedTouch touch = made_->touch;
-  made_way_ = {ahead_->from};
-  made_way_.insert(made_way_.end(), via.begin(), via.end());
-  made_way_.insert(made_way_.end(), {touch.clear_joints, touch.approach_joints, touch.search_end_joints});
+  made_way_ = calib::whole_way(ahead_->from, via, touch.clear_joints);
+  made_way_.insert(made_way_.end(), {touch.approach_joints, touch.search_end_joints});
   ahead_.reset();
   standing_.reset();
   open_touch_ = OpenTouch{session_, client_.next_sequence(), touch};

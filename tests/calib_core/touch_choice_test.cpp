@@ -222,6 +222,17 @@ TEST(TouchChoice, RefusesABoxOutOfReach) {
   EXPECT_EQ(chosen(problem).tip_rms_m, std::nullopt);
 }
 
+TEST(TouchChoice, TellsThatOnePlaneCannotShowAll) {
+  PlanningProblem problem = problem_by(PlanCriterion::kTipInBox);
+  for (TouchRequest& request : problem.requests)
+    request.fit_max = request.face == 0 ? problem.goal.fit_count : 0;
+  for (TouchRequest& request : problem.requests) request.fit_min = 0;
+  const auto answer = choose_touches(problem, candidates());
+  const auto* failure = std::get_if<ChoiceFailure>(&answer);
+  ASSERT_NE(failure, nullptr);
+  EXPECT_EQ(failure->kind, ChoiceFailure::Kind::kPlanes);
+}
+
 TEST(TouchChoice, RefusesAFaceWithFewerCandidatesThanItNeeds) {
   PlanningProblem problem = problem_by(PlanCriterion::kTipInBox);
   const auto there = std::ranges::count(candidates(), 2, &TouchCandidate::face);
