@@ -47,6 +47,14 @@ bool Run::put_off(std::size_t index) {
   return true;
 }
 
+void Run::skip_next() {
+  if (!next()) return;
+  const auto place = static_cast<std::ptrdiff_t>(touches_made());
+  plan_.touches.erase(plan_.touches.begin() + place);
+  put_off_.erase(put_off_.begin() + place);
+  ++skipped_count_;
+}
+
 double Run::left_s(double elapsed_s) const {
   double made_s = 0.0;
   for (std::size_t i = 0; i < touches_made() && planned(i); ++i)

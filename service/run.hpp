@@ -27,7 +27,8 @@ class Run {
   [[nodiscard]] const std::string& started_at() const { return started_at_; }
 
   void set_plan(calib::TouchPlan plan);
-  [[nodiscard]] int touches_total() const { return static_cast<int>(plan_.touches.size()); }
+  /// Of the plan, those that were skipped among them.
+  [[nodiscard]] int touches_total() const { return static_cast<int>(plan_.touches.size()) + skipped_count_; }
   [[nodiscard]] int touches_done() const { return static_cast<int>(touches_.size()); }
   [[nodiscard]] bool complete() const { return touches_total() > 0 && touches_done() == touches_total(); }
   /// The touch to make now, or null when all are made.
@@ -42,6 +43,9 @@ class Run {
   /// Predicted time of all that is left, to the park posture: the plan's, as much longer or shorter as what
   /// is made took in `elapsed_s`.
   [[nodiscard]] double left_s(double elapsed_s) const;
+  /// A person leaves out the touch to make now: the run never becomes complete. Nothing when there is none.
+  void skip_next();
+  [[nodiscard]] int skipped_count() const { return skipped_count_; }
   /// Leaves out the touches to fit from this place on; how many.
   int drop_fitted(std::size_t first);
 
@@ -72,6 +76,7 @@ class Run {
   std::string started_at_;
   calib::TouchPlan plan_;
   std::vector<bool> put_off_;  // one a planned touch
+  int skipped_count_ = 0;      // no longer in the plan
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
   std::size_t identified_count_ = 0;  // of the touches

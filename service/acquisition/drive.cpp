@@ -144,6 +144,7 @@ asio::awaitable<void> Operation::resume_run() {
 /// One touch. The arm does not wait for arithmetic: what the touch before tells and the way to the touch
 /// behind are worked out while it moves.
 asio::awaitable<void> Operation::make_next_touch() {
+  held_by_ = HeldBy::kNothing;
   if (!run_->next()) {
     apply(Event::kDone);
     co_return;
@@ -167,6 +168,7 @@ asio::awaitable<void> Operation::make_next_touch() {
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     open_touch_.reset();
     const OutcomeFault refused = fault_of(*rejected);
+    held_by_ = HeldBy::kTouch;
     raise(refused.fault, refused.holds ? Event::kHoldFault : Event::kAbortFault);
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
     take_contact(touch, reply, *result);
@@ -185,6 +187,7 @@ void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::Touc
   if (const auto fault = fault_of(result.outcome, result.phase, result.error_number)) {
     acknowledge(reply.sequence);
     missed_ = result.outcome == cs8::Outcome::kNoContact;
+    held_by_ = HeldBy::kTouch;
     if (result.outcome == cs8::Outcome::kCollision) forget_made();  // what was known of the arm may be wrong
     raise(fault->fault, fault->holds ? Event::kHoldFault : Event::kAbortFault);
     return;
@@ -307,7 +310,8 @@ void Operation::close_run(const std::string& outcome) {
   standing_.reset();
   if (!run_open_) return;
   run_open_ = false;
-  run_finished_ = outcome == "complete" && run_->latest().status == calib::IdentificationStatus::kConverged;
+  run_finished_ = outcome == "complete" && run_->skipped_count() == 0 &&
+                  run_->latest().status == calib::IdentificationStatus::kConverged;
   const Judgement judgement = judge(run_->latest(), run_->recipe().identification, cell_.acceptance,
                                     run_->predicted_tip_rms_m(), run_finished_);
   status_.verdict = !run_finished_       ? Verdict::kIncomplete

@@ -253,6 +253,7 @@ std::variant<Started, Refusal> Operation::start(const std::string& recipe,
   run_.emplace(id, tip_regions_, found->second, now_text());
   run_open_ = true;
   run_finished_ = false;
+  held_by_ = HeldBy::kNothing;
   status_.fault.reset();
   status_.verdict = Verdict::kNone;
   enter(State::kStarting);
@@ -268,13 +269,9 @@ std::optional<Refusal> Operation::command(Command command, std::optional<std::in
     return Refusal{.detail = fmt::format("{} is not possible in the state {}", command_name(command),
                                          state_name(status_.state))};
   }
+  if (auto refusal = objection(command)) return refusal;
   spdlog::info("command {}", command_name(command));
-  const bool settles_fault =
-      command == Command::kAcknowledge || command == Command::kClear || command == Command::kResume;
-  if (settles_fault && status_.fault) {
-    status_.fault.reset();
-    publish();
-  }
+  heed(command);
   enter(*next);
   return std::nullopt;
 }

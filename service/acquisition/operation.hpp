@@ -79,6 +79,8 @@ class Operation {
                                        const std::optional<std::string>& idempotency_key);
   /// `run_id` when the command names a run: it must be the active one.
   std::optional<Refusal> command(Command command, std::optional<std::int64_t> run_id = {});
+  /// The commands that lead out of the present state and are taken now.
+  [[nodiscard]] std::vector<Command> exits() const;
 
   [[nodiscard]] Status status() const;
   /// The run under way or the last one of this daemon; null before the first.
@@ -103,6 +105,8 @@ class Operation {
  private:
   // commands and status (operation.cpp)
   boost::asio::awaitable<void> wait_for_end(std::chrono::milliseconds at_most);
+  [[nodiscard]] std::optional<Refusal> objection(Command command) const;  // commands.cpp
+  void heed(Command command);                                             // commands.cpp
   void enter(State state);
   void apply(Event event);
   void raise(Fault fault, Event event);
@@ -166,6 +170,9 @@ class Operation {
   void forget_made();
   [[nodiscard]] bool is_surprise(const calib::JointVector& contact) const;
 
+  /// What keeps a run on hold: a person's pause, or a touch that can be made again or left out.
+  enum class HeldBy { kNothing, kTouch };
+
   /// A touch whose result was not acknowledged yet: the controller still has it.
   struct OpenTouch {
     std::uint32_t session = 0;
@@ -201,7 +208,9 @@ class Operation {
   bool missed_ = false;  // its search met nothing: it comes again with the nominal miss
   /// The next touch, found while the arm makes the one before; as long as the arm is there.
   std::optional<PreparedTouch> ahead_;
-  std::uint32_t session_ = 0;  // of the controller's application
+  HeldBy held_by_ = HeldBy::kNothing;
+  Command answer_ = Command::kResume;  // to the hold, while the run goes on from it
+  std::uint32_t session_ = 0;          // of the controller's application
   std::optional<OpenTouch> open_touch_;
   std::chrono::steady_clock::time_point told_at_;  // when the controller told its newest state
   std::int32_t task_error_ = 0;                    // as it told then

@@ -46,6 +46,8 @@ const Awaited* awaited_after(RejectReason refusal, std::uint32_t flags) {
 
 const Awaited& awaited_confirmation() { return kConfirmation; }
 
+const Awaited& awaited_touch_test() { return remedy_of(RejectReason::kTouchTestMissing); }
+
 std::string_view awaited_words(std::string_view name) {
   if (name == kConfirmation.name) return kConfirmation.words;
   const auto found =

@@ -23,6 +23,9 @@ const Awaited* awaited_after(cs8::RejectReason refusal, std::uint32_t flags);
 /// A Begin that was taken waits for this.
 const Awaited& awaited_confirmation();
 
+/// The touch test by hand, whatever else is missing.
+const Awaited& awaited_touch_test();
+
 /// What to do for what the API calls `name`; the name itself when it is none.
 std::string_view awaited_words(std::string_view name);
 

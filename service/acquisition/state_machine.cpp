@@ -1,17 +1,15 @@
 #include "service/acquisition/state_machine.hpp"
 
-#include <array>
-
 namespace cell {
 namespace {
-
-constexpr std::array kCommands{Command::kStart, Command::kPause, Command::kResume, Command::kStop,
-                               Command::kAbort, Command::kClear, Command::kReset,  Command::kAcknowledge};
 
 std::optional<State> after_pause(State state) {
   switch (state) {
     case State::kExecute:
     case State::kUnholding:
+    case State::kSuspending:
+    case State::kSuspended:
+    case State::kUnsuspending:
       return State::kHolding;
     case State::kHolding:
     case State::kHeld:
@@ -25,12 +23,26 @@ std::optional<State> after_resume(State state) {
   switch (state) {
     case State::kHeld:
       return State::kUnholding;
+    case State::kSuspended:
+      return State::kUnsuspending;
     case State::kUnholding:
+    case State::kUnsuspending:
     case State::kExecute:
       return state;
     default:
       return std::nullopt;
   }
+}
+
+/// With another touch than resume: a run that goes on takes neither, as nobody could tell which touch is
+/// meant.
+std::optional<State> after_retry_or_skip(State state) {
+  if (state == State::kHeld) return State::kUnholding;
+  return state == State::kUnholding ? std::optional(state) : std::nullopt;
+}
+
+bool asks_for_permission(State state) {
+  return state == State::kStarting || state == State::kUnholding || state == State::kUnsuspending;
 }
 
 State after_stop(State state) {
@@ -105,6 +117,18 @@ std::string_view command_name(Command command) {
       return "pause";
     case Command::kResume:
       return "resume";
+    case Command::kRetry:
+      return "retry";
+    case Command::kSkip:
+      return "skip";
+    case Command::kTake:
+      return "take";
+    case Command::kConfirm:
+      return "confirm";
+    case Command::kTouchTest:
+      return "touch-test";
+    case Command::kLocate:
+      return "locate";
     case Command::kStop:
       return "stop";
     case Command::kAbort:
@@ -122,12 +146,20 @@ std::string_view command_name(Command command) {
 std::optional<State> after_command(State state, Command command) {
   switch (command) {
     case Command::kStart:
+    case Command::kLocate:
       return state == State::kIdle || state == State::kComplete ? std::optional(State::kStarting)
                                                                 : std::nullopt;
     case Command::kPause:
       return after_pause(state);
     case Command::kResume:
       return after_resume(state);
+    case Command::kRetry:
+    case Command::kSkip:
+      return after_retry_or_skip(state);
+    case Command::kTake:
+      return state == State::kExecute ? std::optional(state) : std::nullopt;
+    case Command::kConfirm:
+      return asks_for_permission(state) ? std::optional(state) : std::nullopt;
     case Command::kStop:
       return after_stop(state);
     case Command::kAbort:
@@ -138,6 +170,7 @@ std::optional<State> after_command(State state, Command command) {
     case Command::kReset:
       if (state == State::kStopped || state == State::kComplete) return State::kResetting;
       return state == State::kResetting || state == State::kIdle ? std::optional(state) : std::nullopt;
+    case Command::kTouchTest:
     case Command::kAcknowledge:
       return state;
   }
@@ -147,10 +180,11 @@ std::optional<State> after_command(State state, Command command) {
 State after_event(State state, Event event) {
   if (event == Event::kAbortFault) return is_active(state) ? State::kAborting : state;
   if (event == Event::kNotReadyFault) {
-    if (state == State::kUnholding) return State::kHolding;
+    if (state == State::kUnholding || state == State::kUnsuspending) return State::kHolding;
     return state == State::kStarting ? State::kStopping : state;
   }
   if (event == Event::kHoldFault) return state == State::kExecute ? State::kHolding : state;
+  if (event == Event::kSuspendFault) return state == State::kExecute ? State::kSuspending : state;
   if (event == Event::kLinkDown) {
     if (is_active(state)) return State::kAborting;
     // Nothing moves: looking for the controller again needs nobody's word.
@@ -171,6 +205,8 @@ State after_event(State state, Event event) {
       return State::kHeld;
     case State::kSuspending:
       return State::kSuspended;
+    case State::kSuspended:
+      return State::kUnsuspending;
     case State::kStopping:
       return State::kStopped;
     case State::kAborting:

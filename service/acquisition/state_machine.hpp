@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <optional>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -29,15 +29,35 @@ enum class State {
 };
 
 /// What a person (or a supervisor in a person's name) may ask for.
-enum class Command { kStart, kPause, kResume, kStop, kAbort, kClear, kReset, kAcknowledge };
+enum class Command {
+  kStart,
+  kPause,
+  kResume,
+  kRetry,      // the touch that held the run is made again
+  kSkip,       // it is left out; the run stays incomplete
+  kTake,       // guided: the stylus stands where it should
+  kConfirm,    // tells what to confirm at the cell; never stands in for the key there
+  kTouchTest,  // tells how the touch test stands
+  kLocate,     // finds out where the block is
+  kStop,
+  kAbort,
+  kClear,
+  kReset,
+  kAcknowledge,
+};
+inline constexpr std::array kCommands{
+    Command::kStart, Command::kPause,   Command::kResume,    Command::kRetry,      Command::kSkip,
+    Command::kTake,  Command::kConfirm, Command::kTouchTest, Command::kLocate,     Command::kStop,
+    Command::kAbort, Command::kClear,   Command::kReset,     Command::kAcknowledge};
 
 /// What happens inside: the acting state is done, or something went wrong that a person can mend on the spot
-/// (hold) or that ends the run (abort), or nobody made the cell ready in time (a start ends, a run on hold
-/// stays there).
-enum class Event { kDone, kHoldFault, kAbortFault, kNotReadyFault, kLinkDown };
+/// (hold), that passes by itself while the arm waits (suspend; the end of a suspension is kDone) or that ends
+/// the run (abort), or nobody made the cell ready in time (a start ends, a run on hold stays there).
+enum class Event { kDone, kHoldFault, kSuspendFault, kAbortFault, kNotReadyFault, kLinkDown };
 
-std::string_view state_name(State state);        // "EXECUTE"
-std::string_view command_name(Command command);  // "pause"
+std::string_view state_name(State state);  // "EXECUTE"
+/// "pause", "touch-test": as in the API's path and on the command line.
+std::string_view command_name(Command command);
 
 /// The state a command leads to; nothing when the state does not allow it. Repeating a command whose effect
 /// is under way or reached gives the state itself. Stop is always allowed.
@@ -46,7 +66,7 @@ std::optional<State> after_command(State state, Command command);
 /// The state an event leads to.
 State after_event(State state, Event event);
 
-/// Commands that lead out of a state: none is a dead end.
+/// Commands that lead out of a state: none is a dead end. Each is a route of the API: start is POST /runs.
 std::vector<Command> exits(State state);
 
 /// A run is under way: the arm may move, and no other run may start.

@@ -110,7 +110,7 @@ HttpResponse from_refusal(const Refusal& refusal, const Operation& operation) {
     for (const Unmet& unmet : refusal.unmet)
       problem.detail += (&unmet == refusal.unmet.data() ? "" : "; ") + unmet.detail;
   }
-  for (const Command command : exits(operation.status().state))
+  for (const Command command : operation.exits())
     problem.exits.emplace_back(command_name(command));
   return to_response(problem);
 }

@@ -68,8 +68,7 @@ TEST(Faults, NamesAreSnakeCaseAndDiffer) {
 
 TEST(Faults, TheNextStepNamesOnlyCommandsThatExist) {
   std::set<std::string> commands;
-  for (int i = 0; i <= static_cast<int>(Command::kAcknowledge); ++i)
-    commands.insert(std::string(command_name(static_cast<Command>(i))));
+  for (const Command command : kCommands) commands.insert(std::string(command_name(command)));
   const std::regex named("touchcal ([a-z]+)");
   int seen = 0;
   for (const FaultEntry& entry : fault_table()) {

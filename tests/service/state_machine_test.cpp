@@ -12,10 +12,8 @@ namespace {
 
 using enum State;
 
-constexpr std::array kCommands{Command::kStart, Command::kPause, Command::kResume, Command::kStop,
-                               Command::kAbort, Command::kClear, Command::kReset,  Command::kAcknowledge};
-constexpr std::array kEvents{Event::kDone, Event::kHoldFault, Event::kAbortFault, Event::kNotReadyFault,
-                             Event::kLinkDown};
+constexpr std::array kEvents{Event::kDone,       Event::kHoldFault,     Event::kSuspendFault,
+                             Event::kAbortFault, Event::kNotReadyFault, Event::kLinkDown};
 
 struct Row {
   State state;
@@ -25,45 +23,81 @@ struct Row {
 
 constexpr std::nullopt_t no = std::nullopt;
 
-/// ISA-TR88.00.02's model with the commands this cell has. Nothing waits for a person in SUSPENDED yet, so no
-/// command leads there.
+/// ISA-TR88.00.02's model with the commands this cell has.
 // clang-format off
 const std::array kTable{
-    // state            start      pause      resume       stop       abort      clear      reset       acknowledge
-    Row{kStopped,       {no,        no,        no,          kStopped,  kStopped,  no,        kResetting, kStopped},
-                        {kStopped, kStopped, kStopped, kStopped, kStopped}},
-    Row{kResetting,     {no,        no,        no,          kStopped,  kResetting, no,       kResetting, kResetting},
-                        {kIdle, kResetting, kResetting, kResetting, kResetting}},
-    Row{kIdle,          {kStarting, no,        no,          kStopped,  kIdle,     no,        kIdle,      kIdle},
-                        {kIdle, kIdle, kIdle, kIdle, kResetting}},
-    Row{kStarting,      {no,        no,        no,          kStopping, kAborting, no,        no,         kStarting},
-                        {kExecute, kStarting, kAborting, kStopping, kAborting}},
-    Row{kExecute,       {no,        kHolding,  kExecute,    kStopping, kAborting, no,        no,         kExecute},
-                        {kCompleting, kHolding, kAborting, kExecute, kAborting}},
-    Row{kCompleting,    {no,        no,        no,          kStopping, kAborting, no,        no,         kCompleting},
-                        {kComplete, kCompleting, kAborting, kCompleting, kAborting}},
-    Row{kComplete,      {kStarting, no,        no,          kStopped,  kComplete, no,        kResetting, kComplete},
-                        {kComplete, kComplete, kComplete, kComplete, kComplete}},
-    Row{kHolding,       {no,        kHolding,  no,          kStopping, kAborting, no,        no,         kHolding},
-                        {kHeld, kHolding, kAborting, kHolding, kAborting}},
-    Row{kHeld,          {no,        kHeld,     kUnholding,  kStopping, kAborting, no,        no,         kHeld},
-                        {kHeld, kHeld, kAborting, kHeld, kAborting}},
-    Row{kUnholding,     {no,        kHolding,  kUnholding,  kStopping, kAborting, no,        no,         kUnholding},
-                        {kExecute, kUnholding, kAborting, kHolding, kAborting}},
-    Row{kSuspending,    {no,        no,        no,          kStopping, kAborting, no,        no,         kSuspending},
-                        {kSuspended, kSuspending, kAborting, kSuspending, kAborting}},
-    Row{kSuspended,     {no,        no,        no,          kStopping, kAborting, no,        no,         kSuspended},
-                        {kSuspended, kSuspended, kAborting, kSuspended, kAborting}},
-    Row{kUnsuspending,  {no,        no,        no,          kStopping, kAborting, no,        no,         kUnsuspending},
-                        {kExecute, kUnsuspending, kAborting, kUnsuspending, kAborting}},
-    Row{kStopping,      {no,        no,        no,          kStopping, kAborting, no,        no,         kStopping},
-                        {kStopped, kStopping, kAborting, kStopping, kAborting}},
-    Row{kAborting,      {no,        no,        no,          kAborting, kAborting, no,        no,         kAborting},
-                        {kAborted, kAborting, kAborting, kAborting, kAborting}},
-    Row{kAborted,       {no,        no,        no,          kAborted,  kAborted,  kClearing, no,         kAborted},
-                        {kAborted, kAborted, kAborted, kAborted, kAborted}},
-    Row{kClearing,      {no,        no,        no,          kClearing, kClearing, kClearing, no,         kClearing},
-                        {kStopped, kClearing, kClearing, kClearing, kClearing}},
+    // state, then what follows on
+    //   start, pause, resume, retry, skip, take, confirm,
+    //   touch-test, locate, stop, abort, clear, reset, acknowledge
+    //  done, hold, suspend, abort, not ready, link down
+    Row{kStopped,
+        {no, no, no, no, no, no, no,
+         kStopped, no, kStopped, kStopped, no, kResetting, kStopped},
+        {kStopped, kStopped, kStopped, kStopped, kStopped, kStopped}},
+    Row{kResetting,
+        {no, no, no, no, no, no, no,
+         kResetting, no, kStopped, kResetting, no, kResetting, kResetting},
+        {kIdle, kResetting, kResetting, kResetting, kResetting, kResetting}},
+    Row{kIdle,
+        {kStarting, no, no, no, no, no, no,
+         kIdle, kStarting, kStopped, kIdle, no, kIdle, kIdle},
+        {kIdle, kIdle, kIdle, kIdle, kIdle, kResetting}},
+    Row{kStarting,
+        {no, no, no, no, no, no, kStarting,
+         kStarting, no, kStopping, kAborting, no, no, kStarting},
+        {kExecute, kStarting, kStarting, kAborting, kStopping, kAborting}},
+    Row{kExecute,
+        {no, kHolding, kExecute, no, no, kExecute, no,
+         kExecute, no, kStopping, kAborting, no, no, kExecute},
+        {kCompleting, kHolding, kSuspending, kAborting, kExecute, kAborting}},
+    Row{kCompleting,
+        {no, no, no, no, no, no, no,
+         kCompleting, no, kStopping, kAborting, no, no, kCompleting},
+        {kComplete, kCompleting, kCompleting, kAborting, kCompleting, kAborting}},
+    Row{kComplete,
+        {kStarting, no, no, no, no, no, no,
+         kComplete, kStarting, kStopped, kComplete, no, kResetting, kComplete},
+        {kComplete, kComplete, kComplete, kComplete, kComplete, kComplete}},
+    Row{kHolding,
+        {no, kHolding, no, no, no, no, no,
+         kHolding, no, kStopping, kAborting, no, no, kHolding},
+        {kHeld, kHolding, kHolding, kAborting, kHolding, kAborting}},
+    Row{kHeld,
+        {no, kHeld, kUnholding, kUnholding, kUnholding, no, no,
+         kHeld, no, kStopping, kAborting, no, no, kHeld},
+        {kHeld, kHeld, kHeld, kAborting, kHeld, kAborting}},
+    Row{kUnholding,
+        {no, kHolding, kUnholding, kUnholding, kUnholding, no, kUnholding,
+         kUnholding, no, kStopping, kAborting, no, no, kUnholding},
+        {kExecute, kUnholding, kUnholding, kAborting, kHolding, kAborting}},
+    Row{kSuspending,
+        {no, kHolding, no, no, no, no, no,
+         kSuspending, no, kStopping, kAborting, no, no, kSuspending},
+        {kSuspended, kSuspending, kSuspending, kAborting, kSuspending, kAborting}},
+    Row{kSuspended,
+        {no, kHolding, kUnsuspending, no, no, no, no,
+         kSuspended, no, kStopping, kAborting, no, no, kSuspended},
+        {kUnsuspending, kSuspended, kSuspended, kAborting, kSuspended, kAborting}},
+    Row{kUnsuspending,
+        {no, kHolding, kUnsuspending, no, no, no, kUnsuspending,
+         kUnsuspending, no, kStopping, kAborting, no, no, kUnsuspending},
+        {kExecute, kUnsuspending, kUnsuspending, kAborting, kHolding, kAborting}},
+    Row{kStopping,
+        {no, no, no, no, no, no, no,
+         kStopping, no, kStopping, kAborting, no, no, kStopping},
+        {kStopped, kStopping, kStopping, kAborting, kStopping, kAborting}},
+    Row{kAborting,
+        {no, no, no, no, no, no, no,
+         kAborting, no, kAborting, kAborting, no, no, kAborting},
+        {kAborted, kAborting, kAborting, kAborting, kAborting, kAborting}},
+    Row{kAborted,
+        {no, no, no, no, no, no, no,
+         kAborted, no, kAborted, kAborted, kClearing, no, kAborted},
+        {kAborted, kAborted, kAborted, kAborted, kAborted, kAborted}},
+    Row{kClearing,
+        {no, no, no, no, no, no, no,
+         kClearing, no, kClearing, kClearing, kClearing, no, kClearing},
+        {kStopped, kClearing, kClearing, kClearing, kClearing, kClearing}},
 };
 // clang-format on
 
@@ -139,17 +173,21 @@ TEST(StateMachine, AStateThatWaitsNamesTheCommandsThatLeadOut) {
   }
 }
 
-TEST(StateMachine, OnlyStartAndResumeLeadFromRestToMotion) {
+TEST(StateMachine, OnlyCommandsThatAskForItLeadFromRestToMotionAndTheEndOfASuspension) {
+  constexpr std::array kAsking{Command::kStart, Command::kLocate, Command::kResume, Command::kRetry,
+                               Command::kSkip};
   for (const Row& row : kTable) {
     if (is_motion(row.state)) continue;
     for (const Command command : kCommands) {
       const auto next = after_command(row.state, command);
-      const bool asks_for_motion = command == Command::kStart || command == Command::kResume;
+      const bool asks_for_motion = std::ranges::find(kAsking, command) != kAsking.end();
       EXPECT_FALSE(next && is_motion(*next) && !asks_for_motion)
           << command_name(command) << " in " << state_name(row.state);
     }
-    for (const Event event : kEvents)
-      EXPECT_FALSE(is_motion(after_event(row.state, event))) << state_name(row.state);
+    for (const Event event : kEvents) {
+      const bool ends_suspension = row.state == kSuspended && event == Event::kDone;
+      EXPECT_EQ(is_motion(after_event(row.state, event)), ends_suspension) << state_name(row.state);
+    }
   }
 }
 
@@ -157,7 +195,7 @@ TEST(StateMachine, ARepeatedCommandThatWasTakenIsTakenAgainWithoutEffect) {
   for (const Row& row : kTable) {
     for (const Command command : kCommands) {
       const auto once = after_command(row.state, command);
-      if (!once || command == Command::kStart) continue;  // a start is repeated by its Idempotency-Key
+      if (!once || *once == kStarting) continue;  // what starts is repeated by its Idempotency-Key
       EXPECT_EQ(text(after_command(*once, command)), text(once))
           << command_name(command) << " in " << state_name(row.state);
     }
