@@ -4,6 +4,7 @@
 
 #include "aimed_touch.hpp"
 #include "sim_controller/admission.hpp"
+#include "whole_path.hpp"
 
 namespace sim {
 namespace {

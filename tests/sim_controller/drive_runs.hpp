@@ -1,7 +1,5 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <random>
 #include <vector>
 
@@ -15,66 +13,29 @@ inline constexpr int kTicksMax = 100'000;
 /// A move's end, and a peak that lies inside a tick, cost up to a tick each.
 inline constexpr double kTwoTicksSeconds = 2.0 * kTickSeconds;
 
-inline const Plant& plant() {
-  static const Plant plant = testing::perfect_plant("demo");
-  return plant;
-}
+const Plant& plant();
 
 /// A search down to a face of the demo cell: 30 mm.
-inline const TouchMotion& search() {
-  static const TouchMotion motion =
-      testing::aimed_touch(testing::read_cell("demo"), {.face = 0, .tilt_rad = 0.7}).motion;
-  return motion;
-}
-inline double search_length_m() { return tip_distance_m(plant(), search().approach, search().search_end); }
+const TouchMotion& search();
+double search_length_m();
 
-inline Drives at_approach() { return {.joints = search().approach}; }
+Drives at_approach();
 
-inline calib::JointVector random_joints(std::mt19937_64& chance) {
-  calib::JointVector joints;
-  for (int i = 0; i < calib::kJointCount; ++i) {
-    const double share = static_cast<double>(chance() >> 11) * 0x1p-53;
-    joints[i] = plant().joint_ranges.lower[i] +
-                share * (plant().joint_ranges.upper[i] - plant().joint_ranges.lower[i]);
-  }
-  return joints;
-}
+calib::JointVector random_joints(std::mt19937_64& chance);
 
 /// Ticks until the queue is empty; what happened in them.
-inline std::vector<TickMotion> run(Drives& drives, double monitor_speed_percent = 100.0) {
-  std::vector<TickMotion> ticks;
-  while (!drives.queue.empty() && ticks.size() < kTicksMax)
-    ticks.push_back(tick(drives, monitor_speed_percent, true));
-  EXPECT_TRUE(drives.queue.empty());
-  return ticks;
-}
-inline double duration_s(const std::vector<TickMotion>& ticks) {
-  return kTickSeconds * static_cast<double>(ticks.size());
-}
-inline double tip_speed_m_s(const TickMotion& tick) {
-  return tip_distance_m(plant(), tick.from, tick.to) / kTickSeconds;
-}
+std::vector<TickMotion> run(Drives& drives, double monitor_speed_percent = 100.0);
+double duration_s(const std::vector<TickMotion>& ticks);
+double tip_speed_m_s(const TickMotion& tick);
 
 /// Distance from the search's line, and how far along it.
 struct OnLine {
   double off_m;
   double along_m;
 };
-inline OnLine on_search_line(const calib::JointVector& joints) {
-  const Eigen::Vector3d start = tip_m(plant().nominal, search().approach);
-  const Eigen::Vector3d way = tip_m(plant().nominal, search().search_end) - start;
-  const Eigen::Vector3d here = tip_m(plant().nominal, joints) - start;
-  const double along_m = here.dot(way.normalized());
-  return {(here - along_m * way.normalized()).norm(), along_m};
-}
+OnLine on_search_line(const calib::JointVector& joints);
 
 /// A reset of the motion, and what happens in each tick until the arm stands.
-inline std::vector<TickMotion> brake(Drives& drives) {
-  std::vector<TickMotion> ticks;
-  reset_motion(drives);
-  while (drives.braking && ticks.size() < kTicksMax) ticks.push_back(tick(drives, 100.0, true));
-  EXPECT_FALSE(drives.braking);
-  return ticks;
-}
+std::vector<TickMotion> brake(Drives& drives);
 
 }  // namespace sim::testing

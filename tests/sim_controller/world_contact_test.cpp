@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "calib_core/inverse_kinematics.hpp"
 #include "quiet_cell.hpp"
+#include "whole_path.hpp"
 
 namespace sim {
 namespace {

@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "calib_core/gravity.hpp"
+#include "calib_core/units.hpp"
 #include "quiet_cell.hpp"
+#include "whole_path.hpp"
 
 namespace sim {
 namespace {
