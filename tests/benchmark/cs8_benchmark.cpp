@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "config/read_config.hpp"
+#include "config/truth.hpp"
 #include "tests/cs8_protocol/samples.hpp"
 #include "tests/sim_controller/bench.hpp"
 
