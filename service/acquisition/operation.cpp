@@ -220,10 +220,10 @@ std::vector<Unmet> Operation::unmet_preconditions() const {
   return unmet;
 }
 
-std::variant<Started, Refusal> Operation::start(const std::string& recipe,
-                                                const std::optional<std::string>& idempotency_key) {
-  if (idempotency_key) {
-    if (const auto earlier = store_.run_with_key(*idempotency_key)) {
+std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
+  const std::string& recipe = request.recipe;
+  if (request.idempotency_key) {
+    if (const auto earlier = store_.run_with_key(*request.idempotency_key)) {
       if (earlier->recipe == recipe) return Started{earlier->id, true};
       return Refusal{.kind = Refusal::Kind::kOtherKey,
                      .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'",
@@ -248,8 +248,11 @@ std::variant<Started, Refusal> Operation::start(const std::string& recipe,
   if (!after_command(status_.state, Command::kStart)) {
     return Refusal{.detail = fmt::format("a run cannot start in the state {}", state_name(status_.state))};
   }
-  const std::int64_t id =
-      store_.begin_run({.recipe = recipe, .started_at = now_text(), .idempotency_key = idempotency_key});
+  const std::int64_t id = store_.begin_run({.recipe = recipe,
+                                            .started_at = now_text(),
+                                            .idempotency_key = request.idempotency_key,
+                                            .operator_name = request.operator_name,
+                                            .block_temperature_c = request.block_temperature_c});
   run_.emplace(id, tip_regions_, found->second, now_text());
   run_open_ = true;
   run_finished_ = false;

@@ -41,6 +41,14 @@ struct Refusal {
   std::vector<Unmet> unmet;  // all of them at once
 };
 
+/// What a run is asked for with.
+struct StartRequest {
+  std::string recipe;
+  std::optional<std::string> idempotency_key;
+  std::optional<std::string> operator_name;
+  std::optional<double> block_temperature_c;
+};
+
 struct Started {
   std::int64_t run_id = 0;
   bool repeated = false;  // the same Idempotency-Key started it before
@@ -75,8 +83,7 @@ class Operation {
   /// controller's answer; after that the link is cut, on which the controller stops by itself.
   boost::asio::awaitable<void> shut_down();
 
-  std::variant<Started, Refusal> start(const std::string& recipe,
-                                       const std::optional<std::string>& idempotency_key);
+  std::variant<Started, Refusal> start(const StartRequest& request);
   /// `run_id` when the command names a run: it must be the active one.
   std::optional<Refusal> command(Command command, std::optional<std::int64_t> run_id = {});
   /// The commands that lead out of the present state and are taken now.

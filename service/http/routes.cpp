@@ -187,7 +187,8 @@ HttpResponse post_runs(const Call& call) {
   }
   const auto recipe = recipe_of(call);
   if (const auto* problem = std::get_if<Problem>(&recipe)) return to_response(*problem);
-  const auto outcome = call.operation.start(std::get<std::string>(recipe), key);
+  const auto outcome =
+      call.operation.start({.recipe = std::get<std::string>(recipe), .idempotency_key = key});
   if (const auto* refusal = std::get_if<Refusal>(&outcome)) return from_refusal(*refusal, call.operation);
   const std::int64_t id = std::get<Started>(outcome).run_id;
   HttpResponse response = json_response(201, run_document(call.operation.store().run(id).value()));

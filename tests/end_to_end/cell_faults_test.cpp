@@ -20,7 +20,7 @@ void expect_fault_and_refused_start(LoopbackCell& loop, const std::string& fault
   EXPECT_EQ(loop.status().state, State::kResetting);
   EXPECT_EQ(loop.fault_name(), fault);
   EXPECT_FALSE(loop.status().controller.connected);
-  const auto answer = loop.operation().start(kShortRecipe, {});
+  const auto answer = loop.operation().start({.recipe = kShortRecipe});
   const auto& refusal = std::get<cell::Refusal>(answer);
   EXPECT_EQ(refusal.kind, cell::Refusal::Kind::kPreconditions);
   ASSERT_EQ(refusal.unmet.size(), 1U);
@@ -173,7 +173,7 @@ TEST_F(FailingStore, ADiskThatStaysFullIsToldAtEveryResetAndLosesNothing) {
 
 TEST_F(FailingStore, ARunThatCannotBeWrittenDoesNotBegin) {
   disk_.refuse_new_runs();
-  EXPECT_ANY_THROW(loop_.operation().start(kShortRecipe, {}));  // the API makes a 500 of it
+  EXPECT_ANY_THROW(loop_.operation().start({.recipe = kShortRecipe}));  // the API makes a 500 of it
   EXPECT_EQ(loop_.status().state, State::kIdle);
   EXPECT_EQ(loop_.operation().run(), nullptr);
   disk_.relieve();

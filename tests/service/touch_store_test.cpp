@@ -13,7 +13,8 @@ namespace cell {
 // For EXPECT_EQ on what comes back.
 static bool operator==(const StoredTouch& a, const StoredTouch& b) {
   return a.number == b.number && a.plane == b.plane && a.role == b.role && a.joints == b.joints &&
-         a.source == b.source && a.overtravel_dmm == b.overtravel_dmm && a.captured_at == b.captured_at;
+         a.source == b.source && a.overtravel_dmm == b.overtravel_dmm && a.captured_at == b.captured_at &&
+         a.session == b.session && a.sequence == b.sequence && a.aimed_with == b.aimed_with;
 }
 
 namespace {
@@ -224,16 +225,91 @@ TEST_F(TouchStoreTest, RunsThatFollowOnePlanKeepItOnce) {
   EXPECT_EQ(SQLite::Database(file_.string()).execAndGet("SELECT count(*) FROM plans").getInt(), 1);
 }
 
-TEST_F(TouchStoreTest, AFileFromBeforePlansWereKeptIsTakenOver) {
+TEST_F(TouchStoreTest, ARunTellsWhoStartedItAndWithWhat) {
+  const std::int64_t id = store_->begin_run({.recipe = "edf-25",
+                                             .started_at = "start",
+                                             .operator_name = "Ada",
+                                             .block_temperature_c = 21.5,
+                                             .config_digest = "abc",
+                                             .trace_json = "{}"});
+  const StoredRun run = store_->run(id).value();
+  EXPECT_EQ(run.operator_name, "Ada");
+  EXPECT_EQ(run.block_temperature_c, 21.5);
+  EXPECT_EQ(run.config_digest, "abc");
+  EXPECT_EQ(run.trace_json, "{}");
+  EXPECT_FALSE(run.plan_id || store_->run(begin())->operator_name);
+}
+
+TEST_F(TouchStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {
   const std::int64_t run = begin();
-  store_.reset();
-  SQLite::Database(file_.string(), SQLite::OPEN_READWRITE)
-      .exec("ALTER TABLE runs DROP COLUMN plan_id; DROP TABLE plans; PRAGMA user_version = 1");
-  store_.emplace(file_);
-  EXPECT_EQ(store_->run(run).value().recipe, "edf-25");
-  EXPECT_EQ(store_->plan_json(run), std::nullopt);
-  store_->set_plan(run, 3, "id", "the plan");
-  EXPECT_EQ(store_->plan_json(run), "the plan");
+  EXPECT_FALSE(store_->open_command(run));
+  store_->set_open_command(run, {.session = 7, .sequence = 9, .aimed_with = 2, .touch_json = "{\"a\":1}"});
+  store_->make_durable(run);
+  reopen();
+  const OpenCommand open = store_->open_command(run).value();
+  EXPECT_EQ(open.session, 7u);
+  EXPECT_EQ(open.sequence, 9u);
+  EXPECT_EQ(open.aimed_with, 2);
+  EXPECT_EQ(open.touch_json, "{\"a\":1}");
+  StoredTouch answer = touch(1);
+  answer.session = 7;
+  answer.sequence = 8;
+  store_->append_touch(run, answer);
+  EXPECT_TRUE(store_->open_command(run)) << "that was the answer to another";
+  answer = touch(2);
+  answer.session = 7;
+  answer.sequence = 9;
+  store_->append_touch(run, answer);
+  EXPECT_FALSE(store_->open_command(run));
+  StoredTouch again = answer;
+  again.sequence = 10;
+  store_->replace_touch(run, again, "outlier");
+  EXPECT_FALSE(store_->open_command(run)) << "its touch is kept apart, and it was answered";
+}
+
+TEST_F(TouchStoreTest, ATouchMadeAgainTakesThePlaceOfTheFirstWhichIsKept) {
+  const std::int64_t run = begin();
+  store_->append_touch(run, touch(1));
+  store_->append_touch(run, touch(2));
+  StoredTouch again = touch(1);
+  again.joints[0] = 99;
+  store_->replace_touch(run, again, "does not fit");
+  EXPECT_THAT(store_->touches(run), ElementsAre(again, touch(2)));
+  const auto superseded = store_->superseded_touches(run);
+  ASSERT_EQ(superseded.size(), 1u);
+  EXPECT_EQ(superseded[0].touch, touch(1));
+  EXPECT_EQ(superseded[0].reason, "does not fit");
+  EXPECT_THROW(store_->replace_touch(run, touch(3), "never made"), std::exception);
+  EXPECT_THAT(store_->touches(run), ElementsAre(again, touch(2)));
+}
+
+TEST_F(TouchStoreTest, ReferencesAndPlanChangesComeBackInTheirOrder) {
+  const std::int64_t run = begin();
+  store_->append_reference(run, {.number = 1, .joints = {1, 2, 3, 4, 5, 6}, .captured_at = "t"});
+  store_->append_reference(run, {.number = 2, .touches_done = 10, .drift_mm = 0.012, .captured_at = "u"});
+  const auto references = store_->references(run);
+  ASSERT_EQ(references.size(), 2u);
+  EXPECT_EQ(references[0].joints[5], 6);
+  EXPECT_FALSE(references[0].drift_mm);
+  EXPECT_EQ(references[1].touches_done, 10);
+  EXPECT_EQ(references[1].drift_mm, 0.012);
+  using Kind = PlanChange::Kind;
+  for (const PlanChange change : {PlanChange{Kind::kPutOff, 3}, {Kind::kDropFitted, 1}, {Kind::kSkip, 2}})
+    store_->append_plan_change(run, change);
+  const auto changes = store_->plan_changes(run);
+  ASSERT_EQ(changes.size(), 3u);
+  EXPECT_TRUE(changes[0].kind == Kind::kPutOff && changes[0].place == 3);
+  EXPECT_TRUE(changes[1].kind == Kind::kDropFitted && changes[2].kind == Kind::kSkip);
+}
+
+TEST_F(TouchStoreTest, TheRunningOneIsTheNewestThatHasNotEndedAndMayBeKept) {
+  EXPECT_FALSE(store_->running());
+  const std::int64_t older = begin(), newer = begin();
+  finish(begin(), "rejected");
+  EXPECT_EQ(store_->running()->id, newer);
+  EXPECT_EQ(store_->finish_interrupted("now", newer), 1);
+  EXPECT_EQ(store_->run(older)->outcome, "interrupted");
+  EXPECT_EQ(store_->running()->id, newer);
 }
 
 }  // namespace

@@ -1,0 +1,90 @@
+#include "service/store/maintenance.hpp"
+
+#include <SQLiteCpp/Backup.h>
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <array>
+#include <stdexcept>
+#include <system_error>
+
+namespace cell {
+namespace {
+
+/// A daemon that writes meanwhile is waited for so long.
+constexpr int kBusyMilliseconds = 5000;
+
+constexpr const char* kNoSuchTouch =
+    "SELECT run_id, number FROM touches WHERE plane < 1 OR role NOT BETWEEN 0 AND 2 OR source NOT BETWEEN 0 "
+    "AND 2 OR number < 1 OR max(abs(j1_microdeg), abs(j2_microdeg), abs(j3_microdeg), abs(j4_microdeg), "
+    "abs(j5_microdeg), abs(j6_microdeg)) > 2147483648";
+
+SQLite::Database open_to_read(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) throw std::runtime_error(file.string() + ": there is no such file");
+  return {file.string(), SQLite::OPEN_READONLY, kBusyMilliseconds};
+}
+
+}  // namespace
+
+void back_up(const std::filesystem::path& database_file, const std::filesystem::path& copy) {
+  if (std::filesystem::exists(copy))
+    throw std::runtime_error(copy.string() + ": is there already; give a new file");
+  try {
+    SQLite::Database from = open_to_read(database_file);
+    SQLite::Database to(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    to.exec("PRAGMA synchronous = FULL");
+    SQLite::Backup backup(to, from);
+    backup.executeStep();  // all pages at once: one moment
+    if (backup.getRemainingPageCount() != 0) throw std::runtime_error("the database is busy; try again");
+  } catch (const std::exception& error) {
+    std::error_code ignored;
+    std::filesystem::remove(copy, ignored);
+    throw std::runtime_error(copy.string() + ": no backup was made: " + error.what());
+  }
+}
+
+std::vector<std::string> find_damage(const std::filesystem::path& database_file) {
+  std::vector<std::string> damage;
+  try {
+    SQLite::Database database = open_to_read(database_file);
+    SQLite::Statement integrity(database, "PRAGMA integrity_check");
+    while (integrity.executeStep()) {
+      if (const std::string line = integrity.getColumn(0).getString(); line != "ok") damage.push_back(line);
+    }
+    SQLite::Statement orphans(database, "PRAGMA foreign_key_check");
+    while (orphans.executeStep()) {
+      damage.push_back("table " + orphans.getColumn(0).getString() + ": a row belongs to no " +
+                       orphans.getColumn(2).getString());
+    }
+    SQLite::Statement touches(database, kNoSuchTouch);
+    while (touches.executeStep()) {
+      damage.push_back("run " + touches.getColumn(0).getString() + ", touch " +
+                       touches.getColumn(1).getString() + ": not a touch");
+    }
+  } catch (const std::exception& error) {
+    damage.emplace_back(error.what());
+  }
+  return damage;
+}
+
+int delete_runs_before(const SharedDatabase& database, const std::string& oldest) {
+  constexpr std::array kOfRuns{"touches",       "superseded_touches", "reference_touches",
+                               "open_commands", "plan_changes",       "resumptions",
+                               "faults"};
+  SQLite::Transaction transaction(*database);
+  SQLite::Statement choose(*database,
+                           "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
+                           "outcome <> 'running' AND id "
+                           "IS NOT (SELECT max(id) FROM runs WHERE verdict = 'accepted')");
+  choose.bind(1, oldest);
+  choose.exec();
+  for (const std::string table : kOfRuns)
+    database->exec("DELETE FROM " + table + " WHERE run_id IN (SELECT id FROM old_runs)");
+  const int deleted = database->exec("DELETE FROM runs WHERE id IN (SELECT id FROM old_runs)");
+  database->exec(
+      "DELETE FROM plans WHERE id NOT IN (SELECT plan_id FROM runs WHERE plan_id IS NOT NULL); DROP TABLE "
+      "old_runs");
+  transaction.commit();
+  return deleted;
+}
+
+}  // namespace cell

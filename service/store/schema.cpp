@@ -1,0 +1,179 @@
+#include "service/store/schema.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <array>
+#include <stdexcept>
+#include <string>
+
+namespace cell {
+namespace {
+
+/// A longer wait for another reader would starve the heartbeat.
+constexpr int kBusyMilliseconds = 100;
+
+constexpr const char* kRunsAndTouches = R"sql(
+CREATE TABLE runs(
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  recipe TEXT NOT NULL,
+  touches_total INTEGER NOT NULL,
+  started_at TEXT NOT NULL,
+  ended_at TEXT,
+  outcome TEXT NOT NULL DEFAULT 'running',
+  verdict TEXT NOT NULL DEFAULT 'none',
+  fault_code TEXT,
+  fault_message TEXT,
+  result_json TEXT,
+  idempotency_key TEXT UNIQUE
+) STRICT;
+CREATE TABLE touches(
+  run_id INTEGER NOT NULL REFERENCES runs(id),
+  number INTEGER NOT NULL,
+  plane INTEGER NOT NULL,
+  role INTEGER NOT NULL,
+  j1_microdeg INTEGER NOT NULL, j2_microdeg INTEGER NOT NULL, j3_microdeg INTEGER NOT NULL,
+  j4_microdeg INTEGER NOT NULL, j5_microdeg INTEGER NOT NULL, j6_microdeg INTEGER NOT NULL,
+  source INTEGER NOT NULL,
+  overtravel_dmm INTEGER NOT NULL,
+  captured_at TEXT NOT NULL,
+  PRIMARY KEY(run_id, number)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+constexpr const char* kPlans = R"sql(
+CREATE TABLE plans(id TEXT PRIMARY KEY, document TEXT NOT NULL) STRICT;
+ALTER TABLE runs ADD COLUMN plan_id TEXT;
+)sql";
+
+/// What a run needs to be resumed, and to be traced; the cell's diary.
+constexpr const char* kDiary = R"sql(
+ALTER TABLE runs ADD COLUMN operator_name TEXT;
+ALTER TABLE runs ADD COLUMN block_temperature_c REAL;
+ALTER TABLE runs ADD COLUMN config_digest TEXT;
+ALTER TABLE runs ADD COLUMN trace_json TEXT;
+ALTER TABLE touches ADD COLUMN session INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE touches ADD COLUMN sequence INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE touches ADD COLUMN aimed_with INTEGER NOT NULL DEFAULT 0;
+CREATE TABLE superseded_touches(
+  id INTEGER PRIMARY KEY,
+  run_id INTEGER NOT NULL REFERENCES runs(id),
+  number INTEGER NOT NULL,
+  plane INTEGER NOT NULL,
+  role INTEGER NOT NULL,
+  j1_microdeg INTEGER NOT NULL, j2_microdeg INTEGER NOT NULL, j3_microdeg INTEGER NOT NULL,
+  j4_microdeg INTEGER NOT NULL, j5_microdeg INTEGER NOT NULL, j6_microdeg INTEGER NOT NULL,
+  source INTEGER NOT NULL,
+  overtravel_dmm INTEGER NOT NULL,
+  captured_at TEXT NOT NULL,
+  session INTEGER NOT NULL,
+  sequence INTEGER NOT NULL,
+  aimed_with INTEGER NOT NULL,
+  reason TEXT NOT NULL
+) STRICT;
+CREATE INDEX superseded_touches_of_run ON superseded_touches(run_id);
+CREATE TABLE reference_touches(
+  run_id INTEGER NOT NULL REFERENCES runs(id),
+  number INTEGER NOT NULL,
+  touches_done INTEGER NOT NULL,
+  j1_microdeg INTEGER NOT NULL, j2_microdeg INTEGER NOT NULL, j3_microdeg INTEGER NOT NULL,
+  j4_microdeg INTEGER NOT NULL, j5_microdeg INTEGER NOT NULL, j6_microdeg INTEGER NOT NULL,
+  drift_mm REAL,
+  captured_at TEXT NOT NULL,
+  PRIMARY KEY(run_id, number)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE open_commands(
+  run_id INTEGER PRIMARY KEY REFERENCES runs(id),
+  session INTEGER NOT NULL,
+  sequence INTEGER NOT NULL,
+  aimed_with INTEGER NOT NULL,
+  touch_json TEXT NOT NULL
+) STRICT;
+CREATE TABLE plan_changes(
+  id INTEGER PRIMARY KEY,
+  run_id INTEGER NOT NULL REFERENCES runs(id),
+  kind TEXT NOT NULL,
+  place INTEGER NOT NULL
+) STRICT;
+CREATE INDEX plan_changes_of_run ON plan_changes(run_id);
+CREATE TABLE resumptions(
+  id INTEGER PRIMARY KEY,
+  run_id INTEGER NOT NULL REFERENCES runs(id),
+  at TEXT NOT NULL,
+  touches_done INTEGER NOT NULL
+) STRICT;
+CREATE INDEX resumptions_of_run ON resumptions(run_id);
+CREATE TABLE faults(
+  id INTEGER PRIMARY KEY,
+  run_id INTEGER REFERENCES runs(id),
+  at TEXT NOT NULL,
+  code TEXT NOT NULL,
+  message TEXT NOT NULL
+) STRICT;
+CREATE INDEX faults_of_run ON faults(run_id);
+CREATE TABLE audit(
+  id INTEGER PRIMARY KEY,
+  at TEXT NOT NULL,
+  who TEXT NOT NULL,
+  remote TEXT NOT NULL,
+  action TEXT NOT NULL,
+  outcome TEXT NOT NULL,
+  detail TEXT NOT NULL
+) STRICT;
+CREATE TABLE answers(
+  key TEXT PRIMARY KEY,
+  request TEXT NOT NULL,
+  body_digest TEXT NOT NULL,
+  status INTEGER NOT NULL,
+  headers_json TEXT NOT NULL,
+  body BLOB NOT NULL,
+  at TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+)sql";
+
+constexpr std::array kMigrations{kRunsAndTouches, kPlans, kDiary};
+
+/// Blocks that the log has already are written in a third of the time of new ones: it is made as long as a
+/// run of some hundred touches needs. Where that fails commits are slower, and nothing else.
+void make_room_in_log(SQLite::Database& database) {
+  try {
+    database.exec("CREATE TABLE IF NOT EXISTS room(bytes BLOB)");
+    database.exec("INSERT INTO room VALUES(zeroblob(3000000))");
+    database.exec("DROP TABLE room");
+  } catch (const SQLite::Exception&) {
+  }
+}
+
+void migrate(SQLite::Database& database, const std::filesystem::path& file) {
+  const auto newest = static_cast<int>(kMigrations.size());
+  const int version = database.execAndGet("PRAGMA user_version").getInt();
+  if (version > newest) {
+    throw std::runtime_error(file.string() + " was written by a newer touchcald (schema " +
+                             std::to_string(version) + ", this one knows " + std::to_string(newest) +
+                             "); install that version or give another --state");
+  }
+  if (version == newest) return;
+  SQLite::Transaction transaction(database);
+  for (int next = version; next < newest; ++next) database.exec(kMigrations[static_cast<std::size_t>(next)]);
+  database.exec("PRAGMA user_version = " + std::to_string(newest));
+  transaction.commit();
+}
+
+}  // namespace
+
+std::span<const char* const> migrations() { return kMigrations; }
+
+SharedDatabase open_database(const std::filesystem::path& file) try {
+  auto database =
+      std::make_shared<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  database->setBusyTimeout(kBusyMilliseconds);
+  database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
+  // Before the log takes more than a run writes, TouchStore::begin_run() empties it.
+  database->exec("PRAGMA wal_autocheckpoint = 4000");
+  migrate(*database, file);
+  make_room_in_log(*database);
+  return database;
+} catch (const SQLite::Exception& error) {
+  throw std::runtime_error(file.string() + ": " + error.what() + "; mend the file or give another --state");
+}
+
+}  // namespace cell
