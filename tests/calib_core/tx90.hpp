@@ -11,54 +11,24 @@
 /// The arm, its bodies and its surroundings as the planning tests need them; the model is paper::nominal().
 namespace calib::tx90 {
 
-inline JointVector degrees(double j1, double j2, double j3, double j4, double j5, double j6) {
-  return kRadiansPerDegree * JointVector(j1, j2, j3, j4, j5, j6);
-}
+JointVector degrees(double j1, double j2, double j3, double j4, double j5, double j6);
 
 /// The maker's ranges.
-inline JointRanges joint_ranges() {
-  return {degrees(-180, -130, -145, -270, -115, -270), degrees(180, 147.5, 145, 270, 140, 270)};
-}
+JointRanges joint_ranges();
 
-inline JointVector park_joints() { return degrees(0, 0, 60, 0, 90, 0); }
+JointVector park_joints();
 
 /// Radii are assumed (no drawing); the segments follow from Table I.
-inline std::vector<Capsule> arm_bodies() {
-  return {{"shoulder", 1, {0, 0, -0.368}, {0, 0, 0}, 0.110},
-          {"upper arm", 2, {0, 0, 0.050}, {0.425, 0, 0.050}, 0.080},
-          {"forearm", 4, {0, 0, -0.425}, {0, 0, -0.070}, 0.070},
-          {"wrist", 5, {0, 0, 0}, {0, 0, 0}, 0.050},
-          {"flange", 6, {0, 0, 0}, {0, 0, 0.060}, 0.040}};
-}
+std::vector<Capsule> arm_bodies();
 
 /// Tool holder, probe and stylus; with a ball only if the tip is not the contact point itself.
-inline std::vector<Capsule> probe_bodies(double ball_radius_m) {
-  std::vector<Capsule> bodies{{"tool holder", 7, {0, 0, -0.2189}, {0, 0, -0.091}, 0.040},
-                              {"probe body", 7, {0, 0, -0.091}, {0, 0, -0.050}, 0.0125},
-                              {"stem", 7, {0, 0, -0.050}, {0, 0, -0.004}, 0.0015}};
-  if (ball_radius_m > 0.0) bodies.push_back({"ball", 7, {0, 0, 0}, {0, 0, 0}, ball_radius_m});
-  return bodies;
-}
+std::vector<Capsule> probe_bodies(double ball_radius_m);
 
-inline std::vector<Box> obstacles() {
-  return {{"block", {-0.075, -0.150, -0.075}, {0.075, 0.0, 0.075}},
-          {"plate", {-0.200, 0.0, -0.200}, {0.200, 0.020, 0.200}},
-          {"table", {-0.400, 0.020, -0.600}, {0.600, 0.060, 0.600}}};
-}
+std::vector<Box> obstacles();
 
-inline CollisionScene scene(double ball_radius_m) {
-  CollisionScene scene{.bodies = arm_bodies(), .obstacles = obstacles()};
-  for (Capsule& body : probe_bodies(ball_radius_m)) scene.bodies.push_back(std::move(body));
-  return scene;
-}
+CollisionScene scene(double ball_radius_m);
 
 /// The block's four faces (Table II) and the top of the plate it stands on.
-inline std::vector<Face> faces() {
-  return {{{{0, 0, -1}, 0.075}, {0, -0.075, -0.075}, {1, 0, 0}, {0.075, 0.075}},
-          {{{-1, 0, 0}, 0.075}, {-0.075, -0.075, 0}, {0, 0, 1}, {0.075, 0.075}},
-          {{{0, -1, 0}, 0.150}, {0, -0.150, 0}, {1, 0, 0}, {0.075, 0.075}},
-          {{{0, 0, 1}, 0.075}, {0, -0.075, 0.075}, {1, 0, 0}, {0.075, 0.075}},
-          {{{0, -1, 0}, 0.0}, {0.140, 0, 0}, {1, 0, 0}, {0.050, 0.170}}};
-}
+std::vector<Face> faces();
 
 }  // namespace calib::tx90

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -21,20 +18,11 @@ namespace calib::figures {
 inline constexpr int kSeedCount = 100;
 inline constexpr double kMicrometres = 1e-6;
 
-inline double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
-}
+double median(std::vector<double> values);
 
-inline double root_mean_square(std::span<const double> values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
+double root_mean_square(std::span<const double> values);
 
-inline cell::Cell shipped_cell(const std::string& name) {
-  return cell::read_cell(std::string(TOUCHCAL_SOURCE_DIR) + "/config/cells/" + name + "/cell.json");
-}
+cell::Cell shipped_cell(const std::string& name);
 
 /// The arm and the contact planes as they are.
 struct Truth {
@@ -43,13 +31,7 @@ struct Truth {
 };
 
 /// Errors of all 37 parameters, each drawn from its tolerance.
-inline ErrorVector draw_errors(const ErrorTolerances& tolerances, UniformChance& chance) {
-  ErrorVector errors;
-  for (int i = 0; i < kErrorParameterCount; ++i) {
-    errors[i] = tolerances[static_cast<std::size_t>(i)].value_or(0.0) * study::normal(chance);
-  }
-  return errors;
-}
+ErrorVector draw_errors(const ErrorTolerances& tolerances, UniformChance& chance);
 
 /// An artefact, and what is written down of it: the same, but for the certified lengths.
 struct DrawnArtefact {
@@ -59,100 +41,26 @@ struct DrawnArtefact {
 
 /// The artefact that is really there, everything uncertain in `known` drawn from its standard deviation; the
 /// certificates' lengths are those of this artefact, as uncertain as they say.
-inline DrawnArtefact draw_artefact(const ArtefactKnowledge& known, UniformChance& chance) {
-  DrawnArtefact drawn{known, known};
-  for (std::size_t i = 0; i < known.face_uncertainties.size(); ++i) {
-    drawn.truth.faces[i].plane.offset_m += known.face_uncertainties[i].std_offset_m * study::normal(chance);
-  }
-  for (KnownLength& length : drawn.known.lengths) {
-    const Plane& a = drawn.truth.faces[static_cast<std::size_t>(length.faces[0])].plane;
-    const Plane& b = drawn.truth.faces[static_cast<std::size_t>(length.faces[1])].plane;
-    const double sign = a.outward.dot(b.outward) > 0.0 ? -1.0 : 1.0;
-    length.value_m = std::abs(a.offset_m + sign * b.offset_m) + length.std_m * study::normal(chance);
-  }
-  for (std::size_t i = 0; i < known.face_uncertainties.size(); ++i) {
-    Face& face = drawn.truth.faces[i];
-    const double std_rad = known.face_uncertainties[i].std_tilt_rad;
-    const Eigen::AngleAxisd about_u(std_rad * study::normal(chance), face.edge_u);
-    const Eigen::AngleAxisd about_v(std_rad * study::normal(chance), face.edge_v());
-    const Eigen::Vector3d middle_m =
-        face.center_m - signed_distance_m(face.plane, face.center_m) * face.plane.outward;
-    face.plane.outward = about_u * (about_v * face.plane.outward);
-    face.plane.offset_m = face.plane.outward.dot(middle_m);
-  }
-  drawn.truth.stylus.radius_m += known.std_radius_m * study::normal(chance);
-  drawn.truth.stylus.pretravel_m += known.std_pretravel_m * study::normal(chance);
-  drawn.truth.warmer_than_20_c_k += known.std_temperature_k * study::normal(chance);
-  return drawn;
-}
+DrawnArtefact draw_artefact(const ArtefactKnowledge& known, UniformChance& chance);
 
 /// Postures of the nominal arm on the first `face_count` faces in turn: points, tilts up to the cell's limit
 /// and turns are even. Collisions are not looked at.
-inline std::vector<Touch> even_touches(const cell::Cell& cell, int face_count, int per_face,
-                                       UniformChance& chance) {
-  const PlanningProblem limits{.nominal_miss_m = cell.nominal_miss_m,
-                               .tilt_max_rad = cell.stylus_tilt_max_rad};
-  std::vector<Touch> touches;
-  for (int k = 0; k < per_face; ++k) {
-    for (int face = 0; face < face_count; ++face) {
-      std::vector<JointVector> postures;
-      for (int attempt = 0; postures.empty(); ++attempt) {
-        if (attempt == 1000) throw std::logic_error("the face is out of the arm's reach");
-        const TouchPose pose =
-            sample_touch_pose(limits, cell.block.faces[static_cast<std::size_t>(face)], chance);
-        postures = inverse_kinematics(cell.arm.model, cell.arm.joint_ranges, pose.block_from_tip);
-      }
-      const auto pick = static_cast<std::size_t>(chance() * static_cast<double>(postures.size()));
-      touches.push_back({.face = face, .joints = postures[pick]});
-    }
-  }
-  return touches;
-}
+std::vector<Touch> even_touches(const cell::Cell& cell, int face_count, int per_face, UniformChance& chance);
 
 /// The touches that a recipe's plan fits: postures of the nominal arm on the nominal faces.
-inline std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& recipe) {
-  const auto plan = plan_touches(cell::planning_problem(cell, recipe));
-  std::vector<Touch> touches;
-  for (const PlannedTouch& planned : std::get<TouchPlan>(plan).touches) {
-    if (planned.role == TouchRole::kFit) touches.push_back({.face = planned.face, .joints = planned.joints});
-  }
-  return touches;
-}
+std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& recipe);
 
 /// What the probe captures of these touches: the true ball on the true face, but for the noise.
-inline std::vector<Touch> captured(const Truth& truth, std::vector<Touch> touches, double noise_m,
-                                   UniformChance& chance) {
-  for (Touch& touch : touches) {
-    Plane plane = truth.contact_planes[static_cast<std::size_t>(touch.face)];
-    plane.offset_m += noise_m * study::normal(chance);
-    touch = moved_onto_plane(truth.arm, plane, touch);
-  }
-  return touches;
-}
+std::vector<Touch> captured(const Truth& truth, std::vector<Touch> touches, double noise_m,
+                            UniformChance& chance);
 
 /// Distance between where the ball is and where the model has it, root mean square over the postures.
-inline double tip_error_rms_m(const KinematicModel& model, const KinematicModel& truth,
-                              std::span<const JointVector> postures) {
-  const PreparedModel a = prepare(model), b = prepare(truth);
-  double sum = 0.0;
-  for (const JointVector& joints : postures) {
-    sum +=
-        (forward_chain(a, joints).tip_in_block_m() - forward_chain(b, joints).tip_in_block_m()).squaredNorm();
-  }
-  return std::sqrt(sum / static_cast<double>(postures.size()));
-}
+double tip_error_rms_m(const KinematicModel& model, const KinematicModel& truth,
+                       std::span<const JointVector> postures);
 
-inline std::vector<JointVector> joints_of(std::span<const Touch> touches) {
-  std::vector<JointVector> postures;
-  for (const Touch& touch : touches) postures.push_back(touch.joints);
-  return postures;
-}
+std::vector<JointVector> joints_of(std::span<const Touch> touches);
 
 /// The postures that over_joint_ranges predicts for.
-inline std::vector<JointVector> postures_in(const JointRanges& ranges, int count) {
-  std::vector<JointVector> postures;
-  for (int i = 1; i <= count; ++i) postures.push_back(halton_posture(i, ranges));
-  return postures;
-}
+std::vector<JointVector> postures_in(const JointRanges& ranges, int count);
 
 }  // namespace calib::figures
