@@ -116,11 +116,13 @@ calib::KnownLength length_from_json(const JsonValue& value, const Block& block) 
 }
 
 void read_temperature(const JsonObject& object, Block& block) {
-  constexpr NumberRange kRoomTemperatures{-50.0, 100.0};
+  constexpr std::string_view kEachRun = "each_run";
+  constexpr NumberRange kRoomTemperatures{kBlockTemperatureMinC, kBlockTemperatureMaxC};
   constexpr NumberRange kKelvins{0.0, 100.0};
   constexpr NumberRange kExpansions{0.0, 1e-3};  // zinc's is 4e-5
   if (const auto temperature = object.find("temperature_c")) {
-    block.temperature_c = temperature->number(kRoomTemperatures);
+    const bool told_with_each_run = temperature->is_text() && temperature->text() == kEachRun;
+    if (!told_with_each_run) block.temperature_c = temperature->number(kRoomTemperatures);
     block.std_temperature_k = object.at("std_temperature_k").number(kKelvins);
     block.thermal_expansion_per_k = object.at("thermal_expansion_per_k").number(kExpansions);
     return;
@@ -144,7 +146,7 @@ Block read_block(const std::filesystem::path& file) {
   block.name = object.at("name").text();
   read_temperature(object, block);
   if (const auto certificate = object.find("certificate")) {
-    for (const auto& [key, value] : certificate->members()) static_cast<void>(value.text());  // for people
+    for (const auto& [key, value] : certificate->members()) block.certificate.emplace(key, value.text());
   }
   read_faces(object.at("faces"), block);
   if (const auto lengths = object.find("lengths")) {

@@ -9,6 +9,10 @@ namespace cell {
 
 inline constexpr std::string_view kBlockSchema = "touchcal/block/1";
 
+/// What a block's temperature may be, degrees C.
+inline constexpr double kBlockTemperatureMinC = -50.0;
+inline constexpr double kBlockTemperatureMaxC = 100.0;
+
 /// How far a unit vector may be from unit length, and two directions from being perpendicular or parallel.
 inline constexpr double kDirectionErrorMax = 1e-6;
 /// How far a face's centre may be from its plane.

@@ -34,7 +34,8 @@ struct Arm {
 
 struct Block {
   std::string name;
-  std::optional<double> temperature_c;  // as measured; unknown is not 20
+  std::map<std::string, std::string> certificate;  // texts for people
+  std::optional<double> temperature_c;             // as measured; unknown is not 20
   double std_temperature_k = 0.0;
   double thermal_expansion_per_k = 0.0;
   std::vector<calib::Face> faces;                          // at 20 degrees C
@@ -45,6 +46,7 @@ struct Block {
 
 struct Probe {
   std::string name;
+  std::map<std::string, std::string> certificate;
   calib::Stylus stylus;
   bool tip_is_contact_point = false;  // no ball: stylus is all zero
   double std_stylus_radius_m = 0.0;
@@ -62,6 +64,9 @@ struct AcceptanceLimits {
   double condition_number_max = 0.0;
   double lack_of_fit_p_min = 0.001;         // residuals less likely than this are not touch noise
   std::optional<double> tip_box_rms_max_m;  // predicted tip uncertainty over the workspace box
+  /// A limit is kept only when the value and its expanded uncertainty are within it (ISO 14253-1); else when
+  /// the value is.
+  bool guarded = false;
 };
 
 /// One standard deviation of the errors of the block's place where the arm's file gives none.
@@ -104,9 +109,10 @@ struct Deadlines {
 
 struct Cell {
   std::string name;
-  std::filesystem::path file;   // where it was read from
-  Arm arm;                      // with the cell's frames 0 and 7
-  std::vector<int> own_frames;  // those of the arm that the cell's file gives itself
+  std::filesystem::path file;                // where it was read from
+  std::vector<std::filesystem::path> files;  // all that it was read from: itself, arm, block, probe, recipes
+  Arm arm;                                   // with the cell's frames 0 and 7
+  std::vector<int> own_frames;               // those of the arm that the cell's file gives itself
   Block block;
   Probe probe;
   std::map<std::string, Recipe> recipes;

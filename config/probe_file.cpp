@@ -43,9 +43,12 @@ Probe read_probe(const std::filesystem::path& file) {
       JsonValue(source, document)
           .document(kProbeSchema, {"schema", "name", "tip_is_contact_point", "stylus_radius_mm",
                                    "std_stylus_radius_mm", "pretravel_mm", "std_pretravel_mm",
-                                   "overtravel_mm", "calibration_speed_mm_s", "bodies"});
+                                   "overtravel_mm", "calibration_speed_mm_s", "bodies", "certificate"});
   Probe probe;
   probe.name = object.at("name").text();
+  if (const auto certificate = object.find("certificate")) {
+    for (const auto& [key, value] : certificate->members()) probe.certificate.emplace(key, value.text());
+  }
   if (const auto declared = object.find("tip_is_contact_point"))
     probe.tip_is_contact_point = declared->boolean();
   if (probe.tip_is_contact_point) {

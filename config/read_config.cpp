@@ -21,13 +21,14 @@ using calib::metres_from_mm;
 constexpr std::size_t kRecipeCountMax = 100;
 
 /// A file that the cell names; that it is there is the cell file's promise.
-std::filesystem::path named_file(const JsonValue& value, const std::filesystem::path& cell_file) {
-  const std::filesystem::path file = (cell_file.parent_path() / value.text()).lexically_normal();
+std::filesystem::path named_file(const JsonValue& value, Cell& cell) {
+  std::filesystem::path file = (cell.file.parent_path() / value.text()).lexically_normal();
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     value.fail("there is no file " + in_quotes(file.string()) +
                "; correct the path (relative to the cell file)");
   }
+  cell.files.push_back(file);
   return file;
 }
 
@@ -47,9 +48,9 @@ void read_frame_overrides(const JsonValue& value, Cell& cell) {
   }
 }
 
-void read_recipes(const JsonObject& object, const std::filesystem::path& file, Cell& cell) {
+void read_recipes(const JsonObject& object, Cell& cell) {
   for (const JsonValue& item : object.at("recipes").items(1, kRecipeCountMax)) {
-    Recipe recipe = read_recipe(named_file(item, file), cell.arm, cell.block);
+    Recipe recipe = read_recipe(named_file(item, cell), cell.arm, cell.block);
     const std::string name = recipe.name;
     if (!cell.recipes.emplace(name, std::move(recipe)).second) {
       item.fail("a recipe with the name " + in_quotes(name) + " is already there; rename one of them");
@@ -104,8 +105,9 @@ void read_touch_conditions(const JsonObject& object, Cell& cell) {
 }
 
 AcceptanceLimits acceptance_from_json(const JsonValue& value) {
-  const JsonObject object = value.object({"held_out_mean_max_mm", "held_out_rms_max_mm",
-                                          "condition_number_max", "lack_of_fit_p_min", "tip_box_rms_max_mm"});
+  const JsonObject object =
+      value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max",
+                    "lack_of_fit_p_min", "tip_box_rms_max_mm", "decision"});
   constexpr NumberRange kConditionNumbers{.min = 1.0, .max = 1e16};
   constexpr NumberRange kProbabilities{.min = 0.0, .max = 0.5};
   AcceptanceLimits limits{
@@ -115,6 +117,12 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value) {
   if (const auto least = object.find("lack_of_fit_p_min"))
     limits.lack_of_fit_p_min = least->number(kProbabilities);
   limits.tip_box_rms_max_m = object.find_metres("tip_box_rms_max", kPositive);
+  if (const auto decision = object.find("decision")) {
+    const std::string rule = decision->text();
+    if (rule != "simple" && rule != "guarded")
+      decision->fail("is " + in_quotes(rule) + R"(; give "simple" or "guarded")");
+    limits.guarded = rule == "guarded";
+  }
   return limits;
 }
 
@@ -217,11 +225,12 @@ Cell read_cell(const std::filesystem::path& file) {
   Cell cell;
   cell.name = object.at("name").text();
   cell.file = file;
-  cell.arm = read_arm(named_file(object.at("arm"), file));
+  cell.files = {file};
+  cell.arm = read_arm(named_file(object.at("arm"), cell));
   if (const auto frames = object.find("frames")) read_frame_overrides(*frames, cell);
-  cell.block = read_block(named_file(object.at("block"), file));
-  cell.probe = read_probe(named_file(object.at("probe"), file));
-  read_recipes(object, file, cell);
+  cell.block = read_block(named_file(object.at("block"), cell));
+  cell.probe = read_probe(named_file(object.at("probe"), cell));
+  read_recipes(object, cell);
   read_space(object, cell);
   read_touch_conditions(object, cell);
   cell.acceptance = acceptance_from_json(object.at("acceptance"));

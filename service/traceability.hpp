@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "config/cell.hpp"
+
+namespace cell {
+
+/// What a result hangs on besides its touches: kept with every run. Nothing is unknown.
+struct Conditions {
+  std::optional<std::string> operator_name;
+  std::optional<std::string> config_digest;           // configuration_digest() at the daemon's start
+  std::optional<double> block_temperature_c;          // as told with the run, else the block's file
+  bool temperature_of_the_run = false;                // told with the run
+  std::optional<std::string> controller_application;  // as the controller told it, name and version
+  std::optional<std::uint32_t> controller_session;    // tells one start of the controller from the next
+};
+
+/// SHA-256 in lower-case hex over the files a cell was read from (Cell::files), in that order: of each the
+/// JSON with sorted keys and without white space, ended by a line feed. Another layout of a file is the same
+/// digest, another figure is not. Nothing for a cell that was not read from files. Throws ConfigError when
+/// one cannot be read any more.
+std::optional<std::string> configuration_digest(const Cell& cell);
+
+/// Why a run cannot be made at any known temperature, and what to do: neither the block's file nor the run
+/// says how warm the block is, or the run's figure is none. Nothing when all is well. Offline, where nobody
+/// can be asked, this is a warning.
+std::optional<std::string> temperature_gap(const Cell& cell, std::optional<double> told_with_the_run_c);
+
+/// The cell with its block as warm as was told with the run.
+Cell at_temperature(Cell cell, double block_temperature_c);
+
+/// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; null where
+/// unknown.
+nlohmann::ordered_json conditions_json(const Cell& cell, const Conditions& conditions);
+
+}  // namespace cell
