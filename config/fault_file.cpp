@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "calib_core/units.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
@@ -79,6 +80,19 @@ OperatorChange read_operator(const JsonValue& value) {
   return {find_flag("powers_up"), find_flag("touches_probe"), find_flag("confirms"), find_flag("frees_arm")};
 }
 
+JogOrder read_jog(const JsonValue& value) {
+  const JsonObject object = value.object({"joints_deg", "move_mm", "speed_mm_s", "until_touch"});
+  JogOrder order;
+  const auto joints = object.find("joints_deg"), move = object.find("move_mm");
+  if (joints.has_value() == move.has_value()) value.fail("takes joints_deg or move_mm, one of them");
+  if (joints) order.joints = joints->numbers<6>() * calib::kRadiansPerDegree;
+  if (move) order.move_m = move->numbers<3>() * 1e-3;
+  if (const auto speed = object.find("speed_mm_s"))
+    order.speed_m_s = speed->number({.min = 0.1, .max = 250.0}) * 1e-3;
+  if (const auto until = object.find("until_touch")) order.until_touch = until->boolean();
+  return order;
+}
+
 std::string line_of(const json& answer) {
   return answer.dump(-1, ' ', false, json::error_handler_t::replace);
 }
@@ -117,6 +131,7 @@ ControlRequest parse_control_line(std::string_view line) {
     return std::ranges::any_of(members, [key](const auto& member) { return member.first == key; });
   };
   if (has("operator")) return read_operator(root.object({"operator"}).at("operator"));
+  if (has("jog")) return read_jog(root.object({"jog"}).at("jog"));
   if (has("show")) {
     const JsonValue what = root.object({"show"}).at("show");
     if (what.text() != "state") what.fail("is " + in_quotes(what.text()) + "; give \"state\"");

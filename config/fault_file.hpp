@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -8,6 +9,8 @@
 #include <utility>
 #include <variant>
 #include <vector>
+
+#include "calib_core/joint_vector.hpp"
 
 namespace cell {
 
@@ -76,9 +79,19 @@ FaultFile read_faults(const std::filesystem::path& file);
 // ---- the control connection of the simulator: lines of JSON ----
 
 struct ShowState {};
-using ControlRequest = std::variant<DeclaredFault, OperatorChange, ShowState>;
 
-/// One line: a fault, {"operator":{...}} or {"show":"state"}. ConfigError, whatever the bytes are.
+/// A person moves the arm with the pendant: to joints, or the tool centre along a line in R_-1.
+struct JogOrder {
+  std::optional<calib::JointVector> joints;  // one of these two
+  std::optional<Eigen::Vector3d> move_m;
+  double speed_m_s = 0.01;
+  bool until_touch = true;  // he stops when the probe trips
+};
+
+using ControlRequest = std::variant<DeclaredFault, OperatorChange, ShowState, JogOrder>;
+
+/// One line: a fault, {"operator":{...}}, {"show":"state"} or {"jog":{...}} with joints_deg or move_mm, and
+/// speed_mm_s (10, at most 250) and until_touch (true). ConfigError, whatever the bytes are.
 ControlRequest parse_control_line(std::string_view line);
 
 using ShownValue = std::pair<std::string, std::variant<bool, std::int64_t, std::string>>;

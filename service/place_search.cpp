@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib_core/block_place.hpp"
 #include "calib_core/quasi_random.hpp"
 #include "calib_core/tip_uncertainty.hpp"
 #include "service/acquisition/planning.hpp"
@@ -13,42 +14,6 @@
 
 namespace cell {
 namespace {
-
-/// Smaller than this, frame 1's alpha does not tell theta0 and theta1 apart.
-constexpr double kSineParallel = 1e-9;
-
-double with_sign_of(double size, double other) { return other < 0.0 ? -size : size; }
-
-/// Frames 0 and 1 that put the arm at this pose: Rot(z,theta0) Trans(z,r0) Rot(x,alpha1) Trans(x,d1)
-/// Rot(z,theta1) Trans(z,r1) is any pose. Signs stay as they were.
-void set_place(calib::KinematicModel& model, const Eigen::Isometry3d& pose) {
-  calib::LinkParameters& base = model.links[0];
-  calib::LinkParameters& first = model.links[1];
-  const Eigen::Matrix3d turn = pose.linear();
-  const double sine = with_sign_of(std::hypot(turn(0, 2), turn(1, 2)), std::sin(first.alpha_rad));
-  const double cosine = turn(2, 2);
-  Eigen::Vector3d position = pose.translation();
-  if (std::abs(sine) > kSineParallel) {
-    base.theta_rad = std::atan2(turn(0, 2) / sine, -turn(1, 2) / sine);
-    position = Eigen::AngleAxisd(-base.theta_rad, Eigen::Vector3d::UnitZ()) * position;
-    first.r_m = -position.y() / sine;
-    first.d_m = position.x();
-  } else {  // parallel axes: r1 stays, r0 takes all of the height
-    const Eigen::Vector2d across = position.head<2>();
-    const double sign = with_sign_of(1.0, first.d_m);
-    first.d_m = sign * across.norm();
-    base.theta_rad = std::atan2(sign * across.y(), sign * across.x());
-  }
-  first.alpha_rad = std::atan2(sine, cosine);
-  first.beta_rad = 0.0;
-  base.r_m = position.z() - cosine * first.r_m;
-  const Eigen::Matrix3d rest = (Eigen::AngleAxisd(base.theta_rad, Eigen::Vector3d::UnitZ()) *
-                                Eigen::AngleAxisd(first.alpha_rad, Eigen::Vector3d::UnitX()))
-                                   .toRotationMatrix()
-                                   .transpose() *
-                               turn;
-  first.theta_rad = std::atan2(rest(1, 0), rest(0, 0));
-}
 
 /// The smallest box along the new axes that holds the box.
 calib::Box moved(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
@@ -148,14 +113,10 @@ class PlaceSearch {
 
 }  // namespace
 
-Cell with_block_at(const Cell& cell, const BlockPlace& place) {
+Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new) {
   Cell there = cell;
-  const Eigen::Isometry3d new_from_old =
-      (Eigen::Translation3d(place.shift_m) * Eigen::AngleAxisd(place.yaw_rad, Eigen::Vector3d::UnitY()))
-          .inverse();
-  const auto& links = cell.arm.model.links;
-  set_place(there.arm.model,
-            new_from_old * calib::frame_transform(links[0]) * calib::frame_transform(links[1]));
+  const Eigen::Isometry3d new_from_old = old_from_new.inverse();
+  calib::set_place(there.arm.model, new_from_old * calib::place_of(cell.arm.model));
   there.keep_out_boxes.clear();
   for (const calib::Box& box : cell.keep_out_boxes) {
     const auto pieces = moved_in_pieces(new_from_old, box);
@@ -163,6 +124,11 @@ Cell with_block_at(const Cell& cell, const BlockPlace& place) {
   }
   there.workspace_box = moved(new_from_old, cell.workspace_box);
   return there;
+}
+
+Cell with_block_at(const Cell& cell, const BlockPlace& place) {
+  return with_block_moved(
+      cell, Eigen::Translation3d(place.shift_m) * Eigen::AngleAxisd(place.yaw_rad, Eigen::Vector3d::UnitY()));
 }
 
 std::vector<PlaceFinding> search_places(const Cell& cell, const Recipe& recipe, const PlaceRange& range,

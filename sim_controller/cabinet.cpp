@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim_controller/jog.hpp"
+
 namespace sim {
 namespace {
 
@@ -56,7 +58,7 @@ Cabinet make_cabinet(const Plant& plant, std::uint64_t seed) {
 
 CabinetTick tick(const Plant& plant, Cabinet& cabinet) {
   CabinetTick seen;
-  const bool permitted = cabinet.drives.braking || motion_permitted(cabinet.panel);
+  const bool permitted = cabinet.drives.braking || motion_permitted(cabinet.panel) || jog_permitted(cabinet);
   seen.motion = tick(cabinet.drives, cabinet.panel.monitor_speed_percent, permitted);
   cabinet.world.powered = cabinet.panel.powered;
   seen.sensed = sense(plant, cabinet.world, seen.motion);
@@ -64,6 +66,7 @@ CabinetTick tick(const Plant& plant, Cabinet& cabinet) {
     cabinet.panel.powered = false;
     cabinet.drives = Drives{.joints = seen.motion.to};
   }
+  watch_jog(cabinet, seen.sensed);
   count_inputs(cabinet);
   watch_touch_test(cabinet);
   return seen;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <random>
 
 #include "cs8_protocol/messages.hpp"
@@ -33,6 +34,11 @@ inline constexpr int kSteadyTicks = 5;
 /// How far the hand touch test has come: free, touched, free again, each for kSteadyTicks.
 enum class TouchTest { kNone, kFree, kTouched, kDone };
 
+/// A person moves the arm with the pendant.
+struct Jog {
+  bool until_touch = true;  // he stops when the probe trips
+};
+
 /// A CS8 without its application: drives, inputs, panel, and the world they stand in. A value.
 struct Cabinet {
   Panel panel;
@@ -43,7 +49,8 @@ struct Cabinet {
   int touched_ticks = 0;
   int disagree_ticks = 0;
   TouchTest touch_test = TouchTest::kNone;
-  bool jogged = false;  // by the operator, since the application last looked
+  std::optional<Jog> jog;  // under way
+  bool jogged = false;     // by the operator, since the application last looked
   // What can be wrong with it, set by faults.
   std::int32_t task_error = 0;  // run-time error of a dead task of the application
   std::uint32_t overruns = 0;

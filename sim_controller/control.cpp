@@ -144,6 +144,8 @@ std::string answer_control_line(Server& server, std::string_view line) {
       server.inject(planned(*declared));
     } else if (const auto* change = std::get_if<cell::OperatorChange>(&request)) {
       server.change(*change);
+    } else if (const auto* order = std::get_if<cell::JogOrder>(&request)) {
+      if (const auto why_not = server.jog(*order)) return cell::control_refusal(*why_not);
     } else {
       return cell::control_answer(shown(server.report()));
     }

@@ -15,6 +15,7 @@
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
 #include "sim_controller/connection.hpp"
+#include "sim_controller/jog.hpp"
 #include "sim_controller/reports.hpp"
 
 namespace sim {
@@ -68,6 +69,9 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     state_.person.duties = cell::changed(state_.person.duties, change);
   }
 
+  std::optional<std::string> jog(const cell::JogOrder& order) {
+    return begin_jog(plant_, state_.cabinet, order);
+  }
   [[nodiscard]] cs8::State report() const { return state_report(state_, clock_()); }
 
  private:
@@ -282,6 +286,7 @@ void Server::inject(const PlannedFault& fault) { core_->inject(fault); }
 
 void Server::change(const cell::OperatorChange& change) { core_->change(change); }
 
+std::optional<std::string> Server::jog(const cell::JogOrder& order) { return core_->jog(order); }
 cs8::State Server::report() const { return core_->report(); }
 
 }  // namespace sim

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ class Server {
   void inject(const PlannedFault& fault);
   /// What the operator does unasked from now on.
   void change(const cell::OperatorChange& change);
+  /// A person jogs with the pendant; why he cannot, or nothing.
+  std::optional<std::string> jog(const cell::JogOrder& order);
   /// What the controller would report now.
   [[nodiscard]] cs8::State report() const;
 

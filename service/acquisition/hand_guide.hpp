@@ -1,0 +1,23 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "calib_core/joint_vector.hpp"
+
+namespace cell {
+
+/// What a person who touches by hand is told: in the status, as long as touches are awaited.
+struct HandGuide {
+  std::string activity;  // "locate", "guided"
+  int plane = 0;         // the face to touch, from 1
+  int index = 0;         // of the touch, from 1
+  int total = 0;
+  std::string words;                               // what to do
+  std::optional<std::string> problem;              // why the last touch did not count, or what else is wrong
+  std::optional<calib::JointVector> about_joints;  // roughly the posture, where one is asked for
+
+  bool operator==(const HandGuide&) const = default;
+};
+
+}  // namespace cell
