@@ -11,6 +11,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -19,6 +21,7 @@
 #include "service/acquisition/operation.hpp"
 #include "service/http/listener.hpp"
 #include "service/http/tokens.hpp"
+#include "service/store/maintenance.hpp"
 #include "service/store/touch_store.hpp"
 #include "service/utc_time.hpp"
 
@@ -65,6 +68,22 @@ asio::ip::tcp::endpoint listen_address(asio::io_context& context, const Endpoint
   return address;
 }
 
+/// At once and then every day. What cannot be deleted now is deleted another day.
+asio::awaitable<void> forget_old_runs(const TouchStore& store, int retain_days) {
+  asio::steady_timer day(co_await asio::this_coro::executor);
+  for (;;) {
+    try {
+      const auto oldest = std::chrono::system_clock::now() - std::chrono::days(retain_days);
+      const int deleted = delete_runs_before(store.database(), format_utc(oldest));
+      if (deleted > 0) spdlog::info("{} runs older than {} days were deleted", deleted, retain_days);
+    } catch (const std::exception& error) {
+      spdlog::error("old runs could not be deleted: {}", error.what());
+    }
+    day.expires_after(std::chrono::days(1));
+    co_await day.async_wait(asio::use_awaitable);
+  }
+}
+
 }  // namespace
 
 std::filesystem::path default_state_directory() {
@@ -79,14 +98,13 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
   }
   const DirectoryLock lock(options.state_directory);
-  TouchStore store(options.state_directory / "touchcal.sqlite");
+  TouchStore store(options.state_directory / kStoreFile);
   const Tokens tokens = load_or_make_tokens(options.state_directory);
   const auto clock = [] { return std::chrono::system_clock::now(); };
-  if (const int interrupted = store.finish_interrupted(format_utc(clock())); interrupted > 0) {
-    spdlog::warn("{} run was interrupted when the daemon ended; its touches are kept", interrupted);
-  }
 
   asio::io_context context(1);
+  if (options.retain_days)
+    asio::co_spawn(context, forget_old_runs(store, *options.retain_days), asio::detached);
   Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
                       random_hex(8), clock);
   std::optional<HttpListener> listener;

@@ -12,7 +12,11 @@ struct DaemonOptions {
   std::filesystem::path state_directory;
   Endpoint listen{"127.0.0.1", 8080};
   std::optional<Endpoint> controller;  // the cell's when absent
+  std::optional<int> retain_days;      // how long runs are kept; for ever when absent
 };
+
+/// In the state directory.
+inline constexpr const char* kStoreFile = "touchcal.sqlite";
 
 /// $XDG_STATE_HOME/touchcal or ~/.local/state/touchcal.
 std::filesystem::path default_state_directory();

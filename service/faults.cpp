@@ -105,6 +105,11 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kNotIdentifiable, "not_identifiable", "the touches do not determine the parameters",
                "the arm finished its touches",
                "look at the result's message; change the recipe and start a new run"},
+    FaultEntry{
+        FaultCode::kDaemonRestarted, "daemon_restarted", "the daemon was started anew during the run",
+        "the arm stopped by itself when the link was gone and stands where it was",
+        "touchcal resume to go on with the touch behind the last one that is stored, or touchcal stop to "
+        "end the run as it is"},
 };
 
 }  // namespace

@@ -33,6 +33,7 @@ enum class FaultCode {
   kNoSafeWay,
   kStoreFailed,
   kNotIdentifiable,
+  kDaemonRestarted,
 };
 
 struct FaultEntry {

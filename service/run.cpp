@@ -20,7 +20,29 @@ Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string 
       started_at_(std::move(started_at)),
       problem_(identification_problem(regions.cell(), recipe_)) {}
 
+void Run::restore(const std::vector<StoredTouch>& touches, int touches_total) {
+  touches_ = touches;
+  for (const StoredTouch& touch : touches_) problem_.touches.push_back(to_touch(touch));
+  restored_total_ = touches_total;
+}
+
+void Run::change_plan(const PlanChange& change) {
+  const auto place = static_cast<std::size_t>(change.place);
+  switch (change.kind) {
+    case PlanChange::Kind::kPutOff:
+      put_off(place);
+      break;
+    case PlanChange::Kind::kDropFitted:
+      drop_fitted(place);
+      break;
+    case PlanChange::Kind::kSkip:
+      skip(place);
+      break;
+  }
+}
+
 void Run::set_plan(calib::TouchPlan plan) {
+  plan_changes_.clear();
   plan_ = std::move(plan);
   put_off_.assign(plan_.touches.size(), false);
 }
@@ -37,6 +59,7 @@ bool Run::put_off(std::size_t index) {
     if (plan_.touches[i].role == plan_.touches[index].role) last = i;
   }
   if (put_off_[index] || last == index) return false;
+  plan_changes_.push_back({PlanChange::Kind::kPutOff, static_cast<int>(index)});
   put_off_[index] = true;
   const auto rotate = [&](auto& values) {
     const auto from = values.begin() + static_cast<std::ptrdiff_t>(index);
@@ -47,9 +70,12 @@ bool Run::put_off(std::size_t index) {
   return true;
 }
 
-void Run::skip_next() {
-  if (!next()) return;
-  const auto place = static_cast<std::ptrdiff_t>(touches_made());
+void Run::skip_next() { skip(touches_made()); }
+
+void Run::skip(std::size_t index) {
+  if (!planned(index)) return;
+  plan_changes_.push_back({PlanChange::Kind::kSkip, static_cast<int>(index)});
+  const auto place = static_cast<std::ptrdiff_t>(index);
   plan_.touches.erase(plan_.touches.begin() + place);
   put_off_.erase(put_off_.begin() + place);
   ++skipped_count_;
@@ -66,6 +92,7 @@ double Run::left_s(double elapsed_s) const {
 int Run::drop_fitted(std::size_t first) {
   const std::size_t before = plan_.touches.size();
   if (first >= before) return 0;
+  plan_changes_.push_back({PlanChange::Kind::kDropFitted, static_cast<int>(first)});
   const auto from = plan_.touches.begin() + static_cast<std::ptrdiff_t>(first);
   plan_.touches.erase(
       std::remove_if(from, plan_.touches.end(),
@@ -117,6 +144,7 @@ std::optional<std::string> Run::weigh_more_touches() const {
       if (touch.role == calib::TouchRole::kFit) candidates.push_back({touch.face, touch.joints});
     }
   };
+  if (plan_.touches.empty()) return std::nullopt;  // restored, and not planned again yet
   add_from(touches_made());
   if (candidates.empty()) add_from(0);
   const auto further = best_further_touches(problem_, recipe_.identification, latest_, candidates,

@@ -26,11 +26,19 @@ class Run {
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
   [[nodiscard]] const std::string& started_at() const { return started_at_; }
 
+  /// The touches that it made before the daemon was started anew, and how many its plan has, which is not
+  /// known here yet.
+  void restore(const std::vector<StoredTouch>& touches, int touches_total);
   void set_plan(calib::TouchPlan plan);
   /// Of the plan, those that were skipped among them.
-  [[nodiscard]] int touches_total() const { return static_cast<int>(plan_.touches.size()) + skipped_count_; }
+  [[nodiscard]] int touches_total() const {
+    return plan_.touches.empty() ? restored_total_ : static_cast<int>(plan_.touches.size()) + skipped_count_;
+  }
   [[nodiscard]] int touches_done() const { return static_cast<int>(touches_.size()); }
   [[nodiscard]] bool complete() const { return touches_total() > 0 && touches_done() == touches_total(); }
+  /// How the plan was changed since it was set, in order; the same changes give the same plan.
+  [[nodiscard]] const std::vector<PlanChange>& plan_changes() const { return plan_changes_; }
+  void change_plan(const PlanChange& change);
   /// The touch to make now, or null when all are made.
   [[nodiscard]] const calib::PlannedTouch* next() const;
 
@@ -67,6 +75,7 @@ class Run {
   [[nodiscard]] const std::optional<std::string>& more_would_bring() const { return more_would_bring_; }
 
  private:
+  void skip(std::size_t index);
   [[nodiscard]] bool sees_all() const;
   [[nodiscard]] std::optional<std::string> weigh_more_touches() const;
 
@@ -77,6 +86,8 @@ class Run {
   calib::TouchPlan plan_;
   std::vector<bool> put_off_;  // one a planned touch
   int skipped_count_ = 0;      // no longer in the plan
+  std::vector<PlanChange> plan_changes_;
+  int restored_total_ = 0;  // as long as there is no plan
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
   std::size_t identified_count_ = 0;  // of the touches

@@ -9,6 +9,7 @@
 #include "config/read_config.hpp"
 #include "service/daemon.hpp"
 #include "service/exit_code.hpp"
+#include "service/store/maintenance.hpp"
 #include "service/version.hpp"
 
 namespace {
@@ -19,17 +20,40 @@ cell::Endpoint endpoint_option(const std::string& name, const std::string& text)
   return *endpoint;
 }
 
+/// Maintenance of the database, beside a daemon that may run: the exit code.
+int keep_state(const std::filesystem::path& database, const std::string& backup, bool verify) {
+  if (verify) {
+    const std::vector<std::string> damage = cell::find_damage(database);
+    for (const std::string& line : damage) std::cerr << database.string() << ": " << line << '\n';
+    if (!damage.empty()) {
+      std::cerr << "put the last backup in its place while no daemon runs\n";
+      return cell::kExitBadInput;
+    }
+    std::cout << database.string() << " is in order\n";
+  }
+  if (backup.empty()) return cell::kExitDone;
+  cell::back_up(database, backup);
+  std::cout << backup << " is a copy of " << database.string() << '\n';
+  return cell::kExitDone;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("touchcald: drives the touches of one robot cell, identifies the arm, serves the JSON API");
-  std::string cell_file, listen, controller, state;
-  bool check = false;
-  app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json")->required();
+  std::string cell_file, listen, controller, state, backup;
+  bool check = false, verify = false;
+  int retain_days = 0;
+  app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json");
   app.add_option("--listen", listen, "HOST:PORT of the API")->default_str("127.0.0.1:8080");
   app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's");
   app.add_option("--state", state, "directory for runs and tokens; default: the user's state home");
   app.add_flag("--check", check, "read the cell and everything it names, then exit");
+  app.add_option("--backup", backup,
+                 "copy the state's database into this new file, then exit; a daemon may run");
+  app.add_flag("--verify", verify, "look for damage in the state's database, then exit; a daemon may run");
+  app.add_option("--retain-days", retain_days, "delete runs that are older, but for the last accepted one")
+      ->check(CLI::PositiveNumber);
   app.set_version_flag("--version", std::string("touchcald ") + cell::kVersion);
 
   spdlog::set_default_logger(spdlog::stderr_color_mt("touchcald"));
@@ -37,6 +61,10 @@ int main(int argc, char** argv) {
     app.parse(argc, argv);
     cell::DaemonOptions options{.state_directory = state.empty() ? cell::default_state_directory()
                                                                  : std::filesystem::path(state)};
+    if (!backup.empty() || verify)
+      return keep_state(options.state_directory / cell::kStoreFile, backup, verify);
+    if (cell_file.empty()) throw CLI::RequiredError("--cell");
+    if (retain_days > 0) options.retain_days = retain_days;
     if (!listen.empty()) options.listen = endpoint_option("--listen", listen);
     if (!controller.empty()) options.controller = endpoint_option("--controller", controller);
     const cell::Cell cell = cell::read_cell(cell_file);

@@ -91,7 +91,7 @@ std::optional<Operation::PreparedTouch> Operation::with_way(std::variant<calib::
     spdlog::info("no way to a touch on plane {} as it is aimed now", aimed->touch.face + 1);
     return std::nullopt;
   }
-  return PreparedTouch{std::move(*aimed), from.joints, std::move(*via)};
+  return PreparedTouch{.aimed = std::move(*aimed), .from = from.joints, .via = std::move(*via)};
 }
 
 /// The touch at this place of the plan. One that cannot be made as it is aimed is made with the nominal miss,
@@ -102,10 +102,14 @@ std::optional<Operation::PreparedTouch> Operation::prepared(std::size_t index,
   for (int put_off = 0; put_off < kPutOffMax; ++put_off) {
     const calib::PlannedTouch* planned = run_->planned(index);
     if (!planned) break;
-    if (!missed_) {
-      if (auto touch = with_way(calib::aim_touch(planning_, *aim_, *planned), from)) return touch;
+    auto touch = missed_ ? std::nullopt : with_way(calib::aim_touch(planning_, *aim_, *planned), from);
+    const int aimed_with = touch ? static_cast<int>(aim_->touch_count()) : kNominalMiss;
+    if (!touch) touch = with_way(calib::nominal_touch(planning_, *planned), from);
+    if (touch) {
+      touch->aimed_with = aimed_with;
+      touch->planned = planned->joints;
+      return touch;
     }
-    if (auto touch = with_way(calib::nominal_touch(planning_, *planned), from)) return touch;
     if (!run_->put_off(index)) break;
   }
   return std::nullopt;
@@ -114,15 +118,25 @@ std::optional<Operation::PreparedTouch> Operation::prepared(std::size_t index,
 /// True when the next touch is ready to be commanded; false when there is none or another state was entered.
 asio::awaitable<bool> Operation::prepare_touch() {
   if (standing_ && ahead_) co_return true;
-  ahead_.reset();
-  identify();
-  learn();
   const auto from = co_await standing_joints();
   if (status_.state != State::kExecute) co_return false;
   if (!from) {
     co_await wait_for_wake(20ms);  // the link is gone, and its loss is about to be told
     co_return false;
   }
+  // One that is aimed stays so, also behind a hold or a restart: only the way to it is another.
+  const bool is_next = ahead_ && ahead_->planned == run_->next()->joints;
+  if (is_next) {
+    PreparedTouch before = std::move(*ahead_);
+    ahead_ = with_way(std::move(before.aimed), leaving(*from));
+    if (ahead_) {
+      ahead_->aimed_with = before.aimed_with;
+      ahead_->planned = before.planned;
+      co_return true;
+    }
+  }
+  identify();
+  learn();
   ahead_ = prepared(run_->touches_made(), leaving(*from));
   if (!ahead_) {
     const int plane = run_->next()->face + 1;

@@ -45,7 +45,7 @@ asio::awaitable<void> Operation::wait_for_wake(std::chrono::milliseconds at_most
 }
 
 asio::awaitable<void> Operation::drive() {
-  while (!shutting_down_ || is_active(status_.state)) {
+  while (!shutting_down_ || (is_active(status_.state) && !interrupted_)) {
     if (status_.state != State::kExecute) identify();
     switch (status_.state) {
       case State::kResetting:
@@ -82,8 +82,9 @@ asio::awaitable<void> Operation::drive() {
         apply(Event::kDone);
         break;
       case State::kComplete:
-        // A finished run stays to be read while the link comes and goes.
-        if (client_.connected()) {
+      case State::kHeld:
+        // A finished or interrupted run stays to be read while the link comes and goes.
+        if (client_.connected() || (status_.state == State::kHeld && !interrupted_)) {
           co_await wait_for_wake(1h);
         } else {
           co_await connect();
@@ -137,6 +138,8 @@ asio::awaitable<void> Operation::start_run() {
 
 asio::awaitable<void> Operation::resume_run() {
   standing_.reset();  // on hold the arm may have been moved by hand
+  const bool resumable = co_await make_resumable();
+  if (!resumable || status_.state != State::kUnholding) co_return;
   const bool permitted = co_await get_permission();
   if (permitted) apply(Event::kDone);
 }
@@ -154,13 +157,16 @@ asio::awaitable<void> Operation::make_next_touch() {
   const std::vector<calib::JointVector> via = std::move(ahead_->via);
   before_ = std::move(made_);
   made_ = std::move(ahead_->aimed);
+  const int aimed_with = ahead_->aimed_with;
   const calib::PlannedTouch touch = made_->touch;
   made_way_ = calib::whole_way(ahead_->from, via, touch.clear_joints);
   made_way_.insert(made_way_.end(), {touch.approach_joints, touch.search_end_joints});
   ahead_.reset();
   standing_.reset();
-  open_touch_ = OpenTouch{session_, client_.next_sequence(), touch};
+  open_touch_ = OpenTouch{session_, client_.next_sequence(), touch, aimed_with};
+  if (!keep_open_command()) co_return;
   auto answer = client_.touch(touch_command(cell_, touch, via));
+  store_.make_durable(run_->id());
   identify();
   learn();
   look_ahead();
@@ -234,6 +240,7 @@ bool Operation::keep_late_touch(const calib::PlannedTouch& planned, const cs8::T
 
 /// Stores and counts a contact; false when it could not be stored, which ends the run.
 bool Operation::keep_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result) {
+  const OpenTouch answered = open_touch_.value_or(OpenTouch{});
   try {
     run_->add(store_, {.number = run_->touches_done() + 1,
                        .plane = planned.face + 1,
@@ -241,7 +248,10 @@ bool Operation::keep_touch(const calib::PlannedTouch& planned, const cs8::TouchR
                        .joints = result.contact,
                        .source = result.source,
                        .overtravel_dmm = result.overtravel_dmm,
-                       .captured_at = now_text()});
+                       .captured_at = now_text(),
+                       .session = answered.session,
+                       .sequence = answered.sequence,
+                       .aimed_with = answered.aimed_with});
     const bool polled = result.source == cs8::CaptureSource::kPolled;
     spdlog::log(polled ? spdlog::level::warn : spdlog::level::info,
                 "run {} touch {} on plane {}: {}{}, {} edge(s), overtravel {:.3f} mm", run_->id(),
@@ -250,7 +260,7 @@ bool Operation::keep_touch(const calib::PlannedTouch& planned, const cs8::TouchR
                 cs8::metres_from_dmm(result.overtravel_dmm) * 1e3);
     return true;
   } catch (const std::exception& error) {
-    raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    raise({FaultCode::kStoreFailed, error.what()}, interrupted_ ? Event::kNotReadyFault : Event::kAbortFault);
     return false;
   }
 }
@@ -317,7 +327,7 @@ void Operation::close_run(const std::string& outcome) {
   status_.verdict = !run_finished_       ? Verdict::kIncomplete
                     : judgement.accepted ? Verdict::kAccepted
                                          : Verdict::kRejected;
-  RunEnd end{.outcome = outcome,
+  RunEnd end{.outcome = interrupted_ ? "interrupted" : outcome,
              .verdict = std::string(verdict_name(status_.verdict)),
              .ended_at = now_text(),
              .result_json = result_json()};
@@ -325,6 +335,7 @@ void Operation::close_run(const std::string& outcome) {
     end.fault_code = std::string(describe(status_.fault->code).name);
     end.fault_message = status_.fault->message();
   }
+  interrupted_.reset();
   try {
     store_.finish_run(run_->id(), end);
     if (status_.verdict == Verdict::kAccepted) {

@@ -86,12 +86,14 @@ asio::awaitable<void> Operation::connect() {
     if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
       session_ = welcome->session;
       if (status_.fault && is_link_fault(status_.fault->code)) status_.fault.reset();
+      if (state == State::kHeld && interrupted_ && !status_.fault)
+        status_.fault = Fault{FaultCode::kDaemonRestarted, {}};
       publish();
       if (welcome->open_sequence != 0) co_await settle_open_command(welcome->open_sequence);
       co_return;
     }
     const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
-    if (!status_.fault || status_.fault->message() != fault.message()) raise(fault, Event::kLinkDown);
+    if (!status_.fault || status_.fault->message() != fault.message()) raise(fault, link_down());
     if (status_.state == state && !shutting_down_) co_await wait_for_wake(pause);
   }
 }
@@ -107,7 +109,7 @@ asio::awaitable<void> Operation::settle_open_command(std::uint32_t sequence) {
       !implausible(cell_, open_touch_->planned, *result)) {
     spdlog::info("run {}: touch {} had been made when the run ended", run_->id(), run_->touches_done() + 1);
     if (!keep_late_touch(open_touch_->planned, *result)) {
-      enter(State::kStopped);  // it waits at the controller until it can be stored
+      if (!run_open_) enter(State::kStopped);  // it waits at the controller until it can be stored
       co_return;
     }
   }

@@ -10,6 +10,7 @@
 
 #include "cs8_protocol/names.hpp"
 #include "service/http/result_view.hpp"
+#include "service/store/fault_log.hpp"
 #include "service/utc_time.hpp"
 
 namespace cell {
@@ -89,7 +90,8 @@ Operation::~Operation() { planner_.join(); }
 std::string Operation::now_text() const { return format_utc(clock_()); }
 
 void Operation::launch() {
-  enter(State::kResetting);  // finding the controller moves nothing
+  restore_run();
+  enter(interrupted_ ? State::kHeld : State::kResetting);  // finding the controller moves nothing
   driving_ = true;
   asio::co_spawn(executor_, drive(), [this](const std::exception_ptr& failure) {
     driving_ = false;
@@ -113,7 +115,14 @@ void Operation::enter(State state) {
 void Operation::apply(Event event) { enter(after_event(status_.state, event)); }
 
 void Operation::raise(Fault fault, Event event) {
-  spdlog::warn("fault {}: {}", describe(fault.code).name, fault.message());
+  const std::string name(describe(fault.code).name);
+  spdlog::warn("fault {}: {}", name, fault.message());
+  try {
+    FaultLog(store_.database())
+        .append(run_open_ ? std::optional(run_->id()) : std::nullopt, now_text(), name, fault.message());
+  } catch (const std::exception& error) {
+    spdlog::error("the fault could not be stored: {}", error.what());
+  }
   status_.fault = std::move(fault);
   publish();
   apply(event);
@@ -184,7 +193,7 @@ void Operation::hear(const cs8::State& state) {
 void Operation::lose(const cs8::LinkError& error) {
   if (shutting_down_) return;
   standing_.reset();
-  raise(link_fault(error), Event::kLinkDown);
+  raise(link_fault(error), link_down());
   wake_.cancel();
 }
 
@@ -248,15 +257,25 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
   if (!after_command(status_.state, Command::kStart)) {
     return Refusal{.detail = fmt::format("a run cannot start in the state {}", state_name(status_.state))};
   }
-  const std::int64_t id = store_.begin_run({.recipe = recipe,
-                                            .started_at = now_text(),
-                                            .idempotency_key = request.idempotency_key,
-                                            .operator_name = request.operator_name,
-                                            .block_temperature_c = request.block_temperature_c});
+  std::int64_t id = 0;
+  try {
+    id = store_.begin_run({.recipe = recipe,
+                           .started_at = now_text(),
+                           .idempotency_key = request.idempotency_key,
+                           .operator_name = request.operator_name,
+                           .block_temperature_c = request.block_temperature_c,
+                           .config_digest = config_digest_});
+  } catch (const std::exception& error) {
+    return Refusal{.kind = Refusal::Kind::kPreconditions,
+                   .detail = "the cell is not ready",
+                   .unmet = {{"store_not_writable",
+                              fmt::format("free disk space or mend the state directory: {}", error.what())}}};
+  }
   run_.emplace(id, tip_regions_, found->second, now_text());
   run_open_ = true;
   run_finished_ = false;
   held_by_ = HeldBy::kNothing;
+  stored_changes_ = 0;
   status_.fault.reset();
   status_.verdict = Verdict::kNone;
   enter(State::kStarting);
@@ -319,7 +338,7 @@ asio::awaitable<void> Operation::wait_for_change(std::uint64_t sequence, std::ch
 
 asio::awaitable<void> Operation::shut_down() {
   shutting_down_ = true;
-  if (is_active(status_.state) && status_.state != State::kAborting) {
+  if (is_active(status_.state) && status_.state != State::kAborting && !interrupted_) {
     enter(State::kStopping);
   } else {
     wake_.cancel();

@@ -133,6 +133,14 @@ class Operation {
   [[nodiscard]] bool is_permitted() const;
   [[nodiscard]] std::uint32_t permit_number() const;
 
+  // going on with a run that an earlier daemon left open (resumption.cpp)
+  void restore_run();
+  [[nodiscard]] Event link_down() const;
+  boost::asio::awaitable<bool> make_resumable();
+  boost::asio::awaitable<bool> plan_again();
+  void recall_aim();
+  bool keep_open_command();
+
   // what the states do (drive.cpp, link.cpp)
   boost::asio::awaitable<void> drive();
   boost::asio::awaitable<void> reset();
@@ -162,6 +170,8 @@ class Operation {
     calib::AimedTouch aimed;
     calib::JointVector from;  // where the way begins
     std::vector<calib::JointVector> via;
+    int aimed_with = 0;                                       // as StoredTouch::aimed_with
+    calib::JointVector planned = calib::JointVector::Zero();  // the joints of the planned touch: which it is
   };
 
   // which touch comes next, aimed with what the touches before it told (aiming.cpp)
@@ -180,11 +190,18 @@ class Operation {
   /// What keeps a run on hold: a person's pause, or a touch that can be made again or left out.
   enum class HeldBy { kNothing, kTouch };
 
+  /// What an earlier daemon left of the run.
+  struct Interrupted {
+    std::optional<std::string> plan_id;
+    std::vector<PlanChange> plan_changes;
+  };
+
   /// A touch whose result was not acknowledged yet: the controller still has it.
   struct OpenTouch {
     std::uint32_t session = 0;
     std::uint32_t sequence = 0;
     calib::PlannedTouch planned;  // as it was aimed
+    int aimed_with = 0;           // as StoredTouch::aimed_with
   };
 
   boost::asio::any_io_executor executor_;
@@ -203,6 +220,9 @@ class Operation {
   std::optional<Run> run_;
   bool run_finished_ = false;                        // complete, and stored as such
   bool run_open_ = false;                            // begun in the store, not finished there
+  std::optional<Interrupted> interrupted_;           // until somebody resumes the run
+  std::optional<std::string> config_digest_;         // of the cell's files
+  std::size_t stored_changes_ = 0;                   // of the run's plan
   std::chrono::system_clock::time_point run_began_;  // to touch
   std::map<std::string, PlanOutcome> plans_;         // by recipe
   int plans_under_way_ = 0;                          // on the planner's thread, or waiting for it

@@ -135,11 +135,16 @@ void TouchStore::set_open_command(std::int64_t run_id, const OpenCommand& comman
   insert.exec();
 }
 
-void TouchStore::make_durable(std::int64_t run_id) {
-  SQLite::Statement& update = statements_->make_durable;
-  update.tryReset();
-  update.bind(1, run_id);
-  update.exec();
+bool TouchStore::make_durable(std::int64_t run_id) {
+  try {
+    SQLite::Statement& update = statements_->make_durable;
+    update.tryReset();
+    update.bind(1, run_id);
+    update.exec();
+    return true;
+  } catch (const SQLite::Exception&) {
+    return false;
+  }
 }
 
 void TouchStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {

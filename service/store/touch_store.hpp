@@ -125,9 +125,10 @@ class TouchStore {
   /// Durable with the next touch: before that the plan is changed again in the same way.
   void append_plan_change(std::int64_t run_id, const PlanChange& change);
   /// Call it before the command is sent: it outlives this process then. make_durable(), called while the arm
-  /// moves, lets it outlive the machine as well.
+  /// moves, lets it outlive the machine as well; false when that fails, which the next call that writes
+  /// tells.
   void set_open_command(std::int64_t run_id, const OpenCommand& command);
-  void make_durable(std::int64_t run_id);
+  bool make_durable(std::int64_t run_id);
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
   /// `again` takes the place of the touch with its number, which is kept apart.
   void replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason);

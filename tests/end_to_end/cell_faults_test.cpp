@@ -173,7 +173,11 @@ TEST_F(FailingStore, ADiskThatStaysFullIsToldAtEveryResetAndLosesNothing) {
 
 TEST_F(FailingStore, ARunThatCannotBeWrittenDoesNotBegin) {
   disk_.refuse_new_runs();
-  EXPECT_ANY_THROW(loop_.operation().start({.recipe = kShortRecipe}));  // the API makes a 500 of it
+  const auto answer = loop_.operation().start({.recipe = kShortRecipe});
+  const auto* refusal = std::get_if<cell::Refusal>(&answer);
+  ASSERT_TRUE(refusal);
+  ASSERT_EQ(refusal->unmet.size(), 1u);
+  EXPECT_EQ(refusal->unmet[0].code, "store_not_writable");
   EXPECT_EQ(loop_.status().state, State::kIdle);
   EXPECT_EQ(loop_.operation().run(), nullptr);
   disk_.relieve();

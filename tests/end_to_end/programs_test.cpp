@@ -234,7 +234,7 @@ TEST(Daemon, EndsAtASignalInTheMiddleOfARunAndKeepsItsTouches) {
   EXPECT_GE(store.touches(1).size(), 3U);
 }
 
-TEST(Daemon, ThatWasKilledFindsItsRunInterruptedAndCanRunAgain) {
+TEST(Daemon, ThatWasKilledFindsItsRunAndResumesItOrRunsAgain) {
   RunningCell cell("edf", "50");
   Process run(cell.call({"run", kRecipe, "--json"}), cell.folder() / "run.err");
   cell.wait_for_touches(3);
@@ -243,11 +243,25 @@ TEST(Daemon, ThatWasKilledFindsItsRunInterruptedAndCanRunAgain) {
   EXPECT_EQ(run.wait().exit_code, cell::kExitUnreachable);
 
   cell.start_daemon();
+  const auto held = cell.status();
+  EXPECT_EQ(held.at("state"), "HELD");
+  EXPECT_EQ(held.at("fault_code"), "daemon_restarted");
+  EXPECT_EQ(held.at("run_id"), "1");
+  const int done = held.at("touches_done");
+  EXPECT_GE(done, 3);
+  EXPECT_EQ(cell.run({"resume"}).exit_code, cell::kExitDone);
+  cell.wait_for_touches(done + 2);
+
+  cell.daemon().signal(SIGKILL);
+  cell.daemon().wait();
+  cell.start_daemon();
+  EXPECT_EQ(cell.run({"stop"}).exit_code, cell::kExitDone);
   const auto history = nlohmann::json::parse(cell.run({"runs", "--json"}).out).at("runs");
   ASSERT_EQ(history.size(), 1U);
   EXPECT_EQ(history[0].at("outcome"), "interrupted");
   EXPECT_EQ(history[0].at("verdict"), "incomplete");
-  EXPECT_GE(history[0].at("touches_done"), 3);
+  EXPECT_GE(history[0].at("touches_done"), done + 2);
+  EXPECT_EQ(cell.run({"reset"}).exit_code, cell::kExitDone);
   Process again(cell.call({"run", kRecipe, "--json"}), cell.folder() / "run.err");
   cell.wait_for_touches(3);
   EXPECT_EQ(cell.status().at("run_id"), "2");

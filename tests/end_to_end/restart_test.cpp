@@ -1,0 +1,228 @@
+// A daemon that is killed in the middle of a run, and the next one on the same store, while the controller
+// lives on.
+#include <gmock/gmock.h>
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/io_context.hpp>
+
+#include "service/acquisition/operation.hpp"
+#include "service/http/json_view.hpp"
+#include "service/store/maintenance.hpp"
+#include "sim_controller/server.hpp"
+#include "tests/end_to_end/folder.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using cell::Command;
+using cell::State;
+
+constexpr std::chrono::seconds kPatience{120};
+constexpr const char* kFewTouches = "few";
+constexpr int kTouchesInAll = 4 * (7 + 1);
+
+/// The simulated controller and daemons on one store, one after the other. Touches repeat exactly, so that
+/// two runs can be compared.
+class MortalDaemon {
+ public:
+  MortalDaemon() : cell(shipped_cell("edf")) {
+    spdlog::set_level(spdlog::level::off);
+    cell.deadlines.heartbeat_timeout = sim::kHeartbeatTimeoutMax;  // the machine may be busy with other tests
+    cell::Recipe recipe = cell.recipes.at(kRecipe);
+    recipe.name = kFewTouches;
+    recipe.fit_per_face = 7;
+    recipe.held_out_per_face = 1;
+    recipe.candidate_count = 2'000;
+    cell.recipes.emplace(recipe.name, recipe);
+    sim::Plant plant = sim::make_plant(cell, shipped_truth("edf"));
+    plant.touch_noise_m = 0.0;
+    sim::ServerOptions options{.controller = {.speed = sim::kSpeedMax}};
+    server_.emplace(controller_io_, "127.0.0.1", 0, std::move(plant), std::move(options));
+  }
+  ~MortalDaemon() { kill(); }
+
+  void launch() {
+    io_ = std::make_unique<boost::asio::io_context>(1);
+    store_ = std::make_unique<cell::TouchStore>(store_file());
+    operation_ = std::make_unique<cell::Operation>(io_->get_executor(), cell, *store_,
+                                                   cell::Endpoint{"127.0.0.1", server_->port()}, "restart",
+                                                   std::chrono::system_clock::now);
+    operation_->launch();
+  }
+  /// Nothing of the daemon gets to act any more.
+  void kill() {
+    operation_.reset();
+    io_.reset();
+    store_.reset();
+  }
+  /// One thing that the daemon does.
+  void step() {
+    controller_io_.poll();
+    io_->run_one_for(std::chrono::milliseconds(2));
+    ++steps_;
+  }
+  void run_until(const std::function<bool(const cell::Status&)>& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    while (!condition(operation_->status())) {
+      if (std::chrono::steady_clock::now() >= deadline)
+        throw std::runtime_error("waited in vain: " + cell::status_document(operation_->status()));
+      step();
+    }
+  }
+  void run_until(State state) {
+    run_until([state](const cell::Status& status) { return status.state == state; });
+  }
+  void command(Command command) {
+    if (const auto refusal = operation_->command(command)) throw std::runtime_error(refusal->detail);
+  }
+  void start() {
+    run_until(State::kIdle);
+    if (const auto answer = operation_->start({.recipe = kFewTouches});
+        const auto* refusal = std::get_if<cell::Refusal>(&answer)) {
+      throw std::runtime_error(refusal->detail);
+    }
+  }
+  void finish() {
+    run_until([](const cell::Status& status) {
+      return !cell::is_active(status.state) || (status.state == State::kHeld && status.fault);
+    });
+  }
+  /// What the next daemon says of the run before anybody asks it for something, once it has a link.
+  cell::Status restart() {
+    kill();
+    launch();
+    run_until([](const cell::Status& status) { return status.controller.connected; });
+    const auto asked = steps_;  // what became of the open command is asked for now
+    run_until(
+        [&](const cell::Status& status) { return steps_ > asked + 50 || status.state != State::kHeld; });
+    return operation_->status();
+  }
+
+  [[nodiscard]] cell::Operation& operation() { return *operation_; }
+  [[nodiscard]] cell::TouchStore& store() { return *store_; }
+  [[nodiscard]] cell::Status status() const { return operation_->status(); }
+  [[nodiscard]] std::filesystem::path store_file() const { return folder_ / "touchcal.sqlite"; }
+
+  cell::Cell cell;
+
+ private:
+  Folder folder_;
+  boost::asio::io_context controller_io_{1};
+  std::optional<sim::Server> server_;
+  std::unique_ptr<boost::asio::io_context> io_;
+  std::unique_ptr<cell::TouchStore> store_;
+  std::unique_ptr<cell::Operation> operation_;
+  long steps_ = 0;
+};
+
+/// A run that nothing interrupted.
+struct Unbroken {
+  std::vector<cell::StoredTouch> touches;
+  std::string result;
+};
+const Unbroken& unbroken() {
+  static const Unbroken run = [] {
+    MortalDaemon daemon;
+    daemon.launch();
+    daemon.start();
+    daemon.finish();
+    if (daemon.status().state != State::kComplete)
+      throw std::runtime_error(cell::status_document(daemon.status()));
+    return Unbroken{daemon.store().touches(1), daemon.store().result_json(1).value()};
+  }();
+  return run;
+}
+
+void expect_touches_of_the_unbroken_run(const std::vector<cell::StoredTouch>& touches) {
+  ASSERT_LE(touches.size(), unbroken().touches.size());
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    EXPECT_EQ(touches[i].number, static_cast<int>(i) + 1);
+    EXPECT_EQ(touches[i].plane, unbroken().touches[i].plane) << i;
+    EXPECT_EQ(touches[i].joints, unbroken().touches[i].joints) << i;
+  }
+}
+
+TEST(Restart, ARunThatWasKilledAgainAndAgainEndsAsTheUnbrokenOne) {
+  unbroken();  // first: while it is made no other link is kept alive
+  MortalDaemon daemon;
+  daemon.launch();
+  daemon.start();
+  for (const int touches : {0, 1, 2, 9, kTouchesInAll - 1}) {
+    SCOPED_TRACE("killed after touch " + std::to_string(touches));
+    daemon.run_until([&](const cell::Status& status) { return status.touches_done >= touches; });
+    const cell::Status held = daemon.restart();
+    ASSERT_EQ(held.state, State::kHeld);
+    EXPECT_EQ(cell::describe(held.fault.value().code).name, "daemon_restarted");
+    EXPECT_EQ(held.run_id, 1);
+    EXPECT_GE(held.touches_done, touches);
+    EXPECT_LE(held.touches_done, touches + 1);
+    EXPECT_EQ(daemon.store().run(1)->outcome, "running");
+    expect_touches_of_the_unbroken_run(daemon.store().touches(1));
+    daemon.command(Command::kResume);
+    daemon.run_until([](const cell::Status& status) {
+      return status.state != State::kHeld && status.state != State::kUnholding;
+    });
+  }
+  daemon.finish();
+  EXPECT_EQ(daemon.status().state, State::kComplete);
+  EXPECT_EQ(daemon.store().touches(1).size(), unbroken().touches.size());
+  expect_touches_of_the_unbroken_run(daemon.store().touches(1));
+  EXPECT_TRUE(daemon.store().result_json(1) == unbroken().result);
+  EXPECT_THAT(cell::find_damage(daemon.store_file()), ::testing::IsEmpty());
+}
+
+TEST(Restart, WhateverItDidWhenItWasKilledNoAnsweredTouchIsLostOrCountedTwice) {
+  unbroken();
+  for (int steps = 1; steps <= 13; steps += 3) {
+    SCOPED_TRACE("killed " + std::to_string(steps) + " steps after the third touch");
+    MortalDaemon daemon;
+    daemon.launch();
+    daemon.start();
+    daemon.run_until([](const cell::Status& status) { return status.touches_done >= 3; });
+    for (int step = 0; step < steps; ++step) daemon.step();
+    const cell::Status held = daemon.restart();
+    ASSERT_EQ(held.state, State::kHeld);
+    EXPECT_GE(held.touches_done, 3);
+    expect_touches_of_the_unbroken_run(daemon.store().touches(1));
+    daemon.command(Command::kResume);
+    const int more = held.touches_done + 2;
+    daemon.run_until([&](const cell::Status& status) { return status.touches_done >= more || status.fault; });
+    EXPECT_FALSE(daemon.status().fault) << daemon.status().fault->message();
+    expect_touches_of_the_unbroken_run(daemon.store().touches(1));
+  }
+}
+
+TEST(Restart, AnInterruptedRunThatIsStoppedStaysInterruptedAndTheNextOneCanStart) {
+  MortalDaemon daemon;
+  daemon.launch();
+  daemon.start();
+  daemon.run_until([](const cell::Status& status) { return status.touches_done >= 2; });
+  ASSERT_EQ(daemon.restart().state, State::kHeld);
+  EXPECT_TRUE(std::holds_alternative<cell::Refusal>(daemon.operation().start({.recipe = kFewTouches})));
+  daemon.command(Command::kStop);
+  daemon.run_until(State::kStopped);
+  EXPECT_EQ(daemon.store().run(1)->outcome, "interrupted");
+  EXPECT_EQ(daemon.store().run(1)->fault_code, "daemon_restarted");
+  daemon.command(Command::kReset);
+  daemon.start();
+  daemon.run_until([](const cell::Status& status) { return status.run_id == 2 && status.touches_done >= 1; });
+}
+
+TEST(Restart, ARunOfARecipeThatIsGoneIsToldAsInterruptedAndTheCellIsFree) {
+  MortalDaemon daemon;
+  daemon.launch();
+  daemon.start();
+  daemon.run_until([](const cell::Status& status) { return status.touches_done >= 1; });
+  daemon.kill();
+  daemon.cell.recipes.erase(kFewTouches);
+  daemon.launch();
+  daemon.run_until(State::kIdle);
+  EXPECT_EQ(daemon.store().run(1)->outcome, "interrupted");
+  EXPECT_THAT(daemon.store().run(1)->fault_message.value_or(""), ::testing::HasSubstr(kFewTouches));
+  EXPECT_GE(daemon.store().run(1)->touches_done, 1);
+}
+
+}  // namespace
+}  // namespace touchcal::testing
