@@ -11,6 +11,7 @@
 #include "cs8_protocol/names.hpp"
 #include "service/http/result_view.hpp"
 #include "service/store/fault_log.hpp"
+#include "service/traceability.hpp"
 #include "service/utc_time.hpp"
 
 namespace cell {
@@ -77,6 +78,7 @@ Operation::Operation(asio::any_io_executor executor, const Cell& cell, TouchStor
                .on_loss = [this](const cs8::LinkError& error) { lose(error); }}),
       wake_(executor),
       ended_(executor, asio::steady_timer::time_point::max()) {
+  config_digest_ = configuration_digest(cell_);
   status_.instance_id = std::move(instance_id);
   status_.since = now_text();
   if (const auto accepted = store_.last_accepted()) {
