@@ -38,8 +38,9 @@ std::optional<FaultCode> next_code(FaultCode code) {
     case FaultCode::kImplausibleTouch:
     case FaultCode::kNoSafeWay:
     case FaultCode::kStoreFailed:
-      return static_cast<FaultCode>(static_cast<int>(code) + 1);
     case FaultCode::kNotIdentifiable:
+      return static_cast<FaultCode>(static_cast<int>(code) + 1);
+    case FaultCode::kDaemonRestarted:
       return std::nullopt;
   }
   return std::nullopt;
