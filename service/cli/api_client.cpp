@@ -3,10 +3,13 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ssl/context.hpp>
+#include <boost/asio/ssl/host_name_verification.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
+#include <boost/beast/ssl/ssl_stream.hpp>
 #include <cstdlib>
 #include <fstream>
 
@@ -18,35 +21,96 @@ namespace cell {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = beast::http;
+namespace ssl = asio::ssl;
 
 namespace {
 
-asio::awaitable<ApiReply> exchange(std::string host, std::string port,
-                                   http::request<http::string_body> request, std::chrono::seconds deadline) {
+constexpr std::string_view kPlainScheme = "http://";
+constexpr std::string_view kSecureScheme = "https://";
+constexpr std::size_t kAnswerSizeMax = 64 * 1024 * 1024;
+
+using Request = http::request<http::string_body>;
+using TlsStream = beast::ssl_stream<beast::tcp_stream>;
+
+asio::awaitable<void> connect(beast::tcp_stream& stream, std::string host, std::string port,
+                              std::chrono::seconds deadline) {
   const auto executor = co_await asio::this_coro::executor;
   asio::ip::tcp::resolver resolver(executor);
   const auto addresses = co_await resolver.async_resolve(host, port, asio::use_awaitable);
-  beast::tcp_stream stream(executor);
   stream.expires_after(deadline);
   co_await stream.async_connect(addresses, asio::use_awaitable);
+}
+
+template <class Stream>
+asio::awaitable<ApiReply> answer_over(Stream& stream, const Request& request) {
   co_await http::async_write(stream, request, asio::use_awaitable);
   beast::flat_buffer buffer;
   http::response_parser<http::string_body> parser;
-  parser.body_limit(64 * 1024 * 1024);
+  parser.body_limit(kAnswerSizeMax);
   co_await http::async_read(stream, buffer, parser, asio::use_awaitable);
   co_return ApiReply{parser.get().result_int(), std::move(parser.get().body())};
 }
 
+asio::awaitable<ApiReply> ask(std::string host, std::string port, Request request,
+                              std::chrono::seconds deadline) {
+  const auto executor = co_await asio::this_coro::executor;
+  beast::tcp_stream stream(executor);
+  co_await connect(stream, host, port, deadline);
+  ApiReply reply = co_await answer_over(stream, request);
+  co_return reply;
+}
+
+asio::awaitable<ApiReply> ask_secure(std::string host, std::string port, Request request,
+                                     std::chrono::seconds deadline, ssl::context& trusted) {
+  const auto executor = co_await asio::this_coro::executor;
+  TlsStream stream(executor, trusted);
+  stream.set_verify_mode(ssl::verify_peer);
+  stream.set_verify_callback(ssl::host_name_verification(host));
+  SSL_set_tlsext_host_name(stream.native_handle(), host.c_str());
+  co_await connect(beast::get_lowest_layer(stream), host, port, deadline);
+  co_await stream.async_handshake(ssl::stream_base::client, asio::use_awaitable);
+  ApiReply reply = co_await answer_over(stream, request);
+  co_return reply;
+}
+
+ssl::context trusted_by(const std::filesystem::path& ca_file) {
+  ssl::context context(ssl::context::tls_client);
+  context.set_options(ssl::context::no_tlsv1 | ssl::context::no_tlsv1_1);
+  if (ca_file.empty()) {
+    context.set_default_verify_paths();
+    return context;
+  }
+  boost::system::error_code failure;
+  context.load_verify_file(ca_file.string(), failure);
+  if (failure)
+    throw std::invalid_argument("--ca " + ca_file.string() + ": " + failure.message() +
+                                "; name a file with certificates (PEM)");
+  return context;
+}
+
+bool is_about_the_certificate(const boost::system::error_code& code) {
+  return code.category() == asio::error::get_ssl_category() &&
+         code.message().find("certificate verify failed") != std::string::npos;
+}
+
 }  // namespace
 
-ApiClient::ApiClient(const std::string& url, std::optional<std::string> token) : token_(std::move(token)) {
-  constexpr std::string_view kScheme = "http://";
-  std::string rest = url.starts_with(kScheme) ? url.substr(kScheme.size()) : std::string();
+ApiClient::ApiClient(const std::string& url, std::optional<std::string> token, std::filesystem::path ca_file)
+    : is_secure_(url.starts_with(kSecureScheme)), token_(std::move(token)), ca_file_(std::move(ca_file)) {
+  std::string rest;
+  for (const std::string_view scheme : {kPlainScheme, kSecureScheme}) {
+    if (url.starts_with(scheme)) rest = url.substr(scheme.size());
+  }
   if (rest.ends_with('/')) rest.pop_back();
   const auto endpoint = parse_endpoint(rest);
-  if (!endpoint) throw std::invalid_argument("'" + url + "' is not http://HOST:PORT");
+  if (!endpoint)
+    throw std::invalid_argument("'" + url + "' is neither http://HOST:PORT nor https://HOST:PORT");
   host_ = endpoint->host;
   port_ = std::to_string(endpoint->port);
+}
+
+std::string ApiClient::url() const {
+  return std::string(is_secure_ ? kSecureScheme : kPlainScheme) + host_ + ":" + port_;
 }
 
 ApiReply ApiClient::get(const std::string& target, std::chrono::seconds deadline) const {
@@ -59,7 +123,7 @@ ApiReply ApiClient::post(const std::string& target, const std::string& body) con
 
 ApiReply ApiClient::request(bool post, const std::string& target, const std::string& body,
                             std::chrono::seconds deadline) const {
-  http::request<http::string_body> message(post ? http::verb::post : http::verb::get, target, 11);
+  Request message(post ? http::verb::post : http::verb::get, target, 11);
   message.set(http::field::host,
               (host_.find(':') == std::string::npos ? host_ : "[" + host_ + "]") + ":" + port_);
   message.set(http::field::user_agent, "touchcal");
@@ -70,20 +134,28 @@ ApiReply ApiClient::request(bool post, const std::string& target, const std::str
     message.body() = body;
     message.prepare_payload();
   }
+  std::optional<ssl::context> trusted;
+  if (is_secure_) trusted.emplace(trusted_by(ca_file_));
   asio::io_context context(1);
   std::optional<ApiReply> reply;
   std::exception_ptr failure;
-  asio::co_spawn(context, exchange(host_, port_, std::move(message), deadline),
-                 [&](std::exception_ptr thrown, ApiReply answered) {
-                   failure = std::move(thrown);
-                   if (!failure) reply = std::move(answered);
-                 });
+  const auto keep = [&](std::exception_ptr thrown, ApiReply answered) {
+    failure = std::move(thrown);
+    if (!failure) reply = std::move(answered);
+  };
+  if (trusted) {
+    asio::co_spawn(context, ask_secure(host_, port_, std::move(message), deadline, *trusted), keep);
+  } else {
+    asio::co_spawn(context, ask(host_, port_, std::move(message), deadline), keep);
+  }
   context.run();
   try {
     if (failure) std::rethrow_exception(failure);
   } catch (const boost::system::system_error& error) {
-    throw DaemonUnreachable("no touchcald answers at " + url() + " (" + error.code().message() +
-                            "); start it, or name it with --daemon URL");
+    const bool untrusted = is_about_the_certificate(error.code());
+    throw DaemonUnreachable("no touchcald answers at " + url() + " (" + error.code().message() + "); " +
+                            (untrusted ? "name the certificate that signed the daemon's with --ca FILE"
+                                       : "start it, or name it with --daemon URL"));
   }
   return *reply;
 }

@@ -21,22 +21,26 @@ struct ApiReply {
 /// One daemon's API, a connection a request.
 class ApiClient {
  public:
-  /// `url`: http://HOST:PORT. Throws std::invalid_argument when it is not that.
-  ApiClient(const std::string& url, std::optional<std::string> token);
+  /// `url`: http://HOST:PORT or https://HOST:PORT. With https the daemon's certificate must name HOST and be
+  /// signed by one in `ca_file` (PEM), or by one this machine trusts when that is empty. Throws
+  /// std::invalid_argument when `url` is none of these.
+  ApiClient(const std::string& url, std::optional<std::string> token, std::filesystem::path ca_file = {});
 
   /// `target` with its query; `body` is JSON. Throws DaemonUnreachable.
   ApiReply get(const std::string& target, std::chrono::seconds deadline = std::chrono::seconds(10)) const;
   ApiReply post(const std::string& target, const std::string& body) const;
 
-  [[nodiscard]] std::string url() const { return "http://" + host_ + ":" + port_; }
+  [[nodiscard]] std::string url() const;
 
  private:
   [[nodiscard]] ApiReply request(bool post, const std::string& target, const std::string& body,
                                  std::chrono::seconds deadline) const;
 
+  bool is_secure_ = false;
   std::string host_;
   std::string port_;
   std::optional<std::string> token_;
+  std::filesystem::path ca_file_;
 };
 
 /// The token that changes things: TOUCHCAL_TOKEN, else the daemon's file in its state directory; nothing when

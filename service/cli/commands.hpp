@@ -54,10 +54,19 @@ struct PlanArguments {
 /// there is no plan (at any place).
 ExitCode plan_command(const PlanArguments& arguments, bool json);
 
+struct RunArguments {
+  std::string recipe;                         // one of the cell's; not looked at with a plan
+  std::string plan_id;                        // of a plan the daemon has made; empty for none
+  std::string operator_name;                  // who answers for the run; empty for nobody named
+  std::optional<double> block_temperature_c;  // as measured now; else the block's file tells
+  std::string touching;                       // "automatic" or "guided"; the cell's own when empty
+};
 /// Starts a run and watches it to its end.
-ExitCode run_command(const ApiClient& daemon, const std::string& recipe, bool json);
-/// Watches the run under way.
+ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);
+/// Watches the run under way to its end, whatever is started behind it.
 ExitCode watch_command(const ApiClient& daemon, bool json);
+/// Locates the block: tells each touch that the person at the pendant is to make until the place is known.
+ExitCode locate_command(const ApiClient& daemon, bool json);
 ExitCode status_command(const ApiClient& daemon, bool json);
 ExitCode runs_command(const ApiClient& daemon, bool json);
 ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool json);
@@ -70,13 +79,11 @@ struct ExportArguments {
 /// Writes a run's calibrated arm as an arm file.
 ExitCode export_command(const ApiClient& daemon, const ExportArguments& arguments, bool json);
 
-/// pause, resume, abort: of the active run. stop, acknowledge, clear, reset: of the cell.
+/// pause, resume, abort, retry, skip: of the active run. stop, acknowledge, clear, reset, confirm,
+/// touch-test, take: of the cell.
 ExitCode give_command(const ApiClient& daemon, const std::string& command, bool json);
 
 /// std::invalid_argument when this cannot be the id of a run.
 void demand_run_id(const std::string& text);
-
-/// Tells a problem document that the daemon answered; the exit code that goes with it.
-ExitCode tell_problem(const ApiReply& reply, bool json);
 
 }  // namespace cell

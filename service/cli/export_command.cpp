@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "service/cli/commands.hpp"
+#include "service/cli/daemon_reply.hpp"
 #include "service/cli/offline.hpp"
 
 namespace cell {

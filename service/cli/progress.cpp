@@ -17,17 +17,20 @@ constexpr int kBarWidth = 30;
 std::string figures(const json& status) {
   if (status.at("waiting_for").is_string())
     return fmt::format("waiting: {}", awaited_words(status.at("waiting_for").get<std::string>()));
-  std::string text =
-      status.at("touches_total").is_number()
-          ? fmt::format("{}/{}", status.at("touches_done").get<int>(), status.at("touches_total").get<int>())
-          : "planning";
-  if (status.at("plane").is_number()) text += fmt::format("  plane {}", status.at("plane").get<int>());
-  if (status.at("identifiable_count").is_number())
-    text += fmt::format("  rank {}", status.at("identifiable_count").get<int>());
-  if (status.at("condition_number").is_number())
-    text += fmt::format("  cond {:.0f}", status.at("condition_number").get<double>());
-  if (status.at("eta_s").is_number())
-    text += fmt::format("  {:.0f} s left", status.at("eta_s").get<double>());
+  std::string text = status.at("touches_total").is_number()
+                         ? fmt::format("touch {} of {}", status.at("touches_done").get<int>(),
+                                       status.at("touches_total").get<int>())
+                         : "planning";
+  const auto add = [&](const char* key, const char* format) {
+    if (const auto value = status.find(key); value != status.end() && value->is_number())
+      text += fmt::format(fmt::runtime(format), value->get<double>());
+  };
+  add("plane", "  plane {:.0f}");
+  add("identifiable_count", "  rank {:.0f}");
+  add("attainable_count", " of {:.0f}");
+  add("condition_number", "  cond {:.0f}");
+  add("predicted_tip_rms_mm", "  tip +- {:.3f} mm");
+  add("eta_s", "  {:.0f} s left");
   return text;
 }
 

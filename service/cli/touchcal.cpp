@@ -7,6 +7,7 @@
 
 #include "config/config_error.hpp"
 #include "service/cli/commands.hpp"
+#include "service/cli/completion.hpp"
 #include "service/daemon.hpp"
 #include "service/version.hpp"
 
@@ -20,6 +21,11 @@ const std::map<std::string, std::string> kCellCommands{
     {"acknowledge", "take the fault off the screen"},
     {"clear", "leave ABORTED once its cause is gone"},
     {"reset", "make the cell ready for a run"},
+    {"retry", "make the touch again that holds the run"},
+    {"skip", "leave the touch out that holds the run; the run is then incomplete"},
+    {"confirm", "tell what has to be confirmed at the cell"},
+    {"touch-test", "ask for the test of the stylus by hand"},
+    {"take", "take the touch that the arm stands at (locating the block, guided touching)"},
 };
 
 std::string environment_or(const char* name, const std::string& otherwise) {
@@ -29,16 +35,13 @@ std::string environment_or(const char* name, const std::string& otherwise) {
 
 class CommandLine {
  public:
-  CommandLine() : app_("touchcal: calibrates a robot arm by touching a block") {
+  CommandLine() : app_("touchcal: calibrates a robot arm by touching a block", "touchcal") {
     app_.set_version_flag("--version", std::string("touchcal ") + cell::kVersion);
     app_.require_subcommand(1);
     add_identify();
     add_validate();
     add_plan();
-    auto* run = add_for_daemon(
-        "run", "start a run and watch it to its end",
-        [this](const cell::ApiClient& daemon) { return cell::run_command(daemon, recipe_, json_); });
-    run->add_option("RECIPE", recipe_, "name of the recipe")->default_str("edf-25");
+    add_run();
     add_for_daemon("watch", "watch the run under way",
                    [this](const cell::ApiClient& daemon) { return cell::watch_command(daemon, json_); });
     add_for_daemon("status", "what the cell is doing",
@@ -60,6 +63,9 @@ class CommandLine {
         return cell::give_command(daemon, command, json_);
       });
     }
+    add_for_daemon("locate", "find where the block is, by six touches that are jogged to",
+                   [this](const cell::ApiClient& daemon) { return cell::locate_command(daemon, json_); });
+    add_completion();
   }
 
   int run(int argc, char** argv) {
@@ -141,6 +147,32 @@ class CommandLine {
     plan->callback([this] { action_ = [this] { return cell::plan_command(plan_, json_); }; });
   }
 
+  void add_run() {
+    auto* run = add_for_daemon(
+        "run", "start a run and watch it to its end",
+        [this](const cell::ApiClient& daemon) { return cell::run_command(daemon, run_, json_); });
+    auto* recipe = run->add_option("RECIPE", run_.recipe, "name of the recipe")->default_str(run_.recipe);
+    run->add_option("--plan", run_.plan_id, "id of a plan that the daemon has made, in place of a recipe")
+        ->excludes(recipe);
+    run->add_option("--operator", run_.operator_name, "who answers for the run; kept with its result");
+    run->add_option("--temperature", run_.block_temperature_c,
+                    "of the block as measured now, degrees C; default: the block's file");
+    run->add_flag_callback(
+        "--guided", [this] { run_.touching = "guided"; },
+        "the arm is jogged to each touch by hand; the daemon says where");
+  }
+
+  void add_completion() {
+    auto* completion = app_.add_subcommand("completion", "print what a shell needs to complete touchcal");
+    completion->add_option("SHELL", shell_, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
+    completion->callback([this] {
+      action_ = [this] {
+        std::cout << cell::completion_script(app_, shell_);
+        return cell::kExitDone;
+      };
+    });
+  }
+
   CLI::App* add_for_daemon(const std::string& name, const std::string& description,
                            const std::function<cell::ExitCode(const cell::ApiClient&)>& command) {
     auto* sub = app_.add_subcommand(name, description);
@@ -148,10 +180,13 @@ class CommandLine {
         ->default_str(daemon_url_);
     sub->add_option("--state", state_directory_, "the daemon's state directory, where its token is")
         ->default_str(state_directory_);
+    sub->add_option("--ca", ca_file_,
+                    "certificates (PEM) that an https daemon's is signed by; also TOUCHCAL_CA")
+        ->default_str(ca_file_);
     sub->add_flag("--json", json_, "one JSON document on standard output");
     sub->callback([this, command] {
       action_ = [this, command] {
-        return command(cell::ApiClient(daemon_url_, cell::find_operate_token(state_directory_)));
+        return command(cell::ApiClient(daemon_url_, cell::find_operate_token(state_directory_), ca_file_));
       };
     });
     return sub;
@@ -167,7 +202,9 @@ class CommandLine {
   // another.
   std::string daemon_url_ = environment_or("TOUCHCAL_DAEMON", "http://127.0.0.1:8080");
   std::string state_directory_ = environment_or("TOUCHCAL_STATE", cell::default_state_directory().string());
-  std::string recipe_ = "edf-25";
+  std::string ca_file_ = environment_or("TOUCHCAL_CA", "");
+  cell::RunArguments run_{.recipe = "edf-25"};
+  std::string shell_;
   std::string run_id_;
   bool json_ = false;
 };

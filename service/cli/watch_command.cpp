@@ -1,0 +1,161 @@
+// touchcal run, watch and locate: what takes its time is followed to its end.
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "service/cli/commands.hpp"
+#include "service/cli/daemon_reply.hpp"
+#include "service/cli/progress.hpp"
+#include "service/cli/result_text.hpp"
+
+namespace cell {
+namespace {
+
+using nlohmann::json;
+
+/// How long a watcher waits for a change before it asks anew.
+constexpr int kWaitSeconds = 10;
+
+/// How long run waits for a cell that is being made ready.
+constexpr int kReadyWaitSeconds = 5;
+
+bool is_over(const json& status) {
+  static const std::set<std::string> kOver{"STOPPED", "RESETTING", "IDLE", "COMPLETE", "ABORTED", "CLEARING"};
+  return kOver.contains(status.at("state").get<std::string>());
+}
+
+/// `end` is a status or, where another run is under way by now, the run's own document.
+ExitCode exit_code_of_end(const json& end) {
+  const std::string verdict = end.at("verdict");
+  if (verdict == "accepted") return kExitDone;
+  if (verdict == "rejected") return kExitLimitsMissed;
+  const json& fault = end.at("fault_code");
+  return fault == "recipe_unreachable" || fault == "not_identifiable" ? kExitRefused : kExitFailed;
+}
+
+json wait_for_change(const ApiClient& daemon, const json& status, int wait_s) {
+  const std::string target =
+      fmt::format("/api/v1/status?wait_s={}&after={}", wait_s, status.at("sequence").get<std::uint64_t>());
+  return parse_reply(daemon.get(target, std::chrono::seconds(wait_s + 10)));
+}
+
+/// A daemon that was just started is still looking for its controller: give it a moment.
+void wait_until_ready(const ApiClient& daemon) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kReadyWaitSeconds);
+  json status = parse_reply(daemon.get("/api/v1/status"));
+  while (status.at("state") == "RESETTING" && std::chrono::steady_clock::now() < deadline) {
+    status = wait_for_change(daemon, status, 1);
+  }
+}
+
+std::string run_target(const json& run_id) { return "/api/v1/runs/" + run_id.get<std::string>(); }
+
+/// Follows one run to its end; its last status, or its own document when another run is under way by then.
+json watch_to_end(const ApiClient& daemon, const json& run_id, bool silent) {
+  Progress progress(isatty(STDOUT_FILENO) != 0);
+  json status = parse_reply(daemon.get("/api/v1/status"));
+  for (;;) {
+    if (status.at("run_id") != run_id) {
+      status = parse_reply(daemon.get(run_target(run_id)));
+      break;
+    }
+    if (!silent) progress.show(status);
+    // Where nobody sits who could resume, a run on hold with a fault is not waited for.
+    const bool unattended = silent || isatty(STDOUT_FILENO) == 0;
+    if (is_over(status) ||
+        (unattended && status.at("state") == "HELD" && status.at("fault_code").is_string()))
+      break;
+    status = wait_for_change(daemon, status, kWaitSeconds);
+  }
+  progress.finish();
+  return status;
+}
+
+ExitCode tell_end(const ApiClient& daemon, const json& run_id, const json& end, bool json_only) {
+  const ApiReply result = daemon.get(run_target(run_id) + "/result");
+  const bool is_status = end.contains("state");
+  if (json_only) {
+    fmt::print("{}\n", result.status == 200 ? result.body : end.dump());
+  } else if (result.status == 200) {
+    fmt::print("\n{}{}", result_text(parse_reply(result)), is_status ? more_text(end) : "");
+  } else {
+    fmt::print("{}", is_status ? status_text(end) : runs_text({{"runs", {end}}}));
+  }
+  const ExitCode code = exit_code_of_end(end);
+  if (code == kExitDone || code == kExitLimitsMissed) return code;
+  const auto told = [&end](const char* key) {
+    return end.contains(key) && end[key].is_string() ? end[key].get<std::string>() : std::string();
+  };
+  const std::string message = told("fault_message"), next = told("fault_next_step");
+  fmt::print(stderr, "the run is {}{}{}; {}\n", is_status ? "in " : "", told(is_status ? "state" : "outcome"),
+             message.empty() ? "" : ": " + message, next.empty() ? "touchcal status tells more" : next);
+  return code;
+}
+
+json run_body(const RunArguments& arguments) {
+  json body;
+  if (arguments.plan_id.empty()) {
+    body["recipe"] = arguments.recipe;
+  } else {
+    body["plan_id"] = arguments.plan_id;
+  }
+  if (!arguments.operator_name.empty()) body["operator"] = arguments.operator_name;
+  if (arguments.block_temperature_c) body["block_temperature_c"] = *arguments.block_temperature_c;
+  if (!arguments.touching.empty()) body["touching"] = arguments.touching;
+  return body;
+}
+
+/// What the person at the pendant is to do; empty when nothing is asked of him.
+std::string guidance(const json& status) {
+  const json locating = status.value("locating", json());
+  if (!locating.is_object()) return {};
+  return locating.value("words", locating.dump());
+}
+
+}  // namespace
+
+ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json_only) {
+  wait_until_ready(daemon);
+  const ApiReply reply = daemon.post("/api/v1/runs", run_body(arguments).dump());
+  if (reply.status != 201) return tell_problem(reply, json_only);
+  const json run_id = parse_reply(reply).at("id");
+  return tell_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
+}
+
+ExitCode watch_command(const ApiClient& daemon, bool json_only) {
+  const json status = parse_reply(daemon.get("/api/v1/status"));
+  if (is_over(status) || !status.at("run_id").is_string()) {
+    fmt::print("{}", json_only ? status.dump() + "\n" : status_text(status));
+    return kExitDone;
+  }
+  const json run_id = status.at("run_id");
+  return tell_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
+}
+
+ExitCode locate_command(const ApiClient& daemon, bool json_only) {
+  const ApiReply reply = daemon.post("/api/v1/cell/locate", {});
+  if (reply.status != 202) return tell_problem(reply, json_only);
+  json status = parse_reply(daemon.get("/api/v1/status"));
+  std::string said;
+  while (!guidance(status).empty()) {
+    if (!json_only && guidance(status) != said) fmt::print("{}\n", said = guidance(status));
+    std::fflush(stdout);
+    status = wait_for_change(daemon, status, kWaitSeconds);
+  }
+  const bool failed = status.at("fault_code").is_string();
+  const ApiReply cell = daemon.get("/api/v1/cell");
+  if (json_only) {
+    fmt::print("{}\n", failed ? status.dump() : cell.body);
+  } else {
+    fmt::print("{}", status_text(status));
+    const json place = parse_reply(cell).value("place", json());
+    if (!failed && !place.is_null()) fmt::print("place       {}\n", place.dump());
+  }
+  return failed ? kExitFailed : kExitDone;
+}
+
+}  // namespace cell
