@@ -20,6 +20,7 @@
 
 #include "service/acquisition/operation.hpp"
 #include "service/http/listener.hpp"
+#include "service/http/tls.hpp"
 #include "service/http/tokens.hpp"
 #include "service/store/maintenance.hpp"
 #include "service/store/touch_store.hpp"
@@ -53,16 +54,16 @@ class DirectoryLock {
   int descriptor_;
 };
 
-asio::ip::tcp::endpoint listen_address(asio::io_context& context, const Endpoint& listen) {
+asio::ip::tcp::endpoint listen_address(asio::io_context& context, const Endpoint& listen, bool has_tls) {
   asio::ip::tcp::resolver resolver(context);
   const asio::ip::tcp::endpoint address =
       resolver.resolve(listen.host, std::to_string(listen.port), asio::ip::tcp::resolver::passive)
           .begin()
           ->endpoint();
-  if (!address.address().is_loopback()) {
+  if (!address.address().is_loopback() && !has_tls) {
     throw std::runtime_error(
-        fmt::format("--listen {}: only loopback addresses are served as long as there is no TLS; "
-                    "use 127.0.0.1 and a proxy",
+        fmt::format("--listen {}: only loopback addresses are served without TLS; give --tls-cert and "
+                    "--tls-key, or use 127.0.0.1 and a proxy",
                     listen.host));
   }
   return address;
@@ -82,6 +83,13 @@ asio::awaitable<void> forget_old_runs(const TouchStore& store, int retain_days) 
     day.expires_after(std::chrono::days(1));
     co_await day.async_wait(asio::use_awaitable);
   }
+}
+
+std::shared_ptr<asio::ssl::context> tls_context(const DaemonOptions& options) {
+  if (options.tls_certificate.empty() && options.tls_key.empty()) return nullptr;
+  if (options.tls_certificate.empty() || options.tls_key.empty())
+    throw std::runtime_error("--tls-cert and --tls-key belong together: give both");
+  return make_tls_context(options.tls_certificate, options.tls_key);
 }
 
 }  // namespace
@@ -108,8 +116,10 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
                       random_hex(8), clock);
   std::optional<HttpListener> listener;
+  const auto tls = tls_context(options);
   try {
-    listener.emplace(context.get_executor(), listen_address(context, options.listen), operation, tokens);
+    listener.emplace(context.get_executor(), listen_address(context, options.listen, tls != nullptr),
+                     operation, tokens, HttpLimits{}, tls);
   } catch (const boost::system::system_error& error) {
     throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; give another address with --listen",
                                          options.listen.host, options.listen.port, error.code().message()));

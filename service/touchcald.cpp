@@ -41,13 +41,15 @@ int keep_state(const std::filesystem::path& database, const std::string& backup,
 
 int main(int argc, char** argv) {
   CLI::App app("touchcald: drives the touches of one robot cell, identifies the arm, serves the JSON API");
-  std::string cell_file, listen, controller, state, backup;
+  std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key;
   bool check = false, verify = false;
   int retain_days = 0;
   app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json");
   app.add_option("--listen", listen, "HOST:PORT of the API")->default_str("127.0.0.1:8080");
   app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's");
   app.add_option("--state", state, "directory for runs and tokens; default: the user's state home");
+  app.add_option("--tls-cert", tls_certificate, "certificate, PEM; with --tls-key the API is served over TLS");
+  app.add_option("--tls-key", tls_key, "the certificate's key, PEM");
   app.add_flag("--check", check, "read the cell and everything it names, then exit");
   app.add_option("--backup", backup,
                  "copy the state's database into this new file, then exit; a daemon may run");
@@ -65,6 +67,8 @@ int main(int argc, char** argv) {
       return keep_state(options.state_directory / cell::kStoreFile, backup, verify);
     if (cell_file.empty()) throw CLI::RequiredError("--cell");
     if (retain_days > 0) options.retain_days = retain_days;
+    options.tls_certificate = tls_certificate;
+    options.tls_key = tls_key;
     if (!listen.empty()) options.listen = endpoint_option("--listen", listen);
     if (!controller.empty()) options.controller = endpoint_option("--controller", controller);
     const cell::Cell cell = cell::read_cell(cell_file);

@@ -160,6 +160,7 @@ void Operation::publish() {
     }
   }
   for (asio::steady_timer* waiter : waiters_) waiter->cancel();
+  if (told_) told_(status_);
 }
 
 ControllerView Operation::controller_view() const {
@@ -300,13 +301,16 @@ std::optional<Refusal> Operation::command(Command command, std::optional<std::in
   return std::nullopt;
 }
 
+std::optional<std::int64_t> Operation::data_age_ms() const {
+  const auto heard = client_.heard_at();
+  if (!heard) return std::nullopt;
+  const auto age = std::chrono::steady_clock::now() - *heard;
+  return std::chrono::duration_cast<std::chrono::milliseconds>(age).count();
+}
+
 Status Operation::status() const {
   Status status = status_;
-  if (const auto heard = client_.heard_at()) {
-    status.data_age_ms =
-        std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - *heard)
-            .count();
-  }
+  status.data_age_ms = data_age_ms();
   return status;
 }
 

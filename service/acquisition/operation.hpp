@@ -90,6 +90,12 @@ class Operation {
   [[nodiscard]] std::vector<Command> exits() const;
 
   [[nodiscard]] Status status() const;
+  [[nodiscard]] std::uint64_t sequence() const { return status_.sequence; }
+  [[nodiscard]] std::optional<std::int64_t> data_age_ms() const;
+  /// Whoever is told each change of the status, at once; one at a time.
+  void on_change(std::function<void(const Status&)> told) { told_ = std::move(told); }
+  /// All that stands in the way of a start now.
+  [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
   /// The run under way or the last one of this daemon; null before the first.
   [[nodiscard]] const Run* run() const { return run_ ? &*run_ : nullptr; }
   /// The result document of run(), as json text; nothing before there is a result.
@@ -121,7 +127,6 @@ class Operation {
   void hear(const cs8::State& state);
   void hear_permit(const cs8::Permit& permit);
   void lose(const cs8::LinkError& error);
-  [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
   [[nodiscard]] ControllerView controller_view() const;
   [[nodiscard]] std::string now_text() const;
 
@@ -217,6 +222,7 @@ class Operation {
   std::list<boost::asio::steady_timer*> waiters_;
 
   Status status_;
+  std::function<void(const Status&)> told_;  // of changes
   std::optional<Run> run_;
   bool run_finished_ = false;                        // complete, and stored as such
   bool run_open_ = false;                            // begun in the store, not finished there

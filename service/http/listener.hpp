@@ -3,48 +3,44 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <chrono>
-#include <cstdint>
-#include <string>
+#include <map>
+#include <memory>
 
+#include "service/http/api.hpp"
+#include "service/http/session.hpp"
 #include "service/http/tokens.hpp"
 
 namespace cell {
 
 class Operation;
 
-/// Bounds of what one client may cost.
-struct HttpLimits {
-  int connections_max = 256;
-  std::uint32_t header_bytes_max = 8 * 1024;
-  std::uint64_t body_bytes_max = 64 * 1024;
-  std::chrono::seconds request_deadline{5};  // from its first byte to its last, and for the answer
-  std::chrono::seconds idle_deadline{60};
-};
-
-/// Accepts, reads, routes, writes: HTTP/1.1 on one address. What Beast lets through although RFC 9110 and
-/// 9112 forbid it is refused here (a missing or foreign Host, odd transfer encodings, absolute targets).
+/// Accepts connections on one address and serves the API over them, HTTP/1.1, with TLS where there is a
+/// certificate.
 class HttpListener {
  public:
   /// Binds at once; port 0 takes a free one. Throws boost::system::system_error when the address is taken.
   HttpListener(boost::asio::any_io_executor executor, const boost::asio::ip::tcp::endpoint& address,
-               Operation& operation, Tokens tokens, HttpLimits limits = {});
+               Operation& operation, Tokens tokens, HttpLimits limits = {},
+               std::shared_ptr<boost::asio::ssl::context> tls = nullptr);
 
   void launch();
   void close();
   [[nodiscard]] boost::asio::ip::tcp::endpoint address() const { return address_; }
+  [[nodiscard]] Api& api() { return api_; }
 
  private:
   boost::asio::awaitable<void> accept();
-  boost::asio::awaitable<void> serve(boost::asio::ip::tcp::socket socket);
+  [[nodiscard]] bool has_room(const boost::asio::ip::address& client) const;
+  void serve(boost::asio::ip::tcp::socket socket);
 
   boost::asio::any_io_executor executor_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::ip::tcp::endpoint address_;
-  Operation& operation_;
-  Tokens tokens_;
   HttpLimits limits_;
+  std::shared_ptr<boost::asio::ssl::context> tls_;
+  Api api_;
   int connections_ = 0;
+  std::map<boost::asio::ip::address, int> connections_of_;
 };
 
 }  // namespace cell

@@ -44,6 +44,14 @@ HttpResponse post_plan(const HttpRequest& request, const Operation& operation) {
   return {.status = 200, .body = std::get<std::shared_ptr<const Plan>>(*outcome)->document};
 }
 
+std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Operation& operation) {
+  const auto named = named_text(request.body, kPlanKeys);
+  const auto* recipe = std::get_if<NamedText>(&named);
+  if (!recipe || !operation.cell().recipes.contains(recipe->text) || operation.planned(recipe->text))
+    return std::nullopt;
+  return recipe->text;
+}
+
 HttpResponse get_plan(const Operation& operation, std::int64_t id) {
   if (auto document = operation.store().plan_json(id)) return {.status = 200, .body = *std::move(document)};
   return to_response(

@@ -38,6 +38,13 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
 
 std::string load_or_make(const std::filesystem::path& file) {
   if (std::ifstream existing(file); existing) {
+    constexpr auto kOthers = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
+    if ((std::filesystem::status(file).permissions() & kOthers) != std::filesystem::perms::none) {
+      throw std::runtime_error(
+          fmt::format("{0}: others than its owner may use it; remove the file to have a new token made, or "
+                      "chmod 600 {0} when nobody has read it",
+                      file.string()));
+    }
     std::string token;
     std::getline(existing, token);
     if (token.size() < 2 * kTokenBytes) {

@@ -20,8 +20,8 @@ inline constexpr std::string_view kViewTokenFile = "view.token";
 std::string random_hex(std::size_t bytes);
 
 /// Reads both tokens from the state directory, or makes them at the first start: 256 random bits as
-/// hexadecimal text, the files for their owner only (mode 0600). Throws std::runtime_error that names the
-/// file.
+/// hexadecimal text, the files for their owner only (mode 0600); files that others may use are refused.
+/// Throws std::runtime_error that names the file.
 Tokens load_or_make_tokens(const std::filesystem::path& state_directory);
 
 /// Compares in constant time: how long it takes says nothing about how much was right.

@@ -6,6 +6,7 @@
 #include <boost/asio/detached.hpp>
 #include <nlohmann/json.hpp>
 
+#include "service/http/api.hpp"
 #include "tests/service/quiet_cell.hpp"
 
 namespace cell {
@@ -33,7 +34,7 @@ class PlanRoutes : public ::testing::Test {
   }
   HttpResponse send(const HttpRequest& request) { return route(request, cell_.operation(), kTokens); }
   [[nodiscard]] std::optional<std::string> to_plan(const HttpRequest& request) {
-    return recipe_to_plan(request, cell_.operation(), kTokens);
+    return recipe_to_plan(request, cell_.operation());
   }
 
   void begin_planning() {
@@ -61,28 +62,30 @@ TEST_F(PlanRoutes, APlanIsMadeOnceAndShownFromThenOn) {
   EXPECT_EQ(start.at("errors")[0].at("code"), "controller_not_connected");
 }
 
-TEST_F(PlanRoutes, WhileOnePlanIsMadeAnotherRequestIsAskedToComeAgain) {
-  begin_planning();
-  EXPECT_EQ(to_plan(plan_request()), std::nullopt);
-  const HttpResponse busy = send(plan_request());
-  EXPECT_EQ(busy.status, 503u);
-  EXPECT_THAT(busy.headers, Contains(Pair("Retry-After", ::testing::Not(""))));
+TEST_F(PlanRoutes, WhoeverAsksWhileThePlanIsMadeGetsTheSameAnswer) {
+  Api api(cell_.context().get_executor(), cell_.operation(), kTokens);
+  const HttpRequest request = plan_request();
+  std::vector<HttpResponse> answers;
+  for (int i = 0; i < 3; ++i) {
+    boost::asio::co_spawn(cell_.context(), api.answer(request),
+                          [&](const std::exception_ptr& failure, HttpResponse answer) {
+                            EXPECT_FALSE(failure);
+                            answers.push_back(std::move(answer));
+                          });
+  }
+  cell_.context().poll();
+  EXPECT_TRUE(answers.empty());
   EXPECT_EQ(send({.method = "GET", .path = "/api/v1/status", .from_loopback = true}).status, 200u)
       << "others are answered meanwhile";
-  finish_planning();
-  EXPECT_EQ(send(plan_request()).status, 200u);
+  cell_.context().run();
+  ASSERT_EQ(answers.size(), 3u);
+  for (const HttpResponse& answer : answers) {
+    EXPECT_EQ(answer.status, 200u);
+    EXPECT_EQ(answer.body, answers.front().body);
+  }
 }
 
-TEST_F(PlanRoutes, NothingIsPlannedForWhoMayNotAskOrAsksForNothing) {
-  HttpRequest stranger = plan_request();
-  stranger.authorization = "Bearer " + kTokens.view;
-  EXPECT_EQ(to_plan(stranger), std::nullopt);
-  HttpRequest page = plan_request();
-  page.content_type = "text/plain";
-  EXPECT_EQ(to_plan(page), std::nullopt);
-  HttpRequest other = plan_request();
-  other.path = "/api/v1/runs";
-  EXPECT_EQ(to_plan(other), std::nullopt);
+TEST_F(PlanRoutes, NothingIsPlannedForABodyThatNamesNoRecipe) {
   for (const char* body : {"", "{}", "[]", R"({"recipe":"edf-99"})", R"({"recipe":1})", R"({"plan_id":"x"})"})
     EXPECT_EQ(to_plan(plan_request(body)), std::nullopt) << body;
 }

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "service/http/route_table.hpp"
+#include "tests/service/document_schema.hpp"
 #include "tests/service/quiet_cell.hpp"
 
 namespace cell {
@@ -33,7 +35,11 @@ json problem(const HttpResponse& response) {
 
 class RoutesTest : public ::testing::Test {
  protected:
-  HttpResponse send(const HttpRequest& request) { return route(request, cell_.operation(), kTokens); }
+  HttpResponse send(const HttpRequest& request) {
+    const HttpResponse response = route(request, cell_.operation(), kTokens);
+    expect_as_documented(request, response);
+    return response;
+  }
 
   HttpResponse get(const std::string& target) {
     HttpRequest request = made("GET", target);
@@ -56,6 +62,10 @@ class RoutesTest : public ::testing::Test {
   std::int64_t stored_run(std::optional<std::string> key = std::nullopt) {
     return cell_.store().begin_run(
         {.recipe = "edf-25", .started_at = "start", .idempotency_key = std::move(key)});
+  }
+  /// The route's path with a run that is there.
+  std::string with_run(const Route& name) {
+    return std::regex_replace(std::string(name.path), std::regex("\\{id\\}"), std::to_string(stored_run()));
   }
   static std::string path_of(std::int64_t run) { return "/api/v1/runs/" + std::to_string(run); }
 
@@ -109,10 +119,13 @@ TEST_F(RoutesTest, RunsComeInPagesThatLeadThroughAll) {
 
 TEST_F(RoutesTest, AQueryThatMakesNoSenseIsToldApartFromAnEmptyPage) {
   for (const char* query : {"limit=0", "limit=-1", "limit=201", "limit=x", "limit=", "limit", "limit=1e1",
-                            "limit=99999999999999999999", "before=x", "before=", "before=1.5"}) {
-    EXPECT_EQ(problem(get(std::string("/api/v1/runs?") + query)).at("status"), 400) << query;
+                            "limit=99999999999999999999", "before=x", "before=", "before=1.5", "before=-1",
+                            "unknown=1", "limit=1&limit=1", "&&", "LIMIT=1"}) {
+    const json document = problem(get(std::string("/api/v1/runs?") + query));
+    EXPECT_EQ(document.at("status"), 400) << query;
+    EXPECT_TRUE(document.contains("parameter")) << query;
   }
-  for (const char* query : {"limit=1", "limit=200", "before=1", "before=0", "unknown=1"})
+  for (const char* query : {"limit=1", "limit=200", "before=1", "before=0", ""})
     EXPECT_EQ(get(std::string("/api/v1/runs?") + query).status, 200u) << query;
 }
 
@@ -123,8 +136,9 @@ TEST_F(RoutesTest, ARunItsTouchesAndItsResultAreReadFromTheStore) {
   EXPECT_EQ(json::parse(get(path_of(run) + "/touches").body).at("touches").size(), 1u);
   EXPECT_EQ(problem(get(path_of(run) + "/result")).at("status"), 409);
   cell_.store().finish_run(run, {.outcome = "complete", .result_json = R"({"schema":"touchcal/result/1"})"});
-  EXPECT_EQ(get(path_of(run) + "/result").status, 200u);
-  EXPECT_EQ(get(path_of(run) + "/result").body, R"({"schema":"touchcal/result/1"})");
+  const HttpRequest request{.method = "GET", .path = path_of(run) + "/result", .from_loopback = true};
+  EXPECT_EQ(route(request, cell_.operation(), kTokens).body, R"({"schema":"touchcal/result/1"})")
+      << "as it was stored";
 }
 
 TEST_F(RoutesTest, WhatIsNotThereIs404) {
@@ -160,11 +174,11 @@ TEST_F(RoutesTest, HealthNeedsNoToken) { EXPECT_EQ(send(made("GET", "/healthz"))
 
 TEST_F(RoutesTest, EveryRouteThatChangesSomethingNeedsTheOperateToken) {
   int seen = 0;
-  for (const RouteName& name : route_names()) {
+  for (const Route& name : routes()) {
+    EXPECT_EQ(name.access == Access::kOperate, name.method != "GET") << name.path;
     if (name.method == "GET") continue;
     ++seen;
-    const std::string path = "/api/v1/" + std::regex_replace(std::string(name.path), std::regex("\\*"),
-                                                             std::to_string(stored_run()));
+    const std::string path = with_run(name);
     HttpRequest request = made(std::string(name.method), path);
     request.from_loopback = true;
     const std::uint64_t before = cell_.operation().status().sequence;
@@ -187,12 +201,10 @@ TEST_F(RoutesTest, EveryRouteThatChangesSomethingNeedsTheOperateToken) {
 
 TEST_F(RoutesTest, ReadingNeedsATokenFromElsewhereOnly) {
   int seen = 0;
-  for (const RouteName& name : route_names()) {
-    if (name.method != "GET") continue;
+  for (const Route& name : routes()) {
+    if (name.access != Access::kView) continue;
     ++seen;
-    HttpRequest request =
-        made("GET", "/api/v1/" + std::regex_replace(std::string(name.path), std::regex("\\*"),
-                                                    std::to_string(stored_run())));
+    HttpRequest request = made("GET", with_run(name));
     EXPECT_EQ(problem(send(request)).at("status"), 401) << name.path;
     request.authorization = "Bearer " + std::string(64, 'c');
     EXPECT_EQ(send(request).status, 401u) << name.path;
@@ -343,29 +355,42 @@ TEST(ParseTarget, TakesPathAndQueryApart) {
   ASSERT_TRUE(parsed);
   EXPECT_EQ(parsed->first, "/a/b");
   EXPECT_EQ(parsed->second,
-            (std::map<std::string, std::string>{{"x", "2"}, {"y", ""}, {"z", ""}, {"", ""}, {"w", "a=b"}}));
+            (Query{{"", ""}, {"w", "a=b"}, {"x", "1"}, {"x", "2"}, {"y", ""}, {"z", ""}}));
   EXPECT_EQ(parse_target("/")->second.size(), 0u);
   for (const char* target : {"", "*", "http://127.0.0.1/api/v1/status", "127.0.0.1:80", "?x=1"})
     EXPECT_FALSE(parse_target(target)) << target;
 }
 
-TEST(LongPolls, AreStatusReadsWithBothNumbers) {
-  const auto poll = [](const std::string& method, const std::string& target) {
-    const auto parsed = parse_target(target).value();
-    return long_poll({.method = method, .path = parsed.first, .query = parsed.second});
-  };
-  const auto found = poll("GET", "/api/v1/status?wait_s=20&after=7");
-  ASSERT_TRUE(found);
-  EXPECT_EQ(found->after, 7u);
-  EXPECT_EQ(found->wait, std::chrono::seconds(20));
-  EXPECT_EQ(poll("GET", "/api/v1/status?wait_s=9999&after=7")->wait, std::chrono::seconds(60)) << "bounded";
-  EXPECT_FALSE(poll("POST", "/api/v1/status?wait_s=20&after=7"));
-  for (const char* target :
-       {"/api/v1/runs?wait_s=20&after=7", "/api/v1/status?wait_s=20", "/api/v1/status?after=7",
-        "/api/v1/status?wait_s=-1&after=7", "/api/v1/status?wait_s=x&after=7",
-        "/api/v1/status?wait_s=20&after=-7", "/api/v1/status?wait_s=20&after="}) {
-    EXPECT_FALSE(poll("GET", target)) << target;
+TEST_F(RoutesTest, ALongPollThatMakesNoSenseIsRefused) {
+  for (const char* query : {"wait_s=-1&after=7", "wait_s=x&after=7", "wait_s=20&after=-7", "wait_s=20&after=",
+                            "wait_s=3601&after=7", "wait_s=1.5&after=7", "wait=20&after=7"}) {
+    EXPECT_EQ(problem(get(std::string("/api/v1/status?") + query)).at("status"), 400) << query;
   }
+  for (const char* query : {"wait_s=20", "after=7"})
+    EXPECT_EQ(get(std::string("/api/v1/status?") + query).status, 200u) << "answered at once: " << query;
+}
+
+TEST_F(RoutesTest, WhatIsConfiguredIsShown) {
+  const json recipes = json::parse(get("/api/v1/recipes").body);
+  EXPECT_EQ(recipes.at("recipes").size(), cell_.operation().cell().recipes.size());
+  EXPECT_EQ(recipes.at("default"), cell_.operation().cell().default_recipe);
+  const json shown = json::parse(get("/api/v1/cell").body);
+  EXPECT_EQ(shown.at("block").at("faces").size(), cell_.operation().cell().block.faces.size());
+  EXPECT_EQ(json::parse(get("/api/v1/faults").body).at("faults").size(), fault_table().size());
+}
+
+TEST_F(RoutesTest, ACellThatIsNotReadySaysWhatStandsInTheWay) {
+  const json unready = problem(get("/readyz"));
+  EXPECT_EQ(unready.at("status"), 503);
+  EXPECT_EQ(unready.at("errors")[0].at("code"), "controller_not_connected");
+}
+
+TEST_F(RoutesTest, FiguresForPrometheusTellStateAndLink) {
+  const HttpResponse figures = get("/metrics");
+  EXPECT_THAT(figures.content_type, HasSubstr("text/plain"));
+  EXPECT_THAT(figures.body, HasSubstr("touchcal_state{state=\"STOPPED\"} 1"));
+  EXPECT_THAT(figures.body, HasSubstr("touchcal_controller_connected 0"));
+  EXPECT_THAT(figures.body, HasSubstr("touchcal_link_age_seconds Nan"));
 }
 
 }  // namespace

@@ -44,11 +44,27 @@ TEST(Tokens, TheNextStartReadsTheSame) {
   EXPECT_EQ(bytes_of(state.path() / kOperateTokenFile), first.operate + "\n");
 }
 
+TEST(Tokens, AFileThatOthersMayReadIsRefusedWithTheRemedy) {
+  for (const perms others : {perms::group_read, perms::others_read, perms::others_write}) {
+    const Folder state;
+    load_or_make_tokens(state.path());
+    const auto file = state.path() / kViewTokenFile;
+    std::filesystem::permissions(file, others, std::filesystem::perm_options::add);
+    try {
+      load_or_make_tokens(state.path());
+      ADD_FAILURE() << "took a token that others know";
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(), HasSubstr("chmod 600 " + file.string()));
+    }
+  }
+}
+
 TEST(Tokens, AFileThatIsTooShortForATokenIsRefusedByName) {
   for (const std::string& bytes : {std::string(), std::string("\n"), std::string("secret\n"),
                                    std::string(63, 'a') + "\n", "\n" + std::string(64, 'a')}) {
     const Folder state;
     const auto file = state.write(std::string(kOperateTokenFile), bytes);
+    std::filesystem::permissions(file, perms::owner_read | perms::owner_write);
     try {
       load_or_make_tokens(state.path());
       ADD_FAILURE() << "took '" << bytes << "'";

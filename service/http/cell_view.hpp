@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "config/cell.hpp"
+
+namespace cell {
+
+/// The recipes by name, which one is taken by default, and how many touches each makes.
+std::string recipes_document(const Cell& cell);
+
+/// What the cell is made of, in the units of its files.
+std::string cell_document(const Cell& cell);
+
+/// The fault table (service/faults.hpp).
+std::string faults_document();
+
+}  // namespace cell

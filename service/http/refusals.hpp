@@ -1,0 +1,12 @@
+#pragma once
+
+#include "service/http/routes.hpp"
+
+namespace cell {
+
+struct Refusal;
+
+/// A command that was not taken, as a problem document with the commands that the state allows.
+HttpResponse from_refusal(const Refusal& refusal, const Operation& operation);
+
+}  // namespace cell

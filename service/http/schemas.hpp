@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace cell {
+
+/// A JSON Schema (2020-12) of a document of the API, by its name in OpenAPI's components.
+struct DocumentSchema {
+  std::string_view name;
+  std::string_view text;  // JSON
+};
+
+/// Documents of this daemon alone, and those whose schema is a version of its own: touchcal/result/1 and such.
+std::span<const DocumentSchema> daemon_schemas();
+std::span<const DocumentSchema> file_schemas();
+
+}  // namespace cell
