@@ -13,7 +13,7 @@ struct DaemonOptions {
   Endpoint listen{"127.0.0.1", 8080};
   std::optional<Endpoint> controller;  // the cell's when absent
   std::optional<int> retain_days;      // how long runs are kept; for ever when absent
-  std::filesystem::path tls_certificate;  // PEM, its chain behind it; with the key: the API is served over TLS
+  std::filesystem::path tls_certificate;  // PEM, its chain behind it; with tls_key: TLS
   std::filesystem::path tls_key;
 };
 

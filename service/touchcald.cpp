@@ -48,7 +48,8 @@ int main(int argc, char** argv) {
   app.add_option("--listen", listen, "HOST:PORT of the API")->default_str("127.0.0.1:8080");
   app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's");
   app.add_option("--state", state, "directory for runs and tokens; default: the user's state home");
-  app.add_option("--tls-cert", tls_certificate, "certificate, PEM; with --tls-key the API is served over TLS");
+  app.add_option("--tls-cert", tls_certificate,
+                 "certificate, PEM; with --tls-key the API is served over TLS");
   app.add_option("--tls-key", tls_key, "the certificate's key, PEM");
   app.add_flag("--check", check, "read the cell and everything it names, then exit");
   app.add_option("--backup", backup,

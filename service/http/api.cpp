@@ -47,7 +47,14 @@ std::string now_text(std::chrono::hours ago = {}) {
 
 /// What a key was answered before, or why it is not taken; nothing when it is new.
 std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed) {
-  const KeyLookUp found = answers.take(keyed, now_text(std::chrono::hours(AnswerStore::kKeptHours)));
+  KeyLookUp found;
+  try {
+    found = answers.take(keyed, now_text(std::chrono::hours(AnswerStore::kKeptHours)));
+  } catch (const std::exception& error) {
+    spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
+    return to_response(
+        {.status = 503, .kind = "idempotency-key", .detail = "earlier answers cannot be read; see the log"});
+  }
   if (const auto* answer = std::get_if<StoredAnswer>(&found))
     return HttpResponse{.status = answer->status, .body = answer->body, .headers = answer->headers};
   if (std::holds_alternative<KeyOfAnother>(found)) {

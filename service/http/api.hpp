@@ -40,7 +40,7 @@ class Api {
   boost::asio::any_io_executor executor_;
   Services services_;
   boost::asio::thread_pool worker_{1};
-  int at_work_ = 0;                         // requests that the worker has, or that wait for it
+  int at_work_ = 0;                          // requests that the worker has, or that wait for it
   std::map<std::string, int> wrong_tokens_;  // in a row, by address
 };
 

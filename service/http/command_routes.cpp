@@ -17,8 +17,7 @@ HttpResponse give(const Call& call, Command command, std::optional<std::int64_t>
 template <Command kCommand>
 HttpResponse run_command(const Call& call) {
   const auto id = call.run_id();
-  if (!id || !call.operation.store().run(*id))
-    return not_found(fmt::format("there is no run '{}'", call.id));
+  if (!id || !call.operation.store().run(*id)) return not_found(fmt::format("there is no run '{}'", call.id));
   return give(call, kCommand, id);
 }
 
@@ -94,8 +93,7 @@ HttpResponse from_refusal(const Refusal& refusal, const Operation& operation) {
     for (const Unmet& unmet : refusal.unmet)
       problem.detail += (&unmet == refusal.unmet.data() ? "" : "; ") + unmet.detail;
   }
-  for (const Command command : operation.exits())
-    problem.exits.emplace_back(command_name(command));
+  for (const Command command : operation.exits()) problem.exits.emplace_back(command_name(command));
   return to_response(problem);
 }
 

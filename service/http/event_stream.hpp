@@ -18,7 +18,8 @@ inline constexpr int kEventStreamsMax = 32;
 class EventStream {
  public:
   /// `run_id`: only what happens while this run is the one of the status.
-  EventStream(Services& services, std::optional<std::int64_t> run_id, std::optional<std::string> last_event_id);
+  EventStream(Services& services, std::optional<std::int64_t> run_id,
+              std::optional<std::string> last_event_id);
   ~EventStream();
   EventStream(const EventStream&) = delete;
   EventStream& operator=(const EventStream&) = delete;

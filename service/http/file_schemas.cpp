@@ -111,12 +111,10 @@ constexpr std::string_view kArm = R"({
   "name":{"type":"string"},
   "frames":{"type":"array","minItems":8,"maxItems":8,"items":{"type":"object"}}}})";
 
-constexpr std::array kSchemas{DocumentSchema{"Touches", kTouches},
-                              DocumentSchema{"Result", kResult},
-                              DocumentSchema{"Distances", kDistances},
-                              DocumentSchema{"TipUncertainty", kTipUncertainty},
-                              DocumentSchema{"Plan", kPlan},
-                              DocumentSchema{"Arm", kArm}};
+constexpr std::array kSchemas{
+    DocumentSchema{"Touches", kTouches},     DocumentSchema{"Result", kResult},
+    DocumentSchema{"Distances", kDistances}, DocumentSchema{"TipUncertainty", kTipUncertainty},
+    DocumentSchema{"Plan", kPlan},           DocumentSchema{"Arm", kArm}};
 
 }  // namespace
 

@@ -78,9 +78,8 @@ Metrics::~Metrics() = default;
 void Metrics::count_request(std::string_view method, std::string_view route, unsigned status) {
   Counter*& counter = families_->counters[{method, route, status}];
   if (!counter) {
-    counter = &families_->requests.Add({{"method", std::string(method)},
-                                        {"route", std::string(route)},
-                                        {"status", std::to_string(status)}});
+    counter = &families_->requests.Add(
+        {{"method", std::string(method)}, {"route", std::string(route)}, {"status", std::to_string(status)}});
   }
   counter->Increment();
 }

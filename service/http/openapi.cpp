@@ -10,9 +10,7 @@
 namespace cell {
 namespace {
 
-Json reference(std::string_view schema) {
-  return {{"$ref", "#/components/schemas/" + std::string(schema)}};
-}
+Json reference(std::string_view schema) { return {{"$ref", "#/components/schemas/" + std::string(schema)}}; }
 
 Json parameters_json(const Route& route) {
   Json parameters = Json::array();
@@ -21,10 +19,9 @@ Json parameters_json(const Route& route) {
         {{"name", "id"}, {"in", "path"}, {"required", true}, {"schema", {{"type", "string"}}}});
   }
   for (const QueryParameter& query : route.query) {
-    const Json schema = query.is_text ? Json{{"type", "string"}}
-                                      : Json{{"type", "integer"},
-                                             {"minimum", query.minimum},
-                                             {"maximum", query.maximum}};
+    const Json schema =
+        query.is_text ? Json{{"type", "string"}}
+                      : Json{{"type", "integer"}, {"minimum", query.minimum}, {"maximum", query.maximum}};
     parameters.push_back(
         {{"name", query.name}, {"in", "query"}, {"description", query.words}, {"schema", schema}});
   }
@@ -41,9 +38,8 @@ Json parameters_json(const Route& route) {
 }
 
 Json responses_json(const Route& route) {
-  const Json problem{
-      {"description", "a refusal (RFC 9457)"},
-      {"content", {{"application/problem+json", {{"schema", reference("Problem")}}}}}};
+  const Json problem{{"description", "a refusal (RFC 9457)"},
+                     {"content", {{"application/problem+json", {{"schema", reference("Problem")}}}}}};
   Json responses = Json::object();
   for (const Answer& answer : route.answers) {
     Json response{{"description", answer.status == 304 ? "known already" : "as asked"}};
@@ -64,8 +60,7 @@ Json operation_json(const Route& route) {
   operation["parameters"] = parameters_json(route);
   if (!route.body_schema.empty()) {
     operation["requestBody"] = {
-        {"required", true},
-        {"content", {{"application/json", {{"schema", reference(route.body_schema)}}}}}};
+        {"required", true}, {"content", {{"application/json", {{"schema", reference(route.body_schema)}}}}}};
   }
   operation["responses"] = responses_json(route);
   const Json token = {{{"operate", Json::array()}}};
@@ -83,20 +78,19 @@ Json make_document() {
   }
   Json schemas = Json::object();
   for (const auto& list : {daemon_schemas(), file_schemas()}) {
-    for (const DocumentSchema& schema : list)
-      schemas[std::string(schema.name)] = Json::parse(schema.text);
+    for (const DocumentSchema& schema : list) schemas[std::string(schema.name)] = Json::parse(schema.text);
   }
   const Json bearer{{"type", "http"}, {"scheme", "bearer"}};
-  return {{"openapi", "3.1.0"},
-          {"info",
-           {{"title", "touchcald"},
-            {"version", kVersion},
-            {"description",
-             "Calibrates a six-axis arm by touching the faces of a block. Units stand at the end of names; a "
-             "figure that is not known is null."}}},
-          {"paths", paths},
-          {"components",
-           {{"schemas", schemas}, {"securitySchemes", {{"operate", bearer}, {"view", bearer}}}}}};
+  return {
+      {"openapi", "3.1.0"},
+      {"info",
+       {{"title", "touchcald"},
+        {"version", kVersion},
+        {"description",
+         "Calibrates a six-axis arm by touching the faces of a block. Units stand at the end of names; a "
+         "figure that is not known is null."}}},
+      {"paths", paths},
+      {"components", {{"schemas", schemas}, {"securitySchemes", {{"operate", bearer}, {"view", bearer}}}}}};
 }
 
 }  // namespace

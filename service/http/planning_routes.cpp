@@ -27,7 +27,8 @@ HttpResponse post_identify(const Call& call) {
     problem.touches = std::move(file.touches);
     const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
     if (result.status != calib::IdentificationStatus::kConverged)
-      return to_response({.status = 422, .kind = "not-identifiable", .detail = result.message, .pointer = "/touches"});
+      return to_response(
+          {.status = 422, .kind = "not-identifiable", .detail = result.message, .pointer = "/touches"});
     return {.body = result_document(call.operation.tip_regions(), recipe, problem, result,
                                     {.complete = true, .warnings = std::move(file.warnings)})};
   } catch (const ConfigError& error) {

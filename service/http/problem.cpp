@@ -55,8 +55,7 @@ HttpResponse to_response(const Problem& problem) {
   for (const auto& [code, detail] : problem.errors)
     document["errors"].push_back({{"code", code}, {"detail", detail}});
   if (!problem.exits.empty()) document["exits"] = problem.exits;
-  return {
-      .status = problem.status, .content_type = "application/problem+json", .body = text_of(document)};
+  return {.status = problem.status, .content_type = "application/problem+json", .body = text_of(document)};
 }
 
 }  // namespace cell

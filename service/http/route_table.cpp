@@ -75,7 +75,8 @@ bool is_stop(const Route& route) { return route.path == "/api/v1/cell/stop"; }
 std::optional<std::string_view> match(std::string_view pattern, std::string_view path) {
   constexpr std::string_view kId = "{id}";
   const std::size_t before = pattern.find(kId);
-  if (before == std::string_view::npos) return pattern == path ? std::optional(std::string_view()) : std::nullopt;
+  if (before == std::string_view::npos)
+    return pattern == path ? std::optional(std::string_view()) : std::nullopt;
   const std::string_view behind = pattern.substr(before + kId.size());
   if (!path.starts_with(pattern.substr(0, before))) return std::nullopt;
   const std::string_view rest = path.substr(before);

@@ -60,11 +60,8 @@ HttpResponse post_runs(const Call& call) {
 std::vector<Route> run_routes() {
   const auto read = [](std::string_view path, std::string_view summary, HttpResponse (*handle)(const Call&),
                        std::string_view schema) {
-    return Route{.method = "GET",
-                 .path = path,
-                 .summary = summary,
-                 .handle = handle,
-                 .answers = {{.schema = schema}}};
+    return Route{
+        .method = "GET", .path = path, .summary = summary, .handle = handle, .answers = {{.schema = schema}}};
   };
   Route list = read("/api/v1/runs", "The history, newest first, in pages", get_runs, "Runs");
   list.query = {{"limit", 1, kRunsPageMax, "runs on a page"},

@@ -11,7 +11,8 @@ struct DocumentSchema {
   std::string_view text;  // JSON
 };
 
-/// Documents of this daemon alone, and those whose schema is a version of its own: touchcal/result/1 and such.
+/// Documents of this daemon alone, and those whose schema is a version of its own: touchcal/result/1 and
+/// such.
 std::span<const DocumentSchema> daemon_schemas();
 std::span<const DocumentSchema> file_schemas();
 

@@ -254,8 +254,7 @@ asio::awaitable<std::optional<Problem>> Session<Stream>::read_request(Parser& pa
 template <class Stream>
 asio::awaitable<void> Session<Stream>::write_events(const HttpRequest& request) {
   const auto id = match("/api/v1/runs/{id}/events", request.path);
-  const std::optional<std::int64_t> run_id =
-      id ? std::optional(std::stoll(std::string(*id))) : std::nullopt;
+  const std::optional<std::int64_t> run_id = id ? std::optional(std::stoll(std::string(*id))) : std::nullopt;
   EventStream events(api_.services(), run_id, request.last_event_id);
   while (true) {
     std::string text = events.due();
@@ -328,8 +327,7 @@ asio::awaitable<void> Session<Stream>::finish() {
   beast::get_lowest_layer(stream_).socket().shutdown(tcp::socket::shutdown_send, failure);
   std::array<char, kReadBytes> unread;
   const auto room = asio::buffer(unread);
-  while (!failure)
-    co_await stream_.async_read_some(room, asio::redirect_error(asio::use_awaitable, failure));
+  while (!failure) co_await stream_.async_read_some(room, asio::redirect_error(asio::use_awaitable, failure));
 }
 
 }  // namespace

@@ -33,12 +33,12 @@ std::optional<Problem> read_recipe(const json& body, const Operation& operation,
   if (!by_plan) return std::nullopt;
   const auto plan = operation.plan_with_id(start.recipe);
   if (!plan) {
-    return Problem{.status = 404,
-                   .kind = "unknown-plan",
-                   .detail = fmt::format(
-                       "there is no plan '{}' since the daemon began; POST /api/v1/plan makes it again",
-                       start.recipe),
-                   .pointer = pointer};
+    return Problem{
+        .status = 404,
+        .kind = "unknown-plan",
+        .detail = fmt::format(
+            "there is no plan '{}' since the daemon began; POST /api/v1/plan makes it again", start.recipe),
+        .pointer = pointer};
   }
   start.recipe = plan->recipe;
   return std::nullopt;

@@ -33,8 +33,9 @@ std::vector<Route> status_routes() {
   return {
       {.method = "GET",
        .path = "/api/v1/status",
-       .summary = "What a supervisor polls: one flat document whose fields never come and go. With wait_s and "
-                  "after the answer waits for another sequence, for 60 s at most",
+       .summary =
+           "What a supervisor polls: one flat document whose fields never come and go. With wait_s and "
+           "after the answer waits for another sequence, for 60 s at most",
        .handle = get_status,
        .answers = {{.schema = "Status"}, {.status = 304}},
        .query = {{"wait_s", 0, kWaitSecondsMax, "how long the answer may wait, with after"},
@@ -42,8 +43,9 @@ std::vector<Route> status_routes() {
        .pace = Pace::kLongPoll},
       {.method = "GET",
        .path = "/api/v1/events",
-       .summary = "Every change of the status as server-sent events; Last-Event-ID goes on where a reader left "
-                  "off, an event 'reset' says that this is not possible",
+       .summary =
+           "Every change of the status as server-sent events; Last-Event-ID goes on where a reader left "
+           "off, an event 'reset' says that this is not possible",
        .handle = get_events,
        .answers = {{.content_type = "text/event-stream"}},
        .pace = Pace::kEvents},

@@ -33,7 +33,8 @@ inline void check_schema(const nlohmann::json& value, const nlohmann::json& sche
   for (const auto& [key, wanted] : schema.items()) {
     if (key == "description") continue;
     if (key == "$ref") {
-      check_schema(value, openapi().at(json::json_pointer(wanted.get<std::string>().substr(1))), where, wrong);
+      check_schema(value, openapi().at(json::json_pointer(wanted.get<std::string>().substr(1))), where,
+                   wrong);
     } else if (key == "type") {
       const json types = wanted.is_array() ? wanted : json::array({wanted});
       bool any = false;

@@ -280,6 +280,93 @@ TEST_F(ListenerTest, ALongPollAnswersWhenItsTimeIsUpOrItKnowsAnotherStatus) {
   }
 }
 
+TEST_F(ListenerTest, TheStatusChangesArriveAsEventsUntilTheReaderGoes) {
+  RawClient reader = connect();
+  reader.send(get("/api/v1/events"));
+  RawAnswer answer = reader.receive();
+  EXPECT_EQ(answer.status, 200u);
+  EXPECT_EQ(answer.header.at("content-type"), "text/event-stream");
+  EXPECT_THAT(reader.receive_until("\n\n"), HasSubstr("retry: "));
+  EXPECT_THAT(reader.receive_until("\n\n"), HasSubstr("event: status\nid: instance-"));
+  expect_served(202, post("/api/v1/cell/reset", "Content-Length: 0\r\n", ""));
+  EXPECT_THAT(reader.receive_until("\n\n"), HasSubstr("\"state\":\"RESETTING\""));
+}
+
+TEST_F(ListenerTest, ATouchesDocumentMayBeLargerThanOtherBodies) {
+  const std::string large(kLimits.body_bytes_max + 1, ' ');
+  const auto lines = [](std::size_t size) { return "Content-Length: " + std::to_string(size) + "\r\n"; };
+  expect_served(400, post("/api/v1/identify", lines(large.size()), large));
+  const std::string too_large(kTouchesBytesMax + 1, ' ');
+  expect_refused(413, post("/api/v1/identify", lines(too_large.size()), too_large));
+  const std::string chunk = "10001\r\n" + std::string(0x10001, ' ') + "\r\n0\r\n\r\n";
+  expect_served(400, post("/api/v1/identify", "Transfer-Encoding: chunked\r\n", chunk));
+  expect_refused(413, post("/api/v1/runs", "Transfer-Encoding: chunked\r\n", chunk));
+}
+
+TEST_F(ListenerTest, WhatIsWrongInABodyIsToldAndNothingHappens) {
+  const std::uint64_t before = sequence();
+  const std::string nul("{\"recipe\":\"edf-25\"}\0", 21);
+  for (const std::string& body : {std::string("{"),
+                                  std::string("[]"),
+                                  std::string("null"),
+                                  std::string("\"edf-25\""),
+                                  std::string("\xef\xbb\xbf{\"recipe\":\"edf-25\"}"),
+                                  nul,
+                                  std::string("{\"recipe\":\"\xff\"}"),
+                                  std::string("{\"recipe\":\"edf-25\"}x"),
+                                  std::string("{\"recipe\":\"edf-25\"}{}"),
+                                  std::string("{\"recipe\":\"edf-25\",\"recipe\":\"edf-25\"}"),
+                                  std::string("{\"recipe\":1}"),
+                                  std::string("{\"recipe\":1e999}"),
+                                  std::string("{\"recipe\":true}"),
+                                  std::string("{\"recipe\":[]}"),
+                                  std::string("{\"recipe\":null}"),
+                                  std::string("{\"recipe\":\"edf-25\",\"plan_id\":\"x\"}"),
+                                  std::string("{\"recipe\":\"edf-25\",\"operator\":1}"),
+                                  std::string("{\"recipe\":\"edf-25\",\"operator\":\"\"}"),
+                                  "{\"recipe\":\"edf-25\",\"operator\":\"" + std::string(101, 'o') + "\"}",
+                                  std::string("{\"recipe\":\"edf-25\",\"block_temperature_c\":\"20\"}"),
+                                  std::string("{\"recipe\":\"edf-25\",\"block_temperature_c\":293.15}"),
+                                  std::string("{\"recipe\":\"edf-25\",\"unknown\":1}"),
+                                  std::string("{'recipe':'edf-25'}"),
+                                  std::string("{\"recipe\":\"edf-25\",}"),
+                                  std::string("{\"recipe\":NaN}"),
+                                  std::string(30000, '['),
+                                  std::string(30000, '[') + std::string(30000, ']')}) {
+    const RawAnswer answer = expect_served(
+        400, post("/api/v1/runs", "Content-Length: " + std::to_string(body.size()) + "\r\n", body));
+    EXPECT_TRUE(json::parse(answer.body).contains("pointer")) << body.substr(0, 80);
+  }
+  EXPECT_EQ(sequence(), before);
+}
+
+TEST_F(ListenerTest, AFieldThatDecidesSomethingStandsOnce) {
+  for (const char* field : {"Authorization: Bearer x\r\n", "Content-Type: text/plain\r\n"})
+    expect_refused(400, post("/api/v1/cell/reset", std::string(field) + "Content-Length: 0\r\n", ""));
+  expect_refused(400, post("/api/v1/cell/reset",
+                           "Idempotency-Key: a\r\nIdempotency-Key: b\r\nContent-Length: 0\r\n", ""));
+}
+
+class CrowdedListenerTest : public ListenerTest {
+ protected:
+  CrowdedListenerTest() : ListenerTest({.loopback_connections_max = 2}) {}
+};
+
+TEST_F(CrowdedListenerTest, OneAddressDoesNotTakeAllConnections) {
+  RawClient first = connect();
+  RawClient second = connect();
+  for (RawClient* client : {&first, &second}) {
+    client->send(get("/healthz"));
+    EXPECT_EQ(client->receive().status, 200u);
+  }
+  EXPECT_TRUE(connect().closed());
+  first.send(get("/healthz", "Connection: close\r\n"));
+  EXPECT_EQ(first.receive().status, 200u);
+  EXPECT_TRUE(first.closed());
+  second.send(get("/healthz"));
+  EXPECT_EQ(second.receive().status, 200u);
+}
+
 class ImpatientListenerTest : public ListenerTest {
  protected:
   ImpatientListenerTest()

@@ -13,6 +13,7 @@
 #include <charconv>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace cell {
 
@@ -56,6 +57,17 @@ class RawClient {
     answer.body = received_.substr(0, size);
     received_.erase(0, size);
     return answer;
+  }
+
+  /// What comes next, up to `end` and with it; less when the connection ends.
+  std::string receive_until(const std::string& end) {
+    std::size_t found = 0;
+    while ((found = received_.find(end)) == std::string::npos) {
+      if (!read_some()) return std::exchange(received_, {});
+    }
+    const std::string text = received_.substr(0, found + end.size());
+    received_.erase(0, text.size());
+    return text;
   }
 
   /// Waits for the server to end the connection; false when it says more or does not end it.
