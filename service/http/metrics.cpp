@@ -2,7 +2,6 @@
 
 #include <prometheus/counter.h>
 #include <prometheus/gauge.h>
-#include <prometheus/histogram.h>
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
 
@@ -18,10 +17,6 @@ namespace {
 using prometheus::Counter;
 using prometheus::Family;
 using prometheus::Gauge;
-using prometheus::Histogram;
-
-const Histogram::BucketBoundaries kCommitSeconds{0.0001, 0.00025, 0.0005, 0.001, 0.0025, 0.005,
-                                                 0.01,   0.025,   0.05,   0.1,   0.5};
 
 Gauge& gauge(prometheus::Registry& registry, const char* name, const char* help) {
   return prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
@@ -46,11 +41,6 @@ struct Metrics::Families {
                          .Help("Touches that count, of all runs")
                          .Register(registry)
                          .Add({});
-  Histogram& commits = prometheus::BuildHistogram()
-                           .Name("touchcal_store_commit_seconds")
-                           .Help("From a touch in hand until it is durable")
-                           .Register(registry)
-                           .Add({}, kCommitSeconds);
   Gauge& connected = gauge(registry, "touchcal_controller_connected", "1 while there is a link");
   Gauge& link_age = gauge(registry, "touchcal_link_age_seconds",
                           "Since the controller was last heard; NaN when it never was");
@@ -97,8 +87,6 @@ void Metrics::follow(const Status& status) {
     all.touches.Increment(static_cast<double>(status.touches_done - all.touches_counted));
   all.touches_counted = status.touches_done;
 }
-
-void Metrics::count_store_commit(double seconds) { families_->commits.Observe(seconds); }
 
 std::string Metrics::text(const Status& status) {
   Families& all = *families_;

@@ -22,7 +22,6 @@ class Metrics {
   void count_request(std::string_view method, std::string_view route, unsigned status);
   /// At each change of the status: counts touches, and faults by their code.
   void follow(const Status& status);
-  void count_store_commit(double seconds);
   /// The figures now.
   [[nodiscard]] std::string text(const Status& status);
 
