@@ -11,8 +11,8 @@ namespace cell {
 struct DaemonOptions {
   std::filesystem::path state_directory;
   Endpoint listen{"127.0.0.1", 8080};
-  std::optional<Endpoint> controller;  // the cell's when absent
-  std::optional<int> retain_days;      // how long runs are kept; for ever when absent
+  std::optional<Endpoint> controller;     // the cell's when absent
+  std::optional<int> retain_days;         // how long runs are kept; for ever when absent
   std::filesystem::path tls_certificate;  // PEM, its chain behind it; with tls_key: TLS
   std::filesystem::path tls_key;
 };
