@@ -2,7 +2,6 @@
 
 #include <openssl/ssl.h>
 
-#include <boost/asio/ssl/impl/src.hpp>  // the one place where Asio's own functions for TLS are compiled
 #include <stdexcept>
 
 namespace cell {
