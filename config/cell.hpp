@@ -67,6 +67,9 @@ struct AcceptanceLimits {
   /// A limit is kept only when the value and its expanded uncertainty are within it (ISO 14253-1); else when
   /// the value is.
   bool guarded = false;
+  /// How far the reference place may seem to move during a run; reference_drift_max_m() of
+  /// touch_judgement.hpp when nobody says.
+  std::optional<double> reference_drift_max_m;
 };
 
 /// One standard deviation of the errors of the block's place where the arm's file gives none.

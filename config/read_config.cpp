@@ -107,7 +107,7 @@ void read_touch_conditions(const JsonObject& object, Cell& cell) {
 AcceptanceLimits acceptance_from_json(const JsonValue& value) {
   const JsonObject object =
       value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max",
-                    "lack_of_fit_p_min", "tip_box_rms_max_mm", "decision"});
+                    "lack_of_fit_p_min", "tip_box_rms_max_mm", "reference_drift_max_mm", "decision"});
   constexpr NumberRange kConditionNumbers{.min = 1.0, .max = 1e16};
   constexpr NumberRange kProbabilities{.min = 0.0, .max = 0.5};
   AcceptanceLimits limits{
@@ -123,6 +123,7 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value) {
       decision->fail("is " + in_quotes(rule) + R"(; give "simple" or "guarded")");
     limits.guarded = rule == "guarded";
   }
+  limits.reference_drift_max_m = object.find_metres("reference_drift_max", kPositive);
   return limits;
 }
 

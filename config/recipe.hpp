@@ -25,6 +25,8 @@ struct Recipe {
   int fit_per_face = 0;    // exactly so many on each of them; 0: goal.fit_count in all, spread as is best
   int held_out_per_face = 0;
   calib::PlanGoal goal;
+  /// After so many touches the reference place is touched again, at the start and at the end too; 0: never.
+  int reference_every = 10;
   int candidate_count = 20'000;  // touches to choose from; not in the file
   calib::IdentificationOptions identification;
 };

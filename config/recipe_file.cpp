@@ -61,7 +61,9 @@ void read_touch_counts(const JsonValue& value, int face_count, Recipe& recipe) {
   if (const auto criterion = object.find("criterion"))
     recipe.goal.criterion = criterion_from_json(*criterion);
   if (const auto accuracy = object.find("tip_rms_max_mm")) {
-    if (!in_all) accuracy->fail(R"(has no end beside "fit_per_plane"; give "fit", how many touches there may be at most)");
+    if (!in_all)
+      accuracy->fail(
+          R"(has no end beside "fit_per_plane"; give "fit", how many touches there may be at most)");
     recipe.goal.tip_rms_max_m = calib::metres_from_mm(accuracy->number({.min = 1e-12}));
   }
 }
@@ -133,13 +135,15 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, co
 Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const JsonObject object =
-      JsonValue(source, document)
-          .document(kRecipeSchema, {"schema", "name", "description", "touches", "identification"});
+  const JsonObject object = JsonValue(source, document)
+                                .document(kRecipeSchema, {"schema", "name", "description", "touches",
+                                                          "reference_every", "identification"});
   Recipe recipe;
   recipe.name = object.at("name").text();
   recipe.description = object.at("description").text();
   read_touch_counts(object.at("touches"), static_cast<int>(block.faces.size()), recipe);
+  if (const auto every = object.find("reference_every"))
+    recipe.reference_every = every->integer(0, kTouchesMax);
   recipe.identification = identification_from_json(object.at("identification"), arm);
   return recipe;
 }

@@ -108,6 +108,20 @@ void Run::add(TouchStore& store, const StoredTouch& touch) {
   problem_.touches.push_back(to_touch(touch));
 }
 
+void Run::replace_last(TouchStore& store, const StoredTouch& again, const std::string& reason) {
+  store.replace_touch(id_, again, reason);
+  touches_.back() = again;
+  problem_.touches.back() = to_touch(again);
+  identified_count_ = 0;
+}
+
+void Run::withdraw_last(TouchStore& store, const std::string& reason) {
+  store.withdraw_touch(id_, touches_.back().number, reason);
+  touches_.pop_back();
+  problem_.touches.pop_back();
+  identified_count_ = 0;
+}
+
 bool Run::identify() {
   if (identified_count_ == touches_.size()) return false;
   identified_count_ = touches_.size();

@@ -59,6 +59,10 @@ class Run {
 
   /// Stores the touch, then counts it. Throws what the store throws; the touch does not count then.
   void add(TouchStore& store, const StoredTouch& touch);
+  /// The last touch again, in its place; it is kept apart. Throws what the store throws.
+  void replace_last(TouchStore& store, const StoredTouch& again, const std::string& reason);
+  /// The last touch is kept apart and counts no more; it is next() again. Throws what the store throws.
+  void withdraw_last(TouchStore& store, const std::string& reason);
   /// Makes latest() from all touches; false when it is. Apart from add(), as it takes its time.
   bool identify();
 

@@ -38,9 +38,10 @@ void Operation::begin_aim() {
   missed_ = false;
 }
 
-/// The touches that the aim does not know yet.
-void Operation::learn() {
+/// The touches that the aim does not know yet; true when the others contradict the last of them.
+bool Operation::learn() {
   const std::vector<calib::Touch>& touches = run_->problem().touches;
+  bool contradicted = false;
   while (aim_ && aim_->touch_count() < touches.size()) {
     const calib::AimedContact contact = aim_->add(touches[aim_->touch_count()]);
     spdlog::log(contact.contradicts ? spdlog::level::warn : spdlog::level::info,
@@ -48,7 +49,9 @@ void Operation::learn() {
                 aim_->touch_count(), calib::mm_from_metres(contact.miss_m),
                 calib::mm_from_metres(contact.predicted_miss_m),
                 contact.contradicts ? ": the other touches contradict it, it does not aim" : "");
+    contradicted = contact.contradicts;
   }
+  return contradicted;
 }
 
 void Operation::forget_made() {

@@ -61,15 +61,11 @@ void Operation::heed(Command command) {
     publish();
   }
   if (status_.state != State::kHeld) return;
-  if (command == Command::kSkip) {
-    run_->skip_next();
-    held_by_ = HeldBy::kNothing;
-    spdlog::warn("run {}: touch {} of the plan is left out, the run stays incomplete", run_->id(),
-                 run_->touches_made() + 1);
+  if (command == Command::kResume || command == Command::kRetry || command == Command::kSkip) {
+    answer_ = command;
+    settle_hold(command);
     publish();
   }
-  if (command == Command::kResume || command == Command::kRetry || command == Command::kSkip)
-    answer_ = command;
 }
 
 std::vector<Command> Operation::exits() const {

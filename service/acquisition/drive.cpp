@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <boost/asio/bind_executor.hpp>
+#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -60,6 +61,15 @@ asio::awaitable<void> Operation::drive() {
       case State::kCompleting:
         co_await complete_run();
         break;
+      case State::kSuspending:
+        apply(Event::kDone);
+        break;
+      case State::kSuspended:
+        co_await outlast_suspension();
+        break;
+      case State::kUnsuspending:
+        co_await resume_run();
+        break;
       case State::kStopping:
         client_.finish();
         close_run("stopped");
@@ -82,6 +92,8 @@ asio::awaitable<void> Operation::drive() {
         apply(Event::kDone);
         break;
       case State::kComplete:
+      case State::kStopped:
+      case State::kAborted:
       case State::kHeld:
         // A finished or interrupted run stays to be read while the link comes and goes.
         if (client_.connected() || (status_.state == State::kHeld && !interrupted_)) {
@@ -109,12 +121,22 @@ asio::awaitable<PlanOutcome> Operation::plan_recipe(std::string name) {
 
 asio::awaitable<bool> Operation::plan() {
   planning_ = planning_problem(cell_, run_->recipe());
-  const PlanOutcome outcome = co_await plan_recipe(run_->recipe().name);
+  const std::string recipe = run_->recipe().name;
+  const State state = status_.state;
+  // A stop does not wait for the planner: its answer comes, to be used another time.
+  if (!planned(recipe)) asio::co_spawn(executor_, plan_recipe(recipe), [this](auto&&...) { wake_.cancel(); });
+  while (!planned(recipe) && status_.state == state) co_await wait_for_wake(1h);
+  if (status_.state != state) co_return false;
+  const PlanOutcome outcome = *planned(recipe);
   if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) {
     raise({FaultCode::kRecipeUnreachable, refusal->message}, Event::kAbortFault);
     co_return false;
   }
   const Plan& plan = *std::get<std::shared_ptr<const Plan>>(outcome);
+  if (const auto invalid = plan_fault(plan.touches.touches)) {
+    raise(*invalid, Event::kAbortFault);
+    co_return false;
+  }
   run_->set_plan(plan.touches);
   try {
     store_.set_plan(run_->id(), run_->touches_total(), plan.id, plan.document);
@@ -144,10 +166,30 @@ asio::awaitable<void> Operation::resume_run() {
   if (permitted) apply(Event::kDone);
 }
 
+/// Until what keeps the arm waiting has passed; nothing moves here.
+asio::awaitable<void> Operation::outlast_suspension() {
+  const auto is_back = [this] {
+    const auto state = client_.latest_state();
+    return state && state->monitor_speed_percent == 100;
+  };
+  while (status_.state == State::kSuspended && !is_back()) co_await wait_for_wake(1s);  // each state wakes
+  if (status_.state != State::kSuspended) co_return;
+  status_.fault.reset();
+  apply(Event::kDone);
+}
+
 /// One touch. The arm does not wait for arithmetic: what the touch before tells and the way to the touch
 /// behind are worked out while it moves.
 asio::awaitable<void> Operation::make_next_touch() {
   held_by_ = HeldBy::kNothing;
+  if (misfit_) {
+    co_await touch_misfit_again();
+    co_return;
+  }
+  if (reference_due()) {
+    co_await touch_reference();
+    co_return;
+  }
   if (!run_->next()) {
     apply(Event::kDone);
     co_return;
@@ -175,7 +217,7 @@ asio::awaitable<void> Operation::make_next_touch() {
     open_touch_.reset();
     const OutcomeFault refused = fault_of(*rejected);
     held_by_ = HeldBy::kTouch;
-    raise(refused.fault, refused.holds ? Event::kHoldFault : Event::kAbortFault);
+    raise(refused.fault, refused.event());
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
     take_contact(touch, reply, *result);
   }  // a lost link has been told by lose()
@@ -190,30 +232,16 @@ void Operation::identify() {
 /// A contact counts once it is stored; only then may the controller forget it.
 void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::TouchReply& reply,
                              const cs8::TouchResult& result) {
-  if (const auto fault = fault_of(result.outcome, result.phase, result.error_number)) {
-    acknowledge(reply.sequence);
-    missed_ = result.outcome == cs8::Outcome::kNoContact;
-    held_by_ = HeldBy::kTouch;
-    if (result.outcome == cs8::Outcome::kCollision) forget_made();  // what was known of the arm may be wrong
-    raise(fault->fault, fault->holds ? Event::kHoldFault : Event::kAbortFault);
-    return;
-  }
-  if (result.outcome != cs8::Outcome::kContact) {
-    acknowledge(reply.sequence);
-    expect_stop(result.outcome);
-    return;
-  }
-  if (const auto why = implausible(cell_, planned, result)) {
-    acknowledge(reply.sequence);
-    raise({FaultCode::kImplausibleTouch, *why}, Event::kAbortFault);
-    return;
-  }
+  if (!accept(planned, reply.sequence, result, HeldBy::kTouch)) return;
+  const calib::PlannedTouch* of_plan = run_->next();
+  if (of_plan) note_reference_place(*of_plan, result);
   if (!keep_touch(planned, result)) return;
   acknowledge(reply.sequence);
   missed_ = false;
   standing_ = planned.clear_joints;
   // What comes next was aimed before this was known; it is aimed again first.
   if (is_surprise(from_wire(result.contact))) ahead_.reset();
+  watch_fit();
 }
 
 /// A command that came neither to its end nor to a fault was stopped, as somebody asked; nobody else may.
@@ -296,6 +324,9 @@ asio::awaitable<void> Operation::complete_run() {
   if (result.status != calib::IdentificationStatus::kConverged) {
     status_.fault = Fault{FaultCode::kNotIdentifiable, result.message};
   }
+  if (const auto bias = face_warning(result, cell_.acceptance.lack_of_fit_p_min)) warn(*bias);
+  if (run_->skipped_count() > 0)
+    warn({FaultCode::kTouchesLeftOut, fmt::format("{} by a person", run_->skipped_count())});
   client_.finish();
   close_run("complete");
   apply(Event::kDone);

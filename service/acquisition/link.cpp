@@ -58,8 +58,8 @@ asio::awaitable<void> Operation::reset() {
     co_await connect();
     co_return;
   }
-  if (open_touch_) {
-    co_await settle_open_command(open_touch_->sequence);
+  if (open_touch_ || unsettled_sequence_ != 0) {
+    co_await settle_open_command(open_touch_ ? open_touch_->sequence : unsettled_sequence_);
   } else if (unmet_preconditions().empty()) {
     apply(Event::kDone);
   } else {
@@ -70,6 +70,7 @@ asio::awaitable<void> Operation::reset() {
 /// Tries until there is a link or the state changes. Nothing moves by it.
 asio::awaitable<void> Operation::connect() {
   const State state = status_.state;
+  const bool waits_for_reset = state == State::kAborted || state == State::kStopped;
   for (auto pause = std::chrono::milliseconds(kFirstPause); status_.state == state && !shutting_down_;
        pause = std::min(2 * pause, std::chrono::milliseconds(kLongestPause))) {
     const auto look = co_await look_up(executor_, endpoint_, cell_.deadlines.connect);
@@ -85,15 +86,21 @@ asio::awaitable<void> Operation::connect() {
     }
     if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
       session_ = welcome->session;
-      if (status_.fault && is_link_fault(status_.fault->code)) status_.fault.reset();
+      overruns_.reset();
+      // A fault that ended a run stays until somebody has read it.
+      if (status_.fault && is_link_fault(status_.fault->code) && state != State::kAborted)
+        status_.fault.reset();
       if (state == State::kHeld && interrupted_ && !status_.fault)
         status_.fault = Fault{FaultCode::kDaemonRestarted, {}};
       publish();
-      if (welcome->open_sequence != 0) co_await settle_open_command(welcome->open_sequence);
+      unsettled_sequence_ = welcome->open_sequence;
+      if (unsettled_sequence_ != 0 && !waits_for_reset) co_await settle_open_command(unsettled_sequence_);
       co_return;
     }
     const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
-    if (!status_.fault || status_.fault->message() != fault.message()) raise(fault, link_down());
+    const bool keeps_fault = waits_for_reset && status_.fault;
+    if (!keeps_fault && (!status_.fault || status_.fault->message() != fault.message()))
+      raise(fault, link_down());
     if (status_.state == state && !shutting_down_) co_await wait_for_wake(pause);
   }
 }
@@ -105,8 +112,8 @@ asio::awaitable<void> Operation::settle_open_command(std::uint32_t sequence) {
   if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
   const auto* result = std::get_if<cs8::TouchResult>(&reply);
   const bool ours = open_touch_ && open_touch_->session == session_ && open_touch_->sequence == sequence;
-  if (result && ours && result->outcome == cs8::Outcome::kContact &&
-      !implausible(cell_, open_touch_->planned, *result)) {
+  if (result && ours &&
+      judge_touch(cell_, open_touch_->planned, *result, {}).next == TouchJudgement::Next::kKeep) {
     spdlog::info("run {}: touch {} had been made when the run ended", run_->id(), run_->touches_done() + 1);
     if (!keep_late_touch(open_touch_->planned, *result)) {
       if (!run_open_) enter(State::kStopped);  // it waits at the controller until it can be stored
@@ -118,6 +125,7 @@ asio::awaitable<void> Operation::settle_open_command(std::uint32_t sequence) {
 
 void Operation::acknowledge(std::uint32_t sequence) {
   client_.acknowledge(sequence);
+  if (unsettled_sequence_ == sequence) unsettled_sequence_ = 0;
   open_touch_.reset();
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cs8_protocol/names.hpp"
+#include "service/acquisition/touch_command.hpp"
 #include "service/http/result_view.hpp"
 #include "service/store/fault_log.hpp"
 #include "service/traceability.hpp"
@@ -43,6 +44,8 @@ FaultCode fault_code_of(cs8::LinkErrorKind kind) {
     case cs8::LinkErrorKind::kHandshakeTimeout:
     case cs8::LinkErrorKind::kNotConnected:
       return FaultCode::kControllerUnreachable;
+    case cs8::LinkErrorKind::kUnanswered:
+      return FaultCode::kAnswerMissing;
     default:
       return FaultCode::kLinkLost;
   }
@@ -56,6 +59,7 @@ bool is_link_fault(FaultCode code) {
     case FaultCode::kControllerIncompatible:
     case FaultCode::kProtocolError:
     case FaultCode::kLinkLost:
+    case FaultCode::kAnswerMissing:
       return true;
     default:
       return false;
@@ -186,7 +190,17 @@ void Operation::hear(const cs8::State& state) {
   // The two inputs of a probe may change up to 20 ms apart, the time between two states.
   inputs_disagree_count_ = cs8::probe_inputs(state.flags).agree() ? 0 : inputs_disagree_count_ + 1;
   if (status_.controller != controller_view()) publish();
-  if (status_.state == State::kResetting || status_.waiting_for) wake_.cancel();
+  const bool watched = status_.state == State::kResetting || status_.state == State::kSuspended;
+  if (watched || status_.waiting_for) wake_.cancel();
+  if (is_active(status_.state) && overruns_ && state.overruns > *overruns_)
+    warn({FaultCode::kControllerOverruns, fmt::format("{} since its start", state.overruns)});
+  overruns_ = state.overruns;
+  constexpr double kMovedRad = 1e-3;
+  if (standing_ && status_.state == State::kExecute && state.active_sequence == 0 &&
+      (from_wire(state.joints) - *standing_).cwiseAbs().maxCoeff() > kMovedRad) {
+    standing_.reset();
+    warn({FaultCode::kArmMoved, {}});
+  }
   told_at_ = std::chrono::steady_clock::now();
   if (std::exchange(task_error_, state.task_error) != state.task_error && state.task_error != 0) {
     raise({FaultCode::kTaskFailed, fmt::format("run-time error {}", state.task_error)}, Event::kAbortFault);
@@ -196,40 +210,13 @@ void Operation::hear(const cs8::State& state) {
 void Operation::lose(const cs8::LinkError& error) {
   if (shutting_down_) return;
   standing_.reset();
-  raise(link_fault(error), link_down());
+  const bool is_over = status_.state == State::kAborted || status_.state == State::kStopped;
+  if (is_over && status_.fault) {
+    publish();  // the fault that is there stays until somebody has read it
+  } else {
+    raise(link_fault(error), link_down());
+  }
   wake_.cancel();
-}
-
-std::vector<Unmet> Operation::unmet_preconditions() const {
-  if (!client_.connected()) {
-    return {{"controller_not_connected",
-             status_.fault ? status_.fault->message() : "there is no link to the controller yet"}};
-  }
-  const auto state = client_.latest_state();
-  if (!state) return {{"controller_state_unknown", "the controller has not told its state yet"}};
-  std::vector<Unmet> unmet;
-  const auto flag = [&](cs8::StateFlag bit) { return (state->flags & bit) != 0; };
-  if (state->emergency_stop != 0)
-    unmet.push_back({"emergency_stop", "release and acknowledge the emergency stop"});
-  if (state->mode != cs8::WorkingMode::kRemote)
-    unmet.push_back({"not_remote", "turn the controller to remote mode"});
-  if (!flag(cs8::kPowered)) unmet.push_back({"not_powered", "switch the arm's power on"});
-  if (flag(cs8::kHeld)) unmet.push_back({"hold", "release the hold on the pendant"});
-  if (!flag(cs8::kArmCalibrated))
-    unmet.push_back({"not_calibrated", "let the controller find its joint zeros"});
-  // Behind a search that was broken off the face may hold the stylus: the run's first motion takes it off.
-  if (flag(cs8::kProbeTouched) && !flag(cs8::kRetractDue))
-    unmet.push_back({"probe_touched", "the probe reads touched: free it or check its cable"});
-  if (state->task_error != 0) {
-    unmet.push_back(
-        {"task_error",
-         fmt::format("restart the controller's application: a task ended with error {}", state->task_error)});
-  }
-  if (state->monitor_speed_percent != 100) {
-    unmet.push_back({"monitor_speed",
-                     fmt::format("set the monitor speed from {} to 100 %", state->monitor_speed_percent)});
-  }
-  return unmet;
 }
 
 std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
@@ -251,14 +238,16 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
   }
   if (shutting_down_) return Refusal{.detail = "the daemon is ending"};
   if (is_active(status_.state)) {
-    return Refusal{.detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->id() : 0)};
+    return Refusal{.detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->id() : 0),
+                   .code = FaultCode::kRunActive};
   }
-  if (auto unmet = unmet_preconditions(); !unmet.empty()) {
+  if (auto unmet = unmet_for(recipe); !unmet.empty()) {
     return Refusal{
         .kind = Refusal::Kind::kPreconditions, .detail = "the cell is not ready", .unmet = std::move(unmet)};
   }
   if (!after_command(status_.state, Command::kStart)) {
-    return Refusal{.detail = fmt::format("a run cannot start in the state {}", state_name(status_.state))};
+    return Refusal{.detail = fmt::format("a run cannot start in the state {}", state_name(status_.state)),
+                   .code = FaultCode::kNotInThisState};
   }
   std::int64_t id = 0;
   try {
@@ -277,7 +266,7 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
   run_.emplace(id, tip_regions_, found->second, now_text());
   run_open_ = true;
   run_finished_ = false;
-  held_by_ = HeldBy::kNothing;
+  begin_checks();
   stored_changes_ = 0;
   status_.fault.reset();
   status_.verdict = Verdict::kNone;
@@ -292,12 +281,14 @@ std::optional<Refusal> Operation::command(Command command, std::optional<std::in
   const auto next = after_command(status_.state, command);
   if (!next) {
     return Refusal{.detail = fmt::format("{} is not possible in the state {}", command_name(command),
-                                         state_name(status_.state))};
+                                         state_name(status_.state)),
+                   .code = FaultCode::kNotInThisState};
   }
   if (auto refusal = objection(command)) return refusal;
   spdlog::info("command {}", command_name(command));
+  const State state = status_.state;
   heed(command);
-  enter(*next);
+  if (status_.state == state) enter(*next);
   return std::nullopt;
 }
 

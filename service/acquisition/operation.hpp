@@ -21,6 +21,8 @@
 #include "service/acquisition/readiness.hpp"
 #include "service/acquisition/state_machine.hpp"
 #include "service/acquisition/status.hpp"
+#include "service/acquisition/touch_judgement.hpp"
+#include "service/acquisition/touched_again.hpp"
 #include "service/plan.hpp"
 #include "service/run.hpp"
 #include "service/store/touch_store.hpp"
@@ -38,7 +40,8 @@ struct Refusal {
   enum class Kind { kState, kPreconditions, kUnknownRecipe, kNotThisRun, kOtherKey };
   Kind kind = Kind::kState;
   std::string detail;
-  std::vector<Unmet> unmet;  // all of them at once
+  std::vector<Unmet> unmet;       // all of them at once
+  std::optional<FaultCode> code;  // its entry in the fault table
 };
 
 /// What a run is asked for with.
@@ -127,6 +130,7 @@ class Operation {
   void hear(const cs8::State& state);
   void hear_permit(const cs8::Permit& permit);
   void lose(const cs8::LinkError& error);
+  [[nodiscard]] std::vector<Unmet> unmet_for(const std::string& recipe) const;
   [[nodiscard]] ControllerView controller_view() const;
   [[nodiscard]] std::string now_text() const;
 
@@ -151,6 +155,7 @@ class Operation {
   boost::asio::awaitable<void> reset();
   boost::asio::awaitable<void> start_run();
   boost::asio::awaitable<void> resume_run();
+  boost::asio::awaitable<void> outlast_suspension();
   boost::asio::awaitable<bool> plan();
   boost::asio::awaitable<void> make_next_touch();
   void identify();
@@ -179,9 +184,29 @@ class Operation {
     calib::JointVector planned = calib::JointVector::Zero();  // the joints of the planned touch: which it is
   };
 
+  /// What keeps a run on hold: a person's pause (nothing), a touch that was not made, of the plan or at the
+  /// reference place, one that the others contradict, the drift of the reference or the wrong stylus.
+  enum class HeldBy { kNothing, kTouch, kReference, kMisfit, kDrift, kStylus };
+
+  // touches judged, and made beside the plan (touched_again.cpp)
+  void warn(Fault fault);
+  void begin_checks();
+  bool accept(const calib::PlannedTouch& touch, std::uint32_t sequence, const cs8::TouchResult& result,
+              HeldBy held_by);
+  [[nodiscard]] double height_m(int face, const calib::JointVector& joints) const;
+  boost::asio::awaitable<std::optional<cs8::TouchResult>> touch_apart(calib::AimedTouch aimed,
+                                                                      HeldBy held_by);
+  void note_reference_place(const calib::PlannedTouch& planned, const cs8::TouchResult& result);
+  [[nodiscard]] bool reference_due() const;
+  boost::asio::awaitable<void> touch_reference();
+  void judge_reference(const calib::JointVector& joints);
+  void watch_fit();
+  boost::asio::awaitable<void> touch_misfit_again();
+  void settle_hold(Command command);
+
   // which touch comes next, aimed with what the touches before it told (aiming.cpp)
   void begin_aim();
-  void learn();
+  bool learn();
   boost::asio::awaitable<bool> prepare_touch();
   void look_ahead();
   void stop_when_good_enough(std::size_t first);
@@ -191,9 +216,6 @@ class Operation {
   [[nodiscard]] calib::TransferEnd leaving(const calib::JointVector& joints) const;
   void forget_made();
   [[nodiscard]] bool is_surprise(const calib::JointVector& contact) const;
-
-  /// What keeps a run on hold: a person's pause, or a touch that can be made again or left out.
-  enum class HeldBy { kNothing, kTouch };
 
   /// What an earlier daemon left of the run.
   struct Interrupted {
@@ -242,8 +264,15 @@ class Operation {
   /// The next touch, found while the arm makes the one before; as long as the arm is there.
   std::optional<PreparedTouch> ahead_;
   HeldBy held_by_ = HeldBy::kNothing;
-  Command answer_ = Command::kResume;  // to the hold, while the run goes on from it
-  std::uint32_t session_ = 0;          // of the controller's application
+  TouchHistory history_;
+  std::optional<ReferencePlace> reference_;
+  std::optional<Misfit> misfit_;
+  int false_trigger_count_ = 0;
+  bool stylus_allowed_ = false;            // by a person, for this run
+  std::optional<std::uint32_t> overruns_;  // of the controller's tasks, as it told
+  std::uint32_t unsettled_sequence_ = 0;   // an open command met in a state that does not settle it
+  Command answer_ = Command::kResume;      // to the hold, while the run goes on from it
+  std::uint32_t session_ = 0;              // of the controller's application
   std::optional<OpenTouch> open_touch_;
   std::chrono::steady_clock::time_point told_at_;  // when the controller told its newest state
   std::int32_t task_error_ = 0;                    // as it told then

@@ -43,6 +43,9 @@ struct Status {
   Verdict verdict = Verdict::kNone;
   ControllerView controller;
   std::optional<Fault> fault;
+  std::optional<Fault> warning;  // the newest of the run
+  /// Of the last reference touch against the first, along the face's normal; nothing before the second.
+  std::optional<double> reference_drift_m;
   std::optional<std::int64_t> last_accepted_run_id;
   std::optional<std::string> last_accepted_at;
   std::uint64_t sequence = 0;

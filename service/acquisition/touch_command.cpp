@@ -115,13 +115,19 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
       return {{FaultCode::kTouchTestMissing, {}}, true};
     case cs8::RejectReason::kTaskFailed:
       return {{FaultCode::kTaskFailed, fmt::format("run-time error {}", rejected.detail)}};
+    case cs8::RejectReason::kProbeTriggered:
+      return {{FaultCode::kProbeTriggered, {}}, true};
+    case cs8::RejectReason::kMonitorSpeed:
+      return {{FaultCode::kMonitorSpeedChanged, fmt::format("to {} %", rejected.detail)}, false, true};
+    case cs8::RejectReason::kBadField:
+    case cs8::RejectReason::kSearchTooLong:
+    case cs8::RejectReason::kSearchTooFast:
+      return {{FaultCode::kPlanInvalid, why}};
     case cs8::RejectReason::kNotRemote:
     case cs8::RejectReason::kNotPowered:
     case cs8::RejectReason::kHold:
     case cs8::RejectReason::kEmergencyStop:
     case cs8::RejectReason::kNotCalibrated:
-    case cs8::RejectReason::kProbeTriggered:
-    case cs8::RejectReason::kMonitorSpeed:
     case cs8::RejectReason::kNotPermitted:
       return {{FaultCode::kTouchRejected, why}, true};
     default:
@@ -153,9 +159,6 @@ std::optional<std::string> off_the_search(const Cell& cell, const calib::Planned
                      calib::mm_from_metres(aside), calib::mm_from_metres(along));
 }
 
-/// Two touches of one place by an arm that repeats to 0.03 mm, the first at search speed.
-constexpr double kContactSpreadMaxMetres = 1e-4;
-
 }  // namespace
 
 std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
@@ -171,10 +174,7 @@ std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTou
     return "it comes without the first of its two touches";
   const Eigen::Vector3d first_tip_m = tip_in_block_m(cell, from_wire(result.first_contact));
   if (const auto off = off_the_search(cell, planned, first_tip_m)) return "of its first touch, " + *off;
-  const double spread_m = (tip_m - first_tip_m).norm();
-  if (spread_m <= kContactSpreadMaxMetres) return std::nullopt;
-  return fmt::format("its two touches are {:.3f} mm apart, over {:.1f} mm", calib::mm_from_metres(spread_m),
-                     calib::mm_from_metres(kContactSpreadMaxMetres));
+  return std::nullopt;
 }
 
 }  // namespace cell

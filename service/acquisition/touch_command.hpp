@@ -7,6 +7,7 @@
 #include "calib_core/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "cs8_protocol/messages.hpp"
+#include "service/acquisition/state_machine.hpp"
 #include "service/faults.hpp"
 
 namespace cell {
@@ -30,15 +31,23 @@ cs8::Retract retract_command(const Cell& cell);
 struct OutcomeFault {
   Fault fault;
   bool holds = false;
+  bool suspends = false;  // the run goes on by itself once the reason is gone
+
+  [[nodiscard]] Event event() const {
+    return suspends ? Event::kSuspendFault : holds ? Event::kHoldFault : Event::kAbortFault;
+  }
 };
 std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std::int32_t error_number);
 
 /// The same of a command that was refused: it holds when a person at the cell can remove the reason.
 OutcomeFault fault_of(const cs8::Rejected& rejected);
 
+/// Two contacts of one touch by an arm that repeats to 0.03 mm, the first at search speed, lie no farther
+/// apart.
+inline constexpr double kContactSpreadMaxMetres = 1e-4;
+
 /// Why a reported contact cannot be the one that was commanded, or nothing: the nominal model's ball must be
-/// on the line from the approach posture to the search's end; where a second touch is made, both are, and
-/// close together.
+/// on the line from the approach posture to the search's end; where a second touch is made, both are.
 std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
                                        const cs8::TouchResult& result);
 

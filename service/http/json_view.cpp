@@ -73,6 +73,9 @@ std::string status_document(const Status& status) {
   document["fault_message"] = entry ? Json(status.fault->message()) : Json(nullptr);
   document["fault_robot_action"] = entry ? Json(entry->robot_action) : Json(nullptr);
   document["fault_next_step"] = entry ? Json(entry->next_step) : Json(nullptr);
+  document["warning_code"] = status.warning ? Json(describe(status.warning->code).name) : Json(nullptr);
+  document["warning_message"] = status.warning ? Json(status.warning->message()) : Json(nullptr);
+  document["reference_drift_mm"] = number_mm(status.reference_drift_m);
   document["last_accepted_run_id"] = id_or_null(status.last_accepted_run_id);
   document["last_accepted_at"] = value_or_null(status.last_accepted_at);
   document["data_age_ms"] = value_or_null(status.data_age_ms);

@@ -49,6 +49,25 @@ std::string_view kind_name(PlanChange::Kind kind) {
   return "skip";
 }
 
+/// Takes a touch out of those that count, inside the caller's transaction.
+void set_apart(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason) {
+  SQLite::Statement keep(
+      database,
+      "INSERT INTO superseded_touches(run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
+      "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, "
+      "aimed_with, reason) SELECT run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
+      "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, "
+      "aimed_with, ? FROM touches WHERE run_id = ? AND number = ?");
+  keep.bind(1, reason);
+  keep.bind(2, run_id);
+  keep.bind(3, number);
+  if (keep.exec() != 1) throw SQLite::Exception("there is no such touch to set apart");
+  SQLite::Statement remove(database, "DELETE FROM touches WHERE run_id = ? AND number = ?");
+  remove.bind(1, run_id);
+  remove.bind(2, number);
+  remove.exec();
+}
+
 }  // namespace
 
 struct TouchStore::Statements {
@@ -154,23 +173,15 @@ void TouchStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
   insert.exec();
 }
 
+void TouchStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {
+  SQLite::Transaction transaction(*database_);
+  set_apart(*database_, run_id, number, reason);
+  transaction.commit();
+}
+
 void TouchStore::replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason) {
   SQLite::Transaction transaction(*database_);
-  SQLite::Statement keep(
-      *database_,
-      "INSERT INTO superseded_touches(run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
-      "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, "
-      "aimed_with, reason) SELECT run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
-      "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, "
-      "aimed_with, ? FROM touches WHERE run_id = ? AND number = ?");
-  keep.bind(1, reason);
-  keep.bind(2, run_id);
-  keep.bind(3, again.number);
-  if (keep.exec() != 1) throw SQLite::Exception("there is no touch to replace");
-  SQLite::Statement remove(*database_, "DELETE FROM touches WHERE run_id = ? AND number = ?");
-  remove.bind(1, run_id);
-  remove.bind(2, again.number);
-  remove.exec();
+  set_apart(*database_, run_id, again.number, reason);
   append_touch(run_id, again);
   transaction.commit();
 }

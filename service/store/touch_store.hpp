@@ -132,6 +132,8 @@ class TouchStore {
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
   /// `again` takes the place of the touch with its number, which is kept apart.
   void replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason);
+  /// The touch counts no more and is kept apart.
+  void withdraw_touch(std::int64_t run_id, int number, const std::string& reason);
   void append_reference(std::int64_t run_id, const ReferenceTouch& touch);
   void append_resumption(std::int64_t run_id, const std::string& at, int touches_done);
   void finish_run(std::int64_t run_id, const RunEnd& end);

@@ -208,6 +208,8 @@ TEST_F(FailingStore, AnEndThatCannotBeWrittenIsToldAndNotAccepted) {
   EXPECT_NE(loop_.status().last_accepted_run_id, id);
   expect_touches_once(loop_, id, kShortTouchCount);
   disk_.relieve();
+  EXPECT_THROW(loop_.start(), std::runtime_error) << "nobody has read the fault";
+  loop_.command(Command::kAcknowledge);
   const std::int64_t next = loop_.start();
   loop_.run_until_over();
   EXPECT_EQ(loop_.status().verdict, cell::Verdict::kAccepted);

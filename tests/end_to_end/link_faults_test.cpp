@@ -116,8 +116,8 @@ TEST(LinkFaults, AnAnswerToNothingThatWasAskedEndsTheRunAtAnyTouch) {
 }
 
 TEST(LinkFaults, AnAnswerThatDoesNotComeEndsTheRun) {
-  meet_at_touches({Fault::kDrop, MessageType::kTouch, "link_lost", Reached::kNotMade}, {1});
-  meet_at_touches({Fault::kDrop, MessageType::kTouchResult, "link_lost", Reached::kUntold}, {17});
+  meet_at_touches({Fault::kDrop, MessageType::kTouch, "answer_missing", Reached::kNotMade}, {1});
+  meet_at_touches({Fault::kDrop, MessageType::kTouchResult, "answer_missing", Reached::kUntold}, {17});
 }
 
 TEST(LinkFaults, AControllerThatDoesNotForgetAResultRefusesTheNextTouchAndIsMetAnew) {
