@@ -161,7 +161,8 @@ asio::awaitable<void> Operation::start_run() {
 asio::awaitable<void> Operation::resume_run() {
   standing_.reset();  // on hold the arm may have been moved by hand
   const bool resumable = co_await make_resumable();
-  if (!resumable || status_.state != State::kUnholding) co_return;
+  const bool goes_on = status_.state == State::kUnholding || status_.state == State::kUnsuspending;
+  if (!resumable || !goes_on) co_return;
   const bool permitted = co_await get_permission();
   if (permitted) apply(Event::kDone);
 }
