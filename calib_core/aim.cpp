@@ -17,7 +17,6 @@ constexpr double kSigmas = 3.0;
 constexpr double kTouchNoiseMetres = 1e-4;
 constexpr double kErrorShare = 1.0 / 6.0;  // of the nominal miss; per metre for an angle
 constexpr double kPlaceShare = 1.0 / 2.0;
-constexpr double kPlaceLeverMetres = 0.6;  // from the block's middle to where a turn of the block is felt
 
 constexpr double kGateSigmas = 5.0;
 constexpr double kTakeBackSigmas = 3.0;

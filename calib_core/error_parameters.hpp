@@ -36,6 +36,10 @@ using ErrorVector = Eigen::Matrix<double, kErrorParameterCount, 1>;
 /// promises anything.
 using ErrorTolerances = std::array<std::optional<double>, kErrorParameterCount>;
 
+/// How far from the block's middle the touches lie, about: what a turn of the block's place moves by as much as
+/// it is displaced.
+inline constexpr double kPlaceLeverMetres = 0.6;
+
 /// All that is identified of an arm: the candidates, then the compliance (radians per newton metre) of joints
 /// 2 and 3, which carry the arm's weight.
 inline constexpr int kComplianceCount = 2;

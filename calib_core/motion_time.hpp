@@ -29,6 +29,11 @@ inline constexpr double kProbeSteadySeconds = 0.020;
 /// From the probe's edge to the first braking.
 inline constexpr double kStopLatencySeconds = 0.008;
 
+/// How far an arm that a contact stops goes on: v t + v^2 / 2a, t until it begins to brake.
+constexpr double stop_distance_m(double speed_m_s) {
+  return speed_m_s * kStopLatencySeconds + speed_m_s * speed_m_s / (2.0 * kToolAccelerationMetresPerSecond2);
+}
+
 /// Predicted time of a straight joint move from standstill to standstill: a trapezoid in which the tool
 /// centre is nowhere faster than `tool_m_s` and no joint faster than its own limit. Without settling.
 double move_time_s(const PreparedModel& model, const MotionLimits& limits, const JointVector& from,

@@ -94,14 +94,6 @@ struct Speeds {
   [[nodiscard]] double contact_m_s() const { return second ? second->speed_m_s : search_m_s; }
 };
 
-/// An arm that a contact stops goes on for v t + v^2 / 2a: t until it begins to brake, then this
-/// deceleration.
-inline constexpr double kStopLatencySeconds = 0.008;
-inline constexpr double kStopDecelerationMetresPerSecond2 = 0.5;
-constexpr double stop_distance_m(double speed_m_s) {
-  return speed_m_s * kStopLatencySeconds + speed_m_s * speed_m_s / (2.0 * kStopDecelerationMetresPerSecond2);
-}
-
 struct Deadlines {
   std::chrono::milliseconds connect{};
   std::chrono::milliseconds heartbeat_timeout{};  // both sides: silence longer than this is a lost link
@@ -136,10 +128,6 @@ struct Cell {
   /// All that may collide: the arm's and the probe's bodies, the block's solids and the keep-out boxes.
   [[nodiscard]] calib::CollisionScene collision_scene() const;
 };
-
-/// How far from the block's middle the touches lie, about: what a turn of the block moves by as much as
-/// nominal_miss_m.
-inline constexpr double kPlaceLeverMetres = 0.6;
 
 /// All that the touches of this cell are measured against. A block of unknown temperature is taken for one of
 /// 20 degrees C, exactly.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "calib_core/motion_time.hpp"
 #include "calib_core/units.hpp"
 #include "config/arm_file.hpp"
 #include "config/block_file.hpp"
@@ -96,7 +97,7 @@ void read_touch_conditions(const JsonObject& object, Cell& cell) {
   cell.stylus_tilt_max_rad = calib::radians_from_degrees(object.at("stylus_tilt_max_deg").number(kTilts));
   cell.touch_noise_m = object.metres("touch_noise", kNotNegative);
   cell.unknown_place_std = {.length_m = cell.nominal_miss_m,
-                            .angle_rad = cell.nominal_miss_m / kPlaceLeverMetres};
+                            .angle_rad = cell.nominal_miss_m / calib::kPlaceLeverMetres};
   if (const auto place = object.find("unknown_place_std")) {
     const JsonObject given = place->object({"length_mm", "angle_rad"});
     cell.unknown_place_std = {.length_m = given.metres("length", kPositive),
@@ -136,8 +137,9 @@ constexpr NumberRange kBackoffs{.min = 0.5, .max = 5.0};  // mm
 /// A speed at which the probe may touch something: the arm stops within half of what the stylus may bend.
 double touching_speed_m_s(const JsonValue& value, const NumberRange& range_mm_s, const Probe& probe) {
   const double speed_m_s = metres_from_mm(value.number(range_mm_s));
-  if (stop_distance_m(speed_m_s) > probe.overtravel_m / 2) {
-    value.fail("the arm goes on for " + plain_number(calib::mm_from_metres(stop_distance_m(speed_m_s))) +
+  if (calib::stop_distance_m(speed_m_s) > probe.overtravel_m / 2) {
+    value.fail("the arm goes on for " +
+               plain_number(calib::mm_from_metres(calib::stop_distance_m(speed_m_s))) +
                " mm after a contact at this speed, more than half the probe's overtravel_mm; go slower");
   }
   return speed_m_s;

@@ -57,7 +57,7 @@ TEST_F(Knowledge, ThePlaceOfTheBlockIsAsUncertainAsTheArmMayMissUnlessTheCellSay
   const calib::ErrorTolerances from_miss = prior_tolerances(miss);
   for (const char* name : {"r0", "d1", "r1"}) EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m);
   for (const char* name : {"theta0", "alpha1", "theta1"})
-    EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m / kPlaceLeverMetres);
+    EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m / calib::kPlaceLeverMetres);
   EXPECT_DOUBLE_EQ(tolerance(from_miss, "d3"), 0.3e-3);  // the maker's
   edit(kCell, [](json& cell) {
     cell["unknown_place_std"] = {{"length_mm", 5}, {"angle_rad", 0.004}};

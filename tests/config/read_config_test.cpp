@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "calib_core/motion_time.hpp"
 #include "calib_core/units.hpp"
 #include "config/truth.hpp"
 #include "copied_config.hpp"
@@ -271,12 +272,12 @@ TEST_F(ReadConfig, ASpeedAtWhichTheStylusWouldBendTooFarIsRefused) {
   const auto with_overtravel = [&](double overtravel_m) {
     edit(kProbe, [&](json& document) { document["overtravel_mm"] = calib::mm_from_metres(overtravel_m); });
   };
-  with_overtravel(2.001 * stop_distance_m(speeds.approach_m_s));
+  with_overtravel(2.001 * calib::stop_distance_m(speeds.approach_m_s));
   EXPECT_EQ(read().speeds.approach_m_s, speeds.approach_m_s);
-  with_overtravel(1.999 * stop_distance_m(speeds.approach_m_s));
+  with_overtravel(1.999 * calib::stop_distance_m(speeds.approach_m_s));
   EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/speeds/approach_mm_s");
   edit(kCell, [](json& document) { document["speeds"]["approach_mm_s"] = 1; });
-  with_overtravel(1.999 * stop_distance_m(speeds.search_m_s));
+  with_overtravel(1.999 * calib::stop_distance_m(speeds.search_m_s));
   const ConfigError error = error_of([&] { static_cast<void>(read()); });
   EXPECT_EQ(error.pointer(), "/speeds/search_mm_s");
   EXPECT_THAT(error.message(), HasSubstr("overtravel_mm; go slower"));

@@ -26,7 +26,7 @@ constexpr double kBeyondShareMax = 0.003;
 cell::Cell cell_that_misses_much() {
   cell::Cell cell = shipped_cell("demo");
   cell.nominal_miss_m = kNominalMissMetres;
-  cell.unknown_place_std = {kNominalMissMetres, kNominalMissMetres / cell::kPlaceLeverMetres};
+  cell.unknown_place_std = {kNominalMissMetres, kNominalMissMetres / kPlaceLeverMetres};
   return cell;
 }
 
