@@ -106,6 +106,7 @@ asio::awaitable<std::optional<cs8::TouchResult>> Operation::touch_apart(calib::A
   made_way_.insert(made_way_.end(), {touch.approach_joints, touch.search_end_joints});
   ahead_.reset();
   standing_.reset();
+  history_.last_contact.reset();  // this is made to be where another was
   auto answer = client_.touch(touch_command(cell_, touch, ready->via));
   identify();
   const cs8::TouchReply reply = co_await std::move(answer);

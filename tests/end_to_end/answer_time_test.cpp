@@ -109,7 +109,8 @@ TEST(FiguresOfTheAnswer, EveryTouchIsFollowedByTheNextCommandAndTheTimeIsTold) {
     loop.run_until_over();
     ASSERT_EQ(loop.status().state, cell::State::kComplete) << loop.fault_name();
     std::vector<double> answers_ms = far_side.take_answers_ms();
-    ASSERT_EQ(answers_ms.size(), static_cast<std::size_t>(kTouchCount - 1));
+    const std::size_t again = loop.store().references(run + 1).size();
+    ASSERT_EQ(answers_ms.size(), kTouchCount + again - 1);
     std::ranges::sort(answers_ms);
     medians_ms.push_back(answers_ms[answers_ms.size() / 2]);
     worst_percentiles_ms.push_back(high_percentile(answers_ms));

@@ -39,6 +39,9 @@ const Shape kQuietStatus{{"state", "string"},
                          {"fault_message", "null"},
                          {"fault_robot_action", "null"},
                          {"fault_next_step", "null"},
+                         {"warning_code", "null"},
+                         {"warning_message", "null"},
+                         {"reference_drift_mm", "null"},
                          {"last_accepted_run_id", "null"},
                          {"last_accepted_at", "null"},
                          {"data_age_ms", "null"},
@@ -73,6 +76,8 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.controller.permit = "awaited";
   busy.controller.probe = "free";
   busy.fault = Fault{FaultCode::kNoContact, ""};
+  busy.warning = Fault{FaultCode::kTouchOutlier, "touch 3"};
+  busy.reference_drift_m = 2e-5;
   busy.last_accepted_run_id = 6;
   busy.last_accepted_at = "then";
   busy.data_age_ms = 12;
