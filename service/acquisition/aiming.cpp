@@ -120,7 +120,7 @@ std::optional<Operation::PreparedTouch> Operation::prepared(std::size_t index,
 
 /// True when the next touch is ready to be commanded; false when there is none or another state was entered.
 asio::awaitable<bool> Operation::prepare_touch() {
-  if (standing_ && ahead_) co_return true;
+  if (standing_ && ahead_ && ahead_->from == *standing_) co_return true;
   const auto from = co_await standing_joints();
   if (status_.state != State::kExecute) co_return false;
   if (!from) {

@@ -197,6 +197,7 @@ class Operation {
   boost::asio::awaitable<std::optional<cs8::TouchResult>> touch_apart(calib::AimedTouch aimed,
                                                                       HeldBy held_by);
   void note_reference_place(const calib::PlannedTouch& planned, const cs8::TouchResult& result);
+  void restore_reference();
   [[nodiscard]] bool reference_due() const;
   boost::asio::awaitable<void> touch_reference();
   void judge_reference(const calib::JointVector& joints);

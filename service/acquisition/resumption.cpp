@@ -152,6 +152,7 @@ asio::awaitable<bool> Operation::plan_again() {
   stored_changes_ = run_->plan_changes().size();
   begin_aim();
   recall_aim();
+  restore_reference();
   co_return true;
 }
 

@@ -5,6 +5,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -104,7 +105,6 @@ asio::awaitable<std::optional<cs8::TouchResult>> Operation::touch_apart(calib::A
   const calib::PlannedTouch touch = made_->touch;
   made_way_ = calib::whole_way(*from, ready->via, touch.clear_joints);
   made_way_.insert(made_way_.end(), {touch.approach_joints, touch.search_end_joints});
-  ahead_.reset();
   standing_.reset();
   history_.last_contact.reset();  // this is made to be where another was
   auto answer = client_.touch(touch_command(cell_, touch, ready->via));
@@ -131,11 +131,29 @@ void Operation::note_reference_place(const calib::PlannedTouch& planned, const c
       .planned = planned, .first_joints = from_wire(result.contact), .aimed = {}, .reference = {}};
 }
 
+/// Where the reference was for the daemon before this one; it is touched before anything else.
+void Operation::restore_reference() {
+  const std::vector<StoredTouch>& made = run_->touches();
+  const auto first = std::ranges::find(made, calib::TouchRole::kFit, &StoredTouch::role);
+  if (first == made.end() || run_->recipe().reference_every == 0) return;
+  const calib::PlannedTouch* planned = run_->planned(static_cast<std::size_t>(first->number - 1));
+  if (!planned) return;
+  reference_ = ReferencePlace{.planned = *planned,
+                              .first_joints = from_wire(first->joints),
+                              .aimed = {},
+                              .reference = {},
+                              .due = true};
+  const std::vector<ReferenceTouch> references = store_.references(run_->id());
+  if (references.empty()) return;
+  reference_->reference = from_wire(references.front().joints);
+  reference_->count = references.back().number;
+}
+
 /// At the start, behind every so many touches, and at the end.
 bool Operation::reference_due() const {
   if (!reference_) return false;
   const int done = run_->touches_done();
-  if (reference_->count == 0) return true;
+  if (reference_->count == 0 || reference_->due) return true;
   return done != reference_->made_at && (done % run_->recipe().reference_every == 0 || !run_->next());
 }
 
@@ -156,6 +174,7 @@ asio::awaitable<void> Operation::touch_reference() {
   const int face = reference_->planned.face;
   ++reference_->count;
   reference_->made_at = run_->touches_done();
+  reference_->due = false;
   const bool is_first = !reference_->reference;
   if (is_first) reference_->reference = joints;
   reference_->drift_m = height_m(face, joints) - height_m(face, *reference_->reference);
@@ -255,6 +274,7 @@ void Operation::settle_hold(Command command) {
   if (held_by == HeldBy::kReference && command == Command::kSkip) {
     reference_->made_at = run_->touches_done();
     reference_->count = std::max(reference_->count, 1);
+    reference_->due = false;
   }
   if (held_by == HeldBy::kStylus) stylus_allowed_ = command != Command::kRetry;
   if (held_by == HeldBy::kMisfit && command == Command::kResume) {

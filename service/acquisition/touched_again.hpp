@@ -18,6 +18,7 @@ struct ReferencePlace {
   int made_at = -1;                             // touches done when the last one was made
   double drift_m = 0.0;                         // of the last one
   double allowed_drift_m = 0.0;                 // what a person has let pass
+  bool due = false;  // whatever is done: a daemon that was started anew looks again
 };
 
 /// The last touch, which the others contradict, until it is known what to think of it.
