@@ -43,9 +43,9 @@ std::optional<Refusal> Operation::objection(Command command) const {
     case Command::kTouchTest:
       return refuse_touch_test(status_);
     case Command::kTake:
-      return Refusal{.detail = "this run touches by itself: there is nothing to take"};
+      return Refusal{.detail = "this version touches by itself: there is nothing to take"};
     case Command::kLocate:
-      return Refusal{.detail = "this cell's block stands where its arm file says"};
+      return Refusal{.detail = "this version does not locate the block: its place is what the cell's file says"};
     default:
       return std::nullopt;
   }

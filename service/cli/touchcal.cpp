@@ -25,7 +25,7 @@ const std::map<std::string, std::string> kCellCommands{
     {"skip", "leave the touch out that holds the run; the run is then incomplete"},
     {"confirm", "tell what has to be confirmed at the cell"},
     {"touch-test", "ask for the test of the stylus by hand"},
-    {"take", "take the touch that the arm stands at (locating the block, guided touching)"},
+    {"take", "take the touch that the arm stands at"},
 };
 
 std::string environment_or(const char* name, const std::string& otherwise) {
@@ -157,9 +157,6 @@ class CommandLine {
     run->add_option("--operator", run_.operator_name, "who answers for the run; kept with its result");
     run->add_option("--temperature", run_.block_temperature_c,
                     "of the block as measured now, degrees C; default: the block's file");
-    run->add_flag_callback(
-        "--guided", [this] { run_.touching = "guided"; },
-        "the arm is jogged to each touch by hand; the daemon says where");
   }
 
   void add_completion() {

@@ -105,7 +105,6 @@ json run_body(const RunArguments& arguments) {
   }
   if (!arguments.operator_name.empty()) body["operator"] = arguments.operator_name;
   if (arguments.block_temperature_c) body["block_temperature_c"] = *arguments.block_temperature_c;
-  if (!arguments.touching.empty()) body["touching"] = arguments.touching;
   return body;
 }
 
