@@ -116,13 +116,11 @@ calib::KnownLength length_from_json(const JsonValue& value, const Block& block) 
 }
 
 void read_temperature(const JsonObject& object, Block& block) {
-  constexpr std::string_view kEachRun = "each_run";
   constexpr NumberRange kRoomTemperatures{kBlockTemperatureMinC, kBlockTemperatureMaxC};
   constexpr NumberRange kKelvins{0.0, 100.0};
   constexpr NumberRange kExpansions{0.0, 1e-3};  // zinc's is 4e-5
   if (const auto temperature = object.find("temperature_c")) {
-    const bool told_with_each_run = temperature->is_text() && temperature->text() == kEachRun;
-    if (!told_with_each_run) block.temperature_c = temperature->number(kRoomTemperatures);
+    block.temperature_c = temperature->number(kRoomTemperatures);
     block.std_temperature_k = object.at("std_temperature_k").number(kKelvins);
     block.thermal_expansion_per_k = object.at("thermal_expansion_per_k").number(kExpansions);
     return;

@@ -13,8 +13,6 @@ namespace cell {
 struct Conditions {
   std::optional<std::string> operator_name;
   std::optional<std::string> config_digest;           // configuration_digest() at the daemon's start
-  std::optional<double> block_temperature_c;          // as told with the run, else the block's file
-  bool temperature_of_the_run = false;                // told with the run
   std::optional<std::string> controller_application;  // as the controller told it, name and version
   std::optional<std::uint32_t> controller_session;    // tells one start of the controller from the next
 };
@@ -25,13 +23,9 @@ struct Conditions {
 /// one cannot be read any more.
 std::optional<std::string> configuration_digest(const Cell& cell);
 
-/// Why a run cannot be made at any known temperature, and what to do: neither the block's file nor the run
-/// says how warm the block is, or the run's figure is none. Nothing when all is well. Offline, where nobody
-/// can be asked, this is a warning.
-std::optional<std::string> temperature_gap(const Cell& cell, std::optional<double> told_with_the_run_c);
-
-/// The cell with its block as warm as was told with the run.
-Cell at_temperature(Cell cell, double block_temperature_c);
+/// Why a run cannot be made at a known temperature, and what to do: the block's file does not say how warm
+/// the block is. Nothing when all is well. Offline, where nobody can be asked, this is a warning.
+std::optional<std::string> temperature_gap(const Cell& cell);
 
 /// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; null where
 /// unknown.

@@ -22,9 +22,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// More long polls than this are answered at once: they must not take every connection.
-constexpr std::size_t kWaitersMax = 128;
-
 /// How long the end waits for the controller's last answer, and for what that leaves to be stored.
 constexpr std::chrono::milliseconds kStopPatience{3000};
 constexpr std::chrono::milliseconds kClosePatience{1000};
@@ -163,7 +160,6 @@ void Operation::publish() {
       }
     }
   }
-  for (asio::steady_timer* waiter : waiters_) waiter->cancel();
   if (told_) told_(status_);
 }
 
@@ -255,7 +251,7 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
                            .started_at = now_text(),
                            .idempotency_key = request.idempotency_key,
                            .operator_name = request.operator_name,
-                           .block_temperature_c = request.block_temperature_c,
+                           .block_temperature_c = cell_.block.temperature_c,
                            .config_digest = config_digest_});
   } catch (const std::exception& error) {
     return Refusal{.kind = Refusal::Kind::kPreconditions,
@@ -322,15 +318,6 @@ std::shared_ptr<const Plan> Operation::plan_with_id(const std::string& id) const
     if (plan && (*plan)->id == id) return *plan;
   }
   return nullptr;
-}
-
-asio::awaitable<void> Operation::wait_for_change(std::uint64_t sequence, std::chrono::milliseconds wait) {
-  if (status_.sequence != sequence || waiters_.size() >= kWaitersMax) co_return;
-  asio::steady_timer timer(executor_, wait);
-  waiters_.push_back(&timer);
-  boost::system::error_code ignored;
-  co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
-  waiters_.remove(&timer);
 }
 
 asio::awaitable<void> Operation::shut_down() {

@@ -6,7 +6,6 @@
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <functional>
-#include <list>
 #include <map>
 #include <memory>
 #include <optional>
@@ -49,7 +48,6 @@ struct StartRequest {
   std::string recipe;
   std::optional<std::string> idempotency_key;
   std::optional<std::string> operator_name;
-  std::optional<double> block_temperature_c;
 };
 
 struct Started {
@@ -114,9 +112,6 @@ class Operation {
   [[nodiscard]] bool is_planning() const { return plans_under_way_ > 0; }
   /// Null when no plan made since the daemon began has this id.
   [[nodiscard]] std::shared_ptr<const Plan> plan_with_id(const std::string& id) const;
-
-  /// Returns when the status has another sequence than `sequence`, or after `wait`.
-  boost::asio::awaitable<void> wait_for_change(std::uint64_t sequence, std::chrono::milliseconds wait);
 
  private:
   // commands and status (operation.cpp)
@@ -242,7 +237,6 @@ class Operation {
   boost::asio::thread_pool planner_{1};  // planning takes seconds; the thread of the sockets must not wait
   boost::asio::steady_timer wake_;       // cancelled when drive() has something to do
   boost::asio::steady_timer ended_;      // cancelled when drive() has ended
-  std::list<boost::asio::steady_timer*> waiters_;
 
   Status status_;
   std::function<void(const Status&)> told_;  // of changes

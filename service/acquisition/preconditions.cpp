@@ -2,6 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "service/acquisition/operation.hpp"
+#include "service/traceability.hpp"
 
 namespace cell {
 namespace {
@@ -50,6 +51,7 @@ std::vector<Unmet> Operation::unmet_for(const std::string& recipe) const {
     found.push_back(unmet(FaultCode::kFaultUnacknowledged, status_.fault->message()));
   if (!cell_.probe.tip_is_contact_point && cell_.speeds.contact_m_s() != cell_.probe.calibration_speed_m_s)
     found.push_back(unmet(FaultCode::kProbeNotCalibrated));
+  if (const auto gap = temperature_gap(cell_)) found.push_back({"temperature_missing", *gap});
   const auto outcome = planned(recipe);
   const auto* refusal = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
   if (refusal) found.push_back(unmet(FaultCode::kRecipeUnreachable, refusal->message));

@@ -58,7 +58,6 @@ struct RunArguments {
   std::string recipe;                         // one of the cell's; not looked at with a plan
   std::string plan_id;                        // of a plan the daemon has made; empty for none
   std::string operator_name;                  // who answers for the run; empty for nobody named
-  std::optional<double> block_temperature_c;  // as measured now; else the block's file tells
 };
 /// Starts a run and watches it to its end.
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);

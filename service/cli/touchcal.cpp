@@ -155,8 +155,6 @@ class CommandLine {
     run->add_option("--plan", run_.plan_id, "id of a plan that the daemon has made, in place of a recipe")
         ->excludes(recipe);
     run->add_option("--operator", run_.operator_name, "who answers for the run; kept with its result");
-    run->add_option("--temperature", run_.block_temperature_c,
-                    "of the block as measured now, degrees C; default: the block's file");
   }
 
   void add_completion() {

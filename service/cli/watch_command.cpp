@@ -104,7 +104,6 @@ json run_body(const RunArguments& arguments) {
     body["plan_id"] = arguments.plan_id;
   }
   if (!arguments.operator_name.empty()) body["operator"] = arguments.operator_name;
-  if (arguments.block_temperature_c) body["block_temperature_c"] = *arguments.block_temperature_c;
   return body;
 }
 

@@ -80,8 +80,7 @@ constexpr std::string_view kStartRequest = R"({
 "properties":{
   "recipe":{"type":"string"},
   "plan_id":{"type":"string"},
-  "operator":{"type":"string","minLength":1,"maxLength":100},
-  "block_temperature_c":{"type":"number","minimum":-40,"maximum":100}},
+  "operator":{"type":"string","minLength":1,"maxLength":100}},
 "oneOf":[{"required":["recipe"]},{"required":["plan_id"]}]})";
 
 constexpr std::string_view kPlanRequest = R"({

@@ -14,8 +14,6 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kOperatorBytesMax = 100;
-constexpr double kTemperatureMinC = -40.0;  // beyond these it is another unit, or no block
-constexpr double kTemperatureMaxC = 100.0;
 
 Problem wrong(std::string pointer, std::string detail) {
   return {.kind = "body", .detail = std::move(detail), .pointer = std::move(pointer)};
@@ -44,7 +42,7 @@ std::optional<Problem> read_recipe(const json& body, const Operation& operation,
   return std::nullopt;
 }
 
-std::optional<Problem> read_conditions(const json& body, StartRequest& start) {
+std::optional<Problem> read_operator(const json& body, StartRequest& start) {
   if (const auto found = body.find("operator"); found != body.end()) {
     if (!found->is_string() || found->get_ref<const std::string&>().empty() ||
         found->get_ref<const std::string&>().size() > kOperatorBytesMax) {
@@ -52,28 +50,18 @@ std::optional<Problem> read_conditions(const json& body, StartRequest& start) {
     }
     start.operator_name = found->get<std::string>();
   }
-  if (const auto found = body.find("block_temperature_c"); found != body.end()) {
-    if (!found->is_number() || found->get<double>() < kTemperatureMinC ||
-        found->get<double>() > kTemperatureMaxC) {
-      return wrong("/block_temperature_c", fmt::format("a number from {} to {} degrees Celsius is wanted",
-                                                       kTemperatureMinC, kTemperatureMaxC));
-    }
-    start.block_temperature_c = found->get<double>();
-  }
   return std::nullopt;
 }
 
 std::variant<StartRequest, Problem> read_body(const json& body, const Operation& operation) {
   if (!body.is_object()) return wrong("", "an object is wanted");
   for (const auto& [key, value] : body.items()) {
-    if (key != "recipe" && key != "plan_id" && key != "operator" && key != "block_temperature_c") {
-      return wrong(pointer_step(key),
-                   "unknown key; 'recipe' or 'plan_id', 'operator' and 'block_temperature_c' are known");
-    }
+    if (key != "recipe" && key != "plan_id" && key != "operator")
+      return wrong(pointer_step(key), "unknown key; 'recipe' or 'plan_id' and 'operator' are known");
   }
   StartRequest start;
   if (auto problem = read_recipe(body, operation, start)) return *std::move(problem);
-  if (auto problem = read_conditions(body, start)) return *std::move(problem);
+  if (auto problem = read_operator(body, start)) return *std::move(problem);
   return start;
 }
 

@@ -59,6 +59,19 @@ TEST(CellFaults, OtherJointLimitsAreRefusedBeforeAnyMotion) {
   EXPECT_NE(loop.status().fault->message().find("joint 3"), std::string::npos);
 }
 
+TEST(CellFaults, ABlockOfUnknownTemperatureIsNotCalibratedOn) {
+  LoopbackCell loop;
+  loop.serve();
+  loop.cell.block.temperature_c.reset();
+  loop.launch();
+  loop.run_until(State::kIdle);
+  const auto answer = loop.operation().start({.recipe = kShortRecipe});
+  const auto& refusal = std::get<cell::Refusal>(answer);
+  EXPECT_EQ(refusal.kind, cell::Refusal::Kind::kPreconditions);
+  EXPECT_EQ(refusal.unmet.front().code, "temperature_missing");
+  EXPECT_TRUE(loop.store().runs(10).empty());
+}
+
 TEST(CellFaults, SearchesThatMeetNothingHoldTheRunAndCountNothing) {
   LoopbackCell loop;
   sim::Plant plant = loop.true_plant();

@@ -41,51 +41,34 @@ TEST_F(Traceability, ACellThatWasNotReadFromFilesHasNoDigest) {
 TEST_F(Traceability, TheShippedCellsKnowHowWarmTheirBlocksAre) {
   for (const char* name : {"edf", "demo"}) {
     const Cell cell = read_cell(path(std::string("cells/") + name + "/cell.json"));
-    EXPECT_EQ(temperature_gap(cell, std::nullopt), std::nullopt) << name;
+    EXPECT_EQ(temperature_gap(cell), std::nullopt) << name;
   }
 }
 
-TEST_F(Traceability, ABlockOfUnknownTemperatureWantsOneWithTheRun) {
-  edit(kBlock, [](json& block) { block["temperature_c"] = "each_run"; });
-  const Cell cell = read();
-  EXPECT_THAT(temperature_gap(cell, std::nullopt).value(), HasSubstr("block_temperature_c"));
-  EXPECT_EQ(temperature_gap(cell, 22.5), std::nullopt);
-  const double degrees_from_20 = 2.5;
-  EXPECT_DOUBLE_EQ(artefact_knowledge(at_temperature(cell, 20 + degrees_from_20)).warmer_than_20_c_k,
-                   degrees_from_20);
-  EXPECT_EQ(artefact_knowledge(at_temperature(cell, 22.5)).std_temperature_k, 1.0);
-  for (const double none : {-51.0, 101.0, std::nan("")})
-    EXPECT_THAT(temperature_gap(cell, none).value(), HasSubstr("-50 to 100"));
-}
-
-TEST_F(Traceability, ATemperatureIsOfNoUseWhereNobodyKnowsHowTheBlockGrows) {
+TEST_F(Traceability, ABlockOfUnknownTemperatureIsToldWithTheRemedy) {
   edit(kBlock, [](json& block) {
     for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
       block.erase(key);
   });
-  EXPECT_THAT(temperature_gap(read(), std::nullopt).value(), HasSubstr("temperature_c"));
-  EXPECT_THAT(temperature_gap(read(), 20.0).value(), HasSubstr("thermal_expansion_per_k"));
+  EXPECT_THAT(temperature_gap(read()).value(), HasSubstr("temperature_c"));
+  EXPECT_TRUE(conditions_json(read(), {}).at("std_temperature_k").is_null());
 }
 
 TEST_F(Traceability, ConditionsTellAllThatIsKnownAndNullForTheRest) {
   const json known = conditions_json(read(), {.operator_name = "A. Turing",
                                               .config_digest = digest(),
-                                              .block_temperature_c = 21.25,
-                                              .temperature_of_the_run = true,
                                               .controller_application = "touchcal 1.2.3",
                                               .controller_session = 7});
   EXPECT_EQ(known.at("operator"), "A. Turing");
   EXPECT_EQ(known.at("config_digest"), digest());
-  EXPECT_EQ(known.at("block_temperature_c"), 21.25);
-  EXPECT_EQ(known.at("block_temperature_source"), "run");
+  EXPECT_EQ(known.at("block_temperature_c"), json_of(path(kBlock)).at("temperature_c"));
   EXPECT_EQ(known.at("block").at("certificate").at("number"), "demo");
   EXPECT_TRUE(known.at("probe").at("certificate").is_null());
   EXPECT_EQ(known.at("versions").at("touchcal"), kVersion);
   EXPECT_EQ(known.at("versions").at("controller_application"), "touchcal 1.2.3");
   const json unknown = conditions_json(read(), {});
   ASSERT_EQ(unknown.size(), known.size());
-  for (const char* key : {"operator", "config_digest", "block_temperature_c", "block_temperature_source",
-                          "std_temperature_k", "thermal_expansion_per_k", "controller_session"})
+  for (const char* key : {"operator", "config_digest", "controller_session"})
     EXPECT_TRUE(unknown.at(key).is_null()) << key;
 }
 
