@@ -66,7 +66,12 @@ Repetition repeat_with_others(const IdentificationProblem& problem, const Identi
 
 Validation validate(const IdentificationProblem& problem, const IdentificationOptions& options,
                     std::span<const Touch> other_touches) {
-  Validation validation{.result = identify(problem, options)};
+  return validate(problem, options, identify(problem, options), other_touches);
+}
+
+Validation validate(const IdentificationProblem& problem, const IdentificationOptions& options,
+                    IdentificationResult known, std::span<const Touch> other_touches) {
+  Validation validation{.result = std::move(known)};
   IdentificationResult& result = validation.result;
   if (result.status != IdentificationStatus::kConverged) return validation;
 

@@ -43,4 +43,8 @@ struct Validation {
 Validation validate(const IdentificationProblem& problem, const IdentificationOptions& options,
                     std::span<const Touch> other_touches = {});
 
+/// The same of a result that is known already: identify()'s of this problem and these options.
+Validation validate(const IdentificationProblem& problem, const IdentificationOptions& options,
+                    IdentificationResult result, std::span<const Touch> other_touches = {});
+
 }  // namespace calib

@@ -20,7 +20,7 @@ constexpr std::string_view kResult = R"({
 "type":"object",
 "required":["schema","arm","touch_count","complete","warnings","rejected_touches","converged","iterations",
   "identifiable_count","condition_number","scaled_condition_number","singular_values","parameters",
-  "artefact_parameters","planes","planes_held_out","planes_proof","scale","tip_uncertainty","fit","verdict"],
+  "artefact_parameters","planes","planes_held_out","planes_proof","scale","touches","validation","tip_uncertainty","fit","verdict"],
 "properties":{
   "schema":{"const":"touchcal/result/1"},
   "arm":{"type":"string"},
@@ -55,6 +55,16 @@ constexpr std::string_view kResult = R"({
   "planes":{"$ref":"#/components/schemas/Distances"},
   "planes_held_out":{"$ref":"#/components/schemas/Distances"},
   "planes_proof":{"$ref":"#/components/schemas/Distances"},
+  "touches":{"type":"array","items":{"type":"object",
+    "required":["touch","plane","role","use","nominal_mm","calibrated_mm"],
+    "properties":{
+      "touch":{"type":"integer","minimum":1},
+      "plane":{"type":"integer","minimum":1},
+      "role":{"enum":["fit","held_out","proof"]},
+      "use":{"enum":["used","rejected"]},
+      "nominal_mm":{"type":["number","null"]},
+      "calibrated_mm":{"type":["number","null"]}}}},
+  "validation":{"type":["object","null"],"required":["same_touches","other_touches"]},
   "scale":{"type":"object","required":["source","std_uncertainty_ppm","warning"],"properties":{
     "source":{"enum":["block","two_lengths","prior",null]},
     "std_uncertainty_ppm":{"type":["number","null"]},

@@ -19,18 +19,6 @@ Json id_or_null(const std::optional<std::int64_t>& id) {
 /// How many touches a run makes is known once it is planned; until then there are none.
 Json count_once_planned(int touches_total) { return touches_total > 0 ? Json(touches_total) : Json(nullptr); }
 
-const char* role_name(calib::TouchRole role) {
-  switch (role) {
-    case calib::TouchRole::kFit:
-      return "fit";
-    case calib::TouchRole::kHeldOut:
-      return "held_out";
-    case calib::TouchRole::kProof:
-      return "proof";
-  }
-  return "";
-}
-
 Json run_json(const StoredRun& run) {
   return {{"id", std::to_string(run.id)},
           {"recipe", run.recipe},
@@ -45,6 +33,18 @@ Json run_json(const StoredRun& run) {
 }
 
 }  // namespace
+
+const char* role_name(calib::TouchRole role) {
+  switch (role) {
+    case calib::TouchRole::kFit:
+      return "fit";
+    case calib::TouchRole::kHeldOut:
+      return "held_out";
+    case calib::TouchRole::kProof:
+      return "proof";
+  }
+  return "";
+}
 
 std::string status_document(const Status& status) {
   Json document{{"state", state_name(status.state)},

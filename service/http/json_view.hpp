@@ -12,6 +12,9 @@
 /// nowhere else. Every function returns one JSON document as text.
 namespace cell {
 
+/// How a touch's role is called in every document.
+const char* role_name(calib::TouchRole role);
+
 std::string status_document(const Status& status);
 
 std::string run_document(const StoredRun& run);

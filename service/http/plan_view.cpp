@@ -8,6 +8,7 @@
 #include "calib_core/units.hpp"
 #include "config/joint_units.hpp"
 #include "service/http/json_figures.hpp"
+#include "service/http/json_view.hpp"
 #include "service/http/parameter_view.hpp"
 #include "service/http/result_view.hpp"
 
@@ -26,8 +27,6 @@ Json way_json(const Cell& cell, const std::vector<calib::JointVector>& way) {
   for (const calib::JointVector& joints : way) list.push_back(joints_json(cell, joints));
   return list;
 }
-
-const char* role_name(calib::TouchRole role) { return role == calib::TouchRole::kFit ? "fit" : "held_out"; }
 
 Json touch_json(const Cell& cell, const calib::PlannedTouch& touch) {
   const Eigen::Vector3d& direction = touch.search_direction;

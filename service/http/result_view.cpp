@@ -4,9 +4,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "calib_core/face_distances.hpp"
 #include "calib_core/units.hpp"
+#include "calib_core/validate.hpp"
 #include "service/http/json_figures.hpp"
+#include "service/http/json_view.hpp"
 #include "service/http/parameter_view.hpp"
+#include "service/http/validation_view.hpp"
 #include "service/verdict.hpp"
 
 namespace cell {
@@ -141,6 +145,37 @@ Json plane_json(const Cell& cell, const calib::FaceDistances& face) {
           {"calibrated_rms_mm", number_mm(face.calibrated_rms_m)}};
 }
 
+const char* use_name(const calib::IdentificationResult& result, std::size_t touch) {
+  const auto found = std::ranges::find(result.rejected, touch, &calib::RejectedTouch::touch);
+  return found == result.rejected.end() ? "used" : "rejected";
+}
+
+/// Distances run along the outward normal from the origin, as those of the planes.
+Json touches_json(const Cell& cell, const calib::IdentificationProblem& problem,
+                  const calib::IdentificationResult& result) {
+  Json list = Json::array();
+  if (result.status != calib::IdentificationStatus::kConverged) return list;
+  const auto distances = calib::touch_distances(problem, result);
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const calib::Touch& touch = problem.touches[i];
+    const double reference = cell.block.faces[static_cast<std::size_t>(touch.face)].plane.offset_m;
+    list.push_back({{"touch", i + 1},
+                    {"plane", touch.face + 1},
+                    {"role", role_name(touch.role)},
+                    {"use", use_name(result, i)},
+                    {"nominal_mm", number_mm(reference + distances[i].nominal_m)},
+                    {"calibrated_mm", number_mm(reference + distances[i].calibrated_m)}});
+  }
+  return list;
+}
+
+/// Known once the touches are complete: the repetitions are of all of them.
+Json validation_json(const calib::IdentificationProblem& problem, const calib::IdentificationOptions& options,
+                     const calib::IdentificationResult& result, bool complete, const Json& parameters) {
+  if (!complete || result.status != calib::IdentificationStatus::kConverged) return nullptr;
+  return repetitions_json(parameters, calib::validate(problem, options, result));
+}
+
 }  // namespace
 
 Json tip_json(const Cell& cell, const TipPrediction& tip) {
@@ -204,6 +239,9 @@ std::string result_document(const TipRegions& regions, const Recipe& recipe,
   document["planes"] = planes_json(cell, result.distances, calib::TouchRole::kFit);
   document["planes_held_out"] = planes_json(cell, result.distances, calib::TouchRole::kHeldOut);
   document["planes_proof"] = planes_json(cell, result.distances, calib::TouchRole::kProof);
+  document["touches"] = touches_json(cell, problem, result);
+  document["validation"] =
+      validation_json(problem, options, result, context.complete, document["parameters"]);
   document["scale"] = scale_json(result.scale);
   const TipPrediction tip = predict_tip(regions, problem, result);
   document["tip_uncertainty"] = tip_json(cell, tip);

@@ -38,22 +38,27 @@ Json repetition_json(const Json& parameters, const calib::Repetition& repetition
 
 }  // namespace
 
+Json repetitions_json(const Json& parameters, const calib::Validation& validation) {
+  Json same = repetition_json(parameters, validation.same_touches);
+  same["limit_si"] = calib::kSameTouchesErrorMax;
+  same["passed"] = validation.passed();
+  return {{"same_touches", same}, {"other_touches", repetition_json(parameters, validation.other_touches)}};
+}
+
 std::string validation_document(const Cell& cell, const Recipe& recipe,
                                 const calib::IdentificationProblem& problem,
                                 const calib::Validation& validation) {
   const calib::IdentificationResult& result = validation.result;
   const Json parameters = parameters_json(problem, recipe.identification, result);
-  Json same = repetition_json(parameters, validation.same_touches);
-  same["limit_si"] = calib::kSameTouchesErrorMax;
-  same["passed"] = validation.passed();
+  const Json repetitions = repetitions_json(parameters, validation);
   return text_of({{"schema", "touchcal/validation/1"},
                   {"arm", cell.arm.name},
                   {"recipe", recipe.name},
                   {"touch_count", result.fitted_touch_count},
                   {"identifiable_count", result.identifiable.columns.size()},
                   {"warnings", result.warnings},
-                  {"same_touches", same},
-                  {"other_touches", repetition_json(parameters, validation.other_touches)},
+                  {"same_touches", repetitions["same_touches"]},
+                  {"other_touches", repetitions["other_touches"]},
                   {"planes", planes_json(cell, result.distances, calib::TouchRole::kFit)},
                   {"planes_held_out", planes_json(cell, result.distances, calib::TouchRole::kHeldOut)}});
 }

@@ -38,6 +38,8 @@ TEST(ResultDocument, HasTheContractsFieldsWithTheirTypes) {
                                        {"planes", "array"},
                                        {"planes_held_out", "array"},
                                        {"planes_proof", "array"},
+                                       {"touches", "array"},
+                                       {"validation", "object"},
                                        {"scale", "object"},
                                        {"tip_uncertainty", "object"},
                                        {"fit", "object"},
@@ -111,6 +113,46 @@ TEST(ResultDocument, ItsPartsHaveTheirFieldsWithTheirTypes) {
     EXPECT_EQ(shape_of(correlation),
               (Shape{{"first", "string"}, {"second", "string"}, {"coefficient", "number"}}));
   }
+}
+
+TEST(ResultDocument, TheDistancesOfEachTouchAverageToThoseOfItsPlane) {
+  for (const auto& [role, planes] :
+       {std::pair{"fit", result().at("planes")}, std::pair{"held_out", result().at("planes_held_out")}}) {
+    for (const json& plane : planes) {
+      double nominal = 0.0, calibrated = 0.0;
+      int count = 0;
+      for (const json& touch : result().at("touches")) {
+        if (touch.at("role") != role || touch.at("plane") != plane.at("plane")) continue;
+        EXPECT_EQ(touch.at("use"), "used");
+        nominal += touch.at("nominal_mm").get<double>();
+        calibrated += touch.at("calibrated_mm").get<double>();
+        ++count;
+      }
+      ASSERT_EQ(count, plane.at("touch_count"));
+      EXPECT_NEAR(nominal / count, plane.at("nominal_mean_mm").get<double>(), 1e-9);
+      EXPECT_NEAR(calibrated / count, plane.at("calibrated_mean_mm").get<double>(), 1e-9);
+    }
+  }
+}
+
+TEST(ResultDocument, ARejectedTouchKeepsItsDistanceAndSaysSo) {
+  const Recipe& recipe = edf().recipes.at("edf-25");
+  const calib::IdentificationProblem problem = problem_of(recipe);
+  calib::IdentificationResult identified = calib::identify(problem, recipe.identification);
+  identified.rejected = {{.touch = 4, .residual_m = 1.21e-3}};
+  const json document = document_of(problem, identified);
+  EXPECT_EQ(document.at("touches")[4].at("use"), "rejected");
+  EXPECT_EQ(document.at("touches")[5].at("use"), "used");
+}
+
+TEST(ResultDocument, TheRepetitionsAreToldOnceTheTouchesAreComplete) {
+  const json& same = result().at("validation").at("same_touches");
+  EXPECT_TRUE(same.at("passed").get<bool>());
+  EXPECT_EQ(same.at("parameters").size(), result().at("parameters").size());
+  const Recipe& recipe = edf().recipes.at("edf-25");
+  const calib::IdentificationProblem problem = problem_of(recipe);
+  const auto identified = calib::identify(problem, recipe.identification);
+  EXPECT_TRUE(document_of(problem, identified, {.complete = false}).at("validation").is_null());
 }
 
 TEST(ResultDocument, TheMapHasAValueOrNullForEachCellOfTheWorkspaceBox) {
