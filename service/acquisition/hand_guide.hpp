@@ -10,6 +10,9 @@ namespace cell {
 /// What a person who touches by hand is told: in the status, as long as touches are awaited.
 struct HandGuide {
   std::string activity;  // "locate", "guided"
+  /// What is awaited: "touch"; "undo", as the touches give no place; "pass", once around the block that was
+  /// found; "passing", the arm goes around it.
+  std::string step = "touch";
   int plane = 0;         // the face to touch, from 1
   int index = 0;         // of the touch, from 1
   int total = 0;

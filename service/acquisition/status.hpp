@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "service/acquisition/hand_guide.hpp"
 #include "service/acquisition/state_machine.hpp"
 #include "service/faults.hpp"
 #include "service/verdict.hpp"
@@ -42,6 +43,7 @@ struct Status {
   std::optional<double> eta_s;
   Verdict verdict = Verdict::kNone;
   ControllerView controller;
+  std::optional<HandGuide> by_hand;  // as long as touches are awaited of a person
   std::optional<Fault> fault;
   std::optional<Fault> warning;  // the newest of the run
   /// Of the last reference touch against the first, along the face's normal; nothing before the second.

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "calib_core/units.hpp"
 #include "service/http/json_figures.hpp"
 
 namespace cell {
@@ -30,6 +31,21 @@ Json run_json(const StoredRun& run) {
           {"ended_at", value_or_null(run.ended_at)},
           {"fault_code", value_or_null(run.fault_code)},
           {"fault_message", value_or_null(run.fault_message)}};
+}
+
+/// What a person who touches by hand is told.
+void add_by_hand(Json& document, const std::optional<HandGuide>& guide) {
+  document["by_hand"] = guide ? Json(guide->activity) : Json(nullptr);
+  document["by_hand_step"] = guide ? Json(guide->step) : Json(nullptr);
+  document["by_hand_plane"] = guide ? Json(guide->plane) : Json(nullptr);
+  document["by_hand_index"] = guide ? Json(guide->index) : Json(nullptr);
+  document["by_hand_total"] = guide ? Json(guide->total) : Json(nullptr);
+  document["by_hand_words"] = guide ? Json(guide->words) : Json(nullptr);
+  document["by_hand_problem"] = guide && guide->problem ? Json(*guide->problem) : Json(nullptr);
+  Json& joints = document["by_hand_joints_deg"] = nullptr;
+  if (!guide || !guide->about_joints) return;
+  joints = Json::array();
+  for (const double joint : *guide->about_joints) joints.push_back(calib::degrees_from_radians(joint));
 }
 
 }  // namespace
@@ -68,6 +84,7 @@ std::string status_document(const Status& status) {
                 {"controller_touch_tested", value_or_null(status.controller.touch_tested)},
                 {"controller_permit", value_or_null(status.controller.permit)},
                 {"probe", value_or_null(status.controller.probe)}};
+  add_by_hand(document, status.by_hand);
   const FaultEntry* entry = status.fault ? &describe(status.fault->code) : nullptr;
   document["fault_code"] = entry ? Json(entry->name) : Json(nullptr);
   document["fault_message"] = entry ? Json(status.fault->message()) : Json(nullptr);

@@ -35,6 +35,14 @@ const Shape kQuietStatus{{"state", "string"},
                          {"controller_touch_tested", "null"},
                          {"controller_permit", "null"},
                          {"probe", "null"},
+                         {"by_hand", "null"},
+                         {"by_hand_step", "null"},
+                         {"by_hand_plane", "null"},
+                         {"by_hand_index", "null"},
+                         {"by_hand_total", "null"},
+                         {"by_hand_words", "null"},
+                         {"by_hand_problem", "null"},
+                         {"by_hand_joints_deg", "null"},
                          {"fault_code", "null"},
                          {"fault_message", "null"},
                          {"fault_robot_action", "null"},
@@ -75,6 +83,13 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.controller.touch_tested = true;
   busy.controller.permit = "awaited";
   busy.controller.probe = "free";
+  busy.by_hand = HandGuide{.activity = "guided",
+                           .plane = 3,
+                           .index = 1,
+                           .total = 6,
+                           .words = "touch plane 3",
+                           .problem = "too fast",
+                           .about_joints = calib::JointVector::Zero()};
   busy.fault = Fault{FaultCode::kNoContact, ""};
   busy.warning = Fault{FaultCode::kTouchOutlier, "touch 3"};
   busy.reference_drift_m = 2e-5;
