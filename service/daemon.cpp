@@ -1,6 +1,7 @@
 #include "service/daemon.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 #include <sys/file.h>
@@ -20,10 +21,11 @@
 
 #include "service/acquisition/operation.hpp"
 #include "service/http/listener.hpp"
-#include "service/http/tls.hpp"
 #include "service/http/tokens.hpp"
+#include "service/listen_address.hpp"
 #include "service/store/maintenance.hpp"
 #include "service/store/touch_store.hpp"
+#include "service/supervision.hpp"
 #include "service/utc_time.hpp"
 
 namespace cell {
@@ -54,21 +56,6 @@ class DirectoryLock {
   int descriptor_;
 };
 
-asio::ip::tcp::endpoint listen_address(asio::io_context& context, const Endpoint& listen, bool has_tls) {
-  asio::ip::tcp::resolver resolver(context);
-  const asio::ip::tcp::endpoint address =
-      resolver.resolve(listen.host, std::to_string(listen.port), asio::ip::tcp::resolver::passive)
-          .begin()
-          ->endpoint();
-  if (!address.address().is_loopback() && !has_tls) {
-    throw std::runtime_error(
-        fmt::format("--listen {}: only loopback addresses are served without TLS; give --tls-cert and "
-                    "--tls-key, or use 127.0.0.1 and a proxy",
-                    listen.host));
-  }
-  return address;
-}
-
 /// At once and then every day. What cannot be deleted now is deleted another day.
 asio::awaitable<void> forget_old_runs(const TouchStore& store, int retain_days) {
   asio::steady_timer day(co_await asio::this_coro::executor);
@@ -85,11 +72,13 @@ asio::awaitable<void> forget_old_runs(const TouchStore& store, int retain_days) 
   }
 }
 
-std::shared_ptr<asio::ssl::context> tls_context(const DaemonOptions& options) {
-  if (options.tls_certificate.empty() && options.tls_key.empty()) return nullptr;
-  if (options.tls_certificate.empty() || options.tls_key.empty())
-    throw std::runtime_error("--tls-cert and --tls-key belong together: give both");
-  return make_tls_context(options.tls_certificate, options.tls_key);
+/// Planning takes tens of MB for a second and identification some hundred kB for a millisecond. glibc would
+/// keep all of it, once for each thread; so large pieces go back to the system when they are freed.
+void keep_memory_small() {
+  constexpr int kLargePieceBytes = 128 * 1024;
+  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_MMAP_THRESHOLD, kLargePieceBytes);
+  mallopt(M_TRIM_THRESHOLD, kLargePieceBytes);
 }
 
 }  // namespace
@@ -102,6 +91,7 @@ std::filesystem::path default_state_directory() {
 }
 
 void run_daemon(const Cell& cell, const DaemonOptions& options) {
+  keep_memory_small();
   if (std::filesystem::create_directories(options.state_directory)) {
     std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
   }
@@ -118,16 +108,18 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   std::optional<HttpListener> listener;
   const auto tls = tls_context(options);
   try {
-    listener.emplace(context.get_executor(), listen_address(context, options.listen, tls != nullptr),
-                     operation, tokens, HttpLimits{}, tls);
+    listener.emplace(context.get_executor(), listen_address(context, options), operation, tokens,
+                     HttpLimits{}, tls);
   } catch (const boost::system::system_error& error) {
     throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; give another address with --listen",
                                          options.listen.host, options.listen.port, error.code().message()));
   }
+  Supervision supervision(context.get_executor());
   asio::signal_set signals(context, SIGINT, SIGTERM);
   signals.async_wait([&](const boost::system::error_code& failure, int signal) {
     if (failure) return;
     spdlog::info("signal {}: stopping", signal);
+    supervision.tell_stopping();
     listener->close();
     asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
     signals.async_wait(
@@ -139,6 +131,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const auto address = listener->address();
   fmt::print("listening on {}:{}\n", options.listen.host, address.port());
   std::fflush(stdout);
+  supervision.tell_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
   context.run();
 }
 

@@ -1,5 +1,6 @@
 // touchcald: the daemon of one robot cell.
 #include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,8 @@
 #include "config/read_config.hpp"
 #include "service/daemon.hpp"
 #include "service/exit_code.hpp"
+#include "service/log_format.hpp"
+#include "service/self_check.hpp"
 #include "service/store/maintenance.hpp"
 #include "service/version.hpp"
 
@@ -37,11 +40,28 @@ int keep_state(const std::filesystem::path& database, const std::string& backup,
   return cell::kExitDone;
 }
 
+/// All that stands in the way of a start, at once.
+cell::ExitCode tell_check(const std::string& cell_file, const cell::SelfCheck& check) {
+  for (const std::string& line : check.bad_files) std::cerr << line << '\n';
+  for (const std::string& line : check.troubles) std::cerr << line << '\n';
+  if (!check.bad_files.empty()) return cell::kExitBadInput;
+  if (!check.troubles.empty()) return cell::kExitFailed;
+  std::cout << cell_file << ": cell " << check.cell_name << " is in order\n";
+  return cell::kExitDone;
+}
+
+void begin_log(const std::string& format) {
+  const bool json = format == "json";
+  const auto log = json ? spdlog::stderr_logger_mt("touchcald") : spdlog::stderr_color_mt("touchcald");
+  log->set_formatter(json ? cell::json_log_format() : cell::text_log_format());
+  spdlog::set_default_logger(log);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   CLI::App app("touchcald: drives the touches of one robot cell, identifies the arm, serves the JSON API");
-  std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key;
+  std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key, log_format = "text";
   bool check = false, verify = false;
   int retain_days = 0;
   app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json");
@@ -51,7 +71,14 @@ int main(int argc, char** argv) {
   app.add_option("--tls-cert", tls_certificate,
                  "certificate, PEM; with --tls-key the API is served over TLS");
   app.add_option("--tls-key", tls_key, "the certificate's key, PEM");
-  app.add_flag("--check", check, "read the cell and everything it names, then exit");
+  app.add_option("--log-format", log_format,
+                 "what the log on standard error is made of: text, or json, an object a line")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->default_str(log_format);
+  app.add_flag(
+      "--check", check,
+      "look at the cell and all it names, the state directory, its tokens, the address and TLS, tell "
+      "all that is wrong, then exit");
   app.add_option("--backup", backup,
                  "copy the state's database into this new file, then exit; a daemon may run");
   app.add_flag("--verify", verify, "look for damage in the state's database, then exit; a daemon may run");
@@ -59,9 +86,9 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   app.set_version_flag("--version", std::string("touchcald ") + cell::kVersion);
 
-  spdlog::set_default_logger(spdlog::stderr_color_mt("touchcald"));
   try {
     app.parse(argc, argv);
+    begin_log(log_format);
     cell::DaemonOptions options{.state_directory = state.empty() ? cell::default_state_directory()
                                                                  : std::filesystem::path(state)};
     if (!backup.empty() || verify)
@@ -72,12 +99,9 @@ int main(int argc, char** argv) {
     options.tls_key = tls_key;
     if (!listen.empty()) options.listen = endpoint_option("--listen", listen);
     if (!controller.empty()) options.controller = endpoint_option("--controller", controller);
+    if (check) return tell_check(cell_file, cell::check_daemon(cell_file, options));
     const cell::Cell cell = cell::read_cell(cell_file);
     cell::demand_revolute(cell);
-    if (check) {
-      std::cout << cell_file << ": cell " << cell.name << " is in order\n";
-      return cell::kExitDone;
-    }
     cell::run_daemon(cell, options);
     return cell::kExitDone;
   } catch (const CLI::ParseError& error) {

@@ -11,6 +11,7 @@
 #include "cs8_protocol/names.hpp"
 #include "service/acquisition/touch_command.hpp"
 #include "service/http/result_view.hpp"
+#include "service/log_format.hpp"
 #include "service/store/fault_log.hpp"
 #include "service/traceability.hpp"
 #include "service/utc_time.hpp"
@@ -134,6 +135,9 @@ void Operation::raise(Fault fault, Event event) {
 void Operation::publish() {
   ++status_.sequence;
   status_.controller = controller_view();
+  // Each line of the log tells the run, and the touch under way or next.
+  set_logged_run(run_open_ ? std::optional(run_->id()) : std::nullopt);
+  set_logged_touch(run_open_ && run_->next() ? std::optional(run_->touches_done() + 1) : std::nullopt);
   status_.touches_done = run_ ? run_->touches_done() : 0;
   status_.touches_total = run_ ? run_->touches_total() : 0;
   status_.identifiable_count.reset();
@@ -261,6 +265,7 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
   }
   run_.emplace(id, tip_regions_, found->second, now_text());
   run_open_ = true;
+  set_logged_run(id);
   run_finished_ = false;
   begin_checks();
   stored_changes_ = 0;

@@ -11,6 +11,7 @@
 #include "service/acquisition/operation.hpp"
 #include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"
+#include "service/log_format.hpp"
 
 namespace cell {
 
@@ -90,6 +91,7 @@ void Operation::restore_run() {
   run_.emplace(stored->id, tip_regions_, cell_.recipes.at(stored->recipe), stored->started_at);
   run_->restore(store_.touches(stored->id), stored->touches_total);
   run_open_ = true;
+  set_logged_run(stored->id);
   interrupted_ = Interrupted{stored->plan_id, store_.plan_changes(stored->id)};
   if (const auto open = store_.open_command(stored->id)) {
     if (auto command = command_from_text(open->touch_json)) {

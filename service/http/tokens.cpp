@@ -7,15 +7,14 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <fstream>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
 
+#include "service/http/token_file.hpp"
+
 namespace cell {
 namespace {
-
-constexpr std::size_t kTokenBytes = 32;
 
 [[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
   throw std::runtime_error(
@@ -37,22 +36,7 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
 }
 
 std::string load_or_make(const std::filesystem::path& file) {
-  if (std::ifstream existing(file); existing) {
-    constexpr auto kOthers = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
-    if ((std::filesystem::status(file).permissions() & kOthers) != std::filesystem::perms::none) {
-      throw std::runtime_error(
-          fmt::format("{0}: others than its owner may use it; remove the file to have a new token made, or "
-                      "chmod 600 {0} when nobody has read it",
-                      file.string()));
-    }
-    std::string token;
-    std::getline(existing, token);
-    if (token.size() < 2 * kTokenBytes) {
-      throw std::runtime_error(file.string() +
-                               ": is no token of this daemon; remove the file to have a new one made");
-    }
-    return token;
-  }
+  if (auto token = read_token(file)) return *std::move(token);
   const std::string token = random_hex(kTokenBytes);
   write_for_owner_only(file, token);
   return token;

@@ -26,7 +26,7 @@ constexpr int kPatienceMilliseconds = 300'000;
 
 Process::Process(const std::vector<std::string>& arguments, std::filesystem::path error_file)
     : error_file_(std::move(error_file)) {
-  const std::string program = std::string(TOUCHCAL_PROGRAMS_DIR) + "/" + arguments.front();
+  const std::string program = std::filesystem::path(TOUCHCAL_PROGRAMS_DIR) / arguments.front();
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);

@@ -1,0 +1,142 @@
+// What a person meets first: help, manual pages, completion, and being told what is wrong.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "service/exit_code.hpp"
+#include "tests/end_to_end/folder.hpp"
+#include "tests/end_to_end/process.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string cell_file(const std::string& name) {
+  return std::string(TOUCHCAL_SOURCE_DIR) + "/config/cells/" + name + "/cell.json";
+}
+
+class CommandLine : public ::testing::Test {
+ protected:
+  Finished run(const std::vector<std::string>& arguments) {
+    return Process(arguments, folder_ / "call.err").wait();
+  }
+
+  /// The names at the beginning of the lines of a help text that this matches.
+  std::set<std::string> names_in_help(std::vector<std::string> program, const std::regex& line_of_a_name) {
+    program.push_back("--help");
+    std::istringstream help(run(program).out);
+    std::set<std::string> names;
+    std::smatch found;
+    for (std::string line; std::getline(help, line);) {
+      if (std::regex_search(line, found, line_of_a_name)) names.insert(found[1]);
+    }
+    return names;
+  }
+  std::set<std::string> options(const std::vector<std::string>& program) {
+    return names_in_help(program, std::regex("^ +(?:-[a-zA-Z],)?(--[a-z-]+)"));
+  }
+  std::set<std::string> commands() { return names_in_help({"touchcal"}, std::regex("^  ([a-z][a-z-]+) ")); }
+
+  Folder folder_;
+};
+
+/// A page without the backslashes that keep its dashes.
+std::string manual_page(const std::string& name) {
+  std::ifstream file(std::filesystem::path(TOUCHCAL_SOURCE_DIR) / "service/man" / name);
+  std::string page{std::istreambuf_iterator<char>(file), {}};
+  std::erase(page, '\\');
+  return page;
+}
+
+TEST_F(CommandLine, EveryCommandAndOptionIsInTheManualAndTheShellKnowsIt) {
+  const std::string page = manual_page("touchcal.1");
+  const std::string bash = run({"touchcal", "completion", "bash"}).out;
+  const std::string zsh = run({"touchcal", "completion", "zsh"}).out;
+  const std::set<std::string> names = commands();
+  ASSERT_GE(names.size(), 20U);
+  for (const std::string& command : names) {
+    for (const std::string* text : {&page, &bash, &zsh}) EXPECT_THAT(*text, HasSubstr(command));
+    const std::regex case_of_it("\n    " + command + "\\) ([^\n]*)");
+    std::smatch options_line;
+    ASSERT_TRUE(std::regex_search(bash, options_line, case_of_it)) << command;
+    for (const std::string& option : options({"touchcal", command})) {
+      EXPECT_THAT(page, HasSubstr(option)) << command;
+      EXPECT_THAT(options_line[1].str(), HasSubstr(option)) << command;
+      EXPECT_THAT(zsh, HasSubstr("'" + option + "[")) << command;
+    }
+  }
+}
+
+TEST_F(CommandLine, EveryOptionOfTheServersIsInTheirManual) {
+  for (const auto& [program, page] : {std::pair("touchcald", "touchcald.8"), {"cs8sim", "cs8sim.1"}}) {
+    const std::set<std::string> names = options({program});
+    ASSERT_GE(names.size(), 5U);
+    for (const std::string& option : names) EXPECT_THAT(manual_page(page), HasSubstr(option)) << program;
+  }
+}
+
+TEST_F(CommandLine, TheShellCompletesCommandsOptionsAndFiles) {
+  const auto script = folder_ / "completion.bash";
+  std::ofstream(script) << run({"touchcal", "completion", "bash"}).out << R"(
+COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchcal; printf '%s ' "${COMPREPLY[@]}"
+)";
+  const auto completed = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"/bin/bash", script.string()});
+    return run(words).out;
+  };
+  EXPECT_EQ(completed({"touchcal", "ident"}), "identify ");
+  EXPECT_EQ(completed({"touchcal", "run", "--oper"}), "--operator ");
+  const std::string cell = cell_file("edf");
+  EXPECT_EQ(completed({"touchcal", "identify", "--cell", cell.substr(0, cell.size() - 2)}), cell + " ");
+}
+
+TEST_F(CommandLine, AnOptionThatIsNoneIsToldBeforeOneThatIsMissing) {
+  const Finished finished = run({"touchcald", "--bogus"});
+  EXPECT_EQ(finished.exit_code, cell::kExitUsage);
+  EXPECT_THAT(finished.err, HasSubstr("--bogus"));
+  EXPECT_THAT(finished.err, Not(HasSubstr("--cell")));
+}
+
+TEST_F(CommandLine, CheckTellsAllThatIsWrongAtOnceAndChangesNothing) {
+  const auto file = folder_ / "in-the-way";
+  std::ofstream(file) << "a file";
+  const Finished bad = run({"touchcald", "--check", "--cell", (folder_ / "none.json").string(), "--state",
+                            (file / "state").string(), "--listen", "no.such.host.invalid:1"});
+  EXPECT_EQ(bad.exit_code, cell::kExitBadInput);
+  EXPECT_EQ(bad.out, "");
+  for (const char* what : {"none.json", "in-the-way", "no.such.host.invalid"})
+    EXPECT_THAT(bad.err, HasSubstr(what));
+
+  const auto state = folder_ / "state";
+  const Finished good = run({"touchcald", "--check", "--cell", cell_file("demo"), "--state", state.string(),
+                             "--listen", "127.0.0.1:0"});
+  EXPECT_EQ(good.exit_code, cell::kExitDone) << good.err;
+  EXPECT_THAT(good.out, HasSubstr("demo is in order"));
+  EXPECT_FALSE(std::filesystem::exists(state));
+
+  std::filesystem::create_directory(state);
+  std::ofstream(state / "operate.token") << "for all to read\n";
+  std::filesystem::permissions(state / "operate.token", std::filesystem::perms(0644));
+  const Finished open = run({"touchcald", "--check", "--cell", cell_file("demo"), "--state", state.string(),
+                             "--listen", "127.0.0.1:0"});
+  EXPECT_EQ(open.exit_code, cell::kExitFailed);
+  EXPECT_THAT(open.err, HasSubstr("chmod 600"));
+}
+
+TEST_F(CommandLine, TheUnitIsAsClosedAsItCanBe) {
+  const std::string unit = std::string(TOUCHCAL_SOURCE_DIR) + "/service/touchcald.service";
+  const Finished judged = run({"/usr/bin/systemd-analyze", "security", "--offline=true", "--threshold=10",
+                               "--no-pager", unit});  // tenths: at most 1.0
+  EXPECT_EQ(judged.exit_code, 0) << judged.out << judged.err;
+}
+
+}  // namespace
+}  // namespace touchcal::testing
