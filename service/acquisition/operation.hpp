@@ -93,6 +93,8 @@ class Operation {
   [[nodiscard]] Status status() const;
   [[nodiscard]] std::uint64_t sequence() const { return status_.sequence; }
   [[nodiscard]] std::optional<std::int64_t> data_age_ms() const;
+  /// As the controller told it last; nothing before it has.
+  [[nodiscard]] std::optional<cs8::State> controller_state() const { return client_.latest_state(); }
   /// Whoever is told each change of the status, at once; one at a time.
   void on_change(std::function<void(const Status&)> told) { told_ = std::move(told); }
   /// All that stands in the way of a start now.

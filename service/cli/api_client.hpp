@@ -31,6 +31,7 @@ class ApiClient {
   ApiReply post(const std::string& target, const std::string& body) const;
 
   [[nodiscard]] std::string url() const;
+  [[nodiscard]] const std::optional<std::string>& token() const { return token_; }
 
  private:
   [[nodiscard]] ApiReply request(bool post, const std::string& target, const std::string& body,

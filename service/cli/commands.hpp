@@ -65,6 +65,8 @@ ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, boo
 ExitCode watch_command(const ApiClient& daemon, bool json);
 /// Locates the block: tells each touch that the person at the pendant is to make until the place is known.
 ExitCode locate_command(const ApiClient& daemon, bool json);
+/// Prints the link that opens the operator's page with the token in it, for a browser on this machine.
+ExitCode page_command(const ApiClient& daemon, bool json);
 ExitCode status_command(const ApiClient& daemon, bool json);
 ExitCode runs_command(const ApiClient& daemon, bool json);
 ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool json);

@@ -17,6 +17,19 @@ ExitCode status_command(const ApiClient& daemon, bool json_only) {
   return kExitDone;
 }
 
+ExitCode page_command(const ApiClient& daemon, bool json_only) {
+  const std::string role = parse_reply(daemon.get("/api/v1/access")).at("role");
+  const bool operates = role == "operate";
+  const std::string link = daemon.url() + "/" + (operates ? "#token=" + *daemon.token() : "");
+  fmt::print("{}\n", json_only ? json{{"url", link}, {"role", role}}.dump() : link);
+  if (!operates) {
+    fmt::print(stderr,
+               "the page will only watch: there is no token that this daemon takes; give its --state "
+               "directory, as a user who may read it\n");
+  }
+  return kExitDone;
+}
+
 ExitCode runs_command(const ApiClient& daemon, bool json_only) {
   const ApiReply reply = daemon.get("/api/v1/runs");
   fmt::print("{}", json_only ? reply.body + "\n" : runs_text(parse_reply(reply)));

@@ -46,6 +46,8 @@ class CommandLine {
                    [this](const cell::ApiClient& daemon) { return cell::watch_command(daemon, json_); });
     add_for_daemon("status", "what the cell is doing",
                    [this](const cell::ApiClient& daemon) { return cell::status_command(daemon, json_); });
+    add_for_daemon("page", "print the link that opens the operator's page",
+                   [this](const cell::ApiClient& daemon) { return cell::page_command(daemon, json_); });
     add_for_daemon("runs", "the history, newest first",
                    [this](const cell::ApiClient& daemon) { return cell::runs_command(daemon, json_); });
     auto* show = add_for_daemon("show", "one run and its result", [this](const cell::ApiClient& daemon) {

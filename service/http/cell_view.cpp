@@ -5,6 +5,7 @@
 #include "calib_core/units.hpp"
 #include "service/faults.hpp"
 #include "service/http/json_figures.hpp"
+#include "service/http/scene_view.hpp"
 
 namespace cell {
 namespace {
@@ -26,7 +27,10 @@ Json faces_json(const Block& block) {
     faces.push_back({{"plane", faces.size() + 1},
                      {"outward", {outward.x(), outward.y(), outward.z()}},
                      {"offset_mm", mm_from_metres(face.plane.offset_m)},
-                     {"center_mm", vector_mm(face.center_m)}});
+                     {"center_mm", vector_mm(face.center_m)},
+                     {"edge_u", {face.edge_u.x(), face.edge_u.y(), face.edge_u.z()}},
+                     {"half_extent_mm",
+                      {mm_from_metres(face.half_extent_m.x()), mm_from_metres(face.half_extent_m.y())}}});
   }
   return faces;
 }
@@ -78,6 +82,7 @@ std::string cell_document(const Cell& cell) {
                   {"nominal_miss_mm", mm_from_metres(cell.nominal_miss_m)},
                   {"touch_noise_mm", mm_from_metres(cell.touch_noise_m)},
                   {"acceptance", limits_json(cell.acceptance)},
+                  {"scene", scene_json(cell)},
                   {"controller", cell.controller.host + ":" + std::to_string(cell.controller.port)}});
 }
 
@@ -85,6 +90,7 @@ std::string faults_document() {
   Json list = Json::array();
   for (const FaultEntry& entry : fault_table()) {
     list.push_back({{"code", entry.name},
+                    {"kind", fault_kind_name(entry.kind)},
                     {"cause", entry.cause},
                     {"robot_action", entry.robot_action},
                     {"next_step", entry.next_step}});

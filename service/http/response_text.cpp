@@ -1,5 +1,6 @@
 #include "service/http/response_text.hpp"
 
+#include <algorithm>
 #include <boost/beast/http/status.hpp>
 
 namespace cell {
@@ -7,10 +8,13 @@ namespace {
 
 constexpr std::string_view kEveryAnswer =
     "\r\nServer: touchcald\r\n"
-    "Cache-Control: no-store\r\n"
     "X-Content-Type-Options: nosniff\r\n"
-    "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'\r\n"
     "Referrer-Policy: no-referrer\r\n";
+
+/// Of all but the page, which has its own.
+constexpr std::string_view kOfTheApi =
+    "Cache-Control: no-store\r\n"
+    "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'\r\n";
 
 std::string_view reason_of(unsigned status) {
   const auto reason = boost::beast::http::obsolete_reason(static_cast<boost::beast::http::status>(status));
@@ -29,6 +33,9 @@ std::string response_text(const HttpResponse& response, unsigned minor, bool kee
   text += ' ';
   text += reason_of(response.status);
   text += kEveryAnswer;
+  const bool has_own_caching = std::ranges::any_of(
+      response.headers, [](const auto& header) { return header.first == "Cache-Control"; });
+  if (!has_own_caching) text += kOfTheApi;
   for (const auto& [name, value] : response.headers) {
     text += name;
     text += ": ";

@@ -14,8 +14,8 @@ namespace {
 
 std::vector<Route> all_routes() {
   std::vector<Route> all;
-  for (const auto topic :
-       {service_routes, status_routes, run_routes, command_routes, planning_routes, cell_routes}) {
+  for (const auto topic : {service_routes, status_routes, run_routes, command_routes, planning_routes,
+                           cell_routes, page_routes}) {
     std::ranges::move(topic(), std::back_inserter(all));
   }
   return all;

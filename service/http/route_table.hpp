@@ -81,6 +81,7 @@ std::vector<Route> run_routes();
 std::vector<Route> command_routes();
 std::vector<Route> planning_routes();  // plan, identify
 std::vector<Route> cell_routes();      // what is configured
+std::vector<Route> page_routes();
 
 /// A stop is taken whatever comes with it, and whatever else does not work.
 bool is_stop(const Route& route);

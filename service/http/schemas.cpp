@@ -134,14 +134,15 @@ constexpr std::string_view kRecipes = R"({
 constexpr std::string_view kCell = R"({
 "type":"object",
 "required":["name","arm","block","probe","default_recipe","workspace_box","keep_out_boxes","nominal_miss_mm",
-  "touch_noise_mm","acceptance","controller"],
+  "touch_noise_mm","acceptance","scene","controller"],
 "properties":{
   "name":{"type":"string"},
   "arm":{"type":"string"},
   "block":{"type":"object","required":["name","temperature_c","faces"],"properties":{
     "name":{"type":"string"},
     "temperature_c":{"type":["number","null"]},
-    "faces":{"type":"array","items":{"type":"object","required":["plane","outward","offset_mm","center_mm"]}}}},
+    "faces":{"type":"array","items":{"type":"object","required":["plane","outward","offset_mm","center_mm","edge_u",
+      "half_extent_mm"]}}}},
   "probe":{"type":"object","required":["name","tip_is_contact_point","stylus_radius_mm","pretravel_mm"]},
   "default_recipe":{"type":"string"},
   "workspace_box":{"type":"object"},
@@ -149,15 +150,27 @@ constexpr std::string_view kCell = R"({
   "nominal_miss_mm":{"type":"number"},
   "touch_noise_mm":{"type":"number"},
   "acceptance":{"type":"object"},
+  "scene":{"type":"object","description":"what the cell looks like, in R_-1; bodies in the frame that they move with",
+    "required":["frames","gains","arm_bodies","probe_bodies","solids","park_joints_deg"]},
   "controller":{"type":"string"}}})";
+
+constexpr std::string_view kJoints = R"({
+"type":"object",
+"required":["joints_deg","data_age_ms","sequence","instance_id"],
+"properties":{
+  "joints_deg":{"type":["array","null"],"minItems":6,"maxItems":6,"items":{"type":"number"}},
+  "data_age_ms":{"type":["integer","null"],"minimum":0},
+  "sequence":{"type":"integer","minimum":0,"description":"of the status"},
+  "instance_id":{"type":"string"}}})";
 
 constexpr std::string_view kFaults = R"({
 "type":"object",
 "required":["faults"],
 "properties":{"faults":{"type":"array","items":{"type":"object",
-  "required":["code","cause","robot_action","next_step"],
+  "required":["code","kind","cause","robot_action","next_step"],
   "properties":{
     "code":{"type":"string"},
+    "kind":{"enum":["refused","warning","held","suspended","aborted"]},
     "cause":{"type":"string"},
     "robot_action":{"type":"string"},
     "next_step":{"type":"string"}}}}}})";
@@ -166,6 +179,11 @@ constexpr std::string_view kHealth = R"({
 "type":"object",
 "required":["status"],
 "properties":{"status":{"enum":["ok","ready"]}}})";
+
+constexpr std::string_view kAccess = R"({
+"type":"object",
+"required":["role"],
+"properties":{"role":{"enum":["operate","view","none","wrong token"]}}})";
 
 constexpr std::string_view kOpenApi = R"({
 "type":"object",
@@ -180,8 +198,10 @@ constexpr std::array kSchemas{DocumentSchema{"Status", kStatus},
                               DocumentSchema{"Problem", kProblem},
                               DocumentSchema{"Recipes", kRecipes},
                               DocumentSchema{"Cell", kCell},
+                              DocumentSchema{"Joints", kJoints},
                               DocumentSchema{"Faults", kFaults},
                               DocumentSchema{"Health", kHealth},
+                              DocumentSchema{"Access", kAccess},
                               DocumentSchema{"OpenApi", kOpenApi}};
 
 }  // namespace

@@ -1,4 +1,7 @@
+#include <spdlog/fmt/fmt.h>
+
 #include "service/acquisition/operation.hpp"
+#include "service/http/access.hpp"
 #include "service/http/openapi.hpp"
 #include "service/http/route_table.hpp"
 #include "service/http/services.hpp"
@@ -26,10 +29,19 @@ HttpResponse get_metrics(const Call& call) {
 
 HttpResponse get_openapi(const Call&) { return {.body = openapi_document()}; }
 
+HttpResponse get_access(const Call& call) {
+  return json_response(200, fmt::format(R"({{"role":"{}"}})", role_of(call.request, call.services.tokens)));
+}
+
 }  // namespace
 
 std::vector<Route> service_routes() {
   return {
+      {.method = "GET",
+       .path = "/api/v1/access",
+       .summary = "What the request's token may do",
+       .handle = get_access,
+       .answers = {{.schema = "Access"}}},
       {.method = "GET",
        .path = "/healthz",
        .summary = "The daemon answers",

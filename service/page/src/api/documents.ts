@@ -1,0 +1,198 @@
+// The API's documents, as far as the page reads them. Units stand at the end of names; what is not known is null.
+
+export type StateName =
+  | 'STOPPED' | 'RESETTING' | 'IDLE' | 'STARTING' | 'EXECUTE' | 'COMPLETING' | 'COMPLETE' | 'HOLDING' | 'HELD'
+  | 'UNHOLDING' | 'SUSPENDING' | 'SUSPENDED' | 'UNSUSPENDING' | 'STOPPING' | 'ABORTING' | 'ABORTED' | 'CLEARING';
+export type VerdictName = 'none' | 'accepted' | 'rejected' | 'incomplete';
+
+export interface Status {
+  state: StateName;
+  waiting_for: string | null;
+  run_id: string | null;
+  recipe: string | null;
+  touches_done: number;
+  touches_total: number | null;
+  plane: number | null;
+  identifiable_count: number | null;
+  condition_number: number | null;
+  predicted_tip_rms_mm: number | null;
+  more_would_bring: string | null;
+  eta_s: number | null;
+  verdict: VerdictName;
+  controller_connected: boolean;
+  controller_powered: boolean | null;
+  controller_mode: string | null;
+  controller_estop: boolean | null;
+  controller_cell_closed: boolean | null;
+  controller_touch_tested: boolean | null;
+  controller_permit: string | null;
+  probe: 'free' | 'touched' | 'fault' | null;
+  reference_drift_mm: number | null;
+  by_hand: 'locate' | 'guided' | null;  // what a person with the pendant is at
+  by_hand_step: 'touch' | 'undo' | 'pass' | 'passing' | null;
+  by_hand_plane: number | null;
+  by_hand_index: number | null;
+  by_hand_total: number | null;
+  by_hand_words: string | null;
+  by_hand_problem: string | null;
+  by_hand_joints_deg: number[] | null;
+  fault_code: string | null;
+  fault_message: string | null;
+  fault_robot_action: string | null;
+  fault_next_step: string | null;
+  warning_code: string | null;
+  warning_message: string | null;
+  last_accepted_run_id: string | null;
+  last_accepted_at: string | null;
+  data_age_ms: number | null;
+  sequence: number;
+  instance_id: string;
+  since: string;
+}
+
+export interface Joints {
+  joints_deg: number[] | null;
+  data_age_ms: number | null;
+  sequence: number;
+  instance_id: string;
+}
+
+export type Vector = [number, number, number];
+export interface Box { name: string; min_mm: Vector; max_mm: Vector }
+export interface Capsule { name: string; frame: number; from_mm: Vector; to_mm: Vector; radius_mm: number }
+export interface Frame { alpha_rad: number; d_mm: number; theta_rad: number; r_mm: number; beta_rad: number }
+export interface Face {
+  plane: number;
+  outward: Vector;
+  offset_mm: number;
+  center_mm: Vector;
+  edge_u: Vector;
+  half_extent_mm: [number, number];
+}
+export interface Cell {
+  name: string;
+  arm: string;
+  block: {name: string; temperature_c: number | null; faces: Face[]};
+  probe: {name: string; stylus_radius_mm: number};
+  default_recipe: string;
+  workspace_box: Box;
+  keep_out_boxes: Box[];
+  acceptance: {
+    held_out_mean_max_mm: number;
+    held_out_rms_max_mm: number;
+    condition_number_max: number;
+    tip_box_rms_max_mm: number | null;
+  };
+  scene: {
+    frames: Frame[];
+    gains: number[];
+    arm_bodies: Capsule[];
+    probe_bodies: Capsule[];
+    solids: Box[];
+    park_joints_deg: number[];
+  };
+}
+
+export interface Recipe { name: string; description: string; planes: number[]; fit_max: number; held_out: number }
+export interface Recipes { default: string; recipes: Recipe[] }
+
+export interface FaultEntry {
+  code: string;
+  kind: 'refused' | 'warning' | 'held' | 'suspended' | 'aborted';
+  cause: string;
+  robot_action: string;
+  next_step: string;
+}
+
+export interface Run {
+  id: string;
+  recipe: string;
+  outcome: 'running' | 'complete' | 'stopped' | 'aborted' | 'interrupted';
+  verdict: VerdictName;
+  touches_done: number;
+  touches_total: number | null;
+  started_at: string;
+  ended_at: string | null;
+  fault_code: string | null;
+  fault_message: string | null;
+}
+export interface Runs { runs: Run[]; next_before: string | null }
+
+export type TouchRole = 'fit' | 'held_out' | 'proof';
+export interface Touch { plane: number; role: TouchRole; joints_deg: number[] }
+export interface Touches { touches: Touch[] }
+
+export interface UncertaintyMap { box: Box; counts: Vector; cell_mm: Vector; values_mm: (number | null)[] }
+export interface TipUncertainty {
+  at_block_rms_mm: number | null;
+  workspace_box_rms_mm: number | null;
+  joint_ranges_rms_mm: number | null;
+  map: UncertaintyMap | null;
+}
+export interface Plan {
+  plan_id: string;
+  recipe: string;
+  touch_count: number;
+  condition_number: number | null;
+  identifiable_count: number | null;
+  tip_uncertainty: TipUncertainty;
+  duration_s: number | null;
+  touches: Touch[];
+}
+
+export type ParameterStatus = 'identified' | 'grouped' | 'no_effect' | 'excluded' | 'weak';
+export interface Parameter {
+  name: string;
+  group: string;
+  unit: 'mm' | 'rad';
+  nominal: number;
+  status: ParameterStatus;
+  error: number | null;
+  std_uncertainty: number | null;
+  interval95: [number, number] | null;
+  grouped_with: {name: string; factor: number}[];
+}
+export interface PlaneDistances {
+  plane: number;
+  touch_count: number;
+  reference_mm: number;
+  nominal_mean_mm: number | null;
+  calibrated_mean_mm: number | null;
+  error_removed_percent: number | null;
+  nominal_rms_mm: number | null;
+  calibrated_rms_mm: number | null;
+}
+export interface Result {
+  recipe: string;
+  touch_count: number;
+  complete: boolean;
+  warnings: string[];
+  rejected_touches: {touch: number; residual_mm: number | null; reason: string}[];
+  identifiable_count: number;
+  condition_number: number | null;
+  parameters: Parameter[];
+  planes: PlaneDistances[];
+  planes_held_out: PlaneDistances[];
+  scale: {
+    source: string | null;
+    std_uncertainty_ppm: number | null;
+    stretch_ppm: number | null;
+    warning: string | null;
+  };
+  tip_uncertainty: TipUncertainty;
+  fit: {noise_declared_um: number | null; noise_estimated_um: number | null; lack_of_fit_p: number | null};
+  verdict: {accepted: boolean; reasons: string[]};
+}
+
+export interface Unmet { code: string; detail: string }
+/** RFC 9457, and what the daemon adds. */
+export interface Problem {
+  type: string;
+  title: string;
+  status: number;
+  detail: string;
+  errors?: Unmet[];
+  exits?: string[];
+}
+
+export type Role = 'operate' | 'view' | 'none' | 'wrong token';

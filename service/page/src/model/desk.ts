@@ -1,0 +1,236 @@
+import {get, post, type Reply} from '../api/client.ts';
+import type {Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet} from '../api/documents.ts';
+import {Live, type Link} from '../api/live.ts';
+import {kFirstState, reduce, type Action, type PageState, type View} from './page_state.ts';
+import {commandPath, isActive, type Command} from './states.ts';
+import {Store} from './store.ts';
+
+const kResultGap_ms = 1000;     // a live result is asked for at most so often
+const kReadiness_ms = 2000;
+const kTrendRuns = 20;
+const kPlanPatience_ms = 120000;
+const kStopPatience_ms = 1500;  // then it is asked again
+
+/** What a start is made with beside the recipe. */
+export interface Conditions { operator?: string; block_temperature_c?: number }
+
+/** The page's hands: asks the daemon, sends commands, keeps the store. Views call nothing else. */
+export class Desk {
+  readonly store = new Store<PageState, Action>(reduce, kFirstState);
+  private readonly live: Live;
+  private asked: {run_id: string; touches: number} | null = null;  // the live result that was asked for last
+  private askingResult = false;
+  private isPageHidden = false;
+
+  constructor(private readonly token: string | null) {
+    this.store.dispatch({type: 'patch', patch: {hasToken: token !== null}});
+    this.live = new Live({
+      link: (link) => this.takeLink(link),
+      statuses: (statuses) => this.takeStatuses(statuses),
+      joints: (joints) => this.takeJoints(joints),
+    }, token);
+  }
+
+  start(): void {
+    this.live.start();
+    void this.loadAll();
+    setInterval(() => void this.askReadiness(), kReadiness_ms);
+    document.addEventListener('visibilitychange', () => {
+      this.isPageHidden = document.hidden;
+      this.setPace();
+    });
+  }
+
+  // what is heard
+
+  private takeLink(link: Link): void {
+    const before = this.store.state.link;
+    this.store.dispatch({type: 'link', link});
+    const isBack = (link === 'live' || link === 'polling') && (before === 'lost' || before === 'refused');
+    if (isBack) void this.loadAll();
+  }
+
+  private takeStatuses(statuses: Status[]): void {
+    const before = this.store.state.status;
+    this.store.dispatch({type: 'statuses', statuses});
+    const status = this.store.state.status;
+    if (!status) return;
+    this.setPace();
+    const runChanged = !before || before.run_id !== status.run_id || isActive(before.state) !== isActive(status.state);
+    if (runChanged) {
+      void this.loadRuns();
+      void this.askReadiness();
+      if (status.run_id) void this.loadRunPlan(status.run_id);
+    }
+    if (before && before.instance_id !== status.instance_id) void this.loadAll();
+    void this.followRun();
+  }
+
+  private takeJoints(joints: Joints): void {
+    this.store.dispatch({type: 'joints', joints, heard_ms: performance.now()});
+  }
+
+  private setPace(): void {
+    const {status, view} = this.store.state;
+    this.live.setFast(!this.isPageHidden && view === 'live' && status !== null && isActive(status.state));
+  }
+
+  // what is asked for
+
+  private ask<T>(path: string, patience_ms?: number): Promise<Reply<T>> {
+    return get<T>(path, patience_ms === undefined ? {token: this.token} : {token: this.token, patience_ms});
+  }
+
+  private async load<T>(path: string, take: (value: T) => void): Promise<void> {
+    const reply = await this.ask<T>(path);
+    if (reply.kind === 'ok') take(reply.value);
+  }
+
+  private patch(patch: Partial<PageState>): void {
+    this.store.dispatch({type: 'patch', patch});
+  }
+
+  private async loadAll(): Promise<void> {
+    await Promise.all([
+      this.askRole(),
+      this.load<Cell>('/api/v1/cell', (cell) => this.patch({cell})),
+      this.load<Recipes>('/api/v1/recipes', (recipes) => {
+        this.patch({recipes, recipe: this.store.state.recipe ?? recipes.default});
+      }),
+      this.load<{faults: FaultEntry[]}>('/api/v1/faults', ({faults}) => {
+        this.patch({faultTable: Object.fromEntries(faults.map((fault) => [fault.code, fault]))});
+      }),
+      this.askReadiness(),
+      this.loadRuns(),
+    ]);
+  }
+
+  private async askRole(): Promise<void> {
+    const reply = await this.ask<{role: Role}>('/api/v1/access');
+    if (reply.kind === 'ok') this.patch({role: reply.value.role});
+    if (reply.kind === 'refused') this.patch({role: this.token ? 'wrong token' : 'none'});
+  }
+
+  private async askReadiness(): Promise<void> {
+    if (this.isPageHidden) return;
+    const reply = await this.ask<unknown>('/readyz');
+    if (reply.kind === 'ok') this.patch({unmet: []});
+    if (reply.kind === 'refused') this.patch({unmet: (reply.problem.errors as Unmet[] | undefined) ?? null});
+    if (reply.kind === 'lost') this.patch({unmet: null});
+  }
+
+  async loadRuns(before: string | null = null): Promise<void> {
+    const path = before ? `/api/v1/runs?limit=50&before=${encodeURIComponent(before)}` : '/api/v1/runs?limit=50';
+    await this.load<Runs>(path, ({runs, next_before}) => {
+      this.store.dispatch({type: 'runs', runs, nextBefore: next_before, isMore: before !== null});
+    });
+  }
+
+  private async loadRunPlan(run_id: string): Promise<void> {
+    await this.load<Plan>(`/api/v1/runs/${run_id}/plan`, ({touches}) => this.patch({runPlan: {run_id, touches}}));
+  }
+
+  /** The result and the touches of the run under way: when there are new ones, and not more often than can be read. */
+  private async followRun(): Promise<void> {
+    if (this.askingResult) return;
+    this.askingResult = true;
+    try {
+      for (;;) {
+        const {status, runPlan, results} = this.store.state;
+        if (!status?.run_id || status.touches_done < 1 || this.isPageHidden) return;
+        const {run_id, touches_done} = status;
+        const isComplete = !isActive(status.state);
+        const isKnown = this.asked?.run_id === run_id && this.asked.touches === touches_done;
+        if (isKnown && !(isComplete && results[run_id]?.complete === false && status.state === 'COMPLETE')) return;
+        this.asked = {run_id, touches: touches_done};
+        if (runPlan?.run_id !== run_id) await this.loadRunPlan(run_id);
+        // Without a condition number there is no result yet.
+        await Promise.all([
+          status.condition_number !== null || isComplete ? this.loadResult(run_id) : null,
+          this.load<Touches>(`/api/v1/runs/${run_id}/touches`, ({touches}) => this.patch({touches: {run_id, touches}})),
+        ]);
+        await new Promise((done) => setTimeout(done, kResultGap_ms));
+      }
+    } finally {
+      this.askingResult = false;
+    }
+  }
+
+  async loadResult(run_id: string): Promise<void> {
+    const reply = await this.ask<Result>(`/api/v1/runs/${run_id}/result`);
+    if (reply.kind === 'ok') this.store.dispatch({type: 'result', run_id, result: reply.value});
+    if (reply.kind === 'refused') this.store.dispatch({type: 'missing', run_id, why: reply.problem.detail});
+  }
+
+  /** The results that the history's trends are drawn of. */
+  async loadTrends(): Promise<void> {
+    const wanted = this.store.state.runs.filter((run: Run) => run.outcome === 'complete').slice(0, kTrendRuns);
+    for (const run of wanted) {
+      if (!this.store.state.results[run.id]) await this.loadResult(run.id);
+    }
+  }
+
+  // what a person asks for
+
+  show(view: View): void {
+    this.patch({view});
+    this.setPace();
+    void this.followRun();
+    if (view === 'history') void this.loadRuns().then(() => this.loadTrends());
+  }
+
+  showRun(run_id: string): void {
+    this.patch({shownRun: run_id, view: 'result'});
+    if (!this.store.state.results[run_id]) void this.loadResult(run_id);
+  }
+
+  compare(run_id: string): void {
+    this.store.dispatch({type: 'compare', run_id});
+    if (!this.store.state.results[run_id]) void this.loadResult(run_id);
+  }
+
+  chooseRecipe(recipe: string): void {
+    this.patch({recipe});
+  }
+
+  async plan(recipe: string): Promise<void> {
+    this.store.dispatch({type: 'plan', recipe, plan: {kind: 'planning'}});
+    const reply = await post<Plan>('/api/v1/plan', {token: this.token, body: {recipe}, patience_ms: kPlanPatience_ms});
+    if (reply.kind === 'ok') this.store.dispatch({type: 'plan', recipe, plan: {kind: 'made', plan: reply.value}});
+    if (reply.kind === 'refused') this.store.dispatch({type: 'plan', recipe, plan: {kind: 'refused', problem: reply.problem}});
+    if (reply.kind === 'lost') this.store.dispatch({type: 'plan', recipe, plan: {kind: 'lost'}});
+  }
+
+  async startRun(conditions: Conditions): Promise<void> {
+    const {recipe} = this.store.state;
+    if (!recipe) return;
+    await this.send('start', '/api/v1/runs', {recipe, ...conditions});
+  }
+
+  async command(command: Command): Promise<void> {
+    const path = commandPath(command, this.store.state.status?.run_id ?? null);
+    if (!path) return;
+    const taken = await this.send(command, path, undefined, command === 'stop' ? kStopPatience_ms : undefined);
+    if (taken && command === 'acknowledge') this.store.dispatch({type: 'acknowledged'});
+    if (taken) void this.askReadiness();
+  }
+
+  private async send(command: Command | 'start', path: string, body: unknown, patience_ms?: number): Promise<boolean> {
+    this.patch({busy: command, notice: null});
+    const reply = await post<unknown>(path, patience_ms ? {token: this.token, body, patience_ms} : {token: this.token, body});
+    const busy = this.store.state.busy === command ? null : this.store.state.busy;
+    if (reply.kind === 'refused' && reply.status === 401) this.patch({role: 'wrong token'});
+    const problem = reply.kind === 'refused' ? reply.problem : null;
+    const taken = reply.kind === 'ok';
+    this.patch({busy, notice: taken ? null : {command, problem}});
+    return taken;
+  }
+
+  note(key: string): void {
+    this.store.dispatch({type: 'noted', key});
+  }
+
+  dropNotice(): void {
+    this.patch({notice: null});
+  }
+}

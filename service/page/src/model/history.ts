@@ -1,0 +1,48 @@
+import type {Parameter, Result, Run} from '../api/documents.ts';
+
+/** What a trend is drawn of: a parameter's error, or the distance of a plane. */
+export type TrendOf = {kind: 'parameter'; name: string} | {kind: 'plane'; plane: number};
+
+export interface TrendPoint { run: number; value: number | null }
+
+/** Over the complete runs whose results are here, oldest first. */
+export function trend(runs: Run[], results: Record<string, Result>, of: TrendOf): TrendPoint[] {
+  return runs.filter((run) => run.outcome === 'complete' && results[run.id])
+      .map((run) => ({run: Number(run.id), value: trendValue(results[run.id]!, of)}))
+      .sort((a, b) => a.run - b.run);
+}
+
+function trendValue(result: Result, of: TrendOf): number | null {
+  if (of.kind === 'parameter') return result.parameters.find(({name}) => name === of.name)?.error ?? null;
+  return result.planes.find(({plane}) => plane === of.plane)?.calibrated_mean_mm ?? null;
+}
+
+/** All that a trend can be drawn of. */
+export function trendChoices(results: Record<string, Result>): TrendOf[] {
+  const parameters = new Set<string>();
+  const planes = new Set<number>();
+  for (const result of Object.values(results)) {
+    for (const {name, status} of result.parameters) if (status === 'identified') parameters.add(name);
+    for (const {plane} of result.planes) planes.add(plane);
+  }
+  return [
+    ...[...planes].sort((a, b) => a - b).map((plane): TrendOf => ({kind: 'plane', plane})),
+    ...[...parameters].map((name): TrendOf => ({kind: 'parameter', name})),
+  ];
+}
+
+/** One parameter in two runs. */
+export interface Compared { parameter: Parameter; a: number | null; b: number | null; difference: number | null; isSignificant: boolean }
+
+/** A difference counts when it is beyond what both runs' uncertainties explain (95 %, two normal errors). */
+const kExpansion = 1.96;
+
+export function compareRuns(a: Result, b: Result): Compared[] {
+  return a.parameters.map((parameter) => {
+    const other = b.parameters.find(({name}) => name === parameter.name);
+    const [first, second] = [parameter.error, other?.error ?? null];
+    const difference = first === null || second === null ? null : second - first;
+    const std = Math.hypot(parameter.std_uncertainty ?? NaN, other?.std_uncertainty ?? NaN);
+    return {parameter, a: first, b: second, difference, isSignificant: difference !== null && Math.abs(difference) > kExpansion * std};
+  }).filter((row) => row.a !== null || row.b !== null);
+}

@@ -1,0 +1,54 @@
+import type {Frame, Vector} from '../api/documents.ts';
+
+/** A rigid transform: rows of the rotation and the translation in mm, row by row, 3 x 4. */
+export type Pose = [number, number, number, number, number, number, number, number, number, number, number, number];
+
+export const kIdentity: Pose = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0];
+
+const kRadiansPerDegree = Math.PI / 180;
+
+export function multiply(a: Pose, b: Pose): Pose {
+  const out = [...kIdentity] as Pose;
+  for (let row = 0; row < 3; ++row) {
+    const [x, y, z, t] = a.slice(4 * row, 4 * row + 4) as [number, number, number, number];
+    for (let column = 0; column < 4; ++column) {
+      const sum = x * b[column]! + y * b[4 + column]! + z * b[8 + column]!;
+      out[4 * row + column] = column === 3 ? sum + t : sum;
+    }
+  }
+  return out;
+}
+
+/** Rot(y,beta) Rot(x,alpha) Trans(x,d) Rot(z,theta) Trans(z,r): Khalil and Kleinfinger's modified DH with Hayati's beta. */
+export function frameTransform({alpha_rad, d_mm, theta_rad, r_mm, beta_rad}: Frame): Pose {
+  const [ca, sa] = [Math.cos(alpha_rad), Math.sin(alpha_rad)];
+  const [cb, sb] = [Math.cos(beta_rad), Math.sin(beta_rad)];
+  const [ct, st] = [Math.cos(theta_rad), Math.sin(theta_rad)];
+  const bend: Pose = [cb, sb * sa, sb * ca, cb * d_mm, 0, ca, -sa, 0, -sb, cb * sa, cb * ca, -sb * d_mm];
+  return multiply(bend, [ct, -st, 0, 0, st, ct, 0, 0, 0, 0, 1, r_mm]);
+}
+
+/** Frames 0 to 7 of the arm in the block's frame R_-1; 7 ends in the centre of the stylus ball. */
+export function forwardChain(frames: Frame[], gains: number[], joints_deg: number[]): Pose[] {
+  const chain: Pose[] = [];
+  let pose = kIdentity;
+  frames.forEach((frame, j) => {
+    const isJoint = j >= 1 && j <= 6;
+    const turn = isJoint ? (gains[j - 1] ?? 1) * (joints_deg[j - 1] ?? 0) * kRadiansPerDegree : 0;
+    pose = multiply(pose, frameTransform({...frame, theta_rad: frame.theta_rad + turn}));
+    chain.push(pose);
+  });
+  return chain;
+}
+
+export function apply(pose: Pose, point: Vector): Vector {
+  const [x, y, z] = point;
+  const row = (i: number): number => pose[i]! * x + pose[i + 1]! * y + pose[i + 2]! * z + pose[i + 3]!;
+  return [row(0), row(4), row(8)];
+}
+
+/** The centre of the stylus ball, in R_-1. */
+export function tip_mm(frames: Frame[], gains: number[], joints_deg: number[]): Vector {
+  const last = forwardChain(frames, gains, joints_deg).pop() ?? kIdentity;
+  return [last[3], last[7], last[11]];
+}

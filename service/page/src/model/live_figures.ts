@@ -1,0 +1,29 @@
+import type {Cell, PlaneDistances, Result, Touch, Vector} from '../api/documents.ts';
+import {tip_mm} from './kinematics.ts';
+
+/** How far the touches of a plane lie from it, in one role. */
+export interface Residual { mean_mm: number; rms_mm: number; isWithin: boolean }
+
+/** A plane's residuals; null: no such touches yet. */
+export interface PlaneResiduals { plane: number; fit: Residual | null; held_out: Residual | null }
+
+/** The residuals of each plane against the cell's limits. */
+export function residualsOf(result: Result, cell: Cell): PlaneResiduals[] {
+  const {held_out_mean_max_mm: mean_max, held_out_rms_max_mm: rms_max} = cell.acceptance;
+  const residual = (list: PlaneDistances[], plane: number): Residual | null => {
+    const distances = list.find((one) => one.plane === plane);
+    if (!distances || distances.calibrated_mean_mm === null || distances.calibrated_rms_mm === null) return null;
+    const mean_mm = distances.calibrated_mean_mm - distances.reference_mm;
+    const rms_mm = distances.calibrated_rms_mm;
+    return {mean_mm, rms_mm, isWithin: Math.abs(mean_mm) <= mean_max && rms_mm <= rms_max};
+  };
+  const planes = new Set([...result.planes, ...result.planes_held_out].map(({plane}) => plane));
+  return [...planes].sort((a, b) => a - b)
+      .map((plane) => ({plane, fit: residual(result.planes, plane), held_out: residual(result.planes_held_out, plane)}))
+      .filter(({fit, held_out}) => fit !== null || held_out !== null);
+}
+
+/** Where the nominal arm's ball is at each touch, in R_-1. */
+export function touchPoints(cell: Cell, touches: Touch[]): Vector[] {
+  return touches.map(({joints_deg}) => tip_mm(cell.scene.frames, cell.scene.gains, joints_deg));
+}

@@ -1,0 +1,133 @@
+import type {Cell, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet} from '../api/documents.ts';
+import type {Link} from '../api/live.ts';
+import {addToSeries, kNoSeries, type Series} from './series.ts';
+import {isActive, type Command} from './states.ts';
+import {dropAcknowledged, dropFault, noteFaults, type StickyFault} from './sticky_faults.ts';
+
+export type View = 'cell' | 'live' | 'result' | 'history';
+export const kViews: View[] = ['cell', 'live', 'result', 'history'];
+
+/** When something was heard: by the browser's clock that only goes forward, which nobody sets. */
+export interface Pulse { joints: Joints; heard_ms: number }
+
+/** A plan of a recipe: being made, made, or why not. */
+export type PlanState = {kind: 'planning'} | {kind: 'made'; plan: Plan} | {kind: 'refused'; problem: Problem} | {kind: 'lost'};
+
+/** A command that was not taken, in words, until noted. */
+export interface Notice { command: Command | 'start'; problem: Problem | null }
+
+/** All that the page shows. */
+export interface PageState {
+  link: Link;
+  status: Status | null;
+  pulse: Pulse | null;
+  series: Series;
+  faults: StickyFault[];
+  unmet: Unmet[] | null;  // what stands in the way of a start; null: not known
+  role: Role | null;
+  hasToken: boolean;
+  view: View;
+  cell: Cell | null;
+  recipes: Recipes | null;
+  faultTable: Record<string, FaultEntry>;
+  recipe: string | null;                // chosen for the next run
+  plans: Record<string, PlanState>;     // by recipe
+  runs: Run[];
+  nextBefore: string | null;            // of the history's next page
+  shownRun: string | null;              // chosen in the history; null: the newest
+  compared: string[];                   // at most two runs
+  results: Record<string, Result>;      // by run
+  missing: Record<string, string>;      // why a run has no result, by run
+  touches: {run_id: string; touches: Touch[]} | null;  // of the run that is watched
+  runPlan: {run_id: string; touches: Touch[]} | null;
+  notice: Notice | null;
+  busy: Command | 'start' | null;       // sent, not answered yet
+}
+
+export const kFirstState: PageState = {
+  link: 'connecting', status: null, pulse: null, series: kNoSeries, faults: [], unmet: null, role: null, hasToken: false,
+  view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], nextBefore: null,
+  shownRun: null, compared: [], results: {}, missing: {}, touches: null, runPlan: null, notice: null, busy: null,
+};
+
+export type Action =
+  | {type: 'link'; link: Link}
+  | {type: 'statuses'; statuses: Status[]}
+  | {type: 'joints'; joints: Joints; heard_ms: number}
+  | {type: 'patch'; patch: Partial<PageState>}
+  | {type: 'plan'; recipe: string; plan: PlanState}
+  | {type: 'result'; run_id: string; result: Result}
+  | {type: 'missing'; run_id: string; why: string}
+  | {type: 'runs'; runs: Run[]; nextBefore: string | null; isMore: boolean}
+  | {type: 'noted'; key: string}
+  | {type: 'acknowledged'}
+  | {type: 'compare'; run_id: string};
+
+/** Results are some 25 kB each: as many are kept as the trends draw. */
+const kResultsMax = 40;
+
+export function reduce(state: PageState, action: Action): PageState {
+  switch (action.type) {
+    case 'link':
+      return state.link === action.link ? state : {...state, link: action.link};
+    case 'statuses':
+      return action.statuses.reduce(takeStatus, state);
+    case 'joints':
+      return {...state, pulse: {joints: action.joints, heard_ms: action.heard_ms}};
+    case 'patch':
+      return {...state, ...action.patch};
+    case 'plan':
+      return {...state, plans: {...state.plans, [action.recipe]: action.plan}};
+    case 'result':
+      return {...state, results: keepNewest({...state.results, [action.run_id]: action.result})};
+    case 'missing':
+      return {...state, missing: {...state.missing, [action.run_id]: action.why}};
+    case 'runs':
+      return {...state, runs: action.isMore ? [...state.runs, ...action.runs] : action.runs, nextBefore: action.nextBefore};
+    case 'noted':
+      return {...state, faults: dropFault(state.faults, action.key)};
+    case 'acknowledged':
+      return {...state, faults: dropAcknowledged(state.faults)};
+    case 'compare':
+      return {...state, compared: toggled(state.compared, action.run_id)};
+  }
+}
+
+function takeStatus(state: PageState, status: Status): PageState {
+  const before = state.status;
+  const series = addToSeries(state.series, status);
+  if (before && before.instance_id === status.instance_id && status.sequence <= before.sequence) {
+    // Told again, or remembered from before this page was loaded: only the curves gain by it.
+    return status.run_id === before.run_id && series !== state.series ? {...state, series} : state;
+  }
+  return {
+    ...state,
+    status,
+    series,
+    faults: noteFaults(state.faults, before, status),
+    view: nextView(state.view, before, status),
+  };
+}
+
+/** A start shows the run, its end the result; else a person chooses. */
+function nextView(view: View, before: Status | null, status: Status): View {
+  const was = before !== null && isActive(before.state);
+  if (!was && isActive(status.state)) return 'live';
+  if (was && status.state === 'COMPLETE' && view === 'live') return 'result';
+  return view;
+}
+
+function keepNewest(results: Record<string, Result>): Record<string, Result> {
+  const ids = Object.keys(results).sort((a, b) => Number(b) - Number(a)).slice(0, kResultsMax);
+  return Object.fromEntries(ids.map((id) => [id, results[id]!]));
+}
+
+function toggled(compared: string[], run_id: string): string[] {
+  return compared.includes(run_id) ? compared.filter((id) => id !== run_id) : [...compared, run_id].slice(-2);
+}
+
+/** How old the cell's data are now, in ms: their age when they were told and the time since; null: never heard. */
+export function dataAge_ms(pulse: Pulse | null, now_ms: number): number | null {
+  if (!pulse || pulse.joints.data_age_ms === null) return null;
+  return pulse.joints.data_age_ms + Math.max(0, now_ms - pulse.heard_ms);
+}

@@ -1,0 +1,47 @@
+import type {StateName, Status} from '../api/documents.ts';
+
+/** Commands of the run or the cell, as in the API's paths. */
+export type Command =
+  | 'pause' | 'resume' | 'retry' | 'skip' | 'take' | 'undo' | 'locate' | 'stop' | 'abort' | 'clear' | 'reset' | 'acknowledge';
+
+const kOfTheRun: ReadonlySet<Command> = new Set(['pause', 'resume', 'retry', 'skip', 'abort']);
+
+export function commandPath(command: Command, run_id: string | null): string | null {
+  if (!kOfTheRun.has(command)) return `/api/v1/cell/${command}`;
+  return run_id ? `/api/v1/runs/${run_id}/${command}` : null;
+}
+
+const kQuiet: ReadonlySet<StateName> = new Set(['STOPPED', 'RESETTING', 'IDLE', 'COMPLETE', 'ABORTED', 'CLEARING']);
+
+/** A run is under way: the arm may move. */
+export const isActive = (state: StateName): boolean => !kQuiet.has(state);
+
+/** A run may start, as far as the state goes. */
+export const mayStart = (state: StateName): boolean => state === 'IDLE' || state === 'COMPLETE';
+
+const kPausable: ReadonlySet<StateName> =
+    new Set(['EXECUTE', 'UNHOLDING', 'SUSPENDING', 'SUSPENDED', 'UNSUSPENDING']);
+export const mayPause = (state: StateName): boolean => kPausable.has(state);
+
+/** What the run's main button does in a state; null: there is nothing to do but wait. */
+export type MainAction = 'start' | 'resume' | 'reset' | 'clear' | null;
+export function mainAction(state: StateName): MainAction {
+  if (mayStart(state)) return 'start';
+  if (state === 'HELD' || state === 'SUSPENDED') return 'resume';
+  if (state === 'STOPPED') return 'reset';
+  return state === 'ABORTED' ? 'clear' : null;
+}
+
+/** A touch holds the run: it can be made again or left out. */
+export function touchActions(status: Status): Command[] {
+  return status.state === 'HELD' && status.fault_code ? ['retry', 'skip'] : [];
+}
+
+/** How the state looks: at rest, at work, waiting for a person, or wrong. */
+export type Mood = 'rest' | 'work' | 'wait' | 'wrong';
+export function mood(status: Status): Mood {
+  if (status.state === 'ABORTED' || status.state === 'ABORTING') return 'wrong';
+  if (status.fault_code && (status.state === 'HELD' || status.state === 'STOPPED')) return 'wrong';
+  if (status.waiting_for || status.state === 'HELD' || status.state === 'SUSPENDED') return 'wait';
+  return isActive(status.state) ? 'work' : 'rest';
+}

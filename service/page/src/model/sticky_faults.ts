@@ -1,0 +1,77 @@
+import type {Status} from '../api/documents.ts';
+
+/** A fault or warning as it was told: it stays until a person has noted it, whatever the cell does meanwhile. */
+export interface StickyFault {
+  key: string;
+  code: string;
+  message: string;
+  robot_action: string | null;
+  next_step: string | null;
+  run_id: string | null;
+  isWarning: boolean;
+  isOver: boolean;  // the daemon no longer tells it
+  at: string;       // by the daemon's clock, of the state in which it was told
+}
+
+/** The newest warnings are enough to read; the run keeps all of them. */
+const kWarningsMax = 5;
+
+export function noteFaults(known: StickyFault[], before: Status | null, status: Status): StickyFault[] {
+  let faults = known;
+  const restarted = before !== null && before.instance_id !== status.instance_id;
+  const same = !restarted && before?.fault_code === status.fault_code && before?.fault_message === status.fault_message;
+  if (!same) {
+    faults = faults.map((fault) => (fault.isWarning || fault.isOver ? fault : {...fault, isOver: true}));
+    if (status.fault_code) faults = [toFault(status), ...faults.filter((fault) => !isSameFault(fault, status))];
+  }
+  const isNewWarning = status.warning_code !== null &&
+      (before === null || restarted || before.run_id !== status.run_id || before.warning_code !== status.warning_code ||
+       before.warning_message !== status.warning_message);
+  if (isNewWarning) faults = withWarning(faults, status);
+  return faults;
+}
+
+function isSameFault(fault: StickyFault, status: Status): boolean {
+  return !fault.isWarning && fault.code === status.fault_code && fault.message === status.fault_message;
+}
+
+function toFault(status: Status): StickyFault {
+  return {
+    key: `${status.instance_id}-${status.sequence}`,
+    code: status.fault_code ?? '',
+    message: status.fault_message ?? '',
+    robot_action: status.fault_robot_action,
+    next_step: status.fault_next_step,
+    run_id: status.run_id,
+    isWarning: false,
+    isOver: false,
+    at: status.since,
+  };
+}
+
+function withWarning(faults: StickyFault[], status: Status): StickyFault[] {
+  const warning: StickyFault = {
+    key: `${status.instance_id}-${status.sequence}-warning`,
+    code: status.warning_code ?? '',
+    message: status.warning_message ?? '',
+    robot_action: null,
+    next_step: null,
+    run_id: status.run_id,
+    isWarning: true,
+    isOver: false,
+    at: status.since,
+  };
+  const others = faults.filter((fault) => !(fault.isWarning && fault.code === warning.code && fault.run_id === warning.run_id));
+  const warnings = others.filter((fault) => fault.isWarning).slice(0, kWarningsMax - 1);
+  return [...others.filter((fault) => !fault.isWarning), warning, ...warnings];
+}
+
+/** A person has read it. One that the daemon still tells stays until the daemon has taken note as well. */
+export function dropFault(known: StickyFault[], key: string): StickyFault[] {
+  return known.filter((fault) => fault.key !== key || !(fault.isWarning || fault.isOver));
+}
+
+/** The daemon took note: what it told is read. */
+export function dropAcknowledged(known: StickyFault[]): StickyFault[] {
+  return known.filter((fault) => fault.isWarning);
+}

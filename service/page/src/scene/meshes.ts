@@ -1,0 +1,71 @@
+import type {Box, Capsule, Face, Vector} from '../api/documents.ts';
+import {add, cross, length, scale, subtract, unit} from './matrix.ts';
+
+/** Triangles: six numbers a corner, place (mm) and normal. */
+export type Mesh = Float32Array;
+
+function push(out: number[], point: Vector, normal: Vector): void {
+  out.push(...point, ...normal);
+}
+
+export function boxMesh({min_mm, max_mm}: Pick<Box, 'min_mm' | 'max_mm'>): Mesh {
+  const out: number[] = [];
+  for (let axis = 0; axis < 3; ++axis) {
+    for (const side of [0, 1]) {
+      const normal: Vector = [0, 0, 0];
+      normal[axis] = side ? 1 : -1;
+      const [u, v] = [(axis + 1) % 3, (axis + 2) % 3] as [0 | 1 | 2, 0 | 1 | 2];
+      const corner = (a: number, b: number): Vector => {
+        const point: Vector = [0, 0, 0];
+        point[axis] = (side ? max_mm : min_mm)[axis]!;
+        point[u] = (a ? max_mm : min_mm)[u];
+        point[v] = (b ? max_mm : min_mm)[v];
+        return point;
+      };
+      for (const [a, b] of [[0, 0], [1, 0], [1, 1], [0, 0], [1, 1], [0, 1]] as const) push(out, corner(a, b), normal);
+    }
+  }
+  return new Float32Array(out);
+}
+
+const kAround = 24;
+const kCap = 6;
+
+/** All points within a radius of a segment; a ball when its ends are one. */
+export function capsuleMesh({from_mm, to_mm, radius_mm}: Pick<Capsule, 'from_mm' | 'to_mm' | 'radius_mm'>): Mesh {
+  const axis = subtract(to_mm, from_mm);
+  const along = length(axis) > 1e-9 ? unit(axis) : ([0, 0, 1] as Vector);
+  const side = unit(cross(along, Math.abs(along[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0]));
+  const other = cross(along, side);
+  // Rings from one pole to the other: half a ball about `from`, then half a ball about `to`.
+  const rings: {center: Vector; angle: number}[] = [];
+  for (let i = 0; i <= kCap; ++i) rings.push({center: from_mm, angle: -Math.PI / 2 + (i / kCap) * (Math.PI / 2)});
+  for (let i = 0; i <= kCap; ++i) rings.push({center: to_mm, angle: (i / kCap) * (Math.PI / 2)});
+  const normal = (angle: number, turn: number): Vector =>
+      add(scale(along, Math.sin(angle)), scale(add(scale(side, Math.cos(turn)), scale(other, Math.sin(turn))), Math.cos(angle)));
+  const out: number[] = [];
+  for (let i = 0; i + 1 < rings.length; ++i) {
+    for (let j = 0; j < kAround; ++j) {
+      const corner = (ring: number, step: number): void => {
+        const {center, angle} = rings[ring]!;
+        const out_ward = normal(angle, (2 * Math.PI * step) / kAround);
+        push(out, add(center, scale(out_ward, radius_mm)), out_ward);
+      };
+      for (const [ring, step] of [[i, j], [i, j + 1], [i + 1, j + 1], [i, j], [i + 1, j + 1], [i + 1, j]] as const)
+        corner(ring, step);
+    }
+  }
+  return new Float32Array(out);
+}
+
+/** The part of a face that may be touched, lifted a little off the block so that it shows. */
+export function faceMesh({outward, center_mm, edge_u, half_extent_mm}: Face): Mesh {
+  const kLift_mm = 0.8;
+  const edge_v = cross(outward, edge_u);
+  const out: number[] = [];
+  for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, -1], [1, 1], [-1, 1]] as const) {
+    const in_face = add(scale(edge_u, a * half_extent_mm[0]), scale(edge_v, b * half_extent_mm[1]));
+    push(out, add(add(center_mm, scale(outward, kLift_mm)), in_face), outward);
+  }
+  return new Float32Array(out);
+}

@@ -1,0 +1,141 @@
+import {useEffect, useRef, useState} from 'preact/hooks';
+import type {Conditions, Desk} from '../model/desk.ts';
+import {age, fill, type Language} from '../model/format.ts';
+import {dataAge_ms, kViews, type PageState, type View} from '../model/page_state.ts';
+import {mayPause} from '../model/states.ts';
+import {useStore} from '../model/store.ts';
+import {sayIn, type WordKey} from '../words/words.ts';
+import {CellView} from './cell_view.tsx';
+import {FaultPanel, WaitPanel} from './fault_panel.tsx';
+import {HandPanel} from './hand_panel.tsx';
+import {Header} from './header.tsx';
+import {HistoryView} from './history_view.tsx';
+import {LiveView} from './live_view.tsx';
+import {ResultView} from './result_view.tsx';
+import {RunControls} from './run_controls.tsx';
+import {firstLanguage, firstTheme, keepLanguage, keepOperator, keepTheme, keptOperator, type Theme} from './settings.ts';
+import {Symbol} from './symbol.tsx';
+import {LanguageContext} from './texts.tsx';
+
+const kViewWords: Record<View, WordKey> = {cell: 'viewCell', live: 'viewLive', result: 'viewResult', history: 'viewHistory'};
+const kTick_ms = 500;
+
+/** The clock of the shown ages. */
+function useNow(): number {
+  const [now_ms, setNow] = useState(performance.now());
+  useEffect(() => {
+    const clock = setInterval(() => setNow(performance.now()), kTick_ms);
+    return () => clearInterval(clock);
+  }, []);
+  return now_ms;
+}
+
+function useShortcuts(desk: Desk): void {
+  useEffect(() => {
+    const act = (event: KeyboardEvent): void => {
+      if (!event.altKey || event.ctrlKey || event.metaKey || event.repeat) return;
+      const view = kViews[Number(event.code.replace('Digit', '')) - 1];
+      const {role, status} = desk.store.state;
+      if (view) desk.show(view);
+      else if (event.code === 'KeyS' && role === 'operate') void desk.command('stop');
+      else if (event.code === 'KeyP' && role === 'operate' && status && mayPause(status.state)) void desk.command('pause');
+      else return;
+      event.preventDefault();
+    };
+    addEventListener('keydown', act);
+    return () => removeEventListener('keydown', act);
+  }, [desk]);
+}
+
+export function App({desk}: {desk: Desk}) {
+  const state = useStore(desk.store);
+  const now_ms = useNow();
+  const [language, setLanguage] = useState<Language>(firstLanguage);
+  const [theme, setTheme] = useState<Theme>(firstTheme);
+  const [conditions, setConditions] = useState<Conditions>(() => keptOperator());
+  useShortcuts(desk);
+  useEffect(() => {
+    document.documentElement.lang = language;
+    keepLanguage(language);
+  }, [language]);
+  useEffect(() => {
+    document.documentElement.dataset.theme = theme;
+    keepTheme(theme);
+  }, [theme]);
+  const place = useRef<HTMLElement>(null);
+  useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun]);
+  const say = sayIn(language);
+  const isOld = state.link === 'lost' || state.link === 'refused';
+  const takeConditions = (given: Conditions): void => {
+    setConditions(given);
+    keepOperator(given);
+  };
+  return (
+    <LanguageContext.Provider value={language}>
+      <Header state={state} now_ms={now_ms} />
+      <nav aria-label={say('views')}>
+        {kViews.map((view, i) => (
+          <button key={view} type="button" aria-current={state.view === view ? 'page' : undefined}
+                  aria-keyshortcuts={`Alt+${i + 1}`} onClick={() => desk.show(view)}>
+            {say(kViewWords[view])} <kbd>{i + 1}</kbd>
+          </button>
+        ))}
+        <span class="spring" />
+        <button type="button" lang={language === 'en' ? 'fr' : 'en'} onClick={() => setLanguage(language === 'en' ? 'fr' : 'en')}>
+          {say('language')}
+        </button>
+        <button type="button" aria-pressed={theme === 'dark'} onClick={() => setTheme(theme === 'dark' ? 'light' : 'dark')}>
+          {say(theme === 'dark' ? 'themeLight' : 'themeDark')}
+        </button>
+      </nav>
+      <main class={isOld ? 'old' : ''} ref={place}>
+        <Banner state={state} now_ms={now_ms} language={language} />
+        <WaitPanel state={state} />
+        <HandPanel state={state} desk={desk} />
+        <FaultPanel state={state} desk={desk} />
+        <Shown state={state} desk={desk} conditions={conditions} onConditions={takeConditions} />
+        <p class="keys">{say('keysHelp')}</p>
+      </main>
+      <RunControls state={state} desk={desk} onStart={() => void desk.startRun(conditions)} />
+    </LanguageContext.Provider>
+  );
+}
+
+function Shown({state, desk, conditions, onConditions}: {
+  state: PageState; desk: Desk; conditions: Conditions; onConditions: (given: Conditions) => void;
+}) {
+  switch (state.view) {
+    case 'cell':
+      return <CellView state={state} desk={desk} conditions={conditions} onConditions={onConditions} />;
+    case 'live':
+      return <LiveView state={state} desk={desk} />;
+    case 'result':
+      return <ResultView state={state} desk={desk} />;
+    case 'history':
+      return <HistoryView state={state} desk={desk} />;
+  }
+}
+
+/** What is wrong with the page's own means: no daemon, no token. */
+function Banner({state, now_ms, language}: {state: PageState; now_ms: number; language: Language}) {
+  const say = sayIn(language);
+  const {link, role} = state;
+  if (link === 'lost') {
+    const words = fill(say('lostWords'), {age: age(dataAge_ms(state.pulse, now_ms))});
+    return <Card title={say('lostTitle')} words={words} kind="fault" />;
+  }
+  if (role === 'wrong token') return <Card title={say('staleTitle')} words={say('staleWords')} kind="warning" />;
+  if (link === 'refused') return <Card title={say('refusedTitle')} words={say('refusedWords')} kind="warning" />;
+  if (role === 'none') return <p class="watching"><Symbol shape="later" />{say('watchOnly')}</p>;
+  if (role === 'view') return <p class="watching"><Symbol shape="later" />{say('viewOnly')}</p>;
+  return null;
+}
+
+function Card({title, words, kind}: {title: string; words: string; kind: 'fault' | 'warning'}) {
+  return (
+    <section class={`card ${kind}`} role="alert">
+      <h2><Symbol shape={kind} />{title}</h2>
+      <p>{words}</p>
+    </section>
+  );
+}

@@ -1,0 +1,165 @@
+import {useState} from 'preact/hooks';
+import type {Recipe} from '../api/documents.ts';
+import type {Conditions, Desk} from '../model/desk.ts';
+import {duration, number} from '../model/format.ts';
+import type {PageState, PlanState} from '../model/page_state.ts';
+import {conditions, type Condition} from '../model/readiness.ts';
+import {isActive, mayStart} from '../model/states.ts';
+import {faultWords, withButtons} from '../words/fault_words.ts';
+import {Symbol, type Shape} from './symbol.tsx';
+import {OuterText, useLanguage, useSay} from './texts.tsx';
+
+interface Props {
+  state: PageState;
+  desk: Desk;
+  conditions: Conditions;
+  onConditions: (conditions: Conditions) => void;
+}
+
+/** Is the cell ready, and which recipe comes next. */
+export function CellView({state, desk, conditions: given, onConditions}: Props) {
+  return (
+    <div class="cell-view">
+      <Readiness state={state} />
+      <RecipeChoice state={state} desk={desk} given={given} onConditions={onConditions} />
+      <LocateOffer state={state} desk={desk} />
+    </div>
+  );
+}
+
+const kShapes: Record<Condition['state'], Shape> = {met: 'ok', unmet: 'warning', unknown: 'unknown', later: 'later'};
+
+function Readiness({state}: {state: PageState}) {
+  const say = useSay();
+  const reached = state.link === 'live' || state.link === 'polling';
+  const list = conditions(reached ? state.status : null, reached ? state.unmet : null);
+  const missing = list.filter((condition) => condition.state === 'unmet').length;
+  return (
+    <section class="readiness" aria-labelledby="readiness">
+      <h2 id="readiness">{say('readiness')}</h2>
+      <ul>
+        {list.map((condition, i) => <ConditionRow key={`${condition.name}${i}`} condition={condition} state={state} />)}
+      </ul>
+      <p class={missing > 0 ? 'abnormal' : ''} role="status">
+        {missing > 0 ? say('readyNot', {count: missing}) : list.every(({state: s}) => s !== 'unknown') ? say('readyAll') : say('unknown')}
+      </p>
+    </section>
+  );
+}
+
+function ConditionRow({condition, state}: {condition: Condition; state: PageState}) {
+  const say = useSay();
+  const language = useLanguage();
+  const words = condition.code ? faultWords(language, condition.code, state.faultTable) : null;
+  const reason = condition.detail && language === 'en' ? condition.detail : words?.next_step ?? condition.detail;
+  const kind: Record<Condition['state'], string> = {
+    met: say('met'), unmet: say('unmet'), unknown: say('unknown'), later: say('later'),
+  };
+  return (
+    <li class={condition.state}>
+      <Symbol shape={kShapes[condition.state]} />
+      <span class="name">{say(condition.name)}</span>
+      <span class="kind">{kind[condition.state]}</span>
+      {condition.state === 'unmet' && reason ? <span class="reason"><OuterText text={withButtons(reason, say)} /></span> : null}
+    </li>
+  );
+}
+
+function RecipeChoice({state, desk, given, onConditions}: {
+  state: PageState; desk: Desk; given: Conditions; onConditions: (conditions: Conditions) => void;
+}) {
+  const say = useSay();
+  const {recipes, recipe} = state;
+  const chosen = recipes?.recipes.find(({name}) => name === recipe) ?? null;
+  return (
+    <section class="recipe" aria-labelledby="recipe">
+      <h2 id="recipe">{say('recipe')}</h2>
+      <div class="choices" role="radiogroup" aria-labelledby="recipe">
+        {recipes?.recipes.map(({name}) => (
+          <label key={name} class={name === recipe ? 'choice chosen' : 'choice'}>
+            <input type="radio" name="recipe" value={name} checked={name === recipe} onChange={() => desk.chooseRecipe(name)} />
+            <span class="name">{name}</span>
+          </label>
+        ))}
+      </div>
+      {chosen && <RecipeFigures recipe={chosen} plan={state.plans[chosen.name]} state={state} desk={desk} />}
+      <StartFields given={given} onConditions={onConditions} />
+    </section>
+  );
+}
+
+function RecipeFigures({recipe, plan, state, desk}: {recipe: Recipe; plan: PlanState | undefined; state: PageState; desk: Desk}) {
+  const say = useSay();
+  const language = useLanguage();
+  const made = plan?.kind === 'made' ? plan.plan : null;
+  const isPlanning = plan?.kind === 'planning';
+  const canPlan = state.role === 'operate' && !made && !isPlanning && state.status !== null && !isActive(state.status.state);
+  const refused = plan?.kind === 'refused' ? plan.problem.detail : plan?.kind === 'lost' ? say('noAnswer') : null;
+  return (
+    <div class="figures">
+      <p><OuterText text={recipe.description} /></p>
+      <p>{say('recipeTouches', {fit: recipe.fit_max, held: recipe.held_out})}</p>
+      <dl>
+        <div><dt>{say('duration')}</dt><dd>{isPlanning ? say('planning') : duration(made?.duration_s)}</dd></div>
+        <div>
+          <dt>{say('accuracy')}</dt>
+          <dd>{number(made?.tip_uncertainty.workspace_box_rms_mm, 3, language)} mm</dd>
+        </div>
+        <div><dt>{say('conditionNumber')}</dt><dd>{number(made?.condition_number, 1, language)}</dd></div>
+      </dl>
+      {canPlan && <button type="button" onClick={() => void desk.plan(recipe.name)}>{say('plan')}</button>}
+      {refused && <p class="abnormal"><OuterText text={say('planRefused', {why: refused})} /></p>}
+    </div>
+  );
+}
+
+/** Who answers for the run and how warm the block is: kept with the result, needed by no start. */
+function StartFields({given, onConditions}: {given: Conditions; onConditions: (conditions: Conditions) => void}) {
+  const say = useSay();
+  const [temperature, setTemperature] = useState(given.block_temperature_c?.toString() ?? '');
+  const read = readTemperature(temperature);
+  const takeTemperature = (text: string): void => {
+    setTemperature(text);
+    const {block_temperature_c: _, ...others} = given;
+    const value = readTemperature(text);
+    onConditions(typeof value === 'number' ? {...others, block_temperature_c: value} : others);
+  };
+  const takeOperator = (text: string): void => {
+    const {operator: _, ...others} = given;
+    onConditions(text.trim() ? {...others, operator: text.trim()} : others);
+  };
+  return (
+    <div class="fields">
+      <label>
+        <span>{say('operator')} <small>({say('optional')})</small></span>
+        <input type="text" maxLength={50} autocomplete="off" value={given.operator ?? ''}
+               onInput={(event) => takeOperator(event.currentTarget.value)} />
+      </label>
+      <label>
+        <span>{say('temperature')} <small>({say('optional')})</small></span>
+        <input type="text" inputMode="decimal" maxLength={6} autocomplete="off" value={temperature}
+               aria-invalid={read === 'wrong'} onInput={(event) => takeTemperature(event.currentTarget.value)} />
+      </label>
+      {read === 'wrong' && <p class="abnormal" role="alert">{say('temperatureWrong')}</p>}
+    </div>
+  );
+}
+
+function readTemperature(text: string): number | 'none' | 'wrong' {
+  if (text.trim() === '') return 'none';
+  const value = Number(text.trim().replace(',', '.'));
+  return Number.isFinite(value) && value >= -40 && value <= 100 ? value : 'wrong';
+}
+
+function LocateOffer({state, desk}: {state: PageState; desk: Desk}) {
+  const say = useSay();
+  const {status, role, unmet} = state;
+  if (!status || !mayStart(status.state) || role !== 'operate' || unmet === null) return null;
+  return (
+    <section class="locate" aria-labelledby="locate">
+      <h2 id="locate">{say('locate')}</h2>
+      <p>{say('locateWords')}</p>
+      <button type="button" onClick={() => void desk.command('locate')}>{say('locateStart')}</button>
+    </section>
+  );
+}

@@ -1,0 +1,96 @@
+import type {Desk} from '../model/desk.ts';
+import {fill} from '../model/format.ts';
+import type {PageState} from '../model/page_state.ts';
+import {touchActions} from '../model/states.ts';
+import type {StickyFault} from '../model/sticky_faults.ts';
+import {faultTitle, faultWords, withButtons} from '../words/fault_words.ts';
+import {sayName} from '../words/words.ts';
+import {HoldButton} from './hold_button.tsx';
+import {Symbol} from './symbol.tsx';
+import {OuterText, useLanguage, useSay} from './texts.tsx';
+
+/** Faults and warnings, until a person has noted each of them. */
+export function FaultPanel({state, desk}: {state: PageState; desk: Desk}) {
+  const reached = state.link === 'live' || state.link === 'polling';
+  return (
+    <div class="faults" role="alert">
+      {state.faults.map((fault) => <FaultCard key={fault.key} fault={fault} state={state} desk={desk} reached={reached} />)}
+      <Refusal state={state} desk={desk} />
+    </div>
+  );
+}
+
+function FaultCard({fault, state, desk, reached}: {fault: StickyFault; state: PageState; desk: Desk; reached: boolean}) {
+  const say = useSay();
+  const language = useLanguage();
+  const words = faultWords(language, fault.code, state.faultTable);
+  const isShown = !fault.isWarning && !fault.isOver;
+  // The daemon's message has what was special about this time behind the table's words.
+  const cause = language === 'en' || !words ? fault.message : withDetail(words.cause, fault, state);
+  const robot_action = (language === 'en' ? fault.robot_action : null) ?? words?.robot_action ?? null;
+  const next_step = (language === 'en' ? fault.next_step : null) ?? words?.next_step ?? null;
+  const actions = isShown && state.status && reached && state.role === 'operate' ? touchActions(state.status) : [];
+  return (
+    <article class={fault.isWarning ? 'card warning' : 'card fault'}>
+      <h2>
+        <Symbol shape={fault.isWarning ? 'warning' : 'fault'} />
+        {fault.isWarning ? say('warningTitle') : say('faultTitle')}: <OuterText text={faultTitle(fault.code)} />
+        {fault.isOver ? <small> ({say('faultOver')})</small> : null}
+      </h2>
+      <dl>
+        <div><dt>{say('cause')}</dt><dd><OuterText text={cause} /></dd></div>
+        {robot_action && <div><dt>{say('robotDid')}</dt><dd><OuterText text={robot_action} /></dd></div>}
+        {next_step && <div><dt>{say('nextStep')}</dt><dd><OuterText text={withButtons(next_step, say)} /></dd></div>}
+      </dl>
+      <div class="actions">
+        {actions.map((action) => (
+          <HoldButton key={action} class="inline" note={say('startHold')} disabled={false}
+                      onHeld={() => void desk.command(action)}>
+            {say(action === 'retry' ? 'retry' : 'skip')}
+          </HoldButton>
+        ))}
+        {isShown
+          ? <button type="button" disabled={state.role !== 'operate' || !reached}
+                    onClick={() => void desk.command('acknowledge')}>{say('acknowledge')}</button>
+          : <button type="button" onClick={() => desk.note(fault.key)}>{say('note')}</button>}
+      </div>
+    </article>
+  );
+}
+
+/** The translated cause, and what the daemon's message says beyond its own words for it. */
+function withDetail(cause: string, fault: StickyFault, state: PageState): string {
+  const own = state.faultTable[fault.code]?.cause ?? '';
+  const detail = fault.message.startsWith(own) ? fault.message.slice(own.length).replace(/^[:;,\s]+/, '') : fault.message;
+  return detail ? `${cause} (${detail})` : cause;
+}
+
+/** A command that was not taken. */
+function Refusal({state, desk}: {state: PageState; desk: Desk}) {
+  const say = useSay();
+  const {notice} = state;
+  if (!notice) return null;
+  const words = notice.problem?.detail ?? say('noAnswer');
+  return (
+    <article class="card warning">
+      <h2><Symbol shape="warning" />{fill(say('refusedCommand'), {command: notice.command})}</h2>
+      <p><OuterText text={words} /></p>
+      <ul>{notice.problem?.errors?.map(({code, detail}) => <li key={code}><OuterText text={detail} /></li>)}</ul>
+      <div class="actions"><button type="button" onClick={() => desk.dropNotice()}>{say('note')}</button></div>
+    </article>
+  );
+}
+
+/** What a person at the cell is waited for. */
+export function WaitPanel({state}: {state: PageState}) {
+  const say = useSay();
+  const language = useLanguage();
+  const waiting = state.status?.waiting_for;
+  if (!waiting) return null;
+  return (
+    <section class="card wait" role="alert">
+      <h2><Symbol shape="wait" />{say('waitTitle')}</h2>
+      <p class="big"><OuterText text={sayName(language, 'wait_', waiting)} /></p>
+    </section>
+  );
+}

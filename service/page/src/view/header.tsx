@@ -1,0 +1,66 @@
+import type {Status} from '../api/documents.ts';
+import type {Link} from '../api/live.ts';
+import {age, duration} from '../model/format.ts';
+import {dataAge_ms, type PageState} from '../model/page_state.ts';
+import {isActive, mood, type Mood} from '../model/states.ts';
+import type {WordKey} from '../words/words.ts';
+import {Symbol, type Shape} from './symbol.tsx';
+import {OuterText, useSay} from './texts.tsx';
+
+const kMoodShapes: Record<Mood, Shape> = {rest: 'rest', work: 'work', wait: 'wait', wrong: 'fault'};
+const kLinkWords: Record<Link, WordKey> = {
+  connecting: 'linkConnecting', live: 'linkLive', polling: 'linkPolling', lost: 'linkLost', refused: 'linkRefused',
+};
+/** Older data say nothing of the arm any more. */
+const kStale_ms = 2000;
+
+/** The state, readable from two metres; what the run does; how old all of this is. */
+export function Header({state, now_ms}: {state: PageState; now_ms: number}) {
+  const say = useSay();
+  const {status, link, cell} = state;
+  const isLost = link === 'lost' || link === 'refused' || link === 'connecting';
+  const age_ms = dataAge_ms(state.pulse, now_ms);
+  const isOld = age_ms === null || age_ms > kStale_ms;
+  return (
+    <header>
+      <div class={`state ${isLost || !status ? 'unknown' : mood(status)}`} role="status">
+        <Symbol shape={isLost || !status ? 'unknown' : kMoodShapes[mood(status)]} />
+        <h1>{isLost ? say(kLinkWords[link]) : status ? stateWords(status, state, say) : say('loading')}</h1>
+      </div>
+      <div class="progress">{status && <Progress status={status} isLost={isLost} />}</div>
+      <dl class="link">
+        <div class={isLost ? 'abnormal' : ''}>
+          <dt>{cell ? <OuterText text={cell.name} /> : say('title')}</dt>
+          <dd>{isLost ? <Symbol shape="fault" /> : null}{say(kLinkWords[link])}</dd>
+        </div>
+        <div class={isOld ? 'abnormal' : ''} data-age={age_ms === null ? '' : Math.round(age_ms)}>
+          <dt>{say('dataAge')}</dt>
+          <dd>{isOld ? <Symbol shape="warning" /> : null}{age(age_ms)}{isOld ? ` (${say('dataStale')})` : ''}</dd>
+        </div>
+      </dl>
+    </header>
+  );
+}
+
+function stateWords(status: Status, {unmet}: PageState, say: ReturnType<typeof useSay>): string {
+  if (status.state === 'IDLE' && unmet !== null && unmet.length > 0) return say('notReady');
+  return say(status.state);
+}
+
+function Progress({status, isLost}: {status: Status; isLost: boolean}) {
+  const say = useSay();
+  if (!status.run_id) return <p>{say('noRun')}</p>;
+  const total = status.touches_total;
+  const active = isActive(status.state);
+  return (
+    <div class={isLost ? 'old' : ''}>
+      <p class="count">
+        {total ? say('touchOf', {done: status.touches_done, total}) : say('touchesDone', {done: status.touches_done})}
+        {active && status.plane ? ` · ${say('plane', {plane: status.plane})}` : ''}
+        {active && status.eta_s !== null ? ` · ${say('timeLeft', {time: duration(status.eta_s)})}` : ''}
+      </p>
+      <progress max={total ?? 1} value={total ? status.touches_done : 0} aria-label={say('touches')} />
+      <p class="run-name"><OuterText text={say('runOf', {run: status.run_id, recipe: status.recipe ?? ''})} /></p>
+    </div>
+  );
+}

@@ -1,0 +1,147 @@
+import {useMemo, useState} from 'preact/hooks';
+import type {Run} from '../api/documents.ts';
+import type {Desk} from '../model/desk.ts';
+import {number, time} from '../model/format.ts';
+import {compareRuns, trend, trendChoices, type TrendOf} from '../model/history.ts';
+import type {PageState} from '../model/page_state.ts';
+import {sayName} from '../words/words.ts';
+import {Curve} from './curve.tsx';
+import {inUnit, Scroll, shownUnit} from './result_view.tsx';
+import {Symbol} from './symbol.tsx';
+import {OuterText, useLanguage, useSay} from './texts.tsx';
+
+/** All runs, how their figures went, and two of them side by side. */
+export function HistoryView({state, desk}: {state: PageState; desk: Desk}) {
+  const say = useSay();
+  if (state.runs.length === 0) return <p class="empty">{say('noRuns')}</p>;
+  return (
+    <div class="history-view">
+      <RunsTable state={state} desk={desk} />
+      <Comparison state={state} />
+      <Trends state={state} />
+    </div>
+  );
+}
+
+function RunsTable({state, desk}: {state: PageState; desk: Desk}) {
+  const say = useSay();
+  return (
+    <section>
+      <h2>{say('history')}</h2>
+      <Scroll label={say('history')}>
+        <table>
+          <thead>
+            <tr>
+              <th scope="col">№</th>
+              <th scope="col">{say('started')}</th>
+              <th scope="col">{say('recipe')}</th>
+              <th scope="col">{say('touches')}</th>
+              <th scope="col">{say('outcome')}</th>
+              <th scope="col">{say('show')}</th>
+              <th scope="col">{say('compare')}</th>
+            </tr>
+          </thead>
+          <tbody>{state.runs.map((run) => <RunRow key={run.id} run={run} state={state} desk={desk} />)}</tbody>
+        </table>
+      </Scroll>
+      {state.nextBefore && <button type="button" onClick={() => void desk.loadRuns(state.nextBefore)}>{say('more')}</button>}
+    </section>
+  );
+}
+
+function RunRow({run, state, desk}: {run: Run; state: PageState; desk: Desk}) {
+  const say = useSay();
+  const language = useLanguage();
+  const isBad = run.verdict === 'rejected' || run.outcome === 'aborted';
+  return (
+    <tr>
+      <th scope="row">{run.id}</th>
+      <td>{time(run.started_at)}</td>
+      <td><OuterText text={run.recipe} /></td>
+      <td class="figure">{run.touches_done}{run.touches_total ? ` / ${run.touches_total}` : ''}</td>
+      <td class={isBad ? 'abnormal' : ''}>
+        {isBad ? <Symbol shape="warning" /> : null}
+        {sayName(language, 'outcome_', run.outcome)}{run.verdict === 'none' ? '' : `, ${say(`verdict_${run.verdict}`)}`}
+        {run.fault_message ? <> · <OuterText text={run.fault_message} /></> : null}
+      </td>
+      <td><button type="button" disabled={run.touches_done < 1} onClick={() => desk.showRun(run.id)}>{say('show')} {run.id}</button></td>
+      <td>
+        <label class="check">
+          <input type="checkbox" checked={state.compared.includes(run.id)} disabled={run.touches_done < 1}
+                 onChange={() => desk.compare(run.id)} />
+          <span>{say('compare')} {run.id}</span>
+        </label>
+      </td>
+    </tr>
+  );
+}
+
+function Comparison({state}: {state: PageState}) {
+  const say = useSay();
+  const language = useLanguage();
+  const [a, b] = [...state.compared].sort((x, y) => Number(x) - Number(y));
+  const [first, second] = [a ? state.results[a] : undefined, b ? state.results[b] : undefined];
+  if (!a || !b || !first || !second) return <p class="hint">{say('compareHint')}</p>;
+  return (
+    <section>
+      <Scroll label={say('comparison', {a, b})}>
+        <table>
+          <caption>{say('comparison', {a, b})}</caption>
+          <thead>
+            <tr>
+              <th scope="col">{say('parameter')}</th>
+              <th scope="col">{a}</th>
+              <th scope="col">{b}</th>
+              <th scope="col">{say('difference')}</th>
+              <th scope="col">{say('unit')}</th>
+            </tr>
+          </thead>
+          <tbody>
+            {compareRuns(first, second).map((row) => (
+              <tr key={row.parameter.name}>
+                <th scope="row">{row.parameter.name}</th>
+                <td class="figure">{inUnit(row.parameter, row.a, language)}</td>
+                <td class="figure">{inUnit(row.parameter, row.b, language)}</td>
+                <td class="figure">
+                  {inUnit(row.parameter, row.difference, language)}
+                  {row.isSignificant ? <span class="abnormal"><Symbol shape="warning" />{say('differenceSignificant')}</span> : null}
+                </td>
+                <td>{shownUnit(row.parameter)}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </Scroll>
+    </section>
+  );
+}
+
+const keyOf = (of: TrendOf): string => (of.kind === 'plane' ? `plane ${of.plane}` : of.name);
+
+function Trends({state}: {state: PageState}) {
+  const say = useSay();
+  const language = useLanguage();
+  const choices = useMemo(() => trendChoices(state.results), [state.results]);
+  const [chosen, setChosen] = useState<string | null>(null);
+  const of = choices.find((choice) => keyOf(choice) === chosen) ?? choices[0];
+  const points = useMemo(() => (of ? trend(state.runs, state.results, of) : []), [state.runs, state.results, of]);
+  const x = useMemo(() => points.map(({run}) => run), [points]);
+  const lines = useMemo(() => [{name: of ? keyOf(of) : '', values: points.map(({value}) => value)}], [points, of]);
+  const nameOf = (choice: TrendOf): string => (choice.kind === 'plane' ? say('trendPlane', {plane: choice.plane}) : choice.name);
+  return (
+    <section>
+      <h2>{say('trends')}</h2>
+      {of && points.length > 1 ? (
+        <>
+          <label class="choose">
+            <span>{say('trendOf')}</span>
+            <select value={keyOf(of)} onChange={(event) => setChosen(event.currentTarget.value)}>
+              {choices.map((choice) => <option key={keyOf(choice)} value={keyOf(choice)}>{nameOf(choice)}</option>)}
+            </select>
+          </label>
+          <Curve title={nameOf(of)} x={x} lines={lines} height={180} write={(value) => number(value, of.kind === 'plane' ? 3 : 4, language)} />
+        </>
+      ) : <p class="hint">{say('trendNone')}</p>}
+    </section>
+  );
+}

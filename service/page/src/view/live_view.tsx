@@ -1,0 +1,67 @@
+import {useMemo} from 'preact/hooks';
+import type {Status} from '../api/documents.ts';
+import type {Desk} from '../model/desk.ts';
+import {number} from '../model/format.ts';
+import type {PageState} from '../model/page_state.ts';
+import {sayName} from '../words/words.ts';
+import {Curve, type Line} from './curve.tsx';
+import {Residuals} from './residuals.tsx';
+import {SceneFrame} from './scene_frame.tsx';
+import {OuterText, useLanguage, useSay} from './texts.tsx';
+
+/** The run as it goes on. */
+export function LiveView({state, desk}: {state: PageState; desk: Desk}) {
+  const {status, cell} = state;
+  const result = status?.run_id ? state.results[status.run_id] : undefined;
+  return (
+    <div class="live-view">
+      <div class="scene-side">
+        <SceneFrame state={state} store={desk.store} />
+        {result && cell ? <Residuals result={result} cell={cell} /> : null}
+      </div>
+      <div class="figures-side">
+        {status && <Figures status={status} />}
+        <Curves state={state} />
+      </div>
+    </div>
+  );
+}
+
+function Figures({status}: {status: Status}) {
+  const say = useSay();
+  const language = useLanguage();
+  return (
+    <dl class="figures">
+      <div><dt>{say('rank')}</dt><dd>{status.identifiable_count ?? '–'}</dd></div>
+      <div><dt>{say('conditionNumber')}</dt><dd>{number(status.condition_number, 1, language)}</dd></div>
+      <div><dt>{say('accuracy')}</dt><dd>{number(status.predicted_tip_rms_mm, 3, language)} mm</dd></div>
+      <div><dt>{say('drift')}</dt><dd>{number(status.reference_drift_mm, 3, language)} mm</dd></div>
+      <div class={status.probe === 'fault' ? 'abnormal' : ''}>
+        <dt>{say('probe')}</dt><dd>{status.probe ? sayName(language, 'probe_', status.probe) : say('unknown')}</dd>
+      </div>
+      {status.more_would_bring
+        ? <div class="wide"><dt>{say('moreWouldBring')}</dt><dd><OuterText text={status.more_would_bring} /></dd></div>
+        : null}
+    </dl>
+  );
+}
+
+function Curves({state}: {state: PageState}) {
+  const say = useSay();
+  const language = useLanguage();
+  const {points} = state.series;
+  const x = useMemo(() => points.map(({touch}) => touch), [points]);
+  const condition: Line[] =
+      useMemo(() => [{name: say('conditionNumber'), values: points.map((point) => point.condition_number)}], [points, language]);
+  const accuracy: Line[] =
+      useMemo(() => [{name: say('accuracy'), values: points.map((point) => point.predicted_tip_rms_mm)}], [points, language]);
+  if (points.filter((point) => point.condition_number !== null).length < 2) return <p class="empty">{say('noCurve')}</p>;
+  return (
+    <>
+      <h3>{say('curveCondition')}</h3>
+      <Curve title={say('curveCondition')} x={x} lines={condition} height={104} isLog write={(value) => number(value, 0, language)} />
+      <h3>{say('curveAccuracy')}</h3>
+      <Curve title={say('curveAccuracy')} x={x} lines={accuracy} height={104} isLog write={(value) => number(value, 2, language)} />
+    </>
+  );
+}

@@ -1,0 +1,75 @@
+import type {Desk} from '../model/desk.ts';
+import type {PageState} from '../model/page_state.ts';
+import {mainAction, mayPause} from '../model/states.ts';
+import {HoldButton} from './hold_button.tsx';
+import {useSay} from './texts.tsx';
+
+interface Props { state: PageState; desk: Desk; onStart: () => void }
+
+/** START and its like, PAUSE, STOP MOTION: always in the same places. */
+export function RunControls({state, desk, onStart}: Props) {
+  const say = useSay();
+  const {status, link, role} = state;
+  const reached = link === 'live' || link === 'polling';
+  const operates = role === 'operate';
+  return (
+    <aside class="run-controls" aria-label={say('runControls')}>
+      <MainButton state={state} desk={desk} onStart={onStart} usable={reached && operates} />
+      <button
+        type="button"
+        class="run pause"
+        disabled={!reached || !operates || !status || !mayPause(status.state)}
+        aria-keyshortcuts="Alt+P"
+        onClick={() => void desk.command('pause')}
+      >
+        <span class="label">{say('pause')}</span>
+      </button>
+      <button
+        type="button"
+        class="run stop"
+        disabled={!operates}
+        aria-keyshortcuts="Alt+S"
+        onClick={() => void desk.command('stop')}
+      >
+        <span class="label">{say('stopMotion')}</span>
+        <span class="note">{say('stopNote')}</span>
+      </button>
+    </aside>
+  );
+}
+
+function MainButton({state, desk, onStart, usable}: Props & {usable: boolean}) {
+  const say = useSay();
+  const {status, busy, recipe} = state;
+  const action = status ? mainAction(status.state) : null;
+  const disabled = !usable || busy === 'start' || action === null;
+  if (action === 'resume') {
+    return (
+      <HoldButton class="main" note={say('startHold')} disabled={disabled} onHeld={() => void desk.command('resume')}>
+        {say('resume')}
+      </HoldButton>
+    );
+  }
+  if (action === 'clear') {
+    return (
+      <HoldButton class="main" note={say('startHold')} disabled={disabled} onHeld={() => void desk.command('clear')}>
+        {say('clear')}
+      </HoldButton>
+    );
+  }
+  if (action === 'reset') {
+    return (
+      <button type="button" class="run main" disabled={disabled} onClick={() => void desk.command('reset')}>
+        <span class="label">{say('reset')}</span>
+        <span class="note">{say('resetWords')}</span>
+      </button>
+    );
+  }
+  const isReady = state.unmet !== null && state.unmet.length === 0;
+  return (
+    <HoldButton class="main" note={action ? say('startHold') : say('wait')} disabled={disabled || !isReady || !recipe}
+                onHeld={onStart}>
+      {say('start')}
+    </HoldButton>
+  );
+}
