@@ -158,7 +158,7 @@ constexpr std::string_view kJoints = R"({
 "type":"object",
 "required":["joints_deg","data_age_ms","sequence","instance_id"],
 "properties":{
-  "joints_deg":{"type":["array","null"],"minItems":6,"maxItems":6,"items":{"type":"number"}},
+  "joints_deg":{"type":["array","null"],"items":{"type":"number"},"description":"six, joint 1 first"},
   "data_age_ms":{"type":["integer","null"],"minimum":0},
   "sequence":{"type":"integer","minimum":0,"description":"of the status"},
   "instance_id":{"type":"string"}}})";

@@ -65,8 +65,8 @@ TEST(OpenApi, ADocumentThatIsNotAsItsSchemaSaysIsSeen) {
     without.erase(name);
     EXPECT_EQ(faults(without), 1u) << name;
     json other = good;
-    other[name] = json::array();
-    EXPECT_EQ(faults(other), 1u) << name << " is not told from an array";
+    other[name] = json::object();
+    EXPECT_EQ(faults(other), 1u) << name << " is not told from an object";
   }
 }
 

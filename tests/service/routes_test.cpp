@@ -143,7 +143,7 @@ TEST_F(RoutesTest, ARunItsTouchesAndItsResultAreReadFromTheStore) {
 
 TEST_F(RoutesTest, WhatIsNotThereIs404) {
   for (const char* target :
-       {"/", "/api", "/api/v1", "/api/v1/", "/api/v1/nothing", "/api/v2/status", "/Healthz", "/api/v1/runs/1",
+       {"/api", "/api/v1", "/api/v1/", "/api/v1/nothing", "/api/v2/status", "/Healthz", "/api/v1/runs/1",
         "/api/v1/runs/1/touches", "/api/v1/runs/1/result", "/api/v1/runs/x", "/api/v1/runs//touches",
         "/api/v1/runs/-1", "/api/v1/runs/99999999999999999999", "/api/v1/status/more",
         "/api/v1/runs/1/nothing", "/api/v1/%73tatus"}) {

@@ -58,9 +58,9 @@ function Curves({state}: {state: PageState}) {
   if (points.filter((point) => point.condition_number !== null).length < 2) return <p class="empty">{say('noCurve')}</p>;
   return (
     <>
-      <h3>{say('curveCondition')}</h3>
+      <h2>{say('curveCondition')}</h2>
       <Curve title={say('curveCondition')} x={x} lines={condition} height={104} isLog write={(value) => number(value, 0, language)} />
-      <h3>{say('curveAccuracy')}</h3>
+      <h2>{say('curveAccuracy')}</h2>
       <Curve title={say('curveAccuracy')} x={x} lines={accuracy} height={104} isLog write={(value) => number(value, 2, language)} />
     </>
   );

@@ -1,0 +1,121 @@
+// Texts that are not meant well, tokens and clocks that are wrong: shown as text, said in words, never a blank page.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {expectAccessible, openBrowser, openPage, startButton, stopButton, waitForState} from './browser.mjs';
+import {Cell} from './cell.mjs';
+
+const kHostile = '<img src=x onerror="window.taken=1"><script>window.taken=1</script>&amp;\u202e';
+const kLong = 'long '.repeat(2000);
+
+let cell, browser;
+before(async () => {
+  cell = await Cell.start();
+  browser = await openBrowser();
+});
+after(async () => {
+  await browser?.close();
+  await cell?.stop();
+});
+
+/** A page whose daemon says what `changes` makes of its answers, by path. */
+async function openWith(changes) {
+  const page = await openPage(browser, 'about:blank');
+  for (const [path, change] of Object.entries(changes)) {
+    await page.route(`${cell.url}${path}`, async (route) => {
+      const answer = await route.fetch();
+      await route.fulfill({response: answer, json: change(await answer.json())});
+    });
+  }
+  await page.route(`${cell.url}/api/v1/events`, (route) => route.fulfill({status: 503, json: {}}));
+  await page.goto(cell.link);
+  return page;
+}
+
+/** Answers that are still under way are nobody's fault. */
+async function close(page) {
+  await page.unrouteAll({behavior: 'ignoreErrors'});
+  await page.context().close();
+}
+
+test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
+  const page = await openWith({
+    '/api/v1/status': (status) => ({...status, sequence: status.sequence + 5, state: 'HELD', run_id: '1', recipe: kHostile, fault_code: kHostile,
+                                    fault_message: kHostile + kLong, fault_robot_action: kHostile, fault_next_step: kHostile,
+                                    warning_code: 'x', warning_message: kLong, more_would_bring: kHostile, waiting_for: kHostile}),
+    '/api/v1/cell': (document) => ({...document, name: kHostile + kLong}),
+    '/api/v1/recipes': (document) => ({default: kHostile, recipes: [{...document.recipes[0], name: kHostile, description: kLong}]}),
+  });
+  const card = page.locator('.card.fault');
+  await card.waitFor();
+  assert.ok((await card.textContent()).includes('<img src=x onerror='));
+  assert.equal(await page.locator('img, main script').count(), 0);
+  assert.equal(await page.evaluate('window.taken'), undefined);
+  const more = card.getByRole('button', {name: /show all \d+ characters/});
+  assert.ok((await card.textContent()).length < 3000);
+  await more.click();
+  assert.ok((await card.textContent()).length > kLong.length);
+  await expectAccessible(page, 'hostile texts');
+  const {width} = await page.locator('main').boundingBox();
+  assert.ok(width < 1024, 'a long text does not push the buttons away');
+  assert.ok((await stopButton(page).boundingBox()).x < 1024);
+  assert.deepEqual(page.complaints, []);
+  await close(page);
+});
+
+test('AStaleTokenIsSaidInWordsAndThePageWatches', async () => {
+  const page = await openPage(browser, `${cell.url}/#token=${'0'.repeat(64)}`);
+  await page.getByText('This token is no longer taken').waitFor();
+  await waitForState(page, 'Ready');
+  assert.ok(await startButton(page).isDisabled());
+  assert.ok(await stopButton(page).isDisabled());
+  await expectAccessible(page, 'stale token');
+  assert.deepEqual(page.complaints, []);
+  await page.goto(cell.link);
+  await page.reload();
+  await page.locator('.run-controls .run.main:not([disabled])').waitFor();
+});
+
+for (const [words, offset_ms] of [['AnHourAhead', 3.6e6], ['TenYearsBehind', -3.2e11]]) {
+  test(`AClockThatIs${words}ChangesNoAge`, async () => {
+    const page = await openPage(browser, 'about:blank');
+    await page.addInitScript((offset) => {
+      const now = Date.now.bind(Date);
+      Date.now = () => now() + offset;
+    }, offset_ms);
+    await page.goto(cell.link);
+    await waitForState(page, 'Ready');
+    await page.waitForFunction(() => {
+      const age = document.querySelector('header .link [data-age]')?.dataset.age;
+      return age !== undefined && age !== '' && Number(age) < 2000;
+    });
+    assert.match(await page.locator('header .link').textContent(), /Data age\s*(< 1 s|1 s)/);
+  });
+}
+
+test('ABrowserThatKeepsNothingAndDrawsNothingStillOperates', async () => {
+  const page = await openPage(browser, 'about:blank');
+  await page.addInitScript(() => {
+    const refuse = () => { throw new DOMException('refused', 'SecurityError'); };
+    Object.defineProperty(window, 'localStorage', {get: refuse});
+    HTMLCanvasElement.prototype.getContext = ((own) => function (kind, ...rest) {
+      return kind.startsWith('webgl') ? null : own.call(this, kind, ...rest);
+    })(HTMLCanvasElement.prototype.getContext);
+  });
+  await page.goto(cell.link);
+  await page.locator('.run-controls .run.main:not([disabled])').waitFor();
+  await page.getByRole('button', {name: /^Live/}).click();
+  await page.getByText('WebGL is missing').waitFor();
+  await page.reload();
+  await page.locator('.run-controls .run.main:not([disabled])').waitFor();
+  assert.deepEqual(page.complaints, []);
+});
+
+test('WithoutEventsThePageAsksAndIsStillRight', async () => {
+  const page = await openWith({});
+  await page.locator('header .link', {hasText: 'Asking each second'}).waitFor();
+  await cell.post('/api/v1/cell/stop');
+  await waitForState(page, 'Stopped');
+  await cell.post('/api/v1/cell/reset');
+  await waitForState(page, 'Ready');
+  await close(page);
+});

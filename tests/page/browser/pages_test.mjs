@@ -1,0 +1,118 @@
+// Several pages of one cell, and hands that hold no mouse.
+import assert from 'node:assert/strict';
+import {after, before} from 'node:test';
+import {expectAccessible, openBrowser, openPage, pauseButton, start, startButton, step, stopButton, waitForState} from './browser.mjs';
+import {Cell} from './cell.mjs';
+
+let cell, browser;
+before(async () => {
+  cell = await Cell.start({speed: 60});
+  browser = await openBrowser();
+});
+after(async () => {
+  await browser?.close();
+  await cell?.stop();
+});
+
+step('APageWithoutATokenWatchesOnly', async () => {
+  const page = await openPage(browser, cell.url);
+  await page.locator('.watching', {hasText: 'touchcal page'}).waitFor();
+  await waitForState(page, 'Ready');
+  for (const button of [startButton(page), pauseButton(page), stopButton(page)]) assert.ok(await button.isDisabled());
+  await expectAccessible(page, 'watching');
+  const viewer = await openPage(browser, `${cell.url}/#token=${cell.viewToken}`);
+  await viewer.locator('.watching', {hasText: 'may only read'}).waitFor();
+});
+
+step('TheButtonsAreLargeAndFarApartAndTheMainViewNeedsNoScrolling', async () => {
+  const page = await openPage(browser, cell.link);
+  await waitForState(page, 'Ready');
+  for (const language of ['English', 'Français']) {
+    if (language === 'Français') await page.getByRole('button', {name: language}).click();
+    const boxes = [];
+    for (const button of [startButton(page), pauseButton(page), stopButton(page)]) boxes.push(await button.boundingBox());
+    for (const {width, height} of boxes) assert.ok(width >= 72 && height >= 72, `${width} x ${height}`);
+    const k12mm_px = (12 / 25.4) * 96;
+    for (let i = 0; i + 1 < boxes.length; ++i) assert.ok(boxes[i + 1].y - boxes[i].y - boxes[i].height >= k12mm_px);
+    assert.ok(boxes[2].y + boxes[2].height <= 600);
+    const others = await page.locator('button:not(.run), select, .choice, input[type=text]').all();
+    assert.ok(others.length > 5);
+    for (const other of others) {
+      const box = await other.boundingBox();
+      if (box) assert.ok(box.height >= 44 && box.width >= 44, `${await other.textContent()}: ${box.width} x ${box.height}`);
+    }
+    const overflow = await page.evaluate(() => {
+      const main = document.querySelector('main');
+      return Math.max(main.scrollHeight - main.clientHeight, document.documentElement.scrollHeight - 600,
+                      document.documentElement.scrollWidth - 1024);
+    });
+    assert.ok(overflow <= 0, `${language}: ${overflow} px too much`);
+  }
+});
+
+step('TwoPagesShowTheSameAndBothMayAct', async () => {
+  const one = await openPage(browser, cell.link);
+  const other = await openPage(browser, cell.link);
+  await one.getByText('quick', {exact: true}).click();
+  await start(one);
+  await waitForState(other, ['Starting', 'Touching']);
+  await waitForState(other, 'Touching');
+  await pauseButton(other).click();
+  await waitForState(one, 'On hold');
+  const total = async (page) => (await page.locator('header .count').textContent()).split(' · ')[0];
+  await waitForState(other, 'On hold');
+  assert.equal(await total(one), await total(other));
+  await stopButton(one).click();
+  await waitForState(other, 'Stopped');
+  await waitForState(one, 'Stopped');
+});
+
+step('APageThatIsLoadedInTheMiddleOfARunHasTheCurvesFromItsBeginning', async () => {
+  await cell.post('/api/v1/cell/reset');
+  await cell.status(({state}) => state === 'IDLE');
+  await cell.post('/api/v1/runs', {recipe: 'quick'});
+  await cell.status(({condition_number}) => condition_number !== null);
+  const page = await openPage(browser, cell.link);
+  await page.getByRole('button', {name: /^Live/}).click();
+  await page.getByRole('img', {name: /Condition number over touches: \d/}).waitFor();
+  await cell.post('/api/v1/cell/stop');
+  await cell.status(({state}) => state === 'STOPPED');
+});
+
+step('EverythingIsDoneByKeyboardAlone', async () => {
+  const page = await openPage(browser, cell.link);
+  await waitForState(page, 'Stopped');
+  const focused = () => page.evaluate(() => document.activeElement?.textContent?.trim() ?? '');
+  const tabTo = async (words) => {
+    for (let i = 0; i < 60; ++i) {
+      await page.keyboard.press('Tab');
+      if (!words.test(await focused())) continue;
+      const outline = await page.evaluate(() => getComputedStyle(document.activeElement).outlineStyle);
+      assert.notEqual(outline, 'none', 'the focus does not show');
+      return;
+    }
+    assert.fail(`${words} cannot be reached`);
+  };
+  await tabTo(/^RESET/);
+  await page.keyboard.press('Enter');
+  await waitForState(page, 'Ready');
+  await page.keyboard.press('Alt+Digit4');
+  await page.locator('.history-view').waitFor();
+  await page.keyboard.press('Alt+Digit1');
+  await page.locator('.cell-view').waitFor();
+  await page.locator('.run-controls .run.main:not([disabled])', {hasText: 'START'}).waitFor();
+  await tabTo(/^START/);
+  await page.keyboard.down('Space');
+  await waitForState(page, ['Starting', 'Touching']);
+  await page.keyboard.up('Space');
+  await waitForState(page, 'Touching');
+  await page.keyboard.press('Alt+KeyP');
+  await waitForState(page, 'On hold');
+  await tabTo(/^RESUME/);
+  await page.keyboard.down('Enter');
+  await waitForState(page, ['Going on', 'Touching']);
+  await page.keyboard.up('Enter');
+  await waitForState(page, 'Touching');
+  await page.keyboard.press('Alt+KeyS');
+  await waitForState(page, 'Stopped');
+});

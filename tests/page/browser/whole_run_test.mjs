@@ -1,0 +1,123 @@
+// A person's way through a calibration: from the link to the report.
+import assert from 'node:assert/strict';
+import {after, before} from 'node:test';
+import {expectAccessible, expectQuiet, openBrowser, openPage, start, startButton, step, waitForState} from './browser.mjs';
+import {Cell} from './cell.mjs';
+
+let cell, browser, page;
+before(async () => {
+  cell = await Cell.start({speed: 250});
+  browser = await openBrowser();
+  page = await openPage(browser, cell.link);
+});
+after(async () => {
+  await browser?.close();
+  await cell?.stop();
+});
+
+step('TheTokenLeavesTheAddressAndStays', async () => {
+  await page.locator('.readiness li.met').first().waitFor();
+  assert.equal(page.url(), `${cell.url}/`);
+  await page.reload();
+  await page.locator('.run-controls .run.main:not([disabled])').waitFor();
+  assert.equal(await page.locator('.watching').count(), 0);
+});
+
+step('TheCellIsShownReadyWithEveryCondition', async () => {
+  await waitForState(page, 'Ready');
+  assert.equal(await page.locator('.readiness li').count(), 7);
+  assert.equal(await page.locator('.readiness li.unmet, .readiness li.unknown').count(), 0);
+  await expectAccessible(page, 'ready');
+});
+
+step('ARecipeTellsItsDurationAndAccuracy', async () => {
+  await page.getByText('quick', {exact: true}).click();
+  await page.getByRole('button', {name: 'Plan it'}).click();
+  const accuracy = page.locator('.recipe dl div', {hasText: 'Predicted tip error'}).locator('dd');
+  await page.waitForFunction(() => /\d min/.test(document.querySelector('.recipe dl')?.textContent ?? ''));
+  assert.match(await accuracy.textContent(), /^0\.\d{3} mm$/);
+});
+
+step('AButtonThatIsLetGoTooEarlyStartsNothing', async () => {
+  await startButton(page).hover();
+  await page.mouse.down();
+  await startButton(page).locator('.note', {hasText: 'keep holding'}).waitFor();
+  await page.mouse.up();
+  await startButton(page).locator('.note', {hasText: 'hold for 1.5 s'}).waitFor();
+  assert.equal((await cell.get('/api/v1/runs')).runs.length, 0);
+});
+
+step('TheRunIsWatchedToItsEnd', async () => {
+  await start(page);
+  await waitForState(page, ['Starting', 'Touching']);
+  await page.locator('.live-view canvas').waitFor();
+  await page.waitForFunction(() => /Touch \d+ of 90/.test(document.querySelector('header .count')?.textContent ?? ''));
+  await page.locator('.curve canvas').first().waitFor();
+  await page.locator('.residuals tbody tr').first().waitFor();
+  await expectAccessible(page, 'live');
+  await waitForState(page, 'Complete');
+});
+
+step('TheViewDrawsTheCell', async () => {
+  await page.getByRole('button', {name: /^Live/}).click();
+  const canvas = page.locator('.scene canvas');
+  await page.locator('.scene .over').waitFor({state: 'detached'});
+  const colors = async () => new Set(await canvas.evaluate((element) => {
+    const gl = element.getContext('webgl');
+    // Read in the frame in which it was drawn: behind it the picture is gone.
+    element.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowLeft', bubbles: true}));
+    return new Promise((done) => requestAnimationFrame(() => {
+      const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      const seen = [];
+      for (let i = 0; i < pixels.length; i += 400) seen.push(`${pixels[i]} ${pixels[i + 1]} ${pixels[i + 2]}`);
+      done(seen);
+    }));
+  }));
+  assert.ok((await colors()).size > 5, 'a plain area is no cell');
+  assert.match(await page.locator('.scene figcaption').textContent(), /90 touched, 0 to come/);
+});
+
+step('TheResultSaysTheVerdictInWordsAndShowsEveryError', async () => {
+  await page.getByRole('button', {name: /^Result/}).click();
+  const run = (await cell.get('/api/v1/runs')).runs[0];
+  const words = {accepted: 'Accepted', rejected: 'Rejected', incomplete: 'Incomplete'}[run.verdict];
+  assert.match(await page.locator('.verdict').textContent(), new RegExp(words));
+  const result = await cell.get(`/api/v1/runs/${run.id}/result`);
+  assert.equal(await page.locator('table.errors tbody tr').count(), result.parameters.length);
+  const found = result.parameters.find(({status}) => status === 'identified');
+  const row = page.locator('table.errors tbody tr', {has: page.getByRole('rowheader', {name: found.name, exact: true})});
+  assert.match(await row.textContent(), new RegExp(found.error.toFixed(found.unit === 'rad' ? 5 : 3).replace('.', '\\.')));
+  assert.equal(await page.locator('.map .layers figure').count(), result.tip_uncertainty.map.counts[1]);
+  assert.equal(await page.getByRole('link', {name: /Report/}).getAttribute('href'), `/api/v1/runs/${run.id}/report?format=html`);
+  await expectAccessible(page, 'result');
+});
+
+step('TwoRunsAreComparedAndDrawnAsATrend', async () => {
+  await start(page);
+  await waitForState(page, ['Starting', 'Touching']);
+  await waitForState(page, 'Complete');
+  await page.getByRole('button', {name: /^History/}).click();
+  await page.getByLabel('Compare 1').check();
+  await page.getByLabel('Compare 2').check();
+  await page.getByRole('table', {name: 'Comparison of runs 1 and 2'}).waitFor();
+  await page.locator('.history-view .curve canvas').waitFor();
+  await page.getByLabel('Trend of').selectOption('plane 3');
+  await page.getByRole('img', {name: /Distance of plane 3/}).waitFor();
+  await expectAccessible(page, 'history');
+});
+
+step('FrenchAndDarkAreOneTouchEachAndStay', async () => {
+  await page.getByRole('button', {name: 'Français'}).click();
+  await page.getByRole('button', {name: 'Sombre'}).click();
+  await page.reload();
+  await waitForState(page, 'Terminé');
+  assert.equal(await page.locator('html').getAttribute('lang'), 'fr');
+  await page.getByRole('button', {name: /^Résultat/}).click();
+  await page.locator('table.errors tbody tr').first().waitFor();
+  for (const view of [/^Cellule/, /^En direct/, /^Résultat/, /^Historique/]) {
+    await page.getByRole('button', {name: view}).click();
+    await expectAccessible(page, `dark, French, ${view}`);
+  }
+  expectQuiet(page, cell);
+});

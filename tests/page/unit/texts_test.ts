@@ -1,0 +1,80 @@
+import assert from 'node:assert/strict';
+import {readFileSync} from 'node:fs';
+import {join} from 'node:path';
+import {test} from 'node:test';
+import {EventText} from 'page/api/event_text.ts';
+import {tokenIn} from 'page/api/token.ts';
+import {age, cut, duration, fill, number, time} from 'page/model/format.ts';
+import {en} from 'page/words/en.ts';
+import {withButtons} from 'page/words/fault_words.ts';
+import {kFaultsFr} from 'page/words/faults_fr.ts';
+import {fr} from 'page/words/fr.ts';
+import {sayIn, type WordKey} from 'page/words/words.ts';
+
+const root = process.env.TOUCHCAL_SOURCE_DIR ?? '.';
+const faultTable = readFileSync(join(root, 'service/faults.cpp'), 'utf8');
+const faultNames = [...faultTable.matchAll(/FaultEntry\{\s*FaultCode::k\w+, "(\w+)"/g)].map((match) => match[1]!);
+
+test('EventsAreTheSameHoweverTheirTextIsCutInPieces', () => {
+  const text = 'retry: 2000\n\nevent: status\nid: a-1\ndata: {"x":\ndata: 1}\n\n: nothing new\n\nevent: reset\nid: a-2\ndata: {}\n\nevent: cut';
+  const whole = new EventText().push(text);
+  assert.deepEqual(whole, [{event: 'status', id: 'a-1', data: '{"x":\n1}'}, {event: 'reset', id: 'a-2', data: '{}'}]);
+  for (let size = 1; size < 20; ++size) {
+    const pieces = new EventText();
+    const events = [];
+    for (let from = 0; from < text.length; from += size) events.push(...pieces.push(text.slice(from, from + size)));
+    assert.deepEqual(events, whole, `pieces of ${size}`);
+  }
+});
+
+test('OnlyAWholeTokenIsTakenFromAFragment', () => {
+  assert.equal(tokenIn('#token=ab12'), 'ab12');
+  for (const none of ['', '#', '#token=', '#other=1', `#token=${'a'.repeat(600)}`, '#token=a%0ab']) assert.equal(tokenIn(none), null, none);
+});
+
+test('WhatIsNotKnownIsNotShownAsANumber', () => {
+  for (const unknown of [null, undefined, NaN, Infinity]) {
+    assert.equal(number(unknown, 3, 'en'), '–');
+    assert.equal(duration(unknown), '–');
+  }
+  assert.equal(age(null), '–');
+  assert.equal(time(null), '–');
+  assert.equal(time('soon'), '–');
+});
+
+test('NumbersAndTimesReadAsAPersonWritesThem', () => {
+  assert.equal(number(0.0547, 3, 'en'), '0.055');
+  assert.equal(number(0.0547, 3, 'fr'), '0,055');
+  assert.equal(duration(9.4), '9 s');
+  assert.equal(duration(75), '1 min 15 s');
+  assert.equal(duration(4020), '1 h 07 min');
+  assert.equal(age(400), '< 1 s');
+  assert.equal(time('2026-11-22T07:26:37.090Z'), '2026-11-22 07:26:37');
+  assert.equal(fill('{a} of {b} {c}', {a: 1, b: 2}), '1 of 2 {c}');
+  assert.equal(cut('x'.repeat(10000))?.length, 300);
+  assert.equal(cut('short'), null);
+});
+
+test('BothLanguagesFillInTheSameValues', () => {
+  const names = (text: string): string[] => [...text.matchAll(/\{(\w+)\}/g)].map((match) => match[1]!).sort();
+  for (const key of Object.keys(en) as WordKey[]) assert.deepEqual(names(fr[key]), names(en[key]), key);
+});
+
+test('EveryFaultOfTheDaemonHasItsWordsInFrench', () => {
+  assert.ok(faultNames.length >= 42);
+  assert.deepEqual([...faultNames].sort(), Object.keys(kFaultsFr).sort());
+});
+
+test('EveryCommandThatAFaultNamesIsNamedInItsTranslationToo', () => {
+  const commands = (text: string): string[] => [...new Set([...text.matchAll(/touchcal ([a-z]+)/g)].map((match) => match[1]!))].sort();
+  const entries = faultTable.split(/FaultEntry\{\s*FaultCode::/).slice(1).map((entry) => entry.replace(/"\s*\n\s*"/g, ''));
+  for (const entry of entries) {
+    const name = entry.match(/^k\w+, "(\w+)"/)?.[1];
+    if (name) assert.deepEqual(commands(kFaultsFr[name]!.next_step), commands(entry), name);
+  }
+});
+
+test('CommandsOfTheCommandLineBecomeTheButtonsOfThePage', () => {
+  assert.equal(withButtons('touchcal retry, or touchcal stop', sayIn('en')), '“Touch again”, or “STOP MOTION”');
+  assert.equal(withButtons('touchcal completion', sayIn('en')), 'touchcal completion');
+});
