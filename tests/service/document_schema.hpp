@@ -49,9 +49,11 @@ inline void check_schema(const nlohmann::json& value, const nlohmann::json& sche
     } else if (key == "maximum") {
       expect(!value.is_number() || value <= wanted, "at most " + wanted.dump());
     } else if (key == "minItems") {
-      expect(value.size() >= wanted.get<std::size_t>(), "as many items as " + wanted.dump());
+      expect(!value.is_array() || value.size() >= wanted.get<std::size_t>(),
+             "as many items as " + wanted.dump());
     } else if (key == "maxItems") {
-      expect(value.size() <= wanted.get<std::size_t>(), "no more items than " + wanted.dump());
+      expect(!value.is_array() || value.size() <= wanted.get<std::size_t>(),
+             "no more items than " + wanted.dump());
     } else if (key == "pattern") {
       // The patterns here are beginnings of a text: "^urn:".
       expect(value.get<std::string>().starts_with(wanted.get<std::string>().substr(1)), wanted.dump());
