@@ -79,6 +79,15 @@ struct ExportArguments {
 /// Writes a run's calibrated arm as an arm file.
 ExitCode export_command(const ApiClient& daemon, const ExportArguments& arguments, bool json);
 
+struct ReportArguments {
+  std::string run_id;
+  std::string format = "html";  // html, csv or pdf
+  std::string file = "-";       // "-" is standard output
+  bool overwrite = false;
+};
+/// Writes a run's report; with `json` its document on standard output, whatever the format.
+ExitCode report_command(const ApiClient& daemon, const ReportArguments& arguments, bool json);
+
 /// pause, resume, abort, retry, skip: of the active run. stop, acknowledge, clear, reset, confirm,
 /// touch-test, take: of the cell.
 ExitCode give_command(const ApiClient& daemon, const std::string& command, bool json);

@@ -60,6 +60,7 @@ class CommandLine {
     exported->add_option("RUN", export_.run_id, "id of the run")->required();
     exported->add_option("--arm", export_.arm_file, "the file to write; - is standard output")->required();
     exported->add_flag("--force", export_.overwrite, "overwrite the file");
+    add_report();
     for (const auto& [name, description] : kCellCommands) {
       add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {
         return cell::give_command(daemon, command, json_);
@@ -159,6 +160,24 @@ class CommandLine {
     run->add_option("--operator", run_.operator_name, "who answers for the run; kept with its result");
   }
 
+  void add_report() {
+    auto* report = add_for_daemon(
+        "report", "write a run's report: HTML unless another form is asked for",
+        [this](const cell::ApiClient& daemon) { return cell::report_command(daemon, report_, json_); });
+    report->add_option("RUN", report_.run_id, "id of the run")->required();
+    auto* html = report->add_flag_callback(
+        "--html", [this] { report_.format = "html"; }, "one HTML document");
+    auto* pdf = report->add_flag_callback(
+        "--pdf", [this] { report_.format = "pdf"; }, "the same as PDF, printed by chromium");
+    auto* csv = report->add_flag_callback(
+        "--csv", [this] { report_.format = "csv"; }, "the touches as a table");
+    html->excludes(pdf)->excludes(csv);
+    pdf->excludes(csv);
+    report->add_option("--out", report_.file, "the file to write; - is standard output")
+        ->default_str(report_.file);
+    report->add_flag("--force", report_.overwrite, "overwrite the file");
+  }
+
   void add_completion() {
     auto* completion = app_.add_subcommand("completion", "print what a shell needs to complete touchcal");
     completion->add_option("SHELL", shell_, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
@@ -195,6 +214,7 @@ class CommandLine {
   cell::ValidateArguments validate_;
   cell::PlanArguments plan_;
   cell::ExportArguments export_;
+  cell::ReportArguments report_;
   // Read here and not by CLI11's envname: there the environment of one subcommand would beat the flag of
   // another.
   std::string daemon_url_ = environment_or("TOUCHCAL_DAEMON", "http://127.0.0.1:8080");

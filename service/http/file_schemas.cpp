@@ -121,10 +121,21 @@ constexpr std::string_view kArm = R"({
   "name":{"type":"string"},
   "frames":{"type":"array","minItems":8,"maxItems":8,"items":{"type":"object"}}}})";
 
+constexpr std::string_view kReport = R"({
+"type":"object",
+"required":["schema","touchcal_version","run","raw_data","touches","touched_again","reference_touches","faults","result"],
+"properties":{
+  "schema":{"const":"touchcal/report/1"},
+  "run":{"type":"object","required":["id","recipe","operator","started_at","ended_at","outcome","verdict"]},
+  "raw_data":{"type":"object","required":["sha256","of"]},
+  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","use"]}},
+  "result":{"type":["object","null"]}}})";
+
 constexpr std::array kSchemas{
     DocumentSchema{"Touches", kTouches},     DocumentSchema{"Result", kResult},
     DocumentSchema{"Distances", kDistances}, DocumentSchema{"TipUncertainty", kTipUncertainty},
-    DocumentSchema{"Plan", kPlan},           DocumentSchema{"Arm", kArm}};
+    DocumentSchema{"Plan", kPlan},           DocumentSchema{"Arm", kArm},
+    DocumentSchema{"Report", kReport}};
 
 }  // namespace
 

@@ -42,13 +42,13 @@ Json responses_json(const Route& route) {
                      {"content", {{"application/problem+json", {{"schema", reference("Problem")}}}}}};
   Json responses = Json::object();
   for (const Answer& answer : route.answers) {
-    Json response{{"description", answer.status == 304 ? "known already" : "as asked"}};
+    Json& response = responses[std::to_string(answer.status)];  // one status may come in several forms
+    response["description"] = answer.status == 304 ? "known already" : "as asked";
     if (!answer.schema.empty()) {
       response["content"][std::string(answer.content_type)] = {{"schema", reference(answer.schema)}};
     } else if (answer.status == 200) {
       response["content"][std::string(answer.content_type)] = {{"schema", {{"type", "string"}}}};
     }
-    responses[std::to_string(answer.status)] = response;
   }
   responses["4XX"] = problem;
   responses["5XX"] = problem;

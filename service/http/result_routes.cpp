@@ -51,8 +51,9 @@ bool has_this_nominal(const std::string& result_json, const calib::KinematicMode
 }
 
 std::optional<std::string> known_document(const Operation& operation, std::int64_t id) {
+  if (auto stored = operation.store().result_json(id)) return stored;  // the run is over
   const Run* live = operation.run();
-  return live && live->id() == id ? operation.result_json() : operation.store().result_json(id);
+  return live && live->id() == id ? operation.result_json() : std::nullopt;
 }
 
 }  // namespace

@@ -34,6 +34,9 @@ HttpResponse result_view(const Call& call, const StoredRun& run) {
   return get_result(call.operation, run.id);
 }
 HttpResponse arm_view(const Call& call, const StoredRun& run) { return get_arm(call.operation, run.id); }
+HttpResponse report_view(const Call& call, const StoredRun& run) {
+  return get_report(call.operation, run, call.text("format").value_or("html"));
+}
 HttpResponse plan_view(const Call& call, const StoredRun& run) { return get_plan(call.operation, run.id); }
 
 template <HttpResponse (*kView)(const Call&, const StoredRun&)>
@@ -84,6 +87,12 @@ std::vector<Route> run_routes() {
            of_run<arm_view>, "Arm"),
       read("/api/v1/runs/{id}/plan", "The plan that the run follows; 409 before it is made",
            of_run<plan_view>, "Plan"),
+      {.method = "GET",
+       .path = "/api/v1/runs/{id}/report",
+       .summary = "The report of the run, to keep",
+       .handle = of_run<report_view>,
+       .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "Report"}},
+       .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true}}},
   };
 }
 

@@ -21,7 +21,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
      {"sim_controller", "config", "cs8_protocol", "calib_core", "boost", "spdlog", "CLI", "Eigen"}},
     {"service",
      {"service", "config", "cs8_protocol", "calib_core", "boost", "nlohmann", "spdlog", "SQLiteCpp", "CLI",
-      "openssl", "prometheus", "systemd", "Eigen", "fcntl.h", "malloc.h", "unistd.h", "sys"}},
+      "openssl", "prometheus", "systemd", "Eigen", "fcntl.h", "malloc.h", "spawn.h", "unistd.h", "sys"}},
 };
 
 /// Compiling one of these takes seconds: headers that many include leave them to the .cpp files.

@@ -141,6 +141,16 @@ TEST_F(RoutesTest, ARunItsTouchesAndItsResultAreReadFromTheStore) {
       << "as it was stored";
 }
 
+TEST_F(RoutesTest, AReportComesInThreeForms) {
+  const std::string report = path_of(stored_run()) + "/report";
+  EXPECT_THAT(get(report).content_type, HasSubstr("text/html"));
+  EXPECT_THAT(get(report).headers, Contains(Pair("Content-Disposition", HasSubstr("attachment"))));
+  EXPECT_THAT(get(report + "?format=csv").body, ::testing::StartsWith("touch,plane,role,"));
+  EXPECT_EQ(json::parse(get(report + "?format=json").body).at("schema"), "touchcal/report/1");
+  EXPECT_EQ(problem(get(report + "?format=docx")).at("status"), 400);
+  EXPECT_EQ(problem(get("/api/v1/runs/99/report")).at("status"), 404);
+}
+
 TEST_F(RoutesTest, WhatIsNotThereIs404) {
   for (const char* target :
        {"/api", "/api/v1", "/api/v1/", "/api/v1/nothing", "/api/v2/status", "/Healthz", "/api/v1/runs/1",

@@ -1,0 +1,61 @@
+#include "service/report/html.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+namespace cell::html {
+namespace {
+
+std::string row_of(const Row& cells, std::string_view name) {
+  std::string inner;
+  for (const std::string& cell : cells) inner += element(name, escaped(cell));
+  return element("tr", inner) + "\n";
+}
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      case '\'':
+        safe += "&#39;";
+        break;
+      default:
+        if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string element(std::string_view name, std::string_view inner, std::string_view attributes) {
+  return fmt::format("<{0}{1}{2}>{3}</{0}>", name, attributes.empty() ? "" : " ", attributes, inner);
+}
+
+std::string paragraph(std::string_view text) { return element("p", escaped(text)) + "\n"; }
+
+std::string table(std::string_view caption, const Row& heading, const std::vector<Row>& rows) {
+  if (rows.empty()) return paragraph(fmt::format("{}: there are none.", caption));
+  std::string body;
+  for (const Row& row : rows) body += row_of(row, "td");
+  constexpr std::size_t kShortRows = 12;  // such a table stays on one page
+  return element("table",
+                 element("caption", escaped(caption)) + element("thead", row_of(heading, "th")) +
+                     element("tbody", body),
+                 rows.size() <= kShortRows ? R"(class="short")" : "") +
+         "\n";
+}
+
+}  // namespace cell::html

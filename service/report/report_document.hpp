@@ -1,0 +1,35 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/store/fault_log.hpp"
+#include "service/store/touch_store.hpp"
+
+namespace cell {
+
+/// All that is kept of a run. A report is made of this and of nothing else: it is the same whenever it is
+/// made.
+struct RunRecord {
+  StoredRun run;
+  std::vector<StoredTouch> touches;
+  std::vector<SupersededTouch> superseded;
+  std::vector<ReferenceTouch> references;
+  std::vector<StoredFault> faults;
+  std::optional<std::string> result_json;  // touchcal/result/1
+};
+
+/// touchcal/report/1: the run, its result document and every touch with what became of it. Joints are in
+/// degrees, distances in mm along the outward normals; null is unknown.
+nlohmann::ordered_json report_json(const RunRecord& record);
+
+/// The touches as the controller answered them, a line each: number in the run, plane, role, six joint angles
+/// in degrees to the last digit that came over the wire. `raw_data.sha256` of the report is taken over it.
+std::string raw_data_text(const std::vector<StoredTouch>& touches);
+
+/// The report's touches as a table for a spreadsheet; its first nine columns are raw_data_text().
+std::string report_csv(const nlohmann::ordered_json& report);
+
+}  // namespace cell
