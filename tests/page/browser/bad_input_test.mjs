@@ -23,7 +23,7 @@ async function openWith(changes) {
   for (const [path, change] of Object.entries(changes)) {
     await page.route(`${cell.url}${path}`, async (route) => {
       const answer = await route.fetch();
-      await route.fulfill({response: answer, json: change(await answer.json())});
+      await route.fulfill(answer.status() === 200 ? {response: answer, json: change(await answer.json())} : {response: answer});
     });
   }
   await page.route(`${cell.url}/api/v1/events`, (route) => route.fulfill({status: 503, json: {}}));

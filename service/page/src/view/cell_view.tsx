@@ -131,13 +131,13 @@ function StartFields({given, onConditions}: {given: Conditions; onConditions: (c
   return (
     <div class="fields">
       <label>
-        <span>{say('operator')} <small>({say('optional')})</small></span>
-        <input type="text" maxLength={50} autocomplete="off" value={given.operator ?? ''}
+        <span>{say('operator')}</span>
+        <input type="text" maxLength={50} autocomplete="off" placeholder={say('optional')} value={given.operator ?? ''}
                onInput={(event) => takeOperator(event.currentTarget.value)} />
       </label>
       <label>
-        <span>{say('temperature')} <small>({say('optional')})</small></span>
-        <input type="text" inputMode="decimal" maxLength={6} autocomplete="off" value={temperature}
+        <span>{say('temperature')}</span>
+        <input type="text" inputMode="decimal" maxLength={6} autocomplete="off" placeholder={say('optional')} value={temperature}
                aria-invalid={read === 'wrong'} onInput={(event) => takeTemperature(event.currentTarget.value)} />
       </label>
       {read === 'wrong' && <p class="abnormal" role="alert">{say('temperatureWrong')}</p>}
