@@ -3,6 +3,7 @@ import type {Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, S
 import {Live, type Link} from '../api/live.ts';
 import {kFirstState, reduce, type Action, type PageState, type View} from './page_state.ts';
 import {commandPath, isActive, type Command} from './states.ts';
+import {slimResult} from './slim_result.ts';
 import {Store} from './store.ts';
 
 const kResultGap_ms = 1000;     // a live result is asked for at most so often
@@ -158,7 +159,7 @@ export class Desk {
 
   async loadResult(run_id: string): Promise<void> {
     const reply = await this.ask<Result>(`/api/v1/runs/${run_id}/result`);
-    if (reply.kind === 'ok') this.store.dispatch({type: 'result', run_id, result: reply.value});
+    if (reply.kind === 'ok') this.store.dispatch({type: 'result', run_id, result: slimResult(reply.value)});
     if (reply.kind === 'refused') this.store.dispatch({type: 'missing', run_id, why: reply.problem.detail});
   }
 

@@ -4,7 +4,7 @@ import {lookAt, perspective, times, type Matrix} from './matrix.ts';
 /** Looks at a point from around it. The block's frame has its y axis downwards. */
 export interface Camera { yaw_rad: number; pitch_rad: number; distance_mm: number; target: Vector }
 
-export const kFirstCamera: Camera = {yaw_rad: 0.75, pitch_rad: 0.35, distance_mm: 2300, target: [-190, -330, 60]};
+export const kFirstCamera: Camera = {yaw_rad: 0.75, pitch_rad: 0.35, distance_mm: 2000, target: [-210, -300, 40]};
 
 const kPitchMax_rad = 1.5;
 const kView_rad = 0.6;

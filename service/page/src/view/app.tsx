@@ -94,7 +94,7 @@ export function App({desk}: {desk: Desk}) {
         <HandPanel state={state} desk={desk} />
         <FaultPanel state={state} desk={desk} />
         <Shown state={state} desk={desk} conditions={conditions} onConditions={takeConditions} />
-        <p class="keys">{say('keysHelp')}</p>
+        {state.view === 'cell' ? <p class="keys">{say('keysHelp')}</p> : null}
       </main>
       <RunControls state={state} desk={desk} onStart={() => void desk.startRun(conditions)} />
     </LanguageContext.Provider>

@@ -97,7 +97,7 @@ function RecipeFigures({recipe, plan, state, desk}: {recipe: Recipe; plan: PlanS
   const refused = plan?.kind === 'refused' ? plan.problem.detail : plan?.kind === 'lost' ? say('noAnswer') : null;
   return (
     <div class="figures">
-      <p><OuterText text={recipe.description} /></p>
+      <p><OuterText text={recipe.description} isEnglish /></p>
       <p>{say('recipeTouches', {fit: recipe.fit_max, held: recipe.held_out})}</p>
       <dl>
         <div><dt>{say('duration')}</dt><dd>{isPlanning ? say('planning') : duration(made?.duration_s)}</dd></div>

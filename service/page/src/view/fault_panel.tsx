@@ -34,7 +34,7 @@ function FaultCard({fault, state, desk, reached}: {fault: StickyFault; state: Pa
     <article class={fault.isWarning ? 'card warning' : 'card fault'}>
       <h2>
         <Symbol shape={fault.isWarning ? 'warning' : 'fault'} />
-        {fault.isWarning ? say('warningTitle') : say('faultTitle')}: <OuterText text={faultTitle(fault.code)} />
+        {fault.isWarning ? say('warningTitle') : say('faultTitle')}: <OuterText text={faultTitle(fault.code)} isEnglish />
         {fault.isOver ? <small> ({say('faultOver')})</small> : null}
       </h2>
       <dl>
@@ -74,8 +74,8 @@ function Refusal({state, desk}: {state: PageState; desk: Desk}) {
   return (
     <article class="card warning">
       <h2><Symbol shape="warning" />{fill(say('refusedCommand'), {command: notice.command})}</h2>
-      <p><OuterText text={words} /></p>
-      <ul>{notice.problem?.errors?.map(({code, detail}) => <li key={code}><OuterText text={detail} /></li>)}</ul>
+      <p><OuterText text={words} isEnglish={notice.problem !== null} /></p>
+      <ul>{notice.problem?.errors?.map(({code, detail}) => <li key={code}><OuterText text={detail} isEnglish /></li>)}</ul>
       <div class="actions"><button type="button" onClick={() => desk.dropNotice()}>{say('note')}</button></div>
     </article>
   );

@@ -24,7 +24,7 @@ export function HandPanel({state, desk}: {state: PageState; desk: Desk}) {
       </h2>
       <p class="big"><OuterText text={language === 'en' ? status.by_hand_words ?? own : own} /></p>
       {status.by_hand_problem
-        ? <p class="abnormal"><Symbol shape="warning" /><OuterText text={status.by_hand_problem} /></p>
+        ? <p class="abnormal"><Symbol shape="warning" /><OuterText text={status.by_hand_problem} isEnglish /></p>
         : null}
       {status.by_hand_joints_deg
         ? <p>{say('handPosture')}: {status.by_hand_joints_deg.map((joint) => number(joint, 0, language)).join(' / ')}</p>

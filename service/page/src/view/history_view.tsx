@@ -62,7 +62,7 @@ function RunRow({run, state, desk}: {run: Run; state: PageState; desk: Desk}) {
       <td class={isBad ? 'abnormal' : ''}>
         {isBad ? <Symbol shape="warning" /> : null}
         {sayName(language, 'outcome_', run.outcome)}{run.verdict === 'none' ? '' : `, ${say(`verdict_${run.verdict}`)}`}
-        {run.fault_message ? <> · <OuterText text={run.fault_message} /></> : null}
+        {run.fault_message ? <> · <OuterText text={run.fault_message} isEnglish /></> : null}
       </td>
       <td><button type="button" disabled={run.touches_done < 1} onClick={() => desk.showRun(run.id)}>{say('show')} {run.id}</button></td>
       <td>

@@ -3,7 +3,7 @@ import type {Status} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
 import {number} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
-import {sayName} from '../words/words.ts';
+import {sayName, type Say} from '../words/words.ts';
 import {Curve, type Line} from './curve.tsx';
 import {Residuals} from './residuals.tsx';
 import {SceneFrame} from './scene_frame.tsx';
@@ -40,10 +40,16 @@ function Figures({status}: {status: Status}) {
         <dt>{say('probe')}</dt><dd>{status.probe ? sayName(language, 'probe_', status.probe) : say('unknown')}</dd>
       </div>
       {status.more_would_bring
-        ? <div class="wide"><dt>{say('moreWouldBring')}</dt><dd><OuterText text={status.more_would_bring} /></dd></div>
+        ? <div class="wide"><dt>{say('moreWouldBring')}</dt><dd><OuterText text={moreText(status.more_would_bring, say)} /></dd></div>
         : null}
     </dl>
   );
+}
+
+/** The daemon's sentence in the page's language; as it is when it has another form. */
+function moreText(sentence: string, say: Say): string {
+  const [, count, plane, from, to] = sentence.match(/^(\d+) more on plane (\d+): ([\d.]+) to ([\d.]+) mm$/) ?? [];
+  return count && plane && from && to ? say('moreTouches', {count, plane, from, to}) : sentence;
 }
 
 function Curves({state}: {state: PageState}) {

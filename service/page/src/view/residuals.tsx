@@ -14,8 +14,7 @@ export function Residuals({result, cell}: {result: Result; cell: Cell}) {
   return (
     <table class="residuals">
       <caption>
-        {say('residuals')}, mm ({say('limit')}: {say('mean')} {number(mean_max, 3, language)}, {say('rms')}{' '}
-        {number(rms_max, 3, language)})
+        {say('residuals', {mean: number(mean_max, 3, language), rms: number(rms_max, 3, language)})}
       </caption>
       <thead>
         <tr>

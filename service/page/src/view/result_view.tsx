@@ -50,7 +50,7 @@ function Verdict({result, verdict, isLive}: {result: Result; verdict: VerdictNam
       <p class="big"><Symbol shape={kVerdictShapes[verdict]} />{isLive ? say('EXECUTE') : say(`verdict_${verdict}`)}</p>
       <p>{say(kVerdictWords[verdict])}</p>
       {!isLive && result.verdict.reasons.length > 0
-        ? <ul>{result.verdict.reasons.map((reason) => <li key={reason}><OuterText text={reason} /></li>)}</ul>
+        ? <ul>{result.verdict.reasons.map((reason) => <li key={reason}><OuterText text={reason} isEnglish /></li>)}</ul>
         : null}
     </section>
   );
@@ -91,7 +91,7 @@ function TipErrors({result}: {result: Result}) {
             {scale.source ? sayName(language, 'scale_', scale.source) : say('unknown')};{' '}
             {say('scaleUncertainty', {ppm: number(scale.std_uncertainty_ppm, 0, language)})};{' '}
             {say('scaleStretch', {ppm: number(scale.stretch_ppm, 0, language)})}
-            {scale.warning ? <p><Symbol shape="warning" /><OuterText text={scale.warning} /></p> : null}
+            {scale.warning ? <p><Symbol shape="warning" /><OuterText text={scale.warning} isEnglish /></p> : null}
           </dd>
         </div>
       </dl>
@@ -193,7 +193,7 @@ function Remarks({result}: {result: Result}) {
       {result.warnings.length > 0 && (
         <>
           <h3>{say('warnings')}</h3>
-          <ul>{result.warnings.map((warning) => <li key={warning}><OuterText text={warning} /></li>)}</ul>
+          <ul>{result.warnings.map((warning) => <li key={warning}><OuterText text={warning} isEnglish /></li>)}</ul>
         </>
       )}
       {rejected.length > 0 && (

@@ -9,13 +9,14 @@ export const useLanguage = (): Language => useContext(LanguageContext);
 export const useSay = (): Say => sayIn(useContext(LanguageContext));
 
 /** A text from elsewhere: text only, and a long one cut with a way to see all. */
-export function OuterText({text}: {text: string}) {
+export function OuterText({text, isEnglish}: {text: string; isEnglish?: boolean}) {
   const say = useSay();
   const [whole, setWhole] = useState(false);
   const start = cut(text);
-  if (start === null) return <span class="outer">{text}</span>;
+  const lang = isEnglish ? 'en' : undefined;  // the daemon's sentences are
+  if (start === null) return <span class="outer" lang={lang}>{text}</span>;
   return (
-    <span class="outer">
+    <span class="outer" lang={lang}>
       {whole ? text : `${start}…`}{' '}
       <button type="button" class="small" aria-expanded={whole} onClick={() => setWhole(!whole)}>
         {whole ? say('showLess') : say('showAll', {count: text.length})}
