@@ -109,7 +109,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const auto tls = tls_context(options);
   try {
     listener.emplace(context.get_executor(), listen_address(context, options), operation, tokens,
-                     HttpLimits{}, tls);
+                     HttpLimits{.host_names = options.host_names}, tls);
   } catch (const boost::system::system_error& error) {
     throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; give another address with --listen",
                                          options.listen.host, options.listen.port, error.code().message()));

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/cell.hpp"
 
@@ -11,6 +12,7 @@ namespace cell {
 struct DaemonOptions {
   std::filesystem::path state_directory;
   Endpoint listen{"127.0.0.1", 8080};
+  std::vector<std::string> host_names;    // by which clients may call it, beside its address
   std::optional<Endpoint> controller;     // the cell's when absent
   std::optional<int> retain_days;         // how long runs are kept; for ever when absent
   std::filesystem::path tls_certificate;  // PEM, its chain behind it; with tls_key: TLS

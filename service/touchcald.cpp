@@ -4,6 +4,8 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <iostream>
 
 #include "config/config_error.hpp"
@@ -21,6 +23,14 @@ cell::Endpoint endpoint_option(const std::string& name, const std::string& text)
   const auto endpoint = cell::parse_endpoint(text);
   if (!endpoint) throw CLI::ValidationError(name, "'" + text + "' is not HOST:PORT");
   return *endpoint;
+}
+
+/// Letters, digits, hyphens and dots (RFC 1123), without a port.
+bool is_host_name(const std::string& name) {
+  constexpr std::size_t kLengthMax = 253;
+  return !name.empty() && name.size() <= kLengthMax && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '.';
+  });
 }
 
 /// Maintenance of the database, beside a daemon that may run: the exit code.
@@ -62,10 +72,17 @@ void begin_log(const std::string& format) {
 int main(int argc, char** argv) {
   CLI::App app("touchcald: drives the touches of one robot cell, identifies the arm, serves the JSON API");
   std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key, log_format = "text";
+  std::vector<std::string> host_names;
   bool check = false, verify = false;
   int retain_days = 0;
   app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json");
   app.add_option("--listen", listen, "HOST:PORT of the API")->default_str("127.0.0.1:8080");
+  app.add_option("--host-name", host_names, "a name that clients may call the daemon by, beside its address")
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            return is_host_name(name) ? "" : "'" + name + "' is no host's name";
+          },
+          "NAME"));
   app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's");
   app.add_option("--state", state, "directory for runs and tokens; default: the user's state home");
   app.add_option("--tls-cert", tls_certificate,
@@ -95,6 +112,7 @@ int main(int argc, char** argv) {
       return keep_state(options.state_directory / cell::kStoreFile, backup, verify);
     if (cell_file.empty()) throw CLI::RequiredError("--cell");
     if (retain_days > 0) options.retain_days = retain_days;
+    options.host_names = host_names;
     options.tls_certificate = tls_certificate;
     options.tls_key = tls_key;
     if (!listen.empty()) options.listen = endpoint_option("--listen", listen);

@@ -62,9 +62,10 @@ struct Ends {
   bool from_loopback = false;
   std::string remote;
   std::string scheme;  // of an Origin that is ours
-  std::array<std::string, 4> hosts;
+  std::vector<std::string> hosts;
 
-  Ends(const tcp::socket& socket, const char* own_scheme) : scheme(own_scheme) {
+  Ends(const tcp::socket& socket, const char* own_scheme, const std::vector<std::string>& names)
+      : scheme(own_scheme) {
     const tcp::endpoint client = socket.remote_endpoint();
     const tcp::endpoint own = socket.local_endpoint();
     from_loopback = client.address().is_loopback();
@@ -73,6 +74,10 @@ struct Ends {
     const std::string address = own.address().to_string();
     hosts = {"127.0.0.1" + port, "localhost" + port, "[::1]" + port,
              (own.address().is_v6() ? "[" + address + "]" : address) + port};
+    for (const std::string& name : names) {
+      hosts.push_back(name + port);
+      hosts.push_back(name);  // at the scheme's own port, where a proxy listens
+    }
   }
 
   [[nodiscard]] bool is_our_host(beast::string_view host) const {
@@ -95,7 +100,9 @@ std::optional<Problem> find_http_fault(const Incoming& request, std::string_view
     return Problem{.kind = "host", .detail = "exactly one Host is wanted"};
   }
   if (hosts == 1 && !ends.is_our_host(request[http::field::host])) {
-    return Problem{.status = 421, .kind = "host", .detail = "this daemon does not go by that Host"};
+    return Problem{.status = 421,
+                   .kind = "host",
+                   .detail = "this daemon does not go by that Host; --host-name gives it another name"};
   }
   const auto codings = request.count(http::field::transfer_encoding);
   if (codings > 0 && (request.version() < 11 || codings > 1 ||
@@ -334,7 +341,7 @@ asio::awaitable<void> Session<Stream>::finish() {
 
 asio::awaitable<void> serve_session(tcp::socket socket, Api& api, HttpLimits limits) {
   socket.set_option(tcp::no_delay(true));
-  Ends ends(socket, "http://");
+  Ends ends(socket, "http://", limits.host_names);
   Session<PlainStream> session(PlainStream(std::move(socket)), api, limits, std::move(ends));
   co_await session.serve();
 }
@@ -342,7 +349,7 @@ asio::awaitable<void> serve_session(tcp::socket socket, Api& api, HttpLimits lim
 asio::awaitable<void> serve_tls_session(tcp::socket socket, asio::ssl::context& tls, Api& api,
                                         HttpLimits limits) {
   socket.set_option(tcp::no_delay(true));
-  Ends ends(socket, "https://");
+  Ends ends(socket, "https://", limits.host_names);
   Session<TlsStream> session(TlsStream(beast::tcp_stream(std::move(socket)), tls), api, limits,
                              std::move(ends));
   co_await session.serve();

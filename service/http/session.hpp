@@ -4,6 +4,8 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "service/http/route_table.hpp"
 
@@ -15,7 +17,7 @@ namespace cell {
 
 class Api;
 
-/// Bounds of what one client may cost.
+/// Bounds of what one client may cost, and of how it may name the daemon.
 struct HttpLimits {
   int connections_max = 256;
   int address_connections_max = 32;    // of one address
@@ -24,6 +26,8 @@ struct HttpLimits {
   std::uint64_t body_bytes_max = kBodyBytesMax;  // where the route does not take more
   std::chrono::seconds request_deadline{5};      // from its first byte to its last, and for the answer
   std::chrono::seconds idle_deadline{60};
+  /// Beside the socket's address and loopback's names: those of the certificate, or of a proxy before it.
+  std::vector<std::string> host_names = {};
 };
 
 /// Serves one connection until it ends. What Beast lets through although RFC 9110 and 9112 forbid it is

@@ -14,7 +14,7 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 
-constexpr HttpLimits kLimits{};
+const HttpLimits kLimits{.host_names = {"cell-3.plant.example"}};
 
 /// A listener on a free port, on a thread of its own; the test is its client.
 class ListenerTest : public ::testing::Test {
@@ -86,11 +86,13 @@ TEST_F(ListenerTest, OneHostThatIsOursIsWanted) {
   expect_refused(400, line + host_line() + "Host: evil.example\r\n\r\n");
   const std::string port = ":" + std::to_string(listener_.address().port());
   for (const std::string& foreign :
-       {std::string("evil.example"), "evil.example" + port, std::string("127.0.0.1:1"), std::string(),
-        "127.0.0.1" + port + ".evil.example", "evil.example@" + host(), std::string(4000, 'h') + port}) {
+       {std::string("evil.example"), "evil.example" + port, std::string("cell-3.plant.example:1"),
+        std::string("127.0.0.1:1"), std::string(), "127.0.0.1" + port + ".evil.example",
+        "evil.example@" + host(), std::string(4000, 'h') + port}) {
     expect_refused(421, line + "Host: " + foreign + "\r\n\r\n");
   }
-  for (const std::string& ours : {host(), "localhost" + port, "[::1]" + port, "LocalHost" + port}) {
+  for (const std::string& ours : {host(), "localhost" + port, "[::1]" + port, "LocalHost" + port,
+                                  std::string("cell-3.plant.example"), "Cell-3.plant.example" + port}) {
     expect_served(200, line + "Host: " + ours + "\r\n\r\n");
   }
 }
