@@ -1,30 +1,18 @@
 #include "service/traceability.hpp"
 
-#include <openssl/evp.h>
 #include <spdlog/fmt/fmt.h>
 
-#include <array>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "config/block_file.hpp"
 #include "config/file_bytes.hpp"
 #include "cs8_protocol/messages.hpp"
+#include "service/digest.hpp"
 #include "service/http/json_figures.hpp"
 #include "service/version.hpp"
 
 namespace cell {
 namespace {
-
-std::string sha256_hex(const std::string& bytes) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
-    throw std::runtime_error("SHA-256 is not to be had from OpenSSL");
-  std::string hex;
-  for (unsigned int i = 0; i < size; ++i) hex += fmt::format("{:02x}", digest[i]);
-  return hex;
-}
 
 Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
 
@@ -67,6 +55,10 @@ Json conditions_json(const Cell& cell, const Conditions& conditions) {
         {"controller_application", text_or_null(conditions.controller_application)}}},
       {"controller_session",
        conditions.controller_session ? Json(*conditions.controller_session) : Json(nullptr)}};
+}
+
+std::string conditions_document(const Cell& cell, const Conditions& conditions) {
+  return text_of(conditions_json(cell, conditions));
 }
 
 }  // namespace cell

@@ -30,5 +30,7 @@ std::optional<std::string> temperature_gap(const Cell& cell);
 /// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; null where
 /// unknown.
 nlohmann::ordered_json conditions_json(const Cell& cell, const Conditions& conditions);
+/// The same as text: what is kept with a run.
+std::string conditions_document(const Cell& cell, const Conditions& conditions);
 
 }  // namespace cell

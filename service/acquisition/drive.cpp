@@ -17,6 +17,7 @@
 #include "service/acquisition/operation.hpp"
 #include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"
+#include "service/decision_rule.hpp"
 
 namespace cell {
 
@@ -71,6 +72,7 @@ asio::awaitable<void> Operation::drive() {
         co_await resume_run();
         break;
       case State::kStopping:
+        if (shutting_down_) co_await leave_face();
         client_.finish();
         close_run("stopped");
         apply(Event::kDone);
@@ -354,8 +356,8 @@ void Operation::close_run(const std::string& outcome) {
   run_open_ = false;
   run_finished_ = outcome == "complete" && run_->skipped_count() == 0 &&
                   run_->latest().status == calib::IdentificationStatus::kConverged;
-  const Judgement judgement = judge(run_->latest(), run_->recipe().identification, cell_.acceptance,
-                                    run_->predicted_tip_rms_m(), run_finished_);
+  const Judgement judgement = judge_by_rule(run_->latest(), run_->recipe().identification, cell_,
+                                            run_->predicted_tip_rms_m(), run_finished_);
   status_.verdict = !run_finished_       ? Verdict::kIncomplete
                     : judgement.accepted ? Verdict::kAccepted
                                          : Verdict::kRejected;

@@ -26,6 +26,15 @@ constexpr auto kLongestPause = 2000ms;
 /// An arm that rests says so within this time.
 constexpr auto kSettleMax = 10s;
 
+/// "touchcal 1.2.3, VAL3 s7.7.2"
+std::string application_text(const cs8::Welcome& welcome) {
+  const auto parts = [](std::uint32_t version) {
+    return fmt::format("{}.{}.{}", version / 10'000, version / 100 % 100, version % 100);
+  };
+  return fmt::format("{} {}, VAL3 s{}", cs8::text_of(welcome.application), parts(welcome.application_version),
+                     parts(welcome.language_version));
+}
+
 /// The addresses behind a name, or why there are none.
 struct LookUp {
   explicit LookUp(const asio::any_io_executor& executor) : resolver(executor), waited(executor) {}
@@ -86,6 +95,7 @@ asio::awaitable<void> Operation::connect() {
     }
     if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
       session_ = welcome->session;
+      controller_application_ = application_text(*welcome);
       overruns_.reset();
       // A fault that ended a run stays until somebody has read it.
       if (status_.fault && is_link_fault(status_.fault->code) && state != State::kAborted)
@@ -159,6 +169,19 @@ asio::awaitable<std::optional<calib::JointVector>> Operation::standing_joints() 
   }
   if (!told) co_return std::nullopt;
   co_return from_wire(told->joints);
+}
+
+/// Before the daemon ends: a stop may have left the stylus at a face, where nobody would know of it. What
+/// goes wrong on this way leaves the arm where it is.
+asio::awaitable<void> Operation::leave_face() {
+  const auto told = co_await settled_state();
+  if (!told || (told->flags & cs8::kRetractDue) == 0) co_return;
+  const cs8::MoveReply reply = co_await client_.retract(retract_command(cell_));
+  const auto* result = std::get_if<cs8::MoveResult>(&reply.answer);
+  if (result) client_.acknowledge(reply.sequence);
+  const bool arrived = result && result->outcome == cs8::Outcome::kArrived;
+  spdlog::log(arrived ? spdlog::level::info : spdlog::level::warn, "the arm {} the face before the end",
+              arrived ? "left" : "did not leave");
 }
 
 }  // namespace cell

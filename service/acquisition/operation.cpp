@@ -25,6 +25,7 @@ namespace {
 
 /// How long the end waits for the controller's last answer, and for what that leaves to be stored.
 constexpr std::chrono::milliseconds kStopPatience{3000};
+constexpr std::chrono::milliseconds kRetractPatience{10'000};  // as long as the arm still moves then
 constexpr std::chrono::milliseconds kClosePatience{1000};
 
 cs8::ClientOptions client_options(const Deadlines& deadlines) {
@@ -249,6 +250,11 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
     return Refusal{.detail = fmt::format("a run cannot start in the state {}", state_name(status_.state)),
                    .code = FaultCode::kNotInThisState};
   }
+  const std::string conditions =
+      conditions_document(cell_, {.operator_name = request.operator_name,
+                                  .config_digest = config_digest_,
+                                  .controller_application = controller_application_,
+                                  .controller_session = session_});
   std::int64_t id = 0;
   try {
     id = store_.begin_run({.recipe = recipe,
@@ -256,7 +262,8 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
                            .idempotency_key = request.idempotency_key,
                            .operator_name = request.operator_name,
                            .block_temperature_c = cell_.block.temperature_c,
-                           .config_digest = config_digest_});
+                           .config_digest = config_digest_,
+                           .trace_json = conditions});
   } catch (const std::exception& error) {
     return Refusal{.kind = Refusal::Kind::kPreconditions,
                    .detail = "the cell is not ready",
@@ -264,6 +271,7 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
                               fmt::format("free disk space or mend the state directory: {}", error.what())}}};
   }
   run_.emplace(id, tip_regions_, found->second, now_text());
+  conditions_ = conditions;
   run_open_ = true;
   set_logged_run(id);
   run_finished_ = false;
@@ -309,7 +317,7 @@ Status Operation::status() const {
 std::optional<std::string> Operation::result_json() const {
   if (!run_ || run_->latest().status != calib::IdentificationStatus::kConverged) return std::nullopt;
   return result_document(tip_regions_, run_->recipe(), run_->problem(), run_->latest(),
-                         {.complete = run_finished_});
+                         {.complete = run_finished_, .warnings = {}, .conditions = conditions_});
 }
 
 std::optional<PlanOutcome> Operation::planned(const std::string& recipe) const {
@@ -333,6 +341,8 @@ asio::awaitable<void> Operation::shut_down() {
     wake_.cancel();
   }
   co_await wait_for_end(kStopPatience);
+  const auto told = client_.latest_state();
+  if (told && told->active_sequence != 0) co_await wait_for_end(kRetractPatience);
   client_.close();  // what still waits for the controller ends now
   co_await wait_for_end(kClosePatience);
 }

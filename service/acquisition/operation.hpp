@@ -165,6 +165,7 @@ class Operation {
   boost::asio::awaitable<void> settle_open_command(std::uint32_t sequence);
   void acknowledge(std::uint32_t sequence);
   boost::asio::awaitable<std::optional<calib::JointVector>> standing_joints();
+  boost::asio::awaitable<void> leave_face();
   boost::asio::awaitable<void> connect();
   boost::asio::awaitable<void> wait_for_wake(std::chrono::milliseconds at_most);
   bool take_move(const cs8::MoveReply& reply);
@@ -239,6 +240,10 @@ class Operation {
   boost::asio::thread_pool planner_{1};  // planning takes seconds; the thread of the sockets must not wait
   boost::asio::steady_timer wake_;       // cancelled when drive() has something to do
   boost::asio::steady_timer ended_;      // cancelled when drive() has ended
+
+  /// The controller's application and its version, as it told; and the run's conditions, as kept with it.
+  std::optional<std::string> controller_application_;
+  std::string conditions_;
 
   Status status_;
   std::function<void(const Status&)> told_;  // of changes

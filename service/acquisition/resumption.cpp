@@ -90,6 +90,7 @@ void Operation::restore_run() {
   }
   run_.emplace(stored->id, tip_regions_, cell_.recipes.at(stored->recipe), stored->started_at);
   run_->restore(store_.touches(stored->id), stored->touches_total);
+  conditions_ = stored->trace_json.value_or("");
   run_open_ = true;
   set_logged_run(stored->id);
   interrupted_ = Interrupted{stored->plan_id, store_.plan_changes(stored->id)};

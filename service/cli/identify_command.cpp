@@ -12,6 +12,7 @@
 #include "service/cli/offline.hpp"
 #include "service/cli/result_text.hpp"
 #include "service/http/result_view.hpp"
+#include "service/traceability.hpp"
 
 namespace cell {
 namespace {
@@ -63,8 +64,11 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (result.status != calib::IdentificationStatus::kConverged)
     return tell_refusal(arguments.touches_file, result);
   const TipRegions regions(cell);
-  const std::string document =
-      result_document(regions, recipe, problem, result, {.complete = true, .warnings = file.warnings});
+  const ResultContext context{
+      .complete = true,
+      .warnings = file.warnings,
+      .conditions = conditions_document(cell, {.config_digest = configuration_digest(cell)})};
+  const std::string document = result_document(regions, recipe, problem, result, context);
   const auto parsed = nlohmann::json::parse(document);
   write_files(arguments, cell, result, parsed);
   if (json) {

@@ -20,7 +20,7 @@ constexpr std::string_view kResult = R"({
 "type":"object",
 "required":["schema","arm","touch_count","complete","warnings","rejected_touches","converged","iterations",
   "identifiable_count","condition_number","scaled_condition_number","singular_values","parameters",
-  "artefact_parameters","planes","planes_held_out","planes_proof","scale","touches","validation","tip_uncertainty","fit","verdict"],
+  "artefact_parameters","planes","planes_held_out","planes_proof","scale","touches","validation","tip_uncertainty","fit","verdict","conditions"],
 "properties":{
   "schema":{"const":"touchcal/result/1"},
   "arm":{"type":"string"},
@@ -73,7 +73,14 @@ constexpr std::string_view kResult = R"({
   "fit":{"type":"object","required":["noise_declared_um","noise_estimated_um","lack_of_fit_p"]},
   "verdict":{"type":"object","required":["accepted","reasons"],"properties":{
     "accepted":{"type":"boolean"},
-    "reasons":{"type":"array","items":{"type":"string"}}}}}})";
+    "reasons":{"type":"array","items":{"type":"string"}},
+    "decision_rule":{"type":"object","required":["standard","rule","text","coverage_factor","criteria"],"properties":{
+      "standard":{"type":"string"},
+      "rule":{"enum":["simple","guarded"]},
+      "criteria":{"type":"array","items":{"type":"object",
+        "required":["name","plane","unit","value","limit","expanded_uncertainty","within_limit","proved"]}}}}}},
+  "conditions":{"type":"object",
+    "required":["operator","config_digest","block_temperature_c","block","probe","versions","controller_session"]}}})";
 
 constexpr std::string_view kDistances = R"({
 "type":"array",

@@ -102,7 +102,11 @@ std::string status_document(const Status& status) {
   return text_of(document);
 }
 
-std::string run_document(const StoredRun& run) { return text_of(run_json(run)); }
+std::string run_document(const StoredRun& run) {
+  Json document = run_json(run);
+  document["conditions"] = run.trace_json ? Json::parse(*run.trace_json) : Json(nullptr);
+  return text_of(document);
+}
 
 std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std::int64_t> next_before) {
   Json list = Json::array();

@@ -30,7 +30,7 @@ HttpResponse post_identify(const Call& call) {
       return to_response(
           {.status = 422, .kind = "not-identifiable", .detail = result.message, .pointer = "/touches"});
     return {.body = result_document(call.operation.tip_regions(), recipe, problem, result,
-                                    {.complete = true, .warnings = std::move(file.warnings)})};
+                                    {.warnings = std::move(file.warnings), .conditions = {}})};
   } catch (const ConfigError& error) {
     return to_response({.kind = "body", .detail = error.what(), .pointer = error.pointer()});
   }

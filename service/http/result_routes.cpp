@@ -64,8 +64,10 @@ HttpResponse get_result(const Operation& operation, std::int64_t id) {
   auto found = identify_stored(operation, id);
   if (auto* response = std::get_if<HttpResponse>(&found)) return std::move(*response);
   const Identified& identified = std::get<Identified>(found);
+  const ResultContext context{
+      .complete = false, .warnings = {}, .conditions = operation.store().run(id)->trace_json.value_or("")};
   return {.body = result_document(operation.tip_regions(), *identified.recipe, identified.problem,
-                                  identified.result, {.complete = false})};
+                                  identified.result, context)};
 }
 
 HttpResponse get_arm(const Operation& operation, std::int64_t id) {

@@ -7,11 +7,12 @@
 #include "calib_core/face_distances.hpp"
 #include "calib_core/units.hpp"
 #include "calib_core/validate.hpp"
+#include "service/decision_rule.hpp"
 #include "service/http/json_figures.hpp"
 #include "service/http/json_view.hpp"
 #include "service/http/parameter_view.hpp"
 #include "service/http/validation_view.hpp"
-#include "service/verdict.hpp"
+#include "service/traceability.hpp"
 
 namespace cell {
 namespace {
@@ -246,9 +247,13 @@ std::string result_document(const TipRegions& regions, const Recipe& recipe,
   const TipPrediction tip = predict_tip(regions, problem, result);
   document["tip_uncertainty"] = tip_json(cell, tip);
   document["fit"] = fit_json(problem, result);
-  const Judgement judgement =
-      judge(result, options, cell.acceptance, tip.workspace_box_rms_m, context.complete);
-  document["verdict"] = {{"accepted", judgement.accepted}, {"reasons", judgement.reasons}};
+  const Judgement judgement = judge_by_rule(result, options, cell, tip.workspace_box_rms_m, context.complete);
+  document["verdict"] = {{"accepted", judgement.accepted},
+                         {"reasons", judgement.reasons},
+                         {"decision_rule", decision_rule_json(criteria(result, cell, tip.workspace_box_rms_m),
+                                                              cell.acceptance)}};
+  document["conditions"] =
+      context.conditions.empty() ? conditions_json(cell, {}) : Json::parse(context.conditions);
   return text_of(document);
 }
 

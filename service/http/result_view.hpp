@@ -13,6 +13,7 @@ namespace cell {
 struct ResultContext {
   bool complete = true;               // every touch was made
   std::vector<std::string> warnings;  // of the touches' file; identify's own are in the result
+  std::string conditions;             // as kept with the run; empty: what the cell's files tell
 };
 
 /// touchcal/result/1 (contract.md, section 3), one JSON document as text. `problem` is what was identified:

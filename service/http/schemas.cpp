@@ -76,7 +76,8 @@ constexpr std::string_view kRun = R"({
   "started_at":{"type":"string"},
   "ended_at":{"type":["string","null"]},
   "fault_code":{"type":["string","null"]},
-  "fault_message":{"type":["string","null"]}}})";
+  "fault_message":{"type":["string","null"]},
+  "conditions":{"type":["object","null"],"description":"What it was made under; in the document of one run"}}})";
 
 constexpr std::string_view kRuns = R"({
 "type":"object",

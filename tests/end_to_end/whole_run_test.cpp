@@ -1,6 +1,7 @@
 // Whole runs over loopback: what a customer sees when nothing goes wrong.
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "calib_core/identify.hpp"
@@ -114,7 +115,29 @@ TEST_P(WholeRun, ItsTouchesReadBackFromAFileGiveTheSameResultToTheBit) {
   const calib::IdentificationResult& live = loop_.operation().run()->latest();
   EXPECT_TRUE((again.errors.array() == live.errors.array()).all());
   const cell::TipRegions regions(loop_.cell);
-  EXPECT_TRUE(cell::result_document(regions, recipe, problem, again, {}) == loop_.operation().result_json());
+  const auto stored = loop_.store().run(loop_.operation().run()->id());
+  const cell::ResultContext context{.warnings = {}, .conditions = stored->trace_json.value()};
+  EXPECT_TRUE(cell::result_document(regions, recipe, problem, again, context) ==
+              loop_.operation().result_json());
+}
+
+TEST(Conditions, AreKeptWithTheRunWhenItStarts) {
+  LoopbackCell loop;
+  loop.serve();
+  loop.launch();
+  loop.run_until(State::kIdle);
+  const auto started = std::get<cell::Started>(
+      loop.operation().start({.recipe = kShortRecipe, .idempotency_key = {}, .operator_name = "A. Turing"}));
+  const cell::StoredRun stored = loop.store().run(started.run_id).value();
+  const auto kept = nlohmann::json::parse(stored.trace_json.value());
+  EXPECT_EQ(kept.at("operator"), "A. Turing");
+  EXPECT_EQ(kept.at("config_digest"), stored.config_digest.value());
+  EXPECT_EQ(kept.at("block_temperature_c"), loop.cell.block.temperature_c.value());
+  EXPECT_EQ(kept.at("block").at("name"), loop.cell.block.name);
+  EXPECT_THAT(kept.at("versions").at("controller_application").get<std::string>(),
+              ::testing::MatchesRegex("touchcal [0-9.]+, VAL3 s[0-9.]+"));
+  EXPECT_TRUE(kept.at("controller_session").is_number_unsigned());
+  EXPECT_EQ(nlohmann::json::parse(cell::run_document(stored)).at("conditions"), kept);
 }
 
 INSTANTIATE_TEST_SUITE_P(Cells, WholeRun, ::testing::Values("edf", "demo"),

@@ -129,7 +129,10 @@ TEST(RunsDocument, HasEachRunsFieldsAndWhereTheNextPageBegins) {
   const json page = json::parse(runs_document({running}, 2));
   EXPECT_EQ(page.at("next_before"), "2");
   ASSERT_EQ(page.at("runs").size(), 1u);
-  EXPECT_EQ(page.at("runs")[0], json::parse(run_document(running)));
+  json alone = json::parse(run_document(running));
+  EXPECT_TRUE(alone.at("conditions").is_null()) << "an older daemon kept none";
+  alone.erase("conditions");
+  EXPECT_EQ(page.at("runs")[0], alone);
   EXPECT_EQ(shape_of(page.at("runs")[0]), (Shape{{"id", "string"},
                                                  {"recipe", "string"},
                                                  {"outcome", "string"},

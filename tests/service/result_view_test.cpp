@@ -43,7 +43,8 @@ TEST(ResultDocument, HasTheContractsFieldsWithTheirTypes) {
                                        {"scale", "object"},
                                        {"tip_uncertainty", "object"},
                                        {"fit", "object"},
-                                       {"verdict", "object"}}));
+                                       {"verdict", "object"},
+                                       {"conditions", "object"}}));
   for (const json& iteration : result().at("iterations")) {
     EXPECT_EQ(shape_of(iteration), (Shape{{"condition_number", "number"},
                                           {"scaled_condition_number", "number"},
