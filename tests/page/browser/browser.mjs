@@ -42,13 +42,22 @@ export async function waitForState(page, words, patience_ms = kPatience_ms) {
   await page.waitForFunction((list) => list.includes(document.querySelector('header h1')?.textContent), wanted, {timeout: patience_ms});
 }
 
-/** Holds a button by mouse until it has acted or been let go of after `hold_ms`. */
+/** Holds a button by mouse until it has acted. The page itself is watched: a busy machine may look too late. */
 export async function hold(page, locator) {
+  await locator.evaluate((button) => {
+    let isHeld = false;
+    window.heldToTheEnd = false;
+    const watch = new MutationObserver(() => {
+      const holding = button.isConnected && /keep holding|maintenez/.test(button.textContent);
+      window.heldToTheEnd = isHeld && !holding;
+      isHeld = holding;
+      if (window.heldToTheEnd) watch.disconnect();
+    });
+    watch.observe(document.body, {subtree: true, childList: true, characterData: true});
+  });
   await locator.hover();
   await page.mouse.down();
-  await locator.locator('.note', {hasText: /keep holding|maintenez/}).waitFor();
-  // It has acted when the progress is gone again.
-  await page.waitForFunction((button) => !button.isConnected || !/keep holding|maintenez/.test(button.textContent), await locator.elementHandle());
+  await page.waitForFunction(() => window.heldToTheEnd);
   await page.mouse.up();
 }
 

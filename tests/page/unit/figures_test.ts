@@ -5,6 +5,7 @@ import {compareRuns, trend} from 'page/model/history.ts';
 import {layersOf, rangeOf} from 'page/model/map_layers.ts';
 import {conditions} from 'page/model/readiness.ts';
 import {mainAction, mayPause, mood} from 'page/model/states.ts';
+import {verdictOf} from 'page/model/verdict.ts';
 import {statusWith} from './statuses.ts';
 
 const parameter = (name: string, error: number | null, std_uncertainty: number | null): Parameter =>
@@ -60,4 +61,16 @@ test('AnAbnormalStateLooksAbnormal', () => {
   assert.equal(mood(statusWith({state: 'HELD'})), 'wait');
   assert.equal(mood(statusWith({state: 'HELD', fault_code: 'no_contact'})), 'wrong');
   assert.equal(mood(statusWith({state: 'ABORTED'})), 'wrong');
+});
+
+test('TheRunSaysItsVerdictAndNotAResultThatIsBehindIt', () => {
+  const behind = {complete: false, verdict: {accepted: false}} as Result;
+  const whole = {complete: true, verdict: {accepted: true}} as Result;
+  const verdict = (status: Parameters<typeof statusWith>[0], result: Result) => verdictOf('1', result, {status: statusWith(status), runs: []});
+  assert.equal(verdict({state: 'COMPLETE', run_id: '1', verdict: 'accepted'}, behind), 'accepted');
+  assert.equal(verdict({state: 'EXECUTE', run_id: '1', verdict: 'none'}, whole), 'none');
+  assert.equal(verdict({state: 'COMPLETE', run_id: '1', verdict: 'incomplete'}, whole), 'incomplete');
+  assert.equal(verdict({run_id: '2'}, whole), 'accepted');
+  assert.equal(verdict({run_id: '2'}, behind), 'incomplete');
+  assert.equal(verdictOf('1', whole, {status: null, runs: [{id: '1', verdict: 'rejected'} as Run]}), 'rejected');
 });

@@ -1,5 +1,6 @@
 import {get, post, type Reply} from '../api/client.ts';
 import type {Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet} from '../api/documents.ts';
+import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
 import {kFirstState, reduce, type Action, type PageState, type View} from './page_state.ts';
 import {commandPath, isActive, type Command} from './states.ts';
@@ -19,7 +20,7 @@ export interface Conditions { operator?: string; block_temperature_c?: number }
 export class Desk {
   readonly store = new Store<PageState, Action>(reduce, kFirstState);
   private readonly live: Live;
-  private asked: {run_id: string; touches: number} | null = null;  // the live result that was asked for last
+  private asked: {run_id: string; touches: number; isOver: boolean} | null = null;  // the live result that was asked for last
   private askingResult = false;
   private isPageHidden = false;
 
@@ -61,7 +62,7 @@ export class Desk {
     if (runChanged) {
       void this.loadRuns();
       void this.askReadiness();
-      if (status.run_id) void this.loadRunPlan(status.run_id);
+      if (status.run_id && status.touches_total !== null) void this.loadRunPlan(status.run_id);
     }
     if (before && before.instance_id !== status.instance_id) void this.loadAll();
     void this.followRun();
@@ -137,17 +138,17 @@ export class Desk {
     this.askingResult = true;
     try {
       for (;;) {
-        const {status, runPlan, results} = this.store.state;
+        const {status, runPlan} = this.store.state;
         if (!status?.run_id || status.touches_done < 1 || this.isPageHidden) return;
         const {run_id, touches_done} = status;
-        const isComplete = !isActive(status.state);
-        const isKnown = this.asked?.run_id === run_id && this.asked.touches === touches_done;
-        if (isKnown && !(isComplete && results[run_id]?.complete === false && status.state === 'COMPLETE')) return;
-        this.asked = {run_id, touches: touches_done};
+        const isOver = !isActive(status.state);
+        const {asked} = this;
+        if (asked?.run_id === run_id && asked.touches === touches_done && asked.isOver === isOver) return;
+        this.asked = {run_id, touches: touches_done, isOver};
         if (runPlan?.run_id !== run_id) await this.loadRunPlan(run_id);
         // Without a condition number there is no result yet.
         await Promise.all([
-          status.condition_number !== null || isComplete ? this.loadResult(run_id) : null,
+          status.condition_number !== null || isOver ? this.loadResult(run_id) : null,
           this.load<Touches>(`/api/v1/runs/${run_id}/touches`, ({touches}) => this.patch({touches: {run_id, touches}})),
         ]);
         await new Promise((done) => setTimeout(done, kResultGap_ms));
@@ -225,6 +226,11 @@ export class Desk {
     const taken = reply.kind === 'ok';
     this.patch({busy, notice: taken ? null : {command, problem}});
     return taken;
+  }
+
+  /** A document of the daemon as a file; false when it was not given. */
+  save(path: string, name: string): Promise<boolean> {
+    return saveAs(path, name, this.token);
   }
 
   note(key: string): void {

@@ -1,4 +1,4 @@
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import type {Recipe} from '../api/documents.ts';
 import type {Conditions, Desk} from '../model/desk.ts';
 import {duration, number} from '../model/format.ts';
@@ -94,6 +94,9 @@ function RecipeFigures({recipe, plan, state, desk}: {recipe: Recipe; plan: PlanS
   const made = plan?.kind === 'made' ? plan.plan : null;
   const isPlanning = plan?.kind === 'planning';
   const canPlan = state.role === 'operate' && !made && !isPlanning && state.status !== null && !isActive(state.status.state);
+  useEffect(() => {
+    if (canPlan && !plan) void desk.plan(recipe.name);
+  }, [canPlan, plan, recipe.name]);
   const refused = plan?.kind === 'refused' ? plan.problem.detail : plan?.kind === 'lost' ? say('noAnswer') : null;
   return (
     <div class="figures">

@@ -29,6 +29,8 @@ function FaultCard({fault, state, desk, reached}: {fault: StickyFault; state: Pa
   const cause = language === 'en' || !words ? fault.message : withDetail(words.cause, fault, state);
   const robot_action = (language === 'en' ? fault.robot_action : null) ?? words?.robot_action ?? null;
   const next_step = (language === 'en' ? fault.next_step : null) ?? words?.next_step ?? null;
+  // What holds a run is settled by how the run goes on.
+  const holds = isShown && state.status?.state === 'HELD';
   const actions = isShown && state.status && reached && state.role === 'operate' ? touchActions(state.status) : [];
   return (
     <article class={fault.isWarning ? 'card warning' : 'card fault'}>
@@ -49,10 +51,11 @@ function FaultCard({fault, state, desk, reached}: {fault: StickyFault; state: Pa
             {say(action === 'retry' ? 'retry' : 'skip')}
           </HoldButton>
         ))}
-        {isShown
+        {isShown && !holds
           ? <button type="button" disabled={state.role !== 'operate' || !reached}
                     onClick={() => void desk.command('acknowledge')}>{say('acknowledge')}</button>
-          : <button type="button" onClick={() => desk.note(fault.key)}>{say('note')}</button>}
+          : null}
+        {isShown ? null : <button type="button" onClick={() => desk.note(fault.key)}>{say('note')}</button>}
       </div>
     </article>
   );

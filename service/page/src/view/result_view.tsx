@@ -3,26 +3,26 @@ import type {Parameter, PlaneDistances, Result, VerdictName} from '../api/docume
 import type {Desk} from '../model/desk.ts';
 import {number, type Language} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
-import {isActive} from '../model/states.ts';
+import {verdictOf} from '../model/verdict.ts';
 import {sayName, type Say, type WordKey} from '../words/words.ts';
 import {Symbol, type Shape} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 import {UncertaintyMapView} from './uncertainty_map.tsx';
 
 /** What a run found, in plain words first. */
-export function ResultView({state}: {state: PageState; desk: Desk}) {
+export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
   const say = useSay();
   const run_id = state.shownRun ?? state.status?.run_id ?? state.runs[0]?.id ?? null;
   const result = run_id ? state.results[run_id] : undefined;
   const why = run_id ? state.missing[run_id] : undefined;
   if (run_id && !result && why) return <p class="empty"><OuterText text={say('noResult', {why})} /></p>;
   if (!run_id || !result) return <p class="empty">{say('noResultYet')}</p>;
-  const isLive = run_id === state.status?.run_id && isActive(state.status.state);
+  const verdict = verdictOf(run_id, result, state);
   return (
     <div class="result-view">
       <h2>{say('runOf', {run: run_id, recipe: result.recipe})}</h2>
-      <Verdict result={result} verdict={verdictOf(result, isLive)} isLive={isLive} />
-      <Downloads run_id={run_id} />
+      <Verdict result={result} verdict={verdict} />
+      <Downloads run_id={run_id} desk={desk} />
       <TipErrors result={result} />
       <Distances result={result} />
       <Errors result={result} />
@@ -32,42 +32,53 @@ export function ResultView({state}: {state: PageState; desk: Desk}) {
   );
 }
 
-/** An incomplete set is neither good nor bad. */
-function verdictOf(result: Result, isLive: boolean): VerdictName {
-  if (isLive) return 'none';
-  if (!result.complete) return 'incomplete';
-  return result.verdict.accepted ? 'accepted' : 'rejected';
-}
-
 const kVerdictWords: Record<VerdictName, WordKey> =
     {accepted: 'acceptedWords', rejected: 'rejectedWords', incomplete: 'incompleteWords', none: 'liveWords'};
 const kVerdictShapes: Record<VerdictName, Shape> = {accepted: 'ok', rejected: 'fault', incomplete: 'warning', none: 'work'};
 
-function Verdict({result, verdict, isLive}: {result: Result; verdict: VerdictName; isLive: boolean}) {
+function Verdict({result, verdict}: {result: Result; verdict: VerdictName}) {
   const say = useSay();
+  const isLive = verdict === 'none';
+  // Of a result that is one touch behind its run, the reasons are not the run's.
+  const reasons = result.complete || verdict === 'incomplete' ? result.verdict.reasons : [];
   return (
     <section class={`verdict ${verdict}`} aria-label={say(`verdict_${verdict}`)}>
       <p class="big"><Symbol shape={kVerdictShapes[verdict]} />{isLive ? say('EXECUTE') : say(`verdict_${verdict}`)}</p>
       <p>{say(kVerdictWords[verdict])}</p>
-      {!isLive && result.verdict.reasons.length > 0
-        ? <ul>{result.verdict.reasons.map((reason) => <li key={reason}><OuterText text={reason} isEnglish /></li>)}</ul>
+      {!isLive && reasons.length > 0
+        ? <ul>{reasons.map((reason) => <li key={reason}><OuterText text={reason} isEnglish /></li>)}</ul>
         : null}
     </section>
   );
 }
 
-function Downloads({run_id}: {run_id: string}) {
+interface Offered { words: WordKey; form: string; path: string; ending: string }
+const kOffered: Offered[] = [
+  {words: 'report', form: 'HTML', path: 'report?format=html', ending: '.html'},
+  {words: 'report', form: 'CSV', path: 'report?format=csv', ending: '.csv'},
+  {words: 'report', form: 'JSON', path: 'report?format=json', ending: '.json'},
+  {words: 'resultFile', form: 'JSON', path: 'result', ending: '-result.json'},
+  {words: 'rawTouches', form: 'JSON', path: 'touches', ending: '-touches.json'},
+  {words: 'calibratedArm', form: 'JSON', path: 'arm', ending: '-arm.json'},
+];
+
+function Downloads({run_id, desk}: {run_id: string; desk: Desk}) {
   const say = useSay();
-  const base = `/api/v1/runs/${run_id}`;
+  const [failed, setFailed] = useState<Offered | null>(null);
+  const save = async (offered: Offered): Promise<void> => {
+    const saved = await desk.save(`/api/v1/runs/${run_id}/${offered.path}`, `touchcal-run-${run_id}${offered.ending}`);
+    setFailed(saved ? null : offered);
+  };
   return (
-    <p class="downloads">
-      <a href={`${base}/report?format=html`} target="_blank" rel="noopener">{say('report')} (HTML)</a>
-      <a href={`${base}/report?format=pdf`} download={`run-${run_id}.pdf`}>PDF</a>
-      <a href={`${base}/report?format=csv`} download={`run-${run_id}.csv`}>CSV</a>
-      <a href={`${base}/result`} download={`run-${run_id}-result.json`}>{say('resultFile')}</a>
-      <a href={`${base}/touches`} download={`run-${run_id}-touches.json`}>{say('rawTouches')}</a>
-      <a href={`${base}/arm`} download={`run-${run_id}-arm.json`}>{say('calibratedArm')}</a>
-    </p>
+    <section aria-labelledby="downloads">
+      <h3 id="downloads">{say('download')}</h3>
+      <p class="downloads">
+        {kOffered.map((offered) => (
+          <button key={offered.path} type="button" onClick={() => void save(offered)}>{say(offered.words)} ({offered.form})</button>
+        ))}
+      </p>
+      {failed && <p class="abnormal" role="alert"><Symbol shape="warning" />{say('notSaved', {what: say(failed.words)})}</p>}
+    </section>
   );
 }
 

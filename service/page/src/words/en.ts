@@ -198,6 +198,7 @@ export const en = {
   warnings: 'Warnings of the fit',
   report: 'Report',
   download: 'Download',
+  notSaved: '{what}: the daemon does not give it',
   calibratedArm: 'Calibrated arm',
   rawTouches: 'Touches',
   resultFile: 'Result',

@@ -200,6 +200,7 @@ export const fr: Words = {
   warnings: 'Avertissements de l’ajustement',
   report: 'Rapport',
   download: 'Télécharger',
+  notSaved: '{what} : le démon ne le donne pas',
   calibratedArm: 'Bras étalonné',
   rawTouches: 'Palpages',
   resultFile: 'Résultat',
