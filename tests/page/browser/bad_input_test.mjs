@@ -1,7 +1,7 @@
 // Texts that are not meant well, tokens and clocks that are wrong: shown as text, said in words, never a blank page.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {expectAccessible, openBrowser, openPage, startButton, stopButton, waitForState} from './browser.mjs';
+import {closeQuietly, expectAccessible, openBrowser, openPage, openWith, startButton, stopButton, waitForState} from './browser.mjs';
 import {Cell} from './cell.mjs';
 
 const kHostile = '<img src=x onerror="window.taken=1"><script>window.taken=1</script>&amp;\u202e';
@@ -17,28 +17,8 @@ after(async () => {
   await cell?.stop();
 });
 
-/** A page whose daemon says what `changes` makes of its answers, by path. */
-async function openWith(changes) {
-  const page = await openPage(browser, 'about:blank');
-  for (const [path, change] of Object.entries(changes)) {
-    await page.route(`${cell.url}${path}`, async (route) => {
-      const answer = await route.fetch();
-      await route.fulfill(answer.status() === 200 ? {response: answer, json: change(await answer.json())} : {response: answer});
-    });
-  }
-  await page.route(`${cell.url}/api/v1/events`, (route) => route.fulfill({status: 503, json: {}}));
-  await page.goto(cell.link);
-  return page;
-}
-
-/** Answers that are still under way are nobody's fault. */
-async function close(page) {
-  await page.unrouteAll({behavior: 'ignoreErrors'});
-  await page.context().close();
-}
-
 test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
-  const page = await openWith({
+  const page = await openWith(browser, cell, {
     '/api/v1/status': (status) => ({...status, sequence: status.sequence + 5, state: 'HELD', run_id: '1', recipe: kHostile, fault_code: kHostile,
                                     fault_message: kHostile + kLong, fault_robot_action: kHostile, fault_next_step: kHostile,
                                     warning_code: 'x', warning_message: kLong, more_would_bring: kHostile, waiting_for: kHostile}),
@@ -59,7 +39,7 @@ test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
   assert.ok(width < 1024, 'a long text does not push the buttons away');
   assert.ok((await stopButton(page).boundingBox()).x < 1024);
   assert.deepEqual(page.complaints, []);
-  await close(page);
+  await closeQuietly(page);
 });
 
 test('AStaleTokenIsSaidInWordsAndThePageWatches', async () => {
@@ -111,11 +91,11 @@ test('ABrowserThatKeepsNothingAndDrawsNothingStillOperates', async () => {
 });
 
 test('WithoutEventsThePageAsksAndIsStillRight', async () => {
-  const page = await openWith({});
+  const page = await openWith(browser, cell, {});
   await page.locator('header .link', {hasText: 'Asking each second'}).waitFor();
   await cell.post('/api/v1/cell/stop');
   await waitForState(page, 'Stopped');
   await cell.post('/api/v1/cell/reset');
   await waitForState(page, 'Ready');
-  await close(page);
+  await closeQuietly(page);
 });

@@ -34,6 +34,26 @@ export async function openPage(browser, address, options = {}) {
   return page;
 }
 
+/** A page whose daemon says what `changes` makes of its answers, by path; it hears of the cell by asking. */
+export async function openWith(browser, cell, changes) {
+  const page = await openPage(browser, 'about:blank');
+  for (const [path, change] of Object.entries(changes)) {
+    await page.route(`${cell.url}${path}`, async (route) => {
+      const answer = await route.fetch();
+      await route.fulfill(answer.status() === 200 ? {response: answer, json: change(await answer.json())} : {response: answer});
+    });
+  }
+  await page.route(`${cell.url}/api/v1/events`, (route) => route.fulfill({status: 503, json: {}}));
+  await page.goto(cell.link);
+  return page;
+}
+
+/** Answers that are still under way are nobody's fault. */
+export async function closeQuietly(page) {
+  await page.unrouteAll({behavior: 'ignoreErrors'});
+  await page.context().close();
+}
+
 /** The words of the state line. */
 export const state = (page) => page.locator('header h1').textContent();
 

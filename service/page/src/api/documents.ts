@@ -69,10 +69,13 @@ export interface Face {
   edge_u: Vector;
   half_extent_mm: [number, number];
 }
+/** Where the block was located, against the cell's file. */
+export interface Place { located_at: string; shift_mm: number[]; turn_deg: number[] }
 export interface Cell {
   name: string;
   arm: string;
   block: {name: string; temperature_c: number | null; faces: Face[]};
+  place?: Place | null;  // a daemon that cannot locate the block does not tell it
   probe: {name: string; stylus_radius_mm: number};
   default_recipe: string;
   workspace_box: Box;
@@ -162,6 +165,18 @@ export interface PlaneDistances {
   nominal_rms_mm: number | null;
   calibrated_rms_mm: number | null;
 }
+/** A figure against its limit (ISO 14253-1). */
+export interface Criterion {
+  name: string;
+  plane: number | null;
+  unit: string;
+  value: number | null;
+  limit: number;
+  expanded_uncertainty: number | null;
+  within_limit: boolean;
+  proved: boolean;
+}
+export interface DecisionRule { standard: string; rule: 'simple' | 'guarded'; text: string; coverage_factor: number; criteria: Criterion[] }
 export interface Result {
   recipe: string;
   touch_count: number;
@@ -181,7 +196,7 @@ export interface Result {
   };
   tip_uncertainty: TipUncertainty;
   fit: {noise_declared_um: number | null; noise_estimated_um: number | null; lack_of_fit_p: number | null};
-  verdict: {accepted: boolean; reasons: string[]};
+  verdict: {accepted: boolean; reasons: string[]; decision_rule?: DecisionRule};
 }
 
 export interface Unmet { code: string; detail: string }

@@ -14,7 +14,7 @@ const kPlanPatience_ms = 120000;
 const kStopPatience_ms = 1500;  // then it is asked again
 
 /** What a start is made with beside the recipe. */
-export interface Conditions { operator?: string; block_temperature_c?: number }
+export interface Conditions { operator?: string; touching?: 'guided' }
 
 /** The page's hands: asks the daemon, sends commands, keeps the store. Views call nothing else. */
 export class Desk {
@@ -65,6 +65,7 @@ export class Desk {
       if (status.run_id && status.touches_total !== null) void this.loadRunPlan(status.run_id);
     }
     if (before && before.instance_id !== status.instance_id) void this.loadAll();
+    if (before?.by_hand && !status.by_hand) void this.loadCell();  // the block may have been found
     void this.followRun();
   }
 
@@ -95,7 +96,7 @@ export class Desk {
   private async loadAll(): Promise<void> {
     await Promise.all([
       this.askRole(),
-      this.load<Cell>('/api/v1/cell', (cell) => this.patch({cell})),
+      this.loadCell(),
       this.load<Recipes>('/api/v1/recipes', (recipes) => {
         this.patch({recipes, recipe: this.store.state.recipe ?? recipes.default});
       }),
@@ -105,6 +106,13 @@ export class Desk {
       this.askReadiness(),
       this.loadRuns(),
     ]);
+  }
+
+  /** The same cell stays the same object: what is drawn of it stays as a person has turned it. */
+  private async loadCell(): Promise<void> {
+    await this.load<Cell>('/api/v1/cell', (cell) => {
+      if (JSON.stringify(cell) !== JSON.stringify(this.store.state.cell)) this.patch({cell});
+    });
   }
 
   private async askRole(): Promise<void> {

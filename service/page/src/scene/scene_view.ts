@@ -69,7 +69,7 @@ export class SceneView {
   close(): void {
     cancelAnimationFrame(this.frame);
     this.leave.abort();
-    for (const {body} of this.parts) this.painter.drop(body);
+    for (const body of [...this.parts.map((part) => part.body), ...this.faces.values(), this.done, this.open]) this.painter.drop(body);
   }
 
   /** Null: where the arm is, is not known; it stays where it was last. */

@@ -1,7 +1,7 @@
-import {useEffect, useState} from 'preact/hooks';
-import type {Recipe} from '../api/documents.ts';
+import {useEffect} from 'preact/hooks';
+import type {Place, Recipe} from '../api/documents.ts';
 import type {Conditions, Desk} from '../model/desk.ts';
-import {duration, number} from '../model/format.ts';
+import {duration, number, time} from '../model/format.ts';
 import type {PageState, PlanState} from '../model/page_state.ts';
 import {conditions, type Condition} from '../model/readiness.ts';
 import {isActive, mayStart} from '../model/states.ts';
@@ -83,7 +83,7 @@ function RecipeChoice({state, desk, given, onConditions}: {
         ))}
       </div>
       {chosen && <RecipeFigures recipe={chosen} plan={state.plans[chosen.name]} state={state} desk={desk} />}
-      <StartFields given={given} onConditions={onConditions} />
+      <StartFields state={state} given={given} onConditions={onConditions} />
     </section>
   );
 }
@@ -116,21 +116,19 @@ function RecipeFigures({recipe, plan, state, desk}: {recipe: Recipe; plan: PlanS
   );
 }
 
-/** Who answers for the run and how warm the block is: kept with the result, needed by no start. */
-function StartFields({given, onConditions}: {given: Conditions; onConditions: (conditions: Conditions) => void}) {
+/** Who answers for the run, and whose hand makes its touches: kept with the result, needed by no start. */
+function StartFields({state, given, onConditions}: {state: PageState; given: Conditions; onConditions: (conditions: Conditions) => void}) {
   const say = useSay();
-  const [temperature, setTemperature] = useState(given.block_temperature_c?.toString() ?? '');
-  const read = readTemperature(temperature);
-  const takeTemperature = (text: string): void => {
-    setTemperature(text);
-    const {block_temperature_c: _, ...others} = given;
-    const value = readTemperature(text);
-    onConditions(typeof value === 'number' ? {...others, block_temperature_c: value} : others);
-  };
+  const language = useLanguage();
   const takeOperator = (text: string): void => {
     const {operator: _, ...others} = given;
     onConditions(text.trim() ? {...others, operator: text.trim()} : others);
   };
+  const takeGuided = (isGuided: boolean): void => {
+    const {touching: _, ...others} = given;
+    onConditions(isGuided ? {...others, touching: 'guided'} : others);
+  };
+  const temperature_c = state.cell?.block.temperature_c ?? null;
   return (
     <div class="fields">
       <label>
@@ -138,20 +136,19 @@ function StartFields({given, onConditions}: {given: Conditions; onConditions: (c
         <input type="text" maxLength={50} autocomplete="off" placeholder={say('optional')} value={given.operator ?? ''}
                onInput={(event) => takeOperator(event.currentTarget.value)} />
       </label>
-      <label>
-        <span>{say('temperature')}</span>
-        <input type="text" inputMode="decimal" maxLength={6} autocomplete="off" placeholder={say('optional')} value={temperature}
-               aria-invalid={read === 'wrong'} onInput={(event) => takeTemperature(event.currentTarget.value)} />
-      </label>
-      {read === 'wrong' && <p class="abnormal" role="alert">{say('temperatureWrong')}</p>}
+      <div>
+        <p class={state.cell && temperature_c === null ? 'abnormal' : ''}>
+          {say('temperature')}: {temperature_c === null ? say('unknown') : `${number(temperature_c, 1, language)} °C`}
+        </p>
+        {state.cell?.place !== undefined && (
+          <label class="check">
+            <input type="checkbox" checked={given.touching === 'guided'} onChange={(event) => takeGuided(event.currentTarget.checked)} />
+            <span>{say('guided')}</span>
+          </label>
+        )}
+      </div>
     </div>
   );
-}
-
-function readTemperature(text: string): number | 'none' | 'wrong' {
-  if (text.trim() === '') return 'none';
-  const value = Number(text.trim().replace(',', '.'));
-  return Number.isFinite(value) && value >= -40 && value <= 100 ? value : 'wrong';
 }
 
 function LocateOffer({state, desk}: {state: PageState; desk: Desk}) {
@@ -161,8 +158,16 @@ function LocateOffer({state, desk}: {state: PageState; desk: Desk}) {
   return (
     <section class="locate" aria-labelledby="locate">
       <h2 id="locate">{say('locate')}</h2>
-      <p>{say('locateWords')}</p>
+      <p>{state.cell?.place ? <PlaceFound place={state.cell.place} /> : say('locateWords')}</p>
       <button type="button" onClick={() => void desk.command('locate')}>{say('locateStart')}</button>
     </section>
   );
+}
+
+/** Where the block was found, against the cell's file. */
+function PlaceFound({place}: {place: Place}) {
+  const say = useSay();
+  const language = useLanguage();
+  const numbers = (values: number[], digits: number): string => values.map((value) => number(value, digits, language)).join(' / ');
+  return <>{say('located', {at: time(place.located_at), shift: numbers(place.shift_mm, 2), turn: numbers(place.turn_deg, 3)})}</>;
 }

@@ -6,7 +6,8 @@ import {compareRuns, trend, trendChoices, type TrendOf} from '../model/history.t
 import type {PageState} from '../model/page_state.ts';
 import {sayName} from '../words/words.ts';
 import {Curve} from './curve.tsx';
-import {inUnit, Scroll, shownUnit} from './result_view.tsx';
+import {inUnit, shownUnit} from './result_view.tsx';
+import {Scroll} from './scroll.tsx';
 import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 

@@ -5,6 +5,8 @@ import {number, type Language} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
 import {verdictOf} from '../model/verdict.ts';
 import {sayName, type Say, type WordKey} from '../words/words.ts';
+import {LimitsTable} from './limits_table.tsx';
+import {Scroll} from './scroll.tsx';
 import {Symbol, type Shape} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 import {UncertaintyMapView} from './uncertainty_map.tsx';
@@ -23,6 +25,7 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
       <h2>{say('runOf', {run: run_id, recipe: result.recipe})}</h2>
       <Verdict result={result} verdict={verdict} />
       <Downloads run_id={run_id} desk={desk} />
+      {result.verdict.decision_rule ? <LimitsTable rule={result.verdict.decision_rule} /> : null}
       <TipErrors result={result} />
       <Distances result={result} />
       <Errors result={result} />
@@ -140,11 +143,6 @@ function Distances({result}: {result: Result}) {
       </table>
     </Scroll>
   );
-}
-
-/** A wide table scrolls by itself, by keyboard too. */
-export function Scroll({label, children}: {label: string; children: preact.ComponentChildren}) {
-  return <div class="scroll" role="region" aria-label={label} tabIndex={0}>{children}</div>;
 }
 
 function Errors({result}: {result: Result}) {
