@@ -6,7 +6,7 @@ import {Cell} from './cell.mjs';
 
 let cell, browser, page;
 before(async () => {
-  cell = await Cell.start({speed: 100});
+  cell = await Cell.start({speed: 200});
   browser = await openBrowser();
   page = await openPage(browser, cell.link);
 });
