@@ -105,6 +105,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     asio::co_spawn(context, forget_old_runs(store, *options.retain_days), asio::detached);
   Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
                       random_hex(8), clock);
+  operation.keep_place_in(options.state_directory / "place.json");
   std::optional<HttpListener> listener;
   const auto tls = tls_context(options);
   try {

@@ -267,6 +267,13 @@ constexpr std::array kTable{
         "touchcal resume to go on with the touch behind the last one that is stored, or touchcal stop to "
         "end the run as it is",
         FaultKind::kHeld, "P41"},
+    FaultEntry{
+        FaultCode::kBlockMoved, "block_moved", "the block is not where it was located",
+        "the arm stopped at this touch or retracted from it",
+        "touchcal stop, or touchcal clear where the run was aborted, then touchcal reset and touchcal locate "
+        "to "
+        "find the block again; touchcal resume goes on where the block is sure to stand as it was located",
+        FaultKind::kHeld},
 };
 
 }  // namespace

@@ -70,6 +70,7 @@ enum class FaultCode {
   kStoreFailed,
   kNotIdentifiable,
   kDaemonRestarted,
+  kBlockMoved,
 };
 
 /// What a fault makes of the run. A command or start that is refused changes nothing; a warning lets the run

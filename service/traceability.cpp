@@ -9,6 +9,7 @@
 #include "cs8_protocol/messages.hpp"
 #include "service/digest.hpp"
 #include "service/http/json_figures.hpp"
+#include "service/http/place_view.hpp"
 #include "service/version.hpp"
 
 namespace cell {
@@ -21,6 +22,11 @@ Json texts(const std::map<std::string, std::string>& certificate) {
   Json object = Json::object();
   for (const auto& [key, value] : certificate) object[key] = value;
   return object;
+}
+
+Json touching_name(std::optional<Touching> touching) {
+  if (!touching) return nullptr;
+  return *touching == Touching::kGuided ? "guided" : "automatic";
 }
 
 }  // namespace
@@ -54,11 +60,19 @@ Json conditions_json(const Cell& cell, const Conditions& conditions) {
         {"protocol", cs8::kProtocolVersion},
         {"controller_application", text_or_null(conditions.controller_application)}}},
       {"controller_session",
-       conditions.controller_session ? Json(*conditions.controller_session) : Json(nullptr)}};
+       conditions.controller_session ? Json(*conditions.controller_session) : Json(nullptr)},
+      {"touching", touching_name(conditions.touching)},
+      {"place", place_view(conditions.place)}};
 }
 
 std::string conditions_document(const Cell& cell, const Conditions& conditions) {
   return text_of(conditions_json(cell, conditions));
+}
+
+bool is_guided(const std::optional<std::string>& conditions) {
+  if (!conditions) return false;
+  const Json found = Json::parse(*conditions, nullptr, false);
+  return found.is_object() && found.value("touching", Json()) == "guided";
 }
 
 }  // namespace cell

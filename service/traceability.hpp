@@ -6,8 +6,12 @@
 #include <string>
 
 #include "config/cell.hpp"
+#include "service/located_place.hpp"
 
 namespace cell {
+
+/// How a run's touches are made.
+enum class Touching { kAutomatic, kGuided };
 
 /// What a result hangs on besides its touches: kept with every run. Nothing is unknown.
 struct Conditions {
@@ -15,6 +19,8 @@ struct Conditions {
   std::optional<std::string> config_digest;           // configuration_digest() at the daemon's start
   std::optional<std::string> controller_application;  // as the controller told it, name and version
   std::optional<std::uint32_t> controller_session;    // tells one start of the controller from the next
+  std::optional<Touching> touching;
+  std::optional<LocatedPlace> place;  // where the block was located; nothing where its file has it
 };
 
 /// SHA-256 in lower-case hex over the files a cell was read from (Cell::files), in that order: of each the
@@ -32,5 +38,8 @@ std::optional<std::string> temperature_gap(const Cell& cell);
 nlohmann::ordered_json conditions_json(const Cell& cell, const Conditions& conditions);
 /// The same as text: what is kept with a run.
 std::string conditions_document(const Cell& cell, const Conditions& conditions);
+
+/// Whether a person made the touches of a run that kept these conditions; false when they do not say.
+bool is_guided(const std::optional<std::string>& conditions);
 
 }  // namespace cell

@@ -34,6 +34,7 @@ bool is_on(const std::vector<calib::JointVector>& way, const calib::JointVector&
 
 void Operation::begin_aim() {
   aim_.emplace(planning_);
+  begin_place_check();
   ahead_.reset();
   missed_ = false;
 }

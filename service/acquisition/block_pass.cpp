@@ -16,8 +16,11 @@ namespace {
 
 /// Turns about the stylus that are tried where the touch's own leaves no room.
 constexpr int kTurns = 12;
-/// Between the normal and the cell's limit, from above.
+/// Between the normal and the cell's limit, to each of so many sides; from above is one of them.
 constexpr int kLeans = 4;
+constexpr int kSides = 8;
+/// A face that looks up or down more squarely than this has no side from above.
+constexpr double kAcrossMin = 0.1;
 
 class Pass {
  public:
@@ -26,8 +29,8 @@ class Pass {
         scene_(cell.collision_scene()),
         down_(calib::place_of(cell.arm.model).linear() * cell.arm.model.down_in_frame_1) {}
 
-  /// The clear posture over a touch: in its orientation; else with the stylus between the normal and from
-  /// above, turned about itself, whichever is nearest to the touch.
+  /// The clear posture over a touch: in its orientation; else with the stylus leaning off the normal, turned
+  /// about itself, whichever is nearest to the touch.
   [[nodiscard]] std::optional<calib::JointVector> over(const calib::PlaceTouch& touch) const {
     const calib::Plane& plane = cell_.block.faces[static_cast<std::size_t>(touch.face)].plane;
     Eigen::Isometry3d pose = calib::forward_kinematics(cell_.arm.model, touch.joints);
@@ -37,9 +40,14 @@ class Pass {
     if (same && is_clear(*same)) return same;
     std::optional<calib::JointVector> nearest;
     double least = std::numeric_limits<double>::infinity();
-    for (int share = 0; share <= kLeans; ++share) {
-      const double lean_rad = cell_.stylus_tilt_max_rad * share / kLeans;
-      const Eigen::Vector3d stylus = std::cos(lean_rad) * -plane.outward + std::sin(lean_rad) * down_;
+    Eigen::Vector3d across = down_ - down_.dot(plane.outward) * plane.outward;
+    if (across.norm() < kAcrossMin) across = plane.outward.unitOrthogonal();
+    across.normalize();
+    for (int which = 0; which <= kLeans * kSides; ++which) {  // 0: along the normal
+      const double lean_rad = cell_.stylus_tilt_max_rad * ((which + kSides - 1) / kSides) / kLeans;
+      const Eigen::AngleAxisd side(2.0 * std::numbers::pi * which / kSides, plane.outward);
+      const Eigen::Vector3d stylus =
+          std::cos(lean_rad) * -plane.outward + std::sin(lean_rad) * (side * across);
       const Eigen::Quaterniond lean = Eigen::Quaterniond::FromTwoVectors(pose.linear().col(2), stylus);
       for (int turn = 0; turn < kTurns; ++turn) {
         Eigen::Isometry3d turned = pose;

@@ -43,9 +43,12 @@ std::optional<Refusal> Operation::objection(Command command) const {
     case Command::kTouchTest:
       return refuse_touch_test(status_);
     case Command::kTake:
-      return Refusal{.detail = "this version touches by itself: there is nothing to take"};
-    case Command::kLocate:
-      return Refusal{.detail = "this version does not locate the block: its place is what the cell's file says"};
+      if (hand_watch_ && !passing_) return std::nullopt;
+      return Refusal{.detail =
+                         "no touch by hand is awaited: touchcal locate or touchcal run --guided asks for "
+                         "some"};
+    case Command::kUndo:
+      return refuse_undo();
     default:
       return std::nullopt;
   }
@@ -58,6 +61,10 @@ void Operation::heed(Command command) {
                              command == Command::kRetry || command == Command::kSkip;
   if (settles_fault && status_.fault) {
     status_.fault.reset();
+    publish();
+  }
+  if (command == Command::kStop && locating_ && !passing_) {
+    leave_locating();
     publish();
   }
   if (status_.state != State::kHeld) return;

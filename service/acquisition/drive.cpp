@@ -5,9 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <boost/asio/bind_executor.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <utility>
@@ -24,22 +22,6 @@ namespace cell {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
-namespace {
-
-/// On the planner's thread: nothing may be thrown there, the coroutine would go on beside the sockets.
-PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe) {
-  try {
-    const TipRegions regions(cell);  // those of the status are for the other thread
-    auto made = make_plan(regions, recipe);
-    if (auto* refusal = std::get_if<PlanRefusal>(&made)) return std::move(*refusal);
-    return std::make_shared<const Plan>(std::get<Plan>(std::move(made)));
-  } catch (const std::exception& error) {
-    return PlanRefusal{.message = std::string("planning failed: ") + error.what(), .efforts = {}};
-  }
-}
-
-}  // namespace
-
 asio::awaitable<void> Operation::wait_for_wake(std::chrono::milliseconds at_most) {
   wake_.expires_after(at_most);
   boost::system::error_code ignored;
@@ -54,10 +36,18 @@ asio::awaitable<void> Operation::drive() {
         co_await reset();
         break;
       case State::kStarting:
-        co_await start_run();
+        if (passing_) {
+          co_await pass_block();
+        } else {
+          co_await start_run();
+        }
         break;
       case State::kExecute:
-        co_await make_next_touch();
+        if (guided_) {
+          co_await await_guided_touch();
+        } else {
+          co_await make_next_touch();
+        }
         break;
       case State::kCompleting:
         co_await complete_run();
@@ -108,17 +98,6 @@ asio::awaitable<void> Operation::drive() {
         co_await wait_for_wake(1h);
     }
   }
-}
-
-asio::awaitable<PlanOutcome> Operation::plan_recipe(std::string name) {
-  if (const auto made = plans_.find(name); made != plans_.end()) co_return made->second;
-  ++plans_under_way_;
-  co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
-  const PlanOutcome made = make_outcome(cell_, cell_.recipes.at(name));
-  co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
-  --plans_under_way_;
-  plans_.emplace(name, made);
-  co_return plans_.at(name);
 }
 
 asio::awaitable<bool> Operation::plan() {
@@ -242,6 +221,7 @@ void Operation::take_contact(const calib::PlannedTouch& planned, const cs8::Touc
   acknowledge(reply.sequence);
   missed_ = false;
   standing_ = planned.clear_joints;
+  check_place(run_->problem().touches.back());
   // What comes next was aimed before this was known; it is aimed again first.
   if (is_surprise(from_wire(result.contact))) ahead_.reset();
   watch_fit();
@@ -336,6 +316,7 @@ asio::awaitable<void> Operation::complete_run() {
 }
 
 asio::awaitable<bool> Operation::park() {
+  if (guided_) co_return true;  // the person does
   const auto from = co_await standing_joints();
   if (!from || status_.state != State::kCompleting) co_return false;
   const auto via = calib::find_aimed_transfer(planning_, *aim_, leaving(*from),

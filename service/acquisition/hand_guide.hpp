@@ -13,8 +13,8 @@ struct HandGuide {
   /// What is awaited: "touch"; "undo", as the touches give no place; "pass", once around the block that was
   /// found; "passing", the arm goes around it.
   std::string step = "touch";
-  int plane = 0;         // the face to touch, from 1
-  int index = 0;         // of the touch, from 1
+  int plane = 0;  // the face to touch, from 1
+  int index = 0;  // of the touch, from 1
   int total = 0;
   std::string words;                               // what to do
   std::optional<std::string> problem;              // why the last touch did not count, or what else is wrong

@@ -142,14 +142,16 @@ HandGuide Locating::guide() const {
   const PlaceSpot& spot = spots_[static_cast<std::size_t>(guide.index - 1)];
   guide.plane = spot.face + 1;
   if (fit_) {
+    guide.step = "pass";
     guide.words =
-        "the place is found: jog the arm clear of the block, then touchcal locate --pass to go once around "
-        "it "
-        "30 mm off its faces, at 10 % speed and without a touch; after that the place counts";
+        "the place is found: jog the arm clear of the block, then touchcal locate once more to go once "
+        "around "
+        "it 30 mm off its faces, at 10 % speed and without a touch; after that the place counts";
   } else if (made == total) {
+    guide.step = "undo";
     guide.words =
-        "the place is not found: touchcal locate --undo takes the last touch back, touchcal locate "
-        "--leave ends";
+        "the place is not found: touchcal undo takes the last touch back, so that it can be made again; "
+        "touchcal stop ends this";
   } else {
     guide.words = fmt::format(
         "touch {}: in manual mode jog the ball against it, slowly at the end, until the probe trips, then "

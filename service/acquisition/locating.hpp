@@ -31,14 +31,6 @@ inline constexpr double kHandMovedMaxMetres = 1e-3;
 /// A touch that was taken by word may have gone on behind the trigger by this share of the overtravel.
 inline constexpr double kTakenOvertravelShare = 0.5;
 
-/// What a person asks of the dialogue.
-enum class LocateAct {
-  kBegin,  // nothing changes when it has begun
-  kUndo,   // the last touch was none
-  kPass,   // the place is found: go once around the block, then it counts
-  kLeave,
-};
-
 /// The dialogue that finds the block: a step machine without I/O. Touches go in, what to do next comes out;
 /// behind the sixth touch there is a place or a reason why not.
 class Locating {
@@ -50,8 +42,6 @@ class Locating {
   [[nodiscard]] HandGuide guide() const;
   /// One touch more; one that cannot count is told by guide().problem.
   void take(const HandTouch& touch);
-  /// A touch that somebody wanted to take and could not.
-  void refuse(std::string why) { problem_ = std::move(why); }
   /// Forgets the last touch; nothing happens when there is none.
   void undo();
 

@@ -70,8 +70,9 @@ Fault link_fault(const cs8::LinkError& error) { return {fault_code_of(error.kind
 Operation::Operation(asio::any_io_executor executor, const Cell& cell, TouchStore& store, Endpoint controller,
                      std::string instance_id, Clock clock)
     : executor_(executor),
+      configured_(cell),
       cell_(cell),
-      tip_regions_(cell),
+      tip_regions_(std::in_place, cell_),
       store_(store),
       endpoint_(std::move(controller)),
       clock_(std::move(clock)),
@@ -165,6 +166,7 @@ void Operation::publish() {
       }
     }
   }
+  tell_guide();
   if (told_) told_(status_);
 }
 
@@ -203,6 +205,7 @@ void Operation::hear(const cs8::State& state) {
     warn({FaultCode::kArmMoved, {}});
   }
   told_at_ = std::chrono::steady_clock::now();
+  hear_by_hand(state);
   if (std::exchange(task_error_, state.task_error) != state.task_error && state.task_error != 0) {
     raise({FaultCode::kTaskFailed, fmt::format("run-time error {}", state.task_error)}, Event::kAbortFault);
   }
@@ -242,11 +245,13 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
     return Refusal{.detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->id() : 0),
                    .code = FaultCode::kRunActive};
   }
-  if (auto unmet = unmet_for(recipe); !unmet.empty()) {
+  auto unmet = request.guided ? unmet_for_hands(recipe) : unmet_for(recipe);
+  if (!unmet.empty()) {
     return Refusal{
         .kind = Refusal::Kind::kPreconditions, .detail = "the cell is not ready", .unmet = std::move(unmet)};
   }
-  if (!after_command(status_.state, Command::kStart)) {
+  const bool waits_for_remote = request.guided && status_.state == State::kResetting;
+  if (!waits_for_remote && !after_command(status_.state, Command::kStart)) {
     return Refusal{.detail = fmt::format("a run cannot start in the state {}", state_name(status_.state)),
                    .code = FaultCode::kNotInThisState};
   }
@@ -254,7 +259,9 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
       conditions_document(cell_, {.operator_name = request.operator_name,
                                   .config_digest = config_digest_,
                                   .controller_application = controller_application_,
-                                  .controller_session = session_});
+                                  .controller_session = session_,
+                                  .touching = request.guided ? Touching::kGuided : Touching::kAutomatic,
+                                  .place = place_});
   std::int64_t id = 0;
   try {
     id = store_.begin_run({.recipe = recipe,
@@ -270,12 +277,13 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
                    .unmet = {{"store_not_writable",
                               fmt::format("free disk space or mend the state directory: {}", error.what())}}};
   }
-  run_.emplace(id, tip_regions_, found->second, now_text());
+  run_.emplace(id, *tip_regions_, found->second, now_text());
   conditions_ = conditions;
   run_open_ = true;
   set_logged_run(id);
   run_finished_ = false;
   begin_checks();
+  guided_ = request.guided;
   stored_changes_ = 0;
   status_.fault.reset();
   status_.verdict = Verdict::kNone;
@@ -294,6 +302,9 @@ std::optional<Refusal> Operation::command(Command command, std::optional<std::in
                    .code = FaultCode::kNotInThisState};
   }
   if (auto refusal = objection(command)) return refusal;
+  if (command == Command::kLocate) return locate();
+  if (command == Command::kTake) return take();
+  if (command == Command::kUndo) return undo();
   spdlog::info("command {}", command_name(command));
   const State state = status_.state;
   heed(command);
@@ -316,7 +327,7 @@ Status Operation::status() const {
 
 std::optional<std::string> Operation::result_json() const {
   if (!run_ || run_->latest().status != calib::IdentificationStatus::kConverged) return std::nullopt;
-  return result_document(tip_regions_, run_->recipe(), run_->problem(), run_->latest(),
+  return result_document(*tip_regions_, run_->recipe(), run_->problem(), run_->latest(),
                          {.complete = run_finished_, .warnings = {}, .conditions = conditions_});
 }
 

@@ -5,10 +5,12 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -17,11 +19,13 @@
 #include "calib_core/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "cs8_protocol/client.hpp"
+#include "service/acquisition/locating.hpp"
 #include "service/acquisition/readiness.hpp"
 #include "service/acquisition/state_machine.hpp"
 #include "service/acquisition/status.hpp"
 #include "service/acquisition/touch_judgement.hpp"
 #include "service/acquisition/touched_again.hpp"
+#include "service/located_place.hpp"
 #include "service/plan.hpp"
 #include "service/run.hpp"
 #include "service/store/touch_store.hpp"
@@ -48,6 +52,7 @@ struct StartRequest {
   std::string recipe;
   std::optional<std::string> idempotency_key;
   std::optional<std::string> operator_name;
+  bool guided = false;  // a person makes the touches with the pendant; nothing is commanded
 };
 
 struct Started {
@@ -90,6 +95,12 @@ class Operation {
   /// The commands that lead out of the present state and are taken now.
   [[nodiscard]] std::vector<Command> exits() const;
 
+  /// Where the place of the block is kept; to be told before launch(). One that is there is used, unless it
+  /// is of another cell. Throws what cannot be read.
+  void keep_place_in(const std::filesystem::path& file);
+  /// Where the block was found; nothing as long as it stands where the cell's file says.
+  [[nodiscard]] const std::optional<LocatedPlace>& place() const { return place_; }
+
   [[nodiscard]] Status status() const;
   [[nodiscard]] std::uint64_t sequence() const { return status_.sequence; }
   [[nodiscard]] std::optional<std::int64_t> data_age_ms() const;
@@ -103,8 +114,9 @@ class Operation {
   [[nodiscard]] const Run* run() const { return run_ ? &*run_ : nullptr; }
   /// The result document of run(), as json text; nothing before there is a result.
   [[nodiscard]] std::optional<std::string> result_json() const;
+  /// With its block where it was found last.
   [[nodiscard]] const Cell& cell() const { return cell_; }
-  [[nodiscard]] const TipRegions& tip_regions() const { return tip_regions_; }
+  [[nodiscard]] const TipRegions& tip_regions() const { return *tip_regions_; }
   [[nodiscard]] const TouchStore& store() const { return store_; }
 
   /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on a thread of its own.
@@ -203,6 +215,28 @@ class Operation {
   boost::asio::awaitable<void> touch_misfit_again();
   void settle_hold(Command command);
 
+  // touches by hand, and where the block is (by_hand.cpp, guided.cpp)
+  std::optional<Refusal> locate();
+  std::optional<Refusal> take();
+  std::optional<Refusal> undo();
+  void hear_by_hand(const cs8::State& state);
+  void tell_guide();
+  [[nodiscard]] std::vector<Unmet> unmet_for_hands(const std::string& recipe) const;
+  void take_by_hand(const HandTouch& touch);
+  void leave_locating();
+  boost::asio::awaitable<void> await_guided_touch();
+  void take_guided(const HandTouch& touch);
+  [[nodiscard]] std::optional<Refusal> refuse_undo() const;
+  void undo_guided();
+  std::optional<Refusal> begin_pass();
+  boost::asio::awaitable<void> pass_block();
+  boost::asio::awaitable<bool> go_around_block();
+  void keep_found_place();
+  void use_place(LocatedPlace place);
+  void begin_place_check();
+  void check_place(const calib::Touch& touch);
+  [[nodiscard]] Fault placed_fault(Fault fault, int face) const;
+
   // which touch comes next, aimed with what the touches before it told (aiming.cpp)
   void begin_aim();
   bool learn();
@@ -231,8 +265,9 @@ class Operation {
   };
 
   boost::asio::any_io_executor executor_;
-  const Cell& cell_;
-  TipRegions tip_regions_;
+  const Cell& configured_;                 // as its file has it
+  Cell cell_;                              // with the block where it was found
+  std::optional<TipRegions> tip_regions_;  // of cell_
   TouchStore& store_;
   Endpoint endpoint_;
   Clock clock_;
@@ -279,7 +314,18 @@ class Operation {
   std::chrono::steady_clock::time_point told_at_;  // when the controller told its newest state
   std::int32_t task_error_ = 0;                    // as it told then
   int inputs_disagree_count_ = 0;                  // newest states of the controller in a row
-  bool asking_ = false;                            // for a permit
+  std::optional<HandTouchWatch> hand_watch_;       // as long as touches by hand are awaited
+  std::optional<Locating> locating_;
+  bool guided_ = false;                   // the run's touches are made by hand
+  std::optional<HandGuide> guide_;        // ... the one that is awaited
+  bool passing_ = false;                  // once around the block, without a run
+  std::vector<calib::JointVector> pass_;  // postures of it
+  std::optional<LocatedPlace> place_;
+  int place_count_ = 0;                    // of places used: a plan made with an older one is none
+  std::filesystem::path place_file_;       // empty: nowhere
+  std::optional<calib::Aim> place_check_;  // of the run, with the touches that found the place
+  std::set<int> faces_met_;                // by the run, as long as the place is checked
+  bool asking_ = false;                    // for a permit
   bool shutting_down_ = false;
   bool driving_ = false;
 };

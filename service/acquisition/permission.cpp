@@ -28,7 +28,10 @@ bool Operation::is_permitted() const {
          permit->state == cs8::PermitState::kGranted;
 }
 
-std::uint32_t Operation::permit_number() const { return static_cast<std::uint32_t>(run_->id()); }
+/// A pass around the block is no run.
+std::uint32_t Operation::permit_number() const {
+  return passing_ ? 0 : static_cast<std::uint32_t>(run_->id());
+}
 
 void Operation::wait_for(const Awaited* awaited) {
   const auto name = awaited ? std::optional(std::string(awaited->name)) : std::nullopt;
@@ -44,6 +47,7 @@ void Operation::hear_permit(const cs8::Permit& permit) {
 
 /// True once the run is confirmed; else another state was entered, by a fault or by a command.
 asio::awaitable<bool> Operation::get_permission() {
+  if (guided_ && !passing_) co_return true;  // nothing is commanded
   const State state = status_.state;
   const auto ready_by = std::chrono::steady_clock::now() + cell_.deadlines.ready;
   while (status_.state == state && !is_permitted()) {

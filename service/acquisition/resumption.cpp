@@ -12,6 +12,7 @@
 #include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"
 #include "service/log_format.hpp"
+#include "service/traceability.hpp"
 
 namespace cell {
 
@@ -88,11 +89,12 @@ void Operation::restore_run() {
     store_.finish_run(stored->id, end);
     return;
   }
-  run_.emplace(stored->id, tip_regions_, cell_.recipes.at(stored->recipe), stored->started_at);
+  run_.emplace(stored->id, *tip_regions_, cell_.recipes.at(stored->recipe), stored->started_at);
   run_->restore(store_.touches(stored->id), stored->touches_total);
   conditions_ = stored->trace_json.value_or("");
   run_open_ = true;
   set_logged_run(stored->id);
+  guided_ = is_guided(stored->trace_json);
   interrupted_ = Interrupted{stored->plan_id, store_.plan_changes(stored->id)};
   if (const auto open = store_.open_command(stored->id)) {
     if (auto command = command_from_text(open->touch_json)) {
@@ -154,8 +156,10 @@ asio::awaitable<bool> Operation::plan_again() {
   for (const PlanChange& change : interrupted_->plan_changes) run_->change_plan(change);
   stored_changes_ = run_->plan_changes().size();
   begin_aim();
-  recall_aim();
-  restore_reference();
+  if (!guided_) {
+    recall_aim();
+    restore_reference();
+  }
   co_return true;
 }
 

@@ -62,6 +62,12 @@ State after_stop(State state) {
   }
 }
 
+/// A person may jog there, and touch the block.
+bool can_locate(State state) {
+  return state == State::kStopped || state == State::kResetting || state == State::kIdle ||
+         state == State::kComplete;
+}
+
 State after_abort(State state) {
   return state == State::kAborted || state == State::kAborting || !is_active(state) ? state
                                                                                     : State::kAborting;
@@ -123,6 +129,8 @@ std::string_view command_name(Command command) {
       return "skip";
     case Command::kTake:
       return "take";
+    case Command::kUndo:
+      return "undo";
     case Command::kConfirm:
       return "confirm";
     case Command::kTouchTest:
@@ -146,7 +154,6 @@ std::string_view command_name(Command command) {
 std::optional<State> after_command(State state, Command command) {
   switch (command) {
     case Command::kStart:
-    case Command::kLocate:
       return state == State::kIdle || state == State::kComplete ? std::optional(State::kStarting)
                                                                 : std::nullopt;
     case Command::kPause:
@@ -157,7 +164,10 @@ std::optional<State> after_command(State state, Command command) {
     case Command::kSkip:
       return after_retry_or_skip(state);
     case Command::kTake:
-      return state == State::kExecute ? std::optional(state) : std::nullopt;
+    case Command::kUndo:
+      return state == State::kExecute || can_locate(state) ? std::optional(state) : std::nullopt;
+    case Command::kLocate:
+      return can_locate(state) ? std::optional(state) : std::nullopt;
     case Command::kConfirm:
       return asks_for_permission(state) ? std::optional(state) : std::nullopt;
     case Command::kStop:

@@ -35,10 +35,11 @@ enum class Command {
   kResume,
   kRetry,      // the touch that held the run is made again
   kSkip,       // it is left out; the run stays incomplete
-  kTake,       // guided: the stylus stands where it should
+  kTake,       // by hand: the stylus stands where it should
+  kUndo,       // by hand: the last touch was none
   kConfirm,    // tells what to confirm at the cell; never stands in for the key there
   kTouchTest,  // tells how the touch test stands
-  kLocate,     // finds out where the block is
+  kLocate,     // a person begins to touch the block to find where it is
   kStop,
   kAbort,
   kClear,
@@ -46,9 +47,9 @@ enum class Command {
   kAcknowledge,
 };
 inline constexpr std::array kCommands{
-    Command::kStart, Command::kPause,   Command::kResume,    Command::kRetry,      Command::kSkip,
-    Command::kTake,  Command::kConfirm, Command::kTouchTest, Command::kLocate,     Command::kStop,
-    Command::kAbort, Command::kClear,   Command::kReset,     Command::kAcknowledge};
+    Command::kStart, Command::kPause, Command::kResume,  Command::kRetry,     Command::kSkip,
+    Command::kTake,  Command::kUndo,  Command::kConfirm, Command::kTouchTest, Command::kLocate,
+    Command::kStop,  Command::kAbort, Command::kClear,   Command::kReset,     Command::kAcknowledge};
 
 /// What happens inside: the acting state is done, or something went wrong that a person can mend on the spot
 /// (hold), that passes by itself while the arm waits (suspend; the end of a suspension is kDone) or that ends

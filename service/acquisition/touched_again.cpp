@@ -75,7 +75,7 @@ bool Operation::accept(const calib::PlannedTouch& touch, std::uint32_t sequence,
   missed_ = code == FaultCode::kNoContact || code == FaultCode::kEarlyContact;
   if (code == FaultCode::kCollision) forget_made();  // what was known of the arm may be wrong
   held_by_ = held_by;
-  raise(judged.fault, judged.event);
+  raise(held_by == HeldBy::kTouch ? placed_fault(judged.fault, touch.face) : judged.fault, judged.event);
   return false;
 }
 

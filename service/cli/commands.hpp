@@ -55,15 +55,17 @@ struct PlanArguments {
 ExitCode plan_command(const PlanArguments& arguments, bool json);
 
 struct RunArguments {
-  std::string recipe;                         // one of the cell's; not looked at with a plan
-  std::string plan_id;                        // of a plan the daemon has made; empty for none
-  std::string operator_name;                  // who answers for the run; empty for nobody named
+  std::string recipe;         // one of the cell's; not looked at with a plan
+  std::string plan_id;        // of a plan the daemon has made; empty for none
+  std::string operator_name;  // who answers for the run; empty for nobody named
+  bool guided = false;        // a person makes the touches with the pendant
 };
 /// Starts a run and watches it to its end.
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);
 /// Watches the run under way to its end, whatever is started behind it.
 ExitCode watch_command(const ApiClient& daemon, bool json);
-/// Locates the block: tells each touch that the person at the pendant is to make until the place is known.
+/// Locates the block: tells each touch that the person at the pendant is to make until the block is found;
+/// given once more, follows the arm around it until the place counts.
 ExitCode locate_command(const ApiClient& daemon, bool json);
 /// Prints the link that opens the operator's page with the token in it, for a browser on this machine.
 ExitCode page_command(const ApiClient& daemon, bool json);
@@ -89,7 +91,7 @@ struct ReportArguments {
 ExitCode report_command(const ApiClient& daemon, const ReportArguments& arguments, bool json);
 
 /// pause, resume, abort, retry, skip: of the active run. stop, acknowledge, clear, reset, confirm,
-/// touch-test, take: of the cell.
+/// touch-test, take, undo: of the cell.
 ExitCode give_command(const ApiClient& daemon, const std::string& command, bool json);
 
 /// std::invalid_argument when this cannot be the id of a run.

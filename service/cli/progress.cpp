@@ -36,6 +36,29 @@ std::string figures(const json& status) {
 
 }  // namespace
 
+std::string guidance(const json& status) {
+  if (!status.at("by_hand_words").is_string()) return {};
+  std::string text;
+  if (status.at("by_hand_problem").is_string())
+    text = fmt::format("not taken: {}\n", status.at("by_hand_problem").get<std::string>());
+  if (status.at("by_hand_step") == "touch")
+    text += fmt::format("{} of {}: ", status.at("by_hand_index").get<int>(),
+                        status.at("by_hand_total").get<int>());
+  text += status.at("by_hand_words").get<std::string>();
+  if (status.at("waiting_for").is_string())
+    text += fmt::format("\nwaiting: {}", awaited_words(status.at("waiting_for").get<std::string>()));
+  return text;
+}
+
+void Progress::show_guidance(const json& status) {
+  const std::string text = guidance(status);
+  if (text == last_guidance_) return;
+  last_guidance_ = text;
+  if (text.empty()) return;
+  finish();
+  fmt::print("{}\n", text);
+}
+
 void Progress::show_fault(const json& status) {
   const std::string fault =
       status.at("fault_code").is_string() ? status.at("fault_code").get<std::string>() : "";
@@ -51,6 +74,7 @@ void Progress::show_fault(const json& status) {
 
 void Progress::show(const json& status) {
   show_fault(status);
+  show_guidance(status);
   const std::string state = status.at("state");
   const int total = status.at("touches_total").is_number() ? status.at("touches_total").get<int>() : 0;
   const int done = status.at("touches_done");

@@ -26,6 +26,7 @@ const std::map<std::string, std::string> kCellCommands{
     {"confirm", "tell what has to be confirmed at the cell"},
     {"touch-test", "ask for the test of the stylus by hand"},
     {"take", "take the touch that the arm stands at"},
+    {"undo", "take the last touch back that was made by hand"},
 };
 
 std::string environment_or(const char* name, const std::string& otherwise) {
@@ -66,7 +67,8 @@ class CommandLine {
         return cell::give_command(daemon, command, json_);
       });
     }
-    add_for_daemon("locate", "find where the block is, by six touches that are jogged to",
+    add_for_daemon("locate",
+                   "find where the block is, by six touches that are jogged to; then once around it",
                    [this](const cell::ApiClient& daemon) { return cell::locate_command(daemon, json_); });
     add_completion();
   }
@@ -157,6 +159,7 @@ class CommandLine {
     auto* recipe = run->add_option("RECIPE", run_.recipe, "name of the recipe")->default_str(run_.recipe);
     run->add_option("--plan", run_.plan_id, "id of a plan that the daemon has made, in place of a recipe")
         ->excludes(recipe);
+    run->add_flag("--guided", run_.guided, "the touches are made by hand with the pendant");
     run->add_option("--operator", run_.operator_name, "who answers for the run; kept with its result");
   }
 

@@ -43,11 +43,15 @@ json wait_for_change(const ApiClient& daemon, const json& status, int wait_s) {
   return parse_reply(daemon.get(target, std::chrono::seconds(wait_s + 10)));
 }
 
-/// A daemon that was just started is still looking for its controller: give it a moment.
-void wait_until_ready(const ApiClient& daemon) {
+/// A daemon that was just started is still looking for its controller: give it a moment. Touches by hand need
+/// no more than that, in manual mode nothing else is ready.
+void wait_until_ready(const ApiClient& daemon, bool guided) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kReadyWaitSeconds);
   json status = parse_reply(daemon.get("/api/v1/status"));
-  while (status.at("state") == "RESETTING" && std::chrono::steady_clock::now() < deadline) {
+  const auto is_on_its_way = [&] {
+    return status.at("state") == "RESETTING" && !(guided && status.at("controller_connected") == true);
+  };
+  while (is_on_its_way() && std::chrono::steady_clock::now() < deadline) {
     status = wait_for_change(daemon, status, 1);
   }
 }
@@ -104,20 +108,26 @@ json run_body(const RunArguments& arguments) {
     body["plan_id"] = arguments.plan_id;
   }
   if (!arguments.operator_name.empty()) body["operator"] = arguments.operator_name;
+  if (arguments.guided) body["touching"] = "guided";
   return body;
 }
 
-/// What the person at the pendant is to do; empty when nothing is asked of him.
-std::string guidance(const json& status) {
-  const json locating = status.value("locating", json());
-  if (!locating.is_object()) return {};
-  return locating.value("words", locating.dump());
+std::string place_text(const json& place) {
+  if (!place.is_object()) return {};
+  const auto line = [&](const char* name, const char* value, const char* deviation, const char* unit) {
+    const json &v = place.at(value), &s = place.at(deviation);
+    return fmt::format("{:<12}{:.2f} {:.2f} {:.2f} {} (std {:.2f} {:.2f} {:.2f})\n", name, v[0].get<double>(),
+                       v[1].get<double>(), v[2].get<double>(), unit, s[0].get<double>(), s[1].get<double>(),
+                       s[2].get<double>());
+  };
+  return line("shift", "shift_mm", "std_shift_mm", "mm") +
+         line("turn", "turn_deg", "std_turn_deg", "degrees");
 }
 
 }  // namespace
 
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json_only) {
-  wait_until_ready(daemon);
+  wait_until_ready(daemon, arguments.guided);
   const ApiReply reply = daemon.post("/api/v1/runs", run_body(arguments).dump());
   if (reply.status != 201) return tell_problem(reply, json_only);
   const json run_id = parse_reply(reply).at("id");
@@ -137,21 +147,24 @@ ExitCode watch_command(const ApiClient& daemon, bool json_only) {
 ExitCode locate_command(const ApiClient& daemon, bool json_only) {
   const ApiReply reply = daemon.post("/api/v1/cell/locate", {});
   if (reply.status != 202) return tell_problem(reply, json_only);
-  json status = parse_reply(daemon.get("/api/v1/status"));
+  json status = parse_reply(reply);
   std::string said;
-  while (!guidance(status).empty()) {
+  const auto is_found = [&status] { return status.at("by_hand_step") == "pass"; };
+  do {
     if (!json_only && guidance(status) != said) fmt::print("{}\n", said = guidance(status));
     std::fflush(stdout);
+    if (is_found()) break;
     status = wait_for_change(daemon, status, kWaitSeconds);
-  }
+  } while (status.at("by_hand") == "locate");
   const bool failed = status.at("fault_code").is_string();
   const ApiReply cell = daemon.get("/api/v1/cell");
   if (json_only) {
-    fmt::print("{}\n", failed ? status.dump() : cell.body);
-  } else {
-    fmt::print("{}", status_text(status));
-    const json place = parse_reply(cell).value("place", json());
-    if (!failed && !place.is_null()) fmt::print("place       {}\n", place.dump());
+    fmt::print("{}\n", failed || is_found() ? status.dump() : cell.body);
+  } else if (failed) {
+    fmt::print(stderr, "{}; {}\n", status.at("fault_message").get<std::string>(),
+               status.at("fault_next_step").get<std::string>());
+  } else if (!is_found()) {
+    fmt::print("{}", place_text(parse_reply(cell).at("place")));
   }
   return failed ? kExitFailed : kExitDone;
 }

@@ -196,7 +196,7 @@ asio::awaitable<void> Api::slow_down(const HttpRequest& request) {
 
 asio::awaitable<void> Api::wait_for_status(const HttpRequest& request, const Admitted& admitted) {
   if (request.query.empty()) co_return;
-  const Call call{request, services_, services_.operation, admitted.id};
+  const Call call{request, services_, services_.operation, admitted.id, services_.operation.cell()};
   const auto wait_s = call.number("wait_s");
   const auto after = call.number("after");
   if (!wait_s || !after || services_.feed.waiting_count() >= kLongPollsMax) co_return;
@@ -219,8 +219,9 @@ asio::awaitable<void> Api::wait_for_plan(const HttpRequest& request) {
 asio::awaitable<HttpResponse> Api::on_worker(const HttpRequest& request, const Admitted& admitted) {
   if (at_work_ >= kAtWorkMax) co_return busy("other documents are being identified; ask again", "2");
   ++at_work_;
+  const Cell cell = services_.operation.cell();
   co_await asio::post(asio::bind_executor(worker_.get_executor(), asio::use_awaitable));
-  HttpResponse response = handle(admitted, request, services_);
+  HttpResponse response = handle(admitted, request, services_, cell);
   co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
   --at_work_;
   co_return response;

@@ -7,7 +7,9 @@ namespace cell {
 namespace {
 
 HttpResponse get_recipes(const Call& call) { return {.body = recipes_document(call.operation.cell())}; }
-HttpResponse get_cell(const Call& call) { return {.body = cell_document(call.operation.cell())}; }
+HttpResponse get_cell(const Call& call) {
+  return {.body = cell_document(call.operation.cell(), call.operation.place())};
+}
 HttpResponse get_joints(const Call& call) {
   return {.body = joints_document(call.operation.controller_state(), call.operation.status())};
 }

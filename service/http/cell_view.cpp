@@ -5,6 +5,7 @@
 #include "calib_core/units.hpp"
 #include "service/faults.hpp"
 #include "service/http/json_figures.hpp"
+#include "service/http/place_view.hpp"
 #include "service/http/scene_view.hpp"
 
 namespace cell {
@@ -62,7 +63,7 @@ std::string recipes_document(const Cell& cell) {
   return text_of({{"recipes", list}, {"default", cell.default_recipe}});
 }
 
-std::string cell_document(const Cell& cell) {
+std::string cell_document(const Cell& cell, const std::optional<LocatedPlace>& place) {
   Json keep_out = Json::array();
   for (const calib::Box& box : cell.keep_out_boxes) keep_out.push_back(box_json(box));
   return text_of({{"name", cell.name},
@@ -71,6 +72,7 @@ std::string cell_document(const Cell& cell) {
                    {{"name", cell.block.name},
                     {"temperature_c", number(cell.block.temperature_c)},
                     {"faces", faces_json(cell.block)}}},
+                  {"place", place_view(place)},
                   {"probe",
                    {{"name", cell.probe.name},
                     {"tip_is_contact_point", cell.probe.tip_is_contact_point},

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "config/cell.hpp"
+#include "service/located_place.hpp"
 
 namespace cell {
 
@@ -10,7 +12,8 @@ namespace cell {
 std::string recipes_document(const Cell& cell);
 
 /// What the cell is made of, in the units of its files.
-std::string cell_document(const Cell& cell);
+/// `place`: where the block was located, if it was.
+std::string cell_document(const Cell& cell, const std::optional<LocatedPlace>& place);
 
 /// The fault table (service/faults.hpp).
 std::string faults_document();

@@ -56,6 +56,8 @@ std::vector<Route> command_routes() {
               cell_command<Command::kTouchTest>),
       command("/api/v1/cell/take", "Takes the joints where the stylus touches now",
               cell_command<Command::kTake>),
+      command("/api/v1/cell/undo", "Takes the last touch back that a person made",
+              cell_command<Command::kUndo>),
       command("/api/v1/cell/locate", "Finds out where the block is, by six guided touches",
               cell_command<Command::kLocate>),
       command("/api/v1/cell/acknowledge", "Takes note of the fault that is shown",

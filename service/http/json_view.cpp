@@ -4,6 +4,7 @@
 
 #include "calib_core/units.hpp"
 #include "service/http/json_figures.hpp"
+#include "service/traceability.hpp"
 
 namespace cell {
 namespace {
@@ -23,6 +24,7 @@ Json count_once_planned(int touches_total) { return touches_total > 0 ? Json(tou
 Json run_json(const StoredRun& run) {
   return {{"id", std::to_string(run.id)},
           {"recipe", run.recipe},
+          {"touching", is_guided(run.trace_json) ? "guided" : "automatic"},
           {"outcome", run.outcome},
           {"verdict", run.verdict},
           {"touches_done", run.touches_done},

@@ -12,7 +12,7 @@ namespace {
 HttpResponse post_a_plan(const Call& call) { return post_plan(call.request, call.operation); }
 
 HttpResponse post_identify(const Call& call) {
-  const Cell& cell = call.operation.cell();
+  const Cell& cell = call.cell;
   const auto named = cell.recipes.find(call.text("recipe").value_or(cell.default_recipe));
   if (named == cell.recipes.end()) {
     return to_response({.status = 422,
@@ -29,7 +29,8 @@ HttpResponse post_identify(const Call& call) {
     if (result.status != calib::IdentificationStatus::kConverged)
       return to_response(
           {.status = 422, .kind = "not-identifiable", .detail = result.message, .pointer = "/touches"});
-    return {.body = result_document(call.operation.tip_regions(), recipe, problem, result,
+    const TipRegions regions(cell);  // the operation's are for the thread of the sockets
+    return {.body = result_document(regions, recipe, problem, result,
                                     {.warnings = std::move(file.warnings), .conditions = {}})};
   } catch (const ConfigError& error) {
     return to_response({.kind = "body", .detail = error.what(), .pointer = error.pointer()});

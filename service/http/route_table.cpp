@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "service/acquisition/operation.hpp"
 #include "service/http/access.hpp"
 #include "service/http/services.hpp"
 
@@ -116,8 +117,13 @@ std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tok
 }
 
 HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services) {
+  return handle(admitted, request, services, services.operation.cell());
+}
+
+HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services,
+                    const Cell& cell) {
   try {
-    return admitted.route->handle({request, services, services.operation, admitted.id});
+    return admitted.route->handle({request, services, services.operation, admitted.id, cell});
   } catch (const std::exception& error) {
     spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
     return to_response(

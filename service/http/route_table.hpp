@@ -13,6 +13,8 @@
 /// checked, the OpenAPI document is written and the metrics are labelled by it.
 namespace cell {
 
+struct Cell;
+
 enum class Access { kOpen, kView, kOperate };
 
 /// How an answer comes about.
@@ -20,7 +22,7 @@ enum class Pace {
   kAtOnce,
   kLongPoll,  // at another status than the one that `after` names, or after `wait_s`
   kPlanning,  // when the recipe has been planned
-  kWorker,    // by a thread of its own: the handler uses nothing but the request and the cell
+  kWorker,    // by a thread of its own: the handler uses nothing but the request and Call::cell
   kEvents,    // a stream of events follows the header
 };
 
@@ -50,6 +52,7 @@ struct Call {
   Services& services;
   Operation& operation;
   std::string_view id;  // what stands at {id}
+  const Cell& cell;     // on a worker one of its own: the operation's may be located elsewhere meanwhile
 
   /// A query parameter of the route; it is within its bounds.
   [[nodiscard]] std::optional<std::int64_t> number(std::string_view name) const;
@@ -103,6 +106,9 @@ std::optional<std::string_view> match(std::string_view pattern, std::string_view
 /// The answer of an admitted request; a failure inside is told without its inner workings and logged with
 /// them.
 HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services);
+/// The same on a thread of its own, with a copy of the cell.
+HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services,
+                    const Cell& cell);
 
 HttpResponse json_response(unsigned status, std::string body);
 HttpResponse not_found(std::string detail);

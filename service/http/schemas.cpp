@@ -64,11 +64,12 @@ constexpr std::string_view kStatus = R"({
 
 constexpr std::string_view kRun = R"({
 "type":"object",
-"required":["id","recipe","outcome","verdict","touches_done","touches_total","started_at","ended_at","fault_code",
+"required":["id","recipe","touching","outcome","verdict","touches_done","touches_total","started_at","ended_at","fault_code",
   "fault_message"],
 "properties":{
   "id":{"type":"string"},
   "recipe":{"type":"string"},
+  "touching":{"enum":["automatic","guided"],"description":"guided: a person made the touches"},
   "outcome":{"enum":["running","complete","stopped","aborted","interrupted"]},
   "verdict":{"enum":["none","accepted","rejected","incomplete"]},
   "touches_done":{"type":"integer","minimum":0},
@@ -93,7 +94,8 @@ constexpr std::string_view kStartRequest = R"({
 "properties":{
   "recipe":{"type":"string"},
   "plan_id":{"type":"string"},
-  "operator":{"type":"string","minLength":1,"maxLength":100}},
+  "operator":{"type":"string","minLength":1,"maxLength":100},
+  "touching":{"enum":["automatic","guided"],"description":"guided: a person makes the touches; automatic if absent"}},
 "oneOf":[{"required":["recipe"]},{"required":["plan_id"]}]})";
 
 constexpr std::string_view kPlanRequest = R"({
@@ -134,7 +136,7 @@ constexpr std::string_view kRecipes = R"({
 
 constexpr std::string_view kCell = R"({
 "type":"object",
-"required":["name","arm","block","probe","default_recipe","workspace_box","keep_out_boxes","nominal_miss_mm",
+"required":["name","arm","block","place","probe","default_recipe","workspace_box","keep_out_boxes","nominal_miss_mm",
   "touch_noise_mm","acceptance","scene","controller"],
 "properties":{
   "name":{"type":"string"},
@@ -144,6 +146,15 @@ constexpr std::string_view kCell = R"({
     "temperature_c":{"type":["number","null"]},
     "faces":{"type":"array","items":{"type":"object","required":["plane","outward","offset_mm","center_mm","edge_u",
       "half_extent_mm"]}}}},
+  "place":{"type":["object","null"],
+    "description":"where the block was located, against the cell's file; null: where the file has it",
+    "properties":{
+      "located_at":{"type":"string"},
+      "shift_mm":{"type":"array","items":{"type":"number"}},
+      "std_shift_mm":{"type":"array","items":{"type":"number"}},
+      "turn_deg":{"type":"array","items":{"type":"number"},"description":"rotation vector"},
+      "std_turn_deg":{"type":"array","items":{"type":"number"}},
+      "touch_count":{"type":"integer","minimum":0}}},
   "probe":{"type":"object","required":["name","tip_is_contact_point","stylus_radius_mm","pretravel_mm"]},
   "default_recipe":{"type":"string"},
   "workspace_box":{"type":"object"},

@@ -53,15 +53,26 @@ std::optional<Problem> read_operator(const json& body, StartRequest& start) {
   return std::nullopt;
 }
 
+std::optional<Problem> read_touching(const json& body, StartRequest& start) {
+  if (const auto found = body.find("touching"); found != body.end()) {
+    if (*found != "guided" && *found != "automatic")
+      return wrong("/touching", "one of 'automatic' and 'guided' is wanted");
+    start.guided = *found == "guided";
+  }
+  return std::nullopt;
+}
+
 std::variant<StartRequest, Problem> read_body(const json& body, const Operation& operation) {
   if (!body.is_object()) return wrong("", "an object is wanted");
   for (const auto& [key, value] : body.items()) {
-    if (key != "recipe" && key != "plan_id" && key != "operator")
-      return wrong(pointer_step(key), "unknown key; 'recipe' or 'plan_id' and 'operator' are known");
+    if (key != "recipe" && key != "plan_id" && key != "operator" && key != "touching")
+      return wrong(pointer_step(key),
+                   "unknown key; 'recipe' or 'plan_id', 'operator' and 'touching' are known");
   }
   StartRequest start;
   if (auto problem = read_recipe(body, operation, start)) return *std::move(problem);
   if (auto problem = read_operator(body, start)) return *std::move(problem);
+  if (auto problem = read_touching(body, start)) return *std::move(problem);
   return start;
 }
 

@@ -27,17 +27,28 @@ LoopbackCell::LoopbackCell(const std::string& cell_name)
   recipe.name = kShortRecipe;
   recipe.fit_per_face = 7;
   recipe.held_out_per_face = 1;
-  recipe.reference_every = 0;  // a fault with the n-th touch comes with the n-th of the plan
+  recipe.reference_every = 0;      // a fault with the n-th touch comes with the n-th of the plan
   recipe.candidate_count = 2'000;  // each test plans anew, and what it looks at is not the accuracy
   cell.recipes.emplace(recipe.name, recipe);
 }
 
-LoopbackCell::~LoopbackCell() {
-  if (!operation_) return;
+void LoopbackCell::shut_down() {
   bool down = false;
   boost::asio::co_spawn(io_, operation_->shut_down(), [&down](const std::exception_ptr&) { down = true; });
+  run_until([&down](const cell::Status&) { return down; });
+}
+
+void LoopbackCell::relaunch() {
+  shut_down();
+  io_.poll();  // what the client still had to do
+  operation_.reset();
+  launch();
+}
+
+LoopbackCell::~LoopbackCell() {
+  if (!operation_) return;
   try {
-    run_until([&down](const cell::Status&) { return down; });
+    shut_down();
   } catch (const std::exception& error) {
     std::fprintf(stderr, "the operation does not shut down: %s\n", error.what());
     std::abort();  // going on would free what its coroutine uses
@@ -65,6 +76,7 @@ void LoopbackCell::inject(const std::string& line) {
 void LoopbackCell::launch(std::optional<std::uint16_t> port) {
   operation_.emplace(io_.get_executor(), cell, store_, cell::Endpoint{"127.0.0.1", port.value_or(port_)},
                      "end-to-end", std::chrono::system_clock::now);
+  if (!place_file.empty()) operation_->keep_place_in(place_file);
   operation_->launch();
 }
 

@@ -35,8 +35,11 @@ class LoopbackCell {
   /// A fault of the simulated cell, written as in a line of its control connection.
   void inject(const std::string& line);
   [[nodiscard]] sim::Plant true_plant() const;
+  [[nodiscard]] sim::Server& server() { return *server_; }
   [[nodiscard]] std::uint16_t port() const { return port_; }
 
+  /// Ends the operation as the daemon does at a signal, and begins another on the same store.
+  void relaunch();
   /// Begins the operation; `port` is where it looks for the controller, the server's own by default.
   void launch(std::optional<std::uint16_t> port = {});
 
@@ -63,8 +66,11 @@ class LoopbackCell {
   [[nodiscard]] boost::asio::io_context& io() { return io_; }
 
   cell::Cell cell;
+  std::filesystem::path place_file;  // where the operation keeps the block's place; nowhere when empty
 
  private:
+  void shut_down();
+
   Folder folder_;
   cell::TouchStore store_;
   boost::asio::io_context io_{1};

@@ -135,6 +135,7 @@ TEST(RunsDocument, HasEachRunsFieldsAndWhereTheNextPageBegins) {
   EXPECT_EQ(page.at("runs")[0], alone);
   EXPECT_EQ(shape_of(page.at("runs")[0]), (Shape{{"id", "string"},
                                                  {"recipe", "string"},
+                                                 {"touching", "string"},
                                                  {"outcome", "string"},
                                                  {"verdict", "string"},
                                                  {"touches_done", "number"},

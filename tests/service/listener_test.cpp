@@ -327,6 +327,8 @@ TEST_F(ListenerTest, WhatIsWrongInABodyIsToldAndNothingHappens) {
                                   std::string("{\"recipe\":\"edf-25\",\"operator\":1}"),
                                   std::string("{\"recipe\":\"edf-25\",\"operator\":\"\"}"),
                                   "{\"recipe\":\"edf-25\",\"operator\":\"" + std::string(101, 'o') + "\"}",
+                                  std::string("{\"recipe\":\"edf-25\",\"touching\":1}"),
+                                  std::string("{\"recipe\":\"edf-25\",\"touching\":\"by foot\"}"),
                                   std::string("{\"recipe\":\"edf-25\",\"block_temperature_c\":\"20\"}"),
                                   std::string("{\"recipe\":\"edf-25\",\"block_temperature_c\":293.15}"),
                                   std::string("{\"recipe\":\"edf-25\",\"unknown\":1}"),

@@ -385,6 +385,7 @@ TEST_F(RoutesTest, WhatIsConfiguredIsShown) {
   EXPECT_EQ(recipes.at("default"), cell_.operation().cell().default_recipe);
   const json shown = json::parse(get("/api/v1/cell").body);
   EXPECT_EQ(shown.at("block").at("faces").size(), cell_.operation().cell().block.faces.size());
+  EXPECT_TRUE(shown.at("place").is_null());  // nobody located the block
   EXPECT_EQ(json::parse(get("/api/v1/faults").body).at("faults").size(), fault_table().size());
 }
 

@@ -72,6 +72,28 @@ TEST_F(Traceability, ConditionsTellAllThatIsKnownAndNullForTheRest) {
     EXPECT_TRUE(unknown.at(key).is_null()) << key;
 }
 
+TEST_F(Traceability, ConditionsTellWhoTouched) {
+  EXPECT_TRUE(is_guided(conditions_document(read(), {.touching = Touching::kGuided, .place = {}})));
+  EXPECT_FALSE(is_guided(conditions_document(read(), {.touching = Touching::kAutomatic, .place = {}})));
+  for (const char* other : {"", "[]", "{}", "{\"touching\":1}", "{"}) EXPECT_FALSE(is_guided(other)) << other;
+  EXPECT_FALSE(is_guided(std::nullopt));  // of a run before there were any
+}
+
+TEST_F(Traceability, ConditionsTellWhereTheBlockStood) {
+  EXPECT_TRUE(conditions_json(read(), {}).at("place").is_null());
+  LocatedPlace place{.cell_from_block = Eigen::Isometry3d(Eigen::Translation3d(0.03, 0.0, -0.02)),
+                     .touches = std::vector<calib::PlaceTouch>(6),
+                     .located_at = "2026-11-22T08:00:00.000Z"};
+  place.cell_from_block.rotate(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY()));
+  place.covariance.diagonal().setConstant(1e-6);
+  const json told = conditions_json(read(), {.touching = {}, .place = place}).at("place");
+  EXPECT_EQ(told.at("located_at"), place.located_at);
+  EXPECT_EQ(told.at("shift_mm"), (json{30.0, 0.0, -20.0}));
+  EXPECT_NEAR(told.at("turn_deg")[1].get<double>(), 28.648, 1e-3);
+  EXPECT_NEAR(told.at("std_shift_mm")[2].get<double>(), 1.0, 1e-9);
+  EXPECT_EQ(told.at("touch_count"), 6);
+}
+
 TEST_F(Traceability, TheProbeMayHaveACertificateAsTheBlockHas) {
   edit(kProbe, [](json& probe) { probe["certificate"] = {{"number", "P-7"}}; });
   EXPECT_EQ(read().probe.certificate.at("number"), "P-7");

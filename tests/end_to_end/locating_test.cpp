@@ -1,0 +1,156 @@
+// A person finds the block by touching it, and runs go on from there.
+#include "service/acquisition/locating.hpp"
+
+#include <gtest/gtest.h>
+
+#include "calib_core/units.hpp"
+#include "service/place_search.hpp"
+#include "tests/end_to_end/pendant.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using cell::Command;
+using cell::State;
+
+/// 40 mm off, turned by 5 degrees.
+Eigen::Isometry3d moved_block() {
+  return Eigen::Translation3d(0.032, 0.0, 0.024) *
+         Eigen::AngleAxisd(calib::radians_from_degrees(5.0), Eigen::Vector3d::UnitY());
+}
+
+class BlockElsewhere : public ::testing::Test {
+ protected:
+  void serve_block_at(const Eigen::Isometry3d& place) {
+    there_ = cell::with_block_moved(loop_.cell, place);
+    plant_ = sim::make_plant(there_, shipped_truth("edf"));
+    loop_.serve(plant_, {.controller = {.speed = sim::kSpeedMax}, .faults = {}});
+  }
+  void move_block(const Eigen::Isometry3d& place) {
+    loop_.stop_serving();
+    loop_.run_until(State::kResetting);
+    serve_block_at(place);
+    loop_.run_until(State::kIdle);
+  }
+  void launch() {
+    loop_.place_file = folder_ / "place.json";
+    loop_.launch();
+    loop_.run_until(State::kIdle);
+  }
+  void locate_by_hand() {
+    loop_.command(Command::kLocate);
+    Pendant pendant(loop_, there_, plant_);
+    pendant.take_over();
+    for (const cell::PlaceSpot& spot : cell::place_spots(loop_.cell)) {
+      const auto before = loop_.status().by_hand;
+      ASSERT_TRUE(before);
+      EXPECT_EQ(before->plane, spot.face + 1);
+      EXPECT_EQ(before->step, "touch");
+      pendant.touch(spot.face, spot.point_m);
+      ASSERT_TRUE(loop_.status().by_hand);
+      EXPECT_FALSE(loop_.status().by_hand->problem) << *loop_.status().by_hand->problem;
+      EXPECT_NE(loop_.status().by_hand->words, before->words);
+    }
+    EXPECT_EQ(loop_.status().by_hand->step, "pass");
+    pendant.hand_back();
+  }
+  void go_around() {
+    loop_.command(Command::kLocate);
+    EXPECT_EQ(loop_.status().state, State::kStarting);
+    EXPECT_EQ(loop_.status().by_hand->step, "passing");
+    EXPECT_TRUE(loop_.is_refused(Command::kUndo));
+    loop_.run_until([](const cell::Status& status) { return !cell::is_active(status.state); });
+  }
+
+  LoopbackCell loop_;
+  Folder folder_;
+  cell::Cell there_;
+  sim::Plant plant_;
+};
+
+TEST_F(BlockElsewhere, IsFoundBySixTouchesAndCalibratesTheArmThere) {
+  serve_block_at(moved_block());
+  launch();
+  locate_by_hand();
+  EXPECT_FALSE(loop_.operation().place());  // not before the pass
+  go_around();
+  ASSERT_EQ(loop_.status().state, State::kIdle) << loop_.fault_name();
+  EXPECT_FALSE(loop_.status().by_hand);
+  ASSERT_TRUE(loop_.operation().place());
+
+  const cell::LocatedPlace& place = *loop_.operation().place();
+  const Eigen::Isometry3d off = moved_block().inverse() * place.cell_from_block;
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_LT(std::abs(off.translation()[axis]), 3.0 * std::sqrt(place.covariance(axis, axis))) << axis;
+  }
+  EXPECT_LT(off.translation().norm(), loop_.cell.nominal_miss_m);
+
+  loop_.relaunch();  // the next daemon knows it
+  ASSERT_TRUE(loop_.operation().place());
+  loop_.run_until(State::kIdle);
+  const std::int64_t id = loop_.start();
+  loop_.run_until_over();
+  ASSERT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
+  EXPECT_EQ(loop_.status().touches_done, kShortTouchCount);
+  const calib::IdentificationResult& result = loop_.operation().run()->latest();
+  ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
+  EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
+  EXPECT_NE(loop_.store().run(id)->trace_json->find("shift_mm"), std::string::npos);
+}
+
+TEST_F(BlockElsewhere, ATouchTakenBackIsMadeAgainAndTheDialogueCanBeLeft) {
+  serve_block_at(moved_block());
+  launch();
+  for (const Command command : {Command::kTake, Command::kUndo}) EXPECT_TRUE(loop_.is_refused(command));
+  loop_.command(Command::kLocate);
+  for (const Command command : {Command::kTake, Command::kUndo})
+    EXPECT_TRUE(loop_.is_refused(command));  // the probe is free, and nothing was touched yet
+  Pendant pendant(loop_, there_, plant_);
+  pendant.take_over();
+  const auto spots = cell::place_spots(loop_.cell);
+  pendant.touch(spots[0].face, spots[0].point_m);
+  EXPECT_EQ(loop_.status().by_hand->index, 2);
+  loop_.command(Command::kLocate);  // once more changes nothing
+  EXPECT_EQ(loop_.status().by_hand->index, 2);
+  loop_.command(Command::kUndo);
+  EXPECT_EQ(loop_.status().by_hand->index, 1);
+  loop_.relaunch();  // a dialogue does not outlive its daemon
+  EXPECT_FALSE(loop_.status().by_hand);
+  loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
+  loop_.command(Command::kLocate);
+  ASSERT_TRUE(loop_.status().by_hand);
+  loop_.command(Command::kStop);
+  EXPECT_FALSE(loop_.status().by_hand);
+  EXPECT_FALSE(std::filesystem::exists(loop_.place_file));
+}
+
+TEST_F(BlockElsewhere, ATouchOnTheWayAroundTheBlockEndsTheDialogueWithoutAPlace) {
+  serve_block_at(moved_block());
+  launch();
+  locate_by_hand();
+  move_block(Eigen::Translation3d(0.0, -0.06, 0.0) * moved_block());  // up, into the way
+  EXPECT_EQ(loop_.status().by_hand->step, "pass");
+  go_around();
+  EXPECT_EQ(loop_.status().state, State::kAborted);
+  EXPECT_EQ(loop_.fault_name(), "unexpected_contact");
+  EXPECT_FALSE(loop_.status().by_hand);
+  EXPECT_FALSE(loop_.operation().place());
+  EXPECT_FALSE(std::filesystem::exists(loop_.place_file));
+}
+
+TEST_F(BlockElsewhere, ARunOnAnOldPlaceIsHeldByItsFirstTouches) {
+  serve_block_at(moved_block());
+  launch();
+  locate_by_hand();
+  go_around();
+  ASSERT_TRUE(loop_.operation().place()) << loop_.fault_name();
+  move_block(Eigen::Translation3d(0.02, 0.0, 0.0) * moved_block());
+  loop_.start();
+  loop_.run_until_over();
+  EXPECT_EQ(loop_.fault_name(), "block_moved");
+  EXPECT_LE(loop_.status().touches_done, kPlaneCount);
+}
+
+}  // namespace
+}  // namespace touchcal::testing

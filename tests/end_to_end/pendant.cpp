@@ -1,0 +1,119 @@
+#include "tests/end_to_end/pendant.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/transfer.hpp"
+#include "service/acquisition/touch_command.hpp"
+
+namespace touchcal::testing {
+
+namespace {
+
+/// Over the face, where the way from elsewhere ends; where the slow part begins; where it would end.
+constexpr double kOverMetres = 0.04, kSlowMetres = 0.1e-3, kBehindMetres = -2e-3;
+/// A person sees how near things are.
+constexpr double kSeenMetres = 0.004;
+constexpr double kFastMetresPerSecond = 0.25, kSlowMetresPerSecond = 2e-3;
+
+}  // namespace
+
+Pendant::Pendant(LoopbackCell& loop, cell::Cell there, sim::Plant plant)
+    : loop_(loop), there_(std::move(there)), plant_(std::move(plant)) {}
+
+void Pendant::take_over() {
+  loop_.inject(R"({"fault":"manual_mode"})");
+  loop_.inject(R"({"fault":"power_on"})");
+  loop_.run_until([](const cell::Status& status) {
+    return status.controller.mode == "manual" && status.controller.powered.value_or(false);
+  });
+}
+
+void Pendant::hand_back() {
+  go(there_.park_joints);
+  loop_.inject(R"({"fault":"remote_mode"})");
+  loop_.inject(R"({"fault":"power_on"})");
+}
+
+void Pendant::jog(const cell::JogOrder& order) {
+  if (const auto why_not = loop_.server().jog(order)) throw std::runtime_error("no jog: " + *why_not);
+  loop_.run_until([this](const cell::Status&) {
+    const std::uint32_t flags = loop_.server().report().flags;
+    return (flags & cs8::kSettled) != 0 && (flags & cs8::kQueueEmpty) != 0;
+  });
+  wait_until_told();
+}
+
+/// Until the daemon has heard a state of the arm as it stands now.
+void Pendant::wait_until_told() {
+  const auto from = std::chrono::steady_clock::now();
+  loop_.run_until([from](const cell::Status& status) {
+    const auto since = std::chrono::steady_clock::now() - from;
+    return status.data_age_ms &&
+           since > std::chrono::milliseconds(*status.data_age_ms + 2);  // the age is cut to milliseconds
+  });
+}
+
+void Pendant::go(const calib::JointVector& joints) {
+  const calib::TransferSpace space(plant_.truth, there_.collision_scene(), there_.park_joints, kSeenMetres);
+  const auto way = calib::find_way(space, cell::from_wire(loop_.server().report().joints), joints);
+  if (!way) throw std::runtime_error("a person finds no way there");
+  for (const calib::JointVector& via : *way)
+    jog({.joints = via, .move_m = {}, .speed_m_s = kFastMetresPerSecond});
+  jog({.joints = joints, .move_m = {}, .speed_m_s = kFastMetresPerSecond});
+}
+
+void Pendant::touch(int face_index, const Eigen::Vector3d& point_m) {
+  const calib::Face& face = there_.block.faces[static_cast<std::size_t>(face_index)];
+  std::string why = "out of reach";
+  for (const double lean_rad : {0.6, 0.3, 0.0}) {
+    for (const Eigen::Vector3d& side :
+         {face.edge_u, Eigen::Vector3d(-face.edge_u), face.edge_v(), Eigen::Vector3d(-face.edge_v())}) {
+      const Eigen::Quaterniond stylus = Eigen::Quaterniond::FromTwoVectors(
+          Eigen::Vector3d::UnitZ(), std::sin(lean_rad) * side - std::cos(lean_rad) * face.plane.outward);
+      for (double turn = 0.0; turn < 6.3; turn += 0.5) {
+        Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+        pose.linear() = (stylus * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ())).toRotationMatrix();
+        pose.translation() = point_m;
+        for (const auto& joints :
+             calib::inverse_kinematics(there_.arm.model, there_.arm.joint_ranges, pose)) {
+          try {
+            touch_in(face_index, pose, joints);
+            return;
+          } catch (const std::runtime_error& error) {
+            why = error.what();  // this posture is in the way of something
+          }
+        }
+      }
+    }
+  }
+  throw std::runtime_error("a person cannot touch there: " + why);
+}
+
+void Pendant::touch_near(int face, const calib::JointVector& joints) {
+  touch_in(face, calib::forward_kinematics(plant_.truth, joints), joints);
+}
+
+void Pendant::touch_in(int face_index, const Eigen::Isometry3d& true_pose, const calib::JointVector& near) {
+  const calib::Face& face = there_.block.faces[static_cast<std::size_t>(face_index)];
+  const double face_m = face.plane.offset_m + plant_.trip_distance_m;
+  const auto at = [&](double height_m) {
+    Eigen::Isometry3d pose = true_pose;
+    const double off_m = face.plane.outward.dot(pose.translation()) - face_m;
+    pose.pretranslate((height_m - off_m) * face.plane.outward);
+    const auto joints = calib::solve_near(plant_.truth, pose, near);
+    if (!joints || !there_.arm.joint_ranges.contains(*joints)) throw std::runtime_error("out of reach");
+    return *joints;
+  };
+  const calib::JointVector over = at(kOverMetres), slow = at(kSlowMetres), behind = at(kBehindMetres);
+  go(over);
+  jog({.joints = slow, .move_m = {}, .speed_m_s = kFastMetresPerSecond, .until_touch = false});
+  jog({.joints = behind, .move_m = {}, .speed_m_s = kSlowMetresPerSecond});
+  if ((loop_.server().report().flags & cs8::kProbeTouched) == 0)
+    throw std::logic_error("nothing was touched");
+  jog({.joints = over, .move_m = {}, .speed_m_s = kFastMetresPerSecond, .until_touch = false});
+}
+
+}  // namespace touchcal::testing
