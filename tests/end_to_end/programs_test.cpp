@@ -196,6 +196,17 @@ TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   EXPECT_EQ(nlohmann::json::parse(printed.out).at("schema"), "touchcal/arm/1");
   EXPECT_EQ(cell.run({"export", "2", "--arm", "-"}).exit_code, cell::kExitUsage) << "no such run";
 
+  const Finished page = cell.run({"report", "1", "--html"});
+  EXPECT_EQ(page.exit_code, cell::kExitDone) << page.err;
+  EXPECT_THAT(page.out, StartsWith("<!DOCTYPE html>"));
+  EXPECT_THAT(page.out, HasSubstr("Verdict: accepted"));
+  EXPECT_THAT(cell.run({"report", "1", "--csv"}).out, StartsWith("touch,plane,role,"));
+  EXPECT_EQ(nlohmann::json::parse(cell.run({"report", "1", "--json"}).out).at("schema"), "touchcal/report/1");
+  const Finished printed_page = cell.run({"report", "1", "--pdf"});
+  EXPECT_EQ(printed_page.exit_code, cell::kExitDone) << printed_page.err;
+  EXPECT_THAT(printed_page.out, StartsWith("%PDF-"));
+  EXPECT_EQ(cell.run({"report", "2"}).exit_code, cell::kExitUsage) << "no such run";
+
   cell.daemon().signal(SIGTERM);
   EXPECT_EQ(cell.daemon().wait().exit_code, 0);
   cell.controller().signal(SIGTERM);
