@@ -80,6 +80,8 @@ step('TheViewDrawsTheCell', async () => {
   }));
   assert.ok((await colors()).size > 5, 'a plain area is no cell');
   await page.locator('.scene figcaption', {hasText: '90 touched, 0 to come'}).waitFor();
+  const overflow = await page.evaluate(() => document.querySelector('main').scrollHeight - document.querySelector('main').clientHeight);
+  assert.ok(overflow <= 0, `the live view is ${overflow} px too high for a small screen`);
 });
 
 step('TheResultSaysTheVerdictInWordsAndShowsEveryError', async () => {

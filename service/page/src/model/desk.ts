@@ -22,6 +22,7 @@ export class Desk {
   private readonly live: Live;
   private asked: {run_id: string; touches: number; isOver: boolean} | null = null;  // the live result that was asked for last
   private askingResult = false;
+  private endGap: (() => void) | null = null;  // the end of a run is not waited for
   private isPageHidden = false;
 
   constructor(private readonly token: string | null) {
@@ -60,6 +61,7 @@ export class Desk {
     this.setPace();
     const runChanged = !before || before.run_id !== status.run_id || isActive(before.state) !== isActive(status.state);
     if (runChanged) {
+      this.endGap?.();
       void this.loadRuns();
       void this.askReadiness();
       if (status.run_id && status.touches_total !== null) void this.loadRunPlan(status.run_id);
@@ -159,7 +161,10 @@ export class Desk {
           status.condition_number !== null || isOver ? this.loadResult(run_id) : null,
           this.load<Touches>(`/api/v1/runs/${run_id}/touches`, ({touches}) => this.patch({touches: {run_id, touches}})),
         ]);
-        await new Promise((done) => setTimeout(done, kResultGap_ms));
+        await new Promise<void>((done) => {
+          this.endGap = done;
+          setTimeout(done, kResultGap_ms);
+        });
       }
     } finally {
       this.askingResult = false;
