@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "service/report/html.hpp"
@@ -19,7 +20,7 @@ h1 { font-size: 16pt; } h2 { font-size: 12pt; border-bottom: 1px solid #000; bre
 table { border-collapse: collapse; width: 100%; margin: 4mm 0; break-inside: auto; font-size: 8.5pt; }
 caption { text-align: left; font-weight: bold; padding: 1mm 0; break-after: avoid; }
 th, td { border-bottom: 1px solid #bbb; padding: 0.6mm 1.6mm; text-align: left; }
-td { overflow-wrap: anywhere; }
+td:last-child { overflow-wrap: anywhere; }
 thead { display: table-header-group; } tr { break-inside: avoid; }
 .short { break-inside: avoid; }
 svg { width: 49%; height: auto; font: 9px sans-serif; break-inside: avoid; }
@@ -49,6 +50,13 @@ std::string bullets(const Json& texts) {
   return items.empty() ? items : html::element("ul", items) + "\n";
 }
 
+/// A name of a document as words: "held_out_mean" is "held out mean".
+std::string words_of(const Json& name) {
+  std::string words = text_or_unknown(name);
+  std::ranges::replace(words, '_', ' ');
+  return words;
+}
+
 std::string yes_no(const Json& value) {
   if (!value.is_boolean()) return "unknown";
   return value.get<bool>() ? "yes" : "no";
@@ -59,12 +67,12 @@ std::string decision_rule(const Json& rule) {
     return html::paragraph("Decision rule: a figure within its limit is accepted (simple acceptance).");
   std::vector<Row> rows;
   for (const Json& criterion : part(rule, "criteria")) {
-    rows.push_back({text_or_unknown(part(criterion, "name")) +
-                        figure_if_known(part(criterion, "plane"), ", plane {:.0f}"),
-                    text_or_unknown(part(criterion, "unit")), figure_text(part(criterion, "value"), "{:.4g}"),
-                    figure_text(part(criterion, "limit"), "{:.4g}"),
-                    figure_if_known(part(criterion, "expanded_uncertainty"), "{:.2g}"),
-                    yes_no(part(criterion, "within_limit")), yes_no(part(criterion, "proved"))});
+    rows.push_back(
+        {words_of(part(criterion, "name")) + figure_if_known(part(criterion, "plane"), ", plane {:.0f}"),
+         text_or_unknown(part(criterion, "unit")), figure_text(part(criterion, "value"), "{:.4g}"),
+         figure_text(part(criterion, "limit"), "{:.4g}"),
+         figure_if_known(part(criterion, "expanded_uncertainty"), "{:.2g}"),
+         yes_no(part(criterion, "within_limit")), yes_no(part(criterion, "proved"))});
   }
   return html::paragraph(fmt::format("Decision rule ({}, {}): {}.", text_or_unknown(part(rule, "standard")),
                                      text_or_unknown(part(rule, "rule")),
@@ -92,6 +100,16 @@ std::string certificate_text(const Json& certificate) {
   return words.empty() ? "unknown" : words;
 }
 
+/// Where the block stood: as the cell's file has it, or where it was located.
+std::string place_text(const Json& conditions) {
+  if (!conditions.is_object() || !conditions.contains("place")) return "unknown";
+  const Json& place = part(conditions, "place");
+  if (place.is_null()) return "as the cell's file has it";
+  std::string words = "located " + text_or_unknown(part(place, "located_at")) + ", shifted by";
+  for (const Json& shift : part(place, "shift_mm")) words += figure_text(shift, " {:+.2f}");
+  return words + " mm from where the cell's file has it";
+}
+
 std::string run_section(const Json& report) {
   const Json& run = part(report, "run");
   const Json& result = part(report, "result");
@@ -112,6 +130,8 @@ std::string run_section(const Json& report) {
            {"block's temperature",
             figure_text(part(run, "block_temperature_c"), "{:.1f} °C") +
                 figure_if_known(part(conditions, "std_temperature_k"), " ± {:.1f} K (std)")},
+           {"place of the block", place_text(conditions)},
+           {"touches made", of(conditions, "touching")},
            {"operator", of(run, "operator")},
            {"started, ended", of(run, "started_at") + ", " + of(run, "ended_at")},
            {"touches", figure_text(part(run, "touches_done"), "{:.0f}") +
@@ -152,7 +172,7 @@ std::string budget_section(const Json& result) {
   std::vector<Row> sources;
   for (const Json& source : part(part(result, "tip_uncertainty"), "sources"))
     sources.push_back(
-        {text_or_unknown(part(source, "name")), figure_text(part(source, "workspace_box_rms_mm"), "{:.4f}")});
+        {words_of(part(source, "name")), figure_text(part(source, "workspace_box_rms_mm"), "{:.4f}")});
   sources.push_back({"together (root of the sum of squares)",
                      figure_text(part(part(result, "tip_uncertainty"), "workspace_box_rms_mm"), "{:.4f}")});
   std::vector<Row> correlations;
