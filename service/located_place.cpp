@@ -1,11 +1,9 @@
 #include "service/located_place.hpp"
 
 #include <fcntl.h>
-#include <openssl/evp.h>
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -17,12 +15,14 @@
 #include "config/json_value.hpp"
 #include "config/shapes.hpp"
 #include "config/strict_json.hpp"
+#include "service/digest.hpp"
 #include "service/place_search.hpp"
 
 namespace cell {
 namespace {
 
 using Json = nlohmann::ordered_json;
+constexpr std::size_t kTouchesMin = 6;
 constexpr std::size_t kTouchesMax = 100;
 
 template <class Vector>
@@ -43,6 +43,9 @@ Eigen::Isometry3d pose_of(const Eigen::Vector3d& shift_m, const Eigen::Vector3d&
   pose.translation() = shift_m;
   return pose;
 }
+
+/// Over the document without its checksum, with sorted keys.
+std::string checksum_of(const std::string& text) { return sha256_hex(nlohmann::json::parse(text).dump()); }
 
 std::runtime_error trouble(const std::filesystem::path& file) {
   return std::runtime_error(fmt::format("{}: {}", file.string(), std::strerror(errno)));
@@ -90,11 +93,7 @@ std::string place_digest(const Cell& cell) {
   }
   add(cell.probe.stylus.radius_m);
   add(cell.probe.stylus.pretravel_m);
-  std::array<unsigned char, EVP_MAX_MD_SIZE> bytes{};
-  EVP_Digest(text.data(), text.size(), bytes.data(), nullptr, EVP_sha256(), nullptr);
-  std::string digest;
-  for (std::size_t i = 0; i < 16; ++i) digest += fmt::format("{:02x}", bytes[i]);
-  return digest;
+  return sha256_hex(text).substr(0, 32);
 }
 
 Cell cell_at(const Cell& cell, const LocatedPlace& place) {
@@ -123,6 +122,7 @@ std::string place_document(const LocatedPlace& place) {
     touches.push_back({{"plane", touch.face + 1},
                        {"joints_deg", list_of(touch.joints, 1.0 / calib::kRadiansPerDegree)},
                        {"std_mm", calib::mm_from_metres(touch.std_m)}});
+  document[std::string(kPlaceChecksum)] = checksum_of(document.dump());
   return document.dump();
 }
 
@@ -144,8 +144,17 @@ std::optional<LocatedPlace> read_place(const std::filesystem::path& file) {
   const nlohmann::json json = read_json_file(file);
   const JsonObject document =
       JsonValue(source, json)
-          .document(kPlaceSchema, {"schema", "located_at", "digest", "shift_mm", "turn_rad", "std_shift_mm",
-                                   "std_turn_rad", "covariance_si", "std_errors_si", "touches"});
+          .document(kPlaceSchema,
+                    {"schema", "located_at", "digest", "shift_mm", "turn_rad", "std_shift_mm", "std_turn_rad",
+                     "covariance_si", "std_errors_si", "touches", kPlaceChecksum});
+  nlohmann::json summed = json;
+  summed.erase(std::string(kPlaceChecksum));
+  if (document.at(kPlaceChecksum).text() != sha256_hex(summed.dump()))
+    document.at(kPlaceChecksum)
+        .fail(
+            "is not that of the file, which was changed since the block was located; remove the file, then "
+            "touchcal "
+            "locate finds the block");
   LocatedPlace place{.located_at = document.at("located_at").text(), .digest = document.at("digest").text()};
   place.cell_from_block =
       pose_of(document.at("shift_mm").numbers<3>() * 1e-3, document.at("turn_rad").numbers<3>());
@@ -157,7 +166,7 @@ std::optional<LocatedPlace> read_place(const std::filesystem::path& file) {
     if (!index) value.fail("is no error of an arm");
     place.std_place[static_cast<std::size_t>(*index)] = value.number(kNotNegative);
   }
-  for (const JsonValue& value : document.at("touches").items(0, kTouchesMax)) {
+  for (const JsonValue& value : document.at("touches").items(kTouchesMin, kTouchesMax)) {
     const JsonObject touch = value.object({"plane", "joints_deg", "std_mm"});
     place.touches.push_back({touch.at("plane").integer(1, 1000) - 1,
                              touch.at("joints_deg").numbers<6>() * calib::kRadiansPerDegree,

@@ -29,6 +29,9 @@ Cell cell_at(const Cell& cell, const LocatedPlace& place);
 
 inline constexpr std::string_view kPlaceSchema = "touchcal/place/1";
 
+/// A file that was changed by other means than write_place() is refused: the arm goes by it.
+inline constexpr std::string_view kPlaceChecksum = "sha256";
+
 /// schema, located_at, digest, shift_mm, turn_rad (rotation vector), std_shift_mm, std_turn_rad, and what a
 /// reader needs to make it again. One JSON document.
 std::string place_document(const LocatedPlace& place);

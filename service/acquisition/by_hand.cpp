@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -27,6 +28,31 @@ LocatedPlace located(const std::optional<LocatedPlace>& before, const Locating& 
                      .touches = locating.touches()};
   if (before) place.cell_from_block = before->cell_from_block * fit.old_from_new;
   return place;
+}
+
+/// So many standard deviations of the place must be within the distance that the arm passes it at.
+constexpr double kPassSigmas = 3.0;
+
+/// The largest standard deviation, in any direction, of a corner of the faces. `covariance` of shift above
+/// turn.
+double std_farthest_m(const Eigen::Matrix<double, 6, 6>& covariance, const std::vector<calib::Face>& faces) {
+  double most_m2 = 0.0;
+  for (const calib::Face& face : faces) {
+    for (const double u : {-1.0, 1.0}) {
+      for (const double v : {-1.0, 1.0}) {
+        const Eigen::Vector3d corner_m = face.center_m + u * face.half_extent_m.x() * face.edge_u +
+                                         v * face.half_extent_m.y() * face.edge_v();
+        Eigen::Matrix<double, 3, 6> moves = Eigen::Matrix<double, 3, 6>::Zero();
+        moves.leftCols<3>().setIdentity();
+        for (int axis = 0; axis < 3; ++axis)
+          moves.col(3 + axis) = Eigen::Vector3d::Unit(axis).cross(corner_m);
+        const Eigen::Matrix3d of_corner = moves * covariance * moves.transpose();
+        most_m2 =
+            std::max(most_m2, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(of_corner).eigenvalues()[2]);
+      }
+    }
+  }
+  return std::sqrt(most_m2);
 }
 
 }  // namespace
@@ -54,7 +80,7 @@ std::optional<Refusal> Operation::locate() {
 std::optional<Refusal> Operation::take() {
   auto taken = hand_watch_->take();
   if (auto* why = std::get_if<std::string>(&taken)) return Refusal{.detail = std::move(*why)};
-  take_by_hand(std::get<HandTouch>(taken));
+  if (auto why = take_by_hand(std::get<HandTouch>(taken))) return Refusal{.detail = std::move(*why)};
   return std::nullopt;
 }
 
@@ -81,16 +107,17 @@ void Operation::hear_by_hand(const cs8::State& state) {
   if (const auto touch = hand_watch_->hear(state)) take_by_hand(*touch);
 }
 
-void Operation::take_by_hand(const HandTouch& touch) {
-  if (!locating_) {
-    take_guided(touch);
-    return;
-  }
+/// Why it was not taken, if it was not.
+std::optional<std::string> Operation::take_by_hand(const HandTouch& touch) {
+  if (!locating_) return take_guided(touch);
+  const std::size_t before = locating_->touches().size();
   locating_->take(touch);
   const HandGuide guide = locating_->guide();
   spdlog::info("touch by hand{}{}; {}", guide.problem ? " not taken: " : "", guide.problem.value_or(""),
                guide.words);
   publish();
+  if (locating_->touches().size() > before) return std::nullopt;
+  return guide.problem.value_or("no touch is awaited now");
 }
 
 /// A run that begins ends the dialogue.
@@ -113,6 +140,16 @@ void Operation::leave_locating() {
 std::optional<Refusal> Operation::begin_pass() {
   if (open_touch_ || unsettled_sequence_ != 0)
     return Refusal{.detail = "the controller is not ready: touchcal reset, then once more"};
+  if (status_.fault && !is_link_fault(status_.fault->code))
+    return Refusal{.detail = "a fault is there to be read first: " + status_.fault->message(),
+                   .code = FaultCode::kFaultUnacknowledged};
+  const double known_m = kPassSigmas * std_farthest_m(locating_->fit()->covariance, configured_.block.faces);
+  if (known_m > kPassMetres)
+    return Refusal{
+        .detail = fmt::format(
+            "these touches tell the block's place to {:.0f} mm only, and the arm passes it at {:.0f}: "
+            "take touches back (touchcal undo) and make them nearer to where they are asked for",
+            calib::mm_from_metres(known_m), calib::mm_from_metres(kPassMetres))};
   auto postures = pass_postures(cell_at(configured_, located(place_, *locating_)), locating_->touches());
   if (auto* why = std::get_if<std::string>(&postures)) return Refusal{.detail = std::move(*why)};
   pass_ = std::get<std::vector<calib::JointVector>>(std::move(postures));

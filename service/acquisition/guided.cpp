@@ -23,8 +23,19 @@ constexpr double kGuidedMovedMaxMetres = 2e-4;
 /// A touch with all joints this near to another one's on the same face tells nothing new.
 constexpr double kSamePostureRad = 0.035;
 
+/// On any face: the probe bounced, it is the same contact once more.
+constexpr double kSameContactRad = 2e-3;
+
 bool is_same_posture(const calib::Touch& touch, int face, const calib::JointVector& joints) {
-  return touch.face == face && (touch.joints - joints).cwiseAbs().maxCoeff() < kSamePostureRad;
+  const double apart_rad = (touch.joints - joints).cwiseAbs().maxCoeff();
+  return apart_rad < (touch.face == face ? kSamePostureRad : kSameContactRad);
+}
+
+/// Whether a ball lies over a face's rectangle, as far as the arm is known.
+bool is_over(const calib::Face& face, const Eigen::Vector3d& ball_m, double miss_m) {
+  const Eigen::Vector3d off_m = ball_m - face.center_m;
+  return std::abs(off_m.dot(face.edge_u)) <= face.half_extent_m.x() + miss_m &&
+         std::abs(off_m.dot(face.edge_v())) <= face.half_extent_m.y() + miss_m;
 }
 
 }  // namespace
@@ -76,31 +87,33 @@ asio::awaitable<void> Operation::await_guided_touch() {
 }
 
 /// A touch that can be the one that is awaited is kept; else it is told why not.
-void Operation::take_guided(const HandTouch& touch) {
+std::optional<std::string> Operation::take_guided(const HandTouch& touch) {
   const calib::PlannedTouch* planned = run_ ? run_->next() : nullptr;
-  if (!guide_ || !planned || status_.state != State::kExecute) return;
+  if (!guide_ || !planned || status_.state != State::kExecute) return "no touch is awaited now";
   const auto refuse = [this](std::string why) {
     spdlog::info("touch by hand not taken: {}", why);
-    guide_->problem = std::move(why);
+    guide_->problem = why;
     publish();
+    return std::optional(std::move(why));
   };
   if (touch.moved_m && *touch.moved_m > kGuidedMovedMaxMetres) {
-    refuse(fmt::format("the ball went {:.2f} mm in the moment of the touch: come slower, under 10 mm/s",
-                       calib::mm_from_metres(*touch.moved_m)));
-    return;
+    return refuse(
+        fmt::format("the ball went {:.2f} mm in the moment of the touch: come slower, under 10 mm/s",
+                    calib::mm_from_metres(*touch.moved_m)));
   }
   const calib::Face& face = planning_.faces[static_cast<std::size_t>(planned->face)];
   const Eigen::Vector3d ball_m = calib::forward_kinematics(aim_->model(), touch.joints).translation();
   const double off_m = calib::signed_distance_m(calib::contact_plane(face, planning_.stylus), ball_m);
   if (std::abs(off_m) > cell_.nominal_miss_m) {
-    refuse(fmt::format("the ball was {:.0f} mm off plane {}: touch that one", calib::mm_from_metres(off_m),
-                       planned->face + 1));
-    return;
+    return refuse(fmt::format("the ball was {:.0f} mm off plane {}: touch that one",
+                              calib::mm_from_metres(off_m), planned->face + 1));
   }
+  if (!is_over(face, ball_m, cell_.nominal_miss_m))
+    return refuse(fmt::format("the ball was beside plane {}: touch that one", planned->face + 1));
   for (const calib::Touch& made : run_->problem().touches) {
     if (!is_same_posture(made, planned->face, touch.joints)) continue;
-    refuse("a touch in this posture was made before: turn the wrist or take another place on the plane");
-    return;
+    return refuse(
+        "a touch in this posture was made before: turn the wrist or take another place on the plane");
   }
   cs8::TouchResult result;
   result.outcome = cs8::Outcome::kContact;
@@ -108,10 +121,11 @@ void Operation::take_guided(const HandTouch& touch) {
   result.contact = touch.wire_joints;
   result.edges = 1;
   const calib::PlannedTouch wanted = *planned;  // the run goes on to the next one
-  if (!keep_touch(wanted, result)) return;
+  if (!keep_touch(wanted, result)) return "it could not be stored";
   check_place(run_->problem().touches.back());
   publish();
   wake_.cancel();
+  return std::nullopt;
 }
 
 /// The aim forgets the touch as well: it is made anew from all others.

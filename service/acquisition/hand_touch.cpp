@@ -11,18 +11,29 @@ std::optional<HandTouch> HandTouchWatch::hear(const cs8::State& state) {
   last_ = state;
   if (probe.free()) {
     free_m_ = ball_m;
+    given_ = false;
     return std::nullopt;
   }
-  if (!probe.touched() || !free_m_) return std::nullopt;  // its two inputs may change one after the other
+  const bool referenced = (state.flags & cs8::kArmCalibrated) != 0;
+  // Its two inputs may change one after the other.
+  if (!probe.touched() || !referenced || !free_m_) return std::nullopt;
   const double moved_m = (ball_m - *free_m_).norm();
   free_m_.reset();
+  given_ = true;
   return HandTouch{state.joints, joints, moved_m};
 }
 
-std::variant<HandTouch, std::string> HandTouchWatch::take() const {
+std::variant<HandTouch, std::string> HandTouchWatch::take() {
   if (!last_) return "the controller has not told where the arm is";
-  if (cs8::probe_inputs(last_->flags).free()) return "the probe reads free: jog until it touches";
+  const cs8::ProbeInputs probe = cs8::probe_inputs(last_->flags);
+  if (probe.free()) return "the probe reads free: jog until it touches";
+  if (!probe.touched()) return "the probe's two inputs contradict each other: look at its cable";
+  if ((last_->flags & cs8::kArmCalibrated) == 0)
+    return "the joints are not referenced: reference the arm first";
   if ((last_->flags & cs8::kSettled) == 0) return "the arm moves: stop it first";
+  if (given_)
+    return "this contact was taken or refused already: jog back until the probe is free, then touch again";
+  given_ = true;
   return HandTouch{last_->joints, from_wire(last_->joints), std::nullopt};
 }
 

@@ -24,16 +24,19 @@ class HandTouchWatch {
  public:
   explicit HandTouchWatch(const calib::KinematicModel& nominal) : prepared_(calib::prepare(nominal)) {}
 
-  /// The next state; a touch when the probe was free before and reads touched now.
+  /// The next state; a touch when the probe was free before and reads touched now, and the joints are
+  /// referenced.
   std::optional<HandTouch> hear(const cs8::State& state);
-  /// Where the arm stands now, by a person's word; or why that is no touch: the probe reads free, the arm
-  /// moves, or nothing was heard.
-  [[nodiscard]] std::variant<HandTouch, std::string> take() const;
+  /// Where the arm stands now, by a person's word; or why that is no touch: the probe does not read touched,
+  /// the arm moves, nothing was heard, or this contact was given out before. A contact is one touch: the
+  /// probe must be free before the next.
+  std::variant<HandTouch, std::string> take();
 
  private:
   calib::PreparedModel prepared_;
   std::optional<cs8::State> last_;
   std::optional<Eigen::Vector3d> free_m_;  // the ball when the probe was last free
+  bool given_ = false;                     // the contact under way
 };
 
 }  // namespace cell

@@ -17,6 +17,8 @@ constexpr double kOut = 0.6;
 /// As in calib_core/aim.hpp: an error of the arm is a sixth of the nominal miss, per metre where it is an
 /// angle.
 constexpr double kErrorShare = 1.0 / 6.0;
+/// A ball that comes to rest this near to where it touched before is in the same contact: the probe bounced.
+constexpr double kSameContactMetres = 0.002;
 
 Eigen::Vector3d up_in_block(const Cell& cell) {
   const Eigen::Matrix3d turn = calib::place_of(cell.arm.model).linear();
@@ -174,8 +176,9 @@ void Locating::take(const HandTouch& touch) {
     return calib::forward_kinematics(problem_of_place_.nominal, joints).translation();
   };
   for (std::size_t i = 0; i < touches_.size(); ++i) {
-    if (touches_[i].face == face &&
-        (ball_m(touches_[i].joints) - ball_m(touch.joints)).norm() < calib::kPlaceSpreadMinMetres) {
+    // On another face a touch near an edge may well be near; the same contact once more is not.
+    const double apart_min_m = touches_[i].face == face ? calib::kPlaceSpreadMinMetres : kSameContactMetres;
+    if ((ball_m(touches_[i].joints) - ball_m(touch.joints)).norm() < apart_min_m) {
       problem_ = fmt::format("that is where touch {} was: touch {}", i + 1, spots_[touches_.size()].words);
       return;
     }

@@ -222,10 +222,10 @@ class Operation {
   void hear_by_hand(const cs8::State& state);
   void tell_guide();
   [[nodiscard]] std::vector<Unmet> unmet_for_hands(const std::string& recipe) const;
-  void take_by_hand(const HandTouch& touch);
+  std::optional<std::string> take_by_hand(const HandTouch& touch);
   void leave_locating();
   boost::asio::awaitable<void> await_guided_touch();
-  void take_guided(const HandTouch& touch);
+  std::optional<std::string> take_guided(const HandTouch& touch);
   [[nodiscard]] std::optional<Refusal> refuse_undo() const;
   void undo_guided();
   std::optional<Refusal> begin_pass();

@@ -78,7 +78,9 @@ std::optional<std::string> why_not_resumable(const Cell& cell, const StoredRun& 
 
 /// Takes up the run that the daemon before this one left open. Nothing moves by it.
 void Operation::restore_run() {
-  const auto stored = store_.running();
+  auto stored = store_.running();
+  // An older one was over for everybody; only its end could not be written then.
+  if (stored && stored->id != store_.runs(1).front().id) stored.reset();
   store_.finish_interrupted(now_text(), stored ? std::optional(stored->id) : std::nullopt);
   if (!stored) return;
   if (const auto why = why_not_resumable(cell_, *stored, config_digest_)) {

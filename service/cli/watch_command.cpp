@@ -145,19 +145,26 @@ ExitCode watch_command(const ApiClient& daemon, bool json_only) {
 }
 
 ExitCode locate_command(const ApiClient& daemon, bool json_only) {
+  const json place_before = parse_reply(daemon.get("/api/v1/cell")).at("place");
   const ApiReply reply = daemon.post("/api/v1/cell/locate", {});
   if (reply.status != 202) return tell_problem(reply, json_only);
   json status = parse_reply(reply);
   std::string said;
-  const auto is_found = [&status] { return status.at("by_hand_step") == "pass"; };
+  const bool passes = status.at("by_hand_step") == "passing";
+  const auto is_found = [&] { return !passes && status.at("by_hand_step") == "pass"; };
   do {
     if (!json_only && guidance(status) != said) fmt::print("{}\n", said = guidance(status));
     std::fflush(stdout);
-    if (is_found()) break;
+    if (is_found() || (passes && status.at("by_hand_step") == "pass")) break;
     status = wait_for_change(daemon, status, kWaitSeconds);
   } while (status.at("by_hand") == "locate");
   const bool failed = status.at("fault_code").is_string();
   const ApiReply cell = daemon.get("/api/v1/cell");
+  if (!failed && !is_found() && parse_reply(cell).at("place") == place_before) {
+    fmt::print(stderr,
+               "locating was broken off: no new place is kept; touchcal locate goes on or begins anew\n");
+    return kExitFailed;
+  }
   if (json_only) {
     fmt::print("{}\n", failed || is_found() ? status.dump() : cell.body);
   } else if (failed) {

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "calib_core/inverse_kinematics.hpp"
+#include "config/config_error.hpp"
 #include "config/read_config.hpp"
 #include "service/acquisition/block_pass.hpp"
 #include "service/acquisition/touch_command.hpp"
@@ -173,8 +176,25 @@ TEST_F(LocatingTheBlock, APlaceIsReadBackAsItWasWritten) {
   EXPECT_NE(place_digest(shipped_cell("edf")), place.digest);
 }
 
+TEST_F(LocatingTheBlock, APlaceThatWasChangedByOtherMeansIsRefused) {
+  take_all();
+  const Folder folder;
+  const std::filesystem::path file = folder.path() / "place.json";
+  write_place(file, {.cell_from_block = locating_.fit()->old_from_new,
+                     .covariance = locating_.fit()->covariance,
+                     .std_place = {},
+                     .touches = locating_.touches(),
+                     .located_at = "2026-11-22T03:00:00.000Z",
+                     .digest = place_digest(cell_)});
+  nlohmann::json changed;
+  std::ifstream(file) >> changed;
+  changed["shift_mm"][2] = changed["shift_mm"][2].get<double>() + 250.0;
+  std::ofstream(file) << changed;
+  EXPECT_THROW(static_cast<void>(read_place(file)), ConfigError);
+}
+
 cs8::State state_at(const calib::JointVector& joints, bool touched) {
-  return {.flags = cs8::kSettled |
+  return {.flags = cs8::kSettled | cs8::kArmCalibrated |
                    (touched ? std::uint32_t{cs8::kProbeTouched} : std::uint32_t{cs8::kProbeLoopClosed}),
           .joints = to_wire(joints)};
 }
@@ -187,7 +207,7 @@ TEST_F(LocatingTheBlock, ATouchIsWhereTheProbeReadsTouchedFirst) {
   EXPECT_FALSE(watch.hear(state_at(on, true)));  // nobody saw it free
   EXPECT_FALSE(watch.hear(state_at(before, false)));
   cs8::State between = state_at(before, false);
-  between.flags = cs8::kSettled;  // its two inputs change one after the other
+  between.flags = cs8::kSettled | cs8::kArmCalibrated;  // its two inputs change one after the other
   EXPECT_FALSE(watch.hear(between));
   const auto touch = watch.hear(state_at(on, true));
   ASSERT_TRUE(touch);
@@ -208,7 +228,39 @@ TEST_F(LocatingTheBlock, NothingIsTakenByWordFromAFreeProbeOrAMovingArm) {
   watch.hear(moving);
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
   watch.hear(state_at(on, true));
+  EXPECT_TRUE(std::holds_alternative<std::string>(watch.take())) << "it was given out when the probe tripped";
+}
+
+TEST_F(LocatingTheBlock, AContactIsOneTouchHoweverOftenItIsAskedFor) {
+  HandTouchWatch watch(cell_.arm.model);
+  const calib::JointVector on = person_.on(place_spots(cell_)[0]);
+  watch.hear(state_at(on, true));  // it touched before anybody looked
   EXPECT_TRUE(std::holds_alternative<HandTouch>(watch.take()));
+  EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
+  watch.hear(state_at(on, false));
+  EXPECT_TRUE(watch.hear(state_at(on, true)));
+  EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
+}
+
+TEST_F(LocatingTheBlock, NothingIsTakenFromAProbeInFaultOrAnArmWithoutReferences) {
+  const calib::JointVector on = person_.on(place_spots(cell_)[0]);
+  for (const std::uint32_t lost : {std::uint32_t{cs8::kProbeTouched}, std::uint32_t{cs8::kArmCalibrated}}) {
+    HandTouchWatch watch(cell_.arm.model);
+    watch.hear(state_at(on, false));
+    cs8::State state = state_at(on, true);
+    state.flags &= ~lost;
+    EXPECT_FALSE(watch.hear(state)) << lost;
+    EXPECT_TRUE(std::holds_alternative<std::string>(watch.take())) << lost;
+  }
+}
+
+TEST_F(LocatingTheBlock, AContactThatBouncesIsNotTakenForTheNextFace) {
+  const auto spots = place_spots(cell_);
+  for (int i = 0; i < 3; ++i) locating_.take({{}, person_.on(spots[static_cast<std::size_t>(i)]), 0.0});
+  ASSERT_NE(spots[2].face, spots[3].face);
+  locating_.take({{}, person_.on(spots[2]), 0.0});
+  EXPECT_EQ(locating_.touches().size(), 3U);
+  EXPECT_TRUE(locating_.guide().problem);
 }
 
 }  // namespace
