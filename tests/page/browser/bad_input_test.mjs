@@ -1,11 +1,12 @@
 // Texts that are not meant well, tokens and clocks that are wrong: shown as text, said in words, never a blank page.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {closeQuietly, expectAccessible, openBrowser, openPage, openWith, startButton, stopButton, waitForState} from './browser.mjs';
+import {closeQuietly, expectAccessible, openBrowser, openPage, openWith, pauseButton, startButton, stopButton, waitForState} from './browser.mjs';
 import {Cell} from './cell.mjs';
 
 const kHostile = '<img src=x onerror="window.taken=1"><script>window.taken=1</script>&amp;\u202e';
 const kLong = 'long '.repeat(2000);
+const kUnbroken = 'N'.repeat(10000);
 
 let cell, browser;
 before(async () => {
@@ -19,11 +20,12 @@ after(async () => {
 
 test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
   const page = await openWith(browser, cell, {
-    '/api/v1/status': (status) => ({...status, sequence: status.sequence + 5, state: 'HELD', run_id: '1', recipe: kHostile, fault_code: kHostile,
+    '/api/v1/status': (status) => ({...status, sequence: status.sequence + 5, state: 'HELD', run_id: '1', recipe: kHostile + kUnbroken, fault_code: kHostile,
                                     fault_message: kHostile + kLong, fault_robot_action: kHostile, fault_next_step: kHostile,
-                                    warning_code: 'x', warning_message: kLong, more_would_bring: kHostile, waiting_for: kHostile}),
-    '/api/v1/cell': (document) => ({...document, name: kHostile + kLong}),
-    '/api/v1/recipes': (document) => ({default: kHostile, recipes: [{...document.recipes[0], name: kHostile, description: kLong}]}),
+                                    warning_code: 'x', warning_message: kUnbroken, more_would_bring: kHostile, waiting_for: kHostile}),
+    '/api/v1/cell': (document) => ({...document, name: kHostile + kUnbroken}),
+    '/api/v1/recipes': (document) => ({default: kHostile, recipes: [{...document.recipes[0], name: kHostile, description: kLong},
+                                                                       {...document.recipes[0], name: kUnbroken}]}),
   });
   const card = page.locator('.card.fault');
   await card.waitFor();
@@ -37,7 +39,18 @@ test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
   await expectAccessible(page, 'hostile texts');
   const {width} = await page.locator('main').boundingBox();
   assert.ok(width < 1024, 'a long text does not push the buttons away');
-  assert.ok((await stopButton(page).boundingBox()).x < 1024);
+  const header = await page.locator('header').boundingBox();
+  assert.ok(header.y + header.height < 100, `the header is ${header.height} px high`);
+  const area = await page.locator('.run-controls').boundingBox();
+  for (const button of [startButton(page), pauseButton(page), stopButton(page)]) {
+    const {x, y, width: wide, height} = await button.boundingBox();
+    assert.ok(x >= area.x && x + wide <= 1024 && y >= header.y + header.height && y + height <= 600, 'the run buttons stay in their place');
+  }
+  await page.getByRole('button', {name: /^Cell/}).click();
+  await page.locator('.recipe .choice', {hasText: 'NNN'}).waitFor();
+  const wider = await page.evaluate(() => document.querySelector('main').scrollWidth - document.querySelector('main').clientWidth);
+  assert.ok(wider <= 0, `the cell view is ${wider} px too wide`);
+  await expectAccessible(page, 'hostile names');
   assert.deepEqual(page.complaints, []);
   await closeQuietly(page);
 });
@@ -92,10 +105,36 @@ test('ABrowserThatKeepsNothingAndDrawsNothingStillOperates', async () => {
 
 test('WithoutEventsThePageAsksAndIsStillRight', async () => {
   const page = await openWith(browser, cell, {});
-  await page.locator('header .link', {hasText: 'Asking each second'}).waitFor();
+  await page.locator('header .link', {hasText: 'Polling'}).waitFor();
   await cell.post('/api/v1/cell/stop');
   await waitForState(page, 'Stopped');
   await cell.post('/api/v1/cell/reset');
   await waitForState(page, 'Ready');
   await closeQuietly(page);
+});
+
+test('AStreamThatBringsNothingMoreIsLeftForAsking', async () => {
+  const page = await openPage(browser, 'about:blank');
+  await page.addInitScript(() => {
+    const own = window.fetch.bind(window);
+    const beginning = new TextEncoder().encode('retry: 2000\n\n');
+    window.fetch = (address, options) => {
+      if (address !== '/api/v1/events') return own(address, options);
+      return Promise.resolve(new Response(new ReadableStream({
+        start(stream) {
+          stream.enqueue(beginning);
+          options.signal.addEventListener('abort', () => stream.error(new Error('hung up')));
+        },
+      })));
+    };
+  });
+  await page.goto(cell.link);
+  await waitForState(page, 'Ready');
+  await page.locator('header .link dd', {hasText: 'Live'}).waitFor();
+  await cell.post('/api/v1/cell/stop');
+  await page.locator('header .link dd', {hasText: 'Polling'}).waitFor();
+  await waitForState(page, 'Stopped');
+  await cell.post('/api/v1/cell/reset');
+  await waitForState(page, 'Ready');
+  assert.deepEqual(page.complaints, []);
 });

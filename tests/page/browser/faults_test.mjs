@@ -68,9 +68,17 @@ step('PauseAndResumeAreWhereTheyAlwaysAre', async () => {
 });
 
 step('AnAbortedRunIsLeftByAcknowledgingClearingAndResetting', async () => {
+  await page.getByRole('button', {name: /^Cell/}).click();
+  await page.setViewportSize({width: 1024, height: 400});
+  await page.locator('main').evaluate((main) => main.scrollTo(0, main.scrollHeight));
   await cell.control({fault: 'collision', touch: 'every', phase: 'travel'});
   await waitForState(page, 'Aborted');
   await fault('collision').waitFor();
+  await page.waitForFunction(() => {
+    const card = document.querySelector('.card.fault').getBoundingClientRect();
+    return card.top >= document.querySelector('main').getBoundingClientRect().top - 1 && card.top < 300;
+  });
+  await page.setViewportSize({width: 1024, height: 600});
   await expectAccessible(page, 'aborted');
   await cell.control({fault: 'jog_home'}).catch(() => {});
   await fault('collision').getByRole('button', {name: 'Acknowledge'}).click();

@@ -29,7 +29,8 @@ step('ALostDaemonIsSaidInWordsAndOnlyStopCanBeTried', async () => {
   assert.ok(await stopButton(page).isEnabled());
   await expectAccessible(page, 'lost');
   await stopButton(page).click();
-  await page.locator('.card.warning', {hasText: 'the daemon did not answer'}).waitFor();
+  await page.locator('.card.stop-lost', {hasText: 'STOP WAS NOT DELIVERED'}).waitFor();
+  await expectAccessible(page, 'a stop that was lost');
 });
 
 step('TheAgeOfTheDataGrowsWhileNobodyAnswers', async () => {
@@ -42,8 +43,10 @@ step('ThePageComesBackByItselfAndOffersToGoOn', async () => {
   await cell.restartDaemon();
   await waitForState(page, 'On hold');
   await page.locator('.card.fault', {hasText: 'daemon restarted'}).waitFor();
-  await page.locator('.card.warning').getByRole('button', {name: 'Noted'}).click();
+  await page.locator('.card.stop-lost').getByRole('button', {name: 'Noted'}).click();
   await expectAccessible(page, 'restarted');
+  assert.equal(await page.getByRole('button', {name: /Touch again|Leave it out/}).count(), 0, 'no touch holds the run');
+  await page.locator('.run-controls .run.main:not([disabled])', {hasText: 'RESUME'}).waitFor();
   await hold(page, page.getByRole('button', {name: /RESUME/}));
   await waitForState(page, ['Going on', 'Touching']);
   await waitForState(page, 'Complete');

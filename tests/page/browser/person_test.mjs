@@ -58,7 +58,7 @@ step('APersonWithThePendantIsToldEachTouchAndTakesOrUndoesIt', async () => {
     assert.equal((await given).method(), 'POST');
   }
   await page.getByRole('button', {name: 'Français'}).click();
-  await card.getByText('Amenez le stylet au plan 3').waitFor();
+  await card.getByText('Palpez le plan 3 :').waitFor();
   await closeQuietly(page);
 });
 

@@ -108,16 +108,28 @@ step('TheReportIsCarriedAwayAsAFile', async () => {
 });
 
 step('TwoRunsAreComparedAndDrawnAsATrend', async () => {
+  await page.getByRole('button', {name: /^History/}).click();
+  await page.getByRole('button', {name: 'Show 1'}).click();
+  await page.locator('.which h2', {hasText: 'Run 1, recipe quick'}).waitFor();
   await start(page);
   await waitForState(page, ['Starting', 'Touching']);
+  assert.equal(await page.evaluate(() => document.activeElement?.tagName), 'H1', 'the state is read next');
   await waitForState(page, 'Complete');
+  await page.locator('.which h2', {hasText: 'Run 2, recipe quick'}).waitFor();
+  await page.getByRole('button', {name: /^History/}).click();
+  await page.getByRole('button', {name: 'Show 1'}).click();
+  await page.locator('.which.card', {hasText: 'Run 1, an earlier one'}).waitFor();
+  await expectAccessible(page, 'an earlier run');
+  await page.getByRole('button', {name: 'Show the newest'}).click();
+  await page.locator('.which h2', {hasText: 'Run 2, recipe quick'}).waitFor();
   await page.getByRole('button', {name: /^History/}).click();
   await page.getByLabel('Compare 1').check();
   await page.getByLabel('Compare 2').check();
-  await page.getByRole('table', {name: 'Comparison of runs 1 and 2'}).waitFor();
+  const compared = page.getByRole('table', {name: 'Comparison of runs 1 and 2'});
+  for (const row of ['Verdict', 'Held-out distances of plane 3, rms']) await compared.getByRole('row', {name: row}).waitFor();
   await page.locator('.history-view .curve canvas').waitFor();
   await page.getByLabel('Trend of').selectOption('plane 3');
-  await page.getByRole('img', {name: /Distance of plane 3/}).waitFor();
+  await page.getByRole('img', {name: /Held-out distances of plane 3, rms, mm/}).waitFor();
   await expectAccessible(page, 'history');
 });
 

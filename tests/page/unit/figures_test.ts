@@ -1,16 +1,16 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import type {Parameter, Result, Run, UncertaintyMap} from 'page/api/documents.ts';
-import {compareRuns, trend} from 'page/model/history.ts';
+import {compareHeldOut, compareRuns, trend, trendChoices} from 'page/model/history.ts';
 import {layersOf, rangeOf} from 'page/model/map_layers.ts';
 import {conditions} from 'page/model/readiness.ts';
-import {mainAction, mayPause, mood} from 'page/model/states.ts';
+import {kTouchFaults, mainAction, mayPause, mood, touchActions} from 'page/model/states.ts';
 import {verdictOf} from 'page/model/verdict.ts';
 import {statusWith} from './statuses.ts';
 
 const parameter = (name: string, error: number | null, std_uncertainty: number | null): Parameter =>
     ({name, group: 'arm', unit: 'mm', nominal: 0, status: error === null ? 'weak' : 'identified', error, std_uncertainty, interval95: null, grouped_with: []});
-const resultWith = (parameters: Parameter[]): Result => ({parameters, planes: []} as unknown as Result);
+const resultWith = (parameters: Parameter[]): Result => ({parameters, planes: [], planes_held_out: []} as unknown as Result);
 
 test('ADifferenceCountsBeyondBothUncertaintiesOnly', () => {
   const rows = compareRuns(resultWith([parameter('d2', 1, 0.1), parameter('d3', 1, 0.1), parameter('d4', null, null)]),
@@ -22,8 +22,26 @@ test('ATrendHasTheCompleteRunsOldestFirst', () => {
   const run = (id: string, outcome: Run['outcome']): Run => ({id, outcome} as Run);
   const points = trend([run('11', 'complete'), run('10', 'stopped'), run('9', 'complete'), run('8', 'complete')],
                        {'11': resultWith([parameter('d2', 3, 0)]), '10': resultWith([parameter('d2', 9, 0)]), '9': resultWith([parameter('d2', 2, 0)])},
-                       {kind: 'parameter', name: 'd2'});
+                       {kind: 'parameter', name: 'd2', unit: 'mm'});
   assert.deepEqual(points, [{run: 9, value: 2}, {run: 11, value: 3}]);
+});
+
+const heldOut = (rms: Record<number, number>): Result => ({
+  ...resultWith([]), planes_held_out: Object.entries(rms).map(([plane, calibrated_rms_mm]) => ({plane: Number(plane), calibrated_rms_mm})),
+} as unknown as Result);
+
+test('PlanesAreComparedByTheirHeldOutDistances', () => {
+  assert.deepEqual(compareHeldOut(heldOut({3: 0.5, 1: 0.25}), heldOut({1: 0.75})),
+                   [{plane: 1, a: 0.25, b: 0.75, difference: 0.5}, {plane: 3, a: 0.5, b: null, difference: null}]);
+  const results = {'2': heldOut({1: 0.25})};
+  const [of] = trendChoices(results);
+  assert.deepEqual(trend([{id: '2', outcome: 'complete'} as Run], results, of!), [{run: 2, value: 0.25}]);
+});
+
+test('OnlyWhatHoldsASingleTouchIsMadeAgainOrLeftOut', () => {
+  const actions = (fault_code: string) => touchActions(statusWith({state: 'HELD', fault_code}));
+  for (const code of kTouchFaults) assert.deepEqual(actions(code), ['retry', 'skip'], code);
+  for (const code of ['daemon_restarted', 'cell_open', 'not_confirmed', 'block_moved']) assert.deepEqual(actions(code), [], code);
 });
 
 test('TheMapIsReadWithXRunningFastestThenYThenZ', () => {

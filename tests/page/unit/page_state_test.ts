@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import type {Status} from 'page/api/documents.ts';
-import {dataAge_ms, kFirstState, reduce, type PageState} from 'page/model/page_state.ts';
+import type {Run, Status} from 'page/api/documents.ts';
+import {dataAge_ms, kFirstState, newestRun, reduce, type PageState} from 'page/model/page_state.ts';
 import {statusWith} from './statuses.ts';
 
-const take = (state: PageState, ...statuses: Status[]): PageState => reduce(state, {type: 'statuses', statuses});
+const take = (state: PageState, ...statuses: Status[]): PageState => reduce(state, {type: 'statuses', statuses, heard_ms: 0});
 const kFault = {fault_code: 'no_contact', fault_message: 'the search ended without contact', fault_robot_action: 'a', fault_next_step: 'b'};
 
 test('AFaultStaysUntilAPersonHasNotedIt', () => {
@@ -22,8 +22,28 @@ test('AnAcknowledgedFaultGoesAndAWarningStays', () => {
                    statusWith({sequence: 2, state: 'EXECUTE', run_id: '1', warning_code: 'probe_bounced', warning_message: 'w'}),
                    statusWith({sequence: 3, state: 'HELD', run_id: '1', warning_code: 'probe_bounced', warning_message: 'w', ...kFault}));
   assert.deepEqual(state.faults.map(({code}) => code), ['no_contact', 'probe_bounced']);
-  state = reduce(state, {type: 'acknowledged'});
+  state = reduce(state, {type: 'acknowledged', key: state.faults[0]!.key});
   assert.deepEqual(state.faults.map(({code}) => code), ['probe_bounced']);
+});
+
+test('AnAcknowledgementTakesOnlyTheFaultThatItWasOf', () => {
+  const held = {...kFault, fault_code: 'probe_stuck', fault_message: 'the probe still reads touched'};
+  let state = take(kFirstState, statusWith({sequence: 1, state: 'HELD', run_id: '1', ...held}),
+                   statusWith({sequence: 2, state: 'EXECUTE', run_id: '1'}),
+                   statusWith({sequence: 3, state: 'ABORTED', run_id: '1', ...kFault}));
+  const {key} = state.faults[0]!;
+  state = take(state, statusWith({sequence: 4, state: 'STOPPED', run_id: '1'}));  // the daemon's drop is heard before its answer
+  state = reduce(state, {type: 'acknowledged', key});
+  assert.deepEqual(state.faults.map(({code}) => code), ['probe_stuck']);
+});
+
+test('ANewRunIsLookedAtInPlaceOfTheOneThatWasChosen', () => {
+  const chosen = reduce(take(kFirstState, statusWith({sequence: 1, state: 'COMPLETE', run_id: '4'})), {type: 'patch', patch: {shownRun: '1'}});
+  assert.equal(take(chosen, statusWith({sequence: 2, state: 'COMPLETE', run_id: '4', verdict: 'accepted'})).shownRun, '1');
+  assert.equal(take(chosen, statusWith({sequence: 2, state: 'STARTING', run_id: '5'})).shownRun, null);
+  assert.equal(newestRun({status: statusWith({run_id: '10'}), runs: [{id: '9'} as Run]}), '10');
+  assert.equal(newestRun({status: statusWith({}), runs: [{id: '9'} as Run]}), '9');
+  assert.equal(newestRun({status: null, runs: []}), null);
 });
 
 test('TheSameFaultIsNotToldTwiceByAStatusThatChangesOtherwise', () => {
@@ -59,9 +79,20 @@ test('AStartShowsTheRunAndItsEndTheResult', () => {
 
 test('TheAgeOfTheDataGrowsWithTheTimeSinceTheyWereHeard', () => {
   const joints = {joints_deg: null, data_age_ms: 40, sequence: 1, instance_id: 'a'};
-  assert.equal(dataAge_ms({joints, heard_ms: 1000}, 3500), 2540);
-  assert.equal(dataAge_ms({joints: {...joints, data_age_ms: null}, heard_ms: 1000}, 3500), null, 'never heard is not new');
-  assert.equal(dataAge_ms(null, 3500), null);
+  const pulse = {joints, heard_ms: 1000};
+  assert.equal(dataAge_ms({pulse, statusKnown_ms: 1000}, 3500), 2540);
+  assert.equal(dataAge_ms({pulse, statusKnown_ms: 500}, 3500), 3000, 'the status is older than where the arm is');
+  assert.equal(dataAge_ms({pulse: {...pulse, joints: {...joints, data_age_ms: null}}, statusKnown_ms: 1000}, 3500), null, 'never heard is not new');
+  assert.equal(dataAge_ms({pulse: null, statusKnown_ms: 1000}, 3500), null);
+  assert.equal(dataAge_ms({pulse, statusKnown_ms: null}, 3500), null);
+});
+
+test('AStatusThatIsBehindThePulseGrowsOld', () => {
+  const known = take(kFirstState, statusWith({sequence: 7}));
+  const pulse = (sequence: number, heard_ms: number) =>
+      reduce(known, {type: 'joints', joints: {joints_deg: null, data_age_ms: 10, sequence, instance_id: 'a'}, heard_ms});
+  assert.equal(pulse(7, 5000).statusKnown_ms, 5000);
+  assert.equal(pulse(8, 5000).statusKnown_ms, 0);
 });
 
 test('AThousandTouchesKeepAPointEachAndNoMore', () => {

@@ -5,11 +5,16 @@ import {test} from 'node:test';
 import {EventText} from 'page/api/event_text.ts';
 import {tokenIn} from 'page/api/token.ts';
 import {age, cut, duration, fill, number, time} from 'page/model/format.ts';
+import {behindOf} from 'page/api/live.ts';
 import {en} from 'page/words/en.ts';
 import {withButtons} from 'page/words/fault_words.ts';
+import {kFaultTitlesFr} from 'page/words/fault_titles_fr.ts';
 import {kFaultsFr} from 'page/words/faults_fr.ts';
 import {fr} from 'page/words/fr.ts';
+import {handWords} from 'page/words/hand_words.ts';
+import {kTouchFaults} from 'page/model/states.ts';
 import {sayIn, type WordKey} from 'page/words/words.ts';
+import {statusWith} from './statuses.ts';
 
 const root = process.env.TOUCHCAL_SOURCE_DIR ?? '.';
 const faultTable = readFileSync(join(root, 'service/faults.cpp'), 'utf8');
@@ -45,6 +50,8 @@ test('WhatIsNotKnownIsNotShownAsANumber', () => {
 test('NumbersAndTimesReadAsAPersonWritesThem', () => {
   assert.equal(number(0.0547, 3, 'en'), '0.055');
   assert.equal(number(0.0547, 3, 'fr'), '0,055');
+  assert.equal(number(-0.000001, 5, 'en'), '0.00000');
+  assert.equal(number(-0.00001, 5, 'en'), '-0.00001');
   assert.equal(duration(9.4), '9 s');
   assert.equal(duration(75), '1 min 15 s');
   assert.equal(duration(4020), '1 h 07 min');
@@ -63,6 +70,7 @@ test('BothLanguagesFillInTheSameValues', () => {
 test('EveryFaultOfTheDaemonHasItsWordsInFrench', () => {
   assert.ok(faultNames.length >= 42);
   assert.deepEqual([...faultNames].sort(), Object.keys(kFaultsFr).sort());
+  assert.deepEqual([...faultNames].sort(), Object.keys(kFaultTitlesFr).sort());
 });
 
 test('EveryCommandThatAFaultNamesIsNamedInItsTranslationToo', () => {
@@ -70,11 +78,29 @@ test('EveryCommandThatAFaultNamesIsNamedInItsTranslationToo', () => {
   const entries = faultTable.split(/FaultEntry\{\s*FaultCode::/).slice(1).map((entry) => entry.replace(/"\s*\n\s*"/g, ''));
   for (const entry of entries) {
     const name = entry.match(/^k\w+, "(\w+)"/)?.[1];
-    if (name) assert.deepEqual(commands(kFaultsFr[name]!.next_step), commands(entry), name);
+    if (!name) continue;
+    assert.deepEqual(commands(kFaultsFr[name]!.next_step), commands(entry), name);
+    if (commands(entry).includes('skip')) assert.ok(kTouchFaults.has(name), `${name} has its buttons`);
+    if (kTouchFaults.has(name)) assert.match(entry, /FaultKind::kHeld/, name);
   }
 });
 
 test('CommandsOfTheCommandLineBecomeTheButtonsOfThePage', () => {
   assert.equal(withButtons('touchcal retry, or touchcal stop', sayIn('en')), '“Touch again”, or “STOP MOTION”');
   assert.equal(withButtons('touchcal completion', sayIn('en')), 'touchcal completion');
+});
+
+test('WhatAHandIsToDoIsWholeInFrench', () => {
+  const at = (words: string) => handWords(statusWith({by_hand: 'locate', by_hand_step: 'touch', by_hand_plane: 3, by_hand_words: words}), 'fr');
+  assert.match(at('touch plane 3, towards plane 2 and its +x edge: in manual mode jog'), /^Palpez le plan 3, vers le plan 2 et son bord \+x : en mode manuel/);
+  assert.match(at('touch plane 3, in its middle: in manual mode jog'), /^Palpez le plan 3, en son milieu :/);
+  assert.match(at('other words'), /^Palpez le plan 3 :/);
+});
+
+test('AStreamIsBehindUntilItHasBroughtWhatThePulseTold', () => {
+  const behind = behindOf(null, 5, 4, 100);
+  assert.deepEqual(behind, {sequence: 5, since_ms: 100});
+  assert.equal(behindOf(behind, 9, 4, 900), behind, 'since the first that is missing');
+  assert.deepEqual(behindOf(behind, 9, 8, 900), {sequence: 9, since_ms: 900}, 'a stream that comes after is not stalled');
+  assert.equal(behindOf(behind, 9, 9, 900), null);
 });

@@ -17,9 +17,19 @@ const kPulse_ms = 200;            // while the arm may move and is looked at
 const kQuietPulse_ms = 1000;
 const kPulsePatience_ms = 2000;
 const kRetry_ms = 1000;
-const kStreamRetry_ms = 15000;    // as many streams as there may be are open
+const kStreamRetry_ms = 15000;    // as many streams as there may be are open, or one brought nothing
+const kStall_ms = 2000;           // then a stream that is behind the pulse brings nothing any more
 
 const pause = (ms: number): Promise<void> => new Promise((done) => setTimeout(done, ms));
+
+/** A change that the pulse told and the stream has not brought, and since when. */
+export interface Behind { sequence: number; since_ms: number }
+
+/** What the stream is behind by, now that the pulse tells `told` and the stream has brought `brought`; null: nothing. */
+export function behindOf(before: Behind | null, told: number, brought: number, now_ms: number): Behind | null {
+  if (before && brought < before.sequence) return before;
+  return brought < told ? {sequence: told, since_ms: now_ms} : null;
+}
 
 /**
  * Listens to the daemon for as long as the page is open. Two loops: the event stream brings every change; the pulse asks
@@ -34,6 +44,8 @@ export class Live {
   private etag: string | null = null;
   private lastId: string | null = null;  // of the stream's last event
   private hangUp = new AbortController();
+  private behind: Behind | null = null;
+  private stalled = false;  // the stream was hung up for that
   private wake: (() => void) | null = null;
 
   constructor(private readonly listener: Listener, private token: string | null) {}
@@ -59,6 +71,7 @@ export class Live {
       const reply = await get<Joints>('/api/v1/cell/joints', {token: this.token, patience_ms: kPulsePatience_ms});
       if (reply.kind === 'ok') {
         this.listener.joints(reply.value);
+        this.watchStream(reply.value);
         const isNew = reply.value.sequence !== this.sequence || reply.value.instance_id !== this.instance;
         if (!this.streaming && isNew) await this.askStatus();
         this.listener.link(this.streaming ? 'live' : 'polling');
@@ -71,6 +84,18 @@ export class Live {
       const gap = (this.fast ? kPulse_ms : kQuietPulse_ms) - (performance.now() - asked);
       await Promise.race([pause(Math.max(50, gap)), new Promise<void>((woken) => (this.wake = woken))]);
     }
+  }
+
+  /** Something on the way may keep the events for itself: then the page asks instead. */
+  private watchStream({sequence, instance_id}: Joints): void {
+    if (!this.streaming) return;
+    const now_ms = performance.now();
+    const brought = instance_id === this.instance ? this.sequence : -1;
+    this.behind = behindOf(this.behind, sequence, brought, now_ms);
+    if (!this.behind || now_ms - this.behind.since_ms <= kStall_ms) return;
+    this.stalled = true;
+    this.streaming = false;
+    this.hangUp.abort();
   }
 
   private async askStatus(): Promise<void> {
@@ -97,6 +122,9 @@ export class Live {
         // The connection broke; the pulse tells what that means.
       }
       this.streaming = false;
+      this.behind = null;
+      if (this.stalled) gap = kStreamRetry_ms;
+      this.stalled = false;
       await pause(gap);
     }
   }
@@ -111,12 +139,12 @@ export class Live {
     this.hangUp = new AbortController();
     const response = await fetch('/api/v1/events', {headers, cache: 'no-store', signal: this.hangUp.signal});
     if (!response.ok || !response.body) return response.status;
-    this.streaming = true;
     const reader = response.body.pipeThrough(new TextDecoderStream()).getReader();
     const text = new EventText();
     for (;;) {
       const {done, value} = await reader.read();
       if (done) return response.status;
+      this.streaming = true;  // an answer that brings nothing is no stream: the daemon's begins at once
       this.takeEvents(text.push(value));
     }
   }

@@ -2,9 +2,10 @@ import {get, post, type Reply} from '../api/client.ts';
 import type {Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet} from '../api/documents.ts';
 import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
-import {kFirstState, reduce, type Action, type PageState, type View} from './page_state.ts';
+import {kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
 import {commandPath, isActive, type Command} from './states.ts';
 import {slimResult} from './slim_result.ts';
+import {toldFault} from './sticky_faults.ts';
 import {Store} from './store.ts';
 
 const kResultGap_ms = 1000;     // a live result is asked for at most so often
@@ -41,6 +42,7 @@ export class Desk {
     document.addEventListener('visibilitychange', () => {
       this.isPageHidden = document.hidden;
       this.setPace();
+      if (!this.isPageHidden) this.catchUp();
     });
   }
 
@@ -50,12 +52,24 @@ export class Desk {
     const before = this.store.state.link;
     this.store.dispatch({type: 'link', link});
     const isBack = (link === 'live' || link === 'polling') && (before === 'lost' || before === 'refused');
-    if (isBack) void this.loadAll();
+    if (isBack) {
+      void this.loadAll();
+      this.catchUp();
+    }
+  }
+
+  /** Behind a time in which answers were lost or not asked for. */
+  private catchUp(): void {
+    this.asked = null;
+    void this.askReadiness();
+    void this.followRun();
+    const {view, shownRun, results} = this.store.state;
+    if (view === 'result' && shownRun && !results[shownRun]) void this.loadResult(shownRun);
   }
 
   private takeStatuses(statuses: Status[]): void {
     const before = this.store.state.status;
-    this.store.dispatch({type: 'statuses', statuses});
+    this.store.dispatch({type: 'statuses', statuses, heard_ms: performance.now()});
     const status = this.store.state.status;
     if (!status) return;
     this.setPace();
@@ -194,9 +208,11 @@ export class Desk {
     if (view === 'history') void this.loadRuns().then(() => this.loadTrends());
   }
 
-  showRun(run_id: string): void {
+  /** null: the newest. */
+  showRun(run_id: string | null): void {
     this.patch({shownRun: run_id, view: 'result'});
-    if (!this.store.state.results[run_id]) void this.loadResult(run_id);
+    const shown = run_id ?? newestRun(this.store.state);
+    if (shown && !this.store.state.results[shown]) void this.loadResult(shown);
   }
 
   compare(run_id: string): void {
@@ -216,28 +232,32 @@ export class Desk {
     if (reply.kind === 'lost') this.store.dispatch({type: 'plan', recipe, plan: {kind: 'lost'}});
   }
 
-  async startRun(conditions: Conditions): Promise<void> {
+  /** Whether the daemon took it. */
+  async startRun(conditions: Conditions): Promise<boolean> {
     const {recipe} = this.store.state;
-    if (!recipe) return;
-    await this.send('start', '/api/v1/runs', {recipe, ...conditions});
+    return recipe !== null && this.send('start', '/api/v1/runs', {recipe, ...conditions});
   }
 
   async command(command: Command): Promise<void> {
     const path = commandPath(command, this.store.state.status?.run_id ?? null);
     if (!path) return;
+    const told = toldFault(this.store.state.faults);  // by the answer, the daemon may have dropped it already
     const taken = await this.send(command, path, undefined, command === 'stop' ? kStopPatience_ms : undefined);
-    if (taken && command === 'acknowledge') this.store.dispatch({type: 'acknowledged'});
+    if (taken && command === 'acknowledge') this.store.dispatch({type: 'acknowledged', key: told?.key ?? null});
     if (taken) void this.askReadiness();
   }
 
   private async send(command: Command | 'start', path: string, body: unknown, patience_ms?: number): Promise<boolean> {
+    const isStop = command === 'stop';
     this.patch({busy: command, notice: null});
+    if (isStop && this.store.state.link === 'lost') this.patch({isStopLost: true});  // till it is known better
     const reply = await post<unknown>(path, patience_ms ? {token: this.token, body, patience_ms} : {token: this.token, body});
     const busy = this.store.state.busy === command ? null : this.store.state.busy;
     if (reply.kind === 'refused' && reply.status === 401) this.patch({role: 'wrong token'});
     const problem = reply.kind === 'refused' ? reply.problem : null;
     const taken = reply.kind === 'ok';
-    this.patch({busy, notice: taken ? null : {command, problem}});
+    const isStopLost = isStop ? !isHeard(reply) : this.store.state.isStopLost;
+    this.patch({busy, isStopLost, notice: taken || (isStop && isStopLost) ? null : {command, problem}});
     return taken;
   }
 
@@ -253,4 +273,13 @@ export class Desk {
   dropNotice(): void {
     this.patch({notice: null});
   }
+
+  dropStopLost(): void {
+    this.patch({isStopLost: false});
+  }
+}
+
+/** The daemon took the command, or knew it and had nothing to do. */
+function isHeard(reply: Reply<unknown>): boolean {
+  return reply.kind === 'ok' || (reply.kind === 'refused' && (reply.status === 409 || reply.status === 422));
 }

@@ -5,7 +5,8 @@ export const kUnknown = '–';
 
 export function number(value: number | null | undefined, digits: number, language: Language): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return kUnknown;
-  return value.toLocaleString(language, {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false});
+  const text = value.toLocaleString(language, {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false});
+  return /[1-9]/.test(text) ? text : text.replace(/^-/, '');  // what is rounded to zero has no sign
 }
 
 /** 4000 s is "1 h 07 min", 75 s "1 min 15 s", 9 s "9 s". */

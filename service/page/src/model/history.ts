@@ -1,7 +1,7 @@
 import type {Parameter, Result, Run} from '../api/documents.ts';
 
-/** What a trend is drawn of: a parameter's error, or the distance of a plane. */
-export type TrendOf = {kind: 'parameter'; name: string} | {kind: 'plane'; plane: number};
+/** What a trend is drawn of: a parameter's error, or the rms of the held-out distances of a plane. */
+export type TrendOf = {kind: 'parameter'; name: string; unit: string} | {kind: 'plane'; plane: number};
 
 export interface TrendPoint { run: number; value: number | null }
 
@@ -14,20 +14,20 @@ export function trend(runs: Run[], results: Record<string, Result>, of: TrendOf)
 
 function trendValue(result: Result, of: TrendOf): number | null {
   if (of.kind === 'parameter') return result.parameters.find(({name}) => name === of.name)?.error ?? null;
-  return result.planes.find(({plane}) => plane === of.plane)?.calibrated_mean_mm ?? null;
+  return result.planes_held_out.find(({plane}) => plane === of.plane)?.calibrated_rms_mm ?? null;
 }
 
 /** All that a trend can be drawn of. */
 export function trendChoices(results: Record<string, Result>): TrendOf[] {
-  const parameters = new Set<string>();
+  const parameters = new Map<string, string>();
   const planes = new Set<number>();
   for (const result of Object.values(results)) {
-    for (const {name, status} of result.parameters) if (status === 'identified') parameters.add(name);
-    for (const {plane} of result.planes) planes.add(plane);
+    for (const {name, unit, status} of result.parameters) if (status === 'identified') parameters.set(name, unit);
+    for (const {plane} of result.planes_held_out) planes.add(plane);
   }
   return [
     ...[...planes].sort((a, b) => a - b).map((plane): TrendOf => ({kind: 'plane', plane})),
-    ...[...parameters].map((name): TrendOf => ({kind: 'parameter', name})),
+    ...[...parameters].map(([name, unit]): TrendOf => ({kind: 'parameter', name, unit})),
   ];
 }
 
@@ -45,4 +45,17 @@ export function compareRuns(a: Result, b: Result): Compared[] {
     const std = Math.hypot(parameter.std_uncertainty ?? NaN, other?.std_uncertainty ?? NaN);
     return {parameter, a: first, b: second, difference, isSignificant: difference !== null && Math.abs(difference) > kExpansion * std};
   }).filter((row) => row.a !== null || row.b !== null);
+}
+
+/** A plane's held-out distances in two runs, in mm. */
+export interface ComparedPlane { plane: number; a: number | null; b: number | null; difference: number | null }
+
+export function compareHeldOut(a: Result, b: Result): ComparedPlane[] {
+  const planes = new Set([...a.planes_held_out, ...b.planes_held_out].map(({plane}) => plane));
+  const rms = (result: Result, plane: number): number | null =>
+      result.planes_held_out.find((one) => one.plane === plane)?.calibrated_rms_mm ?? null;
+  return [...planes].sort((x, y) => x - y).map((plane) => {
+    const [first, second] = [rms(a, plane), rms(b, plane)];
+    return {plane, a: first, b: second, difference: first === null || second === null ? null : second - first};
+  });
 }

@@ -21,6 +21,7 @@ export interface PageState {
   link: Link;
   status: Status | null;
   pulse: Pulse | null;
+  statusKnown_ms: number | null;        // when the status was last heard, or known to be still the newest
   series: Series;
   faults: StickyFault[];
   unmet: Unmet[] | null;  // what stands in the way of a start; null: not known
@@ -41,18 +42,20 @@ export interface PageState {
   touches: {run_id: string; touches: Touch[]} | null;  // of the run that is watched
   runPlan: {run_id: string; touches: Touch[]} | null;
   notice: Notice | null;
+  isStopLost: boolean;                  // a stop did not reach the daemon, until noted
   busy: Command | 'start' | null;       // sent, not answered yet
 }
 
 export const kFirstState: PageState = {
-  link: 'connecting', status: null, pulse: null, series: kNoSeries, faults: [], unmet: null, role: null, hasToken: false,
+  link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], unmet: null, role: null, hasToken: false,
   view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], nextBefore: null,
-  shownRun: null, compared: [], results: {}, missing: {}, touches: null, runPlan: null, notice: null, busy: null,
+  shownRun: null, compared: [], results: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
+  busy: null,
 };
 
 export type Action =
   | {type: 'link'; link: Link}
-  | {type: 'statuses'; statuses: Status[]}
+  | {type: 'statuses'; statuses: Status[]; heard_ms: number}
   | {type: 'joints'; joints: Joints; heard_ms: number}
   | {type: 'patch'; patch: Partial<PageState>}
   | {type: 'plan'; recipe: string; plan: PlanState}
@@ -60,7 +63,7 @@ export type Action =
   | {type: 'missing'; run_id: string; why: string}
   | {type: 'runs'; runs: Run[]; nextBefore: string | null; isMore: boolean}
   | {type: 'noted'; key: string}
-  | {type: 'acknowledged'}
+  | {type: 'acknowledged'; key: string | null}
   | {type: 'compare'; run_id: string};
 
 /** Results are some 25 kB each: as many are kept as the trends draw. */
@@ -71,9 +74,9 @@ export function reduce(state: PageState, action: Action): PageState {
     case 'link':
       return state.link === action.link ? state : {...state, link: action.link};
     case 'statuses':
-      return action.statuses.reduce(takeStatus, state);
+      return {...action.statuses.reduce(takeStatus, state), statusKnown_ms: action.heard_ms};
     case 'joints':
-      return {...state, pulse: {joints: action.joints, heard_ms: action.heard_ms}};
+      return takePulse(state, {joints: action.joints, heard_ms: action.heard_ms});
     case 'patch':
       return {...state, ...action.patch};
     case 'plan':
@@ -87,7 +90,7 @@ export function reduce(state: PageState, action: Action): PageState {
     case 'noted':
       return {...state, faults: dropFault(state.faults, action.key)};
     case 'acknowledged':
-      return {...state, faults: dropAcknowledged(state.faults)};
+      return {...state, faults: dropAcknowledged(state.faults, action.key)};
     case 'compare':
       return {...state, compared: toggled(state.compared, action.run_id)};
   }
@@ -106,7 +109,22 @@ function takeStatus(state: PageState, status: Status): PageState {
     series,
     faults: noteFaults(state.faults, before, status),
     view: nextView(state.view, before, status),
+    shownRun: status.run_id !== null && before?.run_id !== status.run_id ? null : state.shownRun,  // a new run is looked at
   };
+}
+
+/** The pulse tells the newest status' number as well: one that is not behind it is as new as the pulse. */
+function takePulse(state: PageState, pulse: Pulse): PageState {
+  const {status} = state;
+  const {sequence, instance_id} = pulse.joints;
+  const isNewest = status !== null && status.instance_id === instance_id && status.sequence >= sequence;
+  return {...state, pulse, statusKnown_ms: isNewest ? pulse.heard_ms : state.statusKnown_ms};
+}
+
+/** The run that was made last, as far as the page knows. */
+export function newestRun({status, runs}: Pick<PageState, 'status' | 'runs'>): string | null {
+  const ids = [status?.run_id ?? null, runs[0]?.id ?? null].filter((id) => id !== null);
+  return ids.sort((a, b) => Number(b) - Number(a))[0] ?? null;
 }
 
 /** A start shows the run, its end the result; else a person chooses. */
@@ -126,8 +144,11 @@ function toggled(compared: string[], run_id: string): string[] {
   return compared.includes(run_id) ? compared.filter((id) => id !== run_id) : [...compared, run_id].slice(-2);
 }
 
-/** How old the cell's data are now, in ms: their age when they were told and the time since; null: never heard. */
-export function dataAge_ms(pulse: Pulse | null, now_ms: number): number | null {
-  if (!pulse || pulse.joints.data_age_ms === null) return null;
-  return pulse.joints.data_age_ms + Math.max(0, now_ms - pulse.heard_ms);
+/**
+ * How old what is shown is now, in ms: the older of the cell's data (their age when they were told and the time since) and
+ * of the status; null: never heard.
+ */
+export function dataAge_ms({pulse, statusKnown_ms}: Pick<PageState, 'pulse' | 'statusKnown_ms'>, now_ms: number): number | null {
+  if (!pulse || pulse.joints.data_age_ms === null || statusKnown_ms === null) return null;
+  return Math.max(0, pulse.joints.data_age_ms + now_ms - pulse.heard_ms, now_ms - statusKnown_ms);
 }

@@ -32,16 +32,27 @@ export function mainAction(state: StateName): MainAction {
   return state === 'ABORTED' ? 'clear' : null;
 }
 
-/** A touch holds the run: it can be made again or left out. */
-export function touchActions(status: Status): Command[] {
-  return status.state === 'HELD' && status.fault_code ? ['retry', 'skip'] : [];
+/** Faults of a single touch, that making it again or leaving it out leads out of. */
+export const kTouchFaults: ReadonlySet<string> = new Set([
+  'probe_triggered', 'early_contact', 'false_trigger', 'touch_spread', 'retries_worse', 'repeated_touch', 'touch_does_not_fit',
+  'touch_rejected', 'no_contact', 'probe_stuck', 'probe_fault',
+]);
+
+/** What can be done with the touch that holds the run; of the reference touch none can be left out. */
+export function touchActions({state, fault_code}: Status): Command[] {
+  if (state !== 'HELD' || !fault_code) return [];
+  if (fault_code === 'reference_drift') return ['retry'];
+  return kTouchFaults.has(fault_code) ? ['retry', 'skip'] : [];
 }
+
+/** The arm is about to be told what to do by another: a run would end the dialogue. */
+export const isLocating = (status: Status): boolean => status.by_hand === 'locate';
 
 /** How the state looks: at rest, at work, waiting for a person, or wrong. */
 export type Mood = 'rest' | 'work' | 'wait' | 'wrong';
 export function mood(status: Status): Mood {
   if (status.state === 'ABORTED' || status.state === 'ABORTING') return 'wrong';
   if (status.fault_code && (status.state === 'HELD' || status.state === 'STOPPED')) return 'wrong';
-  if (status.waiting_for || status.state === 'HELD' || status.state === 'SUSPENDED') return 'wait';
+  if (status.waiting_for || isLocating(status) || status.state === 'HELD' || status.state === 'SUSPENDED') return 'wait';
   return isActive(status.state) ? 'work' : 'rest';
 }

@@ -62,8 +62,9 @@ function withWarning(faults: StickyFault[], status: Status): StickyFault[] {
     at: status.since,
   };
   const others = faults.filter((fault) => !(fault.isWarning && fault.code === warning.code && fault.run_id === warning.run_id));
-  const warnings = others.filter((fault) => fault.isWarning).slice(0, kWarningsMax - 1);
-  return [...others.filter((fault) => !fault.isWarning), warning, ...warnings];
+  const kept = others.filter((fault) => fault.isWarning).slice(0, kWarningsMax - 1);
+  const told = toldFault(others);
+  return [...(told ? [told] : []), warning, ...others.filter((fault) => fault !== told && (!fault.isWarning || kept.includes(fault)))];
 }
 
 /** A person has read it. One that the daemon still tells stays until the daemon has taken note as well. */
@@ -71,7 +72,12 @@ export function dropFault(known: StickyFault[], key: string): StickyFault[] {
   return known.filter((fault) => fault.key !== key || !(fault.isWarning || fault.isOver));
 }
 
-/** The daemon took note: what it told is read. */
-export function dropAcknowledged(known: StickyFault[]): StickyFault[] {
-  return known.filter((fault) => fault.isWarning);
+/** The daemon took note of the fault of `key`: it is read. Others are not. */
+export function dropAcknowledged(known: StickyFault[], key: string | null): StickyFault[] {
+  return known.filter((fault) => fault.key !== key);
+}
+
+/** The fault that the daemon tells now. */
+export function toldFault(known: StickyFault[]): StickyFault | null {
+  return known.find((fault) => !fault.isWarning && !fault.isOver) ?? null;
 }

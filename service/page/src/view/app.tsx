@@ -62,8 +62,11 @@ export function App({desk}: {desk: Desk}) {
     document.documentElement.dataset.theme = theme;
     keepTheme(theme);
   }, [theme]);
+  const startRun = async (): Promise<void> => {
+    if (await desk.startRun(conditions)) document.querySelector<HTMLElement>('header h1')?.focus();
+  };
   const place = useRef<HTMLElement>(null);
-  useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun]);
+  useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun, state.isStopLost]);
   const say = sayIn(language);
   const isOld = state.link === 'lost' || state.link === 'refused';
   const takeConditions = (given: Conditions): void => {
@@ -89,6 +92,7 @@ export function App({desk}: {desk: Desk}) {
         </button>
       </nav>
       <main class={isOld ? 'old' : ''} ref={place}>
+        <StopLost state={state} desk={desk} language={language} />
         <Banner state={state} now_ms={now_ms} language={language} />
         <WaitPanel state={state} />
         <HandPanel state={state} desk={desk} />
@@ -96,7 +100,7 @@ export function App({desk}: {desk: Desk}) {
         <Shown state={state} desk={desk} conditions={conditions} onConditions={takeConditions} />
         {state.view === 'cell' ? <p class="keys">{say('keysHelp')}</p> : null}
       </main>
-      <RunControls state={state} desk={desk} onStart={() => void desk.startRun(conditions)} />
+      <RunControls state={state} desk={desk} onStart={() => void startRun()} />
     </LanguageContext.Provider>
   );
 }
@@ -121,7 +125,7 @@ function Banner({state, now_ms, language}: {state: PageState; now_ms: number; la
   const say = sayIn(language);
   const {link, role} = state;
   if (link === 'lost') {
-    const words = fill(say('lostWords'), {age: age(dataAge_ms(state.pulse, now_ms))});
+    const words = fill(say('lostWords'), {age: age(dataAge_ms(state, now_ms))});
     return <Card title={say('lostTitle')} words={words} kind="fault" />;
   }
   if (role === 'wrong token') return <Card title={say('staleTitle')} words={say('staleWords')} kind="warning" />;
@@ -129,6 +133,19 @@ function Banner({state, now_ms, language}: {state: PageState; now_ms: number; la
   if (role === 'none') return <p class="watching"><Symbol shape="later" />{say('watchOnly')}</p>;
   if (role === 'view') return <p class="watching"><Symbol shape="later" />{say('viewOnly')}</p>;
   return null;
+}
+
+/** A stop that nobody heard: it stays in sight whatever is scrolled. */
+function StopLost({state, desk, language}: {state: PageState; desk: Desk; language: Language}) {
+  const say = sayIn(language);
+  if (!state.isStopLost) return null;
+  return (
+    <section class="card fault stop-lost" role="alert">
+      <h2 class="big"><Symbol shape="fault" />{say('stopLostTitle')}</h2>
+      <p class="big">{say('stopLostWords')}</p>
+      <div class="actions"><button type="button" onClick={() => desk.dropStopLost()}>{say('note')}</button></div>
+    </section>
+  );
 }
 
 function Card({title, words, kind}: {title: string; words: string; kind: 'fault' | 'warning'}) {

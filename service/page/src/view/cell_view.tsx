@@ -1,10 +1,10 @@
 import {useEffect} from 'preact/hooks';
 import type {Place, Recipe} from '../api/documents.ts';
 import type {Conditions, Desk} from '../model/desk.ts';
-import {duration, number, time} from '../model/format.ts';
+import {cut, duration, number, time} from '../model/format.ts';
 import type {PageState, PlanState} from '../model/page_state.ts';
 import {conditions, type Condition} from '../model/readiness.ts';
-import {isActive, mayStart} from '../model/states.ts';
+import {isActive, isLocating, mayStart} from '../model/states.ts';
 import {faultWords, withButtons} from '../words/fault_words.ts';
 import {Symbol, type Shape} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
@@ -20,6 +20,7 @@ interface Props {
 export function CellView({state, desk, conditions: given, onConditions}: Props) {
   return (
     <div class="cell-view">
+      {state.cell && cut(state.cell.name, 80) !== null ? <p class="cell-name"><OuterText text={state.cell.name} /></p> : null}
       <Readiness state={state} />
       <RecipeChoice state={state} desk={desk} given={given} onConditions={onConditions} />
       <LocateOffer state={state} desk={desk} />
@@ -78,7 +79,7 @@ function RecipeChoice({state, desk, given, onConditions}: {
         {recipes?.recipes.map(({name}) => (
           <label key={name} class={name === recipe ? 'choice chosen' : 'choice'}>
             <input type="radio" name="recipe" value={name} checked={name === recipe} onChange={() => desk.chooseRecipe(name)} />
-            <span class="name">{name}</span>
+            <span class="name"><OuterText text={name} /></span>
           </label>
         ))}
       </div>
@@ -154,7 +155,7 @@ function StartFields({state, given, onConditions}: {state: PageState; given: Con
 function LocateOffer({state, desk}: {state: PageState; desk: Desk}) {
   const say = useSay();
   const {status, role, unmet} = state;
-  if (!status || !mayStart(status.state) || role !== 'operate' || unmet === null) return null;
+  if (!status || isLocating(status) || !mayStart(status.state) || role !== 'operate' || unmet === null) return null;
   return (
     <section class="locate" aria-labelledby="locate">
       <h2 id="locate">{say('locate')}</h2>

@@ -9,6 +9,7 @@ interface Props {
   lines: Line[];
   height: number;
   isLog?: boolean;
+  isCounted?: boolean;  // x are numbers of runs: whole
   /** Draws numbers of the axes and of the legend. */
   write: (value: number) => string;
 }
@@ -16,8 +17,11 @@ interface Props {
 /** Grey lines that differ by their dashes: colour is for what is wrong. */
 const kDashes = [[], [6, 4], [2, 3], [10, 3, 2, 3], [1, 4], [12, 6]];
 
+/** Ticks at whole numbers only. */
+const kWhole = {incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], values: (_: uPlot, ticks: number[]) => ticks.map(String)};
+
 /** Curves over x, as wide as their place. */
-export function Curve({title, x, lines, height, isLog, write}: Props) {
+export function Curve({title, x, lines, height, isLog, isCounted, write}: Props) {
   const place = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
   const shape = `${lines.map(({name}) => name).join('\n')}\n${isLog}\n${height}\n${title}`;
@@ -34,7 +38,7 @@ export function Curve({title, x, lines, height, isLog, write}: Props) {
       width: width(),
       height,
       scales: {x: {time: false}, y: isLog ? {distr: 3} : {}},
-      axes: [{...axis, size: 28}, {...axis, size: 56, values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : write(tick)))}],
+      axes: [{...axis, size: 28, ...(isCounted ? kWhole : {})}, {...axis, size: 56, values: (_, ticks) => ticks.map((tick) => (tick === null ? '' : write(tick)))}],
       legend: {show: lines.length > 1},
       cursor: {y: false},
       series: [

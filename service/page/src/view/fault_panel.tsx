@@ -1,9 +1,9 @@
+import {useEffect, useRef} from 'preact/hooks';
 import type {Desk} from '../model/desk.ts';
-import {fill} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
 import {touchActions} from '../model/states.ts';
-import type {StickyFault} from '../model/sticky_faults.ts';
-import {faultTitle, faultWords, withButtons} from '../words/fault_words.ts';
+import {toldFault, type StickyFault} from '../model/sticky_faults.ts';
+import {commandWords, faultTitle, hasTitle, faultWords, withButtons} from '../words/fault_words.ts';
 import {sayName} from '../words/words.ts';
 import {HoldButton} from './hold_button.tsx';
 import {Symbol} from './symbol.tsx';
@@ -12,8 +12,13 @@ import {OuterText, useLanguage, useSay} from './texts.tsx';
 /** Faults and warnings, until a person has noted each of them. */
 export function FaultPanel({state, desk}: {state: PageState; desk: Desk}) {
   const reached = state.link === 'live' || state.link === 'polling';
+  const place = useRef<HTMLDivElement>(null);
+  const told = toldFault(state.faults)?.key ?? null;
+  useEffect(() => {
+    if (told !== null) place.current?.scrollIntoView({block: 'start'});  // whatever was read when it came
+  }, [told]);
   return (
-    <div class="faults" role="alert">
+    <div class="faults" role="alert" ref={place}>
       {state.faults.map((fault) => <FaultCard key={fault.key} fault={fault} state={state} desk={desk} reached={reached} />)}
       <Refusal state={state} desk={desk} />
     </div>
@@ -36,7 +41,8 @@ function FaultCard({fault, state, desk, reached}: {fault: StickyFault; state: Pa
     <article class={fault.isWarning ? 'card warning' : 'card fault'}>
       <h2>
         <Symbol shape={fault.isWarning ? 'warning' : 'fault'} />
-        {fault.isWarning ? say('warningTitle') : say('faultTitle')}: <OuterText text={faultTitle(fault.code)} isEnglish />
+        {say(fault.isWarning ? 'warningTitle' : 'faultTitle')}{' '}
+        <OuterText text={faultTitle(language, fault.code)} isEnglish={!hasTitle(language, fault.code)} />
         {fault.isOver ? <small> ({say('faultOver')})</small> : null}
       </h2>
       <dl>
@@ -46,7 +52,7 @@ function FaultCard({fault, state, desk, reached}: {fault: StickyFault; state: Pa
       </dl>
       <div class="actions">
         {actions.map((action) => (
-          <HoldButton key={action} class="inline" note={say('startHold')} disabled={false}
+          <HoldButton key={action} class="inline" note={say('startHold')} disabled={!state.status?.controller_connected}
                       onHeld={() => void desk.command(action)}>
             {say(action === 'retry' ? 'retry' : 'skip')}
           </HoldButton>
@@ -76,7 +82,7 @@ function Refusal({state, desk}: {state: PageState; desk: Desk}) {
   const words = notice.problem?.detail ?? say('noAnswer');
   return (
     <article class="card warning">
-      <h2><Symbol shape="warning" />{fill(say('refusedCommand'), {command: notice.command})}</h2>
+      <h2><Symbol shape="warning" />{say('refusedCommand', {command: commandWords(notice.command, say)})}</h2>
       <p><OuterText text={words} isEnglish={notice.problem !== null} /></p>
       <ul>{notice.problem?.errors?.map(({code, detail}) => <li key={code}><OuterText text={detail} isEnglish /></li>)}</ul>
       <div class="actions"><button type="button" onClick={() => desk.dropNotice()}>{say('note')}</button></div>

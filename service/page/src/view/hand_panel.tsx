@@ -1,6 +1,7 @@
 import type {Desk} from '../model/desk.ts';
 import {number} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
+import {handWords} from '../words/hand_words.ts';
 import {HoldButton} from './hold_button.tsx';
 import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
@@ -11,10 +12,9 @@ export function HandPanel({state, desk}: {state: PageState; desk: Desk}) {
   const language = useLanguage();
   const {status} = state;
   if (!status?.by_hand || !status.by_hand_step) return null;
-  const {by_hand_step: step, by_hand_plane: plane, by_hand_index: index, by_hand_total: total} = status;
+  const {by_hand_step: step, by_hand_index: index, by_hand_total: total} = status;
   const reached = state.link === 'live' || state.link === 'polling';
   const disabled = !reached || state.role !== 'operate';
-  const own = say(`hand_${step}`, {plane: plane ?? '–'});
   return (
     <section class="card wait" role="alert">
       <h2>
@@ -22,7 +22,7 @@ export function HandPanel({state, desk}: {state: PageState; desk: Desk}) {
         {status.by_hand === 'locate' ? say('locate') : say('handTitle')}
         {index && total ? <small>{say('handCount', {done: index, total})}</small> : null}
       </h2>
-      <p class="big"><OuterText text={language === 'en' ? status.by_hand_words ?? own : own} /></p>
+      <p class="big"><OuterText text={handWords(status, language)} /></p>
       {status.by_hand_problem
         ? <p class="abnormal"><Symbol shape="warning" /><OuterText text={status.by_hand_problem} isEnglish /></p>
         : null}
@@ -39,6 +39,9 @@ export function HandPanel({state, desk}: {state: PageState; desk: Desk}) {
             {say('handGoAround')}
           </HoldButton>
         )}
+        {status.by_hand === 'locate'
+          ? <button type="button" disabled={disabled} onClick={() => void desk.command('stop')}>{say('cancelLocating')}</button>
+          : null}
       </div>
     </section>
   );

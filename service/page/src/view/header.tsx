@@ -1,11 +1,11 @@
 import type {Status} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
-import {age, duration} from '../model/format.ts';
+import {age, cut, duration} from '../model/format.ts';
 import {dataAge_ms, type PageState} from '../model/page_state.ts';
-import {isActive, mood, type Mood} from '../model/states.ts';
-import type {WordKey} from '../words/words.ts';
+import {isActive, isLocating, mood, type Mood} from '../model/states.ts';
+import type {Say, WordKey} from '../words/words.ts';
 import {Symbol, type Shape} from './symbol.tsx';
-import {OuterText, useSay} from './texts.tsx';
+import {useSay} from './texts.tsx';
 
 const kMoodShapes: Record<Mood, Shape> = {rest: 'rest', work: 'work', wait: 'wait', wrong: 'fault'};
 const kLinkWords: Record<Link, WordKey> = {
@@ -19,18 +19,18 @@ export function Header({state, now_ms}: {state: PageState; now_ms: number}) {
   const say = useSay();
   const {status, link, cell} = state;
   const isLost = link === 'lost' || link === 'refused' || link === 'connecting';
-  const age_ms = dataAge_ms(state.pulse, now_ms);
+  const age_ms = dataAge_ms(state, now_ms);
   const isOld = age_ms === null || age_ms > kStale_ms;
   return (
     <header>
       <div class={`state ${isLost || !status ? 'unknown' : mood(status)}`} role="status">
         <Symbol shape={isLost || !status ? 'unknown' : kMoodShapes[mood(status)]} />
-        <h1>{isLost ? say(kLinkWords[link]) : status ? stateWords(status, state, say) : say('loading')}</h1>
+        <h1 tabIndex={-1}>{isLost ? say(kLinkWords[link]) : status ? stateWords(status, state, say) : say('loading')}</h1>
       </div>
       <div class="progress">{status && <Progress status={status} isLost={isLost} />}</div>
       <dl class="link">
         <div class={isLost ? 'abnormal' : ''}>
-          <dt>{cell ? <OuterText text={cell.name} /> : say('title')}</dt>
+          <dt>{cell ? <ShortText text={cell.name} /> : say('title')}</dt>
           <dd>{isLost ? <Symbol shape="fault" /> : null}{say(kLinkWords[link])}</dd>
         </div>
         <div class={isOld ? 'abnormal' : ''} data-age={age_ms === null ? '' : Math.round(age_ms)}>
@@ -42,9 +42,23 @@ export function Header({state, now_ms}: {state: PageState; now_ms: number}) {
   );
 }
 
-function stateWords(status: Status, {unmet}: PageState, say: ReturnType<typeof useSay>): string {
+/** A name on one line; whole names stand in the views. */
+function ShortText({text}: {text: string}) {
+  const start = cut(text, 80);
+  return <span class="one-line" title={start ?? text}>{start === null ? text : `${start}…`}</span>;
+}
+
+function stateWords(status: Status, {unmet}: PageState, say: Say): string {
+  if (isLocating(status)) return say('locating');
   if (status.state === 'IDLE' && unmet !== null && unmet.length > 0) return say('notReady');
   return say(status.state);
+}
+
+/** No time is known before the first touch has told how long one takes. */
+function timeLeft({eta_s, touches_done, touches_total}: Status, say: Say): string {
+  if (eta_s === null) return '';
+  const isKnown = eta_s > 0 || touches_total === null || touches_done >= touches_total;
+  return ` · ${isKnown ? say('timeLeft', {time: duration(eta_s)}) : say('timeLeftUnknown')}`;
 }
 
 function Progress({status, isLost}: {status: Status; isLost: boolean}) {
@@ -57,10 +71,10 @@ function Progress({status, isLost}: {status: Status; isLost: boolean}) {
       <p class="count">
         {total ? say('touchOf', {done: status.touches_done, total}) : say('touchesDone', {done: status.touches_done})}
         {active && status.plane ? ` · ${say('plane', {plane: status.plane})}` : ''}
-        {active && status.eta_s !== null ? ` · ${say('timeLeft', {time: duration(status.eta_s)})}` : ''}
+        {active ? timeLeft(status, say) : ''}
       </p>
       <progress max={total ?? 1} value={total ? status.touches_done : 0} aria-label={say('touches')} />
-      <p class="run-name"><OuterText text={say('runOf', {run: status.run_id, recipe: status.recipe ?? ''})} /></p>
+      <p class="run-name"><ShortText text={say('runOf', {run: status.run_id, recipe: status.recipe ?? ''})} /></p>
     </div>
   );
 }

@@ -2,8 +2,9 @@ import {useMemo, useState} from 'preact/hooks';
 import type {Run} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
 import {number, time} from '../model/format.ts';
-import {compareRuns, trend, trendChoices, type TrendOf} from '../model/history.ts';
+import {compareHeldOut, compareRuns, trend, trendChoices, type TrendOf} from '../model/history.ts';
 import type {PageState} from '../model/page_state.ts';
+import {verdictOf} from '../model/verdict.ts';
 import {sayName} from '../words/words.ts';
 import {Curve} from './curve.tsx';
 import {inUnit, shownUnit} from './result_view.tsx';
@@ -98,6 +99,19 @@ function Comparison({state}: {state: PageState}) {
             </tr>
           </thead>
           <tbody>
+            <tr>
+              <th scope="row">{say('verdict')}</th>
+              <td>{say(`verdict_${verdictOf(a, first, state)}`)}</td>
+              <td>{say(`verdict_${verdictOf(b, second, state)}`)}</td>
+              <td /><td />
+            </tr>
+            {compareHeldOut(first, second).map((row) => (
+              <tr key={row.plane}>
+                <th scope="row">{say('heldOutOf', {plane: row.plane})}</th>
+                {[row.a, row.b, row.difference].map((value, i) => <td key={i} class="figure">{number(value, 3, language)}</td>)}
+                <td>mm</td>
+              </tr>
+            ))}
             {compareRuns(first, second).map((row) => (
               <tr key={row.parameter.name}>
                 <th scope="row">{row.parameter.name}</th>
@@ -128,7 +142,7 @@ function Trends({state}: {state: PageState}) {
   const points = useMemo(() => (of ? trend(state.runs, state.results, of) : []), [state.runs, state.results, of]);
   const x = useMemo(() => points.map(({run}) => run), [points]);
   const lines = useMemo(() => [{name: of ? keyOf(of) : '', values: points.map(({value}) => value)}], [points, of]);
-  const nameOf = (choice: TrendOf): string => (choice.kind === 'plane' ? say('trendPlane', {plane: choice.plane}) : choice.name);
+  const nameOf = (choice: TrendOf): string => (choice.kind === 'plane' ? `${say('heldOutOf', {plane: choice.plane})}, mm` : `${choice.name}, ${choice.unit}`);
   return (
     <section>
       <h2>{say('trends')}</h2>
@@ -140,7 +154,7 @@ function Trends({state}: {state: PageState}) {
               {choices.map((choice) => <option key={keyOf(choice)} value={keyOf(choice)}>{nameOf(choice)}</option>)}
             </select>
           </label>
-          <Curve title={nameOf(of)} x={x} lines={lines} height={180} write={(value) => number(value, of.kind === 'plane' ? 3 : 4, language)} />
+          <Curve title={nameOf(of)} x={x} lines={lines} height={180} isCounted write={(value) => number(value, of.kind === 'plane' ? 3 : 4, language)} />
         </>
       ) : <p class="hint">{say('trendNone')}</p>}
     </section>

@@ -2,7 +2,7 @@ import {useState} from 'preact/hooks';
 import type {Parameter, PlaneDistances, Result, VerdictName} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
 import {number, type Language} from '../model/format.ts';
-import type {PageState} from '../model/page_state.ts';
+import {newestRun, type PageState} from '../model/page_state.ts';
 import {verdictOf} from '../model/verdict.ts';
 import {sayName, type Say, type WordKey} from '../words/words.ts';
 import {LimitsTable} from './limits_table.tsx';
@@ -14,15 +14,18 @@ import {UncertaintyMapView} from './uncertainty_map.tsx';
 /** What a run found, in plain words first. */
 export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
   const say = useSay();
-  const run_id = state.shownRun ?? state.status?.run_id ?? state.runs[0]?.id ?? null;
+  const newest = newestRun(state);
+  const run_id = state.shownRun ?? newest;
   const result = run_id ? state.results[run_id] : undefined;
   const why = run_id ? state.missing[run_id] : undefined;
-  if (run_id && !result && why) return <p class="empty"><OuterText text={say('noResult', {why})} /></p>;
-  if (!run_id || !result) return <p class="empty">{say('noResultYet')}</p>;
+  const recipe = result?.recipe ?? state.runs.find(({id}) => id === run_id)?.recipe ?? '';
+  if (!run_id) return <p class="empty">{say('noResultYet')}</p>;
+  const which = <Which run_id={run_id} recipe={recipe} isEarlier={run_id !== newest} desk={desk} />;
+  if (!result) return <>{which}<p class="empty"><OuterText text={why ? say('noResult', {why}) : say('noResultYet')} /></p></>;
   const verdict = verdictOf(run_id, result, state);
   return (
     <div class="result-view">
-      <h2>{say('runOf', {run: run_id, recipe: result.recipe})}</h2>
+      {which}
       <Verdict result={result} verdict={verdict} />
       <Downloads run_id={run_id} desk={desk} />
       {result.verdict.decision_rule ? <LimitsTable rule={result.verdict.decision_rule} /> : null}
@@ -31,6 +34,20 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
       <Errors result={result} />
       {result.tip_uncertainty.map && <UncertaintyMapView map={result.tip_uncertainty.map} />}
       <Remarks result={result} />
+    </div>
+  );
+}
+
+/** Of which run all of this is; an earlier one is not taken for the one that was just made. */
+function Which({run_id, recipe, isEarlier, desk}: {run_id: string; recipe: string; isEarlier: boolean; desk: Desk}) {
+  const say = useSay();
+  return (
+    <div class={isEarlier ? 'which card warning' : 'which'}>
+      <h2 class="big">
+        {isEarlier ? <Symbol shape="warning" /> : null}
+        <OuterText text={say(isEarlier ? 'runEarlier' : 'runOf', {run: run_id, recipe})} />
+      </h2>
+      {isEarlier ? <button type="button" onClick={() => desk.showRun(null)}>{say('showNewest')}</button> : null}
     </div>
   );
 }

@@ -1,6 +1,6 @@
 import type {Desk} from '../model/desk.ts';
 import type {PageState} from '../model/page_state.ts';
-import {mainAction, mayPause} from '../model/states.ts';
+import {isLocating, mainAction, mayPause} from '../model/states.ts';
 import {HoldButton} from './hold_button.tsx';
 import {useSay} from './texts.tsx';
 
@@ -43,9 +43,11 @@ function MainButton({state, desk, onStart, usable}: Props & {usable: boolean}) {
   const {status, busy, recipe} = state;
   const action = status ? mainAction(status.state) : null;
   const disabled = !usable || busy === 'start' || action === null;
+  const isLinked = status?.controller_connected ?? false;
   if (action === 'resume') {
     return (
-      <HoldButton class="main" note={say('startHold')} disabled={disabled} onHeld={() => void desk.command('resume')}>
+      <HoldButton class="main" note={say(isLinked ? 'startHold' : 'noController')} disabled={disabled || !isLinked}
+                  onHeld={() => void desk.command('resume')}>
         {say('resume')}
       </HoldButton>
     );
@@ -65,10 +67,11 @@ function MainButton({state, desk, onStart, usable}: Props & {usable: boolean}) {
       </button>
     );
   }
+  const locating = status !== null && isLocating(status);
   const isReady = state.unmet !== null && state.unmet.length === 0;
   return (
-    <HoldButton class="main" note={action ? say('startHold') : say('wait')} disabled={disabled || !isReady || !recipe}
-                onHeld={onStart}>
+    <HoldButton class="main" note={say(locating ? 'locatingFirst' : action ? 'startHold' : 'wait')}
+                disabled={disabled || locating || !isReady || !recipe} onHeld={onStart}>
       {say('start')}
     </HoldButton>
   );
