@@ -98,11 +98,12 @@ std::string tick_text(double value, double step) {
 std::string frame(const Figure& figure, const Axes& axes) {
   const double bottom = kHeight - kBottom;
   std::string drawn;
-  const auto across = ticks(axes.x.low, axes.x.high);
+  auto across = ticks(axes.x.low, axes.x.high);
+  std::erase_if(across, [](double value) { return std::abs(value - std::round(value)) > 1e-6; });
   const auto upwards = ticks(axes.y.low, axes.y.high);
   for (const double value : across) {
     drawn += line(axes.px(value), bottom, axes.px(value), bottom + 4, R"(stroke="#000")");
-    drawn += text(axes.px(value), bottom + 15, "middle", tick_text(value, across[1] - across[0]));
+    drawn += text(axes.px(value), bottom + 15, "middle", fmt::format("{:.0f}", value));
   }
   for (const double value : upwards) {
     drawn += line(kLeft, axes.py(value), kWidth - kRight, axes.py(value), R"(stroke="#ddd")");

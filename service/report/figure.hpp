@@ -19,7 +19,7 @@ struct Series {
 
 struct Figure {
   std::string title;
-  std::string x_label;
+  std::string x_label;  // of what is counted: ticked at whole numbers
   std::string y_label;
   std::vector<Series> series;
   std::optional<double> level;  // a horizontal line

@@ -40,6 +40,8 @@ void add_touch(const Json& touch, PlaneFigures& figures) {
 }
 
 std::string pair_of(int number, int plane, const char* role, const PlaneFigures& figures) {
+  Series kept = figures.left;
+  kept.name = role;
   const Figure distances{.title = fmt::format("Fig. {}. d{} of the {} touches", number, plane, role),
                          .x_label = "touch on the plane",
                          .y_label = "distance, mm",
@@ -49,7 +51,7 @@ std::string pair_of(int number, int plane, const char* role, const PlaneFigures&
   Figure left{.title = fmt::format("What is left of d{} after calibration", plane),
               .x_label = "touch on the plane",
               .y_label = "calibrated - reference, µm",
-              .series = {figures.left},
+              .series = {kept},
               .level = 0.0,
               .level_name = "reference"};
   if (!figures.rejected.points.empty()) left.series.push_back(figures.rejected);

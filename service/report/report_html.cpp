@@ -175,6 +175,16 @@ std::string budget_section(const Json& result) {
         {words_of(part(source, "name")), figure_text(part(source, "workspace_box_rms_mm"), "{:.4f}")});
   sources.push_back({"together (root of the sum of squares)",
                      figure_text(part(part(result, "tip_uncertainty"), "workspace_box_rms_mm"), "{:.4f}")});
+  std::vector<Row> elsewhere{
+      {"over the joint ranges",
+       figure_text(part(part(result, "tip_uncertainty"), "joint_ranges_rms_mm"), "{:.3f}")}};
+  for (const Json& tool : part(part(result, "tip_uncertainty"), "tools")) {
+    const std::string name = text_or_unknown(part(tool, "name"));
+    elsewhere.push_back(
+        {name + ", in the workspace box", figure_text(part(tool, "workspace_box_rms_mm"), "{:.3f}")});
+    elsewhere.push_back(
+        {name + ", over the joint ranges", figure_text(part(tool, "joint_ranges_rms_mm"), "{:.3f}")});
+  }
   std::vector<Row> correlations;
   for (const Json& pair : part(result, "correlations"))
     correlations.push_back({text_or_unknown(part(pair, "first")), text_or_unknown(part(pair, "second")),
@@ -190,6 +200,8 @@ std::string budget_section(const Json& result) {
                     figure_text(part(plane, "p"), "{:.3g}")});
   return section("Uncertainty", html::table("Budget of the tip's predicted uncertainty in the workspace box",
                                             {"source", "rms mm"}, sources) +
+                                    html::table("Predicted uncertainty of the tip elsewhere",
+                                                {"where", "rms mm"}, elsewhere) +
                                     pairs_table("Lack of fit", lack) +
                                     html::table("Strongest correlations of identified errors",
                                                 {"error of", "and of", "coefficient"}, correlations));
@@ -274,8 +286,8 @@ std::string report_html(const Json& report) {
     body += summary_section(result);
     body += section("Errors", errors_table(result) + intervals_table(result) + block_and_probe_table(result));
     body += section("Repetitions", repetition_tables(result));
-    body += section("Distances", distance_tables(result) + distance_figures(report));
     body += section("Convergence", condition_figure(result));
+    body += section("Distances", distance_tables(result) + distance_figures(report));
     body += budget_section(result);
   } else {
     body += section("Result", html::paragraph("This run has no result: too few touches were made."));
