@@ -22,7 +22,8 @@ test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
   const page = await openWith(browser, cell, {
     '/api/v1/status': (status) => ({...status, sequence: status.sequence + 5, state: 'HELD', run_id: '1', recipe: kHostile + kUnbroken, fault_code: kHostile,
                                     fault_message: kHostile + kLong, fault_robot_action: kHostile, fault_next_step: kHostile,
-                                    warning_code: 'x', warning_message: kUnbroken, more_would_bring: kHostile, waiting_for: kHostile}),
+                                    warning_code: 'x', warning_message: kUnbroken, more_would_bring: kHostile, waiting_for: kHostile,
+                                    touches_total: 90, eta_s: 0, controller_connected: false}),
     '/api/v1/cell': (document) => ({...document, name: kHostile + kUnbroken}),
     '/api/v1/recipes': (document) => ({default: kHostile, recipes: [{...document.recipes[0], name: kHostile, description: kLong},
                                                                        {...document.recipes[0], name: kUnbroken}]}),
@@ -39,6 +40,9 @@ test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
   await expectAccessible(page, 'hostile texts');
   const {width} = await page.locator('main').boundingBox();
   assert.ok(width < 1024, 'a long text does not push the buttons away');
+  await page.locator('header .count', {hasText: 'time left unknown'}).waitFor();
+  await page.locator('.run-controls .run.main[disabled]', {hasText: 'no link to the controller'}).waitFor();
+  assert.equal(await page.getByRole('button', {name: /Touch again|Leave it out/}).count(), 0, 'no touch holds the run');
   const header = await page.locator('header').boundingBox();
   assert.ok(header.y + header.height < 100, `the header is ${header.height} px high`);
   const area = await page.locator('.run-controls').boundingBox();

@@ -51,8 +51,10 @@ step('APersonWithThePendantIsToldEachTouchAndTakesOrUndoesIt', async () => {
   for (const words of ['touch the top once more', 'Touch 2 of 6', 'the stylus is free', '1 / 2 / 3 / 4 / 5 / 6']) {
     assert.ok((await card.textContent()).includes(words), words);
   }
+  await waitForState(page, 'Locating');
+  await page.locator('.run-controls .run.main[disabled]', {hasText: 'Locating is under way: finish or cancel it first'}).waitFor();
   await expectAccessible(page, 'by hand');
-  for (const [name, command] of [['Take this touch', 'take'], ['Undo the last', 'undo']]) {
+  for (const [name, command] of [['Take this touch', 'take'], ['Undo the last', 'undo'], ['CANCEL LOCATING', 'stop']]) {
     const given = page.waitForRequest(`${cell.url}/api/v1/cell/${command}`);
     await card.getByRole('button', {name}).click();
     assert.equal((await given).method(), 'POST');

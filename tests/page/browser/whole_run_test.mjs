@@ -5,6 +5,12 @@ import {after, before} from 'node:test';
 import {expectAccessible, expectQuiet, openBrowser, openPage, start, startButton, step, waitForState} from './browser.mjs';
 import {Cell} from './cell.mjs';
 
+/** As if the page's tab were in front, or behind another. */
+const show = (page, isShown) => page.evaluate((hidden) => {
+  Object.defineProperty(document, 'hidden', {configurable: true, get: () => hidden});
+  document.dispatchEvent(new Event('visibilitychange'));
+}, !isShown);
+
 let cell, browser, page;
 before(async () => {
   cell = await Cell.start({speed: 250});
@@ -111,11 +117,19 @@ step('TwoRunsAreComparedAndDrawnAsATrend', async () => {
   await page.getByRole('button', {name: /^History/}).click();
   await page.getByRole('button', {name: 'Show 1'}).click();
   await page.locator('.which h2', {hasText: 'Run 1, recipe quick'}).waitFor();
+  const asleep = await openPage(browser, cell.link);
+  await waitForState(asleep, 'Complete');
+  await show(asleep, false);
   await start(page);
   await waitForState(page, ['Starting', 'Touching']);
   assert.equal(await page.evaluate(() => document.activeElement?.tagName), 'H1', 'the state is read next');
   await waitForState(page, 'Complete');
   await page.locator('.which h2', {hasText: 'Run 2, recipe quick'}).waitFor();
+  await waitForState(asleep, 'Complete');
+  assert.equal(await asleep.locator('table.errors').count(), 0, 'a page that nobody sees asks for no result');
+  await show(asleep, true);
+  await asleep.locator('table.errors').waitFor();
+  await asleep.context().close();
   await page.getByRole('button', {name: /^History/}).click();
   await page.getByRole('button', {name: 'Show 1'}).click();
   await page.locator('.which.card', {hasText: 'Run 1, an earlier one'}).waitFor();
