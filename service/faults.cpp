@@ -265,7 +265,7 @@ constexpr std::array kTable{
         FaultCode::kDaemonRestarted, "daemon_restarted", "the daemon was started anew during the run",
         "the arm stopped by itself when the link was gone and stands where it was",
         "touchcal resume to go on with the touch behind the last one that is stored, or touchcal stop to "
-        "end the run as it is",
+        "end the run as it is; in ABORTED it cannot go on: touchcal clear, then touchcal reset",
         FaultKind::kHeld, "P41"},
     FaultEntry{
         FaultCode::kBlockMoved, "block_moved", "the block is not where it was located",

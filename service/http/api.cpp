@@ -128,11 +128,11 @@ asio::awaitable<HttpResponse> Api::obey(const HttpRequest& request, const Admitt
   HttpResponse response;
   if (is_stop(*admitted.route)) {
     response = handle(admitted, request, services_);
-  } else if (!write_audit(request, "asked", true)) {
+  } else if (!write_audit(request, "asked", true) && !only_halts(*admitted.route)) {
     response = to_response({.status = 503,
                             .kind = "audit",
                             .detail = "the command was not taken as it cannot be written down; make room on "
-                                      "the disk of the state directory. A stop is taken all the same"});
+                                      "the disk of the state directory. Stop, abort and pause are taken all the same"});
     co_return response;
   } else {
     response = co_await obey_once(request, admitted);

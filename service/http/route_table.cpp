@@ -73,6 +73,10 @@ std::span<const Route> routes() {
 
 bool is_stop(const Route& route) { return route.path == "/api/v1/cell/stop"; }
 
+bool only_halts(const Route& route) {
+  return is_stop(route) || route.path.ends_with("/abort") || route.path.ends_with("/pause");
+}
+
 std::optional<std::string_view> match(std::string_view pattern, std::string_view path) {
   constexpr std::string_view kId = "{id}";
   const std::size_t before = pattern.find(kId);

@@ -89,6 +89,9 @@ std::vector<Route> page_routes();
 /// A stop is taken whatever comes with it, and whatever else does not work.
 bool is_stop(const Route& route);
 
+/// A stop, an abort or a pause: taken also when it cannot be written down.
+bool only_halts(const Route& route);
+
 struct Admitted {
   const Route* route = nullptr;
   std::string_view id;  // into the request's path

@@ -130,9 +130,14 @@ TEST_F(ApiTest, ACommandThatCannotBeWrittenDownIsNotTakenButForAStop) {
   quiet_.store().database()->exec("DROP TABLE audit");
   const HttpResponse refused = send(post("/api/v1/cell/reset"));
   EXPECT_EQ(refused.status, 503u);
-  EXPECT_THAT(refused.body, HasSubstr("stop"));
+  EXPECT_THAT(refused.body, HasSubstr("Stop"));
   EXPECT_EQ(state(), "STOPPED") << "not taken";
   EXPECT_EQ(send(post("/api/v1/cell/stop")).status, 202u);
+  // No run is there to be halted: these reach the state machine, a resume does not.
+  const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then"});
+  const std::string of_run = "/api/v1/runs/" + std::to_string(run);
+  for (const char* halt : {"/abort", "/pause"}) EXPECT_EQ(send(post(of_run + halt)).status, 409u) << halt;
+  EXPECT_EQ(send(post(of_run + "/resume")).status, 503u);
 }
 
 TEST_F(ApiTest, TheDocumentOfTheStatusIsThatOfItsSequence) {
