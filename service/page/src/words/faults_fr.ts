@@ -121,5 +121,5 @@ export const kFaultsFr: Record<string, FaultWords> = {
   block_moved: words('le bloc n’est pas où il a été localisé', 'le bras s’est arrêté à ce palpage ou s’en est retiré',
     'touchcal stop, ou touchcal clear si l’essai a été abandonné, puis touchcal reset et touchcal locate pour retrouver le bloc ; touchcal resume continue si le bloc est sûrement où il a été localisé'),
   daemon_restarted: words('le démon a été relancé pendant l’essai', 'le bras s’est arrêté de lui-même sans liaison et se tient où il était',
-    'touchcal resume pour continuer derrière le dernier palpage enregistré, ou touchcal stop pour finir l’essai tel quel'),
+    'touchcal resume pour continuer derrière le dernier palpage enregistré, ou touchcal stop pour finir l’essai tel quel ; en ABORTED il ne peut continuer : touchcal clear, puis touchcal reset'),
 };
