@@ -1,5 +1,5 @@
 // node figures.mjs: what the page weighs and how fast it is, measured in Debian's chromium against a simulated cell.
-// Environment as for run.mjs. The view is drawn by software here: a graphics card draws at least as fast.
+// Of the build in build/, unless the environment says as for run.mjs. The view is drawn by software here: a graphics card draws at least as fast.
 import {openBrowser, openPage, start, waitForState} from './browser/browser.mjs';
 import {Cell} from './browser/cell.mjs';
 

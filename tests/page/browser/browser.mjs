@@ -4,8 +4,10 @@ import {readFileSync} from 'node:fs';
 import {test} from 'node:test';
 import {createRequire} from 'node:module';
 import {join} from 'node:path';
+import {fileURLToPath} from 'node:url';
 
-const packages = createRequire(join(process.env.TOUCHCAL_PAGE_DIR, 'package.json'));
+const pageFolder = process.env.TOUCHCAL_PAGE_DIR ?? fileURLToPath(new URL('../../../build/service/page', import.meta.url));
+const packages = createRequire(join(pageFolder, 'package.json'));
 const {chromium} = packages('playwright-core');
 const axe = readFileSync(packages.resolve('axe-core/axe.min.js'), 'utf8');
 

@@ -1,4 +1,5 @@
 // A simulated cell with its daemon, for the time of a test.
+import {fileURLToPath} from 'node:url';
 import {spawn, spawnSync} from 'node:child_process';
 import {cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createConnection} from 'node:net';
@@ -6,8 +7,8 @@ import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {createInterface} from 'node:readline';
 
-const programs = process.env.TOUCHCAL_PROGRAMS;
-const source = process.env.TOUCHCAL_SOURCE_DIR;
+const programs = process.env.TOUCHCAL_PROGRAMS ?? fileURLToPath(new URL('../../../build/bin', import.meta.url));
+const source = process.env.TOUCHCAL_SOURCE_DIR ?? fileURLToPath(new URL('../../..', import.meta.url));
 const kStart_ms = 20000;
 const kHeartbeat_ms = 10000;
 
