@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/artefact.hpp"
-#include "calib_core/collision.hpp"
-#include "calib_core/error_parameters.hpp"
-#include "calib_core/face.hpp"
-#include "calib_core/joint_vector.hpp"
-#include "calib_core/kinematic_model.hpp"
+#include "calib_core/estimation/artefact.hpp"
+#include "calib_core/geometry/face.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
+#include "calib_core/motion/collision.hpp"
 #include "config/endpoint.hpp"
 #include "config/recipe.hpp"
 

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "calib_core/joint_vector.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
 
 namespace cell {
 

@@ -1,6 +1,6 @@
 #include "config/identification_problem.hpp"
 
-#include "calib_core/column_choice.hpp"
+#include "calib_core/estimation/column_choice.hpp"
 
 namespace cell {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

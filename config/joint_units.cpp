@@ -1,6 +1,6 @@
 #include "config/joint_units.hpp"
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 
 namespace cell {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "calib_core/kinematic_model.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
 
 namespace cell {
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
 #include "config/strict_json.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
 #include "config/shapes.hpp"

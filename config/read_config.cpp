@@ -3,8 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib_core/motion_time.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/motion/motion_time.hpp"
 #include "config/arm_file.hpp"
 #include "config/block_file.hpp"
 #include "config/file_bytes.hpp"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 
 namespace cell {
 

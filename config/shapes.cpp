@@ -1,6 +1,6 @@
 #include "config/shapes.hpp"
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 
 namespace cell {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "calib_core/collision.hpp"
+#include "calib_core/motion/collision.hpp"
 #include "config/json_value.hpp"
 
 /// The solids that several files describe in the same words.

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "calib_core/touch.hpp"
+#include "calib_core/geometry/touch.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

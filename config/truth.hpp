@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "calib_core/collision.hpp"
-#include "calib_core/error_parameters.hpp"
-#include "calib_core/joint_vector.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
+#include "calib_core/motion/collision.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "service/http/json_figures.hpp"
 
 namespace cell {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "config/cell.hpp"
 #include "service/verdict.hpp"
 

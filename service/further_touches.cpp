@@ -6,9 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include "calib_core/column_choice.hpp"
-#include "calib_core/least_squares.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/estimation/column_choice.hpp"
+#include "calib_core/estimation/least_squares.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "service/tip_prediction.hpp"
 
 namespace cell {

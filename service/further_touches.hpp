@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/identify.hpp"
-#include "calib_core/tip_uncertainty.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
 
 namespace cell {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/block_place.hpp"
+#include "calib_core/estimation/block_registration.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

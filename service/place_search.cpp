@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "calib_core/block_place.hpp"
-#include "calib_core/quasi_random.hpp"
-#include "calib_core/tip_uncertainty.hpp"
+#include "calib_core/estimation/block_registration.hpp"
+#include "calib_core/numerics/halton.hpp"
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "service/acquisition/planning.hpp"
 #include "service/plan.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "calib_core/quasi_random.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/halton.hpp"
 #include "config/identification_problem.hpp"
 #include "service/acquisition/planning.hpp"
 #include "service/http/json_figures.hpp"

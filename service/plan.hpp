@@ -4,8 +4,8 @@
 #include <variant>
 #include <vector>
 
-#include "calib_core/identify.hpp"
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "service/tip_prediction.hpp"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/identify.hpp"
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "service/store/touch_store.hpp"
 #include "service/tip_prediction.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 
 namespace cell {
 

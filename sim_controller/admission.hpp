@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "calib_core/joint_vector.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
 #include "cs8_protocol/messages.hpp"
 #include "sim_controller/plant.hpp"
 

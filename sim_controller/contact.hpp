@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 
-#include "calib_core/collision.hpp"
+#include "calib_core/motion/collision.hpp"
 #include "sim_controller/plant.hpp"
 
 namespace sim {

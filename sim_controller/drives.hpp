@@ -4,7 +4,7 @@
 #include <deque>
 #include <memory>
 
-#include "calib_core/joint_vector.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
 #include "sim_controller/motion.hpp"
 #include "sim_controller/plant.hpp"
 

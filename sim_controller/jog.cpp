@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 
 namespace sim {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 
 namespace sim {
 namespace {

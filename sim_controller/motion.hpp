@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "calib_core/joint_vector.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
 #include "sim_controller/plant.hpp"
 
 namespace sim {

@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "calib_core/joint_vector.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
 #include "cs8_protocol/messages.hpp"
 #include "sim_controller/cabinet.hpp"
 #include "sim_controller/motion.hpp"

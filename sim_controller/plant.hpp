@@ -2,10 +2,10 @@
 
 #include <string>
 
-#include "calib_core/collision.hpp"
-#include "calib_core/error_parameters.hpp"
-#include "calib_core/joint_vector.hpp"
-#include "calib_core/kinematic_model.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
+#include "calib_core/motion/collision.hpp"
 #include "config/cell.hpp"
 #include "config/truth.hpp"
 

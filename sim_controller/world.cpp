@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "calib_core/gravity.hpp"
+#include "calib_core/kinematics/gravity.hpp"
 #include "sim_controller/contact.hpp"
 #include "sim_controller/drives.hpp"
 

@@ -4,8 +4,8 @@
 #include <random>
 #include <string>
 
-#include "calib_core/joint_vector.hpp"
-#include "calib_core/kinematic_model.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
 #include "sim_controller/plant.hpp"
 #include "sim_controller/probe.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "calib_core/face.hpp"
-#include "calib_core/transfer.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/face.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/motion/transfer_path.hpp"
 #include "service/acquisition/operation.hpp"
 
 namespace cell {

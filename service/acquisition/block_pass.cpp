@@ -8,8 +8,8 @@
 #include <numbers>
 #include <optional>
 
-#include "calib_core/collision.hpp"
-#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+#include "calib_core/motion/collision.hpp"
 
 namespace cell {
 namespace {

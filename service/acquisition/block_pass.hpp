@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-#include "calib_core/block_place.hpp"
+#include "calib_core/estimation/block_registration.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib_core/transfer.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/motion/transfer_path.hpp"
 #include "service/acquisition/block_pass.hpp"
 #include "service/acquisition/operation.hpp"
 #include "service/acquisition/touch_command.hpp"

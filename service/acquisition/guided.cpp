@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "calib_core/face.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/face.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "service/acquisition/operation.hpp"
 
 namespace cell {

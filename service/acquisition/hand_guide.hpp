@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "calib_core/joint_vector.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
 
 namespace cell {
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <variant>
 
-#include "calib_core/joint_vector.hpp"
-#include "calib_core/kinematic_model.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
 #include "cs8_protocol/messages.hpp"
 
 namespace cell {

@@ -7,15 +7,15 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 
 namespace cell {
 namespace {
 
 /// The spots lie so far out, in half extents of the face.
 constexpr double kOut = 0.6;
-/// As in calib_core/aim.hpp: an error of the arm is a sixth of the nominal miss, per metre where it is an
-/// angle.
+/// As in calib_core/planning/online_estimate.hpp: an error of the arm is a sixth of the nominal miss, per
+/// metre where it is an angle.
 constexpr double kErrorShare = 1.0 / 6.0;
 /// A ball that comes to rest this near to where it touched before is in the same contact: the probe bounced.
 constexpr double kSameContactMetres = 0.002;

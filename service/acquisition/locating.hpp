@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "calib_core/block_place.hpp"
+#include "calib_core/estimation/block_registration.hpp"
 #include "config/cell.hpp"
 #include "service/acquisition/hand_guide.hpp"
 #include "service/acquisition/hand_touch.hpp"

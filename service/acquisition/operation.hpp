@@ -15,8 +15,8 @@
 #include <variant>
 #include <vector>
 
-#include "calib_core/aim.hpp"
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/planning/online_estimate.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "cs8_protocol/client.hpp"
 #include "service/acquisition/locating.hpp"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib_core/aim.hpp"
-#include "calib_core/plane.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/plane.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/online_estimate.hpp"
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "service/acquisition/touch_command.hpp"
 
 namespace cell {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <utility>
 
-#include "calib_core/transfer.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/motion/transfer_path.hpp"
 #include "service/acquisition/operation.hpp"
 #include "service/acquisition/touch_command.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "calib_core/aim.hpp"
-#include "calib_core/joint_vector.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/planning/online_estimate.hpp"
 
 namespace cell {
 

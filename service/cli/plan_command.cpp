@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/read_config.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 
 namespace cell {
 

@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "calib_core/validate.hpp"
+#include "calib_core/identification/validate.hpp"
 #include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
 #include "config/touches_file.hpp"
@@ -21,8 +21,7 @@ ExitCode validate_command(const ValidateArguments& arguments, bool json) {
   TouchesFile other;
   if (!arguments.other_file.empty()) other = read_touches(arguments.other_file, cell);
   if (!arguments.other_file.empty() && other.touches.empty()) {
-    fmt::print(stderr, "{}: has no touches to validate with; give the other set\n",
-               arguments.other_file);
+    fmt::print(stderr, "{}: has no touches to validate with; give the other set\n", arguments.other_file);
     return kExitRefused;
   }
   calib::IdentificationProblem problem = identification_problem(cell, recipe);

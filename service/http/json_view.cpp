@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "service/http/json_figures.hpp"
 #include "service/traceability.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 
 /// The parts of a result document that tell of parameters. Lengths are in mm, angles in rad.
 namespace cell {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib_core/face_distances.hpp"
-#include "calib_core/units.hpp"
-#include "calib_core/validate.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/identification/face_distances.hpp"
+#include "calib_core/identification/validate.hpp"
 #include "service/decision_rule.hpp"
 #include "service/http/json_figures.hpp"
 #include "service/http/json_view.hpp"

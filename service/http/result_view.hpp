@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "config/cell.hpp"
 #include "service/tip_prediction.hpp"
 

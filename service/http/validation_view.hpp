@@ -3,7 +3,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "calib_core/validate.hpp"
+#include "calib_core/identification/validate.hpp"
 #include "config/cell.hpp"
 
 namespace cell {

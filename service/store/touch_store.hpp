@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/touch.hpp"
+#include "calib_core/geometry/touch.hpp"
 #include "cs8_protocol/messages.hpp"
 #include "service/store/schema.hpp"
 

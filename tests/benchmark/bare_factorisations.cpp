@@ -4,7 +4,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "calib_core/observation_matrix.hpp"
+#include "calib_core/observability/observation_matrix.hpp"
 
 namespace bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 
 namespace bench {
 

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "calib_core/error_parameters.hpp"
-#include "calib_core/kinematic_model.hpp"
-#include "calib_core/plane.hpp"
-#include "calib_core/touch.hpp"
+#include "calib_core/geometry/plane.hpp"
+#include "calib_core/geometry/touch.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
 
 namespace bench {
 

@@ -15,9 +15,9 @@
 #include <thread>
 #include <vector>
 
-#include "calib_core/column_choice.hpp"
-#include "calib_core/identify.hpp"
-#include "calib_core/tip_uncertainty.hpp"
+#include "calib_core/estimation/column_choice.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "tests/benchmark/bare_factorisations.hpp"
 #include "tests/benchmark/ceres_identify.hpp"
 #include "tests/calib_core/block_study.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/candidate_pool.hpp"
-#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+#include "calib_core/planning/candidate_pool.hpp"
 #include "config/read_config.hpp"
 #include "service/acquisition/planning.hpp"
 

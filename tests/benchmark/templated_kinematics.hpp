@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "calib_core/error_parameters.hpp"
-#include "calib_core/kinematic_model.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
 
 /// The arm's forward kinematics for numbers that carry derivatives (ceres::Jet), revolute joints with gain 1.
 namespace bench {

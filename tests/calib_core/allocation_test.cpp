@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <new>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "tests/calib_core/block_study.hpp"
 
 namespace {

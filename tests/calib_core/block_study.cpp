@@ -4,9 +4,9 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "calib_core/inverse_kinematics.hpp"
-#include "calib_core/observation_matrix.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+#include "calib_core/observability/observation_matrix.hpp"
 
 namespace calib::study {
 

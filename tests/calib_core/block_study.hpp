@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "calib_core/touch_candidate.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
 #include "tests/calib_core/paper.hpp"
 #include "tests/calib_core/tx90.hpp"
 

@@ -6,9 +6,9 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib_core/face_distances.hpp"
-#include "calib_core/inverse_kinematics.hpp"
-#include "calib_core/quasi_random.hpp"
+#include "calib_core/identification/face_distances.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+#include "calib_core/numerics/halton.hpp"
 
 namespace calib::drawn {
 

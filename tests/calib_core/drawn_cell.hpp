@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "calib_core/identify.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "tests/calib_core/block_study.hpp"
 
 /// The TX90 before the paper's block and the plate under it, all with the errors that their makers allow:

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "calib_core/error_parameters.hpp"
-#include "calib_core/kinematic_model.hpp"
-#include "calib_core/plane.hpp"
+#include "calib_core/geometry/plane.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
 
 /// Hage, Bidaud, Jardin (2011), written out once for the tests of the core.
 namespace calib::paper {

@@ -1,6 +1,6 @@
 #include "tests/calib_core/tx90.hpp"
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 
 namespace calib::tx90 {
 

@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "calib_core/collision.hpp"
-#include "calib_core/face.hpp"
-#include "calib_core/joint_vector.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/face.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/motion/collision.hpp"
 #include "tests/calib_core/paper.hpp"
 
 /// The arm, its bodies and its surroundings as the planning tests need them; the model is paper::nominal().

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/arm_file.hpp"
 #include "folder.hpp"
 

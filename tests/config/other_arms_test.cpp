@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "calib_core/column_choice.hpp"
-#include "calib_core/gravity.hpp"
-#include "calib_core/identify.hpp"
+#include "calib_core/estimation/column_choice.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/kinematics/gravity.hpp"
 #include "config/arm_file.hpp"
 #include "config/read_config.hpp"
 #include "config/touches_file.hpp"

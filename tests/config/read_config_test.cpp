@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "calib_core/motion_time.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/motion/motion_time.hpp"
 #include "config/truth.hpp"
 #include "copied_config.hpp"
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/read_config.hpp"
 #include "config/touches_file.hpp"
 #include "config/truth.hpp"

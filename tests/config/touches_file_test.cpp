@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/read_config.hpp"
 #include "folder.hpp"
 

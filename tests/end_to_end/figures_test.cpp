@@ -7,10 +7,10 @@
 #include <random>
 #include <vector>
 
-#include "calib_core/aim.hpp"
-#include "calib_core/identify.hpp"
-#include "calib_core/touch_planning.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/planning/online_estimate.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/identification_problem.hpp"
 #include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 
 namespace touchcal::testing {
 

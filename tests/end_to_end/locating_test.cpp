@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "service/place_search.hpp"
 #include "tests/end_to_end/pendant.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "calib_core/validate.hpp"
+#include "calib_core/identification/validate.hpp"
 #include "config/arm_file.hpp"
 #include "service/exit_code.hpp"
 #include "tests/end_to_end/folder.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "calib_core/inverse_kinematics.hpp"
-#include "calib_core/transfer.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+#include "calib_core/motion/transfer_path.hpp"
 #include "service/acquisition/touch_command.hpp"
 
 namespace touchcal::testing {

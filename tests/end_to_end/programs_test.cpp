@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/arm_file.hpp"
 #include "service/exit_code.hpp"
 #include "service/store/touch_store.hpp"

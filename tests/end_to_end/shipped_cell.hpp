@@ -4,7 +4,7 @@
 #include <string>
 #include <variant>
 
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
 #include "sim_controller/plant.hpp"

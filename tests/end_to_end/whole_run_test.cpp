@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "config/identification_problem.hpp"
 #include "config/touches_file.hpp"
 #include "service/http/json_view.hpp"

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <random>
 
-#include "calib_core/aim.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/online_estimate.hpp"
 #include "sim_controller/motion.hpp"
 #include "sim_controller/plant.hpp"
 #include "sim_controller/world.hpp"

@@ -1,13 +1,13 @@
 // An arm whose joints 2 and 3 droop by up to 0.3 mrad, calibrated from 100 touches planned for the demo
 // cell's block: a rigid model has to notice, one with two compliances has to be right.
-#include "calib_core/gravity.hpp"
+#include "calib_core/kinematics/gravity.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstdio>
 
-#include "calib_core/tip_uncertainty.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
 namespace calib::figures {

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "calib_core/touch_candidate.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
 #include "service/tip_prediction.hpp"
 #include "tests/figures/simulated_cell.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <cstdio>
 
-#include "calib_core/column_choice.hpp"
-#include "calib_core/tip_uncertainty.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/estimation/column_choice.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
 namespace calib::figures {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "calib_core/identify.hpp"
-#include "calib_core/quasi_random.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/numerics/halton.hpp"
 #include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
 #include "service/acquisition/planning.hpp"

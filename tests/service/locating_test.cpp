@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/config_error.hpp"
 #include "config/read_config.hpp"
 #include "service/acquisition/block_pass.hpp"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "calib_core/quasi_random.hpp"
+#include "calib_core/numerics/halton.hpp"
 #include "config/arm_file.hpp"
 #include "tests/service/shipped_cell.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/joint_units.hpp"
 #include "service/http/result_view.hpp"
 #include "tests/service/shipped_cell.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <vector>
 
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "tests/service/document_shape.hpp"
 #include "tests/service/table3_result.hpp"
 

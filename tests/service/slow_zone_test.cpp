@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "calib_core/touch_planning.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/planning.hpp"
 #include "service/acquisition/touch_command.hpp"

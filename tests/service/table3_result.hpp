@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "config/identification_problem.hpp"
 #include "service/http/result_view.hpp"
 #include "tests/service/shipped_cell.hpp"

@@ -5,7 +5,7 @@
 #include <map>
 #include <random>
 
-#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/touch_judgement.hpp"

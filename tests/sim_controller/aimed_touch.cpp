@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <stdexcept>
 
-#include "calib_core/inverse_kinematics.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
 #include "sim_controller/admission.hpp"

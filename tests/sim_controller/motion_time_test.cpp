@@ -1,5 +1,5 @@
 // Predicted times against those that the simulated controller takes.
-#include "calib_core/motion_time.hpp"
+#include "calib_core/motion/motion_time.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <array>
 #include <variant>
 
-#include "calib_core/touch_planning.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/identification_problem.hpp"
 #include "tests/sim_controller/bench.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "calib_core/collision.hpp"
+#include "calib_core/motion/collision.hpp"
 #include "sim_controller/contact.hpp"
 #include "sim_controller/motion.hpp"
 #include "sim_controller/plant.hpp"

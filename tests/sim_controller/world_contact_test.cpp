@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "quiet_cell.hpp"
 #include "whole_path.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "calib_core/gravity.hpp"
-#include "calib_core/units.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/kinematics/gravity.hpp"
 #include "quiet_cell.hpp"
 #include "whole_path.hpp"
 

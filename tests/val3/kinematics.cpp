@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "calib_core/inverse_kinematics.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/arm_file.hpp"
 
 namespace val3 {

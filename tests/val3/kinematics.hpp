@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
-#include "calib_core/kinematic_model.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
 #include "tests/val3/values.hpp"
 
 namespace val3 {

@@ -7,7 +7,7 @@ import type {Frame} from 'page/api/documents.ts';
 import {forwardChain} from 'page/model/kinematics.ts';
 
 const root = process.env.TOUCHCAL_SOURCE_DIR ?? '.';
-const kPositionErrorMax_mm = 1e-6;  // as kPositionErrorMaxMetres of calib_core/kinematic_model.hpp
+const kPositionErrorMax_mm = 1e-6;  // as kPositionErrorMaxMetres of calib_core/kinematics/kinematic_model.hpp
 
 interface FileFrame { alpha_deg?: number; d_mm?: number; theta_deg?: number; theta_offset_deg?: number; theta_rad?: number; r_mm?: number; beta_deg?: number }
 

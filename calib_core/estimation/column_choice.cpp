@@ -1,0 +1,206 @@
+#include "calib_core/estimation/column_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/halton.hpp"
+
+namespace calib {
+namespace {
+
+/// About their mean: tilts to 3 degrees from the normal may well be 4 from it.
+constexpr double kAlikeTiltsRadians = 5.0 * kRadiansPerDegree;
+
+/// Rows and leading columns of the choice: the touches', then one a certified length that binds an estimated
+/// face, in the same unit (metres).
+struct ChoiceMatrix {
+  Eigen::MatrixXd kinematic;
+  Eigen::MatrixXd leading;
+};
+
+std::vector<std::size_t> free_parameters(const Artefact& artefact) {
+  std::vector<std::size_t> free;
+  for (std::size_t k = 0; k < artefact.parameters.size(); ++k) {
+    if (!artefact.parameters[k].std) free.push_back(k);
+  }
+  return free;
+}
+
+ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefact,
+                           std::vector<Touch> touches, Formulation formulation) {
+  const PreparedModel prepared = prepare(nominal);
+  for (Touch& touch : touches) {
+    touch = moved_onto_plane(prepared, artefact.contact_planes[static_cast<std::size_t>(touch.face)], touch);
+  }
+  const Eigen::MatrixXd rows = observe(nominal, artefact.contact_planes, touches, formulation).matrix;
+  const std::vector<std::size_t> free = free_parameters(artefact);
+  if (free.empty()) return {rows, {}};
+
+  const auto touch_count = rows.rows();
+  const auto equation_count = static_cast<Eigen::Index>(artefact.equations.size());
+  ChoiceMatrix matrix{
+      Eigen::MatrixXd::Zero(touch_count + equation_count, rows.cols()),
+      Eigen::MatrixXd::Zero(touch_count + equation_count, static_cast<Eigen::Index>(free.size()))};
+  matrix.kinematic.topRows(touch_count) = rows;
+  for (Eigen::Index j = 0; j < matrix.leading.cols(); ++j) {
+    const std::size_t parameter = free[static_cast<std::size_t>(j)];
+    for (Eigen::Index row = 0; row < touch_count; ++row) {
+      const Touch& touch = touches[static_cast<std::size_t>(row)];
+      const auto& shift = artefact.parameters[parameter].shifts[static_cast<std::size_t>(touch.face)];
+      matrix.leading(row, j) =
+          shift.constant + shift.per_metre.dot(forward_kinematics(nominal, touch.joints).translation());
+    }
+    for (Eigen::Index e = 0; e < equation_count; ++e) {
+      for (const auto& [index, weight] : artefact.equations[static_cast<std::size_t>(e)].weights) {
+        if (static_cast<std::size_t>(index) == parameter) matrix.leading(touch_count + e, j) = weight;
+      }
+    }
+  }
+  return matrix;
+}
+
+std::vector<Touch> well_spread_touches(std::size_t face_count) {
+  constexpr int kTouchesPerFace = 24;
+  constexpr double kReach = 0.7 * std::numbers::pi;
+  const JointRanges ranges{JointVector::Constant(-kReach), JointVector::Constant(kReach)};
+  std::vector<Touch> touches;
+  int index = 0;
+  for (std::size_t face = 0; face < face_count; ++face) {
+    for (int k = 0; k < kTouchesPerFace; ++k) {
+      touches.push_back({.face = static_cast<int>(face), .joints = halton_posture(++index, ranges)});
+    }
+  }
+  return touches;
+}
+
+/// |R_ii| under which the declared noise gives a parameter more than a weak one's standard deviation.
+WeakDiagonals weak_diagonals(const IdentificationProblem& problem, const std::vector<std::size_t>& touches,
+                             Formulation formulation) {
+  WeakDiagonals weak{};
+  double noise = problem.touch_noise_m;
+  if (formulation == Formulation::kPlaneCoefficients && !touches.empty()) {
+    double squares = 0.0;
+    for (const std::size_t touch : touches) {
+      const auto face = static_cast<std::size_t>(problem.touches[touch].face);
+      squares += 1.0 / std::pow(problem.artefact.contact_planes[face].offset_m, 2);
+    }
+    noise *= std::sqrt(squares / static_cast<double>(touches.size()));
+  }
+  for (std::size_t i = 0; i < weak.size(); ++i) {
+    weak[i] = noise / (error_parameters()[i].is_length() ? kWeakLengthMetres : kWeakAngleRadians);
+  }
+  return weak;
+}
+
+std::vector<Touch> pick(const std::vector<Touch>& all, const std::vector<std::size_t>& indices) {
+  std::vector<Touch> picked;
+  for (const std::size_t index : indices) picked.push_back(all[index]);
+  return picked;
+}
+
+std::string whole_degrees(double rad) {
+  return std::to_string(static_cast<int>(std::ceil(degrees_from_radians(rad) - 1e-9)));
+}
+
+}  // namespace
+
+IdentifiableSet attainable_set(const KinematicModel& nominal, const Artefact& artefact,
+                               const IdentifiabilityOptions& options) {
+  const ChoiceMatrix matrix = choice_matrix(
+      nominal, artefact, well_spread_touches(artefact.contact_planes.size()), Formulation::kSignedDistance);
+  return choose_identifiable(matrix.kinematic, options, {}, matrix.leading);
+}
+
+Attainable attainable_parameters(const IdentificationProblem& problem,
+                                 const IdentifiabilityOptions& options) {
+  // A given tolerance drops parameters on purpose: it does not count as something the touches fail to show.
+  IdentifiabilityOptions without_tolerance = options;
+  without_tolerance.qr_tolerance.reset();
+  const auto count = [&](const KinematicModel& arm) {
+    return static_cast<int>(attainable_set(arm, problem.artefact, without_tolerance).columns.size());
+  };
+  KinematicModel cranked = problem.nominal;
+  cranked.links.back().d_m += 0.05;
+  cranked.links.back().alpha_rad += 0.3;
+  return {count(problem.nominal), count(cranked)};
+}
+
+IdentifiableSet choose_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
+                               const std::vector<std::size_t>& touches) {
+  const ChoiceMatrix matrix =
+      choice_matrix(problem.nominal, problem.artefact, pick(problem.touches, touches), options.formulation);
+  WeakDiagonals weak{};
+  if (options.hold_weak) weak = weak_diagonals(problem, touches, options.formulation);
+  return choose_identifiable(matrix.kinematic, options.identifiability, weak, matrix.leading);
+}
+
+std::vector<int> estimated_columns(const IdentificationOptions& options, const IdentifiableSet& chosen) {
+  std::vector<int> columns = chosen.columns;
+  if (options.prior) {
+    columns.clear();
+    for (int i = 0; i < kErrorParameterCount; ++i) {
+      if (std::ranges::find(options.identifiability.excluded, i) == options.identifiability.excluded.end()) {
+        columns.push_back(i);
+      }
+    }
+  }
+  for (int i = 0; options.stiffness && i < kComplianceCount; ++i) {
+    columns.push_back(kErrorParameterCount + i);
+  }
+  return columns;
+}
+
+std::optional<double> tilt_spread_rad(const IdentificationProblem& problem,
+                                      const std::vector<std::size_t>& touches, int face) {
+  std::vector<Eigen::Vector3d> axes;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::size_t index : touches) {
+    if (problem.touches[index].face != face) continue;
+    axes.emplace_back(forward_kinematics(problem.nominal, problem.touches[index].joints).linear().col(2));
+    sum += axes.back();
+  }
+  if (axes.empty()) return std::nullopt;
+  double spread = 0.0;
+  for (const Eigen::Vector3d& axis : axes) {
+    spread = std::max(spread, std::atan2(axis.cross(sum).norm(), axis.dot(sum)));
+  }
+  return spread;
+}
+
+std::string explain_rank(const IdentificationProblem& problem, const std::vector<std::size_t>& touches,
+                         const IdentifiableSet& identifiable, const Attainable& attainable) {
+  const auto shown = static_cast<int>(identifiable.columns.size());
+  std::ostringstream text;
+  if (shown >= attainable.count) {
+    text << attainable.count << " is the most that touches with this stylus can show";
+    if (attainable.off_axis_count > attainable.count) {
+      text << ": its tip is on the last joint's axis; " << attainable.off_axis_count << " with a tip off it";
+    }
+    return text.str();
+  }
+  text << "the touches show " << shown << " of the " << attainable.count
+       << " parameters that this cell can show: ";
+  std::string bare;
+  double widest = 0.0;
+  for (int face = 0; face < static_cast<int>(problem.artefact.contact_planes.size()); ++face) {
+    if (const auto spread = tilt_spread_rad(problem, touches, face)) {
+      widest = std::max(widest, *spread);
+    } else {
+      bare += (bare.empty() ? "plane " : ", plane ") + std::to_string(face + 1);
+    }
+  }
+  if (widest <= kAlikeTiltsRadians) {
+    text << "tilts within " << whole_degrees(widest) << " degrees everywhere; tilt the stylus more";
+    if (!bare.empty()) text << ", and there is no touch on " << bare;
+  } else if (!bare.empty()) {
+    text << "there is no touch on " << bare << "; touch it too";
+  } else {
+    text << "they are too alike or too few; spread them over the faces and over postures and tilts";
+  }
+  return text.str();
+}
+
+}  // namespace calib

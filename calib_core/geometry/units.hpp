@@ -1,0 +1,17 @@
+#pragma once
+
+#include <numbers>
+
+/// Unit conversions. Everything inside touchcal is SI: metres, radians, seconds. Files, the API and people
+/// use millimetres and degrees; their readers and writers convert here and nowhere else.
+namespace calib {
+
+inline constexpr double kMetresPerMillimetre = 1e-3;
+inline constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
+
+constexpr double metres_from_mm(double mm) { return mm * kMetresPerMillimetre; }
+constexpr double mm_from_metres(double m) { return m / kMetresPerMillimetre; }
+constexpr double radians_from_degrees(double deg) { return deg * kRadiansPerDegree; }
+constexpr double degrees_from_radians(double rad) { return rad / kRadiansPerDegree; }
+
+}  // namespace calib

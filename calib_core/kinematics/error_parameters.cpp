@@ -1,0 +1,182 @@
+#include "calib_core/kinematics/error_parameters.hpp"
+
+#include <algorithm>
+
+#include "calib_core/kinematics/gravity.hpp"
+
+namespace calib {
+namespace {
+
+constexpr std::array kKindsInOrder{ParameterKind::kAlpha, ParameterKind::kD, ParameterKind::kTheta,
+                                   ParameterKind::kR, ParameterKind::kBeta};
+
+std::array<ErrorParameter, kErrorParameterCount> list_parameters() {
+  std::array<ErrorParameter, kErrorParameterCount> parameters;
+  std::size_t next = 0;
+  for (int frame = 0; frame < kFrameCount; ++frame) {
+    for (const ParameterKind kind : kKindsInOrder) {
+      // alpha0, d0 and beta0 are null by definition (section II).
+      const bool exists = frame > 0 || kind == ParameterKind::kTheta || kind == ParameterKind::kR;
+      if (exists) parameters[next++] = {frame, kind};
+    }
+  }
+  return parameters;
+}
+
+std::string_view kind_name(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::kAlpha:
+      return "alpha";
+    case ParameterKind::kD:
+      return "d";
+    case ParameterKind::kTheta:
+      return "theta";
+    case ParameterKind::kR:
+      return "r";
+    case ParameterKind::kBeta:
+      return "beta";
+  }
+  return "";
+}
+
+template <class Model>
+auto& value_of(Model& model, const ErrorParameter& parameter) {
+  auto& link = model.links[static_cast<std::size_t>(parameter.frame)];
+  switch (parameter.kind) {
+    case ParameterKind::kAlpha:
+      return link.alpha_rad;
+    case ParameterKind::kD:
+      return link.d_m;
+    case ParameterKind::kTheta:
+      return link.theta_rad;
+    case ParameterKind::kR:
+      return link.r_m;
+    case ParameterKind::kBeta:
+      break;
+  }
+  return link.beta_rad;
+}
+
+JointVector torques_nm(const PreparedModel& prepared, const Chain& chain) {
+  return prepared.has_masses ? gravity_torques_nm(prepared.model, chain) : JointVector::Zero();
+}
+
+/// Where a frame's theta stands among the parameters; its r follows. alpha d theta r beta of a frame lie
+/// together.
+constexpr Eigen::Index theta_index(Eigen::Index frame) { return frame == 0 ? 0 : 5 * frame - 1; }
+
+/// Derivatives along a unit vector of a point fixed in R_last_frame.
+ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, const JointVector& torques,
+                         const Eigen::Vector3d& point_m, int last_frame, const Eigen::Vector3d& direction) {
+  ArmRow row = ArmRow::Zero();
+  // A turn about an axis through the frame's origin moves the point along `direction` by axis . lever, a
+  // shift along the axis by axis . direction. theta and r act on z of R_j; alpha and d of the next frame on x
+  // of R_j once turned by its beta; that beta on y of R_j.
+  for (Eigen::Index frame = 0; frame <= last_frame; ++frame) {
+    const auto& here = chain.block_from_frame[static_cast<std::size_t>(frame)];
+    const Eigen::Vector3d lever = (point_m - here.translation()).cross(direction);
+    const auto x = here.linear().col(0), y = here.linear().col(1), z = here.linear().col(2);
+    const double z_turns = z.dot(lever), z_shifts = z.dot(direction);
+    const Eigen::Index theta = theta_index(frame);
+    row[theta] = z_turns;
+    row[theta + 1] = z_shifts;
+    if (frame == last_frame) break;
+    const CosSin& beta = prepared.beta[static_cast<std::size_t>(frame) + 1];
+    const Eigen::Index alpha = theta_index(frame + 1) - 2;
+    row[alpha] = beta.cos * x.dot(lever) - beta.sin * z_turns;
+    row[alpha + 1] = beta.cos * x.dot(direction) - beta.sin * z_shifts;
+    row[alpha + 4] = y.dot(lever);
+  }
+  for (int i = 0; i < kComplianceCount; ++i) {
+    const int joint = kCompliantJoints[static_cast<std::size_t>(i)];
+    row[kErrorParameterCount + i] =
+        prepared.model.gains[static_cast<std::size_t>(joint)] * row[theta_index(joint + 1)] * torques[joint];
+  }
+  return row;
+}
+
+}  // namespace
+
+ParameterGroup ErrorParameter::group() const {
+  if (frame == 7) return ParameterGroup::kTool;
+  // theta0 r0 alpha1 d1 theta1 r1 say where the block stands; beta1 is the same direction as these.
+  return frame <= 1 && kind != ParameterKind::kBeta ? ParameterGroup::kPlace : ParameterGroup::kArm;
+}
+
+std::string ErrorParameter::name() const { return std::string(kind_name(kind)) + std::to_string(frame); }
+
+const std::array<ErrorParameter, kErrorParameterCount>& error_parameters() {
+  static const auto parameters = list_parameters();
+  return parameters;
+}
+
+std::optional<int> error_parameter_index(std::string_view name) {
+  const auto& all = error_parameters();
+  const auto found =
+      std::ranges::find_if(all, [&](const auto& parameter) { return parameter.name() == name; });
+  if (found == all.end()) return std::nullopt;
+  return static_cast<int>(found - all.begin());
+}
+
+double parameter_value(const KinematicModel& model, int index) {
+  return value_of(model, error_parameters()[static_cast<std::size_t>(index)]);
+}
+
+KinematicModel apply(const KinematicModel& model, const ErrorVector& errors) {
+  KinematicModel changed = model;
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    value_of(changed, error_parameters()[static_cast<std::size_t>(i)]) += errors[i];
+  }
+  return changed;
+}
+
+KinematicModel apply(const KinematicModel& model, const ArmVector& errors) {
+  KinematicModel changed = apply(model, errors.head<kErrorParameterCount>());
+  for (int i = 0; i < kComplianceCount; ++i) {
+    const int joint = kCompliantJoints[static_cast<std::size_t>(i)];
+    changed.compliance_rad_per_nm[static_cast<std::size_t>(joint)] += errors[kErrorParameterCount + i];
+  }
+  return changed;
+}
+
+Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicModel& model,
+                                                               const Chain& chain) {
+  return tip_arm_derivatives(model, chain).leftCols<kErrorParameterCount>();
+}
+
+ArmRow distance_derivatives(const PreparedModel& prepared, const Chain& chain,
+                            const Eigen::Vector3d& outward) {
+  return derivatives_along(prepared, chain, torques_nm(prepared, chain), chain.tip_in_block_m(),
+                           kFrameCount - 1, outward);
+}
+
+ArmRow distance_derivatives(const KinematicModel& model, const Chain& chain, const Eigen::Vector3d& outward) {
+  return distance_derivatives(prepare(model), chain, outward);
+}
+
+Eigen::Matrix<double, 3, kArmParameterCount> tip_arm_derivatives(const KinematicModel& model,
+                                                                 const Chain& chain) {
+  return point_arm_derivatives(model, chain, chain.tip_in_block_m(), kFrameCount - 1);
+}
+
+Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const PreparedModel& prepared,
+                                                                   const Chain& chain,
+                                                                   const Eigen::Vector3d& point_in_block_m,
+                                                                   int last_frame) {
+  const JointVector torques = torques_nm(prepared, chain);
+  Eigen::Matrix<double, 3, kArmParameterCount> derivatives;
+  for (int i = 0; i < 3; ++i) {
+    derivatives.row(i) =
+        derivatives_along(prepared, chain, torques, point_in_block_m, last_frame, Eigen::Vector3d::Unit(i));
+  }
+  return derivatives;
+}
+
+Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const KinematicModel& model,
+                                                                   const Chain& chain,
+                                                                   const Eigen::Vector3d& point_in_block_m,
+                                                                   int last_frame) {
+  return point_arm_derivatives(prepare(model), chain, point_in_block_m, last_frame);
+}
+
+}  // namespace calib

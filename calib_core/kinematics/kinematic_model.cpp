@@ -1,0 +1,132 @@
+#include "calib_core/kinematics/kinematic_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib_core/kinematics/gravity.hpp"
+
+namespace calib {
+namespace {
+
+CosSin cos_sin(double angle_rad) {
+  if (angle_rad == 0.0) return {};  // most angles of a nominal arm: worth the question
+  return {std::cos(angle_rad), std::sin(angle_rad)};
+}
+
+/// The chain of a rigid arm, each step in the columns of the frame before: 4-vectors, two packets each.
+void place_frames(const PreparedModel& prepared, const PreparedJoints& joints, Chain& chain) {
+  Eigen::Vector4d x = Eigen::Vector4d::UnitX(), y = Eigen::Vector4d::UnitY(), z = Eigen::Vector4d::UnitZ();
+  Eigen::Vector4d origin_m = Eigen::Vector4d::UnitW();
+  // Turns the first axis towards the second.
+  const auto turn = [](const CosSin& angle, Eigen::Vector4d& first, Eigen::Vector4d& second) {
+    const Eigen::Vector4d turned = angle.cos * first + angle.sin * second;
+    second = angle.cos * second - angle.sin * first;
+    first = turned;
+  };
+  for (std::size_t frame = 0; frame < kFrameCount; ++frame) {
+    const LinkParameters& link = prepared.model.links[frame];
+    CosSin theta = prepared.theta[frame];
+    double r_m = link.r_m;
+    if (frame > 0 && frame <= kJointCount) {
+      const std::size_t joint = frame - 1;
+      if (prepared.model.joint_types[joint] == JointType::kRevolute) {
+        const CosSin& moved = joints.turned[joint];
+        theta = {theta.cos * moved.cos - theta.sin * moved.sin,
+                 theta.sin * moved.cos + theta.cos * moved.sin};
+      } else {
+        r_m += prepared.model.gains[joint] * joints.joints[static_cast<Eigen::Index>(joint)];
+      }
+    }
+    turn(prepared.beta[frame], z, x);
+    turn(prepared.alpha[frame], y, z);
+    origin_m += link.d_m * x;
+    turn(theta, x, y);
+    origin_m += r_m * z;
+    auto& here = chain.block_from_frame[frame].matrix();
+    here.col(0) = x;
+    here.col(1) = y;
+    here.col(2) = z;
+    here.col(3) = origin_m;
+  }
+}
+
+}  // namespace
+
+Eigen::Isometry3d frame_transform(const LinkParameters& link) {
+  const double ca = std::cos(link.alpha_rad), sa = std::sin(link.alpha_rad);
+  const double cb = std::cos(link.beta_rad), sb = std::sin(link.beta_rad);
+  const double ct = std::cos(link.theta_rad), st = std::sin(link.theta_rad);
+
+  // Rot(y,beta) Rot(x,alpha), column by column, then Rot(z,theta) mixes the first two.
+  const Eigen::Vector3d x(cb, 0.0, -sb);
+  const Eigen::Vector3d y(sb * sa, ca, cb * sa);
+  const Eigen::Vector3d z(sb * ca, -sa, cb * ca);
+
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  transform.linear().col(0) = ct * x + st * y;
+  transform.linear().col(1) = ct * y - st * x;
+  transform.linear().col(2) = z;
+  transform.translation() = link.d_m * x + link.r_m * z;
+  return transform;
+}
+
+PreparedModel prepare(const KinematicModel& model) {
+  PreparedModel prepared{.model = model};
+  for (std::size_t frame = 0; frame < kFrameCount; ++frame) {
+    const LinkParameters& link = model.links[frame];
+    prepared.alpha[frame] = cos_sin(link.alpha_rad);
+    prepared.beta[frame] = cos_sin(link.beta_rad);
+    prepared.theta[frame] = cos_sin(link.theta_rad);
+  }
+  prepared.has_masses =
+      std::ranges::any_of(model.masses, [](const PointMass& m) { return m.mass_kg != 0.0; });
+  prepared.is_compliant = std::ranges::any_of(model.compliance_rad_per_nm, [](double c) { return c != 0.0; });
+  return prepared;
+}
+
+PreparedJoints prepare(const std::array<double, kJointCount>& gains, const JointVector& joints) {
+  PreparedJoints prepared{joints, {}};
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    prepared.turned[joint] = cos_sin(gains[joint] * joints[static_cast<Eigen::Index>(joint)]);
+  }
+  return prepared;
+}
+
+Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints) {
+  Chain chain;
+  place_frames(prepared, joints, chain);
+  if (prepared.is_compliant) {
+    const Eigen::Map<const JointVector> compliance(prepared.model.compliance_rad_per_nm.data());
+    const JointVector moved = compliance.cwiseProduct(gravity_torques_nm(prepared.model, chain));
+    place_frames(prepared, prepare(prepared.model.gains, joints.joints + moved), chain);
+  }
+  return chain;
+}
+
+Chain forward_chain(const PreparedModel& prepared, const JointVector& joints) {
+  return forward_chain(prepared, prepare(prepared.model.gains, joints));
+}
+
+Chain forward_chain(const KinematicModel& model, const JointVector& joints) {
+  return forward_chain(prepare(model), joints);
+}
+
+Eigen::Isometry3d forward_kinematics(const KinematicModel& model, const JointVector& joints) {
+  return forward_chain(model, joints).block_from_frame.back();
+}
+
+Eigen::Matrix<double, 3, kJointCount> tip_jacobian(const KinematicModel& model, const Chain& chain) {
+  Eigen::Matrix<double, 3, kJointCount> jacobian;
+  const Eigen::Vector3d tip = chain.tip_in_block_m();
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const auto index = static_cast<std::size_t>(joint);
+    const Eigen::Isometry3d& frame = chain.block_from_frame[index + 1];
+    const Eigen::Vector3d axis = frame.linear().col(2);
+    jacobian.col(joint) = model.gains[index] * (model.joint_types[index] == JointType::kRevolute
+                                                    ? axis.cross(tip - frame.translation()).eval()
+                                                    : axis);
+  }
+  return jacobian;
+}
+
+}  // namespace calib

@@ -1,0 +1,106 @@
+#include "calib_core/motion/collision.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace calib {
+
+Segment place(const Capsule& body, const Chain& chain) {
+  const Eigen::Isometry3d& block_from_frame = chain.block_from_frame[static_cast<std::size_t>(body.frame)];
+  return {block_from_frame * body.from_m, block_from_frame * body.to_m};
+}
+
+Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box) {
+  const Eigen::Vector3d way = segment.to_m - segment.from_m;
+  // From the box to a point: how far the point is outside it, axis by axis.
+  const auto outside = [&](double t) -> Eigen::Vector3d {
+    const Eigen::Vector3d point = segment.from_m + t * way;
+    return point - point.cwiseMax(box.min_m).cwiseMin(box.max_m);
+  };
+  // Half the derivative of the squared distance: continuous, never falling, linear between the places where
+  // the segment crosses one of the box's six planes. Its zero is the nearest point.
+  const auto slope = [&](double t) { return outside(t).dot(way); };
+  if (slope(0.0) >= 0.0) return outside(0.0);
+  if (slope(1.0) <= 0.0) return outside(1.0);
+
+  double before = 0.0, after = 1.0;
+  double slope_before = slope(0.0), slope_after = slope(1.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (way[axis] == 0.0) continue;
+    for (const double plane : {box.min_m[axis], box.max_m[axis]}) {
+      const double t = (plane - segment.from_m[axis]) / way[axis];
+      if (!(t > before && t < after)) continue;
+      const double here = slope(t);
+      (here < 0.0 ? before : after) = t;
+      (here < 0.0 ? slope_before : slope_after) = here;
+    }
+  }
+  const double nearest = before - slope_before * (after - before) / (slope_after - slope_before);
+  return outside(nearest);
+}
+
+double segment_box_distance_m(const Segment& segment, const Box& box) {
+  return segment_box_gap_m(segment, box).norm();
+}
+
+bool is_apart(const Segment& segment, const Box& box, double distance_m) {
+  const auto before =
+      segment.from_m.cwiseMax(segment.to_m) - box.min_m;  // negative: all of it before the box
+  const auto behind = segment.from_m.cwiseMin(segment.to_m) - box.max_m;
+  if (std::max(behind.maxCoeff(), -before.minCoeff()) >= distance_m) return true;
+  return segment_box_distance_m(segment, box) >= distance_m;
+}
+
+double capsule_box_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, double radius_m,
+                              const Box& box) {
+  return segment_box_distance_m({from_m, to_m}, box) - radius_m;
+}
+
+double segment_distance_m(const Eigen::Vector3d& from_a, const Eigen::Vector3d& to_a,
+                          const Eigen::Vector3d& from_b, const Eigen::Vector3d& to_b) {
+  const Eigen::Vector3d a = to_a - from_a, b = to_b - from_b, apart = from_a - from_b;
+  const double aa = a.squaredNorm(), bb = b.squaredNorm(), ab = a.dot(b);
+  const auto along = [](double numerator, double length_squared) {
+    return length_squared > 0.0 ? std::clamp(numerator / length_squared, 0.0, 1.0) : 0.0;
+  };
+  // On skew lines the common perpendicular, clamped to a; then the point of b nearest to it, and once more a.
+  const double determinant = aa * bb - ab * ab;
+  const double first =
+      determinant > 0.0 ? std::clamp((ab * apart.dot(b) - bb * apart.dot(a)) / determinant, 0.0, 1.0) : 0.0;
+  const double on_b = along((apart + first * a).dot(b), bb);
+  const double on_a = along((on_b * b - apart).dot(a), aa);
+  return (apart + on_a * a - on_b * b).norm();
+}
+
+bool is_apart(const Segment& a, const Segment& b, double distance_m) {
+  // Of spheres around them: |a| + |b| + 2 distance at most, twice as large.
+  const double lengths_m = (a.to_m - a.from_m).norm() + (b.to_m - b.from_m).norm();
+  const double needed_m = lengths_m + 2.0 * distance_m;
+  if ((a.from_m + a.to_m - b.from_m - b.to_m).squaredNorm() >= needed_m * needed_m) return true;
+  return segment_distance_m(a.from_m, a.to_m, b.from_m, b.to_m) >= distance_m;
+}
+
+std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain, double clearance_m) {
+  std::vector<Segment> placed;
+  placed.reserve(scene.bodies.size());
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const Capsule& body = scene.bodies[i];
+    const Segment& here = placed.emplace_back(place(body, chain));
+    for (const Box& obstacle : scene.obstacles) {
+      if (is_apart(here, obstacle, body.radius_m + clearance_m + body.margin_m)) continue;
+      return Clash{body.name, obstacle.name, segment_box_distance_m(here, obstacle) - body.radius_m};
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const Capsule& other = scene.bodies[j];
+      const double radii_m = body.radius_m + other.radius_m;
+      if (are_neighbours(body, other)) continue;
+      if (is_apart(here, placed[j], radii_m + self_clearance_m(clearance_m))) continue;
+      return Clash{body.name, other.name,
+                   segment_distance_m(here.from_m, here.to_m, placed[j].from_m, placed[j].to_m) - radii_m};
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace calib

@@ -1,0 +1,192 @@
+#include "calib_core/observability/identifiability.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace calib {
+namespace {
+
+/// Rounding leaves a dependent column this far from zero, relative to the longest column. Eq. 13's tolerance
+/// falls below it when there are few rows; between it and the weakest real direction lie nine orders of
+/// magnitude.
+constexpr double kRoundingRelative = 1e-13;
+
+/// Eigenvalues of W^T W under this share of the largest have too few digits for singular values.
+constexpr double kGramRelative = 1e-7;
+
+/// Factors smaller than this, relative to the largest, are rounding.
+constexpr double kFactorRelative = 1e-9;
+
+std::vector<int> column_order(const IdentifiabilityOptions& options) {
+  const auto listed = [](const std::vector<int>& list, int column) {
+    return std::ranges::find(list, column) != list.end();
+  };
+  std::vector<int> order;
+  for (int column = 0; column < kErrorParameterCount; ++column) {
+    if (!listed(options.excluded, column) && !listed(options.tried_last, column)) order.push_back(column);
+  }
+  for (const int column : options.tried_last) {
+    if (!listed(options.excluded, column)) order.push_back(column);
+  }
+  return order;
+}
+
+/// Householder reflectors of the kept columns, in the order they were kept.
+class Reflectors {
+ public:
+  explicit Reflectors(Eigen::Index rows) : rows_(rows) {}
+
+  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(vectors_.size()); }
+
+  void apply_to(Eigen::VectorXd& column) const {
+    for (Eigen::Index i = 0; i < count(); ++i) {
+      const Eigen::VectorXd& v = vectors_[static_cast<std::size_t>(i)];
+      auto tail = column.tail(rows_ - i);
+      tail -= 2.0 * v.dot(tail) * v;
+    }
+  }
+
+  /// Keeps a column that apply_to() has been through; returns it with its tail reflected onto one entry.
+  void keep(Eigen::VectorXd& column) {
+    auto tail = column.tail(rows_ - count());
+    const double norm = tail.norm();
+    Eigen::VectorXd v = tail;
+    const double head = v[0] > 0.0 ? -norm : norm;
+    v[0] -= head;
+    v.normalize();
+    tail.setZero();
+    tail[0] = head;
+    vectors_.push_back(std::move(v));
+  }
+
+ private:
+  Eigen::Index rows_;
+  std::vector<Eigen::VectorXd> vectors_;
+};
+
+/// What one unit of a dependent column adds to each kept one: R f = top of the reflected column.
+std::vector<std::pair<int, double>> combination(const std::vector<Eigen::VectorXd>& kept_columns,
+                                                const std::vector<int>& kept,
+                                                const Eigen::VectorXd& reflected) {
+  const auto count = static_cast<Eigen::Index>(kept.size());
+  Eigen::MatrixXd r(count, count);
+  for (Eigen::Index j = 0; j < count; ++j) r.col(j) = kept_columns[static_cast<std::size_t>(j)].head(count);
+  const Eigen::VectorXd factors = r.triangularView<Eigen::Upper>().solve(reflected.head(count));
+  const double largest = factors.cwiseAbs().maxCoeff();
+  std::vector<std::pair<int, double>> result;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    if (std::abs(factors[j]) > kFactorRelative * largest) {
+      result.emplace_back(kept[static_cast<std::size_t>(j)], factors[j]);
+    }
+  }
+  return result;
+}
+
+/// The R of [leading, W], whose columns hang together as those of W do: the same decomposition of fewer rows.
+Eigen::MatrixXd with_fewer_rows(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
+                                const Eigen::MatrixXd& leading) {
+  Eigen::MatrixXd all(observation_matrix.rows(), leading.cols() + observation_matrix.cols());
+  if (leading.cols() > 0) all.leftCols(leading.cols()) = leading;
+  all.rightCols(observation_matrix.cols()) = observation_matrix;
+  if (all.rows() <= all.cols()) return all;
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(all);
+  return qr.matrixQR().topRows(all.cols()).triangularView<Eigen::Upper>();
+}
+
+}  // namespace
+
+IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
+                                    const IdentifiabilityOptions& options,
+                                    const WeakDiagonals& weak_diagonals, const Eigen::MatrixXd& leading) {
+  IdentifiableSet set;
+  set.smallest_kept = std::numeric_limits<double>::infinity();
+  for (const int column : options.excluded) {
+    set.candidates[static_cast<std::size_t>(column)].status = ParameterStatus::kExcluded;
+  }
+
+  const double longest = observation_matrix.rows() > 0 ? observation_matrix.colwise().norm().maxCoeff() : 0.0;
+  const double rounding =
+      std::max(static_cast<double>(observation_matrix.rows()) * std::numeric_limits<double>::epsilon(),
+               kRoundingRelative) *
+      longest;
+  const double tolerance = std::max(options.qr_tolerance.value_or(0.0), rounding);
+  const Eigen::MatrixXd columns = with_fewer_rows(observation_matrix, leading);
+  const Eigen::Index rows = columns.rows();
+
+  Reflectors reflectors(rows);
+  for (Eigen::Index i = 0; i < leading.cols() && reflectors.count() < rows; ++i) {
+    Eigen::VectorXd reflected = columns.col(i);
+    reflectors.apply_to(reflected);
+    if (reflected.tail(rows - reflectors.count()).norm() > rounding) reflectors.keep(reflected);
+  }
+  const Eigen::Index leading_kept = reflectors.count();
+  std::vector<int> kept;
+  std::vector<Eigen::VectorXd> kept_columns;
+  for (const int column : column_order(options)) {
+    CandidateStatus& candidate = set.candidates[static_cast<std::size_t>(column)];
+    Eigen::VectorXd reflected = columns.col(leading.cols() + column);
+    if (reflected.norm() <= rounding) continue;  // stays kNoEffect
+    reflectors.apply_to(reflected);
+    const double diagonal = reflected.tail(rows - reflectors.count()).norm();  // |R_ii|
+    if (diagonal > std::max(tolerance, weak_diagonals[static_cast<std::size_t>(column)])) {
+      candidate.status = ParameterStatus::kIdentified;
+      set.smallest_kept = std::min(set.smallest_kept, diagonal);
+      reflectors.keep(reflected);
+      kept.push_back(column);
+      kept_columns.push_back(reflected.segment(leading_kept, rows - leading_kept));
+      continue;
+    }
+    set.largest_dropped = std::max(set.largest_dropped, diagonal);
+    candidate.status = diagonal > rounding ? ParameterStatus::kWeak : ParameterStatus::kGrouped;
+    if (candidate.status == ParameterStatus::kGrouped && !kept.empty()) {
+      candidate.grouped_with =
+          combination(kept_columns, kept, reflected.segment(leading_kept, rows - leading_kept));
+    }
+  }
+  set.columns = kept;
+  std::ranges::sort(set.columns);
+  return set;
+}
+
+Eigen::MatrixXd select_columns(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
+                               const std::vector<int>& columns) {
+  Eigen::MatrixXd selected(matrix.rows(), static_cast<Eigen::Index>(columns.size()));
+  for (Eigen::Index j = 0; j < selected.cols(); ++j)
+    selected.col(j) = matrix.col(columns[static_cast<std::size_t>(j)]);
+  return selected;
+}
+
+Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  if (matrix.rows() == 0 || matrix.cols() == 0) return {};
+  if (matrix.rows() <= matrix.cols()) return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
+  // R has the singular values of W and fewer rows.
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
+  const Eigen::MatrixXd r = qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
+  return Eigen::BDCSVD<Eigen::MatrixXd>(r).singularValues();
+}
+
+Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int count) {
+  if (count > 0 && count <= std::min(matrix.rows(), matrix.cols())) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix.transpose() * matrix,
+                                                               Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd values = eigen.eigenvalues().tail(count).reverse();
+    // Squared, the smallest keeps its digits only when it is not too small.
+    if (values[count - 1] > kGramRelative * values[0]) return values.cwiseSqrt();
+  }
+  const Eigen::VectorXd all = singular_values(matrix);
+  return all.head(std::min<Eigen::Index>(count, all.size()));
+}
+
+double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
+  const Eigen::VectorXd sigma = singular_values(matrix);
+  if (sigma.size() < matrix.cols() || sigma.size() == 0 || sigma[sigma.size() - 1] <= 0.0) {
+    return std::numeric_limits<double>::infinity();
+  }
+  return sigma[0] / sigma[sigma.size() - 1];
+}
+
+}  // namespace calib

@@ -1,0 +1,133 @@
+#include "calib_core/planning/candidate_pool.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+
+namespace calib {
+namespace {
+
+/// Poses tried for each candidate wanted.
+constexpr int kPosesPerCandidate = 20;
+/// Of the poses, those on the rim of what may be touched. 20,000 such candidates are as good as 80,000 even
+/// ones.
+constexpr double kRimShare = 0.7;
+/// Poses between two reports of progress.
+constexpr int kPosesInARow = 256;
+
+/// The same posture as near to `wanted` as whole turns bring it within the ranges; nothing when no turn does.
+std::optional<JointVector> turned_into(const JointRanges& ranges, const JointVector& turns,
+                                       const JointVector& wanted, JointVector joints) {
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const double turn = turns[joint];
+    double& angle = joints[joint];
+    angle += turn * std::nearbyint((wanted[joint] - angle) / turn);
+    if (angle < ranges.lower[joint]) angle += turn * std::ceil((ranges.lower[joint] - angle) / turn);
+    if (angle > ranges.upper[joint]) angle -= turn * std::ceil((angle - ranges.upper[joint]) / turn);
+  }
+  return ranges.contains(joints) ? std::optional(joints) : std::nullopt;
+}
+
+/// Tries poses of one face.
+class FaceSearch {
+ public:
+  FaceSearch(const PlanningProblem& problem, const TouchMaker& maker, int face, UniformChance& chance)
+      : problem_(problem), maker_(maker), around_(find_touched(problem, face)), chance_(chance) {
+    effort_.face = face;
+  }
+
+  void try_pose(std::vector<TouchCandidate>& candidates) {
+    ++poses_;
+    const TouchPose pose = sample_touch_pose(problem_, problem_.faces[static_cast<std::size_t>(effort_.face)],
+                                             chance_, kRimShare);
+    const Postures branches = maker_.inverse().solve(pose.block_from_tip);
+    int in_range = 0;
+    for (const JointVector& branch : branches) {
+      const auto joints =
+          turned_into(problem_.joint_ranges, maker_.inverse().turns(), problem_.park_joints, branch);
+      if (!joints) continue;
+      ++in_range;
+      ++effort_.tried;
+      const auto touch = maker_.make(around_, pose, *joints);
+      if (const auto* refusal = std::get_if<Refusal>(&touch)) {
+        ++refusals_[*refusal];
+      } else {
+        ++effort_.feasible;
+        candidates.push_back({effort_.face, pose, *joints, std::get<PlannedTouch>(touch).clear_joints});
+      }
+    }
+    if (in_range > 0) return;
+    ++effort_.tried;
+    ++(branches.empty() ? out_of_reach_ : out_of_ranges_);
+  }
+
+  [[nodiscard]] int poses() const { return poses_; }
+  [[nodiscard]] int feasible() const { return effort_.feasible; }
+
+  [[nodiscard]] FaceEffort effort() const {
+    std::map<std::string, int> counts;  // causes that read alike are one
+    for (const auto& [refusal, count] : refusals_) counts[describe(problem_, refusal)] += count;
+    if (out_of_reach_ > 0) counts["out of reach"] += out_of_reach_;
+    if (out_of_ranges_ > 0) counts["joint ranges"] += out_of_ranges_;
+    FaceEffort effort = effort_;
+    for (const auto& [reason, count] : counts) effort.obstructions.push_back({reason, count});
+    std::ranges::stable_sort(effort.obstructions, std::ranges::greater{}, &Obstruction::count);
+    return effort;
+  }
+
+ private:
+  const PlanningProblem& problem_;
+  const TouchMaker& maker_;
+  TouchedFace around_;
+  UniformChance& chance_;
+  int poses_ = 0, out_of_reach_ = 0, out_of_ranges_ = 0;
+  FaceEffort effort_;
+  std::map<Refusal, int> refusals_;
+};
+
+}  // namespace
+
+CandidatePool find_candidates(const PlanningProblem& problem, const PlanningProgress& progress) {
+  const TouchMaker maker(problem);
+  UniformChance chance(problem.seed);
+  std::vector<FaceSearch> searches;
+  for (const TouchRequest& request : problem.requests) {
+    if (request.face < 0 || static_cast<std::size_t>(request.face) >= problem.faces.size()) {
+      throw std::logic_error("touches are wanted on a face that does not exist");
+    }
+    searches.emplace_back(problem, maker, request.face, chance);
+  }
+
+  CandidatePool pool;
+  const auto missing = [&] { return problem.candidate_count - static_cast<int>(pool.candidates.size()); };
+  std::vector<FaceSearch*> open;  // that may find more
+  for (FaceSearch& search : searches) open.push_back(&search);
+  while (missing() > 0 && !open.empty()) {
+    const int share = (missing() + static_cast<int>(open.size()) - 1) / static_cast<int>(open.size());
+    std::vector<FaceSearch*> next;
+    for (FaceSearch* search : open) {
+      const int poses_max = kPosesPerCandidate * (search->feasible() + share);
+      const int wanted = search->feasible() + share;
+      while (search->feasible() < wanted && search->poses() < poses_max) {
+        search->try_pose(pool.candidates);
+        if (progress && search->poses() % kPosesInARow == 0) {
+          progress("candidates",
+                   1.0 - std::max(missing(), 0) / static_cast<double>(std::max(problem.candidate_count, 1)));
+        }
+      }
+      if (search->feasible() >= wanted) next.push_back(search);
+    }
+    open = std::move(next);
+  }
+  for (const FaceSearch& search : searches) pool.efforts.push_back(search.effort());
+  return pool;
+}
+
+}  // namespace calib

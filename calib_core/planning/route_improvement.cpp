@@ -1,0 +1,151 @@
+#include "calib_core/planning/route_improvement.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "calib_core/planning/face_interleaving.hpp"
+
+namespace calib {
+namespace {
+
+constexpr double kWorthItSeconds = 1e-6;
+constexpr std::size_t kMovedTogetherMax = 3;
+
+/// The stops of one piece of the way, which may be put in another order.
+class Piece {
+ public:
+  Piece(const WayProblem& problem, std::vector<std::size_t>& order, std::size_t counted_from,
+        std::size_t begin, std::size_t end)
+      : problem_(problem),
+        order_(order),
+        counted_from_(counted_from),
+        begin_(begin),
+        end_(end),
+        repeats_(repeats(order)),
+        faults_(faults(order)) {}
+
+  /// One round of changes; false when none helped.
+  bool shorten() {
+    bool shortened = false;
+    for (std::size_t i = begin_; i < end_; ++i) {
+      for (std::size_t j = i + 1; j < end_; ++j) {
+        shortened |= try_reversal(i, j);
+        shortened |= try_exchange(i, j);
+      }
+      for (std::size_t length = 1; length <= kMovedTogetherMax && i + length <= end_; ++length) {
+        for (std::size_t to = begin_; to + length <= end_; ++to) shortened |= try_move(i, length, to);
+      }
+    }
+    return shortened;
+  }
+
+ private:
+  [[nodiscard]] double seconds(std::size_t a, std::size_t b) const {
+    return problem_.seconds(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  }
+  /// Between the stops at two neighbouring places; nothing behind the last.
+  [[nodiscard]] double leg_s(std::size_t before, std::size_t behind) const {
+    return behind < order_.size() ? seconds(order_[before], order_[behind]) : 0.0;
+  }
+  [[nodiscard]] double leg_s(std::size_t before, std::size_t stop, std::size_t behind) const {
+    const double in_s = seconds(order_[before], stop);
+    return behind < order_.size() ? in_s + seconds(stop, order_[behind]) : in_s;
+  }
+
+  [[nodiscard]] int faults(const std::vector<std::size_t>& order) const {
+    std::vector<int> faces;
+    faces.reserve(end_ - counted_from_);
+    for (std::size_t i = counted_from_; i < end_; ++i) faces.push_back(problem_.faces[order[i]]);
+    return interleaving_faults(faces);
+  }
+  /// How often a face follows itself, the stops at both ends of the piece included.
+  [[nodiscard]] int repeats(const std::vector<std::size_t>& order) const {
+    int count = 0;
+    for (std::size_t i = std::max<std::size_t>(counted_from_, 1); i < std::min(end_ + 1, order.size()); ++i) {
+      if (problem_.faces[order[i]] == problem_.faces[order[i - 1]]) ++count;
+    }
+    return count;
+  }
+
+  /// Takes the changed order when it is interleaved as well as the present one.
+  bool take(double saved_s, std::vector<std::size_t>& changed) {
+    if (saved_s <= kWorthItSeconds) return false;
+    const int changed_repeats = repeats(changed), changed_faults = faults(changed);
+    if (changed_repeats > repeats_ || changed_faults > faults_) return false;
+    repeats_ = changed_repeats;
+    faults_ = changed_faults;
+    order_.swap(changed);
+    return true;
+  }
+
+  [[nodiscard]] auto at(std::size_t place) const {
+    return static_cast<std::vector<std::size_t>::difference_type>(place);
+  }
+
+  bool try_reversal(std::size_t first, std::size_t last) {
+    double saved_s = leg_s(first - 1, first) + leg_s(last, last + 1) - leg_s(first - 1, last);
+    if (last + 1 < order_.size()) saved_s -= seconds(order_[first], order_[last + 1]);
+    if (saved_s <= kWorthItSeconds) return false;
+    changed_ = order_;
+    std::reverse(changed_.begin() + at(first), changed_.begin() + at(last + 1));
+    return take(saved_s, changed_);
+  }
+
+  bool try_exchange(std::size_t a, std::size_t b) {
+    if (b - a < 2) return false;  // neighbours: a reversal
+    const double saved_s = leg_s(a - 1, order_[a], a + 1) + leg_s(b - 1, order_[b], b + 1) -
+                           leg_s(a - 1, order_[b], a + 1) - leg_s(b - 1, order_[a], b + 1);
+    if (saved_s <= kWorthItSeconds) return false;
+    changed_ = order_;
+    std::swap(changed_[a], changed_[b]);
+    return take(saved_s, changed_);
+  }
+
+  /// `length` stops from `first` on to where the first of them is the one at `to`.
+  bool try_move(std::size_t first, std::size_t length, std::size_t to) {
+    if (to == first) return false;
+    const std::size_t behind = first + length;
+    // The stops between which the moved ones come.
+    const std::size_t before_there = to < first ? to - 1 : to + length - 1;
+    const std::size_t behind_there = before_there + 1;
+    double saved_s = leg_s(first - 1, first) + leg_s(behind - 1, behind) + leg_s(before_there, behind_there);
+    if (behind < order_.size()) saved_s -= seconds(order_[first - 1], order_[behind]);
+    saved_s -= seconds(order_[before_there], order_[first]);
+    if (behind_there < order_.size()) saved_s -= seconds(order_[behind - 1], order_[behind_there]);
+    if (saved_s <= kWorthItSeconds) return false;
+    changed_ = order_;
+    const auto start = changed_.begin();
+    if (to < first) {
+      std::rotate(start + at(to), start + at(first), start + at(behind));
+    } else {
+      std::rotate(start + at(first), start + at(behind), start + at(behind_there));
+    }
+    return take(saved_s, changed_);
+  }
+
+  const WayProblem& problem_;
+  std::vector<std::size_t>& order_;
+  std::size_t counted_from_, begin_, end_;
+  int repeats_, faults_;
+  std::vector<std::size_t> changed_;
+};
+
+}  // namespace
+
+double way_s(const WayProblem& problem, std::span<const std::size_t> order) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    sum += problem.seconds(static_cast<Eigen::Index>(order[i - 1]), static_cast<Eigen::Index>(order[i]));
+  }
+  return sum;
+}
+
+void shorten_way(const WayProblem& problem, std::vector<std::size_t>& order, std::size_t counted_from,
+                 std::size_t begin, std::size_t end) {
+  constexpr int kRoundsMax = 50;
+  Piece piece(problem, order, counted_from, begin, end);
+  for (int round = 0; round < kRoundsMax && piece.shorten(); ++round) {
+  }
+}
+
+}  // namespace calib

@@ -1,0 +1,290 @@
+#include "calib_core/uncertainty/scale_check.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/uncertainty/uncertainty_propagation.hpp"
+
+namespace calib {
+namespace {
+
+/// What nobody promises may be this large (metres, radians): free, as good as.
+constexpr double kFreeStd = 1.0;
+constexpr double kExactStd = 1e-12;  // of what is promised to be exact
+
+/// Planes that miss a common point by less than this (metres) meet in it.
+constexpr double kCommonPointMetres = 1e-6;
+
+/// A parameter of which the touches say less than this share of its variance is not judged by them.
+constexpr double kInformedShareMin = 1e-6;
+
+/// The nominal lengths of an arm: the direction in which a common stretch moves the errors.
+ArmVector lengths_of(const KinematicModel& nominal) {
+  ArmVector lengths = ArmVector::Zero();
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    if (error_parameters()[static_cast<std::size_t>(i)].is_length()) lengths[i] = parameter_value(nominal, i);
+  }
+  return lengths;
+}
+
+/// The lengths of arm and tool as the estimated columns carry them, and nothing of the place.
+ArmVector own_lengths(const KinematicModel& nominal, const std::vector<int>& columns) {
+  const ArmVector all = lengths_of(nominal);
+  ArmVector own = ArmVector::Zero();
+  for (const int column : columns) {
+    const bool of_arm =
+        column < kErrorParameterCount &&
+        error_parameters()[static_cast<std::size_t>(column)].group() != ParameterGroup::kPlace;
+    if (of_arm) own[column] = all[column];
+  }
+  return own;
+}
+
+/// The maximum a posteriori problem in all errors, the estimated compliances and the artefact; the place
+/// free.
+class Guard {
+ public:
+  Guard(const IdentificationProblem& problem, const LeastSquares& fit, const Linearisation& whole,
+        double noise_ratio, const Estimate& estimate)
+      : information_(whole.touch_information / (noise_ratio * noise_ratio)), precision_(information_.rows()) {
+    Eigen::VectorXd values(information_.rows());
+    values << estimate.arm, estimate.artefact;
+    targets_ = information_ * values + whole.touch_gradient / (noise_ratio * noise_ratio);
+    set_precision(problem, fit);
+    Eigen::MatrixXd posterior = information_;
+    posterior.diagonal() += precision_;
+    for (const ArtefactEquation& equation : problem.artefact.equations) {
+      const double of_equation = 1.0 / (equation.std_m * equation.std_m);
+      for (const auto& [i, weight_i] : equation.weights) {
+        targets_with_equations(i) += of_equation * weight_i * equation.value_m;
+        for (const auto& [j, weight_j] : equation.weights) {
+          posterior(kArmParameterCount + i, kArmParameterCount + j) += of_equation * weight_i * weight_j;
+        }
+      }
+    }
+    scale_ = posterior.diagonal().cwiseSqrt().cwiseInverse();
+    cholesky_.compute(scale_.asDiagonal() * posterior * scale_.asDiagonal());
+  }
+
+  [[nodiscard]] bool solvable() const { return cholesky_.info() == Eigen::Success; }
+
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
+    return scale_.asDiagonal() * cholesky_.solve(scale_.asDiagonal() * right);
+  }
+
+  /// The stretch along `lengths` and its standard deviation, beside errors that keep to the priors.
+  [[nodiscard]] std::pair<double, double> stretch(const ArmVector& lengths) const {
+    Eigen::VectorXd direction = Eigen::VectorXd::Zero(information_.rows());
+    direction.head(kArmParameterCount) = lengths;
+    const Eigen::VectorXd column = information_ * direction;
+    const Eigen::VectorXd explained = solve(column);
+    const double information = direction.dot(column) - explained.dot(column);
+    if (information <= 0.0) return {0.0, std::numeric_limits<double>::infinity()};
+    const double moment = direction.dot(targets_) - explained.dot(right_);
+    return {moment / information, 1.0 / std::sqrt(information)};
+  }
+
+  /// Correction of artefact parameter k over the standard deviation it has when all priors are right.
+  [[nodiscard]] std::optional<double> correction(const IdentificationProblem& problem, std::size_t k) const {
+    const auto& std = problem.artefact.parameters[k].std;
+    if (!std) return std::nullopt;
+    const Eigen::Index index = kArmParameterCount + static_cast<Eigen::Index>(k);
+    const double variance = solve(Eigen::VectorXd::Unit(information_.rows(), index))[index];
+    const double explained = *std * *std - variance;
+    if (explained < kInformedShareMin * *std * *std) return std::nullopt;
+    return solve(right_)[index] / std::sqrt(explained);
+  }
+
+ private:
+  double& targets_with_equations(int artefact) { return right_[kArmParameterCount + artefact]; }
+
+  void set_precision(const IdentificationProblem& problem, const LeastSquares& fit) {
+    right_ = targets_;
+    const auto& columns = fit.arm_columns();
+    for (int i = 0; i < kArmParameterCount; ++i) {
+      std::optional<double> std;
+      if (i >= kErrorParameterCount) {
+        // A compliance that was not estimated is not there.
+        const bool estimated = std::ranges::find(columns, i) != columns.end();
+        std = estimated
+                  ? problem.std_compliance_rad_per_nm[static_cast<std::size_t>(i - kErrorParameterCount)]
+                  : kExactStd;
+      } else if (error_parameters()[static_cast<std::size_t>(i)].group() != ParameterGroup::kPlace) {
+        std = problem.tolerances[static_cast<std::size_t>(i)];
+      }
+      precision_[i] = 1.0 / std::pow(std::max(std.value_or(kFreeStd), kExactStd), 2);
+    }
+    for (std::size_t k = 0; k < problem.artefact.parameters.size(); ++k) {
+      const double std = problem.artefact.parameters[k].std.value_or(kFreeStd);
+      precision_[kArmParameterCount + static_cast<Eigen::Index>(k)] = 1.0 / (std * std);
+    }
+  }
+
+  Eigen::MatrixXd information_;
+  Eigen::VectorXd precision_, targets_, right_, scale_;
+  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+};
+
+std::vector<std::size_t> touched_faces(const IdentificationProblem& problem, const LeastSquares& fit) {
+  std::vector<std::size_t> touched;
+  for (std::size_t face = 0; face < problem.artefact.contact_planes.size(); ++face) {
+    const bool any = std::ranges::any_of(fit.touches(), [&](std::size_t index) {
+      return static_cast<std::size_t>(problem.touches[index].face) == face;
+    });
+    if (any) touched.push_back(face);
+  }
+  return touched;
+}
+
+/// The faces whose place is known: those whose offset has no parameter, or one with a standard deviation, or
+/// that a certified length ties to another.
+bool is_placed(const Artefact& artefact, std::size_t face) {
+  for (std::size_t k = 0; k < artefact.parameters.size(); ++k) {
+    const ArtefactParameter& parameter = artefact.parameters[k];
+    if (parameter.kind != ArtefactKind::kFaceOffset || parameter.shifts[face].constant == 0.0) continue;
+    const bool tied = std::ranges::any_of(artefact.equations, [&](const ArtefactEquation& equation) {
+      return std::ranges::any_of(equation.weights,
+                                 [&](const auto& w) { return static_cast<std::size_t>(w.first) == k; });
+    });
+    return parameter.std || tied;
+  }
+  return true;
+}
+
+/// Whether the touched faces hold a length: planes that all meet in one point are met by an arm of any size.
+bool holds_a_length(const IdentificationProblem& problem, const LeastSquares& fit) {
+  std::vector<Plane> placed;
+  for (const std::size_t face : touched_faces(problem, fit)) {
+    if (is_placed(problem.artefact, face)) placed.push_back(problem.artefact.contact_planes[face]);
+  }
+  Eigen::MatrixXd normals(static_cast<Eigen::Index>(placed.size()), 3);
+  Eigen::VectorXd offsets(normals.rows());
+  for (Eigen::Index row = 0; row < normals.rows(); ++row) {
+    normals.row(row) = placed[static_cast<std::size_t>(row)].outward;
+    offsets[row] = placed[static_cast<std::size_t>(row)].offset_m;
+  }
+  if (placed.empty()) return false;
+  const Eigen::Vector3d point = normals.completeOrthogonalDecomposition().solve(offsets);
+  return (normals * point - offsets).lpNorm<Eigen::Infinity>() > kCommonPointMetres;
+}
+
+/// No touch says anything of the scale: it is the nominal arm's, within the tolerances.
+ScaleCheck without_length(const IdentificationProblem& problem) {
+  ScaleCheck check{.source = ScaleSource::kPrior};
+  const ArmVector lengths = lengths_of(problem.nominal);
+  double information = 0.0;
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    const auto& parameter = error_parameters()[static_cast<std::size_t>(i)];
+    const auto& tolerance = problem.tolerances[static_cast<std::size_t>(i)];
+    if (lengths[i] == 0.0 || parameter.group() == ParameterGroup::kPlace || !tolerance) continue;
+    information += std::pow(lengths[i] / std::max(*tolerance, kExactStd), 2);
+  }
+  check.std_relative =
+      1.0 / std::sqrt(information);  // infinite where nobody promises anything: shown as unknown
+  check.warning =
+      "no length was touched: the touched faces all meet in one point, which an arm of any size can touch; "
+      "the "
+      "scale is that of the nominal arm, so touch a face that lies opposite to another";
+  return check;
+}
+
+/// Faces that look the same way give a length in which the ball cancels; so do two outside lengths of
+/// different size.
+ScaleSource source_of(const IdentificationProblem& problem, const IdentificationOptions& options,
+                      const LeastSquares& fit) {
+  if (options.prior) return ScaleSource::kPrior;
+  std::vector<Plane> touched;
+  for (const std::size_t face : touched_faces(problem, fit)) {
+    touched.push_back(problem.artefact.contact_planes[face]);
+  }
+  std::vector<double> outside;
+  for (std::size_t a = 0; a < touched.size(); ++a) {
+    for (std::size_t b = 0; b < a; ++b) {
+      const double cosine = touched[a].outward.dot(touched[b].outward);
+      if (cosine > 0.999) return ScaleSource::kTwoLengths;
+      if (cosine < -0.999) outside.push_back(touched[a].offset_m + touched[b].offset_m);
+    }
+  }
+  const auto [least, most] = std::ranges::minmax_element(outside);
+  const bool differ = !outside.empty() && *most - *least > 0.2 * std::abs(*most);
+  return differ ? ScaleSource::kTwoLengths : ScaleSource::kBlock;
+}
+
+std::string percent(double ratio) {
+  std::ostringstream text;
+  text.setf(std::ios::showpos);
+  text.precision(2);
+  text << std::fixed << 100.0 * ratio << " %";
+  return text.str();
+}
+
+std::string figure(double value, int digits) {
+  std::ostringstream text;
+  text.precision(digits);
+  text << std::fixed << value;
+  return text.str();
+}
+
+/// How far the ball's radius (less pre-travel) would have to be wrong to make this stretch, metres.
+double ball_error_for(const ArmVector& own, const LeastSquares& fit, double stretch) {
+  const Eigen::Index rows = fit.rows().rows();
+  const Eigen::MatrixXd arm_rows = fit.rows().leftCols(fit.arm_count());
+  const Eigen::VectorXd all_one = Eigen::VectorXd::Constant(rows, 1.0 / fit.noise_unit_m());
+  const Eigen::MatrixXd flat = (arm_rows.transpose() * arm_rows).eval();
+  const Eigen::VectorXd moved = flat.ldlt().solve(arm_rows.transpose() * all_one);
+  double along = 0.0;
+  for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
+    along += own[fit.arm_columns()[i]] * moved[static_cast<Eigen::Index>(i)];
+  }
+  const double stretch_per_metre = along / own.squaredNorm();
+  return std::abs(stretch_per_metre) < 1e-9 ? 0.0 : stretch / stretch_per_metre;
+}
+
+}  // namespace
+
+ScaleCheck check_scale(const IdentificationProblem& problem, const IdentificationOptions& options,
+                       const LeastSquares& fit, const Linearisation& whole, const Certainty& certainty,
+                       const Estimate& estimate) {
+  if (!holds_a_length(problem, fit)) return without_length(problem);
+  ScaleCheck check;
+  check.source = source_of(problem, options, fit);
+  const ArmVector own = own_lengths(problem.nominal, fit.arm_columns());
+  if (own.squaredNorm() > 0.0) {
+    // Not of what is grouped: that trades one parameter for another and stretches nothing.
+    check.std_relative =
+        std::sqrt(own.dot((certainty.identified + certainty.held) * own)) / own.squaredNorm();
+  }
+  const double ratio = certainty.noise_m > 0.0 ? certainty.noise_m / fit.noise_unit_m() : 1.0;
+  const Guard guard(problem, fit, whole, ratio, estimate);
+  if (!guard.solvable()) return check;
+  const auto [stretch, std] = guard.stretch(lengths_of(problem.nominal));
+  check.stretch_relative = stretch;
+  if (std < 0.1) check.significance = std::abs(stretch) / std;
+  if (check.significance && *check.significance > kScaleSignificanceMax) {
+    const double ball = ball_error_for(own, fit, stretch);
+    check.warning =
+        "all lengths moved together by " + percent(stretch) + ", " + figure(*check.significance, 1) +
+        " standard deviations of what the maker's tolerances allow: a stylus radius less pre-travel "
+        "that is wrong by " +
+        figure(mm_from_metres(ball), 3) +
+        " mm, a block of another size (by the same share) or of another temperature looks just like "
+        "this; check these before the result is used";
+    return check;
+  }
+  for (std::size_t k = 0; k < problem.artefact.parameters.size(); ++k) {
+    const ArtefactParameter& parameter = problem.artefact.parameters[k];
+    const auto correction = guard.correction(problem, k);
+    if (!correction || std::abs(*correction) <= kArtefactSignificanceMax) continue;
+    check.warning = "the touches contradict the " + parameter.name + " that was written down, by " +
+                    figure(std::abs(*correction), 1) +
+                    " standard deviations: check stylus radius, pre-travel, block size and block temperature "
+                    "before the result is used";
+    return check;
+  }
+  return check;
+}
+
+}  // namespace calib

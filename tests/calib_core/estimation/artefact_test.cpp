@@ -1,0 +1,131 @@
+#include "calib_core/estimation/artefact.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <set>
+#include <string>
+
+#include "tests/calib_core/drawn_cell.hpp"
+
+/// What is known of the artefact, as parameters: each shifts the distance as the changed artefact would.
+namespace calib {
+namespace {
+
+ArtefactKnowledge everything_uncertain() {
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
+  knowledge.warmer_than_20_c_k = 4.0;
+  return knowledge;
+}
+
+const ArtefactParameter& parameter(const Artefact& artefact, const std::string& name) {
+  for (const ArtefactParameter& candidate : artefact.parameters) {
+    if (candidate.name == name) return candidate;
+  }
+  throw std::logic_error("no parameter " + name);
+}
+
+void turn(Face& face, const Eigen::Vector3d& edge, double angle_rad) {
+  const Eigen::AngleAxisd turned(angle_rad, edge);
+  face.plane.outward = turned * face.plane.outward;
+  face.edge_u = turned * face.edge_u;
+  face.plane.offset_m = face.plane.outward.dot(face.center_m);
+}
+
+struct Change {
+  std::string name;
+  double by;
+  std::function<void(ArtefactKnowledge&, double)> apply;
+};
+
+TEST(Artefact, ShiftsDistancesAsTheChangedArtefactDoes) {
+  const std::vector<Change> changes{
+      {"plane3_offset", 1e-6, [](auto& knowledge, double by) { knowledge.faces[2].plane.offset_m += by; }},
+      {"plane4_tilt_u", 1e-6,
+       [](auto& knowledge, double by) { turn(knowledge.faces[3], knowledge.faces[3].edge_u, by); }},
+      {"plane2_tilt_v", 1e-6,
+       [](auto& knowledge, double by) { turn(knowledge.faces[1], knowledge.faces[1].edge_v(), by); }},
+      {"stylus_radius", 1e-6, [](auto& knowledge, double by) { knowledge.stylus.radius_m += by; }},
+      {"pretravel", 1e-6, [](auto& knowledge, double by) { knowledge.stylus.pretravel_m += by; }},
+      {"block_temperature", 1e-2, [](auto& knowledge, double by) { knowledge.warmer_than_20_c_k += by; }}};
+  const Artefact before = describe(everything_uncertain());
+  const Eigen::Vector3d point_m(0.031, -0.087, 0.044);
+  for (const Change& change : changes) {
+    ArtefactKnowledge knowledge = everything_uncertain();
+    change.apply(knowledge, change.by);
+    const Artefact after = describe(knowledge);
+    for (std::size_t face = 0; face < before.contact_planes.size(); ++face) {
+      const double shifted_m = signed_distance_m(after.contact_planes[face], point_m) -
+                               signed_distance_m(before.contact_planes[face], point_m);
+      const auto& shift = parameter(before, change.name).shifts[face];
+      // To first order, and the tilted face at 20 degrees C: the block's growth times the change.
+      EXPECT_NEAR(shifted_m, change.by * (shift.constant + shift.per_metre.dot(point_m)), 2e-4 * change.by)
+          << change.name << " plane " << face + 1;
+    }
+  }
+}
+
+TEST(Artefact, HasAParameterForWhatIsUncertainOnly) {
+  EXPECT_TRUE(describe(drawn::certain_artefact(5)).parameters.empty());
+  const Artefact artefact = describe(everything_uncertain());
+  ASSERT_EQ(artefact.parameters.size(), 5u * 3u + 3u);
+  std::set<std::string> names;
+  for (const ArtefactParameter& each : artefact.parameters) {
+    names.insert(each.name);
+    EXPECT_EQ(each.shifts.size(), 5u);
+    EXPECT_GT(each.std.value(), 0.0);
+  }
+  EXPECT_EQ(names.size(), artefact.parameters.size());
+  EXPECT_EQ(parameter(artefact, "block_temperature").nominal, 24.0);
+  EXPECT_EQ(parameter(artefact, "stylus_radius").nominal, 0.003);
+  ArtefactKnowledge no_expansion = everything_uncertain();
+  no_expansion.thermal_expansion_per_k = 0.0;
+  EXPECT_EQ(describe(no_expansion).parameters.size(), 5u * 3u + 2u);
+}
+
+TEST(Artefact, TellsAnEstimatedFaceByHavingNoStandardDeviation) {
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
+  knowledge.face_uncertainties[4].estimated = true;
+  const Artefact artefact = describe(knowledge);
+  for (const ArtefactParameter& each : artefact.parameters) {
+    EXPECT_EQ(each.std.has_value(), !each.name.starts_with("plane5_")) << each.name;
+  }
+}
+
+TEST(Artefact, MakesALengthAnEquationBetweenOffsets) {
+  // Whatever the offsets' errors are, weight * error = value exactly when the faces lie the length apart.
+  for (const auto& faces : {std::array{2, 4}, std::array{4, 2}, std::array{0, 3}}) {
+    ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
+    const auto apart_m = [&](double first_moved, double second_moved) {
+      const Plane& first = knowledge.faces[static_cast<std::size_t>(faces[0])].plane;
+      const Plane& second = knowledge.faces[static_cast<std::size_t>(faces[1])].plane;
+      const Eigen::Vector3d on_first = (first.offset_m + first_moved) * first.outward;
+      const Eigen::Vector3d on_second = (second.offset_m + second_moved) * second.outward;
+      return std::abs((on_first - on_second).dot(first.outward));
+    };
+    const double first_moved = 30e-6, second_moved = -70e-6;
+    knowledge.lengths = {{faces, apart_m(first_moved, second_moved), 2e-6}};
+    const Artefact artefact = describe(knowledge);
+    ASSERT_EQ(artefact.equations.size(), 1u);
+    const ArtefactEquation& equation = artefact.equations[0];
+    EXPECT_EQ(equation.std_m, 2e-6);
+    double sum = 0.0;
+    for (const auto& [index, weight] : equation.weights) {
+      const std::string& name = artefact.parameters[static_cast<std::size_t>(index)].name;
+      const bool is_first = name == "plane" + std::to_string(faces[0] + 1) + "_offset";
+      EXPECT_TRUE(is_first || name == "plane" + std::to_string(faces[1] + 1) + "_offset") << name;
+      sum += weight * (is_first ? first_moved : second_moved);
+    }
+    EXPECT_NEAR(sum, equation.value_m, 1e-15);
+  }
+}
+
+TEST(Artefact, ALengthBetweenExactlyKnownFacesSaysNothing) {
+  ArtefactKnowledge knowledge = drawn::certain_artefact(5);
+  knowledge.lengths = {{{2, 4}, 0.150, 2e-6}};
+  EXPECT_TRUE(describe(knowledge).equations.empty());
+}
+
+}  // namespace
+}  // namespace calib

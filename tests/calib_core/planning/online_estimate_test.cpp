@@ -1,0 +1,185 @@
+#include "calib_core/planning/online_estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
+#include "tests/calib_core/block_study.hpp"
+
+namespace calib {
+namespace {
+
+constexpr double kNominalMissMetres = 0.013;  // Table III's, with what a block is put down to
+constexpr int kPerFace = 12;
+
+PlanningProblem paper_problem() {
+  PlanningProblem problem{.nominal = paper::nominal(),
+                          .joint_ranges = tx90::joint_ranges(),
+                          .faces = tx90::faces(),
+                          .stylus = {},
+                          .scene = tx90::scene(0.0),
+                          .park_joints = tx90::park_joints(),
+                          .nominal_miss_m = kNominalMissMetres,
+                          .tilt_max_rad = radians_from_degrees(45.0)};
+  problem.faces.resize(4);
+  problem.knowledge = {.nominal = paper::nominal(),
+                       .artefact = exact_artefact(paper::planes()),
+                       .touch_noise_m = study::kTouchNoiseMetres};
+  return problem;
+}
+
+/// An arm with Table III's errors that touches the paper's faces.
+class AimTest : public ::testing::Test {
+ protected:
+  static std::vector<Touch> touches_of(const KinematicModel& arm) {
+    UniformChance chance(7);
+    std::vector<Touch> touches;
+    for (const study::ExactTouch& exact : study::exact_touches(arm, kPerFace, chance))
+      touches.push_back(exact.touch);
+    return touches;
+  }
+
+  [[nodiscard]] double miss_m(const Aim& aim, const JointVector& joints) const {
+    return (forward_kinematics(aim.model(), joints).translation() -
+            forward_kinematics(truth_, joints).translation())
+        .norm();
+  }
+
+  /// A touch that the nominal arm can make.
+  [[nodiscard]] PlannedTouch planned_touch() const {
+    UniformChance chance(3);
+    for (int attempt = 0; attempt < 1000; ++attempt) {
+      const TouchPose pose = sample_touch_pose(problem_, problem_.faces[2], chance);
+      for (const JointVector& joints :
+           inverse_kinematics(problem_.nominal, problem_.joint_ranges, pose.block_from_tip)) {
+        auto touch = make_touch(problem_, find_touched(problem_, 2), pose, joints);
+        if (const auto* made = std::get_if<PlannedTouch>(&touch)) return *made;
+      }
+    }
+    throw std::logic_error("no touch can be made");
+  }
+
+  const PlanningProblem problem_ = paper_problem();
+  const KinematicModel truth_ = apply(paper::nominal(), paper::table3());
+  const std::vector<Touch> touches_ = touches_of(truth_);
+  const JointVector elsewhere_ = planned_touch().joints;
+};
+
+TEST_F(AimTest, BeforeTheFirstTouchTheNominalArmIsAsGoodAsAnything) {
+  const Aim aim(problem_);
+  EXPECT_EQ(aim.predicted_miss_m(elsewhere_), kNominalMissMetres);
+  EXPECT_FALSE(aim.aimed_problem(problem_, std::span(&elsewhere_, 1)));
+  const PlannedTouch planned = planned_touch();
+  const auto made = aim_touch(problem_, aim, planned);
+  const AimedTouch& touch = std::get<AimedTouch>(made);
+  EXPECT_LT((touch.touch.approach_joints - planned.approach_joints).norm(), 1e-9);
+  EXPECT_EQ(touch.touch.predicted_miss_m, kNominalMissMetres);
+}
+
+TEST_F(AimTest, ThePredictionShrinksWithTheTouchesAndTheArmStaysWithinIt) {
+  Aim aim(problem_);
+  double before_m = kNominalMissMetres;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    const AimedContact contact = aim.add(touches_[i]);
+    EXPECT_LE(std::abs(contact.miss_m), contact.predicted_miss_m) << i;
+    EXPECT_FALSE(contact.contradicts) << i;
+    const double predicted_m = aim.predicted_miss_m(elsewhere_);
+    EXPECT_LE(predicted_m, before_m * 1.5) << i;  // a surprise may raise it
+    if (predicted_m < kNominalMissMetres) {
+      EXPECT_LE(miss_m(aim, elsewhere_), predicted_m) << i;
+    }
+    before_m = predicted_m;
+  }
+  EXPECT_EQ(before_m, kPredictedMissMinMetres);
+}
+
+TEST_F(AimTest, AWrongTriggerIsToldAndDoesNotAim) {
+  Aim aim(problem_);
+  for (const Touch& touch : touches_) aim.add(touch);
+  const double before_m = miss_m(aim, elsewhere_);
+  Plane early = paper::planes()[0];
+  early.offset_m += 0.003;
+  const AimedContact contact = aim.add(moved_onto_plane(truth_, early, touches_[0]));
+  EXPECT_TRUE(contact.contradicts);
+  EXPECT_NEAR(contact.miss_m, 0.003, 1e-4);
+  EXPECT_NEAR(miss_m(aim, elsewhere_), before_m, 1e-5);
+  EXPECT_EQ(aim.predicted_miss_m(elsewhere_), kPredictedMissMinMetres) << "one says nothing of the arm";
+}
+
+TEST_F(AimTest, AnEarlyWrongTriggerIsFoundOutByTheTouchesThatFollow) {
+  Aim aim(problem_);
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    Plane plane = paper::planes()[static_cast<std::size_t>(touches_[i].face)];
+    plane.offset_m += i == 2 ? 0.003 : 0.0;
+    aim.add(moved_onto_plane(truth_, plane, touches_[i]));
+  }
+  EXPECT_LT(miss_m(aim, elsewhere_), kPredictedMissMinMetres);
+}
+
+TEST_F(AimTest, AnArmThatIsPushedMissesByMoreAndSoThePredictionGrows) {
+  Aim aim(problem_);
+  for (const Touch& touch : touches_) aim.add(touch);
+  ErrorVector pushed = paper::table3();
+  pushed[error_parameter_index("r0").value()] += 0.004;
+  pushed[error_parameter_index("d1").value()] += 0.004;
+  const std::vector<Touch> others = touches_of(apply(paper::nominal(), pushed));
+  for (std::size_t i = 0; i < 4; ++i) aim.add(others[i]);
+  EXPECT_GT(aim.predicted_miss_m(elsewhere_), 3.0 * kPredictedMissMinMetres);
+}
+
+TEST_F(AimTest, AnAimedTouchBringsTheEstimatedBallToTheSamePointAndSearchesAsFarAsItMayMiss) {
+  Aim aim(problem_);
+  for (const Touch& touch : touches_) aim.add(touch);
+  const PlannedTouch planned = planned_touch();
+  const auto made = aim_touch(problem_, aim, planned);
+  const PlannedTouch& touch = std::get<AimedTouch>(made).touch;
+  const Eigen::Isometry3d wanted = forward_kinematics(problem_.nominal, planned.joints);
+  EXPECT_LT((forward_kinematics(aim.model(), touch.joints).matrix() - wanted.matrix()).norm(), 1e-8);
+  EXPECT_EQ(touch.predicted_miss_m, kPredictedMissMinMetres);
+  EXPECT_DOUBLE_EQ(touch.search_length_m, 2.0 * kAimedStandoffMinMetres);
+  EXPECT_EQ(touch.face, planned.face);
+  EXPECT_EQ(touch.role, planned.role);
+  const double really_off_m =
+      signed_distance_m(problem_.faces[2].plane, forward_kinematics(truth_, touch.joints).translation());
+  EXPECT_LT(std::abs(really_off_m), touch.predicted_miss_m);
+}
+
+TEST_F(AimTest, EveryAimedTouchHasAWayFromTheOneBefore) {
+  Aim aim(problem_);
+  const PlannedTouch planned = planned_touch();
+  const auto first = aim_touch(problem_, aim, planned);
+  for (const Touch& touch : touches_) aim.add(touch);
+  const auto second = aim_touch(problem_, aim, planned);
+  const auto way = find_aimed_transfer(problem_, aim, end_of(std::get<AimedTouch>(first)),
+                                       end_of(std::get<AimedTouch>(second)));
+  ASSERT_TRUE(way);
+  EXPECT_LE(way->size(), kAimedTransferPosturesMax);
+}
+
+TEST_F(AimTest, WhatWillBeMissedIsKnownFromThePlanAlone) {
+  const PlannedTouch some = planned_touch();
+  std::vector<PlannedTouch> planned;
+  Aim aim(problem_);
+  std::vector<double> told_m;
+  for (const Touch& captured : touches_) {
+    // The nominal arm on the nominal faces: nothing surprises, only the covariance shrinks.
+    const Touch exact = moved_onto_plane(problem_.nominal,
+                                         paper::planes()[static_cast<std::size_t>(captured.face)], captured);
+    PlannedTouch touch = some;
+    touch.face = exact.face;
+    touch.joints = exact.joints;
+    planned.push_back(touch);
+    told_m.push_back(aim.predicted_miss_m(exact.joints));
+    aim.add(exact);
+  }
+  const std::vector<double> predicted_m = predicted_misses_m(problem_, planned);
+  ASSERT_EQ(predicted_m.size(), told_m.size());
+  for (std::size_t i = 0; i < told_m.size(); ++i) EXPECT_NEAR(predicted_m[i], told_m[i], 1e-7) << i;
+  EXPECT_EQ(predicted_m.front(), kNominalMissMetres);
+  EXPECT_EQ(predicted_m.back(), kPredictedMissMinMetres);
+}
+
+}  // namespace
+}  // namespace calib
