@@ -10,7 +10,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
 #include "service/cli/validation_text.hpp"
-#include "service/http/validation_view.hpp"
+#include "service/documents/validation_view.hpp"
 
 namespace cell {
 
@@ -21,8 +21,7 @@ ExitCode validate_command(const ValidateArguments& arguments, bool json) {
   TouchesFile other;
   if (!arguments.other_file.empty()) other = read_touches(arguments.other_file, cell);
   if (!arguments.other_file.empty() && other.touches.empty()) {
-    fmt::print(stderr, "{}: has no touches to validate with; give the other set\n",
-               arguments.other_file);
+    fmt::print(stderr, "{}: has no touches to validate with; give the other set\n", arguments.other_file);
     return kExitRefused;
   }
   calib::IdentificationProblem problem = identification_problem(cell, recipe);

@@ -6,7 +6,7 @@
 
 #include "calib_core/inverse_kinematics.hpp"
 #include "calib_core/transfer.hpp"
-#include "service/acquisition/touch_command.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace touchcal::testing {
 

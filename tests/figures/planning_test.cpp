@@ -5,7 +5,7 @@
 
 #include "calib_core/touch_candidate.hpp"
 #include "calib_core/units.hpp"
-#include "service/tip_prediction.hpp"
+#include "service/run/tip_prediction.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
 namespace calib::figures {
