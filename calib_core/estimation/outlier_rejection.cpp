@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "calib_core/estimation/least_trimmed_squares.hpp"
+#include "calib_core/estimation/internal/least_trimmed_squares.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
 namespace calib {

@@ -1,4 +1,4 @@
-#include "calib_core/planning/condition_number_exchange.hpp"
+#include "calib_core/planning/internal/condition_number_exchange.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "calib_core/planning/fedorov_exchange.hpp"
+#include "calib_core/planning/internal/fedorov_exchange.hpp"
 
 namespace calib {
 

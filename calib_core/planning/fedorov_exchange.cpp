@@ -1,4 +1,4 @@
-#include "calib_core/planning/fedorov_exchange.hpp"
+#include "calib_core/planning/internal/fedorov_exchange.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

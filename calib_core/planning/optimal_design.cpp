@@ -1,4 +1,4 @@
-#include "calib_core/planning/optimal_design.hpp"
+#include "calib_core/planning/internal/optimal_design.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +9,9 @@
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/estimation/least_squares.hpp"
 #include "calib_core/geometry/units.hpp"
-#include "calib_core/planning/condition_number_exchange.hpp"
-#include "calib_core/planning/fedorov_exchange.hpp"
-#include "calib_core/planning/held_out_selection.hpp"
+#include "calib_core/planning/internal/condition_number_exchange.hpp"
+#include "calib_core/planning/internal/fedorov_exchange.hpp"
+#include "calib_core/planning/internal/held_out_selection.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 

@@ -1,9 +1,9 @@
-#include "calib_core/planning/route_improvement.hpp"
+#include "calib_core/planning/internal/route_improvement.hpp"
 
 #include <algorithm>
 #include <utility>
 
-#include "calib_core/planning/face_interleaving.hpp"
+#include "calib_core/planning/internal/face_interleaving.hpp"
 
 namespace calib {
 namespace {

@@ -1,4 +1,4 @@
-#include "calib_core/planning/touch_order.hpp"
+#include "calib_core/planning/internal/touch_order.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "calib_core/kinematics/error_parameters.hpp"
-#include "calib_core/planning/face_interleaving.hpp"
-#include "calib_core/planning/fedorov_exchange.hpp"
-#include "calib_core/planning/route_improvement.hpp"
+#include "calib_core/planning/internal/face_interleaving.hpp"
+#include "calib_core/planning/internal/fedorov_exchange.hpp"
+#include "calib_core/planning/internal/route_improvement.hpp"
 
 namespace calib {
 namespace {

@@ -11,7 +11,8 @@
 #include "calib_core/motion/transfer_path.hpp"
 #include "service/acquisition/block_pass.hpp"
 #include "service/acquisition/operation.hpp"
-#include "service/acquisition/touch_command.hpp"
+#include "service/documents/block_pose_file.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 

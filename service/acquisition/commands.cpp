@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "service/acquisition/operation.hpp"
-#include "service/acquisition/readiness.hpp"
+#include "service/run/readiness.hpp"
 
 namespace cell {
 namespace {

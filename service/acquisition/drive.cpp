@@ -13,9 +13,9 @@
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/operation.hpp"
-#include "service/acquisition/planning.hpp"
-#include "service/acquisition/touch_command.hpp"
-#include "service/decision_rule.hpp"
+#include "service/run/decision_rule.hpp"
+#include "service/run/planning_problem.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 

@@ -1,6 +1,6 @@
 #include "service/acquisition/hand_touch.hpp"
 
-#include "service/acquisition/touch_command.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 

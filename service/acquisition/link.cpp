@@ -10,7 +10,7 @@
 #include <boost/asio/use_awaitable.hpp>
 
 #include "service/acquisition/operation.hpp"
-#include "service/acquisition/touch_command.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 

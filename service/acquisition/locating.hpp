@@ -7,8 +7,8 @@
 
 #include "calib_core/estimation/block_registration.hpp"
 #include "config/cell.hpp"
-#include "service/acquisition/hand_guide.hpp"
 #include "service/acquisition/hand_touch.hpp"
+#include "service/run/hand_guide.hpp"
 
 namespace cell {
 

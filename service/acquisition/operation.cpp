@@ -9,12 +9,14 @@
 #include <utility>
 
 #include "cs8_protocol/names.hpp"
-#include "service/acquisition/touch_command.hpp"
-#include "service/http/result_view.hpp"
-#include "service/log_format.hpp"
+#include "service/base/log_format.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/documents/conditions_view.hpp"
+#include "service/documents/configuration_digest.hpp"
+#include "service/documents/result_view.hpp"
+#include "service/run/run_conditions.hpp"
+#include "service/run/touch_command.hpp"
 #include "service/store/fault_log.hpp"
-#include "service/traceability.hpp"
-#include "service/utc_time.hpp"
 
 namespace cell {
 

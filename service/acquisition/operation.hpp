@@ -20,15 +20,15 @@
 #include "config/cell.hpp"
 #include "cs8_protocol/client.hpp"
 #include "service/acquisition/locating.hpp"
-#include "service/acquisition/readiness.hpp"
-#include "service/acquisition/state_machine.hpp"
-#include "service/acquisition/status.hpp"
 #include "service/acquisition/touch_judgement.hpp"
 #include "service/acquisition/touched_again.hpp"
-#include "service/located_place.hpp"
-#include "service/plan.hpp"
-#include "service/run.hpp"
-#include "service/store/touch_store.hpp"
+#include "service/documents/plan.hpp"
+#include "service/run/block_pose.hpp"
+#include "service/run/packml_state.hpp"
+#include "service/run/readiness.hpp"
+#include "service/run/run.hpp"
+#include "service/run/status.hpp"
+#include "service/store/run_store.hpp"
 
 namespace cell {
 

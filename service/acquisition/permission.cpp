@@ -7,8 +7,8 @@
 
 #include "cs8_protocol/names.hpp"
 #include "service/acquisition/operation.hpp"
-#include "service/acquisition/readiness.hpp"
-#include "service/acquisition/touch_command.hpp"
+#include "service/run/readiness.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 

@@ -2,7 +2,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "service/acquisition/operation.hpp"
-#include "service/traceability.hpp"
+#include "service/run/run_conditions.hpp"
 
 namespace cell {
 namespace {

@@ -9,10 +9,11 @@
 #include <nlohmann/json.hpp>
 
 #include "service/acquisition/operation.hpp"
-#include "service/acquisition/planning.hpp"
-#include "service/acquisition/touch_command.hpp"
-#include "service/log_format.hpp"
-#include "service/traceability.hpp"
+#include "service/base/log_format.hpp"
+#include "service/documents/conditions_view.hpp"
+#include "service/run/planning_problem.hpp"
+#include "service/run/run_conditions.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 

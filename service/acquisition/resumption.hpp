@@ -6,7 +6,7 @@
 
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
-#include "service/store/touch_store.hpp"
+#include "service/store/run_store.hpp"
 
 /// What of a run outlives the daemon beside its touches, so that the next one can go on with it.
 namespace cell {

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "calib_core/geometry/units.hpp"
-#include "service/acquisition/touch_command.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 namespace {

@@ -6,8 +6,8 @@
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "cs8_protocol/messages.hpp"
-#include "service/acquisition/state_machine.hpp"
-#include "service/faults.hpp"
+#include "service/run/fault_table.hpp"
+#include "service/run/packml_state.hpp"
 
 namespace cell {
 

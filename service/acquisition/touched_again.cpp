@@ -12,7 +12,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/motion/transfer_path.hpp"
 #include "service/acquisition/operation.hpp"
-#include "service/acquisition/touch_command.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 

@@ -14,7 +14,7 @@
 #include <fstream>
 
 #include "config/endpoint.hpp"
-#include "service/http/tokens.hpp"
+#include "service/base/state_directory.hpp"
 
 namespace cell {
 

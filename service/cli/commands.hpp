@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "service/base/exit_code.hpp"
 #include "service/cli/api_client.hpp"
-#include "service/exit_code.hpp"
 
 /// touchcal's commands. Each prints to standard output (with `json` one document and nothing else), tells
 /// errors on standard error and returns the exit code.

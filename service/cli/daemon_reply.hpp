@@ -2,8 +2,8 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "service/base/exit_code.hpp"
 #include "service/cli/api_client.hpp"
-#include "service/exit_code.hpp"
 
 namespace cell {
 

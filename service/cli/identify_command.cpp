@@ -7,12 +7,14 @@
 #include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
 #include "config/touches_file.hpp"
-#include "service/calibrated_arm.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
 #include "service/cli/result_text.hpp"
-#include "service/http/result_view.hpp"
-#include "service/traceability.hpp"
+#include "service/documents/conditions_view.hpp"
+#include "service/documents/configuration_digest.hpp"
+#include "service/documents/result_view.hpp"
+#include "service/run/calibrated_arm.hpp"
+#include "service/run/run_conditions.hpp"
 
 namespace cell {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "calib_core/identification/identify.hpp"
 #include "config/cell.hpp"
-#include "service/exit_code.hpp"
+#include "service/base/exit_code.hpp"
 
 /// What the commands that need no daemon have in common.
 namespace cell {

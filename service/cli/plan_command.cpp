@@ -13,8 +13,8 @@
 #include "service/cli/offline.hpp"
 #include "service/cli/plan_text.hpp"
 #include "service/cli/planning_bar.hpp"
-#include "service/http/places_view.hpp"
-#include "service/plan.hpp"
+#include "service/documents/places_view.hpp"
+#include "service/documents/plan.hpp"
 
 namespace cell {
 namespace {

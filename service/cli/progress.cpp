@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "service/acquisition/readiness.hpp"
+#include "service/run/readiness.hpp"
 
 namespace cell {
 namespace {

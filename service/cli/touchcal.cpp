@@ -6,10 +6,10 @@
 #include <map>
 
 #include "config/config_error.hpp"
+#include "service/base/state_directory.hpp"
+#include "service/base/version.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/completion.hpp"
-#include "service/daemon.hpp"
-#include "service/version.hpp"
 
 namespace {
 

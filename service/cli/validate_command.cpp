@@ -10,7 +10,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
 #include "service/cli/validation_text.hpp"
-#include "service/http/validation_view.hpp"
+#include "service/documents/validation_view.hpp"
 
 namespace cell {
 

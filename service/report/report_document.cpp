@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 
 #include "cs8_protocol/names.hpp"
-#include "service/digest.hpp"
-#include "service/http/json_figures.hpp"
-#include "service/http/json_view.hpp"
-#include "service/version.hpp"
+#include "service/base/digest.hpp"
+#include "service/base/json_figures.hpp"
+#include "service/base/version.hpp"
+#include "service/documents/json_view.hpp"
 
 namespace cell {
 namespace {

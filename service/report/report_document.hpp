@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "service/store/fault_log.hpp"
-#include "service/store/touch_store.hpp"
+#include "service/store/run_store.hpp"
 
 namespace cell {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "service/http/json_figures.hpp"
+#include "service/base/json_figures.hpp"
 
 /// The parts of the HTML report. Each takes the report or its result document and gives markup.
 namespace cell {

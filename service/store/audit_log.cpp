@@ -2,7 +2,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
-#include "service/store/unsynced.hpp"
+#include "service/store/internal/relaxed_durability.hpp"
 
 namespace cell {
 

@@ -27,7 +27,7 @@ std::set<std::string> declared_codes() {
   const std::regex enumerator("  (k[A-Za-z]+),.*");
   std::set<std::string> codes;
   bool inside = false;
-  for (const std::string& line : read_lines(kRoot / "service/faults.hpp")) {
+  for (const std::string& line : read_lines(kRoot / "service/run/fault_table.hpp")) {
     if (line.starts_with("enum class FaultCode")) inside = true;
     std::smatch match;
     if (inside && std::regex_match(line, match, enumerator)) codes.insert(match[1]);
@@ -39,10 +39,10 @@ std::set<std::string> declared_codes() {
 TEST(FaultTable, HasEveryCodeAndEachIsRaisedSomewhere) {
   const std::set<std::string> declared = declared_codes();
   EXPECT_GE(declared.size(), 42U);
-  EXPECT_EQ(codes_in(kRoot / "service/faults.cpp"), declared);
+  EXPECT_EQ(codes_in(kRoot / "service/run/fault_table.cpp"), declared);
   std::set<std::string> raised;
   for (const auto& file : source_files("service")) {
-    if (file.filename() != "faults.cpp") raised.merge(codes_in(file));
+    if (file.filename() != "fault_table.cpp") raised.merge(codes_in(file));
   }
   for (const std::string& code : declared) EXPECT_TRUE(raised.contains(code)) << code << " is never raised";
 }

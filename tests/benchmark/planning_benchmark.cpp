@@ -11,7 +11,7 @@
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/planning/candidate_pool.hpp"
 #include "config/read_config.hpp"
-#include "service/acquisition/planning.hpp"
+#include "service/run/planning_problem.hpp"
 
 namespace {
 

@@ -23,8 +23,9 @@
 #include <vector>
 
 #include "config/endpoint.hpp"
-#include "service/http/json_view.hpp"
-#include "service/http/listener.hpp"
+#include "service/documents/json_view.hpp"
+#include "service/http/routes/api.hpp"
+#include "service/http/server/listener.hpp"
 #include "tests/service/quiet_cell.hpp"
 
 namespace bench {
@@ -177,11 +178,12 @@ double median(std::vector<double> values) {
 
 int beside_plain_beast() {
   cell::QuietCell cell;
-  cell::HttpListener ours(cell.context().get_executor(), {asio::ip::address_v4::loopback(), 0},
-                          cell.operation(), {std::string(64, 'a'), std::string(64, 'b')});
+  cell::Api api(cell.context().get_executor(), cell.operation(),
+                {std::string(64, 'a'), std::string(64, 'b')});
+  cell::HttpListener ours(cell.context().get_executor(), {asio::ip::address_v4::loopback(), 0}, api);
   ours.launch();
   const std::string body = cell::status_document(cell.operation().status());
-  const std::string tag = ours.api().services().feed.etag();
+  const std::string tag = api.services().feed.etag();
   asio::io_context context(1);
   tcp::acceptor plain(context, {asio::ip::address_v4::loopback(), 0});
   asio::co_spawn(context, accept_plainly(plain, body, tag), asio::detached);

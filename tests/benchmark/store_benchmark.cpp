@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "service/store/touch_store.hpp"
+#include "service/store/run_store.hpp"
 
 namespace {
 

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string>
 
-#include "service/exit_code.hpp"
+#include "service/base/exit_code.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
 

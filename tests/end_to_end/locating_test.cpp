@@ -4,7 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "calib_core/geometry/units.hpp"
-#include "service/place_search.hpp"
+#include "service/documents/place_search.hpp"
+#include "service/run/moved_cell.hpp"
 #include "tests/end_to_end/pendant.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
 

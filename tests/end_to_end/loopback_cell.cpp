@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "config/fault_file.hpp"
-#include "service/http/json_view.hpp"
+#include "service/documents/json_view.hpp"
 #include "sim_controller/fault_names.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "service/acquisition/operation.hpp"
-#include "service/store/touch_store.hpp"
+#include "service/store/run_store.hpp"
 #include "sim_controller/server.hpp"
 #include "tests/end_to_end/folder.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "calib_core/identification/validate.hpp"
 #include "config/arm_file.hpp"
-#include "service/exit_code.hpp"
+#include "service/base/exit_code.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"

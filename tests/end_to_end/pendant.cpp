@@ -6,7 +6,7 @@
 
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/motion/transfer_path.hpp"
-#include "service/acquisition/touch_command.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace touchcal::testing {
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "service/exit_code.hpp"
+#include "service/base/exit_code.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"

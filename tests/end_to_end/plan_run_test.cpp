@@ -7,7 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "service/http/routes.hpp"
+#include "service/http/routes/routes.hpp"
 #include "tests/end_to_end/loopback_cell.hpp"
 
 namespace touchcal::testing {

@@ -12,8 +12,8 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "config/arm_file.hpp"
-#include "service/exit_code.hpp"
-#include "service/store/touch_store.hpp"
+#include "service/base/exit_code.hpp"
+#include "service/store/run_store.hpp"
 #include "sim_controller/controller.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"

@@ -7,7 +7,7 @@
 #include <boost/asio/io_context.hpp>
 
 #include "service/acquisition/operation.hpp"
-#include "service/http/json_view.hpp"
+#include "service/documents/json_view.hpp"
 #include "service/store/maintenance.hpp"
 #include "sim_controller/server.hpp"
 #include "tests/end_to_end/folder.hpp"

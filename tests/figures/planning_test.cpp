@@ -3,9 +3,9 @@
 
 #include <cstdio>
 
-#include "calib_core/geometry/units.hpp"
 #include "calib_core/planning/touch_feasibility.hpp"
-#include "service/tip_prediction.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "service/run/tip_prediction.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
 namespace calib::figures {

@@ -8,7 +8,7 @@
 #include "calib_core/numerics/halton.hpp"
 #include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
-#include "service/acquisition/planning.hpp"
+#include "service/run/planning_problem.hpp"
 #include "tests/calib_core/block_study.hpp"
 
 /// Calibrations of a shipped cell by simulation: an arm and an artefact drawn within what is said of them,

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "service/http/openapi.hpp"
-#include "service/http/route_table.hpp"
+#include "service/http/routes/openapi.hpp"
+#include "service/http/routes/route_table.hpp"
 
 /// Answers held against the OpenAPI document: the part of JSON Schema that it uses.
 namespace cell {

@@ -4,7 +4,7 @@
 #include <boost/asio/ip/tcp.hpp>
 
 #include "service/acquisition/operation.hpp"
-#include "service/store/touch_store.hpp"
+#include "service/store/run_store.hpp"
 #include "tests/service/shipped_cell.hpp"
 
 namespace cell {

@@ -6,7 +6,7 @@
 
 #include "calib_core/identification/identify.hpp"
 #include "config/identification_problem.hpp"
-#include "service/http/result_view.hpp"
+#include "service/documents/result_view.hpp"
 #include "tests/service/shipped_cell.hpp"
 
 /// Result documents of the paper's cell and the touches of an arm with the errors of Table III.

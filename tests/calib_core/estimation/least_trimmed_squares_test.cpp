@@ -1,4 +1,4 @@
-#include "calib_core/estimation/least_trimmed_squares.hpp"
+#include "calib_core/estimation/internal/least_trimmed_squares.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "calib_core/planning/face_interleaving.hpp"
+#include "calib_core/planning/internal/face_interleaving.hpp"
 
 #include <gtest/gtest.h>
 

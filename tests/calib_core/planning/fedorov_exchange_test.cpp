@@ -1,4 +1,4 @@
-#include "calib_core/planning/fedorov_exchange.hpp"
+#include "calib_core/planning/internal/fedorov_exchange.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 #include <stdexcept>
 
-#include "calib_core/planning/condition_number_exchange.hpp"
+#include "calib_core/planning/internal/condition_number_exchange.hpp"
 
 namespace calib {
 namespace {

@@ -1,4 +1,4 @@
-#include "calib_core/planning/held_out_selection.hpp"
+#include "calib_core/planning/internal/held_out_selection.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "calib_core/planning/optimal_design.hpp"
+#include "calib_core/planning/internal/optimal_design.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "calib_core/planning/route_improvement.hpp"
+#include "calib_core/planning/internal/route_improvement.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numeric>
 #include <random>
 
-#include "calib_core/planning/face_interleaving.hpp"
+#include "calib_core/planning/internal/face_interleaving.hpp"
 
 namespace calib {
 namespace {

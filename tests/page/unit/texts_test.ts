@@ -17,7 +17,7 @@ import {sayIn, type WordKey} from 'page/words/words.ts';
 import {statusWith} from './statuses.ts';
 
 const root = process.env.TOUCHCAL_SOURCE_DIR ?? '.';
-const faultTable = readFileSync(join(root, 'service/faults.cpp'), 'utf8');
+const faultTable = readFileSync(join(root, 'service/run/fault_table.cpp'), 'utf8');
 const faultNames = [...faultTable.matchAll(/FaultEntry\{\s*FaultCode::k\w+, "(\w+)"/g)].map((match) => match[1]!);
 
 test('EventsAreTheSameHoweverTheirTextIsCutInPieces', () => {

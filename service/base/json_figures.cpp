@@ -1,0 +1,22 @@
+#include "service/base/json_figures.hpp"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "calib_core/geometry/units.hpp"
+
+namespace cell {
+
+Json number(std::optional<double> value) {
+  return value && std::isfinite(*value) ? Json(*value) : Json(nullptr);
+}
+
+Json number_mm(std::optional<double> value_m) {
+  return value_m ? number(calib::mm_from_metres(*value_m)) : Json(nullptr);
+}
+
+std::string text_of(const Json& document) {
+  return document.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace cell

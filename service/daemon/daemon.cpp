@@ -1,0 +1,134 @@
+#include "service/daemon/daemon.hpp"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <cstdio>
+#include <stdexcept>
+
+#include "service/acquisition/operation.hpp"
+#include "service/base/state_directory.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/daemon/listen_address.hpp"
+#include "service/daemon/supervision.hpp"
+#include "service/http/auth/tokens.hpp"
+#include "service/http/routes/api.hpp"
+#include "service/http/server/listener.hpp"
+#include "service/store/maintenance.hpp"
+#include "service/store/run_store.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+
+namespace {
+
+/// Held while a daemon uses a state directory: two would count the same touches twice.
+class DirectoryLock {
+ public:
+  explicit DirectoryLock(const std::filesystem::path& directory)
+      : descriptor_(::open((directory / kLockFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    if (descriptor_ < 0)
+      throw std::runtime_error(directory.string() + ": cannot be written; give another --state");
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      ::close(descriptor_);
+      throw std::runtime_error(
+          directory.string() +
+          ": another touchcald uses this state directory; stop it or give another --state");
+    }
+  }
+  ~DirectoryLock() { ::close(descriptor_); }
+  DirectoryLock(const DirectoryLock&) = delete;
+  DirectoryLock& operator=(const DirectoryLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+/// At once and then every day. What cannot be deleted now is deleted another day.
+asio::awaitable<void> forget_old_runs(const TouchStore& store, int retain_days) {
+  asio::steady_timer day(co_await asio::this_coro::executor);
+  for (;;) {
+    try {
+      const auto oldest = std::chrono::system_clock::now() - std::chrono::days(retain_days);
+      const int deleted = delete_runs_before(store.database(), format_utc(oldest));
+      if (deleted > 0) spdlog::info("{} runs older than {} days were deleted", deleted, retain_days);
+    } catch (const std::exception& error) {
+      spdlog::error("old runs could not be deleted: {}", error.what());
+    }
+    day.expires_after(std::chrono::days(1));
+    co_await day.async_wait(asio::use_awaitable);
+  }
+}
+
+/// Planning takes tens of MB for a second and identification some hundred kB for a millisecond. glibc would
+/// keep all of it, once for each thread; so large pieces go back to the system when they are freed.
+void keep_memory_small() {
+  constexpr int kLargePieceBytes = 128 * 1024;
+  mallopt(M_ARENA_MAX, 1);
+  mallopt(M_MMAP_THRESHOLD, kLargePieceBytes);
+  mallopt(M_TRIM_THRESHOLD, kLargePieceBytes);
+}
+
+}  // namespace
+
+void run_daemon(const Cell& cell, const DaemonOptions& options) {
+  keep_memory_small();
+  if (std::filesystem::create_directories(options.state_directory)) {
+    std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
+  }
+  const DirectoryLock lock(options.state_directory);
+  TouchStore store(options.state_directory / kStoreFile);
+  const Tokens tokens = load_or_make_tokens(options.state_directory);
+  const auto clock = [] { return std::chrono::system_clock::now(); };
+
+  asio::io_context context(1);
+  if (options.retain_days)
+    asio::co_spawn(context, forget_old_runs(store, *options.retain_days), asio::detached);
+  Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
+                      random_hex(8), clock);
+  operation.keep_place_in(options.state_directory / kBlockPoseFile);
+  Api api(context.get_executor(), operation, tokens);
+  std::optional<HttpListener> listener;
+  const auto tls = tls_context(options);
+  try {
+    listener.emplace(context.get_executor(), listen_address(context, options), api,
+                     HttpLimits{.host_names = options.host_names}, tls);
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; give another address with --listen",
+                                         options.listen.host, options.listen.port, error.code().message()));
+  }
+  Supervision supervision(context.get_executor());
+  asio::signal_set signals(context, SIGINT, SIGTERM);
+  signals.async_wait([&](const boost::system::error_code& failure, int signal) {
+    if (failure) return;
+    spdlog::info("signal {}: stopping", signal);
+    supervision.tell_stopping();
+    listener->close();
+    asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
+    signals.async_wait(
+        [&](const boost::system::error_code&, int) { context.stop(); });  // a second one: at once
+  });
+  operation.launch();
+  listener->launch();
+  spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());
+  const auto address = listener->address();
+  fmt::print("listening on {}:{}\n", options.listen.host, address.port());
+  std::fflush(stdout);
+  supervision.tell_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
+  context.run();
+}
+
+}  // namespace cell

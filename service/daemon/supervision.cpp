@@ -1,0 +1,35 @@
+#include "service/daemon/supervision.hpp"
+
+#include <systemd/sd-daemon.h>
+
+namespace cell {
+
+namespace {
+
+/// Of the time after which systemd gives up: one lost sign is no harm.
+constexpr int kBeatsPerTimeout = 3;
+
+}  // namespace
+
+Supervision::Supervision(const boost::asio::any_io_executor& executor) : timer_(executor) {
+  std::uint64_t timeout_us = 0;
+  if (sd_watchdog_enabled(0, &timeout_us) > 0)
+    period_ = std::chrono::microseconds(timeout_us / kBeatsPerTimeout);
+}
+
+void Supervision::tell_ready(const std::string& status) {
+  sd_notify(0, ("READY=1\nSTATUS=" + status).c_str());
+  if (period_.count() > 0) beat();
+}
+
+void Supervision::tell_stopping() { sd_notify(0, "STOPPING=1\nSTATUS=stops the robot and closes"); }
+
+void Supervision::beat() {
+  sd_notify(0, "WATCHDOG=1");
+  timer_.expires_after(period_);
+  timer_.async_wait([this](const boost::system::error_code& failure) {
+    if (!failure) beat();
+  });
+}
+
+}  // namespace cell

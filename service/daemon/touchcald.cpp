@@ -1,0 +1,135 @@
+// touchcald: the daemon of one robot cell.
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <iostream>
+
+#include "config/config_error.hpp"
+#include "config/read_config.hpp"
+#include "service/base/exit_code.hpp"
+#include "service/base/log_format.hpp"
+#include "service/base/state_directory.hpp"
+#include "service/base/version.hpp"
+#include "service/daemon/daemon.hpp"
+#include "service/daemon/self_check.hpp"
+#include "service/store/maintenance.hpp"
+
+namespace {
+
+cell::Endpoint endpoint_option(const std::string& name, const std::string& text) {
+  const auto endpoint = cell::parse_endpoint(text);
+  if (!endpoint) throw CLI::ValidationError(name, "'" + text + "' is not HOST:PORT");
+  return *endpoint;
+}
+
+/// Letters, digits, hyphens and dots (RFC 1123), without a port.
+bool is_host_name(const std::string& name) {
+  constexpr std::size_t kLengthMax = 253;
+  return !name.empty() && name.size() <= kLengthMax && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '-' || c == '.';
+  });
+}
+
+/// Maintenance of the database, beside a daemon that may run: the exit code.
+int keep_state(const std::filesystem::path& database, const std::string& backup, bool verify) {
+  if (verify) {
+    const std::vector<std::string> damage = cell::find_damage(database);
+    for (const std::string& line : damage) std::cerr << database.string() << ": " << line << '\n';
+    if (!damage.empty()) {
+      std::cerr << "put the last backup in its place while no daemon runs\n";
+      return cell::kExitBadInput;
+    }
+    std::cout << database.string() << " is in order\n";
+  }
+  if (backup.empty()) return cell::kExitDone;
+  cell::back_up(database, backup);
+  std::cout << backup << " is a copy of " << database.string() << '\n';
+  return cell::kExitDone;
+}
+
+/// All that stands in the way of a start, at once.
+cell::ExitCode tell_check(const std::string& cell_file, const cell::SelfCheck& check) {
+  for (const std::string& line : check.bad_files) std::cerr << line << '\n';
+  for (const std::string& line : check.troubles) std::cerr << line << '\n';
+  if (!check.bad_files.empty()) return cell::kExitBadInput;
+  if (!check.troubles.empty()) return cell::kExitFailed;
+  std::cout << cell_file << ": cell " << check.cell_name << " is in order\n";
+  return cell::kExitDone;
+}
+
+void begin_log(const std::string& format) {
+  const bool json = format == "json";
+  const auto log = json ? spdlog::stderr_logger_mt("touchcald") : spdlog::stderr_color_mt("touchcald");
+  log->set_formatter(json ? cell::json_log_format() : cell::text_log_format());
+  spdlog::set_default_logger(log);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("touchcald: drives the touches of one robot cell, identifies the arm, serves the JSON API");
+  std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key, log_format = "text";
+  std::vector<std::string> host_names;
+  bool check = false, verify = false;
+  int retain_days = 0;
+  app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json");
+  app.add_option("--listen", listen, "HOST:PORT of the API")->default_str("127.0.0.1:8080");
+  app.add_option("--host-name", host_names, "a name that clients may call the daemon by, beside its address")
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            return is_host_name(name) ? "" : "'" + name + "' is no host's name";
+          },
+          "NAME"));
+  app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's");
+  app.add_option("--state", state, "directory for runs and tokens; default: the user's state home");
+  app.add_option("--tls-cert", tls_certificate,
+                 "certificate, PEM; with --tls-key the API is served over TLS");
+  app.add_option("--tls-key", tls_key, "the certificate's key, PEM");
+  app.add_option("--log-format", log_format,
+                 "what the log on standard error is made of: text, or json, an object a line")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->default_str(log_format);
+  app.add_flag(
+      "--check", check,
+      "look at the cell and all it names, the state directory, its tokens, the address and TLS, tell "
+      "all that is wrong, then exit");
+  app.add_option("--backup", backup,
+                 "copy the state's database into this new file, then exit; a daemon may run");
+  app.add_flag("--verify", verify, "look for damage in the state's database, then exit; a daemon may run");
+  app.add_option("--retain-days", retain_days, "delete runs that are older, but for the last accepted one")
+      ->check(CLI::PositiveNumber);
+  app.set_version_flag("--version", std::string("touchcald ") + cell::kVersion);
+
+  try {
+    app.parse(argc, argv);
+    begin_log(log_format);
+    cell::DaemonOptions options{.state_directory = state.empty() ? cell::default_state_directory()
+                                                                 : std::filesystem::path(state)};
+    if (!backup.empty() || verify)
+      return keep_state(options.state_directory / cell::kStoreFile, backup, verify);
+    if (cell_file.empty()) throw CLI::RequiredError("--cell");
+    if (retain_days > 0) options.retain_days = retain_days;
+    options.host_names = host_names;
+    options.tls_certificate = tls_certificate;
+    options.tls_key = tls_key;
+    if (!listen.empty()) options.listen = endpoint_option("--listen", listen);
+    if (!controller.empty()) options.controller = endpoint_option("--controller", controller);
+    if (check) return tell_check(cell_file, cell::check_daemon(cell_file, options));
+    const cell::Cell cell = cell::read_cell(cell_file);
+    cell::demand_revolute(cell);
+    cell::run_daemon(cell, options);
+    return cell::kExitDone;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, std::cout, std::cerr) == 0 ? cell::kExitDone : cell::kExitUsage;
+  } catch (const cell::ConfigError& error) {
+    std::cerr << error.what() << '\n';
+    return cell::kExitBadInput;
+  } catch (const std::exception& error) {
+    std::cerr << "touchcald: " << error.what() << '\n';
+    return cell::kExitFailed;
+  }
+}

@@ -1,0 +1,155 @@
+#include "service/documents/block_pose_file.hpp"
+
+#include <fcntl.h>
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "calib_core/geometry/units.hpp"
+#include "config/config_error.hpp"
+#include "config/file_bytes.hpp"
+#include "config/json_value.hpp"
+#include "config/shapes.hpp"
+#include "config/strict_json.hpp"
+#include "service/base/digest.hpp"
+
+namespace cell {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr std::size_t kTouchesMin = 6;
+constexpr std::size_t kTouchesMax = 100;
+
+template <class Vector>
+Json list_of(const Vector& values, double scale = 1.0) {
+  Json list = Json::array();
+  for (Eigen::Index i = 0; i < values.size(); ++i) list.push_back(scale * values[i]);
+  return list;
+}
+
+Eigen::Vector3d turn_of(const Eigen::Isometry3d& pose) {
+  const Eigen::AngleAxisd turn(pose.linear());
+  return turn.angle() * turn.axis();
+}
+
+Eigen::Isometry3d pose_of(const Eigen::Vector3d& shift_m, const Eigen::Vector3d& turn) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  if (turn.norm() > 0.0) pose.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+  pose.translation() = shift_m;
+  return pose;
+}
+
+/// Over the document without its checksum, with sorted keys.
+std::string checksum_of(const std::string& text) { return sha256_hex(nlohmann::json::parse(text).dump()); }
+
+std::runtime_error trouble(const std::filesystem::path& file) {
+  return std::runtime_error(fmt::format("{}: {}", file.string(), std::strerror(errno)));
+}
+
+/// Closes what it holds, whatever happens.
+class Descriptor {
+ public:
+  Descriptor(const std::filesystem::path& file, int flags)
+      : file_(file), number_(::open(file.c_str(), flags | O_CLOEXEC, 0600)) {
+    if (number_ < 0) throw trouble(file);
+  }
+  ~Descriptor() { ::close(number_); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  void write(std::string_view bytes) const {
+    while (!bytes.empty()) {
+      const ssize_t done = ::write(number_, bytes.data(), bytes.size());
+      if (done < 0 && errno == EINTR) continue;
+      if (done < 0) throw trouble(file_);
+      bytes.remove_prefix(static_cast<std::size_t>(done));
+    }
+  }
+  void make_durable() const {
+    if (::fsync(number_) != 0) throw trouble(file_);
+  }
+
+ private:
+  std::filesystem::path file_;
+  int number_;
+};
+
+}  // namespace
+
+std::string place_document(const LocatedPlace& place) {
+  const Eigen::Matrix<double, 6, 1> std = place.covariance.diagonal().cwiseSqrt();
+  Json document{{"schema", kPlaceSchema},
+                {"located_at", place.located_at},
+                {"digest", place.digest},
+                {"shift_mm", list_of(place.cell_from_block.translation(), 1e3)},
+                {"turn_rad", list_of(turn_of(place.cell_from_block))},
+                {"std_shift_mm", list_of(std.head<3>(), 1e3)},
+                {"std_turn_rad", list_of(std.tail<3>())}};
+  Json& covariance = document["covariance_si"] = Json::array();
+  for (int row = 0; row < 6; ++row) covariance.push_back(list_of(place.covariance.row(row)));
+  Json& errors = document["std_errors_si"] = Json::object();
+  for (std::size_t i = 0; i < place.std_place.size(); ++i)
+    if (place.std_place[i]) errors[calib::error_parameters()[i].name()] = *place.std_place[i];
+  Json& touches = document["touches"] = Json::array();
+  for (const calib::PlaceTouch& touch : place.touches)
+    touches.push_back({{"plane", touch.face + 1},
+                       {"joints_deg", list_of(touch.joints, 1.0 / calib::kRadiansPerDegree)},
+                       {"std_mm", calib::mm_from_metres(touch.std_m)}});
+  document[std::string(kPlaceChecksum)] = checksum_of(document.dump());
+  return document.dump();
+}
+
+void write_place(const std::filesystem::path& file, const LocatedPlace& place) {
+  std::filesystem::path beside = file;
+  beside += ".new";
+  {
+    const Descriptor made(beside, O_WRONLY | O_CREAT | O_TRUNC);
+    made.write(place_document(place) + '\n');
+    made.make_durable();
+  }
+  std::filesystem::rename(beside, file);
+  Descriptor(file.parent_path().empty() ? "." : file.parent_path(), O_RDONLY | O_DIRECTORY).make_durable();
+}
+
+std::optional<LocatedPlace> read_place(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  const std::string source = file.string();
+  const nlohmann::json json = read_json_file(file);
+  const JsonObject document =
+      JsonValue(source, json)
+          .document(kPlaceSchema,
+                    {"schema", "located_at", "digest", "shift_mm", "turn_rad", "std_shift_mm", "std_turn_rad",
+                     "covariance_si", "std_errors_si", "touches", kPlaceChecksum});
+  nlohmann::json summed = json;
+  summed.erase(std::string(kPlaceChecksum));
+  if (document.at(kPlaceChecksum).text() != sha256_hex(summed.dump()))
+    document.at(kPlaceChecksum)
+        .fail(
+            "is not that of the file, which was changed since the block was located; remove the file, then "
+            "touchcal "
+            "locate finds the block");
+  LocatedPlace place{.located_at = document.at("located_at").text(), .digest = document.at("digest").text()};
+  place.cell_from_block =
+      pose_of(document.at("shift_mm").numbers<3>() * 1e-3, document.at("turn_rad").numbers<3>());
+  const auto rows = document.at("covariance_si").items(6, 6);
+  for (int row = 0; row < 6; ++row)
+    place.covariance.row(row) = rows[static_cast<std::size_t>(row)].numbers<6>().transpose();
+  for (const auto& [name, value] : document.at("std_errors_si").members()) {
+    const auto index = calib::error_parameter_index(name);
+    if (!index) value.fail("is no error of an arm");
+    place.std_place[static_cast<std::size_t>(*index)] = value.number(kNotNegative);
+  }
+  for (const JsonValue& value : document.at("touches").items(kTouchesMin, kTouchesMax)) {
+    const JsonObject touch = value.object({"plane", "joints_deg", "std_mm"});
+    place.touches.push_back({touch.at("plane").integer(1, 1000) - 1,
+                             touch.at("joints_deg").numbers<6>() * calib::kRadiansPerDegree,
+                             touch.at("std_mm").number(kPositive) * 1e-3});
+  }
+  return place;
+}
+
+}  // namespace cell

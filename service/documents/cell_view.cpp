@@ -1,0 +1,103 @@
+#include "service/documents/cell_view.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "calib_core/geometry/units.hpp"
+#include "service/base/json_figures.hpp"
+#include "service/documents/place_view.hpp"
+#include "service/documents/scene_view.hpp"
+#include "service/run/fault_table.hpp"
+
+namespace cell {
+namespace {
+
+using calib::mm_from_metres;
+
+Json vector_mm(const Eigen::Vector3d& point_m) {
+  return {mm_from_metres(point_m.x()), mm_from_metres(point_m.y()), mm_from_metres(point_m.z())};
+}
+
+Json box_json(const calib::Box& box) {
+  return {{"name", box.name}, {"min_mm", vector_mm(box.min_m)}, {"max_mm", vector_mm(box.max_m)}};
+}
+
+Json faces_json(const Block& block) {
+  Json faces = Json::array();
+  for (const calib::Face& face : block.faces) {
+    const Eigen::Vector3d& outward = face.plane.outward;
+    faces.push_back({{"plane", faces.size() + 1},
+                     {"outward", {outward.x(), outward.y(), outward.z()}},
+                     {"offset_mm", mm_from_metres(face.plane.offset_m)},
+                     {"center_mm", vector_mm(face.center_m)},
+                     {"edge_u", {face.edge_u.x(), face.edge_u.y(), face.edge_u.z()}},
+                     {"half_extent_mm",
+                      {mm_from_metres(face.half_extent_m.x()), mm_from_metres(face.half_extent_m.y())}}});
+  }
+  return faces;
+}
+
+Json limits_json(const AcceptanceLimits& limits) {
+  return {{"held_out_mean_max_mm", mm_from_metres(limits.held_out_mean_max_m)},
+          {"held_out_rms_max_mm", mm_from_metres(limits.held_out_rms_max_m)},
+          {"condition_number_max", limits.condition_number_max},
+          {"lack_of_fit_p_min", limits.lack_of_fit_p_min},
+          {"tip_box_rms_max_mm", number_mm(limits.tip_box_rms_max_m)}};
+}
+
+}  // namespace
+
+std::string recipes_document(const Cell& cell) {
+  Json list = Json::array();
+  for (const auto& [name, recipe] : cell.recipes) {
+    Json planes = Json::array();
+    for (const int face : recipe.faces) planes.push_back(face + 1);
+    const int faces = static_cast<int>(recipe.faces.size());
+    list.push_back(
+        {{"name", name},
+         {"description", recipe.description},
+         {"planes", planes},
+         {"fit_max", recipe.fit_per_face > 0 ? recipe.fit_per_face * faces : recipe.goal.fit_count},
+         {"held_out", recipe.held_out_per_face * faces},
+         {"tip_rms_max_mm", number_mm(recipe.goal.tip_rms_max_m)}});
+  }
+  return text_of({{"recipes", list}, {"default", cell.default_recipe}});
+}
+
+std::string cell_document(const Cell& cell, const std::optional<LocatedPlace>& place) {
+  Json keep_out = Json::array();
+  for (const calib::Box& box : cell.keep_out_boxes) keep_out.push_back(box_json(box));
+  return text_of({{"name", cell.name},
+                  {"arm", cell.arm.name},
+                  {"block",
+                   {{"name", cell.block.name},
+                    {"temperature_c", number(cell.block.temperature_c)},
+                    {"faces", faces_json(cell.block)}}},
+                  {"place", place_view(place)},
+                  {"probe",
+                   {{"name", cell.probe.name},
+                    {"tip_is_contact_point", cell.probe.tip_is_contact_point},
+                    {"stylus_radius_mm", mm_from_metres(cell.probe.stylus.radius_m)},
+                    {"pretravel_mm", mm_from_metres(cell.probe.stylus.pretravel_m)}}},
+                  {"default_recipe", cell.default_recipe},
+                  {"workspace_box", box_json(cell.workspace_box)},
+                  {"keep_out_boxes", keep_out},
+                  {"nominal_miss_mm", mm_from_metres(cell.nominal_miss_m)},
+                  {"touch_noise_mm", mm_from_metres(cell.touch_noise_m)},
+                  {"acceptance", limits_json(cell.acceptance)},
+                  {"scene", scene_json(cell)},
+                  {"controller", cell.controller.host + ":" + std::to_string(cell.controller.port)}});
+}
+
+std::string faults_document() {
+  Json list = Json::array();
+  for (const FaultEntry& entry : fault_table()) {
+    list.push_back({{"code", entry.name},
+                    {"kind", fault_kind_name(entry.kind)},
+                    {"cause", entry.cause},
+                    {"robot_action", entry.robot_action},
+                    {"next_step", entry.next_step}});
+  }
+  return text_of({{"faults", list}});
+}
+
+}  // namespace cell

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "config/cell.hpp"
+#include "service/run/run_conditions.hpp"
+
+namespace cell {
+
+/// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; null where
+/// unknown.
+nlohmann::ordered_json conditions_json(const Cell& cell, const Conditions& conditions);
+/// The same as text: what is kept with a run.
+std::string conditions_document(const Cell& cell, const Conditions& conditions);
+
+/// Whether a person made the touches of a run that kept these conditions; false when they do not say.
+bool is_guided(const std::optional<std::string>& conditions);
+
+}  // namespace cell

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "service/run/decision_rule.hpp"
+
+namespace cell {
+
+/// `decision_rule` of a verdict: the standard, which of its ways this cell decides by, and every criterion.
+nlohmann::ordered_json decision_rule_json(const std::vector<Criterion>& criteria,
+                                          const AcceptanceLimits& limits);
+
+}  // namespace cell

@@ -1,0 +1,151 @@
+#include <array>
+
+#include "service/documents/schemas.hpp"
+
+namespace cell {
+namespace {
+
+constexpr std::string_view kTouches = R"({
+"type":"object",
+"required":["schema","arm","touches"],
+"properties":{
+  "schema":{"const":"touchcal/touches/1"},
+  "arm":{"type":"string"},
+  "touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
+    "plane":{"type":"integer","minimum":1},
+    "role":{"enum":["fit","held_out","proof"]},
+    "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}}}})";
+
+constexpr std::string_view kResult = R"({
+"type":"object",
+"required":["schema","arm","touch_count","complete","warnings","rejected_touches","converged","iterations",
+  "identifiable_count","condition_number","scaled_condition_number","singular_values","parameters",
+  "artefact_parameters","planes","planes_held_out","planes_proof","scale","touches","validation","tip_uncertainty","fit","verdict","conditions"],
+"properties":{
+  "schema":{"const":"touchcal/result/1"},
+  "arm":{"type":"string"},
+  "touch_count":{"type":"integer","minimum":0},
+  "complete":{"type":"boolean"},
+  "warnings":{"type":"array","items":{"type":"string"}},
+  "rejected_touches":{"type":"array","items":{"type":"object","required":["touch","residual_mm","reason"],
+    "properties":{
+      "touch":{"type":"integer","minimum":1},
+      "residual_mm":{"type":["number","null"]},
+      "reason":{"enum":["outlier","wrong_plane"]}}}},
+  "converged":{"type":"boolean"},
+  "iterations":{"type":"array","items":{"type":"object",
+    "required":["condition_number","scaled_condition_number","residual_rms_mm","step_norm"]}},
+  "identifiable_count":{"type":"integer","minimum":0},
+  "condition_number":{"type":["number","null"]},
+  "scaled_condition_number":{"type":["number","null"]},
+  "singular_values":{"type":"array","items":{"type":"number"}},
+  "parameters":{"type":"array","minItems":37,"items":{"type":"object",
+    "required":["name","frame","kind","group","unit","nominal","status","error","std_uncertainty","grouped_with"],
+    "properties":{
+      "name":{"type":"string"},
+      "frame":{"type":"integer","minimum":0,"maximum":7},
+      "group":{"enum":["place","arm","tool"]},
+      "unit":{"enum":["mm","rad"]},
+      "nominal":{"type":"number"},
+      "status":{"enum":["identified","grouped","no_effect","excluded","weak"]},
+      "error":{"type":["number","null"]},
+      "std_uncertainty":{"type":["number","null"]},
+      "grouped_with":{"type":"array"}}}},
+  "artefact_parameters":{"type":"array","items":{"type":"object","required":["name","unit","value","status"]}},
+  "planes":{"$ref":"#/components/schemas/Distances"},
+  "planes_held_out":{"$ref":"#/components/schemas/Distances"},
+  "planes_proof":{"$ref":"#/components/schemas/Distances"},
+  "touches":{"type":"array","items":{"type":"object",
+    "required":["touch","plane","role","use","nominal_mm","calibrated_mm"],
+    "properties":{
+      "touch":{"type":"integer","minimum":1},
+      "plane":{"type":"integer","minimum":1},
+      "role":{"enum":["fit","held_out","proof"]},
+      "use":{"enum":["used","rejected"]},
+      "nominal_mm":{"type":["number","null"]},
+      "calibrated_mm":{"type":["number","null"]}}}},
+  "validation":{"type":["object","null"],"required":["same_touches","other_touches"]},
+  "scale":{"type":"object","required":["source","std_uncertainty_ppm","warning"],"properties":{
+    "source":{"enum":["block","two_lengths","prior",null]},
+    "std_uncertainty_ppm":{"type":["number","null"]},
+    "warning":{"type":["string","null"]}}},
+  "tip_uncertainty":{"$ref":"#/components/schemas/TipUncertainty"},
+  "fit":{"type":"object","required":["noise_declared_um","noise_estimated_um","lack_of_fit_p"]},
+  "verdict":{"type":"object","required":["accepted","reasons"],"properties":{
+    "accepted":{"type":"boolean"},
+    "reasons":{"type":"array","items":{"type":"string"}},
+    "decision_rule":{"type":"object","required":["standard","rule","text","coverage_factor","criteria"],"properties":{
+      "standard":{"type":"string"},
+      "rule":{"enum":["simple","guarded"]},
+      "criteria":{"type":"array","items":{"type":"object",
+        "required":["name","plane","unit","value","limit","expanded_uncertainty","within_limit","proved"]}}}}}},
+  "conditions":{"type":"object",
+    "required":["operator","config_digest","block_temperature_c","block","probe","versions","controller_session"]}}})";
+
+constexpr std::string_view kDistances = R"({
+"type":"array",
+"items":{"type":"object",
+  "required":["plane","reference_mm","nominal_mean_mm","calibrated_mean_mm","error_removed_percent",
+    "nominal_agreement_percent","nominal_rms_mm","calibrated_rms_mm"],
+  "properties":{"plane":{"type":"integer","minimum":1},"reference_mm":{"type":["number","null"]}}}})";
+
+constexpr std::string_view kTipUncertainty = R"({
+"type":"object",
+"required":["at_block_rms_mm","workspace_box_rms_mm","joint_ranges_rms_mm"],
+"properties":{
+  "at_block_rms_mm":{"type":["number","null"]},
+  "workspace_box_rms_mm":{"type":["number","null"]},
+  "joint_ranges_rms_mm":{"type":["number","null"]}}})";
+
+constexpr std::string_view kPlan = R"({
+"type":"object",
+"required":["schema","plan_id","recipe","condition_number","scaled_condition_number","tip_uncertainty","duration_s",
+  "touches"],
+"properties":{
+  "schema":{"const":"touchcal/plan/1"},
+  "plan_id":{"type":["string","null"]},
+  "recipe":{"type":"string"},
+  "condition_number":{"type":["number","null"]},
+  "scaled_condition_number":{"type":["number","null"]},
+  "tip_uncertainty":{"$ref":"#/components/schemas/TipUncertainty"},
+  "duration_s":{"type":["number","null"]},
+  "touches":{"type":"array","items":{"type":"object",
+    "required":["plane","role","joints_deg","approach_joints_deg","search_direction","search_length_mm"],
+    "properties":{
+      "plane":{"type":"integer","minimum":1},
+      "role":{"enum":["fit","held_out","proof"]},
+      "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
+      "approach_joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
+      "search_direction":{"type":"array","minItems":3,"maxItems":3,"items":{"type":"number"}},
+      "search_length_mm":{"type":"number"}}}}}})";
+
+constexpr std::string_view kArm = R"({
+"type":"object",
+"description":"An arm's file, with what was identified",
+"required":["schema","name","frames"],
+"properties":{
+  "schema":{"const":"touchcal/arm/1"},
+  "name":{"type":"string"},
+  "frames":{"type":"array","minItems":8,"maxItems":8,"items":{"type":"object"}}}})";
+
+constexpr std::string_view kReport = R"({
+"type":"object",
+"required":["schema","touchcal_version","run","raw_data","touches","touched_again","reference_touches","faults","result"],
+"properties":{
+  "schema":{"const":"touchcal/report/1"},
+  "run":{"type":"object","required":["id","recipe","operator","started_at","ended_at","outcome","verdict"]},
+  "raw_data":{"type":"object","required":["sha256","of"]},
+  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","use"]}},
+  "result":{"type":["object","null"]}}})";
+
+constexpr std::array kSchemas{
+    DocumentSchema{"Touches", kTouches},     DocumentSchema{"Result", kResult},
+    DocumentSchema{"Distances", kDistances}, DocumentSchema{"TipUncertainty", kTipUncertainty},
+    DocumentSchema{"Plan", kPlan},           DocumentSchema{"Arm", kArm},
+    DocumentSchema{"Report", kReport}};
+
+}  // namespace
+
+std::span<const DocumentSchema> file_schemas() { return kSchemas; }
+
+}  // namespace cell

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "service/documents/plan.hpp"
+
+namespace cell {
+
+/// touchcal/plan/1 (contract.md, section 4) with a plan_id that is null: what is predicted, what limits it,
+/// and every step of every touch. In `joints_deg` the nominal arm's ball touches the nominal face.
+nlohmann::ordered_json plan_json(const TipRegions& regions, const Recipe& recipe,
+                                 const calib::TouchPlan& plan, const PlannedIdentification& planned);
+
+/// Causes with a smaller share are in the figures only, not in words.
+inline constexpr double kShareToldMin = 0.05;
+
+/// The causes of the predicted tip error in the workspace box, largest first, with their share of its square.
+struct ErrorShare {
+  std::string source;
+  double rms_m = 0.0;  // from this source alone
+  double share = 0.0;  // 0 to 1
+};
+std::vector<ErrorShare> error_shares(const TipPrediction& tip);
+
+}  // namespace cell

@@ -1,0 +1,223 @@
+#include "service/documents/schemas.hpp"
+
+#include <array>
+
+namespace cell {
+namespace {
+
+constexpr std::string_view kStatus = R"({
+"type":"object",
+"description":"What a supervisor polls. No field comes or goes; what is not known is null.",
+"required":["state","waiting_for","run_id","recipe","touches_done","touches_total","plane","identifiable_count",
+  "condition_number","predicted_tip_rms_mm","more_would_bring","eta_s","verdict","controller_connected",
+  "controller_powered","controller_mode","controller_estop","controller_cell_closed","controller_touch_tested",
+  "controller_permit","probe","by_hand","by_hand_step","by_hand_plane","by_hand_index","by_hand_total",
+  "by_hand_words","by_hand_problem","by_hand_joints_deg","fault_code","fault_message","fault_robot_action","fault_next_step",
+  "warning_code","warning_message","reference_drift_mm","last_accepted_run_id","last_accepted_at","data_age_ms","sequence","instance_id","since"],
+"properties":{
+  "state":{"enum":["STOPPED","RESETTING","IDLE","STARTING","EXECUTE","COMPLETING","COMPLETE","HOLDING","HELD",
+    "UNHOLDING","SUSPENDING","SUSPENDED","UNSUSPENDING","STOPPING","ABORTING","ABORTED","CLEARING"]},
+  "waiting_for":{"type":["string","null"]},
+  "run_id":{"type":["string","null"]},
+  "recipe":{"type":["string","null"]},
+  "touches_done":{"type":"integer","minimum":0},
+  "touches_total":{"type":["integer","null"],"minimum":1},
+  "plane":{"type":["integer","null"],"minimum":1},
+  "identifiable_count":{"type":["integer","null"],"minimum":0},
+  "condition_number":{"type":["number","null"],"minimum":1},
+  "predicted_tip_rms_mm":{"type":["number","null"],"minimum":0},
+  "more_would_bring":{"type":["string","null"]},
+  "eta_s":{"type":["number","null"],"minimum":0},
+  "verdict":{"enum":["none","accepted","rejected","incomplete"]},
+  "controller_connected":{"type":"boolean"},
+  "controller_powered":{"type":["boolean","null"]},
+  "controller_mode":{"type":["string","null"]},
+  "controller_estop":{"type":["boolean","null"]},
+  "controller_cell_closed":{"type":["boolean","null"]},
+  "controller_touch_tested":{"type":["boolean","null"]},
+  "controller_permit":{"type":["string","null"]},
+  "probe":{"enum":["free","touched","fault",null]},
+  "by_hand":{"enum":["locate","guided",null],
+    "description":"what a person with the pendant does: finds the block, or makes a run's touches"},
+  "by_hand_step":{"enum":["touch","undo","pass","passing",null],
+    "description":"undo: the touches give no place; pass: one is found, locate once more goes around it"},
+  "by_hand_plane":{"type":["integer","null"],"minimum":1,"description":"to touch next"},
+  "by_hand_index":{"type":["integer","null"],"minimum":1,"description":"of the touch, from 1"},
+  "by_hand_total":{"type":["integer","null"],"minimum":1},
+  "by_hand_words":{"type":["string","null"],"description":"what to do, a sentence"},
+  "by_hand_problem":{"type":["string","null"],"description":"why the last touch did not count, a sentence"},
+  "by_hand_joints_deg":{"type":["array","null"],"items":{"type":"number"},"minItems":6,"maxItems":6,
+    "description":"joint 1 first: roughly the posture that is asked for; guided touches only"},
+  "reference_drift_mm":{"type":["number","null"]},
+  "fault_code":{"type":["string","null"]},
+  "fault_message":{"type":["string","null"]},
+  "fault_robot_action":{"type":["string","null"]},
+  "fault_next_step":{"type":["string","null"]},
+  "warning_code":{"type":["string","null"]},
+  "warning_message":{"type":["string","null"]},
+  "last_accepted_run_id":{"type":["string","null"]},
+  "last_accepted_at":{"type":["string","null"]},
+  "data_age_ms":{"type":["integer","null"],"minimum":0},
+  "sequence":{"type":"integer","minimum":0},
+  "instance_id":{"type":"string"},
+  "since":{"type":"string"}}})";
+
+constexpr std::string_view kRun = R"({
+"type":"object",
+"required":["id","recipe","touching","outcome","verdict","touches_done","touches_total","started_at","ended_at","fault_code",
+  "fault_message"],
+"properties":{
+  "id":{"type":"string"},
+  "recipe":{"type":"string"},
+  "touching":{"enum":["automatic","guided"],"description":"guided: a person made the touches"},
+  "outcome":{"enum":["running","complete","stopped","aborted","interrupted"]},
+  "verdict":{"enum":["none","accepted","rejected","incomplete"]},
+  "touches_done":{"type":"integer","minimum":0},
+  "touches_total":{"type":["integer","null"],"minimum":1},
+  "started_at":{"type":"string"},
+  "ended_at":{"type":["string","null"]},
+  "fault_code":{"type":["string","null"]},
+  "fault_message":{"type":["string","null"]},
+  "conditions":{"type":["object","null"],"description":"What it was made under; in the document of one run"}}})";
+
+constexpr std::string_view kRuns = R"({
+"type":"object",
+"required":["runs","next_before"],
+"properties":{
+  "runs":{"type":"array","items":{"$ref":"#/components/schemas/Run"}},
+  "next_before":{"type":["string","null"],"description":"ask for the next page with before; null on the last"}}})";
+
+constexpr std::string_view kStartRequest = R"({
+"type":"object",
+"description":"A recipe, or a plan of one that POST plan has made.",
+"additionalProperties":false,
+"properties":{
+  "recipe":{"type":"string"},
+  "plan_id":{"type":"string"},
+  "operator":{"type":"string","minLength":1,"maxLength":100},
+  "touching":{"enum":["automatic","guided"],"description":"guided: a person makes the touches; automatic if absent"}},
+"oneOf":[{"required":["recipe"]},{"required":["plan_id"]}]})";
+
+constexpr std::string_view kPlanRequest = R"({
+"type":"object",
+"additionalProperties":false,
+"required":["recipe"],
+"properties":{"recipe":{"type":"string"}}})";
+
+constexpr std::string_view kProblem = R"({
+"type":"object",
+"description":"RFC 9457",
+"required":["type","title","status","detail"],
+"properties":{
+  "type":{"type":"string","pattern":"^urn:touchcal:problem:"},
+  "title":{"type":"string"},
+  "status":{"type":"integer","minimum":400,"maximum":599},
+  "detail":{"type":"string"},
+  "pointer":{"type":"string","description":"the place in the body that is at fault"},
+  "parameter":{"type":"string","description":"the query parameter that is at fault"},
+  "errors":{"type":"array","items":{"type":"object","required":["code","detail"],
+    "properties":{"code":{"type":"string"},"detail":{"type":"string"}}}},
+  "exits":{"type":"array","items":{"type":"string"},"description":"commands that the state allows"}}})";
+
+constexpr std::string_view kRecipes = R"({
+"type":"object",
+"required":["recipes","default"],
+"properties":{
+  "default":{"type":"string"},
+  "recipes":{"type":"array","items":{"type":"object",
+    "required":["name","description","planes","fit_max","held_out","tip_rms_max_mm"],
+    "properties":{
+      "name":{"type":"string"},
+      "description":{"type":"string"},
+      "planes":{"type":"array","items":{"type":"integer","minimum":1}},
+      "fit_max":{"type":"integer","minimum":0},
+      "held_out":{"type":"integer","minimum":0},
+      "tip_rms_max_mm":{"type":["number","null"]}}}}}})";
+
+constexpr std::string_view kCell = R"({
+"type":"object",
+"required":["name","arm","block","place","probe","default_recipe","workspace_box","keep_out_boxes","nominal_miss_mm",
+  "touch_noise_mm","acceptance","scene","controller"],
+"properties":{
+  "name":{"type":"string"},
+  "arm":{"type":"string"},
+  "block":{"type":"object","required":["name","temperature_c","faces"],"properties":{
+    "name":{"type":"string"},
+    "temperature_c":{"type":["number","null"]},
+    "faces":{"type":"array","items":{"type":"object","required":["plane","outward","offset_mm","center_mm","edge_u",
+      "half_extent_mm"]}}}},
+  "place":{"type":["object","null"],
+    "description":"where the block was located, against the cell's file; null: where the file has it",
+    "properties":{
+      "located_at":{"type":"string"},
+      "shift_mm":{"type":"array","items":{"type":"number"}},
+      "std_shift_mm":{"type":"array","items":{"type":"number"}},
+      "turn_deg":{"type":"array","items":{"type":"number"},"description":"rotation vector"},
+      "std_turn_deg":{"type":"array","items":{"type":"number"}},
+      "touch_count":{"type":"integer","minimum":0}}},
+  "probe":{"type":"object","required":["name","tip_is_contact_point","stylus_radius_mm","pretravel_mm"]},
+  "default_recipe":{"type":"string"},
+  "workspace_box":{"type":"object"},
+  "keep_out_boxes":{"type":"array","items":{"type":"object"}},
+  "nominal_miss_mm":{"type":"number"},
+  "touch_noise_mm":{"type":"number"},
+  "acceptance":{"type":"object"},
+  "scene":{"type":"object","description":"what the cell looks like, in R_-1; bodies in the frame that they move with",
+    "required":["frames","gains","arm_bodies","probe_bodies","solids","park_joints_deg"]},
+  "controller":{"type":"string"}}})";
+
+constexpr std::string_view kJoints = R"({
+"type":"object",
+"required":["joints_deg","data_age_ms","sequence","instance_id"],
+"properties":{
+  "joints_deg":{"type":["array","null"],"items":{"type":"number"},"description":"six, joint 1 first"},
+  "data_age_ms":{"type":["integer","null"],"minimum":0},
+  "sequence":{"type":"integer","minimum":0,"description":"of the status"},
+  "instance_id":{"type":"string"}}})";
+
+constexpr std::string_view kFaults = R"({
+"type":"object",
+"required":["faults"],
+"properties":{"faults":{"type":"array","items":{"type":"object",
+  "required":["code","kind","cause","robot_action","next_step"],
+  "properties":{
+    "code":{"type":"string"},
+    "kind":{"enum":["refused","warning","held","suspended","aborted"]},
+    "cause":{"type":"string"},
+    "robot_action":{"type":"string"},
+    "next_step":{"type":"string"}}}}}})";
+
+constexpr std::string_view kHealth = R"({
+"type":"object",
+"required":["status"],
+"properties":{"status":{"enum":["ok","ready"]}}})";
+
+constexpr std::string_view kAccess = R"({
+"type":"object",
+"required":["role"],
+"properties":{"role":{"enum":["operate","view","none","wrong token"]}}})";
+
+constexpr std::string_view kOpenApi = R"({
+"type":"object",
+"required":["openapi","info","paths","components"],
+"properties":{"openapi":{"const":"3.1.0"}}})";
+
+constexpr std::array kSchemas{DocumentSchema{"Status", kStatus},
+                              DocumentSchema{"Run", kRun},
+                              DocumentSchema{"Runs", kRuns},
+                              DocumentSchema{"StartRequest", kStartRequest},
+                              DocumentSchema{"PlanRequest", kPlanRequest},
+                              DocumentSchema{"Problem", kProblem},
+                              DocumentSchema{"Recipes", kRecipes},
+                              DocumentSchema{"Cell", kCell},
+                              DocumentSchema{"Joints", kJoints},
+                              DocumentSchema{"Faults", kFaults},
+                              DocumentSchema{"Health", kHealth},
+                              DocumentSchema{"Access", kAccess},
+                              DocumentSchema{"OpenApi", kOpenApi}};
+
+}  // namespace
+
+std::span<const DocumentSchema> daemon_schemas() { return kSchemas; }
+
+}  // namespace cell

@@ -1,0 +1,73 @@
+#include "service/http/auth/access.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "service/base/state_directory.hpp"
+#include "service/http/server/problem.hpp"
+
+namespace cell {
+namespace {
+
+std::string_view token_of(const HttpRequest& request) {
+  constexpr std::string_view kScheme = "Bearer ";
+  const std::string_view sent =
+      request.authorization ? std::string_view(*request.authorization) : std::string_view();
+  return sent.starts_with(kScheme) ? sent.substr(kScheme.size()) : std::string_view();
+}
+
+}  // namespace
+
+std::string_view role_name(Role role) {
+  switch (role) {
+    case Role::kNone:
+      return "none";
+    case Role::kWrongToken:
+      return "wrong token";
+    case Role::kView:
+      return "view";
+    case Role::kOperate:
+      return "operate";
+  }
+  return "";
+}
+
+Role role_of(const HttpRequest& request, const Tokens& tokens) {
+  const std::string_view token = token_of(request);
+  if (same_token(tokens.operate, token)) return Role::kOperate;
+  if (same_token(tokens.view, token)) return Role::kView;
+  return request.authorization ? Role::kWrongToken : Role::kNone;
+}
+
+std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access access, const Tokens& tokens) {
+  if (access == Access::kOpen || (access == Access::kView && request.from_loopback)) return std::nullopt;
+  const Role role = role_of(request, tokens);
+  if (role == Role::kOperate) return std::nullopt;
+  if (role == Role::kView) {
+    if (access == Access::kView) return std::nullopt;
+    return to_response({.status = 403, .kind = "role", .detail = "the view token may only read"});
+  }
+  HttpResponse response = to_response(
+      {.status = 401,
+       .kind = "token",
+       .detail = fmt::format(
+           "send 'Authorization: Bearer TOKEN'; the token stands in {} in the daemon's state directory",
+           access == Access::kView ? kViewTokenFile : kOperateTokenFile)});
+  response.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"touchcal\"");
+  return response;
+}
+
+std::optional<HttpResponse> refuse_content_type(const HttpRequest& request) {
+  if (request.body.empty()) return std::nullopt;
+  const std::string_view type =
+      request.content_type ? std::string_view(*request.content_type) : std::string_view();
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  if (std::ranges::equal(type.substr(0, type.find_first_of("; \t")), std::string_view("application/json"), {},
+                         lower)) {
+    return std::nullopt;
+  }
+  return to_response({.status = 415, .kind = "content-type", .detail = "a body must be application/json"});
+}
+
+}  // namespace cell

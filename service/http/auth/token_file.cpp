@@ -1,0 +1,33 @@
+#include "service/http/auth/token_file.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <fstream>
+#include <stdexcept>
+
+namespace cell {
+
+std::optional<std::string> read_token(const std::filesystem::path& file) {
+  std::error_code failure;
+  const auto status = std::filesystem::status(file, failure);
+  if (status.type() == std::filesystem::file_type::not_found) return std::nullopt;
+  std::ifstream existing(file);
+  if (!existing)
+    throw std::runtime_error(file.string() + ": the token cannot be read; make the file this user's own");
+  constexpr auto kOthers = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
+  if ((status.permissions() & kOthers) != std::filesystem::perms::none) {
+    throw std::runtime_error(
+        fmt::format("{0}: others than its owner may use it; remove the file to have a new token made, or "
+                    "chmod 600 {0} when nobody has read it",
+                    file.string()));
+  }
+  std::string token;
+  std::getline(existing, token);
+  if (token.size() < 2 * kTokenBytes) {
+    throw std::runtime_error(file.string() +
+                             ": is no token of this daemon; remove the file to have a new one made");
+  }
+  return token;
+}
+
+}  // namespace cell

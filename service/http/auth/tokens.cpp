@@ -1,0 +1,66 @@
+#include "service/http/auth/tokens.hpp"
+
+#include <fcntl.h>
+#include <openssl/crypto.h>
+#include <openssl/rand.h>
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include "service/base/state_directory.hpp"
+#include "service/http/auth/token_file.hpp"
+
+namespace cell {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& file, const char* what) {
+  throw std::runtime_error(
+      fmt::format("{}: {}: {}", file.string(), what, std::generic_category().message(errno)));
+}
+
+void write_for_owner_only(const std::filesystem::path& file, const std::string& token) {
+  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (descriptor < 0) fail(file, "the token cannot be created");
+  const std::string line = token + "\n";
+  const bool written = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+  const bool durable = written && ::fsync(descriptor) == 0;
+  const int reason = errno;
+  ::close(descriptor);
+  if (durable) return;
+  ::unlink(file.c_str());  // half a token would stand in the way of the next start
+  errno = reason;
+  fail(file, "the token cannot be written");
+}
+
+std::string load_or_make(const std::filesystem::path& file) {
+  if (auto token = read_token(file)) return *std::move(token);
+  const std::string token = random_hex(kTokenBytes);
+  write_for_owner_only(file, token);
+  return token;
+}
+
+}  // namespace
+
+std::string random_hex(std::size_t bytes) {
+  std::vector<unsigned char> random(bytes);
+  if (RAND_bytes(random.data(), static_cast<int>(bytes)) != 1)
+    throw std::runtime_error("there are no random numbers");
+  std::string text;
+  for (const unsigned char byte : random) text += fmt::format("{:02x}", byte);
+  return text;
+}
+
+Tokens load_or_make_tokens(const std::filesystem::path& state_directory) {
+  return {load_or_make(state_directory / kOperateTokenFile), load_or_make(state_directory / kViewTokenFile)};
+}
+
+bool same_token(std::string_view expected, std::string_view presented) {
+  return expected.size() == presented.size() &&
+         CRYPTO_memcmp(expected.data(), presented.data(), expected.size()) == 0;
+}
+
+}  // namespace cell

@@ -1,0 +1,242 @@
+#include "service/http/routes/api.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/bind_executor.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+
+#include "service/acquisition/operation.hpp"
+#include "service/base/digest.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/http/auth/access.hpp"
+#include "service/http/routes/event_stream.hpp"
+#include "service/http/routes/plan_routes.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A long poll is answered after this long whatever it asked for; more of them than this at once.
+constexpr std::int64_t kWaitSecondsMax = 60;
+constexpr std::size_t kLongPollsMax = 128;
+/// Requests that wait for the worker, beside the one it has.
+constexpr int kAtWorkMax = 4;
+/// From so many wrong tokens of one address on, each waits for its answer.
+constexpr int kWrongTokensFree = 5;
+constexpr std::size_t kWrongAddressesMax = 1024;
+constexpr std::size_t kActionBytesMax = 200;
+
+HttpResponse busy(std::string detail, const char* retry_after_s) {
+  HttpResponse response = to_response({.status = 503, .kind = "busy", .detail = std::move(detail)});
+  response.headers.emplace_back("Retry-After", retry_after_s);
+  return response;
+}
+
+bool changes_something(const HttpRequest& request) { return request.method != "GET"; }
+
+std::string now_text(std::chrono::hours ago = {}) {
+  return format_utc(std::chrono::system_clock::now() - ago);
+}
+
+/// What a key was answered before, or why it is not taken; nothing when it is new.
+std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed) {
+  KeyLookUp found;
+  try {
+    found = answers.take(keyed, now_text(std::chrono::hours(AnswerStore::kKeptHours)));
+  } catch (const std::exception& error) {
+    spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
+    return to_response(
+        {.status = 503, .kind = "idempotency-key", .detail = "earlier answers cannot be read; see the log"});
+  }
+  if (const auto* answer = std::get_if<StoredAnswer>(&found))
+    return HttpResponse{.status = answer->status, .body = answer->body, .headers = answer->headers};
+  if (std::holds_alternative<KeyOfAnother>(found)) {
+    return to_response({.status = 422,
+                        .kind = "idempotency-key",
+                        .detail = "this Idempotency-Key came with another request; take a new one"});
+  }
+  if (std::holds_alternative<KeyInProgress>(found)) {
+    return to_response({.status = 409,
+                        .kind = "idempotency-key",
+                        .detail = "the first request with this Idempotency-Key is not answered yet"});
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+Api::Api(asio::any_io_executor executor, Operation& operation, Tokens tokens)
+    : executor_(executor), services_(operation, std::move(tokens)) {
+  services_.feed.follow([this](const Status& status) { services_.metrics.follow(status); });
+}
+
+Api::~Api() { worker_.join(); }
+
+Services::Services(Operation& to_serve, Tokens to_ask_for)
+    : operation(to_serve),
+      tokens(std::move(to_ask_for)),
+      feed(to_serve),
+      answers(to_serve.store().database()),
+      audit(to_serve.store().database()) {}
+
+HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
+  services_.metrics.count_request("", "", problem.status);
+  HttpResponse response = to_response(problem);
+  if (changes_something(request)) write_audit(request, std::to_string(problem.status), false);
+  return response;
+}
+
+asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
+  const auto outcome = admit(request, services_.tokens);
+  if (const auto* refused = std::get_if<HttpResponse>(&outcome)) {
+    if (changes_something(request)) write_audit(request, std::to_string(refused->status), false);
+    if (refused->status == 401) co_await slow_down(request);
+    services_.metrics.count_request("", "", refused->status);
+    co_return *refused;
+  }
+  const Admitted& admitted = std::get<Admitted>(outcome);
+  HttpResponse response;
+  if (changes_something(request)) {
+    response = co_await obey(request, admitted);
+  } else {
+    response = co_await make_answer(request, admitted);
+  }
+  services_.metrics.count_request(admitted.route->method, admitted.route->path, response.status);
+  co_return response;
+}
+
+std::unique_ptr<EventSource> Api::events(const HttpRequest& request) {
+  const auto id = match(kRunEventsPath, request.path);
+  const std::optional<std::int64_t> run_id = id ? std::optional(std::stoll(std::string(*id))) : std::nullopt;
+  return std::make_unique<EventStream>(services_, run_id, request.last_event_id);
+}
+
+std::size_t Api::body_bytes_max(std::string_view method, std::string_view path) const {
+  const Route* route = find_route(method, path);
+  return route ? route->body_bytes_max : kBodyBytesMax;
+}
+
+asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const Admitted& admitted) {
+  const Pace pace = admitted.route->pace;
+  if (pace == Pace::kLongPoll) co_await wait_for_status(request, admitted);
+  if (pace == Pace::kPlanning) co_await wait_for_plan(request);
+  if (pace == Pace::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
+    co_return busy("as many event streams are open as there may be; poll GET /api/v1/status", "15");
+  if (pace != Pace::kWorker) co_return handle(admitted, request, services_);
+  HttpResponse response = co_await on_worker(request, admitted);
+  co_return response;
+}
+
+/// A command: written down before it is taken, what came of it behind.
+asio::awaitable<HttpResponse> Api::obey(const HttpRequest& request, const Admitted& admitted) {
+  HttpResponse response;
+  if (is_stop(*admitted.route)) {
+    response = handle(admitted, request, services_);
+  } else if (!write_audit(request, "asked", true) && !only_halts(*admitted.route)) {
+    response = to_response(
+        {.status = 503,
+         .kind = "audit",
+         .detail = "the command was not taken as it cannot be written down; make room on "
+                   "the disk of the state directory. Stop, abort and pause are taken all the same"});
+    co_return response;
+  } else {
+    response = co_await obey_once(request, admitted);
+  }
+  write_audit(request, std::to_string(response.status), false);
+  co_return response;
+}
+
+/// With an Idempotency-Key a command is taken once; what was refused may be asked again with the same key.
+asio::awaitable<HttpResponse> Api::obey_once(const HttpRequest& request, const Admitted& admitted) {
+  HttpResponse response;
+  if (!request.idempotency_key) {
+    response = co_await make_answer(request, admitted);
+    co_return response;
+  }
+  const KeyedRequest keyed{.key = *request.idempotency_key,
+                           .request = request.method + " " + request.path,
+                           .body_digest = sha256_hex(request.body)};
+  if (auto answered = answer_to_key(services_.answers, keyed)) co_return *std::move(answered);
+  response = co_await make_answer(request, admitted);
+  if (response.status >= 300) {
+    services_.answers.give_up(keyed);
+    co_return response;
+  }
+  try {
+    services_.answers.keep(
+        keyed, {.status = response.status, .headers = response.headers, .body = response.body}, now_text());
+  } catch (const std::exception& error) {
+    services_.answers.give_up(keyed);
+    spdlog::error("the answer to an Idempotency-Key could not be kept: {}", error.what());
+  }
+  co_return response;
+}
+
+bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bool at_once) {
+  const AuditEntry entry{.at = now_text(),
+                         .who = std::string(role_name(role_of(request, services_.tokens))),
+                         .remote = request.remote,
+                         .action = (request.method + " " + request.path).substr(0, kActionBytesMax),
+                         .outcome = outcome};
+  try {
+    if (at_once) {
+      services_.audit.append_command(entry);
+    } else {
+      services_.audit.append_refusal(entry);
+    }
+    return true;
+  } catch (const std::exception& error) {
+    spdlog::error("{} {} could not be written down: {}", entry.action, outcome, error.what());
+    return false;
+  }
+}
+
+asio::awaitable<void> Api::slow_down(const HttpRequest& request) {
+  if (!request.authorization) co_return;
+  if (wrong_tokens_.size() >= kWrongAddressesMax) wrong_tokens_.clear();
+  if (++wrong_tokens_[request.remote] <= kWrongTokensFree) co_return;
+  asio::steady_timer timer(executor_, 1s);
+  co_await timer.async_wait(asio::use_awaitable);
+}
+
+asio::awaitable<void> Api::wait_for_status(const HttpRequest& request, const Admitted& admitted) {
+  if (request.query.empty()) co_return;
+  const Call call{request, services_, services_.operation, admitted.id, services_.operation.cell()};
+  const auto wait_s = call.number("wait_s");
+  const auto after = call.number("after");
+  if (!wait_s || !after || services_.feed.waiting_count() >= kLongPollsMax) co_return;
+  co_await services_.feed.wait(static_cast<std::uint64_t>(*after),
+                               std::chrono::seconds(std::min(*wait_s, kWaitSecondsMax)));
+}
+
+asio::awaitable<void> Api::wait_for_plan(const HttpRequest& request) {
+  const auto recipe = recipe_to_plan(request, services_.operation);
+  if (!recipe) co_return;
+  // Another request may wait for the same plan: it is made once.
+  asio::steady_timer timer(executor_);
+  while (services_.operation.is_planning()) {
+    timer.expires_after(50ms);
+    co_await timer.async_wait(asio::use_awaitable);
+  }
+  co_await services_.operation.plan_recipe(*recipe);
+}
+
+asio::awaitable<HttpResponse> Api::on_worker(const HttpRequest& request, const Admitted& admitted) {
+  if (at_work_ >= kAtWorkMax) co_return busy("other documents are being identified; ask again", "2");
+  ++at_work_;
+  const Cell cell = services_.operation.cell();
+  co_await asio::post(asio::bind_executor(worker_.get_executor(), asio::use_awaitable));
+  HttpResponse response = handle(admitted, request, services_, cell);
+  co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
+  --at_work_;
+  co_return response;
+}
+
+}  // namespace cell

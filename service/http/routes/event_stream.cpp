@@ -1,0 +1,94 @@
+#include "service/http/routes/event_stream.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <charconv>
+
+#include "service/acquisition/operation.hpp"
+#include "service/documents/json_view.hpp"
+
+namespace cell {
+
+using namespace std::chrono_literals;
+
+namespace {
+
+constexpr std::string_view kEnd = "-end";
+/// A reader that sees nothing for so long may take its connection for dead, and so may we.
+constexpr std::chrono::seconds kSilenceMax{15};
+/// Bounds what is written at once.
+constexpr std::size_t kDueBytesMax = 64 * 1024;
+
+std::string event_text(std::string_view event, std::string_view id, std::string_view data) {
+  return fmt::format("event: {}\nid: {}\ndata: {}\n\n", event, id, data);
+}
+
+/// The sequence in an id of this instance.
+std::optional<std::uint64_t> sequence_of(std::string_view id, const std::string& instance_id) {
+  if (!id.starts_with(instance_id + "-")) return std::nullopt;
+  id.remove_prefix(instance_id.size() + 1);
+  std::uint64_t sequence = 0;
+  const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), sequence);
+  if (error != std::errc{} || end != id.data() + id.size()) return std::nullopt;
+  return sequence;
+}
+
+}  // namespace
+
+EventStream::EventStream(Services& services, std::optional<std::int64_t> run_id,
+                         std::optional<std::string> last_event_id)
+    : services_(services), run_id_(run_id), open_(services.open_streams) {
+  ++*open_;
+  first_ = "retry: 2000\n\n";
+  const auto known = last_event_id ? sequence_of(*last_event_id, services_.feed.instance_id()) : std::nullopt;
+  services_.feed.newest();
+  if (known && services_.feed.remembers(*known)) {
+    seen_ = *known;
+  } else {
+    first_ += whole_status(last_event_id ? "reset" : "status");
+  }
+}
+
+EventStream::~EventStream() { --*open_; }
+
+bool EventStream::is_over(const std::optional<std::string>& last_event_id) {
+  return last_event_id && last_event_id->ends_with(kEnd);
+}
+
+std::string EventStream::id_of(std::uint64_t sequence) const {
+  return fmt::format("{}-{}", services_.feed.instance_id(), sequence);
+}
+
+std::string EventStream::whole_status(const char* event) {
+  seen_ = services_.feed.newest().sequence;
+  return event_text(event, id_of(seen_), services_.feed.document());
+}
+
+std::string EventStream::due() {
+  std::string text = std::exchange(first_, {});
+  const StatusFeed& feed = services_.feed;
+  if (!feed.remembers(seen_)) return text + whole_status("reset");
+  while (text.size() < kDueBytesMax) {
+    const StatusFeed::Change* change = feed.next(seen_);
+    if (!change) break;
+    seen_ = change->sequence;
+    if (!run_id_ || change->run_id == run_id_)
+      text += event_text("status", id_of(seen_), change->document(std::nullopt));
+  }
+  if (!feed.next(seen_)) text += end_of_run();
+  return text;
+}
+
+std::string EventStream::end_of_run() {
+  if (!run_id_) return {};
+  const StatusFeed::Change& newest = services_.feed.newest();
+  if (newest.run_id == run_id_ && newest.is_active) return {};
+  const auto run = services_.operation.store().run(*run_id_);
+  if (!run || !run->ended_at) return {};
+  ended_ = true;
+  return event_text("run", id_of(seen_) + std::string(kEnd), run_document(*run));
+}
+
+boost::asio::awaitable<void> EventStream::wait() { co_await services_.feed.wait(seen_, kSilenceMax); }
+
+}  // namespace cell

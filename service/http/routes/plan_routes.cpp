@@ -1,0 +1,117 @@
+#include "service/http/routes/plan_routes.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <array>
+
+#include "config/config_error.hpp"
+#include "config/identification_problem.hpp"
+#include "config/touches_file.hpp"
+#include "service/acquisition/operation.hpp"
+#include "service/documents/result_view.hpp"
+#include "service/http/routes/request_body.hpp"
+#include "service/http/routes/route_table.hpp"
+
+namespace cell {
+namespace {
+
+constexpr std::array<std::string_view, 1> kPlanKeys{"recipe"};
+
+/// A plan takes a few seconds.
+constexpr const char* kRetryAfterSeconds = "5";
+
+HttpResponse refuse(const PlanRefusal& refusal) {
+  Problem problem{.status = 422, .kind = "no-plan", .detail = refusal.message, .pointer = "/recipe"};
+  for (const std::string& line : effort_lines(refusal.efforts)) problem.errors.emplace_back("tried", line);
+  return to_response(problem);
+}
+
+HttpResponse post_a_plan(const Call& call) { return post_plan(call.request, call.operation); }
+
+HttpResponse post_identify(const Call& call) {
+  const Cell& cell = call.cell;
+  const auto named = cell.recipes.find(call.text("recipe").value_or(cell.default_recipe));
+  if (named == cell.recipes.end()) {
+    return to_response({.status = 422,
+                        .kind = "unknown-recipe",
+                        .detail = "this cell has no such recipe; GET /api/v1/recipes lists them",
+                        .parameter = "recipe"});
+  }
+  const Recipe& recipe = named->second;
+  try {
+    TouchesFile file = touches_from_json("request body", call.request.body, kTouchesBytesMax, cell);
+    calib::IdentificationProblem problem = identification_problem(cell, recipe);
+    problem.touches = std::move(file.touches);
+    const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
+    if (result.status != calib::IdentificationStatus::kConverged)
+      return to_response(
+          {.status = 422, .kind = "not-identifiable", .detail = result.message, .pointer = "/touches"});
+    const TipRegions regions(cell);  // the operation's are for the thread of the sockets
+    return {.body = result_document(regions, recipe, problem, result,
+                                    {.warnings = std::move(file.warnings), .conditions = {}})};
+  } catch (const ConfigError& error) {
+    return to_response({.kind = "body", .detail = error.what(), .pointer = error.pointer()});
+  }
+}
+
+}  // namespace
+
+HttpResponse post_plan(const HttpRequest& request, const Operation& operation) {
+  const auto named = named_text(request.body, kPlanKeys);
+  if (const auto* problem = std::get_if<Problem>(&named)) return to_response(*problem);
+  const std::string& recipe = std::get<NamedText>(named).text;
+  if (!operation.cell().recipes.contains(recipe)) {
+    return to_response({.status = 422,
+                        .kind = "unknown-recipe",
+                        .detail = fmt::format("there is no recipe '{}'", recipe),
+                        .pointer = "/recipe"});
+  }
+  const auto outcome = operation.planned(recipe);
+  if (!outcome) {
+    HttpResponse busy = to_response(
+        {.status = 503, .kind = "planning", .detail = "another plan is being made; ask again in a moment"});
+    busy.headers.emplace_back("Retry-After", kRetryAfterSeconds);
+    return busy;
+  }
+  if (const auto* refusal = std::get_if<PlanRefusal>(&*outcome)) return refuse(*refusal);
+  return {.status = 200, .body = std::get<std::shared_ptr<const Plan>>(*outcome)->document};
+}
+
+std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Operation& operation) {
+  const auto named = named_text(request.body, kPlanKeys);
+  const auto* recipe = std::get_if<NamedText>(&named);
+  if (!recipe || !operation.cell().recipes.contains(recipe->text) || operation.planned(recipe->text))
+    return std::nullopt;
+  return recipe->text;
+}
+
+HttpResponse get_plan(const Operation& operation, std::int64_t id) {
+  if (auto document = operation.store().plan_json(id)) return {.status = 200, .body = *std::move(document)};
+  return to_response(
+      {.status = 409, .kind = "no-plan", .detail = fmt::format("run {} has no plan that was kept", id)});
+}
+
+std::vector<Route> plan_routes() {
+  return {
+      {.method = "POST",
+       .path = "/api/v1/plan",
+       .summary = "Plans a recipe's touches; takes seconds the first time",
+       .access = Access::kOperate,
+       .handle = post_a_plan,
+       .answers = {{.schema = "Plan"}},
+       .body_schema = "PlanRequest",
+       .pace = Pace::kPlanning},
+      {.method = "POST",
+       .path = "/api/v1/identify",
+       .summary = "Identifies the arm from a touches document; touches nothing else",
+       .access = Access::kOperate,
+       .handle = post_identify,
+       .answers = {{.schema = "Result"}},
+       .query = {{.name = "recipe", .words = "whose options to take; the cell's default", .is_text = true}},
+       .body_schema = "Touches",
+       .body_bytes_max = kTouchesBytesMax,
+       .pace = Pace::kWorker},
+  };
+}
+
+}  // namespace cell

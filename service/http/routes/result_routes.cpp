@@ -1,0 +1,128 @@
+#include "service/http/routes/result_routes.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "config/identification_problem.hpp"
+#include "service/acquisition/operation.hpp"
+#include "service/base/json_figures.hpp"
+#include "service/documents/parameter_view.hpp"
+#include "service/documents/result_view.hpp"
+#include "service/http/server/problem.hpp"
+#include "service/report/report_document.hpp"
+#include "service/report/report_html.hpp"
+#include "service/run/calibrated_arm.hpp"
+#include "service/store/fault_log.hpp"
+
+namespace cell {
+namespace {
+
+/// Documents give lengths in mm and angles in rad; the cell is another when its arm differs by more.
+constexpr double kSameNominal = 1e-9;
+
+struct Identified {
+  const Recipe* recipe = nullptr;
+  calib::IdentificationProblem problem;
+  calib::IdentificationResult result;
+};
+
+HttpResponse conflict(const std::string& detail) {
+  return to_response({.status = 409, .kind = "no-result", .detail = detail});
+}
+
+/// What the run's stored touches give now: the same as then, to the bit, as long as the cell is the same.
+std::variant<Identified, HttpResponse> identify_stored(const Operation& operation, std::int64_t id) {
+  const Cell& cell = operation.cell();
+  const auto recipe = cell.recipes.find(operation.store().run(id)->recipe);
+  if (recipe == cell.recipes.end())
+    return conflict("there is no result: this cell no longer has the run's recipe");
+  const std::vector<StoredTouch> touches = operation.store().touches(id);
+  if (touches.empty()) return conflict("there is no result: no touch has been made yet");
+  Identified identified{&recipe->second, identification_problem(cell, recipe->second), {}};
+  std::ranges::transform(touches, std::back_inserter(identified.problem.touches), to_touch);
+  identified.result = calib::identify(identified.problem, recipe->second.identification);
+  if (identified.result.status == calib::IdentificationStatus::kConverged) return identified;
+  return conflict("there is no result: " + identified.result.message);
+}
+
+bool has_this_nominal(const std::string& result_json, const calib::KinematicModel& model) {
+  const nlohmann::json parameters = nlohmann::json::parse(result_json).at("parameters");
+  for (int i = 0; i < calib::kErrorParameterCount; ++i) {
+    const double then = parameters.at(static_cast<std::size_t>(i)).at("nominal").get<double>();
+    if (!(std::abs(then - shown(i, calib::parameter_value(model, i))) <= kSameNominal)) return false;
+  }
+  return true;
+}
+
+std::optional<std::string> known_document(const Operation& operation, std::int64_t id) {
+  if (auto stored = operation.store().result_json(id)) return stored;  // the run is over
+  const Run* live = operation.run();
+  return live && live->id() == id ? operation.result_json() : std::nullopt;
+}
+
+RunRecord record_of(const Operation& operation, const StoredRun& run) {
+  const TouchStore& store = operation.store();
+  RunRecord record{.run = run,
+                   .touches = store.touches(run.id),
+                   .superseded = store.superseded_touches(run.id),
+                   .references = store.references(run.id),
+                   .faults = FaultLog(store.database()).page(FaultLog::kKept, {}, run.id),
+                   .result_json = {}};
+  HttpResponse result = get_result(operation, run.id);
+  if (result.status == 200) record.result_json = std::move(result.body);
+  return record;
+}
+
+/// It is opened from where it was saved: the daemon's own pages allow no styles of a document.
+HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64_t run, std::string body) {
+  return {.content_type = std::string(type),
+          .body = std::move(body),
+          .headers = {{"Content-Disposition",
+                       fmt::format("attachment; filename=\"touchcal-run-{}.{}\"", run, ending)}}};
+}
+
+}  // namespace
+
+HttpResponse get_result(const Operation& operation, std::int64_t id) {
+  if (auto document = known_document(operation, id)) return {.body = std::move(*document)};
+  // A run that the daemon's own end cut off has touches and no result: they are identified now.
+  auto found = identify_stored(operation, id);
+  if (auto* response = std::get_if<HttpResponse>(&found)) return std::move(*response);
+  const Identified& identified = std::get<Identified>(found);
+  const ResultContext context{
+      .complete = false, .warnings = {}, .conditions = operation.store().run(id)->trace_json.value_or("")};
+  return {.body = result_document(operation.tip_regions(), *identified.recipe, identified.problem,
+                                  identified.result, context)};
+}
+
+HttpResponse get_arm(const Operation& operation, std::int64_t id) {
+  const auto document = known_document(operation, id);
+  if (document && !has_this_nominal(*document, operation.cell().arm.model)) {
+    return conflict(
+        "the cell's nominal arm is another one than in this run; its result tells the errors that were "
+        "found then");
+  }
+  auto found = identify_stored(operation, id);
+  if (auto* response = std::get_if<HttpResponse>(&found)) return std::move(*response);
+  return {.body = calibrated_arm_document(operation.cell(), std::get<Identified>(found).result)};
+}
+
+HttpResponse get_report(const Operation& operation, const StoredRun& run, const std::string& format) {
+  if (format != "html" && format != "csv" && format != "json") {
+    return to_response({.status = 400,
+                        .kind = "query",
+                        .detail = "format is html, csv or json; touchcal report makes a PDF of the first",
+                        .parameter = "format"});
+  }
+  // Once as text and back: what came from outside and is no UTF-8 is none in any of the forms.
+  const std::string document = text_of(report_json(record_of(operation, run)));
+  if (format == "json") return {.body = document};
+  const Json report = Json::parse(document);
+  if (format == "html") return saved_as("html", kHtml, run.id, report_html(report));
+  return saved_as("csv", kCsv, run.id, report_csv(report));
+}
+
+}  // namespace cell

@@ -1,0 +1,169 @@
+#include "service/http/routes/route_table.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "service/acquisition/operation.hpp"
+#include "service/http/auth/access.hpp"
+#include "service/http/routes/services.hpp"
+
+namespace cell {
+namespace {
+
+std::vector<Route> all_routes() {
+  std::vector<Route> all;
+  for (const auto topic :
+       {service_routes, status_routes, run_routes, command_routes, plan_routes, cell_routes, page_routes}) {
+    std::ranges::move(topic(), std::back_inserter(all));
+  }
+  return all;
+}
+
+std::optional<std::int64_t> integer(std::string_view text) {
+  std::int64_t value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// A query is taken to the letter: a name that means nothing here is more likely a mistake than a wish.
+std::optional<HttpResponse> refuse_query(const Route& route, const Query& query) {
+  for (const auto& [name, value] : query) {
+    const auto known = std::ranges::find(route.query, std::string_view(name), &QueryParameter::name);
+    std::string detail;
+    if (known == route.query.end()) {
+      detail = route.query.empty() ? "this path takes no query" : "this path takes no such parameter";
+    } else if (query.count(name) > 1) {
+      detail = fmt::format("{} is given twice", name);
+    } else if (const auto number = integer(value);
+               !known->is_text && (!number || *number < known->minimum || *number > known->maximum)) {
+      detail = fmt::format("{} takes a whole number from {} to {}", name, known->minimum, known->maximum);
+    }
+    if (!detail.empty())
+      return to_response({.kind = "query", .detail = std::move(detail), .parameter = name});
+  }
+  return std::nullopt;
+}
+
+std::optional<HttpResponse> refuse_body(const Route& route, const HttpRequest& request) {
+  if (request.body.size() > route.body_bytes_max)
+    return to_response({.status = 413, .kind = "too-large", .detail = "the body is too large"});
+  if (auto refused = refuse_content_type(request)) return refused;
+  if (!route.body_schema.empty() || request.body.empty() || request.body == "{}") return std::nullopt;
+  return to_response({.kind = "body", .detail = "this path takes no body", .pointer = ""});
+}
+
+std::optional<HttpResponse> refuse_key(const HttpRequest& request) {
+  constexpr std::size_t kKeyMax = 255;
+  const auto& key = request.idempotency_key;
+  if (!key || (!key->empty() && key->size() <= kKeyMax)) return std::nullopt;
+  return to_response({.kind = "idempotency-key",
+                      .detail = fmt::format("an Idempotency-Key has 1 to {} characters", kKeyMax)});
+}
+
+}  // namespace
+
+std::span<const Route> routes() {
+  static const std::vector<Route> all = all_routes();
+  return all;
+}
+
+bool is_stop(const Route& route) { return route.path == "/api/v1/cell/stop"; }
+
+bool only_halts(const Route& route) {
+  return is_stop(route) || route.path.ends_with("/abort") || route.path.ends_with("/pause");
+}
+
+std::optional<std::string_view> match(std::string_view pattern, std::string_view path) {
+  constexpr std::string_view kId = "{id}";
+  const std::size_t before = pattern.find(kId);
+  if (before == std::string_view::npos)
+    return pattern == path ? std::optional(std::string_view()) : std::nullopt;
+  const std::string_view behind = pattern.substr(before + kId.size());
+  if (!path.starts_with(pattern.substr(0, before))) return std::nullopt;
+  const std::string_view rest = path.substr(before);
+  const std::string_view id = rest.substr(0, rest.find('/'));
+  if (rest.substr(id.size()) != behind) return std::nullopt;
+  return id;
+}
+
+const Route* find_route(std::string_view method, std::string_view path) {
+  for (const Route& candidate : routes()) {
+    if (candidate.method == method && match(candidate.path, path)) return &candidate;
+  }
+  return nullptr;
+}
+
+std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tokens& tokens) {
+  std::string allowed;
+  for (const Route& candidate : routes()) {
+    const auto id = match(candidate.path, request.path);
+    if (!id) continue;
+    if (candidate.method != request.method) {
+      allowed += (allowed.empty() ? "" : ", ") + std::string(candidate.method);
+      continue;
+    }
+    if (auto refused = refuse_access(request, candidate.access, tokens)) return *std::move(refused);
+    if (is_stop(candidate)) return Admitted{&candidate, *id};
+    if (auto refused = refuse_query(candidate, request.query)) return *std::move(refused);
+    if (auto refused = refuse_body(candidate, request)) return *std::move(refused);
+    if (auto refused = refuse_key(request)) return *std::move(refused);
+    return Admitted{&candidate, *id};
+  }
+  if (allowed.empty()) return not_found(fmt::format("there is nothing at {}", request.path));
+  HttpResponse response =
+      to_response({.status = 405, .kind = "method", .detail = "this path takes " + allowed});
+  response.headers.emplace_back("Allow", allowed);
+  return response;
+}
+
+HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services) {
+  return handle(admitted, request, services, services.operation.cell());
+}
+
+HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services,
+                    const Cell& cell) {
+  try {
+    return admitted.route->handle({request, services, services.operation, admitted.id, cell});
+  } catch (const std::exception& error) {
+    spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
+    return to_response(
+        {.status = 500, .kind = "internal", .detail = "the daemon could not do this; see its log"});
+  }
+}
+
+HttpResponse route(const HttpRequest& request, Services& services) {
+  const auto admitted = admit(request, services.tokens);
+  if (const auto* refused = std::get_if<HttpResponse>(&admitted)) return *refused;
+  return handle(std::get<Admitted>(admitted), request, services);
+}
+
+HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens) {
+  Services services(operation, tokens);
+  return route(request, services);
+}
+
+std::optional<std::int64_t> Call::number(std::string_view name) const {
+  const auto found = request.query.find(std::string(name));
+  return found == request.query.end() ? std::nullopt : integer(found->second);
+}
+
+std::optional<std::string> Call::text(std::string_view name) const {
+  const auto found = request.query.find(std::string(name));
+  return found == request.query.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::int64_t> Call::run_id() const { return integer(id); }
+
+HttpResponse json_response(unsigned status, std::string body) {
+  return {.status = status, .body = std::move(body)};
+}
+
+HttpResponse not_found(std::string detail) {
+  return to_response({.status = 404, .kind = "not-found", .detail = std::move(detail)});
+}
+
+}  // namespace cell

@@ -1,0 +1,99 @@
+#include <spdlog/fmt/fmt.h>
+
+#include "service/acquisition/operation.hpp"
+#include "service/documents/json_view.hpp"
+#include "service/http/routes/plan_routes.hpp"
+#include "service/http/routes/refusals.hpp"
+#include "service/http/routes/result_routes.hpp"
+#include "service/http/routes/route_table.hpp"
+#include "service/http/routes/start_body.hpp"
+
+namespace cell {
+namespace {
+
+constexpr int kRunsPageDefault = 50;
+constexpr int kRunsPageMax = 200;
+constexpr std::int64_t kRunIdMax = std::int64_t{1} << 53;
+
+HttpResponse get_runs(const Call& call) {
+  const int limit = static_cast<int>(call.number("limit").value_or(kRunsPageDefault));
+  auto runs = call.operation.store().runs(limit + 1, call.number("before"));
+  const bool more = runs.size() > static_cast<std::size_t>(limit);
+  if (more) runs.pop_back();
+  return json_response(200, runs_document(runs, more ? std::optional(runs.back().id) : std::nullopt));
+}
+
+HttpResponse run_view(const Call& call, const StoredRun& run) {
+  (void)call;
+  return json_response(200, run_document(run));
+}
+HttpResponse touches_view(const Call& call, const StoredRun& run) {
+  return json_response(200, touches_document(call.operation.cell(), call.operation.store().touches(run.id)));
+}
+HttpResponse result_view(const Call& call, const StoredRun& run) {
+  return get_result(call.operation, run.id);
+}
+HttpResponse arm_view(const Call& call, const StoredRun& run) { return get_arm(call.operation, run.id); }
+HttpResponse report_view(const Call& call, const StoredRun& run) {
+  return get_report(call.operation, run, call.text("format").value_or("html"));
+}
+HttpResponse plan_view(const Call& call, const StoredRun& run) { return get_plan(call.operation, run.id); }
+
+template <HttpResponse (*kView)(const Call&, const StoredRun&)>
+HttpResponse of_run(const Call& call) {
+  const auto id = call.run_id();
+  const auto run = id ? call.operation.store().run(*id) : std::nullopt;
+  if (!run) return not_found(fmt::format("there is no run '{}'; GET /api/v1/runs lists them", call.id));
+  return kView(call, *run);
+}
+
+HttpResponse post_runs(const Call& call) {
+  const auto wanted = read_start(call.request, call.operation);
+  if (const auto* problem = std::get_if<Problem>(&wanted)) return to_response(*problem);
+  const auto outcome = call.operation.start(std::get<StartRequest>(wanted));
+  if (const auto* refusal = std::get_if<Refusal>(&outcome)) return from_refusal(*refusal, call.operation);
+  const std::int64_t id = std::get<Started>(outcome).run_id;
+  HttpResponse response = json_response(201, run_document(call.operation.store().run(id).value()));
+  response.headers = {{"Location", fmt::format("/api/v1/runs/{}", id)}};
+  return response;
+}
+
+}  // namespace
+
+std::vector<Route> run_routes() {
+  const auto read = [](std::string_view path, std::string_view summary, HttpResponse (*handle)(const Call&),
+                       std::string_view schema) {
+    return Route{
+        .method = "GET", .path = path, .summary = summary, .handle = handle, .answers = {{.schema = schema}}};
+  };
+  Route list = read("/api/v1/runs", "The history, newest first, in pages", get_runs, "Runs");
+  list.query = {{"limit", 1, kRunsPageMax, "runs on a page"},
+                {"before", 0, kRunIdMax, "only runs before this id: next_before of the page before"}};
+  return {
+      list,
+      {.method = "POST",
+       .path = "/api/v1/runs",
+       .summary = "Starts a run; 409 names all unmet preconditions at once",
+       .access = Access::kOperate,
+       .handle = post_runs,
+       .answers = {{.status = 201, .schema = "Run"}},
+       .body_schema = "StartRequest"},
+      read("/api/v1/runs/{id}", "One run", of_run<run_view>, "Run"),
+      read("/api/v1/runs/{id}/touches", "The touches so far, as touchcal identify reads them",
+           of_run<touches_view>, "Touches"),
+      read("/api/v1/runs/{id}/result", "The latest result; 409 before there is one", of_run<result_view>,
+           "Result"),
+      read("/api/v1/runs/{id}/arm", "The calibrated arm as a file; 409 before there is a result",
+           of_run<arm_view>, "Arm"),
+      read("/api/v1/runs/{id}/plan", "The plan that the run follows; 409 before it is made",
+           of_run<plan_view>, "Plan"),
+      {.method = "GET",
+       .path = "/api/v1/runs/{id}/report",
+       .summary = "The report of the run, to keep",
+       .handle = of_run<report_view>,
+       .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "Report"}},
+       .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true}}},
+  };
+}
+
+}  // namespace cell

@@ -1,0 +1,100 @@
+#include "service/http/routes/status_feed.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <stdexcept>
+
+#include "service/acquisition/operation.hpp"
+#include "service/documents/json_view.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+
+namespace {
+
+StatusFeed::Change change_of(Status status) {
+  constexpr std::string_view kAge = "\"data_age_ms\":";
+  constexpr std::string_view kNull = "null";
+  status.data_age_ms.reset();
+  const std::string document = status_document(status);
+  const std::size_t age = document.find(std::string(kAge) + std::string(kNull));
+  if (age == document.npos) throw std::logic_error("the status document has no data age");
+  return {.sequence = status.sequence,
+          .run_id = status.run_id,
+          .is_active = is_active(status.state),
+          .before_age = document.substr(0, age + kAge.size()),
+          .behind_age = document.substr(age + kAge.size() + kNull.size())};
+}
+
+}  // namespace
+
+std::string StatusFeed::Change::document(std::optional<std::int64_t> age_ms) const {
+  std::string text;
+  text.reserve(before_age.size() + behind_age.size() + 24);
+  text += before_age;
+  text += age_ms ? std::to_string(*age_ms) : "null";
+  text += behind_age;
+  return text;
+}
+
+StatusFeed::StatusFeed(Operation& operation) : operation_(operation) {
+  const Status status = operation.status();
+  instance_id_ = status.instance_id;
+  keep(status);
+}
+
+StatusFeed::~StatusFeed() {
+  if (following_) operation_.on_change({});
+}
+
+void StatusFeed::follow(std::function<void(const Status&)> told) {
+  following_ = true;
+  operation_.on_change([this, told = std::move(told)](const Status& status) {
+    keep(status);
+    told(status);
+    for (asio::steady_timer* timer : waiting_) timer->cancel();
+  });
+}
+
+void StatusFeed::keep(const Status& status) {
+  changes_.push_back(change_of(status));
+  if (changes_.size() > kChangesKept) changes_.pop_front();
+  etag_ = fmt::format("\"{}-{}\"", instance_id_, status.sequence);
+}
+
+const StatusFeed::Change& StatusFeed::newest() {
+  if (changes_.back().sequence != operation_.sequence()) keep(operation_.status());
+  return changes_.back();
+}
+
+std::string StatusFeed::document() { return newest().document(operation_.data_age_ms()); }
+
+const std::string& StatusFeed::etag() {
+  newest();
+  return etag_;
+}
+
+const StatusFeed::Change* StatusFeed::next(std::uint64_t sequence) const {
+  const auto found = std::ranges::upper_bound(changes_, sequence, {}, &Change::sequence);
+  return found == changes_.end() ? nullptr : &*found;
+}
+
+bool StatusFeed::remembers(std::uint64_t sequence) const {
+  return sequence <= changes_.back().sequence && sequence + 1 >= changes_.front().sequence;
+}
+
+asio::awaitable<void> StatusFeed::wait(std::uint64_t sequence, std::chrono::milliseconds wait) {
+  if (newest().sequence != sequence) co_return;
+  asio::steady_timer timer(co_await asio::this_coro::executor, wait);
+  waiting_.push_back(&timer);
+  boost::system::error_code ignored;
+  co_await timer.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  waiting_.remove(&timer);
+}
+
+}  // namespace cell

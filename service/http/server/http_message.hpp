@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cell {
+
+/// How long a body may be where its route does not take more.
+inline constexpr std::size_t kBodyBytesMax = 64 * 1024;
+
+/// What stands behind the question mark; a name that is given twice is there twice.
+using Query = std::multimap<std::string, std::string>;
+
+/// A request as routes see it: parsed, bounded, no sockets.
+struct HttpRequest {
+  std::string method;  // "GET"
+  std::string path;    // "/api/v1/runs/7", without the query
+  Query query;
+  std::optional<std::string> authorization;
+  std::optional<std::string> content_type;
+  std::optional<std::string> idempotency_key;
+  std::optional<std::string> if_none_match;
+  std::optional<std::string> last_event_id;
+  std::string body;
+  bool from_loopback = false;
+  std::string remote;  // the client's address, for the audit
+};
+
+struct HttpResponse {
+  unsigned status = 200;
+  std::string content_type = "application/json";
+  std::string body;
+  std::vector<std::pair<std::string, std::string>> headers;
+};
+
+}  // namespace cell

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <map>
+#include <memory>
+
+#include "service/http/server/session.hpp"
+
+namespace cell {
+
+class RequestHandler;
+
+/// Accepts connections on one address and serves `handler` over them, HTTP/1.1, with TLS where there is a
+/// certificate.
+class HttpListener {
+ public:
+  /// Binds at once; port 0 takes a free one. Throws boost::system::system_error when the address is taken.
+  /// `handler` must outlive the listener and its connections.
+  HttpListener(boost::asio::any_io_executor executor, const boost::asio::ip::tcp::endpoint& address,
+               RequestHandler& handler, HttpLimits limits = {},
+               std::shared_ptr<boost::asio::ssl::context> tls = nullptr);
+
+  void launch();
+  void close();
+  [[nodiscard]] boost::asio::ip::tcp::endpoint address() const { return address_; }
+
+ private:
+  boost::asio::awaitable<void> accept();
+  [[nodiscard]] bool has_room(const boost::asio::ip::address& client) const;
+  void serve(boost::asio::ip::tcp::socket socket);
+
+  boost::asio::any_io_executor executor_;
+  boost::asio::ip::tcp::acceptor acceptor_;
+  boost::asio::ip::tcp::endpoint address_;
+  HttpLimits limits_;
+  std::shared_ptr<boost::asio::ssl::context> tls_;
+  RequestHandler& handler_;
+  int connections_ = 0;
+  std::map<boost::asio::ip::address, int> connections_of_;
+};
+
+}  // namespace cell

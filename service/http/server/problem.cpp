@@ -1,0 +1,62 @@
+#include "service/http/server/problem.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <nlohmann/json.hpp>
+
+#include "service/base/json_figures.hpp"
+
+namespace cell {
+namespace {
+
+const char* title_of(unsigned status) {
+  switch (status) {
+    case 400:
+      return "Bad request";
+    case 401:
+      return "Token needed";
+    case 403:
+      return "Not allowed";
+    case 404:
+      return "Not found";
+    case 405:
+      return "Method not allowed";
+    case 409:
+      return "Not in this state";
+    case 413:
+      return "Too large";
+    case 415:
+      return "Wrong content type";
+    case 417:
+      return "Expectation failed";
+    case 421:
+      return "Wrong host";
+    case 422:
+      return "Not possible";
+    case 431:
+      return "Header too large";
+    case 501:
+      return "Not supported";
+    case 503:
+      return "Not now";
+    default:
+      return "Internal error";
+  }
+}
+
+}  // namespace
+
+HttpResponse to_response(const Problem& problem) {
+  Json document{{"type", fmt::format("urn:touchcal:problem:{}", problem.kind)},
+                {"title", title_of(problem.status)},
+                {"status", problem.status},
+                {"detail", problem.detail}};
+  if (problem.pointer) document["pointer"] = *problem.pointer;
+  if (problem.parameter) document["parameter"] = *problem.parameter;
+  for (const auto& [code, detail] : problem.errors)
+    document["errors"].push_back({{"code", code}, {"detail", detail}});
+  if (!problem.exits.empty()) document["exits"] = problem.exits;
+  return {.status = problem.status, .content_type = "application/problem+json", .body = text_of(document)};
+}
+
+}  // namespace cell

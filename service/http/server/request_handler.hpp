@@ -1,0 +1,51 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "service/http/server/http_message.hpp"
+#include "service/http/server/problem.hpp"
+
+namespace cell {
+
+/// What follows the header of an answer whose content type is kEventStreamType.
+class EventSource {
+ public:
+  EventSource() = default;
+  virtual ~EventSource() = default;
+  EventSource(const EventSource&) = delete;
+  EventSource& operator=(const EventSource&) = delete;
+
+  /// The events that are due, as text; empty when there are none.
+  virtual std::string due() = 0;
+  [[nodiscard]] virtual bool ended() const = 0;
+  /// Returns when an event may be due, or after a while.
+  virtual boost::asio::awaitable<void> wait() = 0;
+};
+
+/// What a connection needs to know of the API. The server knows neither routes nor the cell.
+class RequestHandler {
+ public:
+  RequestHandler() = default;
+  virtual ~RequestHandler() = default;
+  RequestHandler(const RequestHandler&) = delete;
+  RequestHandler& operator=(const RequestHandler&) = delete;
+
+  /// `request` must outlive the answer.
+  virtual boost::asio::awaitable<HttpResponse> answer(const HttpRequest& request) = 0;
+  /// The answer to bytes that are not a request for this daemon. `request`: as far as it was understood.
+  virtual HttpResponse refuse(const Problem& problem, const HttpRequest& request) = 0;
+  /// The events of a request whose answer was a stream of them.
+  virtual std::unique_ptr<EventSource> events(const HttpRequest& request) = 0;
+  /// How long the body of a request to this path may be; kBodyBytesMax where there is no such route.
+  [[nodiscard]] virtual std::size_t body_bytes_max(std::string_view method, std::string_view path) const = 0;
+  /// The largest body that any route takes.
+  [[nodiscard]] virtual std::size_t largest_body_bytes() const = 0;
+};
+
+inline constexpr std::string_view kEventStreamType = "text/event-stream";
+
+}  // namespace cell

@@ -1,0 +1,60 @@
+#include "service/run/moved_cell.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "calib_core/estimation/block_registration.hpp"
+
+namespace cell {
+namespace {
+
+/// The smallest box along the new axes that holds the box.
+calib::Box moved(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
+  const Eigen::Vector3d middle_m = new_from_old * (0.5 * (box.min_m + box.max_m));
+  const Eigen::Vector3d half_m = new_from_old.linear().cwiseAbs() * (0.5 * (box.max_m - box.min_m));
+  return {box.name, middle_m - half_m, middle_m + half_m};
+}
+
+/// A box that is turned, in pieces of about this size, each held by a box along the new axes: so much less is
+/// taken for forbidden than by one box around all of it.
+constexpr double kPieceMetres = 0.2;
+
+std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
+  constexpr double kAlongAxes = 1e-9;
+  const Eigen::Matrix3d turn = new_from_old.linear().cwiseAbs();
+  if ((turn.rowwise().maxCoeff().array() > 1.0 - kAlongAxes).all()) return {moved(new_from_old, box)};
+  const Eigen::Vector3d extent_m = box.max_m - box.min_m;
+  const int count_x = static_cast<int>(std::ceil(extent_m.x() / kPieceMetres));
+  const int count_z = static_cast<int>(std::ceil(extent_m.z() / kPieceMetres));
+  const Eigen::Vector3d piece_m(extent_m.x() / count_x, extent_m.y(), extent_m.z() / count_z);
+  std::vector<calib::Box> pieces;
+  for (int x = 0; x < count_x; ++x) {
+    for (int z = 0; z < count_z; ++z) {
+      const Eigen::Vector3d min_m = box.min_m + Eigen::Vector3d(x * piece_m.x(), 0.0, z * piece_m.z());
+      pieces.push_back(moved(new_from_old, {box.name, min_m, min_m + piece_m}));
+    }
+  }
+  return pieces;
+}
+
+}  // namespace
+
+Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new) {
+  Cell there = cell;
+  const Eigen::Isometry3d new_from_old = old_from_new.inverse();
+  calib::set_place(there.arm.model, new_from_old * calib::place_of(cell.arm.model));
+  there.keep_out_boxes.clear();
+  for (const calib::Box& box : cell.keep_out_boxes) {
+    const auto pieces = moved_in_pieces(new_from_old, box);
+    there.keep_out_boxes.insert(there.keep_out_boxes.end(), pieces.begin(), pieces.end());
+  }
+  there.workspace_box = moved(new_from_old, cell.workspace_box);
+  return there;
+}
+
+Cell with_block_at(const Cell& cell, const BlockPlace& place) {
+  return with_block_moved(
+      cell, Eigen::Translation3d(place.shift_m) * Eigen::AngleAxisd(place.yaw_rad, Eigen::Vector3d::UnitY()));
+}
+
+}  // namespace cell

@@ -1,0 +1,74 @@
+#include "service/run/readiness.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace cell {
+namespace {
+
+using cs8::RejectReason;
+
+struct Remedy {
+  RejectReason refusal;
+  Awaited awaited;
+};
+
+constexpr std::array kRemedies{
+    Remedy{RejectReason::kTouchTestMissing,
+           {"touch_test", "touch the stylus by hand, in manual mode or with power off"}},
+    Remedy{RejectReason::kCellOpen, {"cell_closed", "leave and close the cell"}},
+    Remedy{RejectReason::kNotRemote, {"remote_mode", "turn the controller to remote mode"}},
+    Remedy{RejectReason::kNotPowered, {"power", "switch the arm's power on"}},
+    Remedy{RejectReason::kHold, {"hold_released", "release the hold on the pendant"}},
+    Remedy{RejectReason::kEmergencyStop,
+           {"emergency_stop_released", "release and acknowledge the emergency stop"}},
+    Remedy{RejectReason::kNotCalibrated, {"arm_referenced", "let the controller find its joint references"}},
+    Remedy{RejectReason::kMonitorSpeed, {"monitor_speed", "set the monitor speed to 100 %"}},
+    Remedy{RejectReason::kProbeTriggered, {"probe_free", "free the probe: it reads touched"}},
+    Remedy{RejectReason::kProbeInputs, {"probe_inputs", "check the probe's cable: its two inputs disagree"}},
+};
+
+constexpr Awaited kConfirmation{"confirmation", "press the confirmation key at the cell"};
+
+const Awaited& remedy_of(RejectReason refusal) {
+  return std::ranges::find(kRemedies, refusal, &Remedy::refusal)->awaited;
+}
+
+}  // namespace
+
+const Awaited* awaited_after(RejectReason refusal, std::uint32_t flags) {
+  if (std::ranges::find(kRemedies, refusal, &Remedy::refusal) == kRemedies.end()) return nullptr;
+  const bool untested = (flags & cs8::kTouchTested) == 0;
+  return &remedy_of(untested && refusal != RejectReason::kProbeInputs ? RejectReason::kTouchTestMissing
+                                                                      : refusal);
+}
+
+const Awaited& awaited_confirmation() { return kConfirmation; }
+
+const Awaited& awaited_touch_test() { return remedy_of(RejectReason::kTouchTestMissing); }
+
+std::string_view awaited_words(std::string_view name) {
+  if (name == kConfirmation.name) return kConfirmation.words;
+  const auto found =
+      std::ranges::find_if(kRemedies, [name](const Remedy& remedy) { return remedy.awaited.name == name; });
+  return found == kRemedies.end() ? name : found->awaited.words;
+}
+
+Fault not_ready_fault(const Awaited& awaited) {
+  if (awaited.name == kConfirmation.name) return {FaultCode::kNotConfirmed, {}};
+  if (&awaited == &remedy_of(RejectReason::kTouchTestMissing)) return {FaultCode::kTouchTestMissing, {}};
+  if (&awaited == &remedy_of(RejectReason::kCellOpen)) return {FaultCode::kCellOpen, {}};
+  if (&awaited == &remedy_of(RejectReason::kProbeInputs)) return {FaultCode::kProbeFault, {}};
+  return {FaultCode::kNotReady, std::string(awaited.words)};
+}
+
+Readiness readiness_of(const cs8::State& state) {
+  constexpr std::uint32_t kOfMotion = cs8::kSettled | cs8::kQueueEmpty | cs8::kRetractDue;
+  return {.flags = state.flags & ~kOfMotion,
+          .mode = state.mode,
+          .emergency_stop = state.emergency_stop,
+          .monitor_speed_percent = state.monitor_speed_percent};
+}
+
+}  // namespace cell

@@ -1,0 +1,97 @@
+#include "service/run/tip_prediction.hpp"
+
+#include <algorithm>
+
+namespace cell {
+namespace {
+
+constexpr int kMapPostureCount = 4000;
+constexpr double kMapCellMetres = 0.1;
+constexpr double kMapCellsMax = 2000.0;  // a larger box gets coarser cells
+
+TipRegions::Regions regions_of(const Cell& cell, const calib::ToolCentre& tool) {
+  const calib::JointRanges& ranges = cell.arm.joint_ranges;
+  return {.workspace_box = calib::over_box(cell.arm.model, ranges, cell.workspace_box, tool),
+          .joint_ranges = calib::over_joint_ranges(cell.arm.model, ranges, tool)};
+}
+
+calib::TipRegion over_fitted_touches(const calib::IdentificationProblem& problem,
+                                     const calib::IdentificationResult& result) {
+  std::vector<calib::JointVector> postures;
+  for (const std::size_t i : fitted_touches(problem, result)) postures.push_back(problem.touches[i].joints);
+  return calib::over_postures(problem.nominal, postures);
+}
+
+calib::UncertaintyMap predicted_map(const calib::TipMap& map, const calib::Certainty& certainty) {
+  calib::UncertaintyMap predicted{.grid = map.grid, .rms_m = {}};
+  for (const calib::TipRegion& region : map.cells)
+    predicted.rms_m.push_back(predicted_rms_m(region, certainty));
+  return predicted;
+}
+
+}  // namespace
+
+std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& problem,
+                                        const calib::IdentificationResult& result) {
+  std::vector<std::size_t> fitted;
+  for (std::size_t i = 0; i < problem.touches.size(); ++i) {
+    const bool rejected =
+        std::ranges::find(result.rejected, i, &calib::RejectedTouch::touch) != result.rejected.end();
+    if (problem.touches[i].role == calib::TouchRole::kFit && !rejected) fitted.push_back(i);
+  }
+  return fitted;
+}
+
+std::optional<double> predicted_rms_m(const calib::TipRegion& region, const calib::Certainty& certainty) {
+  for (const auto& direction : certainty.unknown_directions.colwise()) {
+    // Squares: those of no motion at all may come out a little under 0.
+    const double square = direction.dot(region.mean_square * direction);
+    if (!(square <= kUnknownMattersMetres * kUnknownMattersMetres)) return std::nullopt;
+  }
+  return region.rms_m(certainty.covariance());
+}
+
+const TipRegions::Regions& TipRegions::tip() const {
+  if (!tip_) tip_ = regions_of(cell_, std::nullopt);
+  return *tip_;
+}
+
+const std::map<std::string, TipRegions::Regions>& TipRegions::tools() const {
+  if (!tools_) {
+    tools_.emplace();
+    for (const auto& [name, tool] : cell_.tools) tools_->emplace(name, regions_of(cell_, tool));
+  }
+  return *tools_;
+}
+
+const calib::TipMap& TipRegions::map() const {
+  if (!map_) {
+    const double volume_m3 = (cell_.workspace_box.max_m - cell_.workspace_box.min_m).prod();
+    const double edge_m = std::max(kMapCellMetres, std::cbrt(volume_m3 / kMapCellsMax));
+    const auto postures = calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box,
+                                                 std::nullopt, kMapPostureCount);
+    map_ = calib::make_tip_map(cell_.arm.model, postures, calib::divide(cell_.workspace_box, edge_m));
+  }
+  return *map_;
+}
+
+TipPrediction predict_tip(const TipRegions& regions, const calib::IdentificationProblem& problem,
+                          const calib::IdentificationResult& result) {
+  TipPrediction prediction;
+  if (!result.certainty) return prediction;
+  const calib::Certainty& certainty = *result.certainty;
+  const TipRegions::Regions& tip = regions.tip();
+  prediction.at_block_rms_m = predicted_rms_m(over_fitted_touches(problem, result), certainty);
+  prediction.workspace_box_rms_m = predicted_rms_m(tip.workspace_box, certainty);
+  prediction.joint_ranges_rms_m = predicted_rms_m(tip.joint_ranges, certainty);
+  for (const calib::UncertaintySource& source : certainty.sources)
+    prediction.sources.push_back({source.name, tip.workspace_box.rms_m(source.covariance)});
+  for (const auto& [name, tool] : regions.tools()) {
+    prediction.tools.push_back({name, predicted_rms_m(tool.workspace_box, certainty),
+                                predicted_rms_m(tool.joint_ranges, certainty)});
+  }
+  prediction.map = predicted_map(regions.map(), certainty);
+  return prediction;
+}
+
+}  // namespace cell

@@ -1,0 +1,243 @@
+// What a TouchStore writes; touch_store_queries.cpp reads it.
+#include "service/store/run_store.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include "service/store/internal/relaxed_durability.hpp"
+
+namespace cell {
+namespace {
+
+/// The log begins anew, so that no touch of a run finds it full. A reader may prevent it: then it grows.
+void empty_log(SQLite::Database& database) { database.tryExec("PRAGMA wal_checkpoint(RESTART)"); }
+
+template <class Value>
+void bind_or_null(SQLite::Statement& statement, int index, const std::optional<Value>& value) {
+  if (value) {
+    statement.bind(index, *value);
+  } else {
+    statement.bind(index);
+  }
+}
+
+/// The columns of a touch, in the order of both tables, from `index` on.
+int bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouch& touch) {
+  int index = 0;
+  insert.bind(++index, run_id);
+  insert.bind(++index, touch.number);
+  insert.bind(++index, touch.plane);
+  insert.bind(++index, static_cast<int>(touch.role));
+  for (const std::int32_t joint : touch.joints) insert.bind(++index, joint);
+  insert.bind(++index, static_cast<int>(touch.source));
+  insert.bind(++index, touch.overtravel_dmm);
+  insert.bind(++index, touch.captured_at);
+  insert.bind(++index, touch.session);
+  insert.bind(++index, touch.sequence);
+  insert.bind(++index, touch.aimed_with);
+  return index;
+}
+
+std::string_view kind_name(PlanChange::Kind kind) {
+  switch (kind) {
+    case PlanChange::Kind::kPutOff:
+      return "put_off";
+    case PlanChange::Kind::kDropFitted:
+      return "drop_fitted";
+    case PlanChange::Kind::kSkip:
+      break;
+  }
+  return "skip";
+}
+
+/// Takes a touch out of those that count, inside the caller's transaction.
+void set_apart(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason) {
+  SQLite::Statement keep(
+      database,
+      "INSERT INTO superseded_touches(run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
+      "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, "
+      "aimed_with, reason) SELECT run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
+      "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, "
+      "aimed_with, ? FROM touches WHERE run_id = ? AND number = ?");
+  keep.bind(1, reason);
+  keep.bind(2, run_id);
+  keep.bind(3, number);
+  if (keep.exec() != 1) throw SQLite::Exception("there is no such touch to set apart");
+  SQLite::Statement remove(database, "DELETE FROM touches WHERE run_id = ? AND number = ?");
+  remove.bind(1, run_id);
+  remove.bind(2, number);
+  remove.exec();
+}
+
+}  // namespace
+
+struct TouchStore::Statements {
+  explicit Statements(SQLite::Database& database)
+      : append_touch(
+            database,
+            "INSERT INTO touches(run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
+            "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, "
+            "sequence, aimed_with) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+        set_open_command(database,
+                         "INSERT OR REPLACE INTO open_commands(run_id, session, sequence, aimed_with, "
+                         "touch_json) VALUES(?, ?, ?, ?, ?)"),
+        make_durable(database, "UPDATE open_commands SET session = session WHERE run_id = ?") {}
+
+  SQLite::Statement append_touch;
+  SQLite::Statement set_open_command;
+  SQLite::Statement make_durable;
+};
+
+TouchStore::TouchStore(const std::filesystem::path& file)
+    : database_(open_database(file)), statements_(std::make_unique<Statements>(*database_)) {}
+
+TouchStore::~TouchStore() = default;
+
+std::int64_t TouchStore::begin_run(const NewRun& run) {
+  SQLite::Statement insert(*database_,
+                           "INSERT INTO runs(recipe, touches_total, started_at, idempotency_key, "
+                           "operator_name, block_temperature_c, config_digest, trace_json) "
+                           "VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+  insert.bind(1, run.recipe);
+  insert.bind(2, run.touches_total);
+  insert.bind(3, run.started_at);
+  bind_or_null(insert, 4, run.idempotency_key);
+  bind_or_null(insert, 5, run.operator_name);
+  bind_or_null(insert, 6, run.block_temperature_c);
+  bind_or_null(insert, 7, run.config_digest);
+  bind_or_null(insert, 8, run.trace_json);
+  insert.exec();
+  const std::int64_t id = database_->getLastInsertRowid();
+  empty_log(*database_);
+  return id;
+}
+
+void TouchStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
+                          const std::string& document) {
+  SQLite::Transaction transaction(*database_);
+  SQLite::Statement insert(*database_, "INSERT OR IGNORE INTO plans(id, document) VALUES(?, ?)");
+  insert.bind(1, plan_id);
+  insert.bind(2, document);
+  insert.exec();
+  SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ?, plan_id = ? WHERE id = ?");
+  update.bind(1, touches_total);
+  update.bind(2, plan_id);
+  update.bind(3, run_id);
+  update.exec();
+  transaction.commit();
+}
+
+void TouchStore::set_touches_total(std::int64_t run_id, int touches_total) {
+  SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ? WHERE id = ?");
+  update.bind(1, touches_total);
+  update.bind(2, run_id);
+  update.exec();
+}
+
+void TouchStore::append_plan_change(std::int64_t run_id, const PlanChange& change) {
+  const Unsynced unsynced(*database_);
+  SQLite::Statement insert(*database_, "INSERT INTO plan_changes(run_id, kind, place) VALUES(?, ?, ?)");
+  insert.bind(1, run_id);
+  insert.bind(2, std::string(kind_name(change.kind)));
+  insert.bind(3, change.place);
+  insert.exec();
+}
+
+void TouchStore::set_open_command(std::int64_t run_id, const OpenCommand& command) {
+  const Unsynced unsynced(*database_);
+  SQLite::Statement& insert = statements_->set_open_command;
+  insert.tryReset();
+  insert.bind(1, run_id);
+  insert.bind(2, command.session);
+  insert.bind(3, command.sequence);
+  insert.bind(4, command.aimed_with);
+  insert.bind(5, command.touch_json);
+  insert.exec();
+}
+
+bool TouchStore::make_durable(std::int64_t run_id) {
+  try {
+    SQLite::Statement& update = statements_->make_durable;
+    update.tryReset();
+    update.bind(1, run_id);
+    update.exec();
+    return true;
+  } catch (const SQLite::Exception&) {
+    return false;
+  }
+}
+
+void TouchStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
+  SQLite::Statement& insert = statements_->append_touch;
+  insert.tryReset();
+  bind_touch(insert, run_id, touch);
+  insert.exec();
+}
+
+void TouchStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {
+  SQLite::Transaction transaction(*database_);
+  set_apart(*database_, run_id, number, reason);
+  transaction.commit();
+}
+
+void TouchStore::replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason) {
+  SQLite::Transaction transaction(*database_);
+  set_apart(*database_, run_id, again.number, reason);
+  append_touch(run_id, again);
+  transaction.commit();
+}
+
+void TouchStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch) {
+  SQLite::Statement insert(
+      *database_,
+      "INSERT INTO reference_touches(run_id, number, touches_done, j1_microdeg, j2_microdeg, j3_microdeg, "
+      "j4_microdeg, j5_microdeg, j6_microdeg, drift_mm, captured_at) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?)");
+  int index = 0;
+  insert.bind(++index, run_id);
+  insert.bind(++index, touch.number);
+  insert.bind(++index, touch.touches_done);
+  for (const std::int32_t joint : touch.joints) insert.bind(++index, joint);
+  bind_or_null(insert, ++index, touch.drift_mm);
+  insert.bind(++index, touch.captured_at);
+  insert.exec();
+}
+
+void TouchStore::append_resumption(std::int64_t run_id, const std::string& at, int touches_done) {
+  SQLite::Statement insert(*database_, "INSERT INTO resumptions(run_id, at, touches_done) VALUES(?, ?, ?)");
+  insert.bind(1, run_id);
+  insert.bind(2, at);
+  insert.bind(3, touches_done);
+  insert.exec();
+}
+
+void TouchStore::finish_run(std::int64_t run_id, const RunEnd& end) {
+  SQLite::Statement update(*database_,
+                           "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ?, fault_code = ?, "
+                           "fault_message = ?, result_json = ? WHERE id = ?");
+  update.bind(1, end.outcome);
+  update.bind(2, end.verdict);
+  update.bind(3, end.ended_at);
+  bind_or_null(update, 4, end.fault_code);
+  bind_or_null(update, 5, end.fault_message);
+  bind_or_null(update, 6, end.result_json);
+  update.bind(7, run_id);
+  update.exec();
+}
+
+void TouchStore::set_result_json(std::int64_t run_id, const std::string& result_json) {
+  SQLite::Statement update(*database_, "UPDATE runs SET result_json = ? WHERE id = ?");
+  update.bind(1, result_json);
+  update.bind(2, run_id);
+  update.exec();
+}
+
+int TouchStore::finish_interrupted(const std::string& now, std::optional<std::int64_t> but) {
+  SQLite::Statement update(*database_,
+                           "UPDATE runs SET outcome = 'interrupted', verdict = 'incomplete', ended_at = ? "
+                           "WHERE outcome = 'running' AND id IS NOT ?");
+  update.bind(1, now);
+  bind_or_null(update, 2, but);
+  return update.exec();
+}
+
+}  // namespace cell

@@ -1,0 +1,170 @@
+#include "service/documents/json_view.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "service/run/touch_command.hpp"
+#include "tests/service/document_shape.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+namespace {
+
+using nlohmann::json;
+
+const Shape kQuietStatus{{"state", "string"},
+                         {"waiting_for", "null"},
+                         {"run_id", "null"},
+                         {"recipe", "null"},
+                         {"touches_done", "number"},
+                         {"touches_total", "null"},
+                         {"plane", "null"},
+                         {"identifiable_count", "null"},
+                         {"condition_number", "null"},
+                         {"predicted_tip_rms_mm", "null"},
+                         {"more_would_bring", "null"},
+                         {"eta_s", "null"},
+                         {"verdict", "string"},
+                         {"controller_connected", "boolean"},
+                         {"controller_powered", "null"},
+                         {"controller_mode", "null"},
+                         {"controller_estop", "null"},
+                         {"controller_cell_closed", "null"},
+                         {"controller_touch_tested", "null"},
+                         {"controller_permit", "null"},
+                         {"probe", "null"},
+                         {"by_hand", "null"},
+                         {"by_hand_step", "null"},
+                         {"by_hand_plane", "null"},
+                         {"by_hand_index", "null"},
+                         {"by_hand_total", "null"},
+                         {"by_hand_words", "null"},
+                         {"by_hand_problem", "null"},
+                         {"by_hand_joints_deg", "null"},
+                         {"fault_code", "null"},
+                         {"fault_message", "null"},
+                         {"fault_robot_action", "null"},
+                         {"fault_next_step", "null"},
+                         {"warning_code", "null"},
+                         {"warning_message", "null"},
+                         {"reference_drift_mm", "null"},
+                         {"last_accepted_run_id", "null"},
+                         {"last_accepted_at", "null"},
+                         {"data_age_ms", "null"},
+                         {"sequence", "number"},
+                         {"instance_id", "string"},
+                         {"since", "string"}};
+
+TEST(StatusDocument, HasTheContractsFieldsWhenNothingIsKnown) {
+  EXPECT_EQ(shape_of(json::parse(status_document({}))), kQuietStatus);
+}
+
+TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
+  Status busy;
+  busy.state = State::kHeld;
+  busy.waiting_for = "confirmation";
+  busy.run_id = 7;
+  busy.recipe = "edf-25";
+  busy.touches_done = 3;
+  busy.touches_total = 140;
+  busy.plane = 2;
+  busy.identifiable_count = 3;
+  busy.condition_number = 12.5;
+  busy.predicted_tip_rms_m = 6e-5;
+  busy.more_would_bring = "8 more on plane 5: 0.21 to 0.15 mm";
+  busy.eta_s = 30.0;
+  busy.controller.connected = true;
+  busy.controller.powered = true;
+  busy.controller.mode = "remote";
+  busy.controller.emergency_stop = false;
+  busy.controller.cell_closed = true;
+  busy.controller.touch_tested = true;
+  busy.controller.permit = "awaited";
+  busy.controller.probe = "free";
+  busy.by_hand = HandGuide{.activity = "guided",
+                           .plane = 3,
+                           .index = 1,
+                           .total = 6,
+                           .words = "touch plane 3",
+                           .problem = "too fast",
+                           .about_joints = calib::JointVector::Zero()};
+  busy.fault = Fault{FaultCode::kNoContact, ""};
+  busy.warning = Fault{FaultCode::kTouchOutlier, "touch 3"};
+  busy.reference_drift_m = 2e-5;
+  busy.last_accepted_run_id = 6;
+  busy.last_accepted_at = "then";
+  busy.data_age_ms = 12;
+  const json document = json::parse(status_document(busy));
+  for (const auto& [name, value] : document.items()) {
+    EXPECT_TRUE(kQuietStatus.contains(name)) << name;
+    EXPECT_FALSE(value.is_null()) << name;
+  }
+  EXPECT_EQ(document.size(), kQuietStatus.size());
+  EXPECT_EQ(document.at("state"), "HELD");
+  EXPECT_NEAR(document.at("predicted_tip_rms_mm").get<double>(), 0.06, 1e-12);
+  EXPECT_EQ(document.at("run_id"), "7") << "ids are text: no client counts with them";
+  EXPECT_EQ(document.at("fault_code"), "no_contact");
+  EXPECT_EQ(document.at("controller_estop"), false);
+}
+
+TEST(StatusDocument, AFigureThatIsNoNumberIsNull) {
+  const Status status{.condition_number = std::numeric_limits<double>::infinity(),
+                      .eta_s = std::numeric_limits<double>::quiet_NaN()};
+  const json document = json::parse(status_document(status));
+  EXPECT_TRUE(document.at("condition_number").is_null());
+  EXPECT_TRUE(document.at("eta_s").is_null());
+}
+
+TEST(StatusDocument, BytesThatAreNoTextAreShownAsFarAsTheyAre) {
+  const Status status{.fault = Fault{FaultCode::kProtocolError, "sent \xff\xfe and \x01"}};
+  const json document = json::parse(status_document(status));
+  EXPECT_THAT(document.at("fault_message").get<std::string>(), ::testing::HasSubstr("sent \xEF\xBF\xBD"));
+}
+
+TEST(RunsDocument, HasEachRunsFieldsAndWhereTheNextPageBegins) {
+  const StoredRun running{
+      .id = 2, .recipe = "edf-25", .started_at = "start", .outcome = "running", .verdict = "none"};
+  const json page = json::parse(runs_document({running}, 2));
+  EXPECT_EQ(page.at("next_before"), "2");
+  ASSERT_EQ(page.at("runs").size(), 1u);
+  json alone = json::parse(run_document(running));
+  EXPECT_TRUE(alone.at("conditions").is_null()) << "an older daemon kept none";
+  alone.erase("conditions");
+  EXPECT_EQ(page.at("runs")[0], alone);
+  EXPECT_EQ(shape_of(page.at("runs")[0]), (Shape{{"id", "string"},
+                                                 {"recipe", "string"},
+                                                 {"touching", "string"},
+                                                 {"outcome", "string"},
+                                                 {"verdict", "string"},
+                                                 {"touches_done", "number"},
+                                                 {"touches_total", "null"},
+                                                 {"started_at", "string"},
+                                                 {"ended_at", "null"},
+                                                 {"fault_code", "null"},
+                                                 {"fault_message", "null"}}));
+  const json last = json::parse(runs_document({}, std::nullopt));
+  EXPECT_EQ(last, (json{{"runs", json::array()}, {"next_before", nullptr}}));
+}
+
+TEST(TouchesDocument, IsWhatIdentifyReadsBackToTheLastStep) {
+  const std::vector<StoredTouch> stored{
+      {.number = 1, .plane = 1, .joints = {-42469929, 70229417, 43225787, 52719402, 128430178, -91254213}},
+      {.number = 2,
+       .plane = 4,
+       .role = calib::TouchRole::kHeldOut,
+       .joints = {1, -1, 7, 123456789, 0, -270000000}},
+      {.number = 3, .plane = 2, .role = calib::TouchRole::kProof}};
+  const std::string document = touches_document(edf(), stored);
+  const TouchesFile read = touches_from_json("document", document, document.size(), edf());
+  ASSERT_EQ(read.touches.size(), stored.size());
+  for (std::size_t i = 0; i < stored.size(); ++i) {
+    EXPECT_EQ(read.touches[i].face + 1, stored[i].plane);
+    EXPECT_EQ(read.touches[i].role, stored[i].role);
+    EXPECT_EQ(to_wire(read.touches[i].joints), stored[i].joints) << i;
+  }
+}
+
+}  // namespace
+}  // namespace cell

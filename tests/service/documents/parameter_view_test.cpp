@@ -1,0 +1,126 @@
+#include "service/documents/parameter_view.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "tests/service/document_shape.hpp"
+#include "tests/service/table3_result.hpp"
+
+namespace cell {
+namespace {
+
+TEST(ResultDocument, AnIntervalIsTheErrorAndTheCoverageFactorTimesItsDeviation) {
+  const calib::IdentificationProblem problem = problem_of(edf().recipes.at("edf-25"));
+  const auto identified = calib::identify(problem, edf().recipes.at("edf-25").identification);
+  const double factor = identified.certainty.value().coverage_factor;
+  int seen = 0;
+  for (const json& found : result().at("parameters")) {
+    if (found.at("status") != "identified") continue;
+    const double error = found.at("error").get<double>();
+    const double half = factor * found.at("std_uncertainty").get<double>();
+    EXPECT_NEAR(found.at("interval95")[0].get<double>(), error - half, 1e-12 + 1e-9 * std::abs(error));
+    EXPECT_NEAR(found.at("interval95")[1].get<double>(), error + half, 1e-12 + 1e-9 * std::abs(error));
+    ++seen;
+  }
+  EXPECT_EQ(seen, result().at("identifiable_count"));
+}
+
+TEST(ResultDocument, WhatAnErrorStandsForIsTheOtherSideOfTheGroups) {
+  std::map<std::pair<std::string, std::string>, double> grouped, carried;
+  for (const json& found : result().at("parameters")) {
+    for (const json& other : found.at("grouped_with"))
+      grouped[{found.at("name"), other.at("name")}] = other.at("factor");
+    for (const json& other : found.at("stands_for"))
+      carried[{other.at("name"), found.at("name")}] = other.at("factor");
+  }
+  EXPECT_FALSE(grouped.empty());
+  EXPECT_EQ(grouped, carried);
+}
+
+TEST(ResultDocument, WithAPriorEveryErrorIsIdentifiedAndTheRankStaysThatOfTheTouches) {
+  Recipe recipe = edf().recipes.at("edf-25");
+  recipe.identification.prior = true;
+  const json document = result_with(recipe);
+  ASSERT_EQ(document.at("converged"), true) << document.at("verdict");
+  EXPECT_EQ(document.at("identifiable_count"), result().at("identifiable_count"));
+  for (const json& found : document.at("parameters")) {
+    EXPECT_EQ(found.at("status"), "identified");
+    EXPECT_TRUE(found.at("error").is_number()) << found;
+    EXPECT_TRUE(found.at("std_uncertainty").is_number()) << found;
+    EXPECT_TRUE(found.at("grouped_with").empty());
+    EXPECT_TRUE(found.at("stands_for").empty());
+  }
+}
+
+TEST(ResultDocument, ShowsLengthsInMillimetresAndAnglesInRadians) {
+  const json errors = json_of(kSourceDir / "tests/data/table3-exact.expected.json").at("identified_errors");
+  for (const auto& [name, error] : errors.items()) {
+    const json& found = parameter(name);
+    const bool length = found.at("unit") == "mm";
+    EXPECT_EQ(length, name[0] == 'd' || name[0] == 'r') << name;
+    EXPECT_EQ(found.at("status"), "identified") << name;
+    EXPECT_NEAR(found.at("error").get<double>(), error.get<double>() * (length ? 1e3 : 1.0),
+                length ? 1e-6 : 1e-9)
+        << name;
+  }
+  EXPECT_NEAR(parameter("r0").at("nominal").get<double>(), 149.6, 1e-9);
+  EXPECT_NEAR(parameter("theta7").at("nominal").get<double>(), -0.256, 1e-12);
+}
+
+TEST(ResultDocument, ListsAllParametersInTheContractsOrderWithTheirGroups) {
+  const json& parameters = result().at("parameters");
+  ASSERT_EQ(parameters.size(), static_cast<std::size_t>(calib::kErrorParameterCount));
+  const std::set<std::string> place{"theta0", "r0", "alpha1", "d1", "theta1", "r1"};
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::string name = calib::error_parameters()[i].name();
+    EXPECT_EQ(parameters[i].at("name"), name);
+    EXPECT_EQ(name, parameters[i].at("kind").get<std::string>() +
+                        std::to_string(parameters[i].at("frame").get<int>()));
+    EXPECT_EQ(parameters[i].at("group"), place.contains(name) ? "place"
+                                         : name.back() == '7' ? "tool"
+                                                              : "arm")
+        << name;
+  }
+}
+
+TEST(ResultDocument, WithTheRecipeOfThePaper23AreIdentifiedAndTheRestIsNamed) {
+  const json document = result_with(edf().recipes.at("edf-23"));
+  std::map<std::string, int> count;
+  for (const json& found : document.at("parameters")) ++count[found.at("status")];
+  EXPECT_EQ(count, (std::map<std::string, int>{
+                       {"identified", 23}, {"excluded", 2}, {"no_effect", 3}, {"grouped", 9}}));
+  EXPECT_EQ(document.at("identifiable_count"), 23);
+}
+
+TEST(ResultDocument, AGroupedErrorIsTheSumOfTheOthersInTheUnitsShown) {
+  const calib::KinematicModel& model = edf().arm.model;
+  const auto planes = calib::describe(artefact_knowledge(edf())).contact_planes;
+  std::vector<calib::Touch> on_face;
+  for (const calib::Touch& touch : table3_touches())
+    on_face.push_back(moved_onto_plane(model, planes[static_cast<std::size_t>(touch.face)], touch));
+  const auto matrix = observe(model, planes, on_face, calib::Formulation::kSignedDistance).matrix;
+  const auto column_a_shown_unit = [&](const std::string& name) -> Eigen::VectorXd {
+    const int index = calib::error_parameter_index(name).value();
+    return matrix.col(index) * (parameter(name).at("unit") == "mm" ? 1e-3 : 1.0);
+  };
+  int mixed_units = 0;
+  for (const json& found : result().at("parameters")) {
+    EXPECT_EQ(found.at("status") == "grouped", !found.at("grouped_with").empty()) << found;
+    if (found.at("status") != "grouped") continue;
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(matrix.rows());
+    for (const json& other : found.at("grouped_with")) {
+      EXPECT_EQ(shape_of(other), (Shape{{"name", "string"}, {"factor", "number"}}));
+      sum += other.at("factor").get<double>() * column_a_shown_unit(other.at("name"));
+      if (parameter(other.at("name")).at("unit") != found.at("unit")) ++mixed_units;
+    }
+    const Eigen::VectorXd own = column_a_shown_unit(found.at("name"));
+    EXPECT_LT((own - sum).norm(), 1e-9 * own.norm()) << found;
+  }
+  EXPECT_GT(mixed_units, 0) << "no group mixes lengths and angles: the test shows nothing";
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,164 @@
+#include "service/http/routes/api.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/service/quiet_cell.hpp"
+
+namespace cell {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+const Tokens kTokens{std::string(64, 'a'), std::string(64, 'b')};
+
+class ApiTest : public ::testing::Test {
+ protected:
+  static HttpRequest post(const std::string& path, const std::string& body = "") {
+    return {.method = "POST",
+            .path = path,
+            .authorization = "Bearer " + kTokens.operate,
+            .content_type = "application/json",
+            .body = body,
+            .from_loopback = true,
+            .remote = "127.0.0.1"};
+  }
+  static HttpRequest keyed(const std::string& path, const std::string& key, const std::string& body = "") {
+    HttpRequest request = post(path, body);
+    request.idempotency_key = key;
+    return request;
+  }
+
+  HttpResponse send(const HttpRequest& request) {
+    std::optional<HttpResponse> response;
+    boost::asio::co_spawn(quiet_.context(), api_.answer(request),
+                          [&](const std::exception_ptr& failure, HttpResponse answer) {
+                            EXPECT_FALSE(failure);
+                            response = std::move(answer);
+                          });
+    quiet_.context().restart();
+    quiet_.context().run();
+    return response.value_or(HttpResponse{.status = 0});
+  }
+  AuditEntry last_audit() {
+    const auto page = api_.services().audit.page(1);
+    return page.empty() ? AuditEntry{} : page.front();
+  }
+  std::string state() {
+    return json::parse(send({.method = "GET", .path = "/api/v1/status", .from_loopback = true}).body)
+        .at("state");
+  }
+
+  QuietCell quiet_;
+  Api api_{quiet_.context().get_executor(), quiet_.operation(), kTokens};
+};
+
+TEST_F(ApiTest, ARepeatedKeyGetsTheFirstAnswerAndNothingHappensAgain) {
+  const HttpResponse first = send(keyed("/api/v1/cell/reset", "one"));
+  ASSERT_EQ(first.status, 202u);
+  ASSERT_EQ(state(), "RESETTING");
+  ASSERT_EQ(send(post("/api/v1/cell/stop")).status, 202u);
+  const HttpResponse again = send(keyed("/api/v1/cell/reset", "one"));
+  EXPECT_EQ(again.status, first.status);
+  EXPECT_EQ(again.body, first.body);
+  EXPECT_EQ(state(), "STOPPED") << "the reset was not taken again";
+}
+
+TEST_F(ApiTest, AKeyBelongsToOneRequest) {
+  ASSERT_EQ(send(keyed("/api/v1/cell/reset", "one")).status, 202u);
+  EXPECT_EQ(send(keyed("/api/v1/cell/acknowledge", "one")).status, 422u) << "another path";
+  EXPECT_EQ(send(keyed("/api/v1/cell/reset", "one", "{}")).status, 422u) << "another body";
+  EXPECT_EQ(send(keyed("/api/v1/cell/stop", "one")).status, 202u) << "a stop is taken whatever comes with it";
+}
+
+TEST_F(ApiTest, AKeyWhoseRequestWasRefusedMayComeAgain) {
+  ASSERT_EQ(send(keyed("/api/v1/cell/clear", "one")).status, 409u);
+  EXPECT_EQ(send(keyed("/api/v1/cell/reset", "one")).status, 202u);
+}
+
+TEST_F(ApiTest, AKeyInProgressIsToldSo) {
+  const HttpRequest request = keyed("/api/v1/identify", "one", "{}");
+  std::vector<unsigned> statuses;
+  for (int i = 0; i < 2; ++i) {
+    boost::asio::co_spawn(
+        quiet_.context(), api_.answer(request),
+        [&](const std::exception_ptr&, HttpResponse answer) { statuses.push_back(answer.status); });
+  }
+  quiet_.context().run();
+  EXPECT_THAT(statuses, ::testing::UnorderedElementsAre(400u, 409u));
+}
+
+TEST_F(ApiTest, EveryCommandIsWrittenDownWithWhatCameOfIt) {
+  send(post("/api/v1/cell/reset"));
+  const auto page = api_.services().audit.page(10);
+  ASSERT_EQ(page.size(), 2u);
+  EXPECT_EQ(page[1].outcome, "asked") << "before it is taken";
+  EXPECT_EQ(page[0].outcome, "202");
+  for (const AuditEntry& entry : page) {
+    EXPECT_EQ(entry.action, "POST /api/v1/cell/reset");
+    EXPECT_EQ(entry.who, "operate");
+    EXPECT_EQ(entry.remote, "127.0.0.1");
+  }
+  send(post("/api/v1/cell/clear"));
+  EXPECT_EQ(last_audit().outcome, "409");
+}
+
+TEST_F(ApiTest, EveryRefusalOfACommandIsWrittenDown) {
+  HttpRequest request = post("/api/v1/cell/reset");
+  request.authorization = "Bearer " + kTokens.view;
+  EXPECT_EQ(send(request).status, 403u);
+  EXPECT_EQ(last_audit().who, "view");
+  EXPECT_EQ(last_audit().outcome, "403");
+  request.authorization.reset();
+  EXPECT_EQ(send(request).status, 401u);
+  EXPECT_EQ(last_audit().who, "none");
+  request.authorization = "Bearer " + std::string(64, 'x');
+  EXPECT_EQ(send(request).status, 401u);
+  EXPECT_EQ(last_audit().who, "wrong token");
+  api_.refuse({.status = 403, .kind = "origin", .detail = "a page elsewhere"}, request);
+  EXPECT_EQ(last_audit().outcome, "403");
+  const std::int64_t before = last_audit().id;
+  EXPECT_EQ(send({.method = "GET", .path = "/nothing", .from_loopback = true}).status, 404u);
+  EXPECT_EQ(last_audit().id, before) << "reading is no command";
+}
+
+TEST_F(ApiTest, ACommandThatCannotBeWrittenDownIsNotTakenButForAStop) {
+  quiet_.store().database()->exec("DROP TABLE audit");
+  const HttpResponse refused = send(post("/api/v1/cell/reset"));
+  EXPECT_EQ(refused.status, 503u);
+  EXPECT_THAT(refused.body, HasSubstr("Stop"));
+  EXPECT_EQ(state(), "STOPPED") << "not taken";
+  EXPECT_EQ(send(post("/api/v1/cell/stop")).status, 202u);
+  // No run is there to be halted: these reach the state machine, a resume does not.
+  const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then"});
+  const std::string of_run = "/api/v1/runs/" + std::to_string(run);
+  for (const char* halt : {"/abort", "/pause"}) EXPECT_EQ(send(post(of_run + halt)).status, 409u) << halt;
+  EXPECT_EQ(send(post(of_run + "/resume")).status, 503u);
+}
+
+TEST_F(ApiTest, TheDocumentOfTheStatusIsThatOfItsSequence) {
+  const auto shown = [&] {
+    return json::parse(send({.method = "GET", .path = "/api/v1/status", .from_loopback = true}).body);
+  };
+  const json before = shown();
+  EXPECT_EQ(before, shown());
+  send(post("/api/v1/cell/reset"));
+  EXPECT_GT(shown().at("sequence"), before.at("sequence"));
+  EXPECT_EQ(shown().at("state"), "RESETTING");
+  EXPECT_TRUE(shown().at("data_age_ms").is_null()) << "never heard is not 0";
+}
+
+TEST_F(ApiTest, AnswersAreCountedByRouteAndStatus) {
+  send({.method = "GET", .path = "/api/v1/runs/7", .from_loopback = true});
+  send({.method = "GET", .path = "/api/v1/runs/8", .from_loopback = true});
+  const std::string figures = send({.method = "GET", .path = "/metrics", .from_loopback = true}).body;
+  EXPECT_THAT(figures, HasSubstr("touchcal_http_requests_total{method=\"GET\",route=\"/api/v1/runs/{id}\","
+                                 "status=\"404\"} 2"));
+}
+
+}  // namespace
+}  // namespace cell

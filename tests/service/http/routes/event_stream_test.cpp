@@ -1,0 +1,140 @@
+#include "service/http/routes/event_stream.hpp"
+
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/service/quiet_cell.hpp"
+
+namespace cell {
+namespace {
+
+using nlohmann::json;
+using ::testing::ElementsAre;
+
+struct Event {
+  std::string name, id;
+  json data;
+};
+
+std::vector<Event> parsed(const std::string& text) {
+  std::vector<Event> events;
+  std::size_t at = 0;
+  for (std::size_t end; (end = text.find("\n\n", at)) != text.npos; at = end + 2) {
+    const std::string block = "\n" + text.substr(at, end - at) + "\n";
+    const auto field = [&](const std::string& name) {
+      const std::size_t begin = block.find("\n" + name + ": ");
+      if (begin == block.npos) return std::string();
+      const std::size_t from = begin + name.size() + 3;
+      return block.substr(from, block.find('\n', from) - from);
+    };
+    if (!field("event").empty()) events.push_back({field("event"), field("id"), json::parse(field("data"))});
+  }
+  EXPECT_EQ(at, text.size()) << "half an event";
+  return events;
+}
+
+class EventStreams : public ::testing::Test {
+ protected:
+  EventStreams() {
+    services_.feed.follow([](const Status&) {});
+  }
+  /// A change of the status.
+  void change() {
+    ASSERT_FALSE(quiet_.operation().command(resetting_ ? Command::kStop : Command::kReset));
+    resetting_ = !resetting_;
+  }
+  std::uint64_t sequence() { return quiet_.operation().sequence(); }
+  std::string id_of(std::uint64_t sequence) { return "instance-" + std::to_string(sequence); }
+
+  QuietCell quiet_;
+  Services services_{quiet_.operation(), {}};
+  bool resetting_ = false;
+};
+
+TEST_F(EventStreams, BeginWithTheWholeStatusAndGoOnWithEachChangeOnce) {
+  EventStream stream(services_, {}, {});
+  const auto first = parsed(stream.due());
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first[0].name, "status");
+  EXPECT_EQ(first[0].id, id_of(sequence()));
+  EXPECT_EQ(stream.due(), "");
+  std::vector<std::uint64_t> wanted;
+  std::vector<std::uint64_t> seen;
+  for (int round = 0; round < 10; ++round) {
+    for (int i = 0; i <= round; ++i) {
+      change();
+      wanted.push_back(sequence());
+    }
+    for (const Event& event : parsed(stream.due())) {
+      EXPECT_EQ(event.name, "status");
+      EXPECT_EQ(event.id, id_of(event.data.at("sequence").get<std::uint64_t>()));
+      seen.push_back(event.data.at("sequence"));
+    }
+  }
+  EXPECT_EQ(seen, wanted);
+}
+
+TEST_F(EventStreams, GoOnWhereAReaderLeftOff) {
+  std::string last;
+  {
+    EventStream stream(services_, {}, {});
+    change();
+    last = parsed(stream.due()).back().id;
+  }
+  change();
+  change();
+  EventStream again(services_, {}, last);
+  const auto missed = parsed(again.due());
+  ASSERT_EQ(missed.size(), 2u);
+  EXPECT_EQ(missed[0].id, id_of(sequence() - 1));
+  EXPECT_EQ(missed[1].id, id_of(sequence()));
+  EXPECT_EQ(missed[1].name, "status");
+}
+
+TEST_F(EventStreams, TellAReaderThatItHasToBeginAgain) {
+  const std::string begin = id_of(sequence());
+  for (std::size_t i = 0; i <= kChangesKept; ++i) change();
+  for (const std::string& unknown :
+       {begin, std::string("other-1"), id_of(sequence() + 1), std::string("instance-"), std::string("x"),
+        std::string("instance-1x")}) {
+    EventStream stream(services_, {}, unknown);
+    const auto events = parsed(stream.due());
+    ASSERT_EQ(events.size(), 1u) << unknown;
+    EXPECT_EQ(events[0].name, "reset") << unknown;
+    EXPECT_EQ(events[0].data.at("sequence"), sequence()) << unknown;
+  }
+  EventStream slow(services_, {}, {});
+  slow.due();
+  for (std::size_t i = 0; i <= kChangesKept; ++i) change();
+  EXPECT_EQ(parsed(slow.due()).at(0).name, "reset") << "a reader that fell behind";
+}
+
+TEST_F(EventStreams, OfARunEndWithItsDocument) {
+  const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+  EventStream stream(services_, run, {});
+  stream.due();
+  change();
+  EXPECT_EQ(stream.due(), "") << "what happens outside of the run is not told";
+  EXPECT_FALSE(stream.ended());
+  quiet_.store().finish_run(run, {.outcome = "stopped", .verdict = "incomplete", .ended_at = "end"});
+  const auto events = parsed(stream.due());
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].name, "run");
+  EXPECT_EQ(events[0].data.at("outcome"), "stopped");
+  EXPECT_TRUE(stream.ended());
+  EXPECT_TRUE(EventStream::is_over(events[0].id));
+  EXPECT_FALSE(EventStream::is_over(id_of(1)));
+}
+
+TEST_F(EventStreams, AreCountedWhileTheyAreOpen) {
+  {
+    const EventStream first(services_, {}, {});
+    const EventStream second(services_, {}, {});
+    EXPECT_EQ(EventStream::open_count(services_), 2);
+  }
+  EXPECT_EQ(EventStream::open_count(services_), 0);
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,84 @@
+#include "service/http/routes/result_routes.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "config/arm_file.hpp"
+#include "service/run/touch_command.hpp"
+#include "tests/service/quiet_cell.hpp"
+#include "tests/service/table3_result.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::HasSubstr;
+
+class ResultRoutesTest : public ::testing::Test {
+ protected:
+  ResultRoutesTest() {
+    int number = 0;
+    for (const calib::Touch& touch : table3_touches()) {
+      cell_.store().append_touch(
+          run_, {.number = ++number, .plane = touch.face + 1, .joints = to_wire(touch.joints)});
+    }
+  }
+
+  Folder folder_;
+  QuietCell cell_;
+  std::int64_t run_ = cell_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+};
+
+TEST_F(ResultRoutesTest, TheArmReadsBackToTheKinematicsThatWereIdentified) {
+  const HttpResponse response = get_arm(cell_.operation(), run_);
+  ASSERT_EQ(response.status, 200u) << response.body;
+  folder_.write("arm.json", response.body);
+  const Arm arm = read_arm(folder_.path() / "arm.json");
+
+  const Recipe& recipe = edf().recipes.at("edf-25");
+  calib::IdentificationProblem problem = identification_problem(edf(), recipe);
+  for (const calib::Touch& touch : table3_touches())
+    problem.touches.push_back({touch.face, from_wire(to_wire(touch.joints)), touch.role});
+  const auto identified = calib::identify(problem, recipe.identification);
+  for (const calib::Touch& touch : table3_touches()) {
+    const auto tip_of = [&touch](const calib::KinematicModel& model) {
+      return calib::forward_kinematics(model, touch.joints).matrix();
+    };
+    EXPECT_LT((tip_of(arm.model) - tip_of(identified.calibrated)).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_GT((tip_of(arm.model) - tip_of(edf().arm.model)).cwiseAbs().maxCoeff(), 1e-4);
+  }
+  EXPECT_EQ(arm.std_errors, edf().arm.std_errors) << "the maker's tolerances stay";
+}
+
+TEST_F(ResultRoutesTest, ARunThatWasCutOffHasAResultThatSaysSo) {
+  const HttpResponse response = get_result(cell_.operation(), run_);
+  ASSERT_EQ(response.status, 200u) << response.body;
+  const json document = json::parse(response.body);
+  EXPECT_EQ(document.at("complete"), false);
+  EXPECT_EQ(document.at("identifiable_count"), 25);
+}
+
+TEST_F(ResultRoutesTest, WithoutATouchThereIsNeitherResultNorArm) {
+  const std::int64_t empty = cell_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+  for (const HttpResponse& response :
+       {get_result(cell_.operation(), empty), get_arm(cell_.operation(), empty)}) {
+    EXPECT_EQ(response.status, 409u);
+    EXPECT_THAT(response.body, HasSubstr("no touch"));
+  }
+}
+
+TEST_F(ResultRoutesTest, TheArmOfARunMadeWithAnotherNominalArmIsRefused) {
+  json document = json::parse(get_result(cell_.operation(), run_).body);
+  cell_.store().set_result_json(run_, document.dump());
+  EXPECT_EQ(get_arm(cell_.operation(), run_).status, 200u);
+  json& nominal = document.at("parameters").at(1).at("nominal");
+  nominal = nominal.get<double>() + 0.001;
+  cell_.store().set_result_json(run_, document.dump());
+  const HttpResponse refused = get_arm(cell_.operation(), run_);
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_THAT(refused.body, HasSubstr("another one"));
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,193 @@
+#include "service/report/report_document.hpp"
+
+#include <gmock/gmock.h>
+#include <spdlog/fmt/fmt.h>
+
+#include <cmath>
+#include <limits>
+#include <regex>
+#include <sstream>
+
+#include "cs8_protocol/messages.hpp"
+#include "service/base/digest.hpp"
+#include "service/base/json_figures.hpp"
+#include "service/report/figure.hpp"
+#include "service/report/html.hpp"
+#include "service/report/report_html.hpp"
+#include "tests/service/table3_result.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// The paper's touches as a controller would have answered them, and what they gave.
+RunRecord record() {
+  RunRecord made{.run = {.id = 7, .recipe = "edf-25", .touches_total = 0, .started_at = "then"},
+                 .result_json = {}};
+  const auto touches = table3_touches();
+  for (const calib::Touch& touch : touches) {
+    StoredTouch stored{
+        .number = static_cast<int>(made.touches.size()) + 1, .plane = touch.face + 1, .role = touch.role};
+    for (std::size_t i = 0; i < stored.joints.size(); ++i)
+      stored.joints[i] = static_cast<std::int32_t>(
+          std::lround(touch.joints[static_cast<Eigen::Index>(i)] * 180e6 / 3.14159265358979323846));
+    made.touches.push_back(stored);
+  }
+  made.result_json = result().dump();
+  return made;
+}
+
+std::string page_of(const RunRecord& of) { return report_html(report_json(of)); }
+
+/// The first tag that is not closed in its turn; empty when all are.
+std::string first_unclosed(const std::string& page) {
+  static const std::regex kTag("<(/?)([a-z0-9]+)[^>]*?(/?)>");
+  std::vector<std::string> open;
+  for (std::sregex_iterator tag(page.begin(), page.end(), kTag), end; tag != end; ++tag) {
+    const std::string name = (*tag)[2];
+    if ((*tag)[3].length() > 0 || name == "meta") continue;
+    if ((*tag)[1].length() == 0) {
+      open.push_back(name);
+    } else if (open.empty() || open.back() != name) {
+      return name;
+    } else {
+      open.pop_back();
+    }
+  }
+  return open.empty() ? "" : open.back();
+}
+
+TEST(Report, TheRawDatasDigestIsThatOfTheTablesFirstNineColumns) {
+  const Json report = report_json(record());
+  std::istringstream lines(report_csv(report));
+  std::string line, columns;
+  std::getline(lines, line);
+  EXPECT_THAT(line, ::testing::StartsWith("touch,plane,role,joint1_deg,"));
+  while (std::getline(lines, line)) {
+    std::size_t end = 0;
+    for (int i = 0; i < 9; ++i) end = line.find(',', end + 1);
+    columns += line.substr(0, end) + "\n";
+  }
+  EXPECT_EQ(columns, raw_data_text(record().touches));
+  EXPECT_EQ(report.at("raw_data").at("sha256"), sha256_hex(columns));
+}
+
+TEST(Report, AnAngleIsWrittenToTheLastDigitThatCameOverTheWire) {
+  const std::vector<StoredTouch> touches{
+      {.number = 1, .plane = 2, .joints = {1, -1, 0, 90'000'000, -179'999'999, -500'000}}};
+  EXPECT_EQ(raw_data_text(touches), "1,2,fit,0.000001,-0.000001,0.000000,90.000000,-179.999999,-0.500000\n");
+}
+
+TEST(Report, OneChangedAngleIsAnotherDigest) {
+  RunRecord changed = record();
+  changed.touches[3].joints[2] += 1;
+  EXPECT_NE(report_json(changed).at("raw_data").at("sha256"),
+            report_json(record()).at("raw_data").at("sha256"));
+}
+
+TEST(Report, EachTouchIsShownWithItsDistances) {
+  const Json report = report_json(record());
+  ASSERT_EQ(report.at("touches").size(), result().at("touches").size());
+  for (std::size_t i = 0; i < report.at("touches").size(); ++i) {
+    EXPECT_EQ(report.at("touches")[i].at("plane"), result().at("touches")[i].at("plane").get<int>());
+    EXPECT_EQ(report.at("touches")[i].at("nominal_mm"),
+              result().at("touches")[i].at("nominal_mm").get<double>());
+  }
+}
+
+TEST(Report, ThePageHasThePapersTablesWithTheResultsFigures) {
+  const std::string page = page_of(record());
+  for (const char* table : {"Table III", "Table IV", "Table V", "Table VI", "Table VII"})
+    EXPECT_THAT(page, HasSubstr(table));
+  int shown = 0;
+  for (const json& one : result().at("parameters")) {
+    if (!one.at("error").is_number()) continue;
+    const std::string figure = fmt::format("{:+.4f}", one.at("error").get<double>());
+    if (one.at("unit") != "mm") continue;
+    EXPECT_THAT(page, HasSubstr("<td>" + figure + "</td>")) << one.at("name");
+    ++shown;
+  }
+  EXPECT_GT(shown, 10);
+  EXPECT_EQ(first_unclosed(page), "");
+}
+
+TEST(Report, ThePageHasAFigureForTheConditionNumberAndForEachPlaneUsedAndHeldOut) {
+  const std::string page = page_of(record());
+  std::size_t planes = result().at("planes").size() + result().at("planes_held_out").size();
+  for (std::size_t number = 4; number < 5 + planes; ++number)
+    EXPECT_THAT(page, HasSubstr(fmt::format("<title>Fig. {}.", number)));
+  EXPECT_THAT(page, Not(HasSubstr(fmt::format("<title>Fig. {}.", 5 + planes))));
+}
+
+TEST(Report, ThePageNeedsNothingFromElsewhereAndRunsNothing) {
+  const std::string page = page_of(record());
+  for (const char* foreign : {"<script", "<img", "<link", "url(", "href", "src="})
+    EXPECT_THAT(page, Not(HasSubstr(foreign)));
+}
+
+TEST(Report, TextFromOutsideStaysText) {
+  RunRecord hostile = record();
+  const std::string markup = "<script>alert('x')</script>\x01&\"";
+  hostile.run.operator_name = markup;
+  hostile.run.recipe = markup;
+  SupersededTouch again;
+  again.reason = markup;
+  hostile.superseded.push_back(again);
+  hostile.faults.push_back({.id = 1, .run_id = 7, .at = markup, .code = markup, .message = markup});
+  const std::string page = page_of(hostile);
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+  EXPECT_THAT(page, HasSubstr("&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt;&amp;&quot;"));
+  EXPECT_EQ(first_unclosed(page), "");
+}
+
+TEST(Report, ARunWithoutResultSaysSo) {
+  RunRecord young = record();
+  young.result_json.reset();
+  const Json report = report_json(young);
+  EXPECT_TRUE(report.at("result").is_null());
+  EXPECT_TRUE(report.at("touches")[0].at("use").is_null());
+  EXPECT_THAT(report_html(report), HasSubstr("This run has no result"));
+  EXPECT_EQ(first_unclosed(report_html(report)), "");
+}
+
+/// What a daemon of an earlier version stored lacks parts.
+TEST(Report, WhatAnOlderResultLacksIsUnknown) {
+  for (const auto& [key, unused] : result().items()) {
+    json older = result();
+    older.erase(key);
+    RunRecord stored = record();
+    stored.result_json = older.dump();
+    EXPECT_EQ(first_unclosed(page_of(stored)), "") << key;
+  }
+}
+
+TEST(Figures, TicksAreRoundAndWithinTheAxis) {
+  EXPECT_THAT(ticks(0.0, 10.0), ::testing::ElementsAre(0, 2, 4, 6, 8, 10));
+  EXPECT_EQ(ticks(-0.031, 0.042).size(), 8U);
+  for (const auto& [low, high] : {std::pair{-75.3, -70.1}, {1e-6, 3e-6}, {0.0, 7500.0}}) {
+    for (const double tick : ticks(low, high)) {
+      EXPECT_GE(tick, low);
+      EXPECT_LE(tick, high);
+    }
+    EXPECT_GE(ticks(low, high).size(), 3U);
+  }
+}
+
+TEST(Figures, AFigureWithoutAPointIsALineOfText) {
+  EXPECT_THAT(svg({.title = "empty", .series = {}, .level = {}, .level_name = {}}), Not(HasSubstr("<svg")));
+}
+
+TEST(Figures, PointsThatAreNoNumbersAreLeftOut) {
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  const std::string drawn = svg({.title = "t",
+                                 .series = {{.name = "s", .points = {{1, 2}, {2, none}, {3, 2}}}},
+                                 .level = {},
+                                 .level_name = {}});
+  EXPECT_THAT(drawn, Not(HasSubstr("nan")));
+  EXPECT_EQ(first_unclosed(drawn), "");
+}
+
+}  // namespace
+}  // namespace cell

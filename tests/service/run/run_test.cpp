@@ -1,0 +1,168 @@
+#include "service/run/run.hpp"
+
+#include <gmock/gmock.h>
+
+#include <array>
+#include <numbers>
+
+#include "config/identification_problem.hpp"
+#include "service/run/touch_command.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+namespace {
+
+StoredTouch stored(int number, const calib::Touch& touch) {
+  return {.number = number, .plane = touch.face + 1, .role = touch.role, .joints = to_wire(touch.joints)};
+}
+
+class RunTest : public ::testing::Test {
+ protected:
+  RunTest() {
+    calib::TouchPlan plan;
+    for (const calib::Touch& touch : table3_touches()) {
+      const calib::JointVector& joints = touch.joints;
+      plan.touches.push_back(
+          {touch.face, touch.role, joints, joints, joints, joints, Eigen::Vector3d::UnitX()});
+    }
+    run_.set_plan(plan);
+  }
+
+  Folder folder_;
+  TouchStore store_{folder_.path() / "touchcal.sqlite"};
+  TipRegions regions_{edf()};
+  cell::Run run_{store_.begin_run({.recipe = "edf-25"}), regions_, edf().recipes.at("edf-25"), "start"};
+};
+
+TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches()) {
+    EXPECT_FALSE(run_.complete());
+    ASSERT_NE(run_.next(), nullptr);
+    EXPECT_EQ(run_.next()->face, touch.face);
+    run_.add(store_, stored(++number, touch));
+    EXPECT_EQ(run_.touches_done(), number);
+    EXPECT_EQ(run_.latest().fitted_touch_count, number - 1) << "not yet";
+    run_.identify();
+    EXPECT_EQ(run_.latest().fitted_touch_count, number);
+    EXPECT_EQ(run_.predicted_tip_rms_m().has_value(), run_.latest().certainty.has_value()) << number;
+  }
+  EXPECT_TRUE(run_.complete());
+  EXPECT_EQ(run_.next(), nullptr);
+  EXPECT_EQ(run_.latest().status, calib::IdentificationStatus::kConverged);
+  EXPECT_EQ(run_.latest().fitted_touch_count, number);
+  EXPECT_GT(run_.predicted_tip_rms_m().value_or(0.0), 0.0);
+  EXPECT_EQ(store_.touches(run_.id()).size(), table3_touches().size());
+}
+
+TEST_F(RunTest, WhatIsLeftTakesAsMuchLongerThanPlannedAsWhatIsMadeTook) {
+  calib::TouchPlan plan{.touches = std::vector<calib::PlannedTouch>(3), .park_s = 5.0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    plan.touches[i].travel_s = 2.0;
+    plan.touches[i].touch_s = std::array{6.0, 4.0, 20.0}[i];
+  }
+  run_.set_plan(plan);
+  EXPECT_EQ(run_.left_s(0.0), plan.duration_s());
+  run_.add(store_, stored(1, table3_touches()[0]));
+  run_.add(store_, stored(2, table3_touches()[1]));
+  EXPECT_DOUBLE_EQ(run_.left_s(7.0), (2.0 + 20.0 + 5.0) * 7.0 / (2.0 + 6.0 + 2.0 + 4.0));
+}
+
+TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
+  run_.add(store_, stored(1, table3_touches()[0]));
+  EXPECT_THROW(run_.add(store_, stored(1, table3_touches()[1])), std::exception);
+  EXPECT_EQ(run_.touches_done(), 1);
+  run_.identify();
+  EXPECT_EQ(run_.latest().fitted_touch_count, 1);
+  EXPECT_EQ(store_.touches(run_.id()).size(), 1u);
+}
+
+TEST_F(RunTest, ATouchThatIsPutOffComesBehindTheOthersOfItsRoleOnce) {
+  const std::size_t count = static_cast<std::size_t>(run_.touches_total());
+  const calib::JointVector put_off = run_.planned(3)->joints;
+  const calib::JointVector behind = run_.planned(4)->joints;
+  EXPECT_TRUE(run_.put_off(3));
+  EXPECT_EQ(run_.planned(3)->joints, behind);
+  EXPECT_EQ(run_.planned(count - 1)->joints, put_off);
+  EXPECT_FALSE(run_.put_off(count - 1)) << "it is the last";
+  EXPECT_TRUE(run_.put_off(count - 2));
+  EXPECT_FALSE(run_.put_off(count - 2)) << "it was put off before";
+  EXPECT_EQ(run_.planned(count), nullptr);
+}
+
+TEST_F(RunTest, TellsWhatMoreTouchesWouldBringOnceAllIsSeen) {
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches()) {
+    run_.add(store_, stored(++number, touch));
+    if (number == 30) {
+      run_.identify();
+      EXPECT_FALSE(run_.more_would_bring());
+    }
+  }
+  run_.identify();
+  EXPECT_THAT(run_.more_would_bring().value_or(""),
+              ::testing::MatchesRegex("8 more on plane [1-4]: .* to .* mm"));
+}
+
+TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
+  Recipe asking = edf().recipes.at("edf-25");
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches()) run_.add(store_, stored(++number, touch));
+  run_.identify();
+  const double reached_m = run_.predicted_tip_rms_m().value();
+  EXPECT_FALSE(run_.is_good_enough()) << "nothing was asked for";
+  for (const double share : {0.9, 1.1}) {
+    asking.goal.tip_rms_max_m = share * reached_m;
+    cell::Run run(store_.begin_run({.recipe = "edf-25"}), regions_, asking, "start");
+    EXPECT_FALSE(run.is_good_enough());
+    number = 0;
+    for (const calib::Touch& touch : table3_touches()) run.add(store_, stored(++number, touch));
+    run.identify();
+    EXPECT_EQ(run.is_good_enough(), share > 1.0);
+  }
+}
+
+TEST_F(RunTest, TouchesLeftOutAreThoseToFitFromThereOn) {
+  const int before = run_.touches_total();
+  EXPECT_EQ(run_.drop_fitted(static_cast<std::size_t>(before)), 0);
+  calib::TouchPlan plan;
+  for (const calib::TouchRole role :
+       {calib::TouchRole::kFit, calib::TouchRole::kFit, calib::TouchRole::kFit, calib::TouchRole::kHeldOut}) {
+    plan.touches.emplace_back();
+    plan.touches.back().role = role;
+  }
+  run_.set_plan(plan);
+  EXPECT_EQ(run_.drop_fitted(1), 2);
+  EXPECT_EQ(run_.touches_total(), 2);
+  EXPECT_EQ(run_.planned(1)->role, calib::TouchRole::kHeldOut);
+}
+
+TEST_F(RunTest, WithoutAPlanNothingIsCompleteAndNothingIsNext) {
+  const cell::Run planless(1, regions_, edf().recipes.at("edf-25"), "start");
+  EXPECT_FALSE(planless.complete());
+  EXPECT_EQ(planless.next(), nullptr);
+}
+
+TEST(ToTouch, TurnsTheWiresUnitsIntoRadiansAndThePlaneIntoAFace) {
+  const calib::Touch touch = to_touch(
+      {.plane = 3, .role = calib::TouchRole::kHeldOut, .joints = {180'000'000, -90'000'000, 1, 0, 0, 0}});
+  EXPECT_EQ(touch.face, 2);
+  EXPECT_EQ(touch.role, calib::TouchRole::kHeldOut);
+  EXPECT_DOUBLE_EQ(touch.joints[0], std::numbers::pi);
+  EXPECT_DOUBLE_EQ(touch.joints[1], -std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(touch.joints[2], std::numbers::pi / 180e6);
+}
+
+TEST(ContactPlanes, LieABallsRadiusLessThePretravelOffTheFaces) {
+  Cell cell = edf();
+  cell.probe.stylus = {.radius_m = 0.003, .pretravel_m = 1e-5};
+  const auto planes = identification_problem(cell, cell.recipes.at("edf-25")).artefact.contact_planes;
+  ASSERT_EQ(planes.size(), cell.block.faces.size());
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    EXPECT_EQ(planes[i].outward, cell.block.faces[i].plane.outward);
+    EXPECT_DOUBLE_EQ(planes[i].offset_m, cell.block.faces[i].plane.offset_m + 0.003 - 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace cell

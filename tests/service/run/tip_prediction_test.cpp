@@ -1,0 +1,105 @@
+#include "service/run/tip_prediction.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "config/identification_problem.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+namespace {
+
+/// A region where the first error alone moves the tip, by so much a unit.
+calib::TipRegion moved_by_the_first(double metres_a_unit) {
+  calib::TipRegion region{.posture_count = 1};
+  region.mean_square(0, 0) = metres_a_unit * metres_a_unit;
+  return region;
+}
+
+calib::Certainty certainty_with(const std::vector<calib::ArmVector>& unknown_directions) {
+  calib::Certainty certainty;
+  certainty.identified(0, 0) = 4e-8;
+  certainty.unseen(0, 0) = 5e-8;
+  certainty.unknown_directions.resize(calib::kArmParameterCount,
+                                      static_cast<Eigen::Index>(unknown_directions.size()));
+  for (std::size_t i = 0; i < unknown_directions.size(); ++i)
+    certainty.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown_directions[i];
+  return certainty;
+}
+
+TEST(PredictedRms, CountsWhatIsIdentifiedAndWhatIsUnseen) {
+  EXPECT_NEAR(predicted_rms_m(moved_by_the_first(0.5), certainty_with({})).value(), 0.5 * 3e-4, 1e-15);
+}
+
+TEST(PredictedRms, IsUnknownWhereAnErrorOfUnknownSizeMovesTheTip) {
+  const calib::Certainty certainty = certainty_with({calib::ArmVector::Unit(1), calib::ArmVector::Unit(0)});
+  EXPECT_EQ(predicted_rms_m(moved_by_the_first(1.01 * kUnknownMattersMetres), certainty), std::nullopt);
+  EXPECT_TRUE(predicted_rms_m(moved_by_the_first(0.99 * kUnknownMattersMetres), certainty).has_value());
+}
+
+TEST(PredictedRms, IsUnknownWhereTheArmHasNoPosture) {
+  EXPECT_EQ(predicted_rms_m({}, certainty_with({})), std::nullopt);
+}
+
+class TipPredictionTest : public ::testing::Test {
+ protected:
+  TipPredictionTest() {
+    problem_ = identification_problem(edf(), recipe_);
+    problem_.touches = table3_touches();
+  }
+  TipPrediction predict(const Cell& cell) {
+    const TipRegions regions(cell);
+    return predict_tip(regions, problem_, calib::identify(problem_, recipe_.identification));
+  }
+
+  const Recipe& recipe_ = edf().recipes.at("edf-25");
+  calib::IdentificationProblem problem_;
+};
+
+TEST_F(TipPredictionTest, AToolOfAnotherLengthIsAsUncertainAsTheTouchesLeaveItsDirection) {
+  Cell cell = edf();
+  Eigen::Isometry3d gripper = Eigen::Isometry3d::Identity();
+  gripper.translate(Eigen::Vector3d(0.2, 0.0, 0.2));
+  cell.tools = {{"gripper", gripper}};
+  const TipPrediction prediction = predict(cell);
+  ASSERT_EQ(prediction.tools.size(), 1u);
+  EXPECT_EQ(prediction.tools[0].name, "gripper");
+  // The joint 6 direction is unseen by a stylus on its axis: 0.2 m off the axis its tolerance is met.
+  EXPECT_GT(prediction.tools[0].joint_ranges_rms_m.value(), 2.0 * prediction.joint_ranges_rms_m.value());
+}
+
+TEST_F(TipPredictionTest, WithoutTolerancesOfTheUnseenErrorsTheToolIsUnknownAndTheTipIsNot) {
+  Cell cell = edf();
+  Eigen::Isometry3d gripper = Eigen::Isometry3d::Identity();
+  gripper.translate(Eigen::Vector3d(0.2, 0.0, 0.2));
+  cell.tools = {{"gripper", gripper}};
+  problem_.tolerances.fill(std::nullopt);
+  // Of an arm as it is drawn: one with errors of Table III's size shows a trace of the unseen ones at its
+  // tip.
+  for (calib::Touch& touch : problem_.touches) {
+    const auto face = static_cast<std::size_t>(touch.face);
+    touch = calib::moved_onto_plane(problem_.nominal, problem_.artefact.contact_planes[face], touch);
+  }
+  const TipPrediction prediction = predict(cell);
+  EXPECT_TRUE(prediction.at_block_rms_m.has_value());
+  EXPECT_TRUE(prediction.workspace_box_rms_m.has_value());
+  EXPECT_TRUE(prediction.joint_ranges_rms_m.has_value());
+  EXPECT_EQ(prediction.tools.at(0).joint_ranges_rms_m, std::nullopt);
+}
+
+TEST_F(TipPredictionTest, AtTheBlockTheTipIsBetterKnownThanElsewhere) {
+  const TipPrediction prediction = predict(edf());
+  EXPECT_LT(prediction.at_block_rms_m.value(), prediction.joint_ranges_rms_m.value());
+}
+
+TEST_F(TipPredictionTest, NothingIsPredictedOfWhatDidNotConverge) {
+  problem_.touches.resize(3);
+  const TipPrediction prediction = predict(edf());
+  EXPECT_EQ(prediction.at_block_rms_m, std::nullopt);
+  EXPECT_EQ(prediction.workspace_box_rms_m, std::nullopt);
+  EXPECT_FALSE(prediction.map.has_value());
+}
+
+}  // namespace
+}  // namespace cell

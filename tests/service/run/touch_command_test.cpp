@@ -1,0 +1,299 @@
+#include "service/run/touch_command.hpp"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <random>
+
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+#include "cs8_protocol/names.hpp"
+#include "cs8_protocol/wire_units.hpp"
+#include "service/acquisition/touch_judgement.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// Where the nominal tip is `off_m` from where these joints have it.
+calib::JointVector nominal_joints_off(const calib::JointVector& start, const Eigen::Vector3d& off_m) {
+  Eigen::Isometry3d pose = calib::forward_kinematics(edf().arm.model, start);
+  pose.translation() += off_m;
+  return calib::solve_near(edf().arm.model, pose, start).value();
+}
+
+/// A touch in the middle of a search of 30 mm.
+calib::PlannedTouch planned_touch() {
+  const calib::Touch& touch = table3_touches().front();
+  const calib::Plane& plane = edf().block.faces[static_cast<std::size_t>(touch.face)].plane;
+  return {.face = touch.face,
+          .joints = touch.joints,
+          .clear_joints = calib::JointVector::Constant(0.1),
+          .approach_joints = nominal_joints_off(touch.joints, 0.015 * plane.outward),
+          .search_end_joints = nominal_joints_off(touch.joints, -0.015 * plane.outward),
+          .search_direction = -plane.outward,
+          .search_length_m = 0.03};
+}
+
+cs8::JointsMicrodeg joints_off(const Eigen::Vector3d& off_m) {
+  return to_wire(nominal_joints_off(planned_touch().joints, off_m));
+}
+
+/// What a contact is reported as when the nominal tip is `off_m` from the planned touch, both times.
+cs8::TouchResult contact(const Eigen::Vector3d& off_m) {
+  return {.outcome = cs8::Outcome::kContact,
+          .source = cs8::CaptureSource::kLatched,
+          .contact = joints_off(off_m),
+          .monitor_speed_percent = 100,
+          .first_source = cs8::CaptureSource::kLatched,
+          .first_contact = joints_off(off_m)};
+}
+
+TEST(WireJoints, GoThereAndBackWithoutAStep) {
+  std::mt19937_64 chance(1);
+  std::uniform_int_distribution<std::int32_t> microdeg(-270'000'000, 270'000'000);
+  for (int i = 0; i < 1000; ++i) {
+    cs8::JointsMicrodeg wire{};
+    for (std::int32_t& joint : wire) joint = microdeg(chance);
+    EXPECT_EQ(to_wire(from_wire(wire)), wire) << "seed 1, draw " << i;
+  }
+}
+
+TEST(WireJoints, AreTheNearestStep) {
+  const double step = cs8::radians_from_microdeg(1);
+  calib::JointVector joints;
+  joints << 0.4 * step, -0.4 * step, 0.6 * step, -0.6 * step, 100.4 * step, -100.6 * step;
+  EXPECT_EQ(to_wire(joints), (cs8::JointsMicrodeg{0, 0, 1, -1, 100, -101}));
+}
+
+TEST(TouchCommand, CarriesPosturesSpeedsAndDeadlineOfPlanAndCell) {
+  const calib::PlannedTouch planned = planned_touch();
+  const std::vector<calib::JointVector> via{calib::JointVector::Constant(0.4),
+                                            calib::JointVector::Constant(0.5)};
+  const cs8::Touch command = touch_command(edf(), planned, via);
+  EXPECT_EQ(command.via_count, 2);
+  EXPECT_EQ(command.via[0], to_wire(via[0]));
+  EXPECT_EQ(command.via[1], to_wire(via[1]));
+  EXPECT_EQ(command.via[2], cs8::JointsMicrodeg{}) << "unused postures are zero";
+  EXPECT_EQ(command.clear, to_wire(planned.clear_joints));
+  EXPECT_EQ(command.approach, to_wire(planned.approach_joints));
+  EXPECT_EQ(command.search_end, to_wire(planned.search_end_joints));
+  EXPECT_EQ(command.travel_speed_um_s, cs8::um_s_from_metres_per_second(edf().speeds.travel_m_s));
+  EXPECT_EQ(command.approach_speed_um_s, cs8::um_s_from_metres_per_second(edf().speeds.approach_m_s));
+  EXPECT_EQ(command.search_speed_um_s, cs8::um_s_from_metres_per_second(edf().speeds.search_m_s));
+  const SecondTouch second = edf().speeds.second.value();
+  EXPECT_EQ(command.second_speed_um_s, cs8::um_s_from_metres_per_second(second.speed_m_s));
+  EXPECT_EQ(command.second_backoff_dmm, cs8::dmm_from_metres(second.backoff_m));
+  EXPECT_EQ(command.deadline_ms, edf().deadlines.command.count());
+}
+
+TEST(TouchCommand, NoSecondTouchIsAskedForWhereTheCellHasNone) {
+  Cell cell = edf();
+  cell.speeds.second.reset();
+  EXPECT_EQ(touch_command(cell, planned_touch(), {}).second_speed_um_s, 0);
+}
+
+TEST(TouchCommand, TheLongestWayFits) {
+  const std::vector<calib::JointVector> via(cs8::kViaCountMax, calib::JointVector::Constant(0.4));
+  const cs8::Touch command = touch_command(edf(), planned_touch(), via);
+  EXPECT_EQ(command.via_count, static_cast<std::int32_t>(cs8::kViaCountMax));
+  EXPECT_EQ(command.via.back(), to_wire(via.back()));
+}
+
+TEST(TravelCommand, GoesThroughViaToTheTarget) {
+  const std::vector<calib::JointVector> via{calib::JointVector::Constant(0.4)};
+  const cs8::Travel command = travel_command(edf(), edf().park_joints, via);
+  EXPECT_EQ(command.via_count, 1);
+  EXPECT_EQ(command.via[0], to_wire(via[0]));
+  EXPECT_EQ(command.target, to_wire(edf().park_joints));
+  EXPECT_EQ(command.travel_speed_um_s, cs8::um_s_from_metres_per_second(edf().speeds.travel_m_s));
+  EXPECT_EQ(command.deadline_ms, edf().deadlines.command.count());
+}
+
+TEST(RetractCommand, MovesAsSlowlyAsAnApproach) {
+  const cs8::Retract command = retract_command(edf());
+  EXPECT_EQ(command.approach_speed_um_s, cs8::um_s_from_metres_per_second(edf().speeds.approach_m_s));
+  EXPECT_EQ(command.deadline_ms, edf().deadlines.command.count());
+}
+
+TEST(FaultOf, EveryOutcomeThatIsNoSuccessIsItsFault) {
+  const std::map<cs8::Outcome, FaultCode> faults{
+      {cs8::Outcome::kNoContact, FaultCode::kNoContact},
+      {cs8::Outcome::kUnexpectedContact, FaultCode::kUnexpectedContact},
+      {cs8::Outcome::kProbeStuck, FaultCode::kProbeStuck},
+      {cs8::Outcome::kHeartbeatLost, FaultCode::kLinkLost},
+      {cs8::Outcome::kPermissionLost, FaultCode::kPermissionLost},
+      {cs8::Outcome::kCollision, FaultCode::kCollision},
+      {cs8::Outcome::kMotionError, FaultCode::kMotionError},
+      {cs8::Outcome::kDeadline, FaultCode::kTouchDeadline},
+      {cs8::Outcome::kOvertravel, FaultCode::kOvertravel},
+      {cs8::Outcome::kProbeFault, FaultCode::kProbeFault},
+      {cs8::Outcome::kTaskFailed, FaultCode::kTaskFailed}};
+  std::size_t successes = 0;
+  std::size_t outcomes = 0;
+  for (int value = 0; value < 256; ++value) {
+    const auto outcome = static_cast<cs8::Outcome>(value);
+    if (cs8::name(outcome).empty()) continue;
+    ++outcomes;
+    const auto fault = fault_of(outcome, cs8::Phase::kSearch, 0);
+    if (!fault) {
+      ++successes;
+      continue;
+    }
+    ASSERT_TRUE(faults.contains(outcome)) << cs8::name(outcome);
+    EXPECT_EQ(fault->fault.code, faults.at(outcome)) << cs8::name(outcome);
+  }
+  EXPECT_EQ(successes, 3u) << "contact, arrived, stopped";
+  EXPECT_EQ(outcomes, faults.size() + successes);
+}
+
+TEST(FaultOf, WhatAPersonCanMendOnTheSpotHoldsAndItsNextStepSaysResume) {
+  for (int value = 0; value < 256; ++value) {
+    const auto outcome = static_cast<cs8::Outcome>(value);
+    if (cs8::name(outcome).empty()) continue;
+    const auto fault = fault_of(outcome, cs8::Phase::kSearch, 0);
+    if (!fault) continue;
+    EXPECT_THAT(std::string(describe(fault->fault.code).next_step),
+                HasSubstr(fault->holds ? "touchcal resume" : "touchcal clear"))
+        << cs8::name(outcome);
+  }
+}
+
+TEST(FaultOf, SaysWhereInTheTouchAndWhichRunTimeError) {
+  const auto fault = fault_of(cs8::Outcome::kMotionError, cs8::Phase::kApproach, 4711);
+  ASSERT_TRUE(fault);
+  EXPECT_THAT(fault->fault.detail, HasSubstr("4711"));
+  EXPECT_THAT(fault->fault.detail, HasSubstr(std::string(cs8::name(cs8::Phase::kApproach))));
+}
+
+TEST(Implausible, AContactOnTheWayOfTheSearchIsTaken) {
+  const calib::PlannedTouch planned = planned_touch();
+  for (const double along_m : {-0.0149, -0.005, 0.0, 0.005, 0.0149}) {
+    EXPECT_EQ(implausible(edf(), planned, contact(along_m * planned.search_direction)), std::nullopt)
+        << along_m;
+  }
+}
+
+TEST(Implausible, AContactWithoutCapturedJointsIsNone) {
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.source = cs8::CaptureSource::kNone;
+  EXPECT_THAT(implausible(edf(), planned_touch(), result).value_or(""), HasSubstr("without captured joints"));
+}
+
+TEST(Implausible, AContactAtAnotherMonitorSpeedIsNone) {
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.monitor_speed_percent = 50;
+  EXPECT_THAT(implausible(edf(), planned_touch(), result).value_or(""), HasSubstr("monitor speed was 50 %"));
+}
+
+TEST(Implausible, AContactBesideTheLineIsTold) {
+  const calib::PlannedTouch planned = planned_touch();
+  const Eigen::Vector3d aside = planned.search_direction.unitOrthogonal();
+  EXPECT_EQ(implausible(edf(), planned, contact(5e-5 * aside)), std::nullopt);
+  EXPECT_THAT(implausible(edf(), planned, contact(0.001 * aside)).value_or(""),
+              HasSubstr("1.000 mm beside the search line"));
+}
+
+TEST(Implausible, AFirstTouchThatIsMissingOrElsewhereIsTold) {
+  const calib::PlannedTouch planned = planned_touch();
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.first_contact = joints_off(0.001 * planned.search_direction.unitOrthogonal());
+  EXPECT_THAT(implausible(edf(), planned, result).value_or(""), HasSubstr("of its first touch"));
+  result.first_source = cs8::CaptureSource::kNone;
+  EXPECT_THAT(implausible(edf(), planned, result).value_or(""), HasSubstr("without the first"));
+  Cell once = edf();
+  once.speeds.second.reset();
+  EXPECT_EQ(implausible(once, planned, result), std::nullopt);
+}
+
+TEST(Implausible, AContactBeyondEitherEndOfTheSearchIsTold) {
+  const calib::PlannedTouch planned = planned_touch();
+  for (const double along_m : {-0.0152, 0.0152}) {
+    EXPECT_THAT(implausible(edf(), planned, contact(along_m * planned.search_direction)).value_or(""),
+                HasSubstr(along_m < 0 ? "-15.200 mm from" : " 15.200 mm from"))
+        << along_m;
+  }
+}
+
+using Next = TouchJudgement::Next;
+
+TEST(TouchJudgement, AContactIsKeptAndItsBounceIsTold) {
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.edges = 1;
+  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).next, Next::kKeep);
+  EXPECT_TRUE(judge_touch(edf(), planned_touch(), result, {}).warnings.empty());
+  result.edges = 3;
+  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {});
+  EXPECT_EQ(judged.next, Next::kKeep);
+  ASSERT_EQ(judged.warnings.size(), 1U);
+  EXPECT_EQ(judged.warnings.front().code, FaultCode::kProbeBounced);
+}
+
+TEST(TouchJudgement, TwoContactsTooFarApartAreMadeAgainUntilAPersonIsAsked) {
+  const calib::PlannedTouch planned = planned_touch();
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.first_contact = joints_off(0.9 * kContactSpreadMaxMetres * planned.search_direction);
+  EXPECT_EQ(judge_touch(edf(), planned, result, {}).next, Next::kKeep);
+  result.first_contact = joints_off(1.1 * kContactSpreadMaxMetres * planned.search_direction);
+  for (int attempts = 0; attempts <= kAgainMax; ++attempts) {
+    const TouchJudgement judged = judge_touch(edf(), planned, result, {.attempts = attempts});
+    EXPECT_EQ(judged.fault.code, FaultCode::kTouchSpread);
+    EXPECT_EQ(judged.next, attempts < kAgainMax ? Next::kAgain : Next::kFault);
+  }
+  const TouchJudgement worse =
+      judge_touch(edf(), planned, result, {.attempts = 1, .spread_m = kContactSpreadMaxMetres});
+  EXPECT_EQ(worse.fault.code, FaultCode::kRetriesWorse);
+  EXPECT_EQ(worse.event, Event::kHoldFault);
+}
+
+TEST(TouchJudgement, AContactAtTheBeginningOfItsSearchIsTooEarly) {
+  const calib::PlannedTouch planned = planned_touch();
+  const double half_m = planned.search_length_m / 2;
+  const auto at = [&](double along_m) {
+    return judge_touch(edf(), planned, contact((along_m - half_m) * planned.search_direction), {});
+  };
+  EXPECT_EQ(at(1.5 * kEarlyContactMetres).next, Next::kKeep);
+  EXPECT_EQ(at(0.5 * kEarlyContactMetres).fault.code, FaultCode::kEarlyContact);
+  EXPECT_EQ(at(0.5 * kEarlyContactMetres).event, Event::kHoldFault);
+}
+
+TEST(TouchJudgement, TheSameJointsOnceMoreAreMadeAgainOnceAndThenHold) {
+  const cs8::TouchResult result = contact({0, 0, 0});
+  TouchHistory history{.last_contact = result.contact};
+  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, history).next, Next::kAgain);
+  history.attempts = 1;
+  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, history);
+  EXPECT_EQ(judged.fault.code, FaultCode::kRepeatedTouch);
+  EXPECT_EQ(judged.event, Event::kHoldFault);
+}
+
+TEST(TouchJudgement, NoiseInFreeAirIsToldFromASearchThatMetNothing) {
+  cs8::TouchResult result{.outcome = cs8::Outcome::kNoContact};
+  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).fault.code, FaultCode::kNoContact);
+  result.edges = 2;
+  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).next, Next::kAgain);
+  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {.attempts = 1});
+  EXPECT_EQ(judged.fault.code, FaultCode::kFalseTrigger);
+  EXPECT_EQ(judged.event, Event::kHoldFault);
+}
+
+TEST(TouchJudgement, AnotherMonitorSpeedSuspends) {
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.monitor_speed_percent = 50;
+  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {});
+  EXPECT_EQ(judged.fault.code, FaultCode::kMonitorSpeedChanged);
+  EXPECT_EQ(judged.event, Event::kSuspendFault);
+}
+
+TEST(PlanFault, ATouchWithoutLengthOrNumberIsNamed) {
+  std::vector<calib::PlannedTouch> touches(2, planned_touch());
+  EXPECT_FALSE(plan_fault(touches));
+  touches[1].search_end_joints = touches[1].approach_joints;
+  EXPECT_EQ(plan_fault(touches).value().detail, "touch 2");
+  touches[0].clear_joints[3] = std::nan("");
+  EXPECT_EQ(plan_fault(touches).value().detail, "touch 1");
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,94 @@
+#include "service/store/maintenance.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "service/store/run_store.hpp"
+#include "tests/config/folder.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+class StoreMaintenance : public ::testing::Test {
+ protected:
+  /// A run of one touch that ended; its id.
+  std::int64_t add_run(const std::string& began, const std::string& verdict) {
+    const std::int64_t run = store_.begin_run({.recipe = "edf-25", .started_at = began});
+    store_.set_plan(run, 1, "plan of " + began, "{}");
+    store_.set_open_command(run, {.session = 1, .sequence = 1, .touch_json = "{}"});
+    store_.append_touch(run, {.number = 1, .plane = 1, .captured_at = "t"});
+    if (verdict != "none")
+      store_.finish_run(run, {.outcome = "complete", .verdict = verdict, .ended_at = "end"});
+    return run;
+  }
+
+  Folder folder_;
+  std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
+  std::filesystem::path copy_ = folder_.path() / "copy.sqlite";
+  TouchStore store_{file_};
+};
+
+TEST_F(StoreMaintenance, ABackupOfADatabaseInUseHasAllThatIsStored) {
+  const std::int64_t run = add_run("start", "accepted");
+  back_up(file_, copy_);
+  add_run("later", "none");
+  EXPECT_THAT(find_damage(copy_), IsEmpty());
+  const TouchStore copy(copy_);
+  EXPECT_EQ(copy.runs(10).size(), 1u);
+  EXPECT_EQ(copy.touches(run).size(), 1u);
+}
+
+TEST_F(StoreMaintenance, ABackupNeverReplacesAFileAndLeavesNoHalfOne) {
+  EXPECT_THROW(back_up(folder_.path() / "gone.sqlite", copy_), std::runtime_error);
+  EXPECT_FALSE(std::filesystem::exists(copy_));
+  folder_.write("copy.sqlite", "mine");
+  EXPECT_THROW(back_up(file_, copy_), std::runtime_error);
+  EXPECT_EQ(bytes_of(copy_), "mine");
+}
+
+TEST_F(StoreMaintenance, WhatIsNoTouchOrBelongsToNoRunIsTold) {
+  const std::int64_t run = add_run("start", "accepted");
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+  store_.append_touch(run, {.number = 2, .plane = 0, .captured_at = "t"});
+  EXPECT_THAT(find_damage(file_), ElementsAre(HasSubstr("touch 2")));
+  store_.database()->exec("PRAGMA foreign_keys = OFF; UPDATE touches SET run_id = 99 WHERE number = 1");
+  EXPECT_EQ(find_damage(file_).size(), 2u);
+}
+
+TEST_F(StoreMaintenance, ADatabaseWithWrittenOverPagesIsTold) {
+  add_run("start", "accepted");
+  back_up(file_, copy_);
+  std::fstream bytes(copy_, std::ios::in | std::ios::out | std::ios::binary);
+  bytes.seekp(2 * 4096);
+  bytes << std::string(std::size_t{4} * 4096, 'x');
+  bytes.close();
+  EXPECT_FALSE(find_damage(copy_).empty());
+  EXPECT_FALSE(find_damage(folder_.path() / "gone.sqlite").empty());
+}
+
+TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRunningOneStay) {
+  const std::int64_t old = add_run("2026-01-01", "accepted");
+  const std::int64_t accepted = add_run("2026-01-02", "accepted");
+  const std::int64_t rejected = add_run("2026-01-03", "rejected");
+  const std::int64_t running = add_run("2026-01-04", "none");
+  const std::int64_t young = add_run("2026-03-01", "rejected");
+  EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 2);
+  EXPECT_FALSE(store_.run(old) || store_.run(rejected));
+  EXPECT_THAT(store_.touches(old), IsEmpty());
+  for (const std::int64_t kept : {accepted, running, young}) {
+    EXPECT_TRUE(store_.run(kept));
+    EXPECT_TRUE(store_.plan_json(kept));
+  }
+  EXPECT_EQ(store_.database()->execAndGet("SELECT count(*) FROM plans").getInt(), 3);
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+  EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 0);
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,316 @@
+#include "service/store/run_store.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+
+#include <cstdint>
+#include <limits>
+
+#include "tests/config/folder.hpp"
+
+namespace cell {
+
+// For EXPECT_EQ on what comes back.
+static bool operator==(const StoredTouch& a, const StoredTouch& b) {
+  return a.number == b.number && a.plane == b.plane && a.role == b.role && a.joints == b.joints &&
+         a.source == b.source && a.overtravel_dmm == b.overtravel_dmm && a.captured_at == b.captured_at &&
+         a.session == b.session && a.sequence == b.sequence && a.aimed_with == b.aimed_with;
+}
+
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr std::int32_t kLowest = std::numeric_limits<std::int32_t>::min();
+constexpr std::int32_t kHighest = std::numeric_limits<std::int32_t>::max();
+
+StoredTouch touch(int number) {
+  return {.number = number,
+          .plane = 1 + number % 4,
+          .joints = {number, -2, 3, -4, 5, -6},
+          .captured_at = "2026-01-31T08:15:30.250Z"};
+}
+
+class TouchStoreTest : public ::testing::Test {
+ protected:
+  std::int64_t begin(std::optional<std::string> key = std::nullopt) {
+    return store_->begin_run(
+        {.recipe = "edf-25", .touches_total = 140, .started_at = "start", .idempotency_key = std::move(key)});
+  }
+  void finish(std::int64_t run, const std::string& verdict) {
+    store_->finish_run(run, {.outcome = "complete", .verdict = verdict, .ended_at = "end"});
+  }
+  void reopen() {
+    store_.reset();
+    store_.emplace(file_);
+  }
+  /// What opening `file` fails with; the test fails when it does not.
+  static std::string refusal(const std::filesystem::path& file) {
+    try {
+      const TouchStore store(file);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    ADD_FAILURE() << file << " was opened";
+    return {};
+  }
+  std::vector<std::int64_t> ids(int limit, std::optional<std::int64_t> before = {}) const {
+    std::vector<std::int64_t> found;
+    for (const StoredRun& run : store_->runs(limit, before)) found.push_back(run.id);
+    return found;
+  }
+
+  Folder folder_;
+  std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
+  std::optional<TouchStore> store_{std::in_place, file_};
+};
+
+TEST_F(TouchStoreTest, TouchesComeBackExactlyAndInTheirOrder) {
+  const std::int64_t run = begin();
+  const StoredTouch extreme{.number = 2,
+                            .plane = 5,
+                            .role = calib::TouchRole::kProof,
+                            .joints = {kLowest, kHighest, 0, -1, 1, 123456789},
+                            .source = cs8::CaptureSource::kPolled,
+                            .overtravel_dmm = -7,
+                            .captured_at = "2026-01-31T08:15:30.250Z"};
+  store_->append_touch(run, extreme);
+  store_->append_touch(run, touch(1));
+  EXPECT_THAT(store_->touches(run), ElementsAre(touch(1), extreme));
+  EXPECT_THAT(store_->touches(run + 1), IsEmpty());
+}
+
+TEST_F(TouchStoreTest, AStoredTouchIsThereForAnotherConnectionAtOnce) {
+  const std::int64_t run = begin();
+  const TouchStore other(file_);
+  store_->append_touch(run, touch(1));
+  EXPECT_EQ(other.touches(run).size(), 1u);
+}
+
+TEST_F(TouchStoreTest, ATouchNumberIsTakenOnceAndOnlyForARunThatExists) {
+  const std::int64_t run = begin();
+  store_->append_touch(run, touch(1));
+  StoredTouch second = touch(1);
+  second.plane = 3;
+  EXPECT_THROW(store_->append_touch(run, second), std::exception);
+  EXPECT_THROW(store_->append_touch(run + 1, touch(1)), std::exception);
+  EXPECT_THAT(store_->touches(run), ElementsAre(touch(1)));
+  EXPECT_NO_THROW(store_->append_touch(begin(), touch(1)));
+}
+
+TEST_F(TouchStoreTest, ARunIsRunningUntilItsEndIsStored) {
+  const std::int64_t id = begin();
+  store_->append_touch(id, touch(1));
+  store_->set_plan(id, 139, "plan", "{}");
+  const StoredRun running = store_->run(id).value();
+  EXPECT_EQ(running.recipe, "edf-25");
+  EXPECT_EQ(running.touches_total, 139);
+  EXPECT_EQ(running.touches_done, 1);
+  EXPECT_EQ(running.started_at, "start");
+  EXPECT_EQ(running.outcome, "running");
+  EXPECT_EQ(running.verdict, "none");
+  EXPECT_FALSE(running.ended_at || running.fault_code || running.fault_message);
+  EXPECT_FALSE(store_->result_json(id));
+
+  store_->finish_run(id, {.outcome = "aborted",
+                          .verdict = "incomplete",
+                          .ended_at = "end",
+                          .fault_code = "link_lost",
+                          .fault_message = "reset by peer",
+                          .result_json = "{\"a\":1}"});
+  const StoredRun ended = store_->run(id).value();
+  EXPECT_EQ(ended.outcome, "aborted");
+  EXPECT_EQ(ended.verdict, "incomplete");
+  EXPECT_EQ(ended.ended_at, "end");
+  EXPECT_EQ(ended.fault_code, "link_lost");
+  EXPECT_EQ(ended.fault_message, "reset by peer");
+  EXPECT_EQ(store_->result_json(id), "{\"a\":1}");
+}
+
+TEST_F(TouchStoreTest, PagesGoFromTheNewestRunBack) {
+  std::vector<std::int64_t> all;
+  for (int i = 0; i < 5; ++i) all.insert(all.begin(), begin());
+  EXPECT_EQ(ids(10), all);
+  EXPECT_THAT(ids(2), ElementsAre(all[0], all[1]));
+  EXPECT_THAT(ids(2, all[1]), ElementsAre(all[2], all[3]));
+  EXPECT_THAT(ids(2, all[3]), ElementsAre(all[4]));
+  EXPECT_THAT(ids(2, all[4]), IsEmpty());
+}
+
+TEST_F(TouchStoreTest, AnIdempotencyKeyBelongsToOneRun) {
+  const std::int64_t first = begin("key");
+  EXPECT_THROW(begin("key"), std::exception);
+  EXPECT_THAT(ids(10), ElementsAre(first));
+  EXPECT_EQ(store_->run_with_key("key")->id, first);
+  EXPECT_FALSE(store_->run_with_key("other"));
+  begin();
+  EXPECT_NO_THROW(begin()) << "runs without a key do not share one";
+}
+
+TEST_F(TouchStoreTest, RunsLeftOpenAreEndedAsInterruptedAndNoOthers) {
+  const std::int64_t ended = begin();
+  finish(ended, "accepted");
+  const std::int64_t open = begin();
+  store_->append_touch(open, touch(1));
+  reopen();
+  EXPECT_EQ(store_->finish_interrupted("now"), 1);
+  EXPECT_EQ(store_->run(open)->outcome, "interrupted");
+  EXPECT_EQ(store_->run(open)->verdict, "incomplete");
+  EXPECT_EQ(store_->run(open)->ended_at, "now");
+  EXPECT_EQ(store_->run(open)->touches_done, 1);
+  EXPECT_EQ(store_->run(ended)->outcome, "complete");
+  EXPECT_EQ(store_->run(ended)->ended_at, "end");
+  EXPECT_EQ(store_->finish_interrupted("later"), 0);
+}
+
+TEST_F(TouchStoreTest, TheLastAcceptedRunIsNotTheLastRun) {
+  EXPECT_FALSE(store_->last_accepted());
+  finish(begin(), "accepted");
+  const std::int64_t newer = begin();
+  finish(newer, "accepted");
+  finish(begin(), "rejected");
+  begin();
+  EXPECT_EQ(store_->last_accepted()->id, newer);
+}
+
+TEST_F(TouchStoreTest, ReopeningKeepsAllAndNumbersGoOn) {
+  const std::int64_t run = begin("key");
+  store_->append_touch(run, touch(1));
+  store_->append_touch(run, touch(2));
+  finish(run, "rejected");
+  reopen();
+  EXPECT_THAT(store_->touches(run), ElementsAre(touch(1), touch(2)));
+  EXPECT_EQ(store_->run_with_key("key")->verdict, "rejected");
+  EXPECT_GT(begin(), run);
+}
+
+TEST_F(TouchStoreTest, AFileOfANewerSchemaIsRefusedAndLeftAsItIs) {
+  const std::int64_t run = begin();
+  store_->append_touch(run, touch(1));
+  store_.reset();
+  const auto version = [this] {
+    SQLite::Database database(file_.string(), SQLite::OPEN_READWRITE);
+    return database.execAndGet("PRAGMA user_version").getInt();
+  };
+  const int ours = version();
+  SQLite::Database(file_.string(), SQLite::OPEN_READWRITE)
+      .exec("PRAGMA user_version = " + std::to_string(ours + 1));
+  const std::string told = refusal(file_);
+  EXPECT_THAT(told, HasSubstr(file_.string()));
+  EXPECT_THAT(told, HasSubstr("newer touchcald"));
+  EXPECT_EQ(version(), ours + 1);
+}
+
+TEST_F(TouchStoreTest, AFileThatIsNoDatabaseIsRefusedByNameAndLeftAsItIs) {
+  const std::string bytes(4096, 'x');
+  const auto file = folder_.write("notes.sqlite", bytes);
+  EXPECT_THAT(refusal(file), HasSubstr(file.string()));
+  EXPECT_EQ(bytes_of(file), bytes);
+}
+
+TEST_F(TouchStoreTest, AFolderThatIsNotThereIsToldByName) {
+  const auto file = folder_.path() / "gone" / "touchcal.sqlite";
+  EXPECT_THAT(refusal(file), HasSubstr(file.string()));
+}
+
+TEST_F(TouchStoreTest, RunsThatFollowOnePlanKeepItOnce) {
+  const std::int64_t first = begin(), second = begin(), unplanned = begin();
+  store_->set_plan(first, 3, "id", "the plan");
+  store_->set_plan(second, 3, "id", "the plan");
+  EXPECT_EQ(store_->plan_json(first), "the plan");
+  EXPECT_EQ(store_->plan_json(second), "the plan");
+  EXPECT_EQ(store_->plan_json(unplanned), std::nullopt);
+  EXPECT_EQ(SQLite::Database(file_.string()).execAndGet("SELECT count(*) FROM plans").getInt(), 1);
+}
+
+TEST_F(TouchStoreTest, ARunTellsWhoStartedItAndWithWhat) {
+  const std::int64_t id = store_->begin_run({.recipe = "edf-25",
+                                             .started_at = "start",
+                                             .operator_name = "Ada",
+                                             .block_temperature_c = 21.5,
+                                             .config_digest = "abc",
+                                             .trace_json = "{}"});
+  const StoredRun run = store_->run(id).value();
+  EXPECT_EQ(run.operator_name, "Ada");
+  EXPECT_EQ(run.block_temperature_c, 21.5);
+  EXPECT_EQ(run.config_digest, "abc");
+  EXPECT_EQ(run.trace_json, "{}");
+  EXPECT_FALSE(run.plan_id || store_->run(begin())->operator_name);
+}
+
+TEST_F(TouchStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {
+  const std::int64_t run = begin();
+  EXPECT_FALSE(store_->open_command(run));
+  store_->set_open_command(run, {.session = 7, .sequence = 9, .aimed_with = 2, .touch_json = "{\"a\":1}"});
+  store_->make_durable(run);
+  reopen();
+  const OpenCommand open = store_->open_command(run).value();
+  EXPECT_EQ(open.session, 7u);
+  EXPECT_EQ(open.sequence, 9u);
+  EXPECT_EQ(open.aimed_with, 2);
+  EXPECT_EQ(open.touch_json, "{\"a\":1}");
+  StoredTouch answer = touch(1);
+  answer.session = 7;
+  answer.sequence = 8;
+  store_->append_touch(run, answer);
+  EXPECT_TRUE(store_->open_command(run)) << "that was the answer to another";
+  answer = touch(2);
+  answer.session = 7;
+  answer.sequence = 9;
+  store_->append_touch(run, answer);
+  EXPECT_FALSE(store_->open_command(run));
+  StoredTouch again = answer;
+  again.sequence = 10;
+  store_->replace_touch(run, again, "outlier");
+  EXPECT_FALSE(store_->open_command(run)) << "its touch is kept apart, and it was answered";
+}
+
+TEST_F(TouchStoreTest, ATouchMadeAgainTakesThePlaceOfTheFirstWhichIsKept) {
+  const std::int64_t run = begin();
+  store_->append_touch(run, touch(1));
+  store_->append_touch(run, touch(2));
+  StoredTouch again = touch(1);
+  again.joints[0] = 99;
+  store_->replace_touch(run, again, "does not fit");
+  EXPECT_THAT(store_->touches(run), ElementsAre(again, touch(2)));
+  const auto superseded = store_->superseded_touches(run);
+  ASSERT_EQ(superseded.size(), 1u);
+  EXPECT_EQ(superseded[0].touch, touch(1));
+  EXPECT_EQ(superseded[0].reason, "does not fit");
+  EXPECT_THROW(store_->replace_touch(run, touch(3), "never made"), std::exception);
+  EXPECT_THAT(store_->touches(run), ElementsAre(again, touch(2)));
+}
+
+TEST_F(TouchStoreTest, ReferencesAndPlanChangesComeBackInTheirOrder) {
+  const std::int64_t run = begin();
+  store_->append_reference(run, {.number = 1, .joints = {1, 2, 3, 4, 5, 6}, .captured_at = "t"});
+  store_->append_reference(run, {.number = 2, .touches_done = 10, .drift_mm = 0.012, .captured_at = "u"});
+  const auto references = store_->references(run);
+  ASSERT_EQ(references.size(), 2u);
+  EXPECT_EQ(references[0].joints[5], 6);
+  EXPECT_FALSE(references[0].drift_mm);
+  EXPECT_EQ(references[1].touches_done, 10);
+  EXPECT_EQ(references[1].drift_mm, 0.012);
+  using Kind = PlanChange::Kind;
+  for (const PlanChange change : {PlanChange{Kind::kPutOff, 3}, {Kind::kDropFitted, 1}, {Kind::kSkip, 2}})
+    store_->append_plan_change(run, change);
+  const auto changes = store_->plan_changes(run);
+  ASSERT_EQ(changes.size(), 3u);
+  EXPECT_TRUE(changes[0].kind == Kind::kPutOff && changes[0].place == 3);
+  EXPECT_TRUE(changes[1].kind == Kind::kDropFitted && changes[2].kind == Kind::kSkip);
+}
+
+TEST_F(TouchStoreTest, TheRunningOneIsTheNewestThatHasNotEndedAndMayBeKept) {
+  EXPECT_FALSE(store_->running());
+  const std::int64_t older = begin(), newer = begin();
+  finish(begin(), "rejected");
+  EXPECT_EQ(store_->running()->id, newer);
+  EXPECT_EQ(store_->finish_interrupted("now", newer), 1);
+  EXPECT_EQ(store_->run(older)->outcome, "interrupted");
+  EXPECT_EQ(store_->running()->id, newer);
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,92 @@
+#include "service/store/schema.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+
+#include "service/store/run_store.hpp"
+#include "tests/config/folder.hpp"
+
+namespace cell {
+namespace {
+
+/// A file as a touchcald of that schema left it: a run of two touches that ended, one that was running.
+std::filesystem::path file_of_version(const Folder& folder, int version) {
+  const std::filesystem::path file = folder.path() / ("version" + std::to_string(version) + ".sqlite");
+  SQLite::Database database(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  for (int i = 0; i < version; ++i) database.exec(migrations()[static_cast<std::size_t>(i)]);
+  database.exec(R"sql(
+    INSERT INTO runs(recipe, touches_total, started_at, ended_at, outcome, verdict, result_json)
+      VALUES('edf-25', 140, 'began', 'ended', 'complete', 'accepted', '{"a":1}');
+    INSERT INTO runs(recipe, touches_total, started_at, idempotency_key) VALUES('quick', 40, 'later', 'key');
+    INSERT INTO touches(run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, j4_microdeg,
+      j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at)
+      VALUES(1, 1, 3, 1, -1, 2, -3, 4, -5, 6, 1, 7, 'then'), (1, 2, 4, 0, 1, 2, 3, 4, 5, 6, 0, 0, 'then');
+  )sql");
+  if (version >= 2) {
+    database.exec(
+        "INSERT INTO plans VALUES('plan', '{}'); UPDATE runs SET plan_id = 'plan' WHERE recipe = 'quick'");
+  }
+  database.exec("PRAGMA user_version = " + std::to_string(version));
+  return file;
+}
+
+/// All that makes a schema: what each table has.
+std::string shape(const std::filesystem::path& file) {
+  SQLite::Database database(file.string());
+  SQLite::Statement columns(
+      database,
+      "SELECT tables.name, columns.name, columns.type, columns.\"notnull\", pk FROM sqlite_schema AS "
+      "tables JOIN pragma_table_info(tables.name) AS columns ORDER BY 1, cid");
+  std::string text;
+  while (columns.executeStep()) {
+    for (int i = 0; i < columns.getColumnCount(); ++i) text += columns.getColumn(i).getString() + " ";
+    text += "\n";
+  }
+  return text;
+}
+
+class StoreSchema : public ::testing::TestWithParam<int> {};
+
+TEST_P(StoreSchema, AFileOfAnEarlierVersionIsTakenOverWithAllThatIsInIt) {
+  const Folder folder;
+  const auto file = file_of_version(folder, GetParam());
+  TouchStore store(file);
+  const std::vector<StoredTouch> touches = store.touches(1);
+  ASSERT_EQ(touches.size(), 2u);
+  EXPECT_EQ(touches[0].plane, 3);
+  EXPECT_EQ(touches[0].role, calib::TouchRole::kHeldOut);
+  EXPECT_EQ(touches[0].joints, (cs8::JointsMicrodeg{-1, 2, -3, 4, -5, 6}));
+  EXPECT_EQ(touches[0].overtravel_dmm, 7);
+  EXPECT_EQ(touches[0].sequence, 0u);
+  EXPECT_EQ(store.result_json(1), "{\"a\":1}");
+  EXPECT_EQ(store.last_accepted()->id, 1);
+  EXPECT_EQ(store.run_with_key("key")->id, 2);
+  EXPECT_EQ(store.running()->id, 2);
+  EXPECT_EQ(store.plan_json(2).has_value(), GetParam() >= 2);
+  EXPECT_FALSE(store.open_command(2) || store.run(2)->operator_name);
+  store.append_touch(2, {.number = 1, .plane = 1, .captured_at = "now", .session = 4, .sequence = 5});
+  EXPECT_EQ(store.touches(2).at(0).session, 4u);
+}
+
+TEST_P(StoreSchema, AFileOfAnEarlierVersionGetsTheShapeOfANewOne) {
+  const Folder folder;
+  const auto old = file_of_version(folder, GetParam()), fresh = folder.path() / "fresh.sqlite";
+  open_database(old);
+  open_database(fresh);
+  EXPECT_EQ(shape(old), shape(fresh));
+}
+
+INSTANTIATE_TEST_SUITE_P(Versions, StoreSchema, ::testing::Range(1, static_cast<int>(migrations().size())));
+
+TEST(StoreSchemaFile, AMigrationThatFailsLeavesTheFileAsItWas) {
+  const Folder folder;
+  const auto file = file_of_version(folder, 1);
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("CREATE TABLE audit(other)");
+  const std::string before = shape(file);
+  EXPECT_THROW(open_database(file), std::runtime_error);
+  EXPECT_EQ(shape(file), before);
+  EXPECT_EQ(SQLite::Database(file.string()).execAndGet("PRAGMA user_version").getInt(), 1);
+}
+
+}  // namespace
+}  // namespace cell
