@@ -13,7 +13,8 @@ namespace {
 constexpr std::uint8_t kMagic[2] = {'T', 'C'};
 
 template <class Number>
-requires std::is_integral_v<Number> Number little_endian(const std::uint8_t* bytes) {
+  requires std::is_integral_v<Number>
+Number little_endian(const std::uint8_t* bytes) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < sizeof(Number); ++i) value |= std::uint32_t{bytes[i]} << (8 * i);
   return static_cast<Number>(value);
@@ -48,7 +49,7 @@ class Writer {
 
  private:
   template <class Number>
-  requires std::is_integral_v<Number>
+    requires std::is_integral_v<Number>
   void put(Number number) {
     for (std::size_t i = 0; i < sizeof(Number); ++i) {
       at_[i] = static_cast<std::uint8_t>(static_cast<std::uint32_t>(number) >> (8 * i));
@@ -56,8 +57,10 @@ class Writer {
     at_ += sizeof(Number);
   }
   template <class Enum>
-  requires std::is_enum_v<Enum>
-  void put(Enum value) { put(static_cast<std::underlying_type_t<Enum>>(value)); }
+    requires std::is_enum_v<Enum>
+  void put(Enum value) {
+    put(static_cast<std::underlying_type_t<Enum>>(value));
+  }
   template <class Element, std::size_t n>
   void put(const std::array<Element, n>& elements) {
     for (const Element& element : elements) put(element);
@@ -81,13 +84,13 @@ class Reader {
 
  private:
   template <class Number>
-  requires std::is_integral_v<Number>
+    requires std::is_integral_v<Number>
   void get(Number& number) {
     number = little_endian<Number>(at_);
     at_ += sizeof(Number);
   }
   template <class Enum>
-  requires std::is_enum_v<Enum>
+    requires std::is_enum_v<Enum>
   void get(Enum& value) {
     const std::uint32_t word = current_word();
     std::underlying_type_t<Enum> number{};

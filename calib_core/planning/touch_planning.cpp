@@ -7,10 +7,10 @@
 #include "calib_core/motion/path_shortcut.hpp"
 #include "calib_core/motion/swept_collision.hpp"
 #include "calib_core/planning/candidate_pool.hpp"
-#include "calib_core/planning/online_estimate.hpp"
 #include "calib_core/planning/internal/optimal_design.hpp"
-#include "calib_core/planning/touch_feasibility.hpp"
 #include "calib_core/planning/internal/touch_order.hpp"
+#include "calib_core/planning/online_estimate.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
 
 namespace calib {
 namespace {

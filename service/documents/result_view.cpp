@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "calib_core/identification/face_distances.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/identification/face_distances.hpp"
 #include "calib_core/identification/validate.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"

@@ -82,8 +82,10 @@ class FieldLister {
   static std::string type_name(std::uint32_t) { return "u32"; }
   static std::string type_name(std::int32_t) { return "i32"; }
   template <class Enum>
-  requires std::is_enum_v<Enum>
-  static std::string type_name(Enum) { return "i32"; }
+    requires std::is_enum_v<Enum>
+  static std::string type_name(Enum) {
+    return "i32";
+  }
   static std::string type_name(const Text16&) { return "16 bytes"; }
   static std::string type_name(const JointsMicrodeg&) { return "6 i32"; }
   static std::string type_name(const std::array<JointsMicrodeg, kViaCountMax>&) { return "30 i32"; }
@@ -91,7 +93,7 @@ class FieldLister {
   static std::string text(std::uint32_t number) { return std::to_string(number); }
   static std::string text(std::int32_t number) { return std::to_string(number); }
   template <class Enum>
-  requires std::is_enum_v<Enum>
+    requires std::is_enum_v<Enum>
   static std::string text(Enum value) {
     return std::to_string(static_cast<std::int32_t>(value)) + " " + std::string(name(value));
   }

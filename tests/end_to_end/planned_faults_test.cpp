@@ -179,12 +179,11 @@ TEST_P(Held, ARunWaitsForAPersonAndGoesOn) {
   expect_touches_once(loop_, id, kShortTouchCount);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    AtTouchFive, Held,
-    ::testing::Values(Case{R"({"fault":"probe_stuck","touch":5})",
-                           "probe_stuck",
-                           kFaulty - 1,
-                           {R"({"fault":"probe_mended"})"}}));
+INSTANTIATE_TEST_SUITE_P(AtTouchFive, Held,
+                         ::testing::Values(Case{R"({"fault":"probe_stuck","touch":5})",
+                                                "probe_stuck",
+                                                kFaulty - 1,
+                                                {R"({"fault":"probe_mended"})"}}));
 
 class Unhurt : public PlannedFaults, public ::testing::WithParamInterface<const char*> {};
 

@@ -3,8 +3,8 @@
 
 #include <cstdio>
 
-#include "calib_core/planning/touch_feasibility.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
 #include "service/run/tip_prediction.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
