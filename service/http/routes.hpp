@@ -57,7 +57,7 @@ HttpResponse to_response(const Problem& problem);
 /// A target as it stands in the request line, taken apart; nothing when it is not an absolute path.
 std::optional<std::pair<std::string, Query>> parse_target(std::string_view target);
 
-/// Version 1 of the API (contract.md, section 4), as far as it can be answered at once: route_table.hpp. What
+/// Version 1 of the API (service/doc/surfaces.md, section 7), as far as it can be answered at once: route_table.hpp. What
 /// waits (Pace) is answered by api.hpp.
 HttpResponse route(const HttpRequest& request, Services& services);
 /// The same with services of its own.
