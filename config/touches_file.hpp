@@ -24,7 +24,7 @@ struct TouchesFile {
 };
 
 /// JSON, or CSV when the file's name ends in .csv or its first line is kTouchesCsvHeader. ConfigError: what
-/// is not as contract section 3 says, another arm's touches, a plane the block does not have; a CSV error
+/// is not as config/FILES.md says, another arm's touches, a plane the block does not have; a CSV error
 /// names its line.
 TouchesFile read_touches(const std::filesystem::path& file, const Cell& cell);
 

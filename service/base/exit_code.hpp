@@ -2,7 +2,7 @@
 
 namespace cell {
 
-/// Exit codes of all three programs (contract.md, section 2).
+/// Exit codes of all three programs (service/doc/surfaces.md, section 2).
 enum ExitCode : int {
   kExitDone = 0,
   kExitLimitsMissed = 1,  // the job ran, its acceptance limits were missed

@@ -6,8 +6,8 @@
 
 namespace cell {
 
-/// touchcal/plan/1 (contract.md, section 4) with a plan_id that is null: what is predicted, what limits it,
-/// and every step of every touch. In `joints_deg` the nominal arm's ball touches the nominal face.
+/// touchcal/plan/1 (service/doc/surfaces.md, section 6) with a plan_id that is null: what is predicted, what
+/// limits it, and every step of every touch. In `joints_deg` the nominal arm's ball touches the nominal face.
 nlohmann::ordered_json plan_json(const TipRegions& regions, const Recipe& recipe,
                                  const calib::TouchPlan& plan, const PlannedIdentification& planned);
 

@@ -16,7 +16,7 @@ struct ResultContext {
   std::string conditions;             // as kept with the run; empty: what the cell's files tell
 };
 
-/// touchcal/result/1 (contract.md, section 3), one JSON document as text. `problem` is what was identified:
+/// touchcal/result/1 (service/doc/surfaces.md, section 5), one JSON document as text. `problem` is what was identified:
 /// rejected touches are counted in its touches, from 1. `identifiable_count` is the rank that the touches
 /// show, also with a prior, where all errors that are not excluded are identified.
 std::string result_document(const TipRegions& regions, const Recipe& recipe,

@@ -133,7 +133,7 @@ TEST(Identify, GivesTableThreesTwentyThreeWhenAlpha4AndAlpha5AreLeftOut) {
   ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
   std::array<int, 5> counts{};
   for (const auto& c : result.identifiable.candidates) ++counts[static_cast<std::size_t>(c.status)];
-  // contract.md: 23 identified, 9 grouped, 3 without effect, 2 excluded, none weak.
+  // service/doc/surfaces.md, section 5: 23 identified, 9 grouped, 3 without effect, 2 excluded, none weak.
   EXPECT_EQ(counts, (std::array{23, 9, 3, 2, 0}));
   EXPECT_LT((result.errors.head<kErrorParameterCount>() - paper::table3()).cwiseAbs().maxCoeff(), 1e-9);
 }
