@@ -1,27 +1,27 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/cli/result_text.hpp"
+#include "service/documents/command_documents.hpp"
+#include "service/documents/problem_document.hpp"
 
 namespace cell {
 
-using nlohmann::json;
-
 ExitCode status_command(const ApiClient& daemon, bool json_only) {
   const ApiReply reply = daemon.get("/api/v1/status");
-  fmt::print("{}", json_only ? reply.body + "\n" : status_text(parse_reply(reply)));
+  fmt::print("{}", json_only ? reply.body + "\n" : status_text(read_reply(reply, read_status)));
   return kExitDone;
 }
 
 ExitCode page_command(const ApiClient& daemon, bool json_only) {
-  const std::string role = parse_reply(daemon.get("/api/v1/access")).at("role");
+  const std::string role = read_reply(daemon.get("/api/v1/access"), read_access).role;
   const bool operates = role == "operate";
   const std::string link = daemon.url() + "/" + (operates ? "#token=" + *daemon.token() : "");
-  fmt::print("{}\n", json_only ? json{{"url", link}, {"role", role}}.dump() : link);
+  fmt::print("{}\n", json_only ? document_text(PageLinkDocument{.role = role, .url = link}) : link);
   if (!operates) {
     fmt::print(stderr,
                "the page will only watch: there is no token that this daemon takes; give its --state "
@@ -32,7 +32,7 @@ ExitCode page_command(const ApiClient& daemon, bool json_only) {
 
 ExitCode runs_command(const ApiClient& daemon, bool json_only) {
   const ApiReply reply = daemon.get("/api/v1/runs");
-  fmt::print("{}", json_only ? reply.body + "\n" : runs_text(parse_reply(reply)));
+  fmt::print("{}", json_only ? reply.body + "\n" : runs_text(read_reply(reply, read_runs).runs));
   return kExitDone;
 }
 
@@ -50,13 +50,13 @@ ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool j
     fmt::print("{}\n", result.status == 200 ? result.body : run.body);
     return kExitDone;
   }
-  fmt::print("{}", runs_text({{"runs", {parse_reply(run)}}}));
-  const json fault = parse_reply(run).at("fault_message");
-  if (fault.is_string()) fmt::print("fault: {}\n", fault.get<std::string>());
+  const RunDocument document = read_reply(run, read_run);
+  fmt::print("{}", runs_text({document}));
+  if (document.fault_message) fmt::print("fault: {}\n", *document.fault_message);
   if (result.status == 200) {
-    fmt::print("\n{}", result_text(parse_reply(result)));
+    fmt::print("\n{}", result_text(read_reply(result, read_result)));
   } else {
-    fmt::print("{}\n", parse_reply(result).value("detail", ""));
+    fmt::print("{}\n", read_reply(result, read_problem).detail.value_or(""));
   }
   return kExitDone;
 }
@@ -65,16 +65,16 @@ ExitCode give_command(const ApiClient& daemon, const std::string& command, bool 
   static const std::set<std::string> kOfTheRun{"pause", "resume", "abort", "retry", "skip"};
   std::string target = "/api/v1/cell/" + command;
   if (kOfTheRun.contains(command)) {
-    const json status = parse_reply(daemon.get("/api/v1/status"));
-    if (!status.at("run_id").is_string()) {
+    const StatusDocument status = read_reply(daemon.get("/api/v1/status"), read_status);
+    if (!status.run_id) {
       fmt::print(stderr, "there is no run to {}; touchcal run RECIPE starts one\n", command);
       return kExitRefused;
     }
-    target = "/api/v1/runs/" + status.at("run_id").get<std::string>() + "/" + command;
+    target = "/api/v1/runs/" + *status.run_id + "/" + command;
   }
   const ApiReply reply = daemon.post(target, {});
   if (reply.status != 202) return tell_problem(reply, json_only);
-  fmt::print("{}", json_only ? reply.body + "\n" : status_text(parse_reply(reply)));
+  fmt::print("{}", json_only ? reply.body + "\n" : status_text(read_reply(reply, read_status)));
   return kExitDone;
 }
 

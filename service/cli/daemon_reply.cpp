@@ -2,34 +2,28 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <nlohmann/json.hpp>
+#include "service/documents/problem_document.hpp"
 
 namespace cell {
 
-using nlohmann::json;
-
-json parse_reply(const ApiReply& reply) {
-  try {
-    return json::parse(reply.body);
-  } catch (const json::exception&) {
-    throw DaemonUnreachable(
-        fmt::format("what answers is no touchcald (status {}); check --daemon", reply.status));
-  }
+void tell_stranger(const ApiReply& reply) {
+  throw DaemonUnreachable(
+      fmt::format("what answers is no touchcald (status {}); check --daemon", reply.status));
 }
 
 ExitCode tell_problem(const ApiReply& reply, bool json_only) {
-  const json problem = parse_reply(reply);
+  const ProblemDocument problem = read_reply(reply, read_problem);
   if (json_only) fmt::print("{}\n", reply.body);
-  std::string line = problem.value("detail", reply.body);
+  std::string line = problem.detail.value_or(reply.body);
   if (reply.status == 401)
     line = "the daemon wants its token: name its state directory with --state DIR, or set TOUCHCAL_TOKEN";
-  if (problem.contains("exits")) {
+  if (problem.exits) {
     std::string exits;
-    for (const json& exit : problem["exits"]) exits += (exits.empty() ? "" : ", ") + exit.get<std::string>();
+    for (const std::string& exit : *problem.exits) exits += (exits.empty() ? "" : ", ") + exit;
     line += fmt::format(" (possible now: {})", exits);
   }
   fmt::print(stderr, "{}\n", line);
-  if (problem.value("type", "") == "urn:touchcal:problem:preconditions") return kExitFailed;
+  if (problem.type == ProblemDocument::kPreconditions) return kExitFailed;
   if (reply.status == 422 || reply.status == 404 || reply.status == 401 || reply.status == 403)
     return kExitUsage;
   return kExitRefused;

@@ -1,14 +1,27 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+#include <utility>
 
 #include "service/base/exit_code.hpp"
 #include "service/cli/api_client.hpp"
+#include "service/documents/document_error.hpp"
 
 namespace cell {
 
-/// The document that the daemon answered. Throws DaemonUnreachable when what answers is no touchcald.
-nlohmann::json parse_reply(const ApiReply& reply);
+/// What answers is no touchcald.
+[[noreturn]] void tell_stranger(const ApiReply& reply);
+
+/// The document that the daemon answered, by the function that reads its text. Throws DaemonUnreachable when
+/// what answers is no touchcald, DocumentError when the document is another one.
+template <class Document>
+Document read_reply(const ApiReply& reply, Document (*read)(std::string_view)) {
+  try {
+    return read(reply.body);
+  } catch (const NotJson&) {
+    tell_stranger(reply);
+  }
+}
 
 /// Tells a problem document that the daemon answered; the exit code that goes with it.
 ExitCode tell_problem(const ApiReply& reply, bool json);

@@ -1,11 +1,12 @@
 #include <spdlog/fmt/fmt.h>
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/cli/offline.hpp"
+#include "service/documents/command_documents.hpp"
+#include "service/documents/result_document.hpp"
 
 namespace cell {
 
@@ -16,20 +17,17 @@ ExitCode export_command(const ApiClient& daemon, const ExportArguments& argument
   if (arm.status != 200) return tell_problem(arm, json);
   const ApiReply reply = daemon.get(run + "/result");
   if (reply.status != 200) return tell_problem(reply, json);
-  const auto result = nlohmann::json::parse(reply.body);
-  const nlohmann::json& verdict = result.at("verdict");
+  const ResultDocument result = read_result(reply.body);
   write_whole_file(arguments.arm_file, arm.body, arguments.overwrite);
-  const auto warnings =
-      export_warnings(result.value("cell_frames", std::vector<int>()), verdict.at("accepted").get<bool>(),
-                      verdict.at("reasons").get<std::vector<std::string>>());
+  const std::vector<std::string> warnings =
+      export_warnings(result.cell_frames, result.verdict.accepted, result.verdict.reasons);
   tell_warnings(warnings);
   if (arguments.arm_file == "-") return kExitDone;
   if (json) {
-    fmt::print("{}\n", nlohmann::ordered_json{{"run_id", arguments.run_id},
-                                              {"arm_file", arguments.arm_file},
-                                              {"verdict", verdict},
-                                              {"warnings", warnings}}
-                           .dump());
+    fmt::print("{}\n", document_text(ExportDocument{.run_id = arguments.run_id,
+                                                    .arm_file = arguments.arm_file,
+                                                    .verdict = {verdict_text(reply.body)},
+                                                    .warnings = warnings}));
   } else {
     fmt::print("{}: the calibrated arm of run {}\n", arguments.arm_file, arguments.run_id);
   }

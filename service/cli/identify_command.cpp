@@ -1,7 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "config/identification_problem.hpp"
@@ -20,19 +19,18 @@ namespace cell {
 namespace {
 
 /// The map as lines "x,y,z,mm", a cell each, its centre in R_-1; a cell out of reach has no figure.
-std::string map_csv(const nlohmann::json& map) {
-  const auto counts = map.at("counts").get<std::array<int, 3>>();
-  const auto cell_mm = map.at("cell_mm").get<std::array<double, 3>>();
-  const auto min_mm = map.at("box").at("min_mm").get<std::array<double, 3>>();
+std::string map_csv(const std::optional<TipDocument::Map>& found) {
+  const TipDocument::Map& map = found.value();
   std::string lines = "x_mm,y_mm,z_mm,predicted_rms_mm\n";
   std::size_t index = 0;
-  for (int z = 0; z < counts[2]; ++z) {
-    for (int y = 0; y < counts[1]; ++y) {
-      for (int x = 0; x < counts[0]; ++x, ++index) {
-        const nlohmann::json& value = map.at("values_mm").at(index);
-        lines += fmt::format("{:.6g},{:.6g},{:.6g},{}\n", min_mm[0] + (x + 0.5) * cell_mm[0],
-                             min_mm[1] + (y + 0.5) * cell_mm[1], min_mm[2] + (z + 0.5) * cell_mm[2],
-                             value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "");
+  for (int z = 0; z < map.counts[2]; ++z) {
+    for (int y = 0; y < map.counts[1]; ++y) {
+      for (int x = 0; x < map.counts[0]; ++x, ++index) {
+        const std::optional<double>& value = map.values_mm.at(index);
+        lines += fmt::format("{:.6g},{:.6g},{:.6g},{}\n", map.box.min_mm[0] + (x + 0.5) * map.cell_mm[0],
+                             map.box.min_mm[1] + (y + 0.5) * map.cell_mm[1],
+                             map.box.min_mm[2] + (z + 0.5) * map.cell_mm[2],
+                             value ? fmt::format("{:.6g}", *value) : "");
       }
     }
   }
@@ -40,16 +38,12 @@ std::string map_csv(const nlohmann::json& map) {
 }
 
 void write_files(const IdentifyArguments& arguments, const Cell& cell,
-                 const calib::IdentificationResult& result, const nlohmann::json& document) {
-  if (!arguments.map_file.empty()) {
-    write_whole_file(arguments.map_file, map_csv(document.at("tip_uncertainty").at("map")),
-                     arguments.overwrite);
-  }
+                 const calib::IdentificationResult& result, const ResultDocument& document) {
+  if (!arguments.map_file.empty())
+    write_whole_file(arguments.map_file, map_csv(document.tip_uncertainty.map), arguments.overwrite);
   if (arguments.arm_file.empty()) return;
   write_whole_file(arguments.arm_file, calibrated_arm_document(cell, result), arguments.overwrite);
-  const nlohmann::json& verdict = document.at("verdict");
-  tell_warnings(export_warnings(cell.own_frames, verdict.at("accepted").get<bool>(),
-                                verdict.at("reasons").get<std::vector<std::string>>()));
+  tell_warnings(export_warnings(cell.own_frames, document.verdict.accepted, document.verdict.reasons));
 }
 
 }  // namespace
@@ -70,16 +64,15 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
       .complete = true,
       .warnings = file.warnings,
       .conditions = conditions_document(cell, {.config_digest = configuration_digest(cell)})};
-  const std::string document = result_document(regions, recipe, problem, result, context);
-  const auto parsed = nlohmann::json::parse(document);
-  write_files(arguments, cell, result, parsed);
+  const ResultDocument document = result_of(regions, recipe, problem, result, context);
+  write_files(arguments, cell, result, document);
   if (json) {
-    fmt::print("{}\n", document);
+    fmt::print("{}\n", document_text(document));
   } else {
     tell_warnings(file.warnings);
-    fmt::print("{}", result_text(parsed));
+    fmt::print("{}", result_text(document));
   }
-  return parsed.at("verdict").at("accepted").get<bool>() ? kExitDone : kExitLimitsMissed;
+  return document.verdict.accepted ? kExitDone : kExitLimitsMissed;
 }
 
 }  // namespace cell

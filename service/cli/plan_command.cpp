@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
@@ -82,10 +81,9 @@ PlaceRange wanted_range(const PlanArguments& arguments) {
   return range;
 }
 
-void give(const std::string& document, std::string (*text)(const nlohmann::json&),
-          const PlanArguments& arguments, bool json) {
+void give(const std::string& document, const std::string& text, const PlanArguments& arguments, bool json) {
   if (!arguments.file.empty()) write_whole_file(arguments.file, document + "\n", arguments.overwrite);
-  fmt::print("{}", json ? document + "\n" : text(nlohmann::json::parse(document)));
+  fmt::print("{}", json ? document + "\n" : text);
 }
 
 ExitCode plan_places(const Cell& cell, const Recipe& recipe, const PlanArguments& arguments, bool json) {
@@ -94,7 +92,8 @@ ExitCode plan_places(const Cell& cell, const Recipe& recipe, const PlanArguments
   const auto findings =
       search_places(cell, recipe, range, {.place_count = arguments.place_count}, bar.progress());
   bar.finish();
-  give(places_document(cell, recipe, findings), places_text, arguments, json);
+  const PlacesDocument places = places_of(cell, recipe, findings);
+  give(document_text(places), places_text(places), arguments, json);
   if (findings.front().figures) return kExitDone;
   fmt::print(stderr, "{}: at none of {} places there is a plan; where the block is now: {}\n",
              cell.file.string(), findings.size(),
@@ -108,7 +107,8 @@ ExitCode plan_touches(const Cell& cell, const Recipe& recipe, const PlanArgument
   const auto outcome = make_plan(regions, recipe, bar.progress());
   bar.finish();
   if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) return tell(cell, *refusal);
-  give(std::get<Plan>(outcome).document, plan_text, arguments, json);
+  const std::string& document = std::get<Plan>(outcome).document;
+  give(document, plan_text(read_plan(document)), arguments, json);
   return kExitDone;
 }
 

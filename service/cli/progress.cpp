@@ -3,54 +3,44 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "service/run/readiness.hpp"
 
 namespace cell {
 namespace {
 
-using nlohmann::json;
-
 constexpr int kBarWidth = 30;
 
-std::string figures(const json& status) {
-  if (status.at("waiting_for").is_string())
-    return fmt::format("waiting: {}", awaited_words(status.at("waiting_for").get<std::string>()));
-  std::string text = status.at("touches_total").is_number()
-                         ? fmt::format("touch {} of {}", status.at("touches_done").get<int>(),
-                                       status.at("touches_total").get<int>())
+std::string figures(const StatusDocument& status) {
+  if (status.waiting_for) return fmt::format("waiting: {}", awaited_words(*status.waiting_for));
+  std::string text = status.touches_total
+                         ? fmt::format("touch {} of {}", status.touches_done, *status.touches_total)
                          : "planning";
-  const auto add = [&](const char* key, const char* format) {
-    if (const auto value = status.find(key); value != status.end() && value->is_number())
-      text += fmt::format(fmt::runtime(format), value->get<double>());
+  const auto add = [&text](std::optional<double> value, const char* format) {
+    if (value) text += fmt::format(fmt::runtime(format), *value);
   };
-  add("plane", "  plane {:.0f}");
-  add("identifiable_count", "  rank {:.0f}");
-  add("attainable_count", " of {:.0f}");
-  add("condition_number", "  cond {:.0f}");
-  add("predicted_tip_rms_mm", "  tip +- {:.3f} mm");
-  add("eta_s", "  {:.0f} s left");
+  add(status.plane, "  plane {:.0f}");
+  add(status.identifiable_count, "  rank {:.0f}");
+  add(status.condition_number, "  cond {:.0f}");
+  add(status.predicted_tip_rms_mm, "  tip +- {:.3f} mm");
+  add(status.eta_s, "  {:.0f} s left");
   return text;
 }
 
 }  // namespace
 
-std::string guidance(const json& status) {
-  if (!status.at("by_hand_words").is_string()) return {};
+std::string guidance(const StatusDocument& status) {
+  if (!status.by_hand_words) return {};
   std::string text;
-  if (status.at("by_hand_problem").is_string())
-    text = fmt::format("not taken: {}\n", status.at("by_hand_problem").get<std::string>());
-  if (status.at("by_hand_step") == "touch")
-    text += fmt::format("{} of {}: ", status.at("by_hand_index").get<int>(),
-                        status.at("by_hand_total").get<int>());
-  text += status.at("by_hand_words").get<std::string>();
-  if (status.at("waiting_for").is_string())
-    text += fmt::format("\nwaiting: {}", awaited_words(status.at("waiting_for").get<std::string>()));
+  if (status.by_hand_problem) text = fmt::format("not taken: {}\n", *status.by_hand_problem);
+  if (status.by_hand_step == "touch")
+    text += fmt::format("{} of {}: ", status.by_hand_index.value(), status.by_hand_total.value());
+  text += *status.by_hand_words;
+  if (status.waiting_for) text += fmt::format("\nwaiting: {}", awaited_words(*status.waiting_for));
   return text;
 }
 
-void Progress::show_guidance(const json& status) {
+void Progress::show_guidance(const StatusDocument& status) {
   const std::string text = guidance(status);
   if (text == last_guidance_) return;
   last_guidance_ = text;
@@ -59,39 +49,36 @@ void Progress::show_guidance(const json& status) {
   fmt::print("{}\n", text);
 }
 
-void Progress::show_fault(const json& status) {
-  const std::string fault =
-      status.at("fault_code").is_string() ? status.at("fault_code").get<std::string>() : "";
+void Progress::show_fault(const StatusDocument& status) {
+  const std::string fault = status.fault_code.value_or("");
   if (fault == last_fault_) return;
   last_fault_ = fault;
   if (fault.empty()) return;
   finish();
-  fmt::print("fault {}: {}\n  robot: {}\n  next:  {}\n", fault, status.at("fault_message").get<std::string>(),
-             status.at("fault_robot_action").get<std::string>(),
-             status.at("fault_next_step").get<std::string>());
+  fmt::print("fault {}: {}\n  robot: {}\n  next:  {}\n", fault, status.fault_message.value(),
+             status.fault_robot_action.value(), status.fault_next_step.value());
   std::fflush(stdout);
 }
 
-void Progress::show(const json& status) {
+void Progress::show(const StatusDocument& status) {
   show_fault(status);
   show_guidance(status);
-  const std::string state = status.at("state");
-  const int total = status.at("touches_total").is_number() ? status.at("touches_total").get<int>() : 0;
-  const int done = status.at("touches_done");
+  const int total = status.touches_total.value_or(0);
+  const int done = status.touches_done;
   if (on_terminal_) {
     const int filled = total > 0 ? done * kBarWidth / total : 0;
-    fmt::print("\r\033[K{:<11}[{}{}] {}", state, std::string(static_cast<std::size_t>(filled), '#'),
+    fmt::print("\r\033[K{:<11}[{}{}] {}", status.state, std::string(static_cast<std::size_t>(filled), '#'),
                std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), figures(status));
     line_open_ = true;
   } else {
     const int tenth = total > 0 ? done * 10 / total : 0;
-    const std::string awaited = status.at("waiting_for").is_string() ? status.at("waiting_for") : "";
-    if (state == last_state_ && tenth == last_tenth_ && awaited == last_awaited_) return;
+    const std::string awaited = status.waiting_for.value_or("");
+    if (status.state == last_state_ && tenth == last_tenth_ && awaited == last_awaited_) return;
     last_tenth_ = tenth;
     last_awaited_ = awaited;
-    fmt::print("{:<11} {}\n", state, figures(status));
+    fmt::print("{:<11} {}\n", status.state, figures(status));
   }
-  last_state_ = state;
+  last_state_ = status.state;
   std::fflush(stdout);
 }
 

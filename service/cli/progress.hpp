@@ -1,12 +1,13 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+
+#include "service/documents/status_document.hpp"
 
 namespace cell {
 
 /// What a person at the pendant is to do; empty when nothing is asked of one.
-std::string guidance(const nlohmann::json& status);
+std::string guidance(const StatusDocument& status);
 
 /// Shows how a run goes, from one status document after the other: a bar that is drawn anew on a terminal, a
 /// plain line at each change worth one elsewhere.
@@ -14,13 +15,13 @@ class Progress {
  public:
   explicit Progress(bool on_terminal) : on_terminal_(on_terminal) {}
 
-  void show(const nlohmann::json& status);
+  void show(const StatusDocument& status);
   /// Ends the line that is being drawn.
   void finish();
 
  private:
-  void show_fault(const nlohmann::json& status);
-  void show_guidance(const nlohmann::json& status);
+  void show_fault(const StatusDocument& status);
+  void show_guidance(const StatusDocument& status);
 
   bool on_terminal_;
   bool line_open_ = false;

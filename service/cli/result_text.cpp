@@ -3,228 +3,212 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "service/run/readiness.hpp"
 
 namespace cell {
 namespace {
 
-using nlohmann::json;
-
-std::string figure(const json& value, const char* format, const char* unknown = "-") {
-  return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : unknown;
+std::string figure(std::optional<double> value, const char* format, const char* unknown = "-") {
+  return value ? fmt::format(fmt::runtime(format), *value) : unknown;
 }
 
-std::string text(const json& value) { return value.is_string() ? value.get<std::string>() : "-"; }
+std::string text(const std::optional<std::string>& value) { return value.value_or("-"); }
 
 /// "grouped: r3 x 1.000"
-std::string status_of(const json& parameter) {
-  const std::string status = parameter.at("status");
-  if (status != "grouped") return status == "no_effect" ? "no effect" : status;
+std::string status_of(const Parameter& parameter) {
+  if (parameter.status != "grouped") return parameter.status == "no_effect" ? "no effect" : parameter.status;
   std::string into;
   constexpr std::size_t kShown = 3;
-  const json& factors = parameter.at("grouped_with");
+  const std::vector<CarriedError>& factors = parameter.grouped_with;
   for (std::size_t i = 0; i < factors.size() && i < kShown; ++i) {
-    into += fmt::format("{}{} x {:.4g}", i == 0 ? "" : ", ", factors[i].at("name").get<std::string>(),
-                        factors[i].at("factor").get<double>());
+    into +=
+        fmt::format("{}{} x {}", i == 0 ? "" : ", ", factors[i].name, figure(factors[i].factor, "{:.4g}"));
   }
   return fmt::format("grouped into {}{}", into, factors.size() > kShown ? ", ..." : "");
 }
 
-/// A part of a result document; one that an older daemon wrote may lack it.
-const json& part(const json& object, const char* key) {
-  static const json nothing;
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  return found == object.end() ? nothing : *found;
-}
-
 /// Half the width of the 95 % interval.
-std::string half_width(const json& parameter, const char* format) {
-  const json& interval = part(parameter, "interval95");
-  if (!interval.is_array()) return "";
-  return figure(0.5 * (interval[1].get<double>() - interval[0].get<double>()), format);
+std::string half_width(const Parameter& parameter, const char* format) {
+  if (!parameter.interval95) return "";
+  const auto& [low, high] = *parameter.interval95;
+  return low && high ? figure(0.5 * (*high - *low), format) : "";
 }
 
-std::string parameters_text(const json& parameters) {
+std::string parameters_text(const std::vector<Parameter>& parameters) {
   std::string lines = fmt::format("{:<9}{:>12}{:>12}{:>12}  {:<5}{}\n", "error of", "nominal", "error",
                                   "+- (95 %)", "unit", "status");
-  for (const json& parameter : parameters) {
-    const bool length = parameter.at("unit") == "mm";
-    lines += fmt::format("{:<9}{:>12}{:>12}{:>12}  {:<5}{}\n", parameter.at("name").get<std::string>(),
-                         figure(parameter.at("nominal"), length ? "{:.3f}" : "{:.5f}"),
-                         figure(parameter.at("error"), length ? "{:+.4f}" : "{:+.6f}"),
-                         half_width(parameter, length ? "{:.4f}" : "{:.6f}"),
-                         parameter.at("unit").get<std::string>(), status_of(parameter));
+  for (const Parameter& parameter : parameters) {
+    const bool length = parameter.unit == "mm";
+    lines += fmt::format("{:<9}{:>12}{:>12}{:>12}  {:<5}{}\n", parameter.name,
+                         figure(parameter.nominal, length ? "{:.3f}" : "{:.5f}"),
+                         figure(parameter.error, length ? "{:+.4f}" : "{:+.6f}"),
+                         half_width(parameter, length ? "{:.4f}" : "{:.6f}"), parameter.unit,
+                         status_of(parameter));
   }
   return lines;
 }
 
-std::string rejected_text(const json& result) {
+std::string rejected_text(const ResultDocument& result) {
   std::string lines;
-  for (const json& touch : part(result, "rejected_touches")) {
-    lines += fmt::format("touch {} rejected: {}, {} mm off\n", touch.at("touch").get<int>(),
-                         touch.at("reason") == "wrong_plane" ? "on another plane" : "does not fit the others",
-                         figure(touch.at("residual_mm"), "{:+.3f}"));
+  for (const ResultDocument::RejectedTouch& touch : result.rejected_touches) {
+    lines += fmt::format("touch {} rejected: {}, {} mm off\n", touch.touch,
+                         touch.reason == "wrong_plane" ? "on another plane" : "does not fit the others",
+                         figure(touch.residual_mm, "{:+.3f}"));
   }
   return lines;
 }
 
-std::string fit_text(const json& fit) {
-  std::string lines = fmt::format("noise of a touch: declared {} um, from the residuals {} um\n",
-                                  figure(part(fit, "noise_declared_um"), "{:.1f}"),
-                                  figure(part(fit, "noise_estimated_um"), "{:.1f}"));
-  if (!part(fit, "lack_of_fit_p").is_number()) return lines;
-  lines += fmt::format("lack of fit: p = {}", figure(fit.at("lack_of_fit_p"), "{:.2g}"));
-  for (const json& plane : part(fit, "planes"))
-    lines += fmt::format("{} {} {}", &plane == &part(fit, "planes")[0] ? "; plane" : ",",
-                         plane.at("plane").get<int>(), figure(plane.at("p"), "{:.2g}"));
+std::string fit_text(const ResultDocument::Fit& fit) {
+  std::string lines =
+      fmt::format("noise of a touch: declared {} um, from the residuals {} um\n",
+                  figure(fit.noise_declared_um, "{:.1f}"), figure(fit.noise_estimated_um, "{:.1f}"));
+  if (!fit.lack_of_fit_p) return lines;
+  lines += fmt::format("lack of fit: p = {}", figure(fit.lack_of_fit_p, "{:.2g}"));
+  const char* separator = "; plane";
+  for (const ResultDocument::PlaneFit& plane : fit.planes) {
+    lines += fmt::format("{} {} {}", separator, plane.plane, figure(plane.p, "{:.2g}"));
+    separator = ",";
+  }
   return lines + "\n";
 }
 
-std::string artefact_text(const json& parameters) {
+std::string artefact_text(const std::vector<ArtefactParameter>& parameters) {
   if (parameters.empty()) return {};
   std::string lines = fmt::format("\n{:<16}{:>12}{:>12}  {:<6}{}\n", "block and probe", "value", "+- (std)",
                                   "unit", "status");
-  for (const json& parameter : parameters) {
-    const char* format = parameter.at("unit") == "rad" ? "{:.6f}" : "{:.4f}";
-    lines +=
-        fmt::format("{:<16}{:>12}{:>12}  {:<6}{}\n", text(parameter.at("name")),
-                    figure(parameter.at("value"), format), figure(parameter.at("std_uncertainty"), format),
-                    text(parameter.at("unit")), text(parameter.at("status")));
+  for (const ArtefactParameter& parameter : parameters) {
+    const char* format = parameter.unit == "rad" ? "{:.6f}" : "{:.4f}";
+    lines += fmt::format("{:<16}{:>12}{:>12}  {:<6}{}\n", parameter.name, figure(parameter.value, format),
+                         figure(parameter.std_uncertainty, format), parameter.unit, parameter.status);
   }
   return lines;
 }
 
 /// What the tip's uncertainty is made of, and where it is how large.
-std::string tip_text(const json& tip) {
+std::string tip_text(const TipDocument& tip) {
   std::string lines = "\npredicted uncertainty of the tip, rms\n";
-  const auto line = [&lines](const std::string& where, const json& value) {
+  const auto line = [&lines](const std::string& where, std::optional<double> value) {
     lines += fmt::format("  {:<34}{:>10} mm\n", where, figure(value, "{:.3f}", "unknown"));
   };
-  line("at the block", part(tip, "at_block_rms_mm"));
-  line("in the workspace box", part(tip, "workspace_box_rms_mm"));
-  for (const json& source : part(tip, "sources"))
-    line("  from " + text(source.at("name")), source.at("workspace_box_rms_mm"));
-  line("over the joint ranges", part(tip, "joint_ranges_rms_mm"));
-  for (const json& tool : part(tip, "tools")) {
-    line(text(tool.at("name")) + ", in the workspace box", tool.at("workspace_box_rms_mm"));
-    line(text(tool.at("name")) + ", over the joint ranges", tool.at("joint_ranges_rms_mm"));
+  line("at the block", tip.at_block_rms_mm);
+  line("in the workspace box", tip.workspace_box_rms_mm);
+  for (const TipDocument::Source& source : tip.sources)
+    line("  from " + source.name, source.workspace_box_rms_mm);
+  line("over the joint ranges", tip.joint_ranges_rms_mm);
+  for (const TipDocument::Tool& tool : tip.tools) {
+    line(tool.name + ", in the workspace box", tool.workspace_box_rms_mm);
+    line(tool.name + ", over the joint ranges", tool.joint_ranges_rms_mm);
   }
   return lines;
 }
 
-std::string scale_text(const json& scale) {
+std::string scale_text(const ResultDocument::Scale& scale) {
   return fmt::format("common scale of all lengths: from {}, +- {} ppm (std); they moved by {} ppm\n",
-                     text(part(scale, "source")), figure(part(scale, "std_uncertainty_ppm"), "{:.0f}"),
-                     figure(part(scale, "stretch_ppm"), "{:+.0f}"));
+                     text(scale.source), figure(scale.std_uncertainty_ppm, "{:.0f}"),
+                     figure(scale.stretch_ppm, "{:+.0f}"));
 }
 
-std::string planes_text(const json& planes, const char* title) {
+std::string planes_text(const std::vector<PlaneDistances>& planes, const char* title) {
   if (planes.empty()) return {};
   std::string lines =
       fmt::format("\n{}\n{:>5}{:>9}{:>13}{:>12}{:>14}{:>12}{:>14}{:>11}\n", title, "plane", "touches",
                   "reference", "nominal", "calibrated", "rms before", "rms after", "removed");
-  for (const json& plane : planes) {
-    lines += fmt::format(
-        "{:>5}{:>9}{:>10} mm{:>9} mm{:>11} mm{:>9} mm{:>11} mm{:>9} %\n", plane.at("plane").get<int>(),
-        plane.at("touch_count").get<int>(), figure(plane.at("reference_mm"), "{:.3f}"),
-        figure(plane.at("nominal_mean_mm"), "{:.3f}"), figure(plane.at("calibrated_mean_mm"), "{:.3f}"),
-        figure(plane.at("nominal_rms_mm"), "{:.3f}"), figure(plane.at("calibrated_rms_mm"), "{:.3f}"),
-        figure(plane.at("error_removed_percent"), "{:.2f}"));
+  for (const PlaneDistances& plane : planes) {
+    lines += fmt::format("{:>5}{:>9}{:>10} mm{:>9} mm{:>11} mm{:>9} mm{:>11} mm{:>9} %\n", plane.plane,
+                         plane.touch_count, figure(plane.reference_mm, "{:.3f}"),
+                         figure(plane.nominal_mean_mm, "{:.3f}"), figure(plane.calibrated_mean_mm, "{:.3f}"),
+                         figure(plane.nominal_rms_mm, "{:.3f}"), figure(plane.calibrated_rms_mm, "{:.3f}"),
+                         figure(plane.error_removed_percent, "{:.2f}"));
   }
   return lines;
 }
 
 }  // namespace
 
-std::string result_text(const json& result) {
-  std::string lines = parameters_text(result.at("parameters"));
+std::string result_text(const ResultDocument& result) {
+  std::string lines = parameters_text(result.parameters);
   lines += fmt::format("\n{} of {} parameters identified from {} touches in {} iterations\n",
-                       result.at("identifiable_count").get<int>(), result.at("parameters").size(),
-                       result.at("touch_count").get<int>(), result.at("iterations").size());
+                       figure(result.identifiable_count, "{:.0f}"), result.parameters.size(),
+                       figure(result.touch_count, "{:.0f}"), result.iterations.size());
   lines += "condition number, iteration by iteration:";
-  for (const json& iteration : result.at("iterations"))
-    lines += " " + figure(iteration.at("condition_number"), "{:.1f}");
-  lines +=
-      fmt::format(" (columns of unit norm: {})\n", figure(result.at("scaled_condition_number"), "{:.1f}"));
-  if (const json& why = part(part(result, "rank"), "explanation");
-      why.is_string() && !why.empty() && why != "")
-    lines += fmt::format("not more of them: {}\n", text(why));
-  lines += fit_text(result.at("fit"));
-  lines += scale_text(result.at("scale"));
+  for (const ResultDocument::Iteration& iteration : result.iterations)
+    lines += " " + figure(iteration.condition_number, "{:.1f}");
+  lines += fmt::format(" (columns of unit norm: {})\n", figure(result.scaled_condition_number, "{:.1f}"));
+  if (!result.rank.explanation.empty())
+    lines += fmt::format("not more of them: {}\n", result.rank.explanation);
+  lines += fit_text(result.fit);
+  lines += scale_text(result.scale);
   lines += rejected_text(result);
-  lines += artefact_text(part(result, "artefact_parameters"));
-  for (const json& stiffness : part(result, "stiffness")) {
-    lines += fmt::format("compliance of joint {}: {} +- {} rad/Nm\n", stiffness.at("joint").get<int>(),
-                         figure(stiffness.at("compliance_rad_per_nm"), "{:.3g}"),
-                         figure(stiffness.at("std_uncertainty"), "{:.2g}"));
+  lines += artefact_text(result.artefact_parameters);
+  for (const JointCompliance& stiffness : result.stiffness) {
+    lines += fmt::format("compliance of joint {}: {} +- {} rad/Nm\n", stiffness.joint,
+                         figure(stiffness.compliance_rad_per_nm, "{:.3g}"),
+                         figure(stiffness.std_uncertainty, "{:.2g}"));
   }
-  lines += tip_text(result.at("tip_uncertainty"));
-  lines += planes_text(result.at("planes"), "distances of the fitted touches from the block's origin");
-  lines += planes_text(result.at("planes_held_out"), "distances of the held-out touches");
-  lines += planes_text(result.at("planes_proof"), "distances of the proof touches");
-  const json& verdict = result.at("verdict");
-  const json& reasons = verdict.at("reasons");
-  for (const json& warning : result.at("warnings")) {
+  lines += tip_text(result.tip_uncertainty);
+  lines += planes_text(result.planes, "distances of the fitted touches from the block's origin");
+  lines += planes_text(result.planes_held_out, "distances of the held-out touches");
+  lines += planes_text(result.planes_proof, "distances of the proof touches");
+  const std::vector<std::string>& reasons = result.verdict.reasons;
+  for (const std::string& warning : result.warnings) {
     if (std::ranges::find(reasons, warning) == reasons.end())
-      lines += fmt::format("\nwarning: {}\n", text(warning));
+      lines += fmt::format("\nwarning: {}\n", warning);
   }
-  lines += verdict.at("accepted").get<bool>() ? "\nverdict: accepted\n" : "\nverdict: rejected\n";
-  for (const json& reason : reasons) lines += fmt::format("  - {}\n", reason.get<std::string>());
+  lines += result.verdict.accepted ? "\nverdict: accepted\n" : "\nverdict: rejected\n";
+  for (const std::string& reason : reasons) lines += fmt::format("  - {}\n", reason);
   return lines;
 }
 
-std::string status_text(const json& status) {
-  const auto text_or_unknown = [](const json& value) { return value.is_string() ? text(value) : "unknown"; };
-  std::string lines = fmt::format("state       {}\n", text(status.at("state")));
-  const bool connected = status.at("controller_connected").get<bool>();
-  const auto yes_no = [](const json& value, const char* yes, const char* no) {
-    return value.is_boolean() ? (value.get<bool>() ? yes : no) : "unknown";
+std::string status_text(const StatusDocument& status) {
+  const auto text_or_unknown = [](const std::optional<std::string>& value) {
+    return value.value_or("unknown");
   };
+  std::string lines = fmt::format("state       {}\n", status.state);
+  const auto yes_no = [](std::optional<bool> value, const char* yes, const char* no) {
+    return value ? (*value ? yes : no) : "unknown";
+  };
+  std::optional<double> data_age_ms;
+  if (status.data_age_ms) data_age_ms = static_cast<double>(*status.data_age_ms);
   lines += fmt::format(
       "controller  {}, power {}, mode {}, emergency stop {}, data {} ms old\n"
       "cell        {}, touch test {}, probe {}, permit {}\n",
-      connected ? "connected" : "not connected", yes_no(status.at("controller_powered"), "on", "off"),
-      text_or_unknown(status.at("controller_mode")), yes_no(status.at("controller_estop"), "ACTIVE", "none"),
-      figure(status.at("data_age_ms"), "{:.0f}", "?"),
-      yes_no(status.at("controller_cell_closed"), "closed", "OPEN"),
-      yes_no(status.at("controller_touch_tested"), "made", "missing"), text_or_unknown(status.at("probe")),
-      text_or_unknown(status.at("controller_permit")));
-  if (status.at("waiting_for").is_string())
-    lines += fmt::format("waiting     {}\n", awaited_words(text(status.at("waiting_for"))));
-  if (status.at("run_id").is_string()) {
+      status.controller_connected ? "connected" : "not connected",
+      yes_no(status.controller_powered, "on", "off"), text_or_unknown(status.controller_mode),
+      yes_no(status.controller_estop, "ACTIVE", "none"), figure(data_age_ms, "{:.0f}", "?"),
+      yes_no(status.controller_cell_closed, "closed", "OPEN"),
+      yes_no(status.controller_touch_tested, "made", "missing"), text_or_unknown(status.probe),
+      text_or_unknown(status.controller_permit));
+  if (status.waiting_for) lines += fmt::format("waiting     {}\n", awaited_words(*status.waiting_for));
+  if (status.run_id) {
     lines += fmt::format(
         "run         {} ({}), {} of {} touches, {} identifiable, condition number {}, tip +- {} mm, verdict "
         "{}\n",
-        text(status.at("run_id")), text(status.at("recipe")), status.at("touches_done").get<int>(),
-        figure(status.at("touches_total"), "{:.0f}"), figure(status.at("identifiable_count"), "{:.0f}"),
-        figure(status.at("condition_number"), "{:.0f}"), figure(status.at("predicted_tip_rms_mm"), "{:.3f}"),
-        text(status.at("verdict")));
+        *status.run_id, text(status.recipe), status.touches_done, figure(status.touches_total, "{:.0f}"),
+        figure(status.identifiable_count, "{:.0f}"), figure(status.condition_number, "{:.0f}"),
+        figure(status.predicted_tip_rms_mm, "{:.3f}"), status.verdict);
   }
   lines += more_text(status);
-  if (status.at("fault_code").is_string()) {
-    lines += fmt::format("fault       {}: {}\n  robot     {}\n  next      {}\n",
-                         text(status.at("fault_code")), text(status.at("fault_message")),
-                         text(status.at("fault_robot_action")), text(status.at("fault_next_step")));
+  if (status.fault_code) {
+    lines += fmt::format("fault       {}: {}\n  robot     {}\n  next      {}\n", *status.fault_code,
+                         text(status.fault_message), text(status.fault_robot_action),
+                         text(status.fault_next_step));
   }
   return lines;
 }
 
-std::string more_text(const json& status) {
-  const json& more = status.at("more_would_bring");
-  return more.is_string() ? fmt::format("more        {}\n", text(more)) : "";
+std::string more_text(const StatusDocument& status) {
+  return status.more_would_bring ? fmt::format("more        {}\n", *status.more_would_bring) : "";
 }
 
-std::string runs_text(const json& runs) {
+std::string runs_text(const std::vector<RunSummary>& runs) {
   std::string lines = fmt::format("{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", "run", "recipe", "outcome",
                                   "verdict", "touches", "started", "fault");
-  for (const json& run : runs.at("runs")) {
-    lines += fmt::format(
-        "{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", text(run.at("id")), text(run.at("recipe")),
-        text(run.at("outcome")), text(run.at("verdict")),
-        fmt::format("{}/{}", run.at("touches_done").get<int>(), figure(run.at("touches_total"), "{:.0f}")),
-        text(run.at("started_at")), run.at("fault_code").is_string() ? text(run.at("fault_code")) : "");
+  for (const RunSummary& run : runs) {
+    lines +=
+        fmt::format("{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", run.id, run.recipe, run.outcome, run.verdict,
+                    fmt::format("{}/{}", run.touches_done, figure(run.touches_total, "{:.0f}")),
+                    run.started_at, run.fault_code.value_or(""));
   }
   return lines;
 }

@@ -1,21 +1,25 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
+
+#include "service/documents/result_document.hpp"
+#include "service/documents/run_document.hpp"
+#include "service/documents/status_document.hpp"
 
 namespace cell {
 
 /// A result document (touchcal/result/1) for people: the errors, rank and condition numbers, the distances of
 /// each plane before and after, the verdict with its reasons.
-std::string result_text(const nlohmann::json& result);
+std::string result_text(const ResultDocument& result);
 
 /// The status document in a few lines.
-std::string status_text(const nlohmann::json& status);
+std::string status_text(const StatusDocument& status);
 
 /// What more touches would bring, of a status document: a line, or nothing.
-std::string more_text(const nlohmann::json& status);
+std::string more_text(const StatusDocument& status);
 
 /// The history as a table, newest first.
-std::string runs_text(const nlohmann::json& runs);
+std::string runs_text(const std::vector<RunSummary>& runs);
 
 }  // namespace cell

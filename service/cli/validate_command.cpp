@@ -1,7 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdio>
-#include <nlohmann/json.hpp>
 
 #include "calib_core/identification/validate.hpp"
 #include "config/identification_problem.hpp"
@@ -29,13 +28,13 @@ ExitCode validate_command(const ValidateArguments& arguments, bool json) {
   const calib::Validation validation = calib::validate(problem, recipe.identification, other.touches);
   if (validation.result.status != calib::IdentificationStatus::kConverged)
     return tell_refusal(arguments.touches_file, validation.result);
-  const std::string document = validation_document(cell, recipe, problem, validation);
+  const ValidationDocument document = validation_of(cell, recipe, problem, validation);
   if (json) {
-    fmt::print("{}\n", document);
+    fmt::print("{}\n", document_text(document));
   } else {
     tell_warnings(file.warnings);
     tell_warnings(other.warnings);
-    fmt::print("{}", validation_text(nlohmann::json::parse(document)));
+    fmt::print("{}", validation_text(document));
   }
   if (!arguments.other_file.empty() && !validation.other_touches.done()) {
     fmt::print(stderr, "{}: {}\n", arguments.other_file, validation.other_touches.message);

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
+
+#include "service/documents/validation_document.hpp"
 
 namespace cell {
 
 /// A validation document (touchcal/validation/1) for people, in the form of the paper's Tables IV to VII.
-std::string validation_text(const nlohmann::json& validation);
+std::string validation_text(const ValidationDocument& validation);
 
 }  // namespace cell

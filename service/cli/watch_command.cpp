@@ -4,18 +4,17 @@
 
 #include <chrono>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <set>
+#include <variant>
 
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/cli/progress.hpp"
 #include "service/cli/result_text.hpp"
+#include "service/documents/command_documents.hpp"
 
 namespace cell {
 namespace {
-
-using nlohmann::json;
 
 /// How long a watcher waits for a change before it asks anew.
 constexpr int kWaitSeconds = 10;
@@ -23,155 +22,171 @@ constexpr int kWaitSeconds = 10;
 /// How long run waits for a cell that is being made ready.
 constexpr int kReadyWaitSeconds = 5;
 
-bool is_over(const json& status) {
+/// What the daemon last answered of a run that is followed.
+struct Answer {
+  std::string body;
+  /// The run's own document where another run is under way by now.
+  std::variant<StatusDocument, RunDocument> document;
+};
+
+Answer status_answer(const ApiReply& reply) { return {reply.body, read_reply(reply, read_status)}; }
+
+bool is_over(const StatusDocument& status) {
   static const std::set<std::string> kOver{"STOPPED", "RESETTING", "IDLE", "COMPLETE", "ABORTED", "CLEARING"};
-  return kOver.contains(status.at("state").get<std::string>());
+  return kOver.contains(status.state);
 }
 
-/// `end` is a status or, where another run is under way by now, the run's own document.
-ExitCode exit_code_of_end(const json& end) {
-  const std::string verdict = end.at("verdict");
+ExitCode exit_code_of_end(const std::string& verdict, const std::optional<std::string>& fault) {
   if (verdict == "accepted") return kExitDone;
   if (verdict == "rejected") return kExitLimitsMissed;
-  const json& fault = end.at("fault_code");
   return fault == "recipe_unreachable" || fault == "not_identifiable" ? kExitRefused : kExitFailed;
 }
 
-json wait_for_change(const ApiClient& daemon, const json& status, int wait_s) {
-  const std::string target =
-      fmt::format("/api/v1/status?wait_s={}&after={}", wait_s, status.at("sequence").get<std::uint64_t>());
-  return parse_reply(daemon.get(target, std::chrono::seconds(wait_s + 10)));
+ApiReply wait_for_change(const ApiClient& daemon, const StatusDocument& status, int wait_s) {
+  const std::string target = fmt::format("/api/v1/status?wait_s={}&after={}", wait_s, status.sequence);
+  return daemon.get(target, std::chrono::seconds(wait_s + 10));
 }
 
 /// A daemon that was just started is still looking for its controller: give it a moment. Touches by hand need
 /// no more than that, in manual mode nothing else is ready.
 void wait_until_ready(const ApiClient& daemon, bool guided) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kReadyWaitSeconds);
-  json status = parse_reply(daemon.get("/api/v1/status"));
+  StatusDocument status = read_reply(daemon.get("/api/v1/status"), read_status);
   const auto is_on_its_way = [&] {
-    return status.at("state") == "RESETTING" && !(guided && status.at("controller_connected") == true);
+    return status.state == "RESETTING" && !(guided && status.controller_connected);
   };
   while (is_on_its_way() && std::chrono::steady_clock::now() < deadline) {
-    status = wait_for_change(daemon, status, 1);
+    status = read_reply(wait_for_change(daemon, status, 1), read_status);
   }
 }
 
-std::string run_target(const json& run_id) { return "/api/v1/runs/" + run_id.get<std::string>(); }
+std::string run_target(const std::string& run_id) { return "/api/v1/runs/" + run_id; }
 
 /// Follows one run to its end; its last status, or its own document when another run is under way by then.
-json watch_to_end(const ApiClient& daemon, const json& run_id, bool silent) {
+Answer watch_to_end(const ApiClient& daemon, const std::string& run_id, bool silent) {
   Progress progress(isatty(STDOUT_FILENO) != 0);
-  json status = parse_reply(daemon.get("/api/v1/status"));
+  Answer answer = status_answer(daemon.get("/api/v1/status"));
   for (;;) {
-    if (status.at("run_id") != run_id) {
-      status = parse_reply(daemon.get(run_target(run_id)));
+    const StatusDocument& status = std::get<StatusDocument>(answer.document);
+    if (status.run_id != run_id) {
+      const ApiReply run = daemon.get(run_target(run_id));
+      answer = {run.body, read_reply(run, read_run)};
       break;
     }
     if (!silent) progress.show(status);
     // Where nobody sits who could resume, a run on hold with a fault is not waited for.
     const bool unattended = silent || isatty(STDOUT_FILENO) == 0;
-    if (is_over(status) ||
-        (unattended && status.at("state") == "HELD" && status.at("fault_code").is_string()))
-      break;
-    status = wait_for_change(daemon, status, kWaitSeconds);
+    if (is_over(status) || (unattended && status.state == "HELD" && status.fault_code)) break;
+    answer = status_answer(wait_for_change(daemon, status, kWaitSeconds));
   }
   progress.finish();
-  return status;
+  return answer;
 }
 
-ExitCode tell_end(const ApiClient& daemon, const json& run_id, const json& end, bool json_only) {
-  const ApiReply result = daemon.get(run_target(run_id) + "/result");
-  const bool is_status = end.contains("state");
-  if (json_only) {
-    fmt::print("{}\n", result.status == 200 ? result.body : end.dump());
-  } else if (result.status == 200) {
-    fmt::print("\n{}{}", result_text(parse_reply(result)), is_status ? more_text(end) : "");
+void tell_failure(const Answer& end) {
+  std::string where, message, next;
+  if (const auto* status = std::get_if<StatusDocument>(&end.document)) {
+    where = "in " + status->state;
+    message = status->fault_message.value_or("");
+    next = status->fault_next_step.value_or("");
   } else {
-    fmt::print("{}", is_status ? status_text(end) : runs_text({{"runs", {end}}}));
+    const RunDocument& run = std::get<RunDocument>(end.document);
+    where = run.outcome;
+    message = run.fault_message.value_or("");
   }
-  const ExitCode code = exit_code_of_end(end);
-  if (code == kExitDone || code == kExitLimitsMissed) return code;
-  const auto told = [&end](const char* key) {
-    return end.contains(key) && end[key].is_string() ? end[key].get<std::string>() : std::string();
-  };
-  const std::string message = told("fault_message"), next = told("fault_next_step");
-  fmt::print(stderr, "the run is {}{}{}; {}\n", is_status ? "in " : "", told(is_status ? "state" : "outcome"),
-             message.empty() ? "" : ": " + message, next.empty() ? "touchcal status tells more" : next);
+  fmt::print(stderr, "the run is {}{}; {}\n", where, message.empty() ? "" : ": " + message,
+             next.empty() ? "touchcal status tells more" : next);
+}
+
+ExitCode tell_end(const ApiClient& daemon, const std::string& run_id, const Answer& end, bool json_only) {
+  const ApiReply result = daemon.get(run_target(run_id) + "/result");
+  const auto* status = std::get_if<StatusDocument>(&end.document);
+  const auto* run = std::get_if<RunDocument>(&end.document);
+  if (json_only) {
+    fmt::print("{}\n", result.status == 200 ? result.body : sorted_text(end.body));
+  } else if (result.status == 200) {
+    fmt::print("\n{}{}", result_text(read_reply(result, read_result)), status ? more_text(*status) : "");
+  } else {
+    fmt::print("{}", status ? status_text(*status) : runs_text({*run}));
+  }
+  const ExitCode code = status ? exit_code_of_end(status->verdict, status->fault_code)
+                               : exit_code_of_end(run->verdict, run->fault_code);
+  if (code != kExitDone && code != kExitLimitsMissed) tell_failure(end);
   return code;
 }
 
-json run_body(const RunArguments& arguments) {
-  json body;
+StartRequest start_request(const RunArguments& arguments) {
+  StartRequest request;
   if (arguments.plan_id.empty()) {
-    body["recipe"] = arguments.recipe;
+    request.recipe = arguments.recipe;
   } else {
-    body["plan_id"] = arguments.plan_id;
+    request.plan_id = arguments.plan_id;
   }
-  if (!arguments.operator_name.empty()) body["operator"] = arguments.operator_name;
-  if (arguments.guided) body["touching"] = "guided";
-  return body;
+  if (!arguments.operator_name.empty()) request.operator_name = arguments.operator_name;
+  if (arguments.guided) request.touching = "guided";
+  return request;
 }
 
-std::string place_text(const json& place) {
-  if (!place.is_object()) return {};
-  const auto line = [&](const char* name, const char* value, const char* deviation, const char* unit) {
-    const json &v = place.at(value), &s = place.at(deviation);
-    return fmt::format("{:<12}{:.2f} {:.2f} {:.2f} {} (std {:.2f} {:.2f} {:.2f})\n", name, v[0].get<double>(),
-                       v[1].get<double>(), v[2].get<double>(), unit, s[0].get<double>(), s[1].get<double>(),
-                       s[2].get<double>());
+std::string place_text(const std::optional<PlaceDocument>& place) {
+  if (!place) return {};
+  const auto line = [](const char* name, const std::array<double, 3>& v, const std::array<double, 3>& s,
+                       const char* unit) {
+    return fmt::format("{:<12}{:.2f} {:.2f} {:.2f} {} (std {:.2f} {:.2f} {:.2f})\n", name, v[0], v[1], v[2],
+                       unit, s[0], s[1], s[2]);
   };
-  return line("shift", "shift_mm", "std_shift_mm", "mm") +
-         line("turn", "turn_deg", "std_turn_deg", "degrees");
+  return line("shift", place->shift_mm, place->std_shift_mm, "mm") +
+         line("turn", place->turn_deg, place->std_turn_deg, "degrees");
 }
 
 }  // namespace
 
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json_only) {
   wait_until_ready(daemon, arguments.guided);
-  const ApiReply reply = daemon.post("/api/v1/runs", run_body(arguments).dump());
+  const ApiReply reply = daemon.post("/api/v1/runs", document_text(start_request(arguments)));
   if (reply.status != 201) return tell_problem(reply, json_only);
-  const json run_id = parse_reply(reply).at("id");
+  const std::string run_id = read_reply(reply, read_run).id;
   return tell_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
 }
 
 ExitCode watch_command(const ApiClient& daemon, bool json_only) {
-  const json status = parse_reply(daemon.get("/api/v1/status"));
-  if (is_over(status) || !status.at("run_id").is_string()) {
-    fmt::print("{}", json_only ? status.dump() + "\n" : status_text(status));
+  const ApiReply reply = daemon.get("/api/v1/status");
+  const StatusDocument status = read_reply(reply, read_status);
+  if (is_over(status) || !status.run_id) {
+    fmt::print("{}", json_only ? sorted_text(reply.body) + "\n" : status_text(status));
     return kExitDone;
   }
-  const json run_id = status.at("run_id");
+  const std::string run_id = *status.run_id;
   return tell_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
 }
 
 ExitCode locate_command(const ApiClient& daemon, bool json_only) {
-  const json place_before = parse_reply(daemon.get("/api/v1/cell")).at("place");
-  const ApiReply reply = daemon.post("/api/v1/cell/locate", {});
+  const auto place_before = read_reply(daemon.get("/api/v1/cell"), read_place_of_cell);
+  ApiReply reply = daemon.post("/api/v1/cell/locate", {});
   if (reply.status != 202) return tell_problem(reply, json_only);
-  json status = parse_reply(reply);
+  StatusDocument status = read_reply(reply, read_status);
   std::string said;
-  const bool passes = status.at("by_hand_step") == "passing";
-  const auto is_found = [&] { return !passes && status.at("by_hand_step") == "pass"; };
+  const bool passes = status.by_hand_step == "passing";
+  const auto is_found = [&] { return !passes && status.by_hand_step == "pass"; };
   do {
     if (!json_only && guidance(status) != said) fmt::print("{}\n", said = guidance(status));
     std::fflush(stdout);
-    if (is_found() || (passes && status.at("by_hand_step") == "pass")) break;
-    status = wait_for_change(daemon, status, kWaitSeconds);
-  } while (status.at("by_hand") == "locate");
-  const bool failed = status.at("fault_code").is_string();
+    if (is_found() || (passes && status.by_hand_step == "pass")) break;
+    reply = wait_for_change(daemon, status, kWaitSeconds);
+    status = read_reply(reply, read_status);
+  } while (status.by_hand == "locate");
+  const bool failed = status.fault_code.has_value();
   const ApiReply cell = daemon.get("/api/v1/cell");
-  if (!failed && !is_found() && parse_reply(cell).at("place") == place_before) {
+  if (!failed && !is_found() && read_reply(cell, read_place_of_cell) == place_before) {
     fmt::print(stderr,
                "locating was broken off: no new place is kept; touchcal locate goes on or begins anew\n");
     return kExitFailed;
   }
   if (json_only) {
-    fmt::print("{}\n", failed || is_found() ? status.dump() : cell.body);
+    fmt::print("{}\n", failed || is_found() ? sorted_text(reply.body) : cell.body);
   } else if (failed) {
-    fmt::print(stderr, "{}; {}\n", status.at("fault_message").get<std::string>(),
-               status.at("fault_next_step").get<std::string>());
+    fmt::print(stderr, "{}; {}\n", status.fault_message.value(), status.fault_next_step.value());
   } else if (!is_found()) {
-    fmt::print("{}", place_text(parse_reply(cell).at("place")));
+    fmt::print("{}", place_text(read_reply(cell, read_place_of_cell)));
   }
   return failed ? kExitFailed : kExitDone;
 }

@@ -1,59 +1,50 @@
 #include "service/documents/conditions_view.hpp"
 
-#include <nlohmann/json.hpp>
-
 #include "cs8_protocol/messages.hpp"
-#include "service/base/json_figures.hpp"
 #include "service/base/version.hpp"
+#include "service/documents/figures.hpp"
 #include "service/documents/place_view.hpp"
 
 namespace cell {
 namespace {
 
-Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
-
-Json texts(const std::map<std::string, std::string>& certificate) {
-  if (certificate.empty()) return nullptr;
-  Json object = Json::object();
-  for (const auto& [key, value] : certificate) object[key] = value;
-  return object;
+std::optional<std::map<std::string, std::string>> told(
+    const std::map<std::string, std::string>& certificate) {
+  return certificate.empty() ? std::nullopt : std::optional(certificate);
 }
 
-Json touching_name(std::optional<Touching> touching) {
-  if (!touching) return nullptr;
+std::optional<std::string> touching_name(std::optional<Touching> touching) {
+  if (!touching) return std::nullopt;
   return *touching == Touching::kGuided ? "guided" : "automatic";
 }
 
 }  // namespace
 
-Json conditions_json(const Cell& cell, const Conditions& conditions) {
-  return {
-      {"operator", text_or_null(conditions.operator_name)},
-      {"config_digest", text_or_null(conditions.config_digest)},
-      {"block_temperature_c", number(cell.block.temperature_c)},
-      {"std_temperature_k", cell.block.temperature_c ? number(cell.block.std_temperature_k) : Json(nullptr)},
-      {"thermal_expansion_per_k",
-       cell.block.temperature_c ? number(cell.block.thermal_expansion_per_k) : Json(nullptr)},
-      {"block", {{"name", cell.block.name}, {"certificate", texts(cell.block.certificate)}}},
-      {"probe", {{"name", cell.probe.name}, {"certificate", texts(cell.probe.certificate)}}},
-      {"versions",
-       {{"touchcal", kVersion},
-        {"protocol", cs8::kProtocolVersion},
-        {"controller_application", text_or_null(conditions.controller_application)}}},
-      {"controller_session",
-       conditions.controller_session ? Json(*conditions.controller_session) : Json(nullptr)},
-      {"touching", touching_name(conditions.touching)},
-      {"place", place_view(conditions.place)}};
+ConditionsDocument conditions_of(const Cell& cell, const Conditions& conditions) {
+  ConditionsDocument document{
+      .operator_name = conditions.operator_name,
+      .config_digest = conditions.config_digest,
+      .block_temperature_c = finite(cell.block.temperature_c),
+      .block = {cell.block.name, told(cell.block.certificate)},
+      .probe = {cell.probe.name, told(cell.probe.certificate)},
+      .versions = {kVersion, cs8::kProtocolVersion, conditions.controller_application},
+      .touching = touching_name(conditions.touching),
+      .place = place_of(conditions.place)};
+  if (cell.block.temperature_c) {
+    document.std_temperature_k = finite(cell.block.std_temperature_k);
+    document.thermal_expansion_per_k = finite(cell.block.thermal_expansion_per_k);
+  }
+  if (conditions.controller_session) document.controller_session = *conditions.controller_session;
+  return document;
 }
 
 std::string conditions_document(const Cell& cell, const Conditions& conditions) {
-  return text_of(conditions_json(cell, conditions));
+  return document_text(conditions_of(cell, conditions));
 }
 
 bool is_guided(const std::optional<std::string>& conditions) {
   if (!conditions) return false;
-  const Json found = Json::parse(*conditions, nullptr, false);
-  return found.is_object() && found.value("touching", Json()) == "guided";
+  return touching_of(*conditions) == "guided";
 }
 
 }  // namespace cell

@@ -1,17 +1,17 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
 #include "config/cell.hpp"
+#include "service/documents/conditions_document.hpp"
 #include "service/run/run_conditions.hpp"
 
 namespace cell {
 
 /// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; null where
 /// unknown.
-nlohmann::ordered_json conditions_json(const Cell& cell, const Conditions& conditions);
+ConditionsDocument conditions_of(const Cell& cell, const Conditions& conditions);
 /// The same as text: what is kept with a run.
 std::string conditions_document(const Cell& cell, const Conditions& conditions);
 

@@ -1,14 +1,13 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
+#include "service/documents/result_document.hpp"
 #include "service/run/decision_rule.hpp"
 
 namespace cell {
 
 /// `decision_rule` of a verdict: the standard, which of its ways this cell decides by, and every criterion.
-nlohmann::ordered_json decision_rule_json(const std::vector<Criterion>& criteria,
-                                          const AcceptanceLimits& limits);
+DecisionRuleDocument decision_rule_of(const std::vector<Criterion>& criteria, const AcceptanceLimits& limits);
 
 }  // namespace cell

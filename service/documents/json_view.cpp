@@ -1,54 +1,78 @@
 #include "service/documents/json_view.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"
+#include "service/documents/figures.hpp"
+#include "service/documents/run_document.hpp"
 #include "service/run/run_conditions.hpp"
 
 namespace cell {
 namespace {
 
-template <class T>
-Json value_or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-Json id_or_null(const std::optional<std::int64_t>& id) {
-  return id ? Json(std::to_string(*id)) : Json(nullptr);
+std::optional<std::string> id_text(const std::optional<std::int64_t>& id) {
+  return id ? std::optional(std::to_string(*id)) : std::nullopt;
 }
 
 /// How many touches a run makes is known once it is planned; until then there are none.
-Json count_once_planned(int touches_total) { return touches_total > 0 ? Json(touches_total) : Json(nullptr); }
+std::optional<int> count_once_planned(int touches_total) {
+  return touches_total > 0 ? std::optional(touches_total) : std::nullopt;
+}
 
-Json run_json(const StoredRun& run) {
-  return {{"id", std::to_string(run.id)},
-          {"recipe", run.recipe},
-          {"touching", is_guided(run.trace_json) ? "guided" : "automatic"},
-          {"outcome", run.outcome},
-          {"verdict", run.verdict},
-          {"touches_done", run.touches_done},
-          {"touches_total", count_once_planned(run.touches_total)},
-          {"started_at", run.started_at},
-          {"ended_at", value_or_null(run.ended_at)},
-          {"fault_code", value_or_null(run.fault_code)},
-          {"fault_message", value_or_null(run.fault_message)}};
+RunSummary summary_of(const StoredRun& run) {
+  return {.id = std::to_string(run.id),
+          .recipe = run.recipe,
+          .touching = is_guided(run.trace_json) ? "guided" : "automatic",
+          .outcome = run.outcome,
+          .verdict = run.verdict,
+          .touches_done = run.touches_done,
+          .touches_total = count_once_planned(run.touches_total),
+          .started_at = run.started_at,
+          .ended_at = run.ended_at,
+          .fault_code = run.fault_code,
+          .fault_message = run.fault_message};
+}
+
+void set_controller(const ControllerView& controller, StatusDocument& document) {
+  document.controller_connected = controller.connected;
+  document.controller_powered = controller.powered;
+  document.controller_mode = controller.mode;
+  document.controller_estop = controller.emergency_stop;
+  document.controller_cell_closed = controller.cell_closed;
+  document.controller_touch_tested = controller.touch_tested;
+  document.controller_permit = controller.permit;
+  document.probe = controller.probe;
 }
 
 /// What a person who touches by hand is told.
-void add_by_hand(Json& document, const std::optional<HandGuide>& guide) {
-  document["by_hand"] = guide ? Json(guide->activity) : Json(nullptr);
-  document["by_hand_step"] = guide ? Json(guide->step) : Json(nullptr);
-  document["by_hand_plane"] = guide ? Json(guide->plane) : Json(nullptr);
-  document["by_hand_index"] = guide ? Json(guide->index) : Json(nullptr);
-  document["by_hand_total"] = guide ? Json(guide->total) : Json(nullptr);
-  document["by_hand_words"] = guide ? Json(guide->words) : Json(nullptr);
-  document["by_hand_problem"] = guide && guide->problem ? Json(*guide->problem) : Json(nullptr);
-  Json& joints = document["by_hand_joints_deg"] = nullptr;
-  if (!guide || !guide->about_joints) return;
-  joints = Json::array();
-  for (const double joint : *guide->about_joints) joints.push_back(calib::degrees_from_radians(joint));
+void set_by_hand(const HandGuide& guide, StatusDocument& document) {
+  document.by_hand = guide.activity;
+  document.by_hand_step = guide.step;
+  document.by_hand_plane = guide.plane;
+  document.by_hand_index = guide.index;
+  document.by_hand_total = guide.total;
+  document.by_hand_words = guide.words;
+  document.by_hand_problem = guide.problem;
+  if (!guide.about_joints) return;
+  auto& joints = document.by_hand_joints_deg.emplace();
+  for (const double joint : *guide.about_joints) joints.push_back(calib::degrees_from_radians(joint));
+}
+
+void set_faults(const Status& status, StatusDocument& document) {
+  if (status.fault) {
+    const FaultEntry& entry = describe(status.fault->code);
+    document.fault_code = entry.name;
+    document.fault_message = status.fault->message();
+    document.fault_robot_action = entry.robot_action;
+    document.fault_next_step = entry.next_step;
+  }
+  if (!status.warning) return;
+  document.warning_code = describe(status.warning->code).name;
+  document.warning_message = status.warning->message();
 }
 
 }  // namespace
@@ -65,56 +89,45 @@ const char* role_name(calib::TouchRole role) {
   return "";
 }
 
-std::string status_document(const Status& status) {
-  Json document{{"state", state_name(status.state)},
-                {"waiting_for", value_or_null(status.waiting_for)},
-                {"run_id", id_or_null(status.run_id)},
-                {"recipe", value_or_null(status.recipe)},
-                {"touches_done", status.touches_done},
-                {"touches_total", count_once_planned(status.touches_total)},
-                {"plane", value_or_null(status.plane)},
-                {"identifiable_count", value_or_null(status.identifiable_count)},
-                {"condition_number", number(status.condition_number)},
-                {"predicted_tip_rms_mm", number_mm(status.predicted_tip_rms_m)},
-                {"more_would_bring", value_or_null(status.more_would_bring)},
-                {"eta_s", number(status.eta_s)},
-                {"verdict", verdict_name(status.verdict)},
-                {"controller_connected", status.controller.connected},
-                {"controller_powered", value_or_null(status.controller.powered)},
-                {"controller_mode", value_or_null(status.controller.mode)},
-                {"controller_estop", value_or_null(status.controller.emergency_stop)},
-                {"controller_cell_closed", value_or_null(status.controller.cell_closed)},
-                {"controller_touch_tested", value_or_null(status.controller.touch_tested)},
-                {"controller_permit", value_or_null(status.controller.permit)},
-                {"probe", value_or_null(status.controller.probe)}};
-  add_by_hand(document, status.by_hand);
-  const FaultEntry* entry = status.fault ? &describe(status.fault->code) : nullptr;
-  document["fault_code"] = entry ? Json(entry->name) : Json(nullptr);
-  document["fault_message"] = entry ? Json(status.fault->message()) : Json(nullptr);
-  document["fault_robot_action"] = entry ? Json(entry->robot_action) : Json(nullptr);
-  document["fault_next_step"] = entry ? Json(entry->next_step) : Json(nullptr);
-  document["warning_code"] = status.warning ? Json(describe(status.warning->code).name) : Json(nullptr);
-  document["warning_message"] = status.warning ? Json(status.warning->message()) : Json(nullptr);
-  document["reference_drift_mm"] = number_mm(status.reference_drift_m);
-  document["last_accepted_run_id"] = id_or_null(status.last_accepted_run_id);
-  document["last_accepted_at"] = value_or_null(status.last_accepted_at);
-  document["data_age_ms"] = value_or_null(status.data_age_ms);
-  document["sequence"] = status.sequence;
-  document["instance_id"] = status.instance_id;
-  document["since"] = status.since;
-  return text_of(document);
+StatusDocument status_of(const Status& status) {
+  StatusDocument document{.state = std::string(state_name(status.state)),
+                          .waiting_for = status.waiting_for,
+                          .run_id = id_text(status.run_id),
+                          .recipe = status.recipe,
+                          .touches_done = status.touches_done,
+                          .touches_total = count_once_planned(status.touches_total),
+                          .plane = status.plane,
+                          .identifiable_count = status.identifiable_count,
+                          .condition_number = finite(status.condition_number),
+                          .predicted_tip_rms_mm = finite_mm(status.predicted_tip_rms_m),
+                          .more_would_bring = status.more_would_bring,
+                          .eta_s = finite(status.eta_s),
+                          .verdict = std::string(verdict_name(status.verdict))};
+  set_controller(status.controller, document);
+  if (status.by_hand) set_by_hand(*status.by_hand, document);
+  set_faults(status, document);
+  document.reference_drift_mm = finite_mm(status.reference_drift_m);
+  document.last_accepted_run_id = id_text(status.last_accepted_run_id);
+  document.last_accepted_at = status.last_accepted_at;
+  document.data_age_ms = status.data_age_ms;
+  document.sequence = status.sequence;
+  document.instance_id = status.instance_id;
+  document.since = status.since;
+  return document;
 }
 
+std::string status_document(const Status& status) { return document_text(status_of(status)); }
+
 std::string run_document(const StoredRun& run) {
-  Json document = run_json(run);
-  document["conditions"] = run.trace_json ? Json::parse(*run.trace_json) : Json(nullptr);
-  return text_of(document);
+  RunDocument document{summary_of(run), {}};
+  if (run.trace_json) document.conditions = CarriedJson{*run.trace_json};
+  return document_text(document);
 }
 
 std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std::int64_t> next_before) {
-  Json list = Json::array();
-  for (const StoredRun& run : runs) list.push_back(run_json(run));
-  return text_of({{"runs", list}, {"next_before", id_or_null(next_before)}});
+  RunsDocument document{.runs = {}, .next_before = id_text(next_before)};
+  std::ranges::transform(runs, std::back_inserter(document.runs), summary_of);
+  return document_text(document);
 }
 
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "config/cell.hpp"
+#include "service/documents/status_document.hpp"
 #include "service/run/status.hpp"
 #include "service/store/run_store.hpp"
 
@@ -15,6 +16,7 @@ namespace cell {
 /// How a touch's role is called in every document.
 const char* role_name(calib::TouchRole role);
 
+StatusDocument status_of(const Status& status);
 std::string status_document(const Status& status);
 
 std::string run_document(const StoredRun& run);

@@ -3,10 +3,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
-#include "service/base/json_figures.hpp"
+#include "service/documents/figures.hpp"
 #include "service/run/verdict.hpp"
 
 namespace cell {
@@ -50,17 +49,17 @@ const calib::ErrorParameter& parameter_at(int index) {
 }
 
 /// One shown unit of `from` adds `factor` shown units to `to`, when one SI unit of it adds `factor_si`.
-Json factor_json(int named, int from, int to, double factor_si) {
-  return {{"name", parameter_at(named).name()}, {"factor", shown(to, factor_si) / shown(from, 1.0)}};
+CarriedError carried_error(int named, int from, int to, double factor_si) {
+  return {.name = parameter_at(named).name(), .factor = finite(shown(to, factor_si) / shown(from, 1.0))};
 }
 
 /// Which grouped errors each candidate carries: the transpose of grouped_with.
-std::array<Json, calib::kErrorParameterCount> carried(const calib::IdentifiableSet& identifiable) {
-  std::array<Json, calib::kErrorParameterCount> stands_for;
-  stands_for.fill(Json::array());
+std::array<std::vector<CarriedError>, calib::kErrorParameterCount> carried(
+    const calib::IdentifiableSet& identifiable) {
+  std::array<std::vector<CarriedError>, calib::kErrorParameterCount> stands_for;
   for (int i = 0; i < calib::kErrorParameterCount; ++i) {
     for (const auto& [other, factor] : identifiable.candidates[static_cast<std::size_t>(i)].grouped_with)
-      stands_for[static_cast<std::size_t>(other)].push_back(factor_json(i, i, other, factor));
+      stands_for[static_cast<std::size_t>(other)].push_back(carried_error(i, i, other, factor));
   }
   return stands_for;
 }
@@ -71,21 +70,25 @@ std::optional<double> std_of(const calib::IdentificationResult& result, int inde
   return result.certainty->std_error(index);
 }
 
-Json interval_json(int index, double error, std::optional<double> std, const calib::Certainty* certainty) {
-  if (!std || !certainty) return nullptr;
+std::optional<std::array<std::optional<double>, 2>> interval_of(int index, double error,
+                                                                std::optional<double> std,
+                                                                const calib::Certainty* certainty) {
+  if (!std || !certainty) return std::nullopt;
   const double half = certainty->coverage_factor * *std;
-  return {number(shown(index, error - half)), number(shown(index, error + half))};
+  return std::array{finite(shown(index, error - half)), finite(shown(index, error + half))};
 }
 
-Json identity_json(const calib::KinematicModel& nominal, int index) {
+/// With what the touches do not change.
+Parameter identity_of(const calib::KinematicModel& nominal, int index) {
   const calib::ErrorParameter& parameter = parameter_at(index);
-  const std::string name = parameter.name();
-  return {{"name", name},
-          {"frame", parameter.frame},
-          {"kind", name.substr(0, name.size() - 1)},
-          {"group", group_name(parameter.group())},
-          {"unit", parameter.is_length() ? "mm" : "rad"},
-          {"nominal", shown(index, calib::parameter_value(nominal, index))}};
+  Parameter identity;
+  identity.name = parameter.name();
+  identity.frame = parameter.frame;
+  identity.kind = identity.name.substr(0, identity.name.size() - 1);
+  identity.group = group_name(parameter.group());
+  identity.unit = parameter.is_length() ? "mm" : "rad";
+  identity.nominal = finite(shown(index, calib::parameter_value(nominal, index)));
+  return identity;
 }
 
 const char* unit_name(calib::ArtefactKind kind) {
@@ -111,35 +114,33 @@ double shown(int index, double value) {
   return parameter_at(index).is_length() ? calib::mm_from_metres(value) : value;
 }
 
-Json parameters_json(const calib::IdentificationProblem& problem, const calib::IdentificationOptions& options,
-                     const calib::IdentificationResult& result) {
+std::vector<Parameter> parameters_of(const calib::IdentificationProblem& problem,
+                                     const calib::IdentificationOptions& options,
+                                     const calib::IdentificationResult& result) {
   const auto stands_for = carried(result.identifiable);
-  Json parameters = Json::array();
+  std::vector<Parameter> parameters;
   for (int i = 0; i < calib::kErrorParameterCount; ++i) {
     const auto index = static_cast<std::size_t>(i);
     const calib::CandidateStatus& candidate = result.identifiable.candidates[index];
     const bool estimated = is_estimated(options, result.identifiable, i);
     const auto std = estimated ? std_of(result, i) : std::nullopt;
-    Json grouped_with = Json::array();
+    Parameter& parameter = parameters.emplace_back(identity_of(problem.nominal, i));
     for (const auto& [other, factor] : candidate.grouped_with) {
-      if (!estimated) grouped_with.push_back(factor_json(other, i, other, factor));
+      if (!estimated) parameter.grouped_with.push_back(carried_error(other, i, other, factor));
     }
-    Json parameter = identity_json(problem.nominal, i);
-    parameter["status"] = estimated ? "identified" : status_name(candidate.status);
-    parameter["error"] = estimated ? number(shown(i, result.errors[i])) : Json(nullptr);
-    parameter["std_uncertainty"] = std ? number(shown(i, *std)) : Json(nullptr);
-    parameter["interval95"] =
-        interval_json(i, result.errors[i], std, result.certainty ? &*result.certainty : nullptr);
-    parameter["grouped_with"] = grouped_with;
-    parameter["stands_for"] = options.prior ? Json::array() : stands_for[index];
-    parameters.push_back(std::move(parameter));
+    parameter.status = estimated ? "identified" : status_name(candidate.status);
+    if (estimated) parameter.error = finite(shown(i, result.errors[i]));
+    if (std) parameter.std_uncertainty = finite(shown(i, *std));
+    parameter.interval95 =
+        interval_of(i, result.errors[i], std, result.certainty ? &*result.certainty : nullptr);
+    if (!options.prior) parameter.stands_for = stands_for[index];
   }
   return parameters;
 }
 
-Json artefact_parameters_json(const calib::IdentificationProblem& problem,
-                              const calib::IdentificationResult& result) {
-  Json list = Json::array();
+std::vector<ArtefactParameter> artefact_parameters_of(const calib::IdentificationProblem& problem,
+                                                      const calib::IdentificationResult& result) {
+  std::vector<ArtefactParameter> list;
   for (std::size_t i = 0; i < problem.artefact.parameters.size(); ++i) {
     const calib::ArtefactParameter& parameter = problem.artefact.parameters[i];
     const auto index = static_cast<Eigen::Index>(i);
@@ -148,36 +149,37 @@ Json artefact_parameters_json(const calib::IdentificationProblem& problem,
     const double std = result.certainty ? result.certainty->artefact_std[index] : kUnknown;
     const bool identified = !parameter.std || std < (1.0 - kIdentifiedFall) * *parameter.std;
     const bool estimated = result.artefact_errors.size() > index;
-    list.push_back({{"name", parameter.name},
-                    {"unit", unit},
-                    {"nominal", scale * parameter.nominal},
-                    {"value", estimated ? number(scale * (parameter.nominal + result.artefact_errors[index]))
-                                        : Json(nullptr)},
-                    {"std_uncertainty", number(scale * std)},
-                    {"status", identified ? "identified" : "prior"}});
+    ArtefactParameter& shown_as = list.emplace_back();
+    shown_as.name = parameter.name;
+    shown_as.unit = unit;
+    shown_as.nominal = finite(scale * parameter.nominal);
+    if (estimated) shown_as.value = finite(scale * (parameter.nominal + result.artefact_errors[index]));
+    shown_as.std_uncertainty = finite(scale * std);
+    shown_as.status = identified ? "identified" : "prior";
   }
   return list;
 }
 
-Json correlations_json(const calib::IdentificationResult& result) {
-  Json list = Json::array();
+std::vector<CorrelationOfErrors> correlations_of(const calib::IdentificationResult& result) {
+  std::vector<CorrelationOfErrors> list;
   if (!result.certainty) return list;
   for (const calib::Correlation& correlation : result.certainty->correlations) {
-    list.push_back({{"first", arm_parameter_name(correlation.first)},
-                    {"second", arm_parameter_name(correlation.second)},
-                    {"coefficient", number(correlation.coefficient)}});
+    list.push_back({.first = arm_parameter_name(correlation.first),
+                    .second = arm_parameter_name(correlation.second),
+                    .coefficient = finite(correlation.coefficient)});
   }
   return list;
 }
 
-Json stiffness_json(const calib::IdentificationOptions& options, const calib::IdentificationResult& result) {
-  Json list = Json::array();
+std::vector<JointCompliance> stiffness_of(const calib::IdentificationOptions& options,
+                                          const calib::IdentificationResult& result) {
+  std::vector<JointCompliance> list;
   for (int i = 0; options.stiffness && i < calib::kComplianceCount; ++i) {
     const int joint = calib::kCompliantJoints[static_cast<std::size_t>(i)];
     const double compliance = result.calibrated.compliance_rad_per_nm[static_cast<std::size_t>(joint)];
-    list.push_back({{"joint", joint + 1},
-                    {"compliance_rad_per_nm", number(compliance)},
-                    {"std_uncertainty", number(std_of(result, calib::kErrorParameterCount + i))}});
+    list.push_back({.joint = joint + 1,
+                    .compliance_rad_per_nm = finite(compliance),
+                    .std_uncertainty = finite(std_of(result, calib::kErrorParameterCount + i))});
   }
   return list;
 }

@@ -6,13 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/numerics/halton.hpp"
 #include "config/identification_problem.hpp"
-#include "service/base/json_figures.hpp"
 #include "service/documents/plan_view.hpp"
 #include "service/run/planning_problem.hpp"
 
@@ -155,10 +153,10 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
                        .message = fmt::format("the planned touches would not do: {}", planned.result.message),
                        .efforts = plan.touches.efforts};
   }
-  Json document = plan_json(regions, recipe, plan.touches, planned);
-  plan.id = digest(text_of(document));
-  document["plan_id"] = plan.id;
-  plan.document = text_of(document);
+  PlanDocument document = plan_of(regions, recipe, plan.touches, planned);
+  plan.id = digest(document_text(document));
+  document.plan_id = plan.id;
+  plan.document = document_text(document);
   return plan;
 }
 

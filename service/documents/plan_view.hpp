@@ -1,15 +1,13 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
-
 #include "service/documents/plan.hpp"
+#include "service/documents/plan_document.hpp"
 
 namespace cell {
 
-/// touchcal/plan/1 (service/doc/surfaces.md, section 6) with a plan_id that is null: what is predicted, what
-/// limits it, and every step of every touch. In `joints_deg` the nominal arm's ball touches the nominal face.
-nlohmann::ordered_json plan_json(const TipRegions& regions, const Recipe& recipe,
-                                 const calib::TouchPlan& plan, const PlannedIdentification& planned);
+/// touchcal/plan/1 without a plan_id.
+PlanDocument plan_of(const TipRegions& regions, const Recipe& recipe, const calib::TouchPlan& plan,
+                     const PlannedIdentification& planned);
 
 /// Causes with a smaller share are in the figures only, not in words.
 inline constexpr double kShareToldMin = 0.05;

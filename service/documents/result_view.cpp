@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/identification/face_distances.hpp"
 #include "calib_core/identification/validate.hpp"
-#include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/decision_rule_view.hpp"
+#include "service/documents/figures.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/validation_view.hpp"
@@ -19,28 +18,24 @@ namespace {
 
 using calib::mm_from_metres;
 
-Json micrometres(std::optional<double> value_m) {
-  return value_m ? number(1e3 * mm_from_metres(*value_m)) : Json(nullptr);
+std::optional<double> micrometres(std::optional<double> value_m) {
+  return value_m ? finite(1e3 * mm_from_metres(*value_m)) : std::nullopt;
 }
 
-Json parts_per_million(double relative) { return number(1e6 * relative); }
+std::optional<double> parts_per_million(double relative) { return finite(1e6 * relative); }
 
-Json iteration_json(const calib::Iteration& iteration) {
-  return {{"condition_number", number(iteration.condition_number)},
-          {"scaled_condition_number", number(iteration.scaled_condition_number)},
-          {"residual_rms_mm", number_mm(iteration.residual_rms_m)},
-          {"step_norm", number(iteration.step_norm)}};
+ResultDocument::Iteration iteration_of(const calib::Iteration& iteration) {
+  return {.condition_number = finite(iteration.condition_number),
+          .scaled_condition_number = finite(iteration.scaled_condition_number),
+          .residual_rms_mm = finite_mm(iteration.residual_rms_m),
+          .step_norm = finite(iteration.step_norm)};
 }
 
-Json rejected_json(const std::vector<calib::RejectedTouch>& rejected) {
-  Json list = Json::array();
-  for (const calib::RejectedTouch& touch : rejected) {
-    const bool wrong_plane = touch.reason == calib::RejectionReason::kWrongPlane;
-    list.push_back({{"touch", touch.touch + 1},
-                    {"residual_mm", number_mm(touch.residual_m)},
-                    {"reason", wrong_plane ? "wrong_plane" : "outlier"}});
-  }
-  return list;
+ResultDocument::RejectedTouch rejected_of(const calib::RejectedTouch& touch) {
+  const bool wrong_plane = touch.reason == calib::RejectionReason::kWrongPlane;
+  return {.touch = static_cast<int>(touch.touch) + 1,
+          .residual_mm = finite_mm(touch.residual_m),
+          .reason = wrong_plane ? "wrong_plane" : "outlier"};
 }
 
 const char* source_name(calib::ScaleSource source) {
@@ -55,95 +50,84 @@ const char* source_name(calib::ScaleSource source) {
   return "";
 }
 
-Json scale_json(const std::optional<calib::ScaleCheck>& scale) {
-  if (!scale) {
-    return {{"source", nullptr},
-            {"std_uncertainty_ppm", nullptr},
-            {"stretch_ppm", nullptr},
-            {"significance", nullptr},
-            {"warning", nullptr}};
-  }
-  return {{"source", source_name(scale->source)},
-          {"std_uncertainty_ppm", parts_per_million(scale->std_relative)},
-          {"stretch_ppm", parts_per_million(scale->stretch_relative)},
-          {"significance", number(scale->significance)},
-          {"warning", scale->warning.empty() ? Json(nullptr) : Json(scale->warning)}};
+ResultDocument::Scale scale_of(const std::optional<calib::ScaleCheck>& scale) {
+  if (!scale) return {};
+  ResultDocument::Scale document{.source = source_name(scale->source),
+                                 .std_uncertainty_ppm = parts_per_million(scale->std_relative),
+                                 .stretch_ppm = parts_per_million(scale->stretch_relative),
+                                 .significance = finite(scale->significance)};
+  if (!scale->warning.empty()) document.warning = scale->warning;
+  return document;
 }
 
-Json millimetres(const Eigen::Vector3d& vector_m) {
+std::array<double, 3> millimetres(const Eigen::Vector3d& vector_m) {
   return {mm_from_metres(vector_m.x()), mm_from_metres(vector_m.y()), mm_from_metres(vector_m.z())};
 }
 
-/// Cells are counted with x running fastest, then y, then z; null where no posture of the arm puts the tip.
-Json map_json(const Cell& cell, const std::optional<calib::UncertaintyMap>& map) {
-  if (!map) return nullptr;
-  Json values = Json::array();
-  for (const auto& rms_m : map->rms_m) values.push_back(number_mm(rms_m));
-  const Eigen::Vector3d& min_m = map->grid.min_m;
-  const Eigen::Vector3d extent_m(map->grid.cell_size_m.x() * map->grid.counts[0],
-                                 map->grid.cell_size_m.y() * map->grid.counts[1],
-                                 map->grid.cell_size_m.z() * map->grid.counts[2]);
-  return {{"box",
-           {{"name", cell.workspace_box.name},
-            {"min_mm", millimetres(min_m)},
-            {"max_mm", millimetres(min_m + extent_m)}}},
-          {"counts", map->grid.counts},
-          {"cell_mm", millimetres(map->grid.cell_size_m)},
-          {"values_mm", values}};
+TipDocument::Map map_of(const Cell& cell, const calib::UncertaintyMap& map) {
+  const Eigen::Vector3d& min_m = map.grid.min_m;
+  const Eigen::Vector3d extent_m(map.grid.cell_size_m.x() * map.grid.counts[0],
+                                 map.grid.cell_size_m.y() * map.grid.counts[1],
+                                 map.grid.cell_size_m.z() * map.grid.counts[2]);
+  TipDocument::Map document{
+      .box = {cell.workspace_box.name, millimetres(min_m), millimetres(min_m + extent_m)},
+      .counts = map.grid.counts,
+      .cell_mm = millimetres(map.grid.cell_size_m)};
+  for (const auto& rms_m : map.rms_m) document.values_mm.push_back(finite_mm(rms_m));
+  return document;
 }
 
 /// A plane without fitted touches has no p.
-Json plane_fits_json(const calib::IdentificationResult& result) {
-  Json planes = Json::array();
+std::vector<ResultDocument::PlaneFit> plane_fits_of(const calib::IdentificationResult& result) {
+  std::vector<ResultDocument::PlaneFit> planes;
   for (const calib::FaceDistances& face : result.distances) {
     if (face.role != calib::TouchRole::kFit || !result.lack_of_fit) continue;
     const double p = result.lack_of_fit->p_of_face.at(static_cast<std::size_t>(face.face));
-    planes.push_back({{"plane", face.face + 1}, {"p", number(p)}});
+    planes.push_back({.plane = face.face + 1, .p = finite(p)});
   }
   return planes;
 }
 
-Json fit_json(const calib::IdentificationProblem& problem, const calib::IdentificationResult& result) {
+ResultDocument::Fit fit_of(const calib::IdentificationProblem& problem,
+                           const calib::IdentificationResult& result) {
   const auto& lack_of_fit = result.lack_of_fit;
   const auto& certainty = result.certainty;
-  std::optional<double> degrees;
+  ResultDocument::Fit document{.noise_estimated_um = micrometres(result.noise_estimated_m),
+                               .planes = plane_fits_of(result)};
+  if (problem.touch_noise_m > 0.0) document.noise_declared_um = micrometres(problem.touch_noise_m);
+  if (certainty) document.noise_used_um = micrometres(certainty->noise_m);
   if (lack_of_fit) {
-    degrees = lack_of_fit->degrees_of_freedom;
+    document.lack_of_fit_p = finite(lack_of_fit->p);
+    document.degrees_of_freedom = finite(lack_of_fit->degrees_of_freedom);
   } else if (certainty) {
-    degrees = certainty->degrees_of_freedom;
+    document.degrees_of_freedom = finite(certainty->degrees_of_freedom);
   }
-  return {
-      {"noise_declared_um", problem.touch_noise_m > 0.0 ? micrometres(problem.touch_noise_m) : Json(nullptr)},
-      {"noise_estimated_um", micrometres(result.noise_estimated_m)},
-      {"noise_used_um", certainty ? micrometres(certainty->noise_m) : Json(nullptr)},
-      {"lack_of_fit_p", lack_of_fit ? number(lack_of_fit->p) : Json(nullptr)},
-      {"degrees_of_freedom", number(degrees)},
-      {"planes", plane_fits_json(result)}};
+  return document;
 }
 
-Json rank_json(const calib::IdentificationResult& result) {
-  return {{"attainable", result.attainable.count},
-          {"off_axis", result.attainable.off_axis_count},
-          {"explanation", result.rank_explanation},
-          {"smallest_kept", number(result.identifiable.smallest_kept)},
-          {"largest_dropped", number(result.identifiable.largest_dropped)}};
+ResultDocument::Rank rank_of(const calib::IdentificationResult& result) {
+  return {.attainable = result.attainable.count,
+          .off_axis = result.attainable.off_axis_count,
+          .explanation = result.rank_explanation,
+          .smallest_kept = finite(result.identifiable.smallest_kept),
+          .largest_dropped = finite(result.identifiable.largest_dropped)};
 }
 
 /// Distances run along the outward normal from the origin: reference + signed distance.
-Json plane_json(const Cell& cell, const calib::FaceDistances& face) {
+PlaneDistances plane_of(const Cell& cell, const calib::FaceDistances& face) {
   const double reference = cell.block.faces[static_cast<std::size_t>(face.face)].plane.offset_m;
   const auto percent = [](double part, double whole) {
-    return whole == 0.0 ? Json(nullptr) : number(100.0 * (1.0 - std::abs(part) / std::abs(whole)));
+    return whole == 0.0 ? std::nullopt : finite(100.0 * (1.0 - std::abs(part) / std::abs(whole)));
   };
-  return {{"plane", face.face + 1},
-          {"touch_count", face.touch_count},
-          {"reference_mm", mm_from_metres(reference)},
-          {"nominal_mean_mm", number_mm(reference + face.nominal_mean_m)},
-          {"calibrated_mean_mm", number_mm(reference + face.calibrated_mean_m)},
-          {"error_removed_percent", percent(face.calibrated_mean_m, face.nominal_mean_m)},
-          {"nominal_agreement_percent", percent(face.nominal_mean_m, reference)},
-          {"nominal_rms_mm", number_mm(face.nominal_rms_m)},
-          {"calibrated_rms_mm", number_mm(face.calibrated_rms_m)}};
+  return {.plane = face.face + 1,
+          .touch_count = face.touch_count,
+          .reference_mm = finite_mm(reference),
+          .nominal_mean_mm = finite_mm(reference + face.nominal_mean_m),
+          .calibrated_mean_mm = finite_mm(reference + face.calibrated_mean_m),
+          .error_removed_percent = percent(face.calibrated_mean_m, face.nominal_mean_m),
+          .nominal_agreement_percent = percent(face.nominal_mean_m, reference),
+          .nominal_rms_mm = finite_mm(face.nominal_rms_m),
+          .calibrated_rms_mm = finite_mm(face.calibrated_rms_m)};
 }
 
 const char* use_name(const calib::IdentificationResult& result, std::size_t touch) {
@@ -152,109 +136,107 @@ const char* use_name(const calib::IdentificationResult& result, std::size_t touc
 }
 
 /// Distances run along the outward normal from the origin, as those of the planes.
-Json touches_json(const Cell& cell, const calib::IdentificationProblem& problem,
-                  const calib::IdentificationResult& result) {
-  Json list = Json::array();
+std::vector<ResultDocument::TouchDistances> touches_of(const Cell& cell,
+                                                       const calib::IdentificationProblem& problem,
+                                                       const calib::IdentificationResult& result) {
+  std::vector<ResultDocument::TouchDistances> list;
   if (result.status != calib::IdentificationStatus::kConverged) return list;
   const auto distances = calib::touch_distances(problem, result);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     const calib::Touch& touch = problem.touches[i];
     const double reference = cell.block.faces[static_cast<std::size_t>(touch.face)].plane.offset_m;
-    list.push_back({{"touch", i + 1},
-                    {"plane", touch.face + 1},
-                    {"role", role_name(touch.role)},
-                    {"use", use_name(result, i)},
-                    {"nominal_mm", number_mm(reference + distances[i].nominal_m)},
-                    {"calibrated_mm", number_mm(reference + distances[i].calibrated_m)}});
+    list.push_back({.touch = static_cast<int>(i) + 1,
+                    .plane = touch.face + 1,
+                    .role = role_name(touch.role),
+                    .use = use_name(result, i),
+                    .nominal_mm = finite_mm(reference + distances[i].nominal_m),
+                    .calibrated_mm = finite_mm(reference + distances[i].calibrated_m)});
   }
   return list;
 }
 
 /// Known once the touches are complete: the repetitions are of all of them.
-Json validation_json(const calib::IdentificationProblem& problem, const calib::IdentificationOptions& options,
-                     const calib::IdentificationResult& result, bool complete, const Json& parameters) {
-  if (!complete || result.status != calib::IdentificationStatus::kConverged) return nullptr;
-  return repetitions_json(parameters, calib::validate(problem, options, result));
+std::optional<RepetitionsDocument> validation_of(const calib::IdentificationProblem& problem,
+                                                 const calib::IdentificationOptions& options,
+                                                 const calib::IdentificationResult& result, bool complete,
+                                                 const std::vector<Parameter>& parameters) {
+  if (!complete || result.status != calib::IdentificationStatus::kConverged) return std::nullopt;
+  return repetitions_of(parameters, calib::validate(problem, options, result));
 }
 
 }  // namespace
 
-Json tip_json(const Cell& cell, const TipPrediction& tip) {
-  Json sources = Json::array();
-  for (const TipPrediction::OfSource& source : tip.sources) {
-    sources.push_back(
-        {{"name", source.name}, {"workspace_box_rms_mm", number_mm(source.workspace_box_rms_m)}});
-  }
-  Json tools = Json::array();
+TipDocument tip_of(const Cell& cell, const TipPrediction& tip) {
+  TipDocument document{.at_block_rms_mm = finite_mm(tip.at_block_rms_m),
+                       .workspace_box_rms_mm = finite_mm(tip.workspace_box_rms_m),
+                       .joint_ranges_rms_mm = finite_mm(tip.joint_ranges_rms_m)};
+  for (const TipPrediction::OfSource& source : tip.sources)
+    document.sources.push_back({source.name, finite_mm(source.workspace_box_rms_m)});
   for (const TipPrediction::OfTool& tool : tip.tools) {
-    tools.push_back({{"name", tool.name},
-                     {"workspace_box_rms_mm", number_mm(tool.workspace_box_rms_m)},
-                     {"joint_ranges_rms_mm", number_mm(tool.joint_ranges_rms_m)}});
+    document.tools.push_back(
+        {tool.name, finite_mm(tool.workspace_box_rms_m), finite_mm(tool.joint_ranges_rms_m)});
   }
-  return {{"at_block_rms_mm", number_mm(tip.at_block_rms_m)},
-          {"workspace_box_rms_mm", number_mm(tip.workspace_box_rms_m)},
-          {"joint_ranges_rms_mm", number_mm(tip.joint_ranges_rms_m)},
-          {"sources", sources},
-          {"tools", tools},
-          {"map", map_json(cell, tip.map)}};
+  if (tip.map) document.map = map_of(cell, *tip.map);
+  return document;
 }
 
-Json planes_json(const Cell& cell, const std::vector<calib::FaceDistances>& distances,
-                 calib::TouchRole role) {
-  Json planes = Json::array();
+std::vector<PlaneDistances> planes_of(const Cell& cell, const std::vector<calib::FaceDistances>& distances,
+                                      calib::TouchRole role) {
+  std::vector<PlaneDistances> planes;
   for (const calib::FaceDistances& face : distances) {
-    if (face.role == role) planes.push_back(plane_json(cell, face));
+    if (face.role == role) planes.push_back(plane_of(cell, face));
   }
   return planes;
+}
+
+ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
+                         const calib::IdentificationProblem& problem,
+                         const calib::IdentificationResult& result, const ResultContext& context) {
+  const Cell& cell = regions.cell();
+  const calib::IdentificationOptions& options = recipe.identification;
+  ResultDocument document{.arm = cell.arm.name,
+                          .recipe = recipe.name,
+                          .touch_count = result.fitted_touch_count,
+                          .complete = context.complete,
+                          .cell_frames = cell.own_frames,
+                          .warnings = result.warnings,
+                          .converged = result.status == calib::IdentificationStatus::kConverged,
+                          .identifiable_count = static_cast<int>(result.identifiable.columns.size()),
+                          .singular_values = result.singular_values,
+                          .rank = rank_of(result),
+                          .parameters = parameters_of(problem, options, result),
+                          .correlations = correlations_of(result),
+                          .artefact_parameters = artefact_parameters_of(problem, result),
+                          .stiffness = stiffness_of(options, result),
+                          .planes = planes_of(cell, result.distances, calib::TouchRole::kFit),
+                          .planes_held_out = planes_of(cell, result.distances, calib::TouchRole::kHeldOut),
+                          .planes_proof = planes_of(cell, result.distances, calib::TouchRole::kProof),
+                          .touches = touches_of(cell, problem, result),
+                          .scale = scale_of(result.scale),
+                          .fit = fit_of(problem, result)};
+  std::ranges::copy(context.warnings, std::back_inserter(document.warnings));
+  std::ranges::transform(result.rejected, std::back_inserter(document.rejected_touches), rejected_of);
+  std::ranges::transform(result.iterations, std::back_inserter(document.iterations), iteration_of);
+  if (!document.iterations.empty()) {
+    document.condition_number = document.iterations.back().condition_number;
+    document.scaled_condition_number = document.iterations.back().scaled_condition_number;
+  }
+  document.validation = validation_of(problem, options, result, context.complete, document.parameters);
+  const TipPrediction tip = predict_tip(regions, problem, result);
+  document.tip_uncertainty = tip_of(cell, tip);
+  Judgement judgement = judge_by_rule(result, options, cell, tip.workspace_box_rms_m, context.complete);
+  document.verdict = {
+      .accepted = judgement.accepted,
+      .reasons = std::move(judgement.reasons),
+      .decision_rule = decision_rule_of(criteria(result, cell, tip.workspace_box_rms_m), cell.acceptance)};
+  document.conditions.text = context.conditions.empty() ? conditions_document(cell, {}) : context.conditions;
+  return document;
 }
 
 std::string result_document(const TipRegions& regions, const Recipe& recipe,
                             const calib::IdentificationProblem& problem,
                             const calib::IdentificationResult& result, const ResultContext& context) {
-  const Cell& cell = regions.cell();
-  const calib::IdentificationOptions& options = recipe.identification;
-  std::vector<std::string> warnings = result.warnings;
-  std::ranges::copy(context.warnings, std::back_inserter(warnings));
-  Json document{{"schema", "touchcal/result/1"},
-                {"arm", cell.arm.name},
-                {"recipe", recipe.name},
-                {"touch_count", result.fitted_touch_count},
-                {"complete", context.complete},
-                {"cell_frames", cell.own_frames},
-                {"warnings", warnings},
-                {"rejected_touches", rejected_json(result.rejected)},
-                {"converged", result.status == calib::IdentificationStatus::kConverged}};
-  Json iterations = Json::array();
-  for (const calib::Iteration& iteration : result.iterations) iterations.push_back(iteration_json(iteration));
-  document["iterations"] = iterations;
-  document["identifiable_count"] = result.identifiable.columns.size();
-  const calib::Iteration* last = result.iterations.empty() ? nullptr : &result.iterations.back();
-  document["condition_number"] = last ? number(last->condition_number) : Json(nullptr);
-  document["scaled_condition_number"] = last ? number(last->scaled_condition_number) : Json(nullptr);
-  document["singular_values"] = result.singular_values;
-  document["rank"] = rank_json(result);
-  document["parameters"] = parameters_json(problem, options, result);
-  document["correlations"] = correlations_json(result);
-  document["artefact_parameters"] = artefact_parameters_json(problem, result);
-  document["stiffness"] = stiffness_json(options, result);
-  document["planes"] = planes_json(cell, result.distances, calib::TouchRole::kFit);
-  document["planes_held_out"] = planes_json(cell, result.distances, calib::TouchRole::kHeldOut);
-  document["planes_proof"] = planes_json(cell, result.distances, calib::TouchRole::kProof);
-  document["touches"] = touches_json(cell, problem, result);
-  document["validation"] =
-      validation_json(problem, options, result, context.complete, document["parameters"]);
-  document["scale"] = scale_json(result.scale);
-  const TipPrediction tip = predict_tip(regions, problem, result);
-  document["tip_uncertainty"] = tip_json(cell, tip);
-  document["fit"] = fit_json(problem, result);
-  const Judgement judgement = judge_by_rule(result, options, cell, tip.workspace_box_rms_m, context.complete);
-  document["verdict"] = {{"accepted", judgement.accepted},
-                         {"reasons", judgement.reasons},
-                         {"decision_rule", decision_rule_json(criteria(result, cell, tip.workspace_box_rms_m),
-                                                              cell.acceptance)}};
-  document["conditions"] =
-      context.conditions.empty() ? conditions_json(cell, {}) : Json::parse(context.conditions);
-  return text_of(document);
+  return document_text(result_of(regions, recipe, problem, result, context));
 }
 
 }  // namespace cell

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "calib_core/identification/identify.hpp"
 #include "config/cell.hpp"
+#include "service/documents/result_document.hpp"
 #include "service/run/tip_prediction.hpp"
 
 namespace cell {
@@ -16,18 +16,23 @@ struct ResultContext {
   std::string conditions;             // as kept with the run; empty: what the cell's files tell
 };
 
-/// touchcal/result/1 (service/doc/surfaces.md, section 5), one JSON document as text. `problem` is what was identified:
-/// rejected touches are counted in its touches, from 1. `identifiable_count` is the rank that the touches
-/// show, also with a prior, where all errors that are not excluded are identified.
+/// touchcal/result/1 (service/doc/surfaces.md, section 5). `problem` is what was identified: rejected touches
+/// are counted in its touches, from 1. `identifiable_count` is the rank that the touches show, also with a
+/// prior, where all errors that are not excluded are identified.
+ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
+                         const calib::IdentificationProblem& problem,
+                         const calib::IdentificationResult& result, const ResultContext& context);
+
+/// The same as text.
 std::string result_document(const TipRegions& regions, const Recipe& recipe,
                             const calib::IdentificationProblem& problem,
                             const calib::IdentificationResult& result, const ResultContext& context);
 
 /// What is predicted of the tip: `tip_uncertainty` of a result and of a plan.
-nlohmann::ordered_json tip_json(const Cell& cell, const TipPrediction& tip);
+TipDocument tip_of(const Cell& cell, const TipPrediction& tip);
 
 /// The distances of one role's touches, a plane at a time, along the outward normals.
-nlohmann::ordered_json planes_json(const Cell& cell, const std::vector<calib::FaceDistances>& distances,
-                                   calib::TouchRole role);
+std::vector<PlaneDistances> planes_of(const Cell& cell, const std::vector<calib::FaceDistances>& distances,
+                                      calib::TouchRole role);
 
 }  // namespace cell

@@ -3,21 +3,15 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cstdlib>
-#include <nlohmann/json.hpp>
 
 #include "cs8_protocol/names.hpp"
 #include "service/base/digest.hpp"
-#include "service/base/json_figures.hpp"
 #include "service/base/version.hpp"
+#include "service/documents/figures.hpp"
 #include "service/documents/json_view.hpp"
 
 namespace cell {
 namespace {
-
-template <class T>
-Json value_or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
 
 /// The wire's whole number of 10^-6 degrees, written without a rounding.
 std::string degrees_text(std::int64_t microdegrees) {
@@ -26,48 +20,39 @@ std::string degrees_text(std::int64_t microdegrees) {
   return fmt::format("{}{}.{:06}", microdegrees < 0 ? "-" : "", size / kPerDegree, size % kPerDegree);
 }
 
-Json run_json(const StoredRun& run) {
-  return {{"id", std::to_string(run.id)},
-          {"recipe", run.recipe},
-          {"operator", value_or_null(run.operator_name)},
-          {"started_at", run.started_at},
-          {"ended_at", value_or_null(run.ended_at)},
-          {"outcome", run.outcome},
-          {"verdict", run.verdict},
-          {"touches_done", run.touches_done},
-          {"touches_total", run.touches_total > 0 ? Json(run.touches_total) : Json(nullptr)},
-          {"fault_code", value_or_null(run.fault_code)},
-          {"fault_message", value_or_null(run.fault_message)},
-          {"plan_id", value_or_null(run.plan_id)},
-          {"config_digest", value_or_null(run.config_digest)},
-          {"block_temperature_c", number(run.block_temperature_c)}};
+RunReport::OfRun of_run(const StoredRun& run) {
+  return {.id = std::to_string(run.id),
+          .recipe = run.recipe,
+          .operator_name = run.operator_name,
+          .started_at = run.started_at,
+          .ended_at = run.ended_at,
+          .outcome = run.outcome,
+          .verdict = run.verdict,
+          .touches_done = run.touches_done,
+          .touches_total = run.touches_total > 0 ? std::optional(run.touches_total) : std::nullopt,
+          .fault_code = run.fault_code,
+          .fault_message = run.fault_message,
+          .plan_id = run.plan_id,
+          .config_digest = run.config_digest,
+          .block_temperature_c = finite(run.block_temperature_c)};
 }
 
-/// What the result says of the touch at this place in the run; an object without members when it says
-/// nothing.
-Json verdict_on(const Json& result, std::size_t index) {
-  static const Json nothing = Json::object();
-  if (!result.is_object() || !result.contains("touches")) return nothing;
-  const Json& touches = result["touches"];
-  return index < touches.size() ? touches[index] : nothing;
-}
-
-Json touches_json(const RunRecord& record, const Json& result) {
-  Json list = Json::array();
+/// With what the result says of the touch at the same place in the run, where it says anything.
+std::vector<RunReport::Touch> touches_of(const RunRecord& record, const ResultDocument& result) {
+  std::vector<RunReport::Touch> list;
   for (std::size_t i = 0; i < record.touches.size(); ++i) {
-    const StoredTouch& touch = record.touches[i];
-    const Json found = verdict_on(result, i);
-    Json joints = Json::array();
-    for (const auto joint : touch.joints) joints.push_back(degrees_text(joint));
-    list.push_back({{"touch", i + 1},
-                    {"plane", touch.plane},
-                    {"role", role_name(touch.role)},
-                    {"joints_deg", joints},
-                    {"source", cs8::name(touch.source)},
-                    {"captured_at", touch.captured_at},
-                    {"use", found.value("use", Json(nullptr))},
-                    {"nominal_mm", found.value("nominal_mm", Json(nullptr))},
-                    {"calibrated_mm", found.value("calibrated_mm", Json(nullptr))}});
+    const StoredTouch& stored = record.touches[i];
+    RunReport::Touch& touch = list.emplace_back();
+    touch.touch = static_cast<int>(i) + 1;
+    touch.plane = stored.plane;
+    touch.role = role_name(stored.role);
+    for (const auto joint : stored.joints) touch.joints_deg.push_back(degrees_text(joint));
+    touch.source = cs8::name(stored.source);
+    touch.captured_at = stored.captured_at;
+    if (i >= result.touches.size()) continue;
+    touch.use = result.touches[i].use;
+    touch.nominal_mm = result.touches[i].nominal_mm;
+    touch.calibrated_mm = result.touches[i].calibrated_mm;
   }
   return list;
 }
@@ -84,51 +69,40 @@ std::string raw_data_text(const std::vector<StoredTouch>& touches) {
   return lines;
 }
 
-Json report_json(const RunRecord& record) {
-  const Json result = record.result_json ? Json::parse(*record.result_json) : Json(nullptr);
-  Json superseded = Json::array();
+std::string report_document(const RunRecord& record) {
+  RunReport report{.touchcal_version = kVersion,
+                   .run = of_run(record.run),
+                   .raw_data = {.sha256 = sha256_hex(raw_data_text(record.touches)),
+                                .of = "the first nine columns of the CSV form, without its heading"},
+                   .touches = touches_of(
+                       record, record.result_json ? read_result(*record.result_json) : ResultDocument())};
   for (const SupersededTouch& again : record.superseded) {
-    superseded.push_back({{"number", again.touch.number},
-                          {"plane", again.touch.plane},
-                          {"reason", again.reason},
-                          {"captured_at", again.touch.captured_at}});
+    report.touched_again.push_back({.number = again.touch.number,
+                                    .plane = again.touch.plane,
+                                    .reason = again.reason,
+                                    .captured_at = again.touch.captured_at});
   }
-  Json references = Json::array();
   for (const ReferenceTouch& reference : record.references) {
-    references.push_back({{"touches_done", reference.touches_done},
-                          {"drift_mm", number(reference.drift_mm)},
-                          {"captured_at", reference.captured_at}});
+    report.reference_touches.push_back({.touches_done = reference.touches_done,
+                                        .drift_mm = finite(reference.drift_mm),
+                                        .captured_at = reference.captured_at});
   }
-  Json faults = Json::array();
   for (auto fault = record.faults.rbegin(); fault != record.faults.rend(); ++fault)
-    faults.push_back({{"at", fault->at}, {"code", fault->code}, {"message", fault->message}});
-  return {{"schema", "touchcal/report/1"},
-          {"touchcal_version", kVersion},
-          {"run", run_json(record.run)},
-          {"raw_data",
-           {{"sha256", sha256_hex(raw_data_text(record.touches))},
-            {"of", "the first nine columns of the CSV form, without its heading"}}},
-          {"touches", touches_json(record, result)},
-          {"touched_again", superseded},
-          {"reference_touches", references},
-          {"faults", faults},
-          {"result", result}};
+    report.faults.push_back({.at = fault->at, .code = fault->code, .message = fault->message});
+  if (record.result_json) report.result.emplace().text = *record.result_json;
+  return document_text(report);
 }
 
-std::string report_csv(const Json& report) {
+std::string report_csv(const RunReport& report) {
   std::string lines =
       "touch,plane,role,joint1_deg,joint2_deg,joint3_deg,joint4_deg,joint5_deg,joint6_deg,use,nominal_mm,"
       "calibrated_mm,captured_at\n";
-  const auto text = [](const Json& value) { return value.is_string() ? value.get<std::string>() : ""; };
-  const auto figure = [](const Json& value) {
-    return value.is_number() ? fmt::format("{:.6f}", value.get<double>()) : "";
-  };
-  for (const Json& touch : report.at("touches")) {
-    lines += fmt::format("{},{},{}", touch.at("touch").get<int>(), touch.at("plane").get<int>(),
-                         text(touch.at("role")));
-    for (const Json& joint : touch.at("joints_deg")) lines += "," + text(joint);
-    lines += fmt::format(",{},{},{},{}\n", text(touch.at("use")), figure(touch.at("nominal_mm")),
-                         figure(touch.at("calibrated_mm")), text(touch.at("captured_at")));
+  const auto figure = [](std::optional<double> value) { return value ? fmt::format("{:.6f}", *value) : ""; };
+  for (const RunReport::Touch& touch : report.touches) {
+    lines += fmt::format("{},{},{}", touch.touch, touch.plane, touch.role);
+    for (const std::string& joint : touch.joints_deg) lines += "," + joint;
+    lines += fmt::format(",{},{},{},{}\n", touch.use.value_or(""), figure(touch.nominal_mm),
+                         figure(touch.calibrated_mm), touch.captured_at);
   }
   return lines;
 }

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "service/documents/run_report.hpp"
 #include "service/store/fault_log.hpp"
 #include "service/store/run_store.hpp"
 
@@ -21,15 +21,14 @@ struct RunRecord {
   std::optional<std::string> result_json;  // touchcal/result/1
 };
 
-/// touchcal/report/1: the run, its result document and every touch with what became of it. Joints are in
-/// degrees, distances in mm along the outward normals; null is unknown.
-nlohmann::ordered_json report_json(const RunRecord& record);
+/// touchcal/report/1, one JSON document as text.
+std::string report_document(const RunRecord& record);
 
 /// The touches as the controller answered them, a line each: number in the run, plane, role, six joint angles
 /// in degrees to the last digit that came over the wire. `raw_data.sha256` of the report is taken over it.
 std::string raw_data_text(const std::vector<StoredTouch>& touches);
 
 /// The report's touches as a table for a spreadsheet; its first nine columns are raw_data_text().
-std::string report_csv(const nlohmann::ordered_json& report);
+std::string report_csv(const RunReport& report);
 
 }  // namespace cell

@@ -1,7 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <map>
-#include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "service/report/figure.hpp"
 #include "service/report/report_parts.hpp"
@@ -18,25 +18,22 @@ struct PlaneFigures {
   std::optional<double> reference_mm;
 };
 
-std::optional<double> reference_of(const Json& planes, int plane) {
-  for (const Json& one : planes) {
-    if (part(one, "plane") == plane && part(one, "reference_mm").is_number())
-      return part(one, "reference_mm").get<double>();
+std::optional<double> reference_of(const std::vector<PlaneDistances>& planes, int plane) {
+  for (const PlaneDistances& one : planes) {
+    if (one.plane == plane && one.reference_mm) return one.reference_mm;
   }
   return std::nullopt;
 }
 
-void add_touch(const Json& touch, PlaneFigures& figures) {
-  if (!part(touch, "nominal_mm").is_number() || !part(touch, "calibrated_mm").is_number()) return;
-  const double nominal = part(touch, "nominal_mm").get<double>();
-  const double calibrated = part(touch, "calibrated_mm").get<double>();
-  const bool is_rejected = is(part(touch, "use"), "rejected");
+void add_touch(const RunReport::Touch& touch, PlaneFigures& figures) {
+  if (!touch.nominal_mm || !touch.calibrated_mm) return;
+  const bool is_rejected = touch.use == "rejected";
   const auto at = static_cast<double>(figures.nominal.points.size() + 1);
-  figures.nominal.points.emplace_back(at, nominal);
-  figures.calibrated.points.emplace_back(at, calibrated);
+  figures.nominal.points.emplace_back(at, *touch.nominal_mm);
+  figures.calibrated.points.emplace_back(at, *touch.calibrated_mm);
   if (figures.reference_mm)
     (is_rejected ? figures.rejected : figures.left)
-        .points.emplace_back(at, 1e3 * (calibrated - *figures.reference_mm));
+        .points.emplace_back(at, 1e3 * (*touch.calibrated_mm - *figures.reference_mm));
 }
 
 std::string pair_of(int number, int plane, const char* role, const PlaneFigures& figures) {
@@ -60,12 +57,11 @@ std::string pair_of(int number, int plane, const char* role, const PlaneFigures&
 
 }  // namespace
 
-std::string condition_figure(const Json& result) {
+std::string condition_figure(const ResultDocument& result) {
   Series series{"condition number", Mark::kDot, {}, true};
-  for (const Json& iteration : part(result, "iterations")) {
-    const Json& value = part(iteration, "condition_number");
-    if (value.is_number())
-      series.points.emplace_back(static_cast<double>(series.points.size() + 1), value.get<double>());
+  for (const ResultDocument::Iteration& iteration : result.iterations) {
+    if (iteration.condition_number)
+      series.points.emplace_back(static_cast<double>(series.points.size() + 1), *iteration.condition_number);
   }
   return svg({.title = "Fig. 4. Condition number of the observation matrix",
               .x_label = "iteration",
@@ -75,19 +71,19 @@ std::string condition_figure(const Json& result) {
               .level_name = {}});
 }
 
-std::string distance_figures(const Json& report) {
-  const Json& result = part(report, "result");
+std::string distance_figures(const RunReport& report) {
+  static const ResultDocument kNoResult;
+  const ResultDocument& result = report.result ? report.result->value : kNoResult;
   std::string drawn;
   constexpr int kFirstFigure = 5;  // the paper's
   int number = kFirstFigure;
-  for (const auto& [role, words, planes] :
-       {std::tuple{"fit", "used", "planes"}, std::tuple{"held_out", "held-out", "planes_held_out"}}) {
+  for (const auto& [role, words, planes] : {std::tuple{"fit", "used", &result.planes},
+                                            std::tuple{"held_out", "held-out", &result.planes_held_out}}) {
     std::map<int, PlaneFigures> of_plane;
-    for (const Json& touch : part(report, "touches")) {
-      if (!is(part(touch, "role"), role)) continue;
-      const int plane = part(touch, "plane").get<int>();
-      const auto [place, is_new] = of_plane.try_emplace(plane);
-      if (is_new) place->second.reference_mm = reference_of(part(result, planes), plane);
+    for (const RunReport::Touch& touch : report.touches) {
+      if (touch.role != role) continue;
+      const auto [place, is_new] = of_plane.try_emplace(touch.plane);
+      if (is_new) place->second.reference_mm = reference_of(*planes, touch.plane);
       add_touch(touch, place->second);
     }
     for (const auto& [plane, figures] : of_plane) drawn += pair_of(number++, plane, words, figures);

@@ -3,7 +3,6 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "service/report/html.hpp"
 #include "service/report/report_parts.hpp"
@@ -44,160 +43,148 @@ std::string verdict_words(const std::string& verdict) {
   return "There is no verdict.";
 }
 
-std::string bullets(const Json& texts) {
+std::string bullets(const std::vector<std::string>& texts) {
   std::string items;
-  for (const Json& text : texts) items += html::element("li", html::escaped(text_or_unknown(text)));
+  for (const std::string& text : texts) items += html::element("li", html::escaped(text_or_unknown(text)));
   return items.empty() ? items : html::element("ul", items) + "\n";
 }
 
 /// A name of a document as words: "held_out_mean" is "held out mean".
-std::string words_of(const Json& name) {
+std::string words_of(const std::string& name) {
   std::string words = text_or_unknown(name);
   std::ranges::replace(words, '_', ' ');
   return words;
 }
 
-std::string yes_no(const Json& value) {
-  if (!value.is_boolean()) return "unknown";
-  return value.get<bool>() ? "yes" : "no";
+std::string yes_no(std::optional<bool> value) {
+  if (!value) return "unknown";
+  return *value ? "yes" : "no";
 }
 
-std::string decision_rule(const Json& rule) {
-  if (!rule.is_object())
+std::string decision_rule(const std::optional<DecisionRuleDocument>& rule) {
+  if (!rule)
     return html::paragraph("Decision rule: a figure within its limit is accepted (simple acceptance).");
   std::vector<Row> rows;
-  for (const Json& criterion : part(rule, "criteria")) {
-    rows.push_back(
-        {words_of(part(criterion, "name")) + figure_if_known(part(criterion, "plane"), ", plane {:.0f}"),
-         text_or_unknown(part(criterion, "unit")), figure_text(part(criterion, "value"), "{:.4g}"),
-         figure_text(part(criterion, "limit"), "{:.4g}"),
-         figure_if_known(part(criterion, "expanded_uncertainty"), "{:.2g}"),
-         yes_no(part(criterion, "within_limit")), yes_no(part(criterion, "proved"))});
+  for (const DecisionRuleDocument::CriterionFigures& criterion : rule->criteria) {
+    rows.push_back({words_of(criterion.name) + figure_if_known(criterion.plane, ", plane {:.0f}"),
+                    text_or_unknown(criterion.unit), figure_text(criterion.value, "{:.4g}"),
+                    figure_text(criterion.limit, "{:.4g}"),
+                    figure_if_known(criterion.expanded_uncertainty, "{:.2g}"), yes_no(criterion.within_limit),
+                    yes_no(criterion.proved)});
   }
-  return html::paragraph(fmt::format("Decision rule ({}, {}): {}.", text_or_unknown(part(rule, "standard")),
-                                     text_or_unknown(part(rule, "rule")),
-                                     text_or_unknown(part(rule, "text")))) +
+  return html::paragraph(fmt::format("Decision rule ({}, {}): {}.", text_or_unknown(rule->standard),
+                                     text_or_unknown(rule->rule), text_or_unknown(rule->text))) +
          html::table("Figures and their limits",
                      {"figure", "unit", "value", "limit", "expanded uncertainty", "within", "proved"}, rows);
 }
 
-std::string verdict_box(const Json& report) {
-  const std::string verdict = text_or_unknown(part(part(report, "run"), "verdict"));
-  const Json& of_result = part(part(report, "result"), "verdict");
+std::string verdict_box(const RunReport& report) {
+  const std::string verdict = text_or_unknown(report.run.verdict);
+  const VerdictDocument of_result = report.result ? report.result->value.verdict : VerdictDocument();
   return html::element("div",
                        html::element("strong", html::escaped("Verdict: " + verdict)) +
-                           html::paragraph(verdict_words(verdict)) + bullets(part(of_result, "reasons")),
+                           html::paragraph(verdict_words(verdict)) + bullets(of_result.reasons),
                        R"(class="verdict")") +
-         decision_rule(part(of_result, "decision_rule"));
+         decision_rule(of_result.decision_rule);
 }
 
 /// "number: demo; issued: 2026-01-07"
-std::string certificate_text(const Json& certificate) {
+std::string certificate_text(const std::optional<std::map<std::string, std::string>>& certificate) {
   std::string words;
-  if (!certificate.is_object()) return "unknown";
-  for (const auto& [key, value] : certificate.items())
+  if (!certificate) return "unknown";
+  for (const auto& [key, value] : *certificate)
     words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", key, text_or_unknown(value));
   return words.empty() ? "unknown" : words;
 }
 
 /// Where the block stood: as the cell's file has it, or where it was located.
-std::string place_text(const Json& conditions) {
-  if (!conditions.is_object() || !conditions.contains("place")) return "unknown";
-  const Json& place = part(conditions, "place");
-  if (place.is_null()) return "as the cell's file has it";
-  std::string words = "located " + text_or_unknown(part(place, "located_at")) + ", shifted by";
-  for (const Json& shift : part(place, "shift_mm")) words += figure_text(shift, " {:+.2f}");
+std::string place_text(const ConditionsDocument& conditions) {
+  if (!conditions.place) return "unknown";
+  const std::optional<PlaceDocument>& place = *conditions.place;
+  if (!place) return "as the cell's file has it";
+  std::string words = "located " + text_or_unknown(place->located_at) + ", shifted by";
+  for (const double shift : place->shift_mm) words += figure_text(shift, " {:+.2f}");
   return words + " mm from where the cell's file has it";
 }
 
-std::string run_section(const Json& report) {
-  const Json& run = part(report, "run");
-  const Json& result = part(report, "result");
-  const Json& conditions = part(result, "conditions");
-  const Json& block = part(conditions, "block");
-  const Json& probe = part(conditions, "probe");
-  const Json& versions = part(conditions, "versions");
-  const auto of = [](const Json& object, const char* key) { return text_or_unknown(part(object, key)); };
+std::string run_section(const RunReport& report) {
+  const RunReport::OfRun& run = report.run;
+  const ResultDocument result = report.result ? report.result->value : ResultDocument();
+  const ConditionsDocument& conditions = result.conditions.value;
+  const ConditionsDocument::Versions& versions = conditions.versions;
   return section(
       "Run and conditions",
       pairs_table(
           "What was calibrated, with what",
-          {{"run", of(run, "id")},
-           {"recipe", of(run, "recipe")},
-           {"arm", of(result, "arm")},
-           {"block, certificate", of(block, "name") + "; " + certificate_text(part(block, "certificate"))},
-           {"probe, certificate", of(probe, "name") + "; " + certificate_text(part(probe, "certificate"))},
-           {"block's temperature",
-            figure_text(part(run, "block_temperature_c"), "{:.1f} °C") +
-                figure_if_known(part(conditions, "std_temperature_k"), " ± {:.1f} K (std)")},
+          {{"run", text_or_unknown(run.id)},
+           {"recipe", text_or_unknown(run.recipe)},
+           {"arm", text_or_unknown(result.arm)},
+           {"block, certificate",
+            text_or_unknown(conditions.block.name) + "; " + certificate_text(conditions.block.certificate)},
+           {"probe, certificate",
+            text_or_unknown(conditions.probe.name) + "; " + certificate_text(conditions.probe.certificate)},
+           {"block's temperature", figure_text(run.block_temperature_c, "{:.1f} °C") +
+                                       figure_if_known(conditions.std_temperature_k, " ± {:.1f} K (std)")},
            {"place of the block", place_text(conditions)},
-           {"touches made", of(conditions, "touching")},
-           {"operator", of(run, "operator")},
-           {"started, ended", of(run, "started_at") + ", " + of(run, "ended_at")},
-           {"touches", figure_text(part(run, "touches_done"), "{:.0f}") +
-                           figure_if_known(part(run, "touches_total"), " of {:.0f}")},
-           {"outcome", of(run, "outcome")},
+           {"touches made", text_or_unknown(conditions.touching)},
+           {"operator", text_or_unknown(run.operator_name)},
+           {"started, ended", text_or_unknown(run.started_at) + ", " + text_or_unknown(run.ended_at)},
+           {"touches", std::to_string(run.touches_done) + figure_if_known(run.touches_total, " of {:.0f}")},
+           {"outcome", text_or_unknown(run.outcome)},
            {"versions",
             fmt::format("touchcal {}, protocol {}, controller's application {}",
-                        of(report, "touchcal_version"), figure_text(part(versions, "protocol"), "{:.0f}"),
-                        of(versions, "controller_application"))},
-           {"plan", of(run, "plan_id")},
-           {"digest of the configuration", of(run, "config_digest")},
-           {"digest of the raw data", of(part(report, "raw_data"), "sha256") + " (SHA-256 over " +
-                                          of(part(report, "raw_data"), "of") + ")"}}));
+                        text_or_unknown(report.touchcal_version), figure_text(versions.protocol, "{:.0f}"),
+                        text_or_unknown(versions.controller_application))},
+           {"plan", text_or_unknown(run.plan_id)},
+           {"digest of the configuration", text_or_unknown(run.config_digest)},
+           {"digest of the raw data", text_or_unknown(report.raw_data.sha256) + " (SHA-256 over " +
+                                          text_or_unknown(report.raw_data.of) + ")"}}));
 }
 
-std::string summary_section(const Json& result) {
-  const Json& tip = part(result, "tip_uncertainty");
-  const Json& scale = part(result, "scale");
+std::string summary_section(const ResultDocument& result) {
+  const TipDocument& tip = result.tip_uncertainty;
+  const ResultDocument::Scale& scale = result.scale;
   return section(
       "Result in short",
       pairs_table(
           "Result",
-          {{"identified errors", figure_text(part(result, "identifiable_count"), "{:.0f}") + " of " +
-                                     std::to_string(part(result, "parameters").size())},
-           {"condition number", figure_text(part(result, "condition_number"), "{:.0f}") +
-                                    " (columns of unit norm: " +
-                                    figure_text(part(result, "scaled_condition_number"), "{:.0f}") + ")"},
+          {{"identified errors", figure_text(result.identifiable_count, "{:.0f}") + " of " +
+                                     std::to_string(result.parameters.size())},
+           {"condition number", figure_text(result.condition_number, "{:.0f}") + " (columns of unit norm: " +
+                                    figure_text(result.scaled_condition_number, "{:.0f}") + ")"},
            {"predicted uncertainty of the tip in the workspace box, rms",
-            figure_text(part(tip, "workspace_box_rms_mm"), "{:.3f} mm")},
-           {"the same at the block", figure_text(part(tip, "at_block_rms_mm"), "{:.3f} mm")},
+            figure_text(tip.workspace_box_rms_mm, "{:.3f} mm")},
+           {"the same at the block", figure_text(tip.at_block_rms_mm, "{:.3f} mm")},
            {"common scale of all lengths",
-            figure_text(part(scale, "stretch_ppm"), "{:+.0f} ppm found") +
-                figure_if_known(part(scale, "std_uncertainty_ppm"), ", known within {:.0f} ppm (std)")}}) +
-          bullets(part(result, "warnings")));
+            figure_text(scale.stretch_ppm, "{:+.0f} ppm found") +
+                figure_if_known(scale.std_uncertainty_ppm, ", known within {:.0f} ppm (std)")}}) +
+          bullets(result.warnings));
 }
 
-std::string budget_section(const Json& result) {
+std::string budget_section(const ResultDocument& result) {
+  const TipDocument& tip = result.tip_uncertainty;
   std::vector<Row> sources;
-  for (const Json& source : part(part(result, "tip_uncertainty"), "sources"))
-    sources.push_back(
-        {words_of(part(source, "name")), figure_text(part(source, "workspace_box_rms_mm"), "{:.4f}")});
-  sources.push_back({"together (root of the sum of squares)",
-                     figure_text(part(part(result, "tip_uncertainty"), "workspace_box_rms_mm"), "{:.4f}")});
-  std::vector<Row> elsewhere{
-      {"over the joint ranges",
-       figure_text(part(part(result, "tip_uncertainty"), "joint_ranges_rms_mm"), "{:.3f}")}};
-  for (const Json& tool : part(part(result, "tip_uncertainty"), "tools")) {
-    const std::string name = text_or_unknown(part(tool, "name"));
-    elsewhere.push_back(
-        {name + ", in the workspace box", figure_text(part(tool, "workspace_box_rms_mm"), "{:.3f}")});
-    elsewhere.push_back(
-        {name + ", over the joint ranges", figure_text(part(tool, "joint_ranges_rms_mm"), "{:.3f}")});
+  for (const TipDocument::Source& source : tip.sources)
+    sources.push_back({words_of(source.name), figure_text(source.workspace_box_rms_mm, "{:.4f}")});
+  sources.push_back(
+      {"together (root of the sum of squares)", figure_text(tip.workspace_box_rms_mm, "{:.4f}")});
+  std::vector<Row> elsewhere{{"over the joint ranges", figure_text(tip.joint_ranges_rms_mm, "{:.3f}")}};
+  for (const TipDocument::Tool& tool : tip.tools) {
+    const std::string name = text_or_unknown(tool.name);
+    elsewhere.push_back({name + ", in the workspace box", figure_text(tool.workspace_box_rms_mm, "{:.3f}")});
+    elsewhere.push_back({name + ", over the joint ranges", figure_text(tool.joint_ranges_rms_mm, "{:.3f}")});
   }
   std::vector<Row> correlations;
-  for (const Json& pair : part(result, "correlations"))
-    correlations.push_back({text_or_unknown(part(pair, "first")), text_or_unknown(part(pair, "second")),
-                            figure_text(part(pair, "coefficient"), "{:+.3f}")});
-  const Json& fit = part(result, "fit");
-  std::vector<Row> lack{
-      {"declared noise of a touch", figure_text(part(fit, "noise_declared_um"), "{:.1f} µm")},
-      {"noise by the residuals", figure_text(part(fit, "noise_estimated_um"), "{:.1f} µm")},
-      {"lack of fit, p", figure_text(part(fit, "lack_of_fit_p"), "{:.3g}")},
-      {"degrees of freedom", figure_text(part(fit, "degrees_of_freedom"), "{:.1f}")}};
-  for (const Json& plane : part(fit, "planes"))
-    lack.push_back({figure_text(part(plane, "plane"), "lack of fit of plane {:.0f}, p"),
-                    figure_text(part(plane, "p"), "{:.3g}")});
+  for (const CorrelationOfErrors& pair : result.correlations)
+    correlations.push_back({text_or_unknown(pair.first), text_or_unknown(pair.second),
+                            figure_text(pair.coefficient, "{:+.3f}")});
+  const ResultDocument::Fit& fit = result.fit;
+  std::vector<Row> lack{{"declared noise of a touch", figure_text(fit.noise_declared_um, "{:.1f} µm")},
+                        {"noise by the residuals", figure_text(fit.noise_estimated_um, "{:.1f} µm")},
+                        {"lack of fit, p", figure_text(fit.lack_of_fit_p, "{:.3g}")},
+                        {"degrees of freedom", figure_text(fit.degrees_of_freedom, "{:.1f}")}};
+  for (const ResultDocument::PlaneFit& plane : fit.planes)
+    lack.push_back({fmt::format("lack of fit of plane {}, p", plane.plane), figure_text(plane.p, "{:.3g}")});
   return section("Uncertainty", html::table("Budget of the tip's predicted uncertainty in the workspace box",
                                             {"source", "rms mm"}, sources) +
                                     html::table("Predicted uncertainty of the tip elsewhere",
@@ -207,27 +194,26 @@ std::string budget_section(const Json& result) {
                                                 {"error of", "and of", "coefficient"}, correlations));
 }
 
-std::string touches_section(const Json& report) {
+std::string touches_section(const RunReport& report) {
   std::vector<Row> rejected;
-  for (const Json& touch : part(part(report, "result"), "rejected_touches"))
-    rejected.push_back(
-        {figure_text(part(touch, "touch"), "{:.0f}"), figure_text(part(touch, "residual_mm"), "{:+.3f}"),
-         is(part(touch, "reason"), "wrong_plane") ? "on another plane" : "does not fit the others"});
+  if (report.result) {
+    for (const ResultDocument::RejectedTouch& touch : report.result->value.rejected_touches)
+      rejected.push_back({std::to_string(touch.touch), figure_text(touch.residual_mm, "{:+.3f}"),
+                          touch.reason == "wrong_plane" ? "on another plane" : "does not fit the others"});
+  }
   std::vector<Row> again;
-  for (const Json& touch : part(report, "touched_again"))
-    again.push_back({figure_text(part(touch, "number"), "{:.0f}"),
-                     figure_text(part(touch, "plane"), "{:.0f}"), text_or_unknown(part(touch, "reason")),
-                     text_or_unknown(part(touch, "captured_at"))});
+  for (const RunReport::Superseded& touch : report.touched_again)
+    again.push_back({std::to_string(touch.number), std::to_string(touch.plane), text_or_unknown(touch.reason),
+                     text_or_unknown(touch.captured_at)});
   std::vector<Row> references;
-  for (const Json& touch : part(report, "reference_touches"))
-    references.push_back({figure_text(part(touch, "touches_done"), "{:.0f}"),
-                          part(touch, "drift_mm").is_number() ? figure_text(part(touch, "drift_mm"), "{:.4f}")
-                                                              : "the first one",
-                          text_or_unknown(part(touch, "captured_at"))});
+  for (const RunReport::Reference& touch : report.reference_touches)
+    references.push_back({std::to_string(touch.touches_done),
+                          touch.drift_mm ? figure_text(touch.drift_mm, "{:.4f}") : "the first one",
+                          text_or_unknown(touch.captured_at)});
   std::vector<Row> faults;
-  for (const Json& fault : part(report, "faults"))
-    faults.push_back({text_or_unknown(part(fault, "at")), text_or_unknown(part(fault, "code")),
-                      text_or_unknown(part(fault, "message"))});
+  for (const RunReport::RaisedFault& fault : report.faults)
+    faults.push_back(
+        {text_or_unknown(fault.at), text_or_unknown(fault.code), text_or_unknown(fault.message)});
   return section(
       "Touches and faults",
       html::table("Rejected touches", {"touch", "residual mm", "reason"}, rejected) +
@@ -254,35 +240,26 @@ std::string words_section() {
 
 }  // namespace
 
-const Json& part(const Json& object, const char* key) {
-  static const Json nothing;
-  const auto found = object.is_object() ? object.find(key) : object.end();
-  return found == object.end() ? nothing : *found;
+std::string figure_text(std::optional<double> value, const char* format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "unknown";
 }
 
-bool is(const Json& value, std::string_view text) {
-  return value.is_string() && value.get_ref<const std::string&>() == text;
+std::string figure_if_known(std::optional<double> value, const char* format) {
+  return value ? figure_text(value, format) : std::string();
 }
 
-std::string figure_text(const Json& value, const char* format) {
-  return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : "unknown";
+std::string text_or_unknown(const std::string& text) { return text.empty() ? "unknown" : text; }
+
+std::string text_or_unknown(const std::optional<std::string>& text) {
+  return text_or_unknown(text.value_or(std::string()));
 }
 
-std::string figure_if_known(const Json& value, const char* format) {
-  return value.is_number() ? figure_text(value, format) : std::string();
-}
-
-std::string text_or_unknown(const Json& value) {
-  return value.is_string() && !value.get_ref<const std::string&>().empty() ? value.get<std::string>()
-                                                                           : "unknown";
-}
-
-std::string report_html(const Json& report) {
-  const Json& result = part(report, "result");
-  const std::string title = "Calibration report, run " + text_or_unknown(part(part(report, "run"), "id"));
+std::string report_html(const RunReport& report) {
+  const std::string title = "Calibration report, run " + text_or_unknown(report.run.id);
   std::string body =
       html::element("h1", html::escaped(title)) + "\n" + verdict_box(report) + run_section(report);
-  if (result.is_object()) {
+  if (report.result) {
+    const ResultDocument& result = report.result->value;
     body += summary_section(result);
     body += section("Errors", errors_table(result) + intervals_table(result) + block_and_probe_table(result));
     body += section("Repetitions", repetition_tables(result));

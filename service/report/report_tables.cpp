@@ -1,7 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <array>
-#include <nlohmann/json.hpp>
 
 #include "service/report/html.hpp"
 #include "service/report/report_parts.hpp"
@@ -15,57 +15,51 @@ constexpr std::array kKinds{"alpha", "d", "theta", "r", "beta"};
 const Row kKindHeading{"j", "Δα rad", "Δd mm", "Δθ rad", "Δr mm", "Δβ rad"};
 
 /// An entry of a table of errors by frame: the figure, or why there is none.
-std::string entry(const Json& parameters, int frame, const std::string& kind, const char* field,
-                  const char* length_format, const char* angle_format) {
-  for (const Json& parameter : parameters) {
-    if (part(parameter, "frame").get<int>() != frame || !is(part(parameter, "kind"), kind)) continue;
-    if (part(parameter, field).is_number())
-      return figure_text(part(parameter, field),
-                         is(part(parameter, "unit"), "mm") ? length_format : angle_format);
-    const Json& status = part(parameter, "status");
-    if (is(status, "no_effect")) return "×";
-    return is(status, "grouped") ? "/" : is(status, "weak") ? "○" : "–";
-  }
-  return "";
+std::string entry(std::optional<double> figure, const std::string& status, const char* format) {
+  if (figure) return figure_text(figure, format);
+  if (status == "no_effect") return "×";
+  return status == "grouped" ? "/" : status == "weak" ? "○" : "–";
 }
 
-std::vector<Row> by_frame(const Json& parameters, const char* field, const char* length_format,
-                          const char* angle_format) {
+/// A row for each frame; `figure` is the member that is shown.
+template <class Shown>
+std::vector<Row> by_frame(const std::vector<Shown>& parameters, std::optional<double> Shown::*figure,
+                          const char* length_format, const char* angle_format) {
   std::vector<Row> rows;
-  const int frames = parameters.empty() ? -1 : part(parameters.back(), "frame").get<int>();
+  const int frames = parameters.empty() ? -1 : parameters.back().frame;
   for (int frame = 0; frame <= frames; ++frame) {
     Row row{std::to_string(frame)};
-    for (const char* kind : kKinds)
-      row.push_back(entry(parameters, frame, kind, field, length_format, angle_format));
+    for (const char* kind : kKinds) {
+      const auto found = std::ranges::find_if(
+          parameters, [&](const Shown& one) { return one.frame == frame && one.kind == kind; });
+      row.push_back(found == parameters.end() ? std::string()
+                                              : entry((*found).*figure, found->status,
+                                                      found->unit == "mm" ? length_format : angle_format));
+    }
     rows.push_back(std::move(row));
   }
   return rows;
 }
 
-std::string repetition_table(const Json& repetition, const char* caption) {
-  if (!repetition.is_object()) return html::paragraph(fmt::format("{}: unknown.", caption));
-  if (!part(repetition, "done").get<bool>())
-    return html::paragraph(
-        fmt::format("{}: not made. {}", caption, text_or_unknown(part(repetition, "why_not"))));
-  return html::table(fmt::format("{} ({} touches, {} iterations)", caption,
-                                 figure_text(part(repetition, "touch_count"), "{:.0f}"),
-                                 figure_text(part(repetition, "iterations"), "{:.0f}")),
-                     kKindHeading,
-                     by_frame(part(repetition, "parameters"), "new_error", "{:+.1e}", "{:+.1e}"));
+std::string repetition_table(const RepetitionDocument* repetition, const char* caption) {
+  if (!repetition) return html::paragraph(fmt::format("{}: unknown.", caption));
+  if (!repetition->done)
+    return html::paragraph(fmt::format("{}: not made. {}", caption, text_or_unknown(repetition->why_not)));
+  return html::table(
+      fmt::format("{} ({} touches, {} iterations)", caption, repetition->touch_count, repetition->iterations),
+      kKindHeading,
+      by_frame(repetition->parameters, &RepetitionDocument::NewError::new_error, "{:+.1e}", "{:+.1e}"));
 }
 
-std::string distance_table(const Json& planes, const char* caption) {
+std::string distance_table(const std::vector<PlaneDistances>& planes, const char* caption) {
   std::vector<Row> rows;
-  for (const Json& plane : planes) {
-    rows.push_back({figure_text(part(plane, "plane"), "d{:.0f}"),
-                    figure_text(part(plane, "touch_count"), "{:.0f}"),
-                    figure_text(part(plane, "reference_mm"), "{:.3f}"),
-                    figure_text(part(plane, "nominal_mean_mm"), "{:.3f}"),
-                    figure_text(part(plane, "calibrated_mean_mm"), "{:.3f}"),
-                    figure_text(part(plane, "nominal_agreement_percent"), "{:.2f}"),
-                    figure_text(part(plane, "nominal_rms_mm"), "{:.3f}"),
-                    figure_text(part(plane, "calibrated_rms_mm"), "{:.3f}"),
-                    figure_text(part(plane, "error_removed_percent"), "{:.2f}")});
+  for (const PlaneDistances& plane : planes) {
+    rows.push_back(
+        {fmt::format("d{}", plane.plane), std::to_string(plane.touch_count),
+         figure_text(plane.reference_mm, "{:.3f}"), figure_text(plane.nominal_mean_mm, "{:.3f}"),
+         figure_text(plane.calibrated_mean_mm, "{:.3f}"),
+         figure_text(plane.nominal_agreement_percent, "{:.2f}"), figure_text(plane.nominal_rms_mm, "{:.3f}"),
+         figure_text(plane.calibrated_rms_mm, "{:.3f}"), figure_text(plane.error_removed_percent, "{:.2f}")});
   }
   return html::table(caption,
                      {"plane", "touches", "reference mm", "nominal mm", "calibrated mm", "agreement %",
@@ -74,34 +68,32 @@ std::string distance_table(const Json& planes, const char* caption) {
 }
 
 /// "theta4 × 1.00", the first ones of a list.
-std::string carriers(const Json& grouped_with) {
+std::string carriers(const std::vector<CarriedError>& grouped_with) {
   std::string words;
   constexpr std::size_t kShown = 3;
   for (std::size_t i = 0; i < grouped_with.size() && i < kShown; ++i)
-    words += fmt::format("{}{} × {}", i == 0 ? "carried by " : ", ",
-                         text_or_unknown(part(grouped_with[i], "name")),
-                         figure_text(part(grouped_with[i], "factor"), "{:.4g}"));
+    words += fmt::format("{}{} × {}", i == 0 ? "carried by " : ", ", text_or_unknown(grouped_with[i].name),
+                         figure_text(grouped_with[i].factor, "{:.4g}"));
   return grouped_with.size() > kShown ? words + ", ..." : words;
 }
 
-std::string status_words(const Json& parameter) {
-  const std::string status = text_or_unknown(part(parameter, "status"));
-  if (status == "grouped") return carriers(part(parameter, "grouped_with"));
-  if (is(status, "no_effect")) return "no effect on the touches";
-  if (status == "weak") return "too weak to tell from noise, held at nominal";
-  return status;
+std::string status_words(const Parameter& parameter) {
+  if (parameter.status == "grouped") return carriers(parameter.grouped_with);
+  if (parameter.status == "no_effect") return "no effect on the touches";
+  if (parameter.status == "weak") return "too weak to tell from noise, held at nominal";
+  return text_or_unknown(parameter.status);
 }
 
-std::string interval_words(const Json& interval, const char* format) {
-  if (!interval.is_array() || interval.size() != 2) return "";
-  return fmt::format("{} to {}", figure_text(interval[0], format), figure_text(interval[1], format));
+std::string interval_words(const decltype(Parameter::interval95)& interval, const char* format) {
+  if (!interval) return "";
+  return fmt::format("{} to {}", figure_text((*interval)[0], format), figure_text((*interval)[1], format));
 }
 
 }  // namespace
 
-std::string errors_table(const Json& result) {
+std::string errors_table(const ResultDocument& result) {
   return html::table("Table III. Errors of the kinematic parameters", kKindHeading,
-                     by_frame(part(result, "parameters"), "error", "{:+.4f}", "{:+.6f}")) +
+                     by_frame(result.parameters, &Parameter::error, "{:+.4f}", "{:+.6f}")) +
          html::paragraph(
              "Marks: – left out on purpose; / carried by other errors, which the list below names; × without "
              "effect "
@@ -110,47 +102,46 @@ std::string errors_table(const Json& result) {
              "gives them the other way round.");
 }
 
-std::string intervals_table(const Json& result) {
+std::string intervals_table(const ResultDocument& result) {
   std::vector<Row> rows;
-  for (const Json& parameter : part(result, "parameters")) {
-    const bool is_length = is(part(parameter, "unit"), "mm");
+  for (const Parameter& parameter : result.parameters) {
+    const bool is_length = parameter.unit == "mm";
     const char* format = is_length ? "{:+.4f}" : "{:+.6f}";
-    rows.push_back({text_or_unknown(part(parameter, "name")), text_or_unknown(part(parameter, "unit")),
-                    figure_text(part(parameter, "nominal"), is_length ? "{:.3f}" : "{:.6f}"),
-                    figure_if_known(part(parameter, "error"), format),
-                    figure_if_known(part(parameter, "std_uncertainty"), is_length ? "{:.4f}" : "{:.6f}"),
-                    interval_words(part(parameter, "interval95"), format), status_words(parameter)});
+    rows.push_back({text_or_unknown(parameter.name), text_or_unknown(parameter.unit),
+                    figure_text(parameter.nominal, is_length ? "{:.3f}" : "{:.6f}"),
+                    figure_if_known(parameter.error, format),
+                    figure_if_known(parameter.std_uncertainty, is_length ? "{:.4f}" : "{:.6f}"),
+                    interval_words(parameter.interval95, format), status_words(parameter)});
   }
   return html::table("Errors with their uncertainty",
                      {"error of", "unit", "nominal", "error", "std. uncertainty", "95 % interval", "status"},
                      rows);
 }
 
-std::string repetition_tables(const Json& result) {
-  const Json& validation = part(result, "validation");
-  return repetition_table(part(validation, "same_touches"),
+std::string repetition_tables(const ResultDocument& result) {
+  const auto& validation = result.validation;
+  return repetition_table(validation ? &validation->same_touches : nullptr,
                           "Table IV. New errors from the calibrated arm with the same touches") +
-         repetition_table(part(validation, "other_touches"),
+         repetition_table(validation ? &validation->other_touches : nullptr,
                           "Table V. New errors from the calibrated arm with the held-out touches");
 }
 
-std::string distance_tables(const Json& result) {
-  return distance_table(part(result, "planes"), "Table VI. Distances of the touches that were used") +
-         distance_table(part(result, "planes_held_out"), "Table VII. Distances of the held-out touches") +
-         (part(result, "planes_proof").empty()
+std::string distance_tables(const ResultDocument& result) {
+  return distance_table(result.planes, "Table VI. Distances of the touches that were used") +
+         distance_table(result.planes_held_out, "Table VII. Distances of the held-out touches") +
+         (result.planes_proof.empty()
               ? std::string()
-              : distance_table(part(result, "planes_proof"), "Distances of the proof touches"));
+              : distance_table(result.planes_proof, "Distances of the proof touches"));
 }
 
-std::string block_and_probe_table(const Json& result) {
+std::string block_and_probe_table(const ResultDocument& result) {
   std::vector<Row> rows;
-  for (const Json& parameter : part(result, "artefact_parameters")) {
-    const char* format = is(part(parameter, "unit"), "rad") ? "{:.6f}" : "{:.4f}";
-    rows.push_back({text_or_unknown(part(parameter, "name")), text_or_unknown(part(parameter, "unit")),
-                    figure_text(part(parameter, "nominal"), format),
-                    figure_text(part(parameter, "value"), format),
-                    figure_text(part(parameter, "std_uncertainty"), format),
-                    is(part(parameter, "status"), "prior") ? "as written down" : "found by the touches"});
+  for (const ArtefactParameter& parameter : result.artefact_parameters) {
+    const char* format = parameter.unit == "rad" ? "{:.6f}" : "{:.4f}";
+    rows.push_back({text_or_unknown(parameter.name), text_or_unknown(parameter.unit),
+                    figure_text(parameter.nominal, format), figure_text(parameter.value, format),
+                    figure_text(parameter.std_uncertainty, format),
+                    parameter.status == "prior" ? "as written down" : "found by the touches"});
   }
   return html::table("Block and probe", {"of", "unit", "written", "value", "std. uncertainty", "status"},
                      rows);

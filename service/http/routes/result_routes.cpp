@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "config/identification_problem.hpp"
 #include "service/acquisition/operation.hpp"
-#include "service/base/json_figures.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/result_view.hpp"
 #include "service/http/server/problem.hpp"
@@ -49,9 +47,9 @@ std::variant<Identified, HttpResponse> identify_stored(const Operation& operatio
 }
 
 bool has_this_nominal(const std::string& result_json, const calib::KinematicModel& model) {
-  const nlohmann::json parameters = nlohmann::json::parse(result_json).at("parameters");
+  const std::vector<Parameter> parameters = read_result(result_json).parameters;
   for (int i = 0; i < calib::kErrorParameterCount; ++i) {
-    const double then = parameters.at(static_cast<std::size_t>(i)).at("nominal").get<double>();
+    const double then = parameters.at(static_cast<std::size_t>(i)).nominal.value();
     if (!(std::abs(then - shown(i, calib::parameter_value(model, i))) <= kSameNominal)) return false;
   }
   return true;
@@ -118,9 +116,9 @@ HttpResponse get_report(const Operation& operation, const StoredRun& run, const 
                         .parameter = "format"});
   }
   // Once as text and back: what came from outside and is no UTF-8 is none in any of the forms.
-  const std::string document = text_of(report_json(record_of(operation, run)));
+  const std::string document = report_document(record_of(operation, run));
   if (format == "json") return {.body = document};
-  const Json report = Json::parse(document);
+  const RunReport report = read_report(document);
   if (format == "html") return saved_as("html", kHtml, run.id, report_html(report));
   return saved_as("csv", kCsv, run.id, report_csv(report));
 }

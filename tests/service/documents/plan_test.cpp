@@ -7,6 +7,8 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "config/joint_units.hpp"
+#include "service/documents/document_fields.hpp"
+#include "service/documents/plan_document.hpp"
 #include "service/documents/result_view.hpp"
 #include "tests/service/shipped_cell.hpp"
 
@@ -59,10 +61,14 @@ TEST(Plan, ItsDocumentHasAllThatTheContractNames) {
   }
 }
 
+TEST(Plan, IsWrittenAsItWasRead) {
+  EXPECT_EQ(document_text(read_plan(shipped_plan().document)), shipped_plan().document);
+}
+
 TEST(Plan, ItPredictsTheTipInTheShapeOfAResult) {
   const json tip = document().at("tip_uncertainty");
   const TipPrediction nothing;
-  const nlohmann::ordered_json of_result = tip_json(edf(), nothing);
+  const json of_result = json::parse(written(tip_of(edf(), nothing)));
   for (const auto& [key, unused] : of_result.items()) EXPECT_TRUE(tip.contains(key)) << key;
   EXPECT_EQ(tip.size(), of_result.size());
   EXPECT_GT(tip.at("workspace_box_rms_mm").get<double>(), 0.0);

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 
@@ -39,7 +40,11 @@ RunRecord record() {
   return made;
 }
 
-std::string page_of(const RunRecord& of) { return report_html(report_json(of)); }
+RunReport report_of(const RunRecord& of) { return read_report(report_document(of)); }
+
+std::string page_of(const RunRecord& of) { return report_html(report_of(of)); }
+
+Json json_of(const RunRecord& of) { return Json::parse(report_document(of)); }
 
 /// The first tag that is not closed in its turn; empty when all are.
 std::string first_unclosed(const std::string& page) {
@@ -60,8 +65,8 @@ std::string first_unclosed(const std::string& page) {
 }
 
 TEST(Report, TheRawDatasDigestIsThatOfTheTablesFirstNineColumns) {
-  const Json report = report_json(record());
-  std::istringstream lines(report_csv(report));
+  const Json report = json_of(record());
+  std::istringstream lines(report_csv(report_of(record())));
   std::string line, columns;
   std::getline(lines, line);
   EXPECT_THAT(line, ::testing::StartsWith("touch,plane,role,joint1_deg,"));
@@ -83,12 +88,11 @@ TEST(Report, AnAngleIsWrittenToTheLastDigitThatCameOverTheWire) {
 TEST(Report, OneChangedAngleIsAnotherDigest) {
   RunRecord changed = record();
   changed.touches[3].joints[2] += 1;
-  EXPECT_NE(report_json(changed).at("raw_data").at("sha256"),
-            report_json(record()).at("raw_data").at("sha256"));
+  EXPECT_NE(json_of(changed).at("raw_data").at("sha256"), json_of(record()).at("raw_data").at("sha256"));
 }
 
 TEST(Report, EachTouchIsShownWithItsDistances) {
-  const Json report = report_json(record());
+  const Json report = json_of(record());
   ASSERT_EQ(report.at("touches").size(), result().at("touches").size());
   for (std::size_t i = 0; i < report.at("touches").size(); ++i) {
     EXPECT_EQ(report.at("touches")[i].at("plane"), result().at("touches")[i].at("plane").get<int>());
@@ -142,14 +146,19 @@ TEST(Report, TextFromOutsideStaysText) {
   EXPECT_EQ(first_unclosed(page), "");
 }
 
+TEST(Report, IsWrittenAsItWasRead) {
+  const std::string text = report_document(record());
+  EXPECT_EQ(document_text(read_report(text)), text);
+}
+
 TEST(Report, ARunWithoutResultSaysSo) {
   RunRecord young = record();
   young.result_json.reset();
-  const Json report = report_json(young);
+  const Json report = json_of(young);
   EXPECT_TRUE(report.at("result").is_null());
   EXPECT_TRUE(report.at("touches")[0].at("use").is_null());
-  EXPECT_THAT(report_html(report), HasSubstr("This run has no result"));
-  EXPECT_EQ(first_unclosed(report_html(report)), "");
+  EXPECT_THAT(page_of(young), HasSubstr("This run has no result"));
+  EXPECT_EQ(first_unclosed(page_of(young)), "");
 }
 
 /// What a daemon of an earlier version stored lacks parts.
@@ -160,6 +169,8 @@ TEST(Report, WhatAnOlderResultLacksIsUnknown) {
     RunRecord stored = record();
     stored.result_json = older.dump();
     EXPECT_EQ(first_unclosed(page_of(stored)), "") << key;
+    EXPECT_EQ(json_of(stored).at("result"), Json(older))
+        << key << ": the stored result is passed on as it is";
   }
 }
 

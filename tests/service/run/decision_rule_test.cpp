@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
 #include "service/documents/decision_rule_view.hpp"
@@ -70,14 +69,14 @@ TEST(DecisionRule, TellsEveryCriterionWithItsUncertainty) {
   EXPECT_NEAR(list[2].expanded_uncertainty.value(),
               2 * calib::mm_from_metres(std::hypot(noise_part_m, kStdFaceM)), 1e-12);
   EXPECT_FALSE(list[4].expanded_uncertainty.has_value());
-  const nlohmann::json rule = decision_rule_json(list, cell.acceptance);
-  EXPECT_EQ(rule.at("standard"), "ISO 14253-1");
-  EXPECT_EQ(rule.at("rule"), "simple");
-  EXPECT_EQ(rule.at("criteria").at(0).at("within_limit"), true);
-  EXPECT_EQ(rule.at("criteria").at(0).at("proved"), false);
-  EXPECT_EQ(rule.at("criteria").at(4).at("proved"), true);
-  EXPECT_TRUE(rule.at("criteria").at(4).at("expanded_uncertainty").is_null());
-  EXPECT_EQ(decision_rule_json(list, cell_with(true).acceptance).at("rule"), "guarded");
+  const DecisionRuleDocument rule = decision_rule_of(list, cell.acceptance);
+  EXPECT_EQ(rule.standard, "ISO 14253-1");
+  EXPECT_EQ(rule.rule, "simple");
+  EXPECT_EQ(rule.criteria.at(0).within_limit, true);
+  EXPECT_EQ(rule.criteria.at(0).proved, false);
+  EXPECT_EQ(rule.criteria.at(4).proved, true);
+  EXPECT_EQ(rule.criteria.at(4).expanded_uncertainty, std::nullopt);
+  EXPECT_EQ(decision_rule_of(list, cell_with(true).acceptance).rule, "guarded");
 }
 
 TEST(DecisionRule, AFigureThatIsNotThereIsNotWithinItsLimit) {
@@ -86,7 +85,7 @@ TEST(DecisionRule, AFigureThatIsNotThereIsNotWithinItsLimit) {
   const auto list = criteria(below_the_limits(0.0, 0.0), cell, std::nullopt);
   EXPECT_EQ(list.back().name, "tip_box_rms");
   EXPECT_FALSE(list.back().within_limit());
-  EXPECT_TRUE(decision_rule_json(list, cell.acceptance).at("criteria").back().at("value").is_null());
+  EXPECT_EQ(decision_rule_of(list, cell.acceptance).criteria.back().value, std::nullopt);
 }
 
 }  // namespace

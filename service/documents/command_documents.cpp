@@ -1,0 +1,35 @@
+#include "service/documents/command_documents.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "service/documents/document_fields.hpp"
+
+namespace cell {
+namespace {
+
+/// What is read of the cell's document (cell_view.hpp).
+struct PlaceOfCell {
+  std::optional<PlaceDocument> place;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("place", self.place);
+  }
+};
+
+}  // namespace
+
+std::string document_text(const PageLinkDocument& document) { return written(document); }
+std::string document_text(const ExportDocument& document) { return written(document); }
+
+AccessDocument read_access(std::string_view text) {
+  return document_from<AccessDocument>(text, Absent::kIsRefused);
+}
+
+std::optional<PlaceDocument> read_place_of_cell(std::string_view text) {
+  return document_from<PlaceOfCell>(text, Absent::kIsRefused).place;
+}
+
+std::string sorted_text(std::string_view text) { return nlohmann::json::parse(text).dump(); }
+
+}  // namespace cell

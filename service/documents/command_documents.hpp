@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "service/documents/carried_json.hpp"
+#include "service/documents/conditions_document.hpp"
+
+/// The small documents of the command line: what it reads of the daemon besides runs and status, and what it
+/// prints that no daemon answers.
+namespace cell {
+
+/// What the sender of a request may do.
+struct AccessDocument {
+  std::string role;  // operate, view, none, wrong token
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("role", self.role);
+  }
+};
+
+/// `touchcal page --json`.
+struct PageLinkDocument {
+  std::string role;
+  std::string url;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("role", self.role);
+    fields("url", self.url);
+  }
+};
+
+/// `touchcal export --json`.
+struct ExportDocument {
+  std::string run_id;
+  std::string arm_file;
+  CarriedJson verdict;  // of the run's result
+  std::vector<std::string> warnings;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("run_id", self.run_id);
+    fields("arm_file", self.arm_file);
+    fields("verdict", self.verdict);
+    fields("warnings", self.warnings);
+  }
+};
+
+std::string document_text(const PageLinkDocument& document);
+std::string document_text(const ExportDocument& document);
+
+/// DocumentError when the text is no such document.
+AccessDocument read_access(std::string_view text);
+
+/// `place` of the cell's document; nothing where the block stands as the cell's file has it.
+std::optional<PlaceDocument> read_place_of_cell(std::string_view text);
+
+/// The JSON document with its keys in alphabetical order.
+std::string sorted_text(std::string_view text);
+
+}  // namespace cell

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace cell {
+
+/// `place` of the cell and of a run: where the block was located, against the cell's file.
+struct PlaceDocument {
+  std::string located_at;
+  std::array<double, 3> shift_mm{};
+  std::array<double, 3> std_shift_mm{};
+  std::array<double, 3> turn_deg{};  // rotation vector
+  std::array<double, 3> std_turn_deg{};
+  std::uint64_t touch_count = 0;
+
+  bool operator==(const PlaceDocument&) const = default;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("located_at", self.located_at);
+    fields("shift_mm", self.shift_mm);
+    fields("std_shift_mm", self.std_shift_mm);
+    fields("turn_deg", self.turn_deg);
+    fields("std_turn_deg", self.std_turn_deg);
+    fields("touch_count", self.touch_count);
+  }
+};
+
+/// `conditions` of a run and of a result; no value is unknown.
+struct ConditionsDocument {
+  struct Certified {
+    std::string name;
+    std::optional<std::map<std::string, std::string>> certificate;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("name", self.name);
+      fields("certificate", self.certificate);
+    }
+  };
+  struct Versions {
+    std::string touchcal;
+    std::optional<int> protocol;
+    std::optional<std::string> controller_application;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("touchcal", self.touchcal);
+      fields("protocol", self.protocol);
+      fields("controller_application", self.controller_application);
+    }
+  };
+
+  std::optional<std::string> operator_name;
+  std::optional<std::string> config_digest;
+  std::optional<double> block_temperature_c;
+  std::optional<double> std_temperature_k;
+  std::optional<double> thermal_expansion_per_k;
+  Certified block;
+  Certified probe;
+  Versions versions;
+  std::optional<std::int64_t> controller_session;
+  std::optional<std::string> touching;
+  /// Null: the block stood where the cell's file has it. Not there: an older daemon did not say.
+  std::optional<std::optional<PlaceDocument>> place;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("operator", self.operator_name);
+    fields("config_digest", self.config_digest);
+    fields("block_temperature_c", self.block_temperature_c);
+    fields("std_temperature_k", self.std_temperature_k);
+    fields("thermal_expansion_per_k", self.thermal_expansion_per_k);
+    fields("block", self.block);
+    fields("probe", self.probe);
+    fields("versions", self.versions);
+    fields("controller_session", self.controller_session);
+    fields("touching", self.touching);
+    fields("place", self.place);
+  }
+};
+
+std::string document_text(const ConditionsDocument& document);
+
+/// `touching` of stored conditions; nothing when they do not say or are no document.
+std::optional<std::string> touching_of(std::string_view conditions);
+
+}  // namespace cell

@@ -1,0 +1,118 @@
+#include "service/documents/document_fields.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace cell {
+namespace {
+
+/// The way from the root to a value, RFC 6901. No key of ours has a character that would be escaped.
+std::string pointer_to(const FieldReader::Place& at) {
+  if (!at.parent) return {};
+  return pointer_to(*at.parent) + "/" + (at.key ? std::string(at.key) : std::to_string(at.index));
+}
+
+[[noreturn]] void refuse(const FieldReader::Place& at, const char* expected) {
+  throw DocumentError(pointer_to(at),
+                      std::string("expected ") + expected + ", found " + at.value.type_name());
+}
+
+template <class Number>
+Number number_at(const FieldReader::Place& at) {
+  if (!at.value.is_number()) refuse(at, "a number");
+  return at.value.get<Number>();
+}
+
+}  // namespace
+
+void FieldWriter::write(Json& to, bool value) { to = value; }
+void FieldWriter::write(Json& to, int value) { to = value; }
+void FieldWriter::write(Json& to, std::int64_t value) { to = value; }
+void FieldWriter::write(Json& to, std::uint64_t value) { to = value; }
+void FieldWriter::write(Json& to, double value) { to = number(value); }
+void FieldWriter::write(Json& to, const std::string& value) { to = value; }
+
+void FieldWriter::write(Json& to, const CarriedJson& value) {
+  if (!value.text.empty()) to = Json::parse(value.text);
+}
+
+void FieldWriter::write(Json& to, const std::map<std::string, std::string>& texts) {
+  Json& object = as_object(to);
+  for (const auto& [key, text] : texts) object[key] = text;
+}
+
+Json& FieldWriter::slot(const char* key) { return object_[key]; }
+
+Json& FieldWriter::as_object(Json& value) { return value = Json::object(); }
+
+Json& FieldWriter::as_list(Json& value) { return value = Json::array(); }
+
+Json& FieldWriter::appended(Json& list) { return list.emplace_back(nullptr); }
+
+FieldReader::FieldReader(const Place& object) : object_(object) {
+  if (!object.value.is_object()) refuse(object, "an object");
+}
+
+const Json* FieldReader::find(const char* key) const {
+  const auto found = object_.value.find(key);
+  return found == object_.value.end() ? nullptr : &*found;
+}
+
+void FieldReader::may_be_absent(const char* key) const {
+  if (object_.absent == Absent::kIsRefused)
+    throw DocumentError(pointer_to({object_.value, object_.absent, &object_, key}), "is missing");
+}
+
+bool FieldReader::is_default(const Json& found) const {
+  return found.is_null() && object_.absent == Absent::kKeepsDefault;
+}
+
+void FieldReader::read(const Place& at, bool& value) {
+  if (!at.value.is_boolean()) refuse(at, "true or false");
+  value = at.value.get<bool>();
+}
+
+void FieldReader::read(const Place& at, int& value) { value = number_at<int>(at); }
+void FieldReader::read(const Place& at, std::int64_t& value) { value = number_at<std::int64_t>(at); }
+void FieldReader::read(const Place& at, std::uint64_t& value) { value = number_at<std::uint64_t>(at); }
+void FieldReader::read(const Place& at, double& value) { value = number_at<double>(at); }
+
+void FieldReader::read(const Place& at, std::string& value) {
+  if (!at.value.is_string()) refuse(at, "a text");
+  value = at.value.get_ref<const std::string&>();
+}
+
+void FieldReader::read(const Place& at, CarriedJson& value) { value.text = text_of(at.value); }
+
+void FieldReader::read(const Place& at, std::map<std::string, std::string>& texts) {
+  if (!at.value.is_object()) refuse(at, "an object");
+  for (const auto& [key, text] : at.value.items()) read({text, at.absent, &at, key.c_str()}, texts[key]);
+}
+
+bool FieldReader::is_null(const Place& at) { return at.value.is_null(); }
+
+std::size_t FieldReader::size_of_list(const Place& at) {
+  if (!at.value.is_array()) refuse(at, "an array");
+  return at.value.size();
+}
+
+void FieldReader::demand_size(const Place& at, std::size_t count) {
+  if (size_of_list(at) != count) refuse(at, ("an array of " + std::to_string(count)).c_str());
+}
+
+FieldReader::Place FieldReader::element(const Place& list, std::size_t index) {
+  return {list.value[index], list.absent, &list, nullptr, index};
+}
+
+std::string text_written(const std::function<void(Json&)>& write) {
+  Json json;
+  write(json);
+  return text_of(json);
+}
+
+void parse_and_read(std::string_view text, const std::function<void(const Json&)>& read) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (json.is_discarded()) throw NotJson();
+  read(json);
+}
+
+}  // namespace cell

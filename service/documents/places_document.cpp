@@ -1,0 +1,9 @@
+#include "service/documents/places_document.hpp"
+
+#include "service/documents/document_fields.hpp"
+
+namespace cell {
+
+std::string document_text(const PlacesDocument& document) { return written(document); }
+
+}  // namespace cell

@@ -1,0 +1,11 @@
+#include "service/documents/problem_document.hpp"
+
+#include "service/documents/document_fields.hpp"
+
+namespace cell {
+
+ProblemDocument read_problem(std::string_view text) {
+  return document_from<ProblemDocument>(text, Absent::kIsRefused);
+}
+
+}  // namespace cell

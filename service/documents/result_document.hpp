@@ -1,0 +1,253 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "service/documents/carried_json.hpp"
+#include "service/documents/conditions_document.hpp"
+#include "service/documents/parameter_document.hpp"
+#include "service/documents/tip_document.hpp"
+#include "service/documents/validation_document.hpp"
+
+namespace cell {
+
+/// `decision_rule` of a verdict.
+struct DecisionRuleDocument {
+  struct CriterionFigures {
+    std::string name;
+    std::optional<int> plane;  // from 1
+    std::string unit;
+    std::optional<double> value;
+    std::optional<double> limit;
+    std::optional<double> expanded_uncertainty;
+    std::optional<bool> within_limit;
+    std::optional<bool> proved;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("name", self.name);
+      fields("plane", self.plane);
+      fields("unit", self.unit);
+      fields("value", self.value);
+      fields("limit", self.limit);
+      fields("expanded_uncertainty", self.expanded_uncertainty);
+      fields("within_limit", self.within_limit);
+      fields("proved", self.proved);
+    }
+  };
+
+  std::string standard;
+  std::string rule;  // guarded, simple
+  std::string text;
+  std::optional<double> coverage_factor;
+  std::vector<CriterionFigures> criteria;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("standard", self.standard);
+    fields("rule", self.rule);
+    fields("text", self.text);
+    fields("coverage_factor", self.coverage_factor);
+    fields("criteria", self.criteria);
+  }
+};
+
+struct VerdictDocument {
+  bool accepted = false;
+  std::vector<std::string> reasons;
+  std::optional<DecisionRuleDocument> decision_rule;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("accepted", self.accepted);
+    fields("reasons", self.reasons);
+    fields("decision_rule", self.decision_rule);
+  }
+};
+
+/// touchcal/result/1 (service/doc/surfaces.md, section 5). One that an older daemon stored may lack fields:
+/// they keep their defaults, and what has no value is unknown.
+struct ResultDocument {
+  struct RejectedTouch {
+    int touch = 0;  // from 1
+    std::optional<double> residual_mm;
+    std::string reason;  // wrong_plane, outlier
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("touch", self.touch);
+      fields("residual_mm", self.residual_mm);
+      fields("reason", self.reason);
+    }
+  };
+  struct Iteration {
+    std::optional<double> condition_number;
+    std::optional<double> scaled_condition_number;
+    std::optional<double> residual_rms_mm;
+    std::optional<double> step_norm;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("condition_number", self.condition_number);
+      fields("scaled_condition_number", self.scaled_condition_number);
+      fields("residual_rms_mm", self.residual_rms_mm);
+      fields("step_norm", self.step_norm);
+    }
+  };
+  struct Rank {
+    std::optional<int> attainable;
+    std::optional<int> off_axis;
+    std::string explanation;
+    std::optional<double> smallest_kept;
+    std::optional<double> largest_dropped;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("attainable", self.attainable);
+      fields("off_axis", self.off_axis);
+      fields("explanation", self.explanation);
+      fields("smallest_kept", self.smallest_kept);
+      fields("largest_dropped", self.largest_dropped);
+    }
+  };
+  /// Distances run along the outward normal from the origin, as those of the planes.
+  struct TouchDistances {
+    int touch = 0;  // from 1
+    int plane = 0;  // from 1
+    std::string role;
+    std::optional<std::string> use;  // used, rejected
+    std::optional<double> nominal_mm;
+    std::optional<double> calibrated_mm;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("touch", self.touch);
+      fields("plane", self.plane);
+      fields("role", self.role);
+      fields("use", self.use);
+      fields("nominal_mm", self.nominal_mm);
+      fields("calibrated_mm", self.calibrated_mm);
+    }
+  };
+  struct Scale {
+    std::optional<std::string> source;  // block, two_lengths, prior
+    std::optional<double> std_uncertainty_ppm;
+    std::optional<double> stretch_ppm;
+    std::optional<double> significance;
+    std::optional<std::string> warning;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("source", self.source);
+      fields("std_uncertainty_ppm", self.std_uncertainty_ppm);
+      fields("stretch_ppm", self.stretch_ppm);
+      fields("significance", self.significance);
+      fields("warning", self.warning);
+    }
+  };
+  struct PlaneFit {
+    int plane = 0;  // from 1
+    std::optional<double> p;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("plane", self.plane);
+      fields("p", self.p);
+    }
+  };
+  struct Fit {
+    std::optional<double> noise_declared_um;
+    std::optional<double> noise_estimated_um;
+    std::optional<double> noise_used_um;
+    std::optional<double> lack_of_fit_p;
+    std::optional<double> degrees_of_freedom;
+    std::vector<PlaneFit> planes;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("noise_declared_um", self.noise_declared_um);
+      fields("noise_estimated_um", self.noise_estimated_um);
+      fields("noise_used_um", self.noise_used_um);
+      fields("lack_of_fit_p", self.lack_of_fit_p);
+      fields("degrees_of_freedom", self.degrees_of_freedom);
+      fields("planes", self.planes);
+    }
+  };
+
+  static constexpr const char* kVerdictKey = "verdict";
+
+  std::string schema = "touchcal/result/1";
+  std::string arm;
+  std::string recipe;
+  std::optional<int> touch_count;
+  bool complete = false;
+  std::vector<int> cell_frames;
+  std::vector<std::string> warnings;
+  std::vector<RejectedTouch> rejected_touches;
+  bool converged = false;
+  std::vector<Iteration> iterations;
+  std::optional<int> identifiable_count;
+  std::optional<double> condition_number;
+  std::optional<double> scaled_condition_number;
+  std::vector<double> singular_values;
+  Rank rank;
+  std::vector<Parameter> parameters;
+  std::vector<CorrelationOfErrors> correlations;
+  std::vector<ArtefactParameter> artefact_parameters;
+  std::vector<JointCompliance> stiffness;
+  std::vector<PlaneDistances> planes;
+  std::vector<PlaneDistances> planes_held_out;
+  std::vector<PlaneDistances> planes_proof;
+  std::vector<TouchDistances> touches;
+  std::optional<RepetitionsDocument> validation;
+  Scale scale;
+  TipDocument tip_uncertainty;
+  Fit fit;
+  VerdictDocument verdict;
+  Carried<ConditionsDocument> conditions;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("schema", self.schema);
+    fields("arm", self.arm);
+    fields("recipe", self.recipe);
+    fields("touch_count", self.touch_count);
+    fields("complete", self.complete);
+    fields("cell_frames", self.cell_frames);
+    fields("warnings", self.warnings);
+    fields("rejected_touches", self.rejected_touches);
+    fields("converged", self.converged);
+    fields("iterations", self.iterations);
+    fields("identifiable_count", self.identifiable_count);
+    fields("condition_number", self.condition_number);
+    fields("scaled_condition_number", self.scaled_condition_number);
+    fields("singular_values", self.singular_values);
+    fields("rank", self.rank);
+    fields("parameters", self.parameters);
+    fields("correlations", self.correlations);
+    fields("artefact_parameters", self.artefact_parameters);
+    fields("stiffness", self.stiffness);
+    fields("planes", self.planes);
+    fields("planes_held_out", self.planes_held_out);
+    fields("planes_proof", self.planes_proof);
+    fields("touches", self.touches);
+    fields("validation", self.validation);
+    fields("scale", self.scale);
+    fields("tip_uncertainty", self.tip_uncertainty);
+    fields("fit", self.fit);
+    fields(kVerdictKey, self.verdict);
+    fields("conditions", self.conditions);
+  }
+};
+
+std::string document_text(const ResultDocument& document);
+
+/// Takes what any version of the daemon stored; DocumentError when the text is no such document.
+ResultDocument read_result(std::string_view text);
+
+/// `verdict` of a result document as it stands there, its keys in alphabetical order.
+std::string verdict_text(std::string_view result);
+
+}  // namespace cell

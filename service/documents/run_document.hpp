@@ -1,0 +1,89 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "service/documents/carried_json.hpp"
+
+namespace cell {
+
+/// A run in the list of runs.
+struct RunSummary {
+  std::string id;
+  std::string recipe;
+  std::optional<std::string> touching;  // automatic, guided
+  std::string outcome;
+  std::string verdict;
+  int touches_done = 0;
+  std::optional<int> touches_total;  // once it is planned
+  std::string started_at;
+  std::optional<std::string> ended_at;
+  std::optional<std::string> fault_code;
+  std::optional<std::string> fault_message;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("id", self.id);
+    fields("recipe", self.recipe);
+    fields("touching", self.touching);
+    fields("outcome", self.outcome);
+    fields("verdict", self.verdict);
+    fields("touches_done", self.touches_done);
+    fields("touches_total", self.touches_total);
+    fields("started_at", self.started_at);
+    fields("ended_at", self.ended_at);
+    fields("fault_code", self.fault_code);
+    fields("fault_message", self.fault_message);
+  }
+};
+
+/// One run's own document.
+struct RunDocument : RunSummary {
+  std::optional<CarriedJson> conditions;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    RunSummary::visit(self, fields);
+    fields("conditions", self.conditions);
+  }
+};
+
+/// A page of the history.
+struct RunsDocument {
+  std::vector<RunSummary> runs;
+  std::optional<std::string> next_before;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("runs", self.runs);
+    fields("next_before", self.next_before);
+  }
+};
+
+/// What POST /runs takes.
+struct StartRequest {
+  std::optional<std::string> operator_name;
+  std::optional<std::string> plan_id;
+  std::optional<std::string> recipe;
+  std::optional<std::string> touching;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields.if_set("operator", self.operator_name);
+    fields.if_set("plan_id", self.plan_id);
+    fields.if_set("recipe", self.recipe);
+    fields.if_set("touching", self.touching);
+  }
+};
+
+std::string document_text(const RunDocument& document);
+std::string document_text(const RunsDocument& document);
+std::string document_text(const StartRequest& document);
+
+/// DocumentError when the text is no such document.
+RunDocument read_run(std::string_view text);
+RunsDocument read_runs(std::string_view text);
+
+}  // namespace cell

@@ -1,0 +1,13 @@
+#include "service/documents/status_document.hpp"
+
+#include "service/documents/document_fields.hpp"
+
+namespace cell {
+
+std::string document_text(const StatusDocument& document) { return written(document); }
+
+StatusDocument read_status(std::string_view text) {
+  return document_from<StatusDocument>(text, Absent::kIsRefused);
+}
+
+}  // namespace cell

@@ -1,0 +1,132 @@
+#include "service/documents/document_fields.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+
+#include "service/documents/json_view.hpp"
+#include "service/documents/problem_document.hpp"
+#include "service/documents/run_document.hpp"
+#include "service/http/server/problem.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::ThrowsMessage;
+
+struct Inner {
+  std::array<double, 2> pair{};
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("pair", self.pair);
+  }
+};
+
+struct Sample {
+  int count = 0;
+  std::optional<double> figure;
+  std::vector<Inner> list;
+  std::map<std::string, std::string> texts;
+  std::optional<std::optional<Inner>> place;
+  std::optional<std::string> maybe;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("count", self.count);
+    fields("figure", self.figure);
+    fields("list", self.list);
+    fields("texts", self.texts);
+    fields("place", self.place);
+    fields.if_set("maybe", self.maybe);
+  }
+};
+
+Sample read(const char* text, Absent absent = Absent::kIsRefused) {
+  return document_from<Sample>(text, absent);
+}
+
+TEST(DocumentFields, StandInTheOrderOfTheirDeclaration) {
+  EXPECT_EQ(written(Sample{}), R"({"count":0,"figure":null,"list":[],"texts":{},"place":null})");
+  const char* full =
+      R"({"count":2,"figure":0.1,"list":[{"pair":[1.0,2.5]}],"texts":{"a":"b"},"place":null,"maybe":"m"})";
+  EXPECT_EQ(written(read(full)), full);
+}
+
+TEST(DocumentFields, AFigureThatIsNoNumberIsNull) {
+  EXPECT_EQ(written(Inner{{std::numeric_limits<double>::quiet_NaN(), 1.0}}), R"({"pair":[null,1.0]})");
+}
+
+TEST(DocumentFields, NullAndAbsentAreNotTheSameWhereBothMeanSomething) {
+  const char* rest = R"({"count":2,"list":[],"texts":{}})";
+  EXPECT_FALSE(read(rest).place.has_value());
+  const Sample with_null = read(R"({"count":2,"list":[],"texts":{},"place":null})");
+  ASSERT_TRUE(with_null.place.has_value());
+  EXPECT_FALSE(with_null.place->has_value());
+}
+
+TEST(DocumentFields, WhatIsNotThereKeepsItsDefaultOrIsRefused) {
+  EXPECT_THAT([] { read("{}"); }, ThrowsMessage<DocumentError>("/count: is missing"));
+  EXPECT_EQ(read("{}", Absent::kKeepsDefault).count, 0);
+  EXPECT_EQ(read(R"({"count":null,"list":null})", Absent::kKeepsDefault).count, 0);
+}
+
+TEST(DocumentFields, TheWayToWhatCannotBeReadIsItsPointer) {
+  EXPECT_THAT([] { read(R"({"count":1,"list":[{"pair":[1,2]},{"pair":[1,"2"]}],"texts":{}})"); },
+              ThrowsMessage<DocumentError>("/list/1/pair/1: expected a number, found string"));
+  EXPECT_THAT([] { read(R"({"count":1,"list":[{"pair":[1]}],"texts":{}})"); },
+              ThrowsMessage<DocumentError>("/list/0/pair: expected an array of 2, found array"));
+  EXPECT_THAT([] { read(R"({"count":1,"list":[],"texts":{"a":1}})"); },
+              ThrowsMessage<DocumentError>("/texts/a: expected a text, found number"));
+}
+
+TEST(StatusDocument, IsWrittenAsItWasRead) {
+  for (const Status& status :
+       {Status{}, Status{.run_id = 7,
+                  .touches_total = 140,
+                  .condition_number = 12.5,
+                  .by_hand = HandGuide{.activity = "guided", .about_joints = calib::JointVector::Ones()},
+                  .fault = Fault{FaultCode::kNoContact, "x"},
+                  .data_age_ms = 12}}) {
+    const std::string text = status_document(status);
+    EXPECT_EQ(document_text(read_status(text)), text);
+  }
+  EXPECT_THAT([] { read_status("{}"); }, ThrowsMessage<DocumentError>("/state: is missing"));
+}
+
+TEST(RunDocument, IsWrittenAsItWasRead) {
+  const StoredRun run{.id = 2, .recipe = "edf-25", .trace_json = R"({"touching":"guided","later":[1.50]})"};
+  const std::string text = run_document(run), page = runs_document({run, {}}, 2);
+  EXPECT_EQ(document_text(read_run(text)), text);
+  EXPECT_EQ(read_run(text).touching, "guided");
+  EXPECT_EQ(document_text(read_runs(page)), page);
+}
+
+TEST(StartRequest, HoldsOnlyWhatIsAskedFor) {
+  EXPECT_EQ(document_text(StartRequest{.operator_name = "A", .recipe = "edf-25"}),
+            R"({"operator":"A","recipe":"edf-25"})");
+}
+
+/// The server writes the document and this reads it: the two hold the same keys.
+TEST(ProblemDocument, IsReadInFull) {
+  const ProblemDocument read = read_problem(to_response({.status = 409,
+                                                         .kind = "preconditions",
+                                                         .detail = "what",
+                                                         .pointer = "/a",
+                                                         .errors = {{"code", "why"}},
+                                                         .exits = {"reset"},
+                                                         .parameter = "p"})
+                                                .body);
+  EXPECT_EQ(read.type, ProblemDocument::kPreconditions);
+  EXPECT_EQ(read.title, "Not in this state");
+  EXPECT_EQ(read.status, 409);
+  EXPECT_EQ(read.detail, "what");
+  EXPECT_EQ(read.pointer, "/a");
+  EXPECT_EQ(read.parameter, "p");
+  EXPECT_EQ(read.errors.value().at(0).detail, "why");
+  EXPECT_THAT(read.exits.value(), ElementsAre("reset"));
+}
+
+}  // namespace
+}  // namespace cell
