@@ -7,6 +7,8 @@
 #include "calib_core/geometry/face.hpp"
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/motion/transfer_path.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
+#include "calib_core/planning/aimed_transfer.hpp"
 #include "service/acquisition/operation.hpp"
 
 namespace cell {
@@ -44,11 +46,11 @@ bool Operation::learn() {
   const std::vector<calib::Touch>& touches = run_->problem().touches;
   bool contradicted = false;
   while (aim_ && aim_->touch_count() < touches.size()) {
-    const calib::AimedContact contact = aim_->add(touches[aim_->touch_count()]);
+    const calib::PredictedContact contact = aim_->add(touches[aim_->touch_count()]);
     spdlog::log(contact.contradicts ? spdlog::level::warn : spdlog::level::info,
                 "run {} touch {} was {:.2f} mm from where it was expected, {:.2f} mm predicted{}", run_->id(),
-                aim_->touch_count(), calib::mm_from_metres(contact.miss_m),
-                calib::mm_from_metres(contact.predicted_miss_m),
+                aim_->touch_count(), calib::mm_from_metres(contact.position_error_m),
+                calib::mm_from_metres(contact.predicted_position_error_m),
                 contact.contradicts ? ": the other touches contradict it, it does not aim" : "");
     contradicted = contact.contradicts;
   }
@@ -65,7 +67,8 @@ bool Operation::is_surprise(const calib::JointVector& contact) const {
   const calib::PlannedTouch& touch = made_->touch;
   const calib::Face& face = planning_.faces[static_cast<std::size_t>(touch.face)];
   const Eigen::Vector3d tip_m = calib::forward_kinematics(made_->problem.nominal, contact).translation();
-  return std::abs(signed_distance_m(contact_plane(face, planning_.stylus), tip_m)) > touch.predicted_miss_m;
+  return std::abs(signed_distance_m(contact_plane(face, planning_.stylus), tip_m)) >
+         touch.predicted_position_error_m;
 }
 
 /// Where the arm leaves from. At the clear posture of one of the last two touches, also of the run before, it
@@ -77,8 +80,9 @@ calib::TransferEnd Operation::leaving(const calib::JointVector& joints) const {
   for (const auto* touch : {&made_, &before_}) {
     if (!*touch) continue;
     if (((*touch)->touch.clear_joints - joints).cwiseAbs().maxCoeff() <= kSamePostureRad)
-      return calib::end_of(**touch);
-    if (!known || (*touch)->problem.nominal_miss_m < known->nominal_miss_m) known = &(*touch)->problem;
+      return calib::transfer_end_of(**touch);
+    if (!known || (*touch)->problem.nominal_position_error_m < known->nominal_position_error_m)
+      known = &(*touch)->problem;
   }
   return {joints, std::nullopt, is_on(made_way_, joints) ? known : nullptr};
 }
@@ -90,7 +94,7 @@ std::optional<Operation::PreparedTouch> Operation::with_way(std::variant<calib::
     spdlog::info("a touch cannot be made as it is aimed now: {}", std::get<std::string>(made));
     return std::nullopt;
   }
-  auto via = calib::find_aimed_transfer(planning_, *aim_, from, calib::end_of(*aimed));
+  auto via = calib::find_aimed_transfer(planning_, *aim_, from, calib::transfer_end_of(*aimed));
   if (!via) {
     spdlog::info("no way to a touch on plane {} as it is aimed now", aimed->touch.face + 1);
     return std::nullopt;
@@ -154,7 +158,7 @@ asio::awaitable<bool> Operation::prepare_touch() {
 void Operation::look_ahead() {
   const std::size_t behind = run_->touches_made() + 1;
   stop_when_good_enough(behind);
-  ahead_ = prepared(behind, calib::end_of(*made_));
+  ahead_ = prepared(behind, calib::transfer_end_of(*made_));
 }
 
 /// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.

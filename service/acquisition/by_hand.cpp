@@ -22,10 +22,10 @@ using namespace std::chrono_literals;
 namespace {
 
 LocatedPlace located(const std::optional<LocatedPlace>& before, const Locating& locating) {
-  const calib::BlockPlaceFit& fit = locating.fit().value();
+  const calib::BlockRegistration& fit = locating.fit().value();
   LocatedPlace place{.cell_from_block = fit.old_from_new,
                      .covariance = fit.covariance,
-                     .std_place = fit.std_place,
+                     .std_block_pose = fit.std_block_pose,
                      .touches = locating.touches()};
   if (before) place.cell_from_block = before->cell_from_block * fit.old_from_new;
   return place;
@@ -192,12 +192,12 @@ asio::awaitable<bool> Operation::go_around_block() {
   Cell there = cell_at(configured_, located(place_, *locating_));
   there.speeds.travel_m_s *= kPassSpeedShare;
   const calib::TransferSpace space(there.arm.model, there.collision_scene(), there.park_joints,
-                                   there.nominal_miss_m);
+                                   there.nominal_position_error_m);
   std::vector<calib::JointVector> stops = pass_;
   stops.push_back(there.park_joints);
   calib::JointVector at = *from;
   for (const calib::JointVector& stop : stops) {
-    const auto via = calib::find_way(space, at, stop);
+    const auto via = calib::find_path(space, at, stop);
     if (!via) {
       raise({FaultCode::kNoSafeWay, "around the block: jog the arm to its park posture first"},
             Event::kAbortFault);
@@ -267,23 +267,24 @@ void Operation::begin_place_check() {
   faces_met_.clear();
   if (!place_) return;
   calib::PlanningProblem problem = planning_;
-  for (const calib::PlaceTouch& touch : place_->touches)
+  for (const calib::RegistrationTouch& touch : place_->touches)
     problem.knowledge.touch_noise_m = std::max(problem.knowledge.touch_noise_m, touch.std_m);
   place_check_.emplace(problem);
-  for (const calib::PlaceTouch& touch : place_->touches)
+  for (const calib::RegistrationTouch& touch : place_->touches)
     place_check_->add({.face = touch.face, .joints = touch.joints});
 }
 
 void Operation::check_place(const calib::Touch& touch) {
   if (!place_check_ || !faces_met_.insert(touch.face).second) return;
-  const calib::AimedContact contact = place_check_->add(touch);
-  const bool met_all = std::ranges::all_of(
-      place_->touches, [this](const calib::PlaceTouch& made) { return faces_met_.contains(made.face); });
+  const calib::PredictedContact contact = place_check_->add(touch);
+  const bool met_all = std::ranges::all_of(place_->touches, [this](const calib::RegistrationTouch& made) {
+    return faces_met_.contains(made.face);
+  });
   if (met_all) place_check_.reset();
-  if (std::abs(contact.miss_m) <= contact.predicted_miss_m) return;
-  raise({FaultCode::kBlockMoved,
-         fmt::format("plane {} was met {:.1f} mm from there, {:.1f} mm could be", touch.face + 1,
-                     calib::mm_from_metres(contact.miss_m), calib::mm_from_metres(contact.predicted_miss_m))},
+  if (std::abs(contact.position_error_m) <= contact.predicted_position_error_m) return;
+  raise({FaultCode::kBlockMoved, fmt::format("plane {} was met {:.1f} mm from there, {:.1f} mm could be",
+                                             touch.face + 1, calib::mm_from_metres(contact.position_error_m),
+                                             calib::mm_from_metres(contact.predicted_position_error_m))},
         Event::kHoldFault);
 }
 

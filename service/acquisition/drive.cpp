@@ -10,6 +10,8 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <utility>
 
+#include "calib_core/motion/transfer_path.hpp"
+#include "calib_core/planning/aimed_transfer.hpp"
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/operation.hpp"
@@ -183,7 +185,7 @@ asio::awaitable<void> Operation::make_next_touch() {
   made_ = std::move(ahead_->aimed);
   const int aimed_with = ahead_->aimed_with;
   const calib::PlannedTouch touch = made_->touch;
-  made_way_ = calib::whole_way(ahead_->from, via, touch.clear_joints);
+  made_way_ = calib::whole_path(ahead_->from, via, touch.clear_joints);
   made_way_.insert(made_way_.end(), {touch.approach_joints, touch.search_end_joints});
   ahead_.reset();
   standing_.reset();

@@ -9,6 +9,7 @@
 
 #include "calib_core/geometry/face.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
 #include "service/acquisition/operation.hpp"
 
 namespace cell {
@@ -104,11 +105,11 @@ std::optional<std::string> Operation::take_guided(const HandTouch& touch) {
   const calib::Face& face = planning_.faces[static_cast<std::size_t>(planned->face)];
   const Eigen::Vector3d ball_m = calib::forward_kinematics(aim_->model(), touch.joints).translation();
   const double off_m = calib::signed_distance_m(calib::contact_plane(face, planning_.stylus), ball_m);
-  if (std::abs(off_m) > cell_.nominal_miss_m) {
+  if (std::abs(off_m) > cell_.nominal_position_error_m) {
     return refuse(fmt::format("the ball was {:.0f} mm off plane {}: touch that one",
                               calib::mm_from_metres(off_m), planned->face + 1));
   }
-  if (!is_over(face, ball_m, cell_.nominal_miss_m))
+  if (!is_over(face, ball_m, cell_.nominal_position_error_m))
     return refuse(fmt::format("the ball was beside plane {}: touch that one", planned->face + 1));
   for (const calib::Touch& made : run_->problem().touches) {
     if (!is_same_posture(made, planned->face, touch.joints)) continue;

@@ -15,6 +15,8 @@
 #include <variant>
 #include <vector>
 
+#include "calib_core/planning/aimed_touch.hpp"
+#include "calib_core/planning/aimed_transfer.hpp"
 #include "calib_core/planning/online_estimate.hpp"
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
@@ -292,11 +294,11 @@ class Operation {
   std::map<std::string, PlanOutcome> plans_;         // by recipe
   int plans_under_way_ = 0;                          // on the planner's thread, or waiting for it
   calib::PlanningProblem planning_;                  // of the run
-  std::optional<calib::JointVector> standing_;  // where the last command left the arm, when that is certain
-  std::optional<calib::Aim> aim_;               // of the run
-  std::optional<calib::AimedTouch> made_;       // commanded last
-  std::optional<calib::AimedTouch> before_;     // ... and the one before
-  std::vector<calib::JointVector> made_way_;    // from where the arm stood to the end of its search
+  std::optional<calib::JointVector> standing_;   // where the last command left the arm, when that is certain
+  std::optional<calib::OnlineArmEstimate> aim_;  // of the run
+  std::optional<calib::AimedTouch> made_;        // commanded last
+  std::optional<calib::AimedTouch> before_;      // ... and the one before
+  std::vector<calib::JointVector> made_way_;     // from where the arm stood to the end of its search
   bool missed_ = false;  // its search met nothing: it comes again with the nominal miss
   /// The next touch, found while the arm makes the one before; as long as the arm is there.
   std::optional<PreparedTouch> ahead_;
@@ -321,11 +323,11 @@ class Operation {
   bool passing_ = false;                  // once around the block, without a run
   std::vector<calib::JointVector> pass_;  // postures of it
   std::optional<LocatedPlace> place_;
-  int place_count_ = 0;                    // of places used: a plan made with an older one is none
-  std::filesystem::path place_file_;       // empty: nowhere
-  std::optional<calib::Aim> place_check_;  // of the run, with the touches that found the place
-  std::set<int> faces_met_;                // by the run, as long as the place is checked
-  bool asking_ = false;                    // for a permit
+  int place_count_ = 0;               // of places used: a plan made with an older one is none
+  std::filesystem::path place_file_;  // empty: nowhere
+  std::optional<calib::OnlineArmEstimate> place_check_;  // of the run, with the touches that found the place
+  std::set<int> faces_met_;                              // by the run, as long as the place is checked
+  bool asking_ = false;                                  // for a permit
   bool shutting_down_ = false;
   bool driving_ = false;
 };

@@ -8,6 +8,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "calib_core/planning/aimed_touch.hpp"
+#include "calib_core/planning/aimed_transfer.hpp"
 #include "service/acquisition/operation.hpp"
 #include "service/base/log_format.hpp"
 #include "service/documents/conditions_view.hpp"
@@ -47,7 +49,7 @@ std::string command_text(const calib::PlannedTouch& touch, const std::vector<cal
               {"clear_joints_rad", array_of(touch.clear_joints)},
               {"approach_joints_rad", array_of(touch.approach_joints)},
               {"search_end_joints_rad", array_of(touch.search_end_joints)},
-              {"predicted_miss_m", touch.predicted_miss_m},
+              {"predicted_miss_m", touch.predicted_position_error_m},
               {"way_rad", way_rad}}
       .dump();
 }
@@ -57,7 +59,7 @@ std::optional<CommandedTouch> command_from_text(const std::string& text) {
     const Json json = Json::parse(text);
     calib::PlannedTouch touch{.face = json.at("face"),
                               .role = static_cast<calib::TouchRole>(json.at("role").get<int>()),
-                              .predicted_miss_m = json.at("predicted_miss_m")};
+                              .predicted_position_error_m = json.at("predicted_miss_m")};
     read_array(json.at("joints_rad"), touch.joints);
     read_array(json.at("clear_joints_rad"), touch.clear_joints);
     read_array(json.at("approach_joints_rad"), touch.approach_joints);
@@ -185,7 +187,7 @@ void Operation::recall_aim() {
   if (!aimed) return;
   made_ = std::move(*aimed);
   if (is_surprise(touches.back().joints)) return;
-  ahead_ = prepared(stored.size(), calib::end_of(*made_));
+  ahead_ = prepared(stored.size(), calib::transfer_end_of(*made_));
   if (!ahead_) return;
   before_ = std::move(made_);  // the arm may stand on the way between both
   made_ = ahead_->aimed;

@@ -11,6 +11,7 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/motion/transfer_path.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
 #include "service/acquisition/operation.hpp"
 #include "service/run/touch_command.hpp"
 
@@ -103,7 +104,7 @@ asio::awaitable<std::optional<cs8::TouchResult>> Operation::touch_apart(calib::A
   before_ = std::move(made_);
   made_ = ready->aimed;
   const calib::PlannedTouch touch = made_->touch;
-  made_way_ = calib::whole_way(*from, ready->via, touch.clear_joints);
+  made_way_ = calib::whole_path(*from, ready->via, touch.clear_joints);
   made_way_.insert(made_way_.end(), {touch.approach_joints, touch.search_end_joints});
   standing_.reset();
   history_.last_contact.reset();  // this is made to be where another was
@@ -220,7 +221,7 @@ void Operation::judge_reference(const calib::JointVector& joints) {
 /// The newest touch is known to the aim at once; one that the others contradict is made again while the arm
 /// is there.
 void Operation::watch_fit() {
-  calib::Aim before = *aim_;
+  calib::OnlineArmEstimate before = *aim_;
   if (learn()) misfit_ = Misfit{.aimed = *made_, .before = std::move(before)};
 }
 
@@ -238,7 +239,7 @@ asio::awaitable<void> Operation::touch_misfit_again() {
     misfit_.reset();
     co_return;
   }
-  calib::Aim without = misfit_->before;
+  calib::OnlineArmEstimate without = misfit_->before;
   StoredTouch again = first;
   again.joints = result->contact;
   again.source = result->source;

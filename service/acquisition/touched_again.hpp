@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
 #include "calib_core/planning/online_estimate.hpp"
 
 namespace cell {
@@ -23,8 +24,8 @@ struct ReferencePlace {
 
 /// The last touch, which the others contradict, until it is known what to think of it.
 struct Misfit {
-  calib::AimedTouch aimed;  // it is made again in the same way
-  calib::Aim before;        // what was known without it
+  calib::AimedTouch aimed;          // it is made again in the same way
+  calib::OnlineArmEstimate before;  // what was known without it
 };
 
 }  // namespace cell

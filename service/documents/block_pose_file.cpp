@@ -92,10 +92,10 @@ std::string place_document(const LocatedPlace& place) {
   Json& covariance = document["covariance_si"] = Json::array();
   for (int row = 0; row < 6; ++row) covariance.push_back(list_of(place.covariance.row(row)));
   Json& errors = document["std_errors_si"] = Json::object();
-  for (std::size_t i = 0; i < place.std_place.size(); ++i)
-    if (place.std_place[i]) errors[calib::error_parameters()[i].name()] = *place.std_place[i];
+  for (std::size_t i = 0; i < place.std_block_pose.size(); ++i)
+    if (place.std_block_pose[i]) errors[calib::error_parameters()[i].name()] = *place.std_block_pose[i];
   Json& touches = document["touches"] = Json::array();
-  for (const calib::PlaceTouch& touch : place.touches)
+  for (const calib::RegistrationTouch& touch : place.touches)
     touches.push_back({{"plane", touch.face + 1},
                        {"joints_deg", list_of(touch.joints, 1.0 / calib::kRadiansPerDegree)},
                        {"std_mm", calib::mm_from_metres(touch.std_m)}});
@@ -141,7 +141,7 @@ std::optional<LocatedPlace> read_place(const std::filesystem::path& file) {
   for (const auto& [name, value] : document.at("std_errors_si").members()) {
     const auto index = calib::error_parameter_index(name);
     if (!index) value.fail("is no error of an arm");
-    place.std_place[static_cast<std::size_t>(*index)] = value.number(kNotNegative);
+    place.std_block_pose[static_cast<std::size_t>(*index)] = value.number(kNotNegative);
   }
   for (const JsonValue& value : document.at("touches").items(kTouchesMin, kTouchesMax)) {
     const JsonObject touch = value.object({"plane", "joints_deg", "std_mm"});

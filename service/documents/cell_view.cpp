@@ -81,7 +81,7 @@ std::string cell_document(const Cell& cell, const std::optional<LocatedPlace>& p
                   {"default_recipe", cell.default_recipe},
                   {"workspace_box", box_json(cell.workspace_box)},
                   {"keep_out_boxes", keep_out},
-                  {"nominal_miss_mm", mm_from_metres(cell.nominal_miss_m)},
+                  {"nominal_miss_mm", mm_from_metres(cell.nominal_position_error_m)},
                   {"touch_noise_mm", mm_from_metres(cell.touch_noise_m)},
                   {"acceptance", limits_json(cell.acceptance)},
                   {"scene", scene_json(cell)},

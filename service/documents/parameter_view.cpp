@@ -35,7 +35,7 @@ const char* status_name(calib::ParameterStatus status) {
 
 const char* group_name(calib::ParameterGroup group) {
   switch (group) {
-    case calib::ParameterGroup::kPlace:
+    case calib::ParameterGroup::kBlockPose:
       return "place";
     case calib::ParameterGroup::kArm:
       return "arm";
@@ -67,13 +67,14 @@ std::array<Json, calib::kErrorParameterCount> carried(const calib::IdentifiableS
 
 /// One standard deviation of an estimated arm parameter, SI.
 std::optional<double> std_of(const calib::IdentificationResult& result, int index) {
-  if (!result.certainty) return std::nullopt;
-  return result.certainty->std_error(index);
+  if (!result.uncertainty) return std::nullopt;
+  return result.uncertainty->std_error(index);
 }
 
-Json interval_json(int index, double error, std::optional<double> std, const calib::Certainty* certainty) {
-  if (!std || !certainty) return nullptr;
-  const double half = certainty->coverage_factor * *std;
+Json interval_json(int index, double error, std::optional<double> std,
+                   const calib::UncertaintyBudget* uncertainty) {
+  if (!std || !uncertainty) return nullptr;
+  const double half = uncertainty->coverage_factor * *std;
   return {number(shown(index, error - half)), number(shown(index, error + half))};
 }
 
@@ -129,7 +130,7 @@ Json parameters_json(const calib::IdentificationProblem& problem, const calib::I
     parameter["error"] = estimated ? number(shown(i, result.errors[i])) : Json(nullptr);
     parameter["std_uncertainty"] = std ? number(shown(i, *std)) : Json(nullptr);
     parameter["interval95"] =
-        interval_json(i, result.errors[i], std, result.certainty ? &*result.certainty : nullptr);
+        interval_json(i, result.errors[i], std, result.uncertainty ? &*result.uncertainty : nullptr);
     parameter["grouped_with"] = grouped_with;
     parameter["stands_for"] = options.prior ? Json::array() : stands_for[index];
     parameters.push_back(std::move(parameter));
@@ -145,7 +146,7 @@ Json artefact_parameters_json(const calib::IdentificationProblem& problem,
     const auto index = static_cast<Eigen::Index>(i);
     const std::string unit = unit_name(parameter.kind);
     const double scale = unit == "mm" ? calib::mm_from_metres(1.0) : 1.0;
-    const double std = result.certainty ? result.certainty->artefact_std[index] : kUnknown;
+    const double std = result.uncertainty ? result.uncertainty->artefact_std[index] : kUnknown;
     const bool identified = !parameter.std || std < (1.0 - kIdentifiedFall) * *parameter.std;
     const bool estimated = result.artefact_errors.size() > index;
     list.push_back({{"name", parameter.name},
@@ -161,8 +162,8 @@ Json artefact_parameters_json(const calib::IdentificationProblem& problem,
 
 Json correlations_json(const calib::IdentificationResult& result) {
   Json list = Json::array();
-  if (!result.certainty) return list;
-  for (const calib::Correlation& correlation : result.certainty->correlations) {
+  if (!result.uncertainty) return list;
+  for (const calib::Correlation& correlation : result.uncertainty->correlations) {
     list.push_back({{"first", arm_parameter_name(correlation.first)},
                     {"second", arm_parameter_name(correlation.second)},
                     {"coefficient", number(correlation.coefficient)}});

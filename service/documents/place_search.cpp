@@ -56,19 +56,19 @@ class PlaceSearch {
  private:
   void judge(const Cell& there, const calib::TouchPlan& plan, PlaceFinding& finding) const {
     const PlannedIdentification planned = identify_planned(there, recipe_, plan);
-    if (!planned.result.certainty) {
+    if (!planned.result.uncertainty) {
       finding.reason = planned.result.message;
       return;
     }
-    const calib::Certainty& certainty = *planned.result.certainty;
+    const calib::UncertaintyBudget& uncertainty = *planned.result.uncertainty;
     const calib::KinematicModel& model = there.arm.model;
-    finding.figures =
-        PlaceFigures{.workspace_box_rms_m = predicted_rms_m(calib::over_postures(model, in_box_), certainty),
-                     .joint_ranges_rms_m =
-                         predicted_rms_m(calib::over_joint_ranges(model, there.arm.joint_ranges), certainty),
-                     .condition_number = planned.result.iterations.back().condition_number,
-                     .duration_s = plan.duration_s(),
-                     .touch_count = static_cast<int>(plan.touches.size())};
+    finding.figures = PlaceFigures{
+        .workspace_box_rms_m = predicted_rms_m(calib::region_over_postures(model, in_box_), uncertainty),
+        .joint_ranges_rms_m =
+            predicted_rms_m(calib::region_over_joint_ranges(model, there.arm.joint_ranges), uncertainty),
+        .condition_number = planned.result.iterations.back().condition_number,
+        .duration_s = plan.duration_s(),
+        .touch_count = static_cast<int>(plan.touches.size())};
   }
 
   static std::string reason_of(const calib::PlanningFailure& failure) {

@@ -99,7 +99,7 @@ PlanRefusal refuse(const Cell& cell, const Recipe& recipe, const calib::Planning
                   : std::string(),
               failure.reason),
           .efforts = failure.efforts};
-    case calib::PlanningFailure::Kind::kPlanes:
+    case calib::PlanningFailure::Kind::kUnidentifiable:
       return {
           .kind = PlanRefusal::Kind::kTouches,
           .message = failure.reason + "; touch more planes, or exclude the parameters that these do not show",

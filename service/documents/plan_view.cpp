@@ -40,7 +40,7 @@ Json touch_json(const Cell& cell, const calib::PlannedTouch& touch) {
           {"search_length_mm", mm_from_metres(touch.search_length_m)},
           {"search_end_joints_deg", joints_json(cell, touch.search_end_joints)},
           {"tilt_deg", calib::degrees_from_radians(touch.tilt_rad)},
-          {"predicted_miss_mm", mm_from_metres(touch.predicted_miss_m)},
+          {"predicted_miss_mm", mm_from_metres(touch.predicted_position_error_m)},
           {"travel_s", number(touch.travel_s)},
           {"touch_s", number(touch.touch_s)}};
 }

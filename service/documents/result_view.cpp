@@ -35,7 +35,7 @@ Json iteration_json(const calib::Iteration& iteration) {
 Json rejected_json(const std::vector<calib::RejectedTouch>& rejected) {
   Json list = Json::array();
   for (const calib::RejectedTouch& touch : rejected) {
-    const bool wrong_plane = touch.reason == calib::RejectionReason::kWrongPlane;
+    const bool wrong_plane = touch.reason == calib::RejectionReason::kWrongFace;
     list.push_back({{"touch", touch.touch + 1},
                     {"residual_mm", number_mm(touch.residual_m)},
                     {"reason", wrong_plane ? "wrong_plane" : "outlier"}});
@@ -105,17 +105,17 @@ Json plane_fits_json(const calib::IdentificationResult& result) {
 
 Json fit_json(const calib::IdentificationProblem& problem, const calib::IdentificationResult& result) {
   const auto& lack_of_fit = result.lack_of_fit;
-  const auto& certainty = result.certainty;
+  const auto& uncertainty = result.uncertainty;
   std::optional<double> degrees;
   if (lack_of_fit) {
     degrees = lack_of_fit->degrees_of_freedom;
-  } else if (certainty) {
-    degrees = certainty->degrees_of_freedom;
+  } else if (uncertainty) {
+    degrees = uncertainty->degrees_of_freedom;
   }
   return {
       {"noise_declared_um", problem.touch_noise_m > 0.0 ? micrometres(problem.touch_noise_m) : Json(nullptr)},
       {"noise_estimated_um", micrometres(result.noise_estimated_m)},
-      {"noise_used_um", certainty ? micrometres(certainty->noise_m) : Json(nullptr)},
+      {"noise_used_um", uncertainty ? micrometres(uncertainty->noise_m) : Json(nullptr)},
       {"lack_of_fit_p", lack_of_fit ? number(lack_of_fit->p) : Json(nullptr)},
       {"degrees_of_freedom", number(degrees)},
       {"planes", plane_fits_json(result)}};

@@ -16,9 +16,9 @@ struct ResultContext {
   std::string conditions;             // as kept with the run; empty: what the cell's files tell
 };
 
-/// touchcal/result/1 (service/doc/surfaces.md, section 5), one JSON document as text. `problem` is what was identified:
-/// rejected touches are counted in its touches, from 1. `identifiable_count` is the rank that the touches
-/// show, also with a prior, where all errors that are not excluded are identified.
+/// touchcal/result/1 (service/doc/surfaces.md, section 5), one JSON document as text. `problem` is what was
+/// identified: rejected touches are counted in its touches, from 1. `identifiable_count` is the rank that the
+/// touches show, also with a prior, where all errors that are not excluded are identified.
 std::string result_document(const TipRegions& regions, const Recipe& recipe,
                             const calib::IdentificationProblem& problem,
                             const calib::IdentificationResult& result, const ResultContext& context);

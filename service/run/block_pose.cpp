@@ -23,8 +23,8 @@ std::string place_digest(const Cell& cell) {
 
 Cell cell_at(const Cell& cell, const LocatedPlace& place) {
   Cell there = with_block_moved(cell, place.cell_from_block);
-  for (std::size_t i = 0; i < place.std_place.size(); ++i)
-    if (place.std_place[i]) there.arm.std_errors[i] = place.std_place[i];
+  for (std::size_t i = 0; i < place.std_block_pose.size(); ++i)
+    if (place.std_block_pose[i]) there.arm.std_errors[i] = place.std_block_pose[i];
   return there;
 }
 

@@ -12,10 +12,10 @@ namespace cell {
 struct LocatedPlace {
   Eigen::Isometry3d cell_from_block;  // R_-1 as it stands, in R_-1 as the cell's file has it
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  // of shift above turn
-  calib::ErrorTolerances std_place{};      // one standard deviation of the six errors of the place
-  std::vector<calib::PlaceTouch> touches;  // that it was found with
-  std::string located_at;                  // RFC 3339
-  std::string digest;                      // place_digest() of the cell that it was found in
+  calib::ErrorTolerances std_block_pose{};        // one standard deviation of the six errors of the place
+  std::vector<calib::RegistrationTouch> touches;  // that it was found with
+  std::string located_at;                         // RFC 3339
+  std::string digest;                             // place_digest() of the cell that it was found in
 };
 
 /// Of all that a place is relative to: the arm's frames, the faces and the ball. A place of another digest is

@@ -14,7 +14,7 @@ namespace {
 
 /// A touch's noise as the result's own uncertainties use it.
 double noise_m(const calib::IdentificationResult& result, const Cell& cell) {
-  return result.certainty ? result.certainty->noise_m : cell.touch_noise_m;
+  return result.uncertainty ? result.uncertainty->noise_m : cell.touch_noise_m;
 }
 
 void add_held_out(const calib::FaceDistances& face, double noise, const Cell& cell,

@@ -42,7 +42,7 @@ std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, c
 Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new) {
   Cell there = cell;
   const Eigen::Isometry3d new_from_old = old_from_new.inverse();
-  calib::set_place(there.arm.model, new_from_old * calib::place_of(cell.arm.model));
+  calib::set_block_pose(there.arm.model, new_from_old * calib::block_pose_of(cell.arm.model));
   there.keep_out_boxes.clear();
   for (const calib::Box& box : cell.keep_out_boxes) {
     const auto pieces = moved_in_pieces(new_from_old, box);

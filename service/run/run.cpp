@@ -128,8 +128,8 @@ bool Run::identify() {
   latest_ = calib::identify(problem_, recipe_.identification);
   predicted_tip_rms_m_.reset();
   more_would_bring_.reset();
-  if (latest_.certainty) {
-    predicted_tip_rms_m_ = predicted_rms_m(regions_.tip().workspace_box, *latest_.certainty);
+  if (latest_.uncertainty) {
+    predicted_tip_rms_m_ = predicted_rms_m(regions_.tip().workspace_box, *latest_.uncertainty);
     more_would_bring_ = weigh_more_touches();
   }
   return true;
@@ -141,11 +141,11 @@ bool Run::sees_all() const {
 }
 
 bool Run::is_good_enough() const {
-  if (!recipe_.goal.tip_rms_max_m || !latest_.certainty || !sees_all()) return false;
+  if (!recipe_.goal.tip_rms_max_m || !latest_.uncertainty || !sees_all()) return false;
   if (latest_.lack_of_fit && !(latest_.lack_of_fit->p >= calib::kLackOfFitWidens)) return false;
   const bool over_ranges = recipe_.goal.criterion == calib::PlanCriterion::kTipInJointRanges;
   const auto rms_m =
-      over_ranges ? predicted_rms_m(regions_.tip().joint_ranges, *latest_.certainty) : predicted_tip_rms_m_;
+      over_ranges ? predicted_rms_m(regions_.tip().joint_ranges, *latest_.uncertainty) : predicted_tip_rms_m_;
   return rms_m && *rms_m <= *recipe_.goal.tip_rms_max_m;
 }
 

@@ -21,7 +21,8 @@ std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& prob
 
 /// The predicted deviation over a region, metres. Nothing when an error of unknown size matters there, or
 /// when the region holds no posture: no figure is honest then.
-std::optional<double> predicted_rms_m(const calib::TipRegion& region, const calib::Certainty& certainty);
+std::optional<double> predicted_rms_m(const calib::TipRegion& region,
+                                      const calib::UncertaintyBudget& uncertainty);
 
 /// Where a cell wants to know how far off its tip is predicted to be: postures of the nominal arm. Each
 /// region is made at its first need (milliseconds; the map about a tenth of a second) and kept. One thread.

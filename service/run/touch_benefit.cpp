@@ -21,7 +21,7 @@ double mean_square_m2(const Eigen::MatrixXd& information, const calib::TipRegion
                       const std::vector<int>& columns) {
   const auto count = static_cast<Eigen::Index>(columns.size());
   return region.mean_square(columns, columns)
-      .cwiseProduct(calib::covariance_of(information).topLeftCorner(count, count))
+      .cwiseProduct(calib::inverse_information(information).topLeftCorner(count, count))
       .sum();
 }
 

@@ -7,6 +7,7 @@
 
 #include "calib_core/geometry/plane.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/aimed_transfer.hpp"
 #include "calib_core/planning/online_estimate.hpp"
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"

@@ -85,7 +85,7 @@ TEST_F(BlockElsewhere, IsFoundBySixTouchesAndCalibratesTheArmThere) {
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LT(std::abs(off.translation()[axis]), 3.0 * std::sqrt(place.covariance(axis, axis))) << axis;
   }
-  EXPECT_LT(off.translation().norm(), loop_.cell.nominal_miss_m);
+  EXPECT_LT(off.translation().norm(), loop_.cell.nominal_position_error_m);
 
   loop_.relaunch();  // the next daemon knows it
   ASSERT_TRUE(loop_.operation().place());

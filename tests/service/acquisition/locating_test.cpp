@@ -30,7 +30,7 @@ Eigen::Isometry3d true_move() {
 class Person {
  public:
   explicit Person(const Cell& cell) : arm_(cell.arm.model), cell_(cell), spots_(place_spots(cell)) {
-    calib::set_place(arm_, true_move().inverse() * calib::place_of(arm_));
+    calib::set_block_pose(arm_, true_move().inverse() * calib::block_pose_of(arm_));
   }
 
   [[nodiscard]] calib::JointVector on(const PlaceSpot& spot) const {
@@ -136,8 +136,8 @@ TEST_F(LocatingTheBlock, ATouchTakenByWordSaysLess) {
 
 TEST_F(LocatingTheBlock, ThePassLeavesItsDistanceOverEveryFace) {
   take_all();
-  const Cell there = cell_at(
-      cell_, {.cell_from_block = locating_.fit()->old_from_new, .std_place = locating_.fit()->std_place});
+  const Cell there = cell_at(cell_, {.cell_from_block = locating_.fit()->old_from_new,
+                                     .std_block_pose = locating_.fit()->std_block_pose});
   const auto postures = pass_postures(there, locating_.touches());
   ASSERT_TRUE(std::holds_alternative<std::vector<calib::JointVector>>(postures))
       << std::get<std::string>(postures);
@@ -160,7 +160,7 @@ TEST_F(LocatingTheBlock, APlaceIsReadBackAsItWasWritten) {
   EXPECT_FALSE(read_place(file));
   const LocatedPlace place{.cell_from_block = locating_.fit()->old_from_new,
                            .covariance = locating_.fit()->covariance,
-                           .std_place = locating_.fit()->std_place,
+                           .std_block_pose = locating_.fit()->std_block_pose,
                            .touches = locating_.touches(),
                            .located_at = "2026-11-22T03:00:00.000Z",
                            .digest = place_digest(cell_)};
@@ -170,7 +170,7 @@ TEST_F(LocatingTheBlock, APlaceIsReadBackAsItWasWritten) {
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->cell_from_block.isApprox(place.cell_from_block, 1e-12));
   EXPECT_TRUE(read->covariance.isApprox(place.covariance, 1e-12));
-  EXPECT_EQ(read->std_place, place.std_place);
+  EXPECT_EQ(read->std_block_pose, place.std_block_pose);
   ASSERT_EQ(read->touches.size(), 6U);
   EXPECT_TRUE(read->touches[5].joints.isApprox(place.touches[5].joints, 1e-12));
   EXPECT_EQ(read->digest, place.digest);
@@ -183,7 +183,7 @@ TEST_F(LocatingTheBlock, APlaceThatWasChangedByOtherMeansIsRefused) {
   const std::filesystem::path file = folder.path() / "place.json";
   write_place(file, {.cell_from_block = locating_.fit()->old_from_new,
                      .covariance = locating_.fit()->covariance,
-                     .std_place = {},
+                     .std_block_pose = {},
                      .touches = locating_.touches(),
                      .located_at = "2026-11-22T03:00:00.000Z",
                      .digest = place_digest(cell_)});

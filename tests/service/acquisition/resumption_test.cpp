@@ -6,7 +6,8 @@ namespace cell {
 namespace {
 
 TEST(Resumption, ACommandComesBackFromItsTextToTheBit) {
-  calib::PlannedTouch touch{.face = 3, .role = calib::TouchRole::kHeldOut, .predicted_miss_m = 1.0 / 3.0};
+  calib::PlannedTouch touch{
+      .face = 3, .role = calib::TouchRole::kHeldOut, .predicted_position_error_m = 1.0 / 3.0};
   touch.joints << 0.1, -0.2, 1.0 / 3.0, 0.4, -0.5, 1e-17;
   touch.clear_joints = touch.joints / 7.0;
   touch.approach_joints = touch.joints / 11.0;
@@ -16,7 +17,7 @@ TEST(Resumption, ACommandComesBackFromItsTextToTheBit) {
   EXPECT_EQ(way_back, way);
   EXPECT_EQ(back.face, touch.face);
   EXPECT_EQ(back.role, touch.role);
-  EXPECT_EQ(back.predicted_miss_m, touch.predicted_miss_m);
+  EXPECT_EQ(back.predicted_position_error_m, touch.predicted_position_error_m);
   EXPECT_EQ(back.joints, touch.joints);
   EXPECT_EQ(back.clear_joints, touch.clear_joints);
   EXPECT_EQ(back.approach_joints, touch.approach_joints);

@@ -84,7 +84,7 @@ TEST_F(Traceability, ConditionsTellWhoTouched) {
 TEST_F(Traceability, ConditionsTellWhereTheBlockStood) {
   EXPECT_TRUE(conditions_json(read(), {}).at("place").is_null());
   LocatedPlace place{.cell_from_block = Eigen::Isometry3d(Eigen::Translation3d(0.03, 0.0, -0.02)),
-                     .touches = std::vector<calib::PlaceTouch>(6),
+                     .touches = std::vector<calib::RegistrationTouch>(6),
                      .located_at = "2026-11-22T08:00:00.000Z"};
   place.cell_from_block.rotate(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY()));
   place.covariance.diagonal().setConstant(1e-6);

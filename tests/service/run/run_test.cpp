@@ -45,7 +45,7 @@ TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
     EXPECT_EQ(run_.latest().fitted_touch_count, number - 1) << "not yet";
     run_.identify();
     EXPECT_EQ(run_.latest().fitted_touch_count, number);
-    EXPECT_EQ(run_.predicted_tip_rms_m().has_value(), run_.latest().certainty.has_value()) << number;
+    EXPECT_EQ(run_.predicted_tip_rms_m().has_value(), run_.latest().uncertainty.has_value()) << number;
   }
   EXPECT_TRUE(run_.complete());
   EXPECT_EQ(run_.next(), nullptr);
