@@ -118,7 +118,7 @@ std::optional<Operation::PreparedTouch> Operation::prepared(std::size_t index,
       touch->planned = planned->joints;
       return touch;
     }
-    if (!run_->put_off(index)) break;
+    if (!run_->defer(index)) break;
   }
   return std::nullopt;
 }
@@ -163,8 +163,8 @@ void Operation::look_ahead() {
 
 /// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.
 void Operation::stop_when_good_enough(std::size_t first) {
-  if (!run_->is_good_enough()) return;
-  const int dropped = run_->drop_fitted(first);
+  if (!run_->meets_accuracy_goal()) return;
+  const int dropped = run_->drop_fit_touches(first);
   if (dropped == 0) return;
   spdlog::info("run {} is accurate enough: {} touches are left out", run_->id(), dropped);
   try {

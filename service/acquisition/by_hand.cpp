@@ -21,12 +21,12 @@ using namespace std::chrono_literals;
 
 namespace {
 
-LocatedPlace located(const std::optional<LocatedPlace>& before, const Locating& locating) {
+BlockPose located(const std::optional<BlockPose>& before, const Locating& locating) {
   const calib::BlockRegistration& fit = locating.fit().value();
-  LocatedPlace place{.cell_from_block = fit.old_from_new,
-                     .covariance = fit.covariance,
-                     .std_block_pose = fit.std_block_pose,
-                     .touches = locating.touches()};
+  BlockPose place{.cell_from_block = fit.old_from_new,
+                  .covariance = fit.covariance,
+                  .std_block_pose = fit.std_block_pose,
+                  .touches = locating.touches()};
   if (before) place.cell_from_block = before->cell_from_block * fit.old_from_new;
   return place;
 }
@@ -60,16 +60,16 @@ double std_farthest_m(const Eigen::Matrix<double, 6, 6>& covariance, const std::
 
 /// Begins the dialogue (locating.hpp); once the block is found, sends the arm around it. The place counts for
 /// all runs that follow, also of later daemons.
-std::optional<Refusal> Operation::locate() {
+std::optional<CommandRefusal> Operation::locate() {
   if (!client_.connected())
-    return Refusal{.kind = Refusal::Kind::kPreconditions,
-                   .detail = "the cell is not ready",
-                   .unmet = unmet_preconditions()};
+    return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
+                          .detail = "the cell is not ready",
+                          .unmet = unmet_preconditions()};
   if (locating_) return locating_->fit() ? begin_pass() : std::nullopt;
   try {
     locating_.emplace(cell_);
   } catch (const std::invalid_argument& error) {
-    return Refusal{.detail = error.what()};
+    return CommandRefusal{.detail = error.what()};
   }
   hand_watch_.emplace(cell_.arm.model);
   spdlog::info("locating the block by touches");
@@ -78,21 +78,21 @@ std::optional<Refusal> Operation::locate() {
 }
 
 /// Takes where the arm stands as the touch that is awaited of a person.
-std::optional<Refusal> Operation::take() {
+std::optional<CommandRefusal> Operation::take() {
   auto taken = hand_watch_->take();
-  if (auto* why = std::get_if<std::string>(&taken)) return Refusal{.detail = std::move(*why)};
-  if (auto why = take_by_hand(std::get<HandTouch>(taken))) return Refusal{.detail = std::move(*why)};
+  if (auto* why = std::get_if<std::string>(&taken)) return CommandRefusal{.detail = std::move(*why)};
+  if (auto why = take_by_hand(std::get<HandTouch>(taken))) return CommandRefusal{.detail = std::move(*why)};
   return std::nullopt;
 }
 
-std::optional<Refusal> Operation::refuse_undo() const {
+std::optional<CommandRefusal> Operation::refuse_undo() const {
   const bool guiding = guided_ && status_.state == State::kExecute && run_->touches_done() > 0;
   if (locating_ ? !passing_ && !locating_->touches().empty() : guiding) return std::nullopt;
-  return Refusal{.detail = "there is no touch by hand to take back"};
+  return CommandRefusal{.detail = "there is no touch by hand to take back"};
 }
 
 /// The last touch that a person made is forgotten and asked for again.
-std::optional<Refusal> Operation::undo() {
+std::optional<CommandRefusal> Operation::undo() {
   spdlog::info("the last touch by hand is taken back");
   if (locating_) {
     locating_->undo();
@@ -127,7 +127,7 @@ void Operation::tell_guide() {
   if (status_.state != State::kExecute) guide_.reset();
   status_.by_hand = locating_ ? std::optional(locating_->guide()) : guide_;
   if (passing_ && status_.by_hand) {
-    status_.by_hand->step = "passing";
+    status_.by_hand->step = HandStep::kPassing;
     status_.by_hand->words = "the arm goes once around the block: keep away from it";
   }
   if (!status_.by_hand) hand_watch_.reset();
@@ -138,21 +138,22 @@ void Operation::leave_locating() {
   hand_watch_.reset();
 }
 
-std::optional<Refusal> Operation::begin_pass() {
+std::optional<CommandRefusal> Operation::begin_pass() {
   if (open_touch_ || unsettled_sequence_ != 0)
-    return Refusal{.detail = "the controller is not ready: touchcal reset, then once more"};
+    return CommandRefusal{.detail = "the controller is not ready: touchcal reset, then once more"};
   if (status_.fault && !is_link_fault(status_.fault->code))
-    return Refusal{.detail = "a fault is there to be read first: " + status_.fault->message(),
-                   .code = FaultCode::kFaultUnacknowledged};
+    return CommandRefusal{.detail = "a fault is there to be read first: " + status_.fault->message(),
+                          .code = FaultCode::kFaultUnacknowledged};
   const double known_m = kPassSigmas * std_farthest_m(locating_->fit()->covariance, configured_.block.faces);
   if (known_m > kPassMetres)
-    return Refusal{
+    return CommandRefusal{
         .detail = fmt::format(
             "these touches tell the block's place to {:.0f} mm only, and the arm passes it at {:.0f}: "
             "take touches back (touchcal undo) and make them nearer to where they are asked for",
             calib::mm_from_metres(known_m), calib::mm_from_metres(kPassMetres))};
-  auto postures = pass_postures(cell_at(configured_, located(place_, *locating_)), locating_->touches());
-  if (auto* why = std::get_if<std::string>(&postures)) return Refusal{.detail = std::move(*why)};
+  auto postures =
+      pass_postures(cell_with_block_pose(configured_, located(place_, *locating_)), locating_->touches());
+  if (auto* why = std::get_if<std::string>(&postures)) return CommandRefusal{.detail = std::move(*why)};
   pass_ = std::get<std::vector<calib::JointVector>>(std::move(postures));
   run_.reset();
   status_.run_id.reset();
@@ -189,7 +190,7 @@ asio::awaitable<bool> Operation::go_around_block() {
   if (!permitted) co_return false;
   const auto from = co_await standing_joints();
   if (!from || status_.state != State::kStarting) co_return false;
-  Cell there = cell_at(configured_, located(place_, *locating_));
+  Cell there = cell_with_block_pose(configured_, located(place_, *locating_));
   there.speeds.travel_m_s *= kPassSpeedShare;
   const calib::TransferSpace space(there.arm.model, there.collision_scene(), there.park_joints,
                                    there.nominal_position_error_m);
@@ -213,11 +214,11 @@ asio::awaitable<bool> Operation::go_around_block() {
 }
 
 void Operation::keep_found_place() {
-  LocatedPlace place = located(place_, *locating_);
+  BlockPose place = located(place_, *locating_);
   place.located_at = now_text();
-  place.digest = place_digest(configured_);
+  place.digest = block_pose_digest(configured_);
   try {
-    if (!place_file_.empty()) write_place(place_file_, place);
+    if (!place_file_.empty()) write_block_pose(place_file_, place);
   } catch (const std::exception& error) {
     raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
     return;
@@ -229,9 +230,9 @@ void Operation::keep_found_place() {
 
 void Operation::keep_place_in(const std::filesystem::path& file) {
   place_file_ = file;
-  auto place = read_place(file);
+  auto place = read_block_pose(file);
   if (!place) return;
-  if (place->digest == place_digest(configured_)) {
+  if (place->digest == block_pose_digest(configured_)) {
     use_place(std::move(*place));
   } else {
     spdlog::warn(
@@ -242,7 +243,7 @@ void Operation::keep_place_in(const std::filesystem::path& file) {
 }
 
 /// All that was planned or made ready where the block stood before is forgotten.
-void Operation::use_place(LocatedPlace place) {
+void Operation::use_place(BlockPose place) {
   run_.reset();
   plans_.clear();
   ++place_count_;
@@ -250,7 +251,7 @@ void Operation::use_place(LocatedPlace place) {
   ahead_.reset();
   forget_made();
   made_way_.clear();
-  cell_ = cell_at(configured_, place);
+  cell_ = cell_with_block_pose(configured_, place);
   tip_regions_.emplace(cell_);
   place_ = std::move(place);
   const Eigen::Vector3d shift_m = place_->cell_from_block.translation();

@@ -11,32 +11,32 @@ namespace cell {
 namespace {
 
 /// A confirmation is a key at the cell; the command says whether it is awaited and what to do.
-std::optional<Refusal> refuse_confirm(const Status& status) {
+std::optional<CommandRefusal> refuse_confirm(const Status& status) {
   if (status.waiting_for == awaited_confirmation().name) return std::nullopt;
-  if (!status.waiting_for) return Refusal{.detail = "nothing waits for a confirmation now"};
-  return Refusal{.detail =
-                     fmt::format("before a confirmation comes this: {}", awaited_words(*status.waiting_for))};
+  if (!status.waiting_for) return CommandRefusal{.detail = "nothing waits for a confirmation now"};
+  return CommandRefusal{.detail = fmt::format("before a confirmation comes this: {}",
+                                              awaited_instruction(*status.waiting_for))};
 }
 
-std::optional<Refusal> refuse_touch_test(const Status& status) {
+std::optional<CommandRefusal> refuse_touch_test(const Status& status) {
   if (status.controller.touch_tested.value_or(false)) return std::nullopt;
   if (status.waiting_for == awaited_touch_test().name) return std::nullopt;
-  if (!status.controller.connected) return Refusal{.detail = "there is no link to the controller"};
-  return Refusal{.detail = fmt::format("the touch test is asked for once a run starts; then {}",
-                                       awaited_touch_test().words)};
+  if (!status.controller.connected) return CommandRefusal{.detail = "there is no link to the controller"};
+  return CommandRefusal{.detail = fmt::format("the touch test is asked for once a run starts; then {}",
+                                              awaited_touch_test().words)};
 }
 
 }  // namespace
 
 /// Why a command that the state allows is not taken all the same.
-std::optional<Refusal> Operation::objection(Command command) const {
+std::optional<CommandRefusal> Operation::objection(Command command) const {
   switch (command) {
     case Command::kRetry:
     case Command::kSkip:
       if (status_.state == State::kUnholding && answer_ != command)
-        return Refusal{.detail = fmt::format("the run goes on by {} already", command_name(answer_))};
+        return CommandRefusal{.detail = fmt::format("the run goes on by {} already", command_name(answer_))};
       if (status_.state == State::kHeld && held_by_ == HeldBy::kNothing)
-        return Refusal{.detail = "no touch holds this run; resume goes on with the next one"};
+        return CommandRefusal{.detail = "no touch holds this run; resume goes on with the next one"};
       return std::nullopt;
     case Command::kConfirm:
       return refuse_confirm(status_);
@@ -44,9 +44,10 @@ std::optional<Refusal> Operation::objection(Command command) const {
       return refuse_touch_test(status_);
     case Command::kTake:
       if (hand_watch_ && !passing_) return std::nullopt;
-      return Refusal{.detail =
-                         "no touch by hand is awaited: touchcal locate or touchcal run --guided asks for "
-                         "some"};
+      return CommandRefusal{
+          .detail =
+              "no touch by hand is awaited: touchcal locate or touchcal run --guided asks for "
+              "some"};
     case Command::kUndo:
       return refuse_undo();
     default:

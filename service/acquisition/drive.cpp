@@ -66,12 +66,12 @@ asio::awaitable<void> Operation::drive() {
       case State::kStopping:
         if (shutting_down_) co_await leave_face();
         client_.finish();
-        close_run("stopped");
+        close_run(RunOutcome::kStopped);
         apply(Event::kDone);
         break;
       case State::kAborting:
         client_.finish();
-        close_run("aborted");
+        close_run(RunOutcome::kAborted);
         apply(Event::kDone);
         break;
       case State::kHolding:
@@ -313,7 +313,7 @@ asio::awaitable<void> Operation::complete_run() {
   if (run_->skipped_count() > 0)
     warn({FaultCode::kTouchesLeftOut, fmt::format("{} by a person", run_->skipped_count())});
   client_.finish();
-  close_run("complete");
+  close_run(RunOutcome::kComplete);
   apply(Event::kDone);
 }
 
@@ -333,19 +333,19 @@ asio::awaitable<bool> Operation::park() {
 }
 
 /// The run is over: its verdict and its latest result are stored with it.
-void Operation::close_run(const std::string& outcome) {
+void Operation::close_run(RunOutcome outcome) {
   standing_.reset();
   if (!run_open_) return;
   run_open_ = false;
-  run_finished_ = outcome == "complete" && run_->skipped_count() == 0 &&
+  run_finished_ = outcome == RunOutcome::kComplete && run_->skipped_count() == 0 &&
                   run_->latest().status == calib::IdentificationStatus::kConverged;
   const Judgement judgement = judge_by_rule(run_->latest(), run_->recipe().identification, cell_,
                                             run_->predicted_tip_rms_m(), run_finished_);
   status_.verdict = !run_finished_       ? Verdict::kIncomplete
                     : judgement.accepted ? Verdict::kAccepted
                                          : Verdict::kRejected;
-  RunEnd end{.outcome = interrupted_ ? "interrupted" : outcome,
-             .verdict = std::string(verdict_name(status_.verdict)),
+  RunEnd end{.outcome = interrupted_ ? RunOutcome::kInterrupted : outcome,
+             .verdict = status_.verdict,
              .ended_at = now_text(),
              .result_json = result_json()};
   if (status_.fault) {
@@ -365,8 +365,8 @@ void Operation::close_run(const std::string& outcome) {
     status_.fault = Fault{FaultCode::kStoreFailed, error.what()};
     spdlog::error("run {}: its end could not be stored: {}", run_->id(), error.what());
   }
-  spdlog::info("run {} {}: {}, {} of {} touches", run_->id(), outcome, end.verdict, run_->touches_done(),
-               run_->touches_total());
+  spdlog::info("run {} {}: {}, {} of {} touches", run_->id(), run_outcome_name(outcome),
+               verdict_name(end.verdict), run_->touches_done(), run_->touches_total());
 }
 
 }  // namespace cell

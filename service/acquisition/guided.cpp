@@ -66,7 +66,7 @@ asio::awaitable<void> Operation::await_guided_touch() {
   const auto aimed = calib::aim_touch(planning_, *aim_, *planned);
   const auto* made = std::get_if<calib::AimedTouch>(&aimed);
   HandGuide guide{
-      .activity = "guided",
+      .activity = HandActivity::kGuided,
       .plane = planned->face + 1,
       .index = run_->touches_done() + 1,
       .total = run_->touches_total(),

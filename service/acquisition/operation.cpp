@@ -69,7 +69,7 @@ bool is_link_fault(FaultCode code) {
 
 Fault link_fault(const cs8::LinkError& error) { return {fault_code_of(error.kind), error.text}; }
 
-Operation::Operation(asio::any_io_executor executor, const Cell& cell, TouchStore& store, Endpoint controller,
+Operation::Operation(asio::any_io_executor executor, const Cell& cell, RunStore& store, Endpoint controller,
                      std::string instance_id, Clock clock)
     : executor_(executor),
       configured_(cell),
@@ -147,7 +147,7 @@ void Operation::publish() {
   status_.identifiable_count.reset();
   status_.condition_number.reset();
   status_.predicted_tip_rms_m.reset();
-  status_.more_would_bring.reset();
+  status_.touch_benefit.reset();
   status_.eta_s.reset();
   status_.plane.reset();
   if (run_) {
@@ -159,12 +159,12 @@ void Operation::publish() {
     if (latest.status == calib::IdentificationStatus::kConverged)
       status_.condition_number = latest.iterations.back().condition_number;
     status_.predicted_tip_rms_m = run_->predicted_tip_rms_m();
-    status_.more_would_bring = run_->more_would_bring();
+    status_.touch_benefit = run_->touch_benefit();
     if (is_active(status_.state)) {
       if (const calib::PlannedTouch* next = run_->next()) status_.plane = next->face + 1;
       if (run_->touches_done() > 0) {
         const std::chrono::duration<double> elapsed = clock_() - run_began_;
-        status_.eta_s = run_->left_s(elapsed.count());
+        status_.eta_s = run_->remaining_s(elapsed.count());
       }
     }
   }
@@ -225,44 +225,48 @@ void Operation::lose(const cs8::LinkError& error) {
   wake_.cancel();
 }
 
-std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
+std::variant<Started, CommandRefusal> Operation::start(const StartRequest& request) {
   const std::string& recipe = request.recipe;
   if (request.idempotency_key) {
     if (const auto earlier = store_.run_with_key(*request.idempotency_key)) {
       if (earlier->recipe == recipe) return Started{earlier->id, true};
-      return Refusal{.kind = Refusal::Kind::kOtherKey,
-                     .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'",
-                                           earlier->id, earlier->recipe)};
+      return CommandRefusal{
+          .kind = CommandRefusal::Kind::kOtherKey,
+          .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'",
+                                earlier->id, earlier->recipe)};
     }
   }
   const auto found = cell_.recipes.find(recipe);
   if (found == cell_.recipes.end()) {
     std::string known;
     for (const auto& [name, unused] : cell_.recipes) known += (known.empty() ? "" : ", ") + name;
-    return Refusal{.kind = Refusal::Kind::kUnknownRecipe,
-                   .detail = fmt::format("there is no recipe '{}'; this cell has {}", recipe, known)};
+    return CommandRefusal{.kind = CommandRefusal::Kind::kUnknownRecipe,
+                          .detail = fmt::format("there is no recipe '{}'; this cell has {}", recipe, known)};
   }
-  if (shutting_down_) return Refusal{.detail = "the daemon is ending"};
+  if (shutting_down_) return CommandRefusal{.detail = "the daemon is ending"};
   if (is_active(status_.state)) {
-    return Refusal{.detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->id() : 0),
-                   .code = FaultCode::kRunActive};
+    return CommandRefusal{
+        .detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->id() : 0),
+        .code = FaultCode::kRunActive};
   }
   auto unmet = request.guided ? unmet_for_hands(recipe) : unmet_for(recipe);
   if (!unmet.empty()) {
-    return Refusal{
-        .kind = Refusal::Kind::kPreconditions, .detail = "the cell is not ready", .unmet = std::move(unmet)};
+    return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
+                          .detail = "the cell is not ready",
+                          .unmet = std::move(unmet)};
   }
   const bool waits_for_remote = request.guided && status_.state == State::kResetting;
   if (!waits_for_remote && !after_command(status_.state, Command::kStart)) {
-    return Refusal{.detail = fmt::format("a run cannot start in the state {}", state_name(status_.state)),
-                   .code = FaultCode::kNotInThisState};
+    return CommandRefusal{
+        .detail = fmt::format("a run cannot start in the state {}", state_name(status_.state)),
+        .code = FaultCode::kNotInThisState};
   }
   const std::string conditions =
       conditions_document(cell_, {.operator_name = request.operator_name,
                                   .config_digest = config_digest_,
                                   .controller_application = controller_application_,
                                   .controller_session = session_,
-                                  .touching = request.guided ? Touching::kGuided : Touching::kAutomatic,
+                                  .touch_mode = request.guided ? TouchMode::kGuided : TouchMode::kAutomatic,
                                   .place = place_});
   std::int64_t id = 0;
   try {
@@ -272,12 +276,13 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
                            .operator_name = request.operator_name,
                            .block_temperature_c = cell_.block.temperature_c,
                            .config_digest = config_digest_,
-                           .trace_json = conditions});
+                           .conditions_json = conditions});
   } catch (const std::exception& error) {
-    return Refusal{.kind = Refusal::Kind::kPreconditions,
-                   .detail = "the cell is not ready",
-                   .unmet = {{"store_not_writable",
-                              fmt::format("free disk space or mend the state directory: {}", error.what())}}};
+    return CommandRefusal{
+        .kind = CommandRefusal::Kind::kPreconditions,
+        .detail = "the cell is not ready",
+        .unmet = {{"store_not_writable",
+                   fmt::format("free disk space or mend the state directory: {}", error.what())}}};
   }
   run_.emplace(id, *tip_regions_, found->second, now_text());
   conditions_ = conditions;
@@ -293,15 +298,16 @@ std::variant<Started, Refusal> Operation::start(const StartRequest& request) {
   return Started{id, false};
 }
 
-std::optional<Refusal> Operation::command(Command command, std::optional<std::int64_t> run_id) {
+std::optional<CommandRefusal> Operation::command(Command command, std::optional<std::int64_t> run_id) {
   if (run_id && (!run_ || run_->id() != *run_id)) {
-    return Refusal{.kind = Refusal::Kind::kNotThisRun, .detail = fmt::format("run {} is over", *run_id)};
+    return CommandRefusal{.kind = CommandRefusal::Kind::kNotThisRun,
+                          .detail = fmt::format("run {} is over", *run_id)};
   }
   const auto next = after_command(status_.state, command);
   if (!next) {
-    return Refusal{.detail = fmt::format("{} is not possible in the state {}", command_name(command),
-                                         state_name(status_.state)),
-                   .code = FaultCode::kNotInThisState};
+    return CommandRefusal{.detail = fmt::format("{} is not possible in the state {}", command_name(command),
+                                                state_name(status_.state)),
+                          .code = FaultCode::kNotInThisState};
   }
   if (auto refusal = objection(command)) return refusal;
   if (command == Command::kLocate) return locate();

@@ -41,7 +41,7 @@ struct Unmet {
 };
 
 /// Why a command was not taken.
-struct Refusal {
+struct CommandRefusal {
   enum class Kind { kState, kPreconditions, kUnknownRecipe, kNotThisRun, kOtherKey };
   Kind kind = Kind::kState;
   std::string detail;
@@ -79,7 +79,7 @@ class Operation {
   using Clock = std::function<std::chrono::system_clock::time_point()>;
 
   /// `cell` and `store` must outlive the operation.
-  Operation(boost::asio::any_io_executor executor, const Cell& cell, TouchStore& store, Endpoint controller,
+  Operation(boost::asio::any_io_executor executor, const Cell& cell, RunStore& store, Endpoint controller,
             std::string instance_id, Clock clock);
   ~Operation();
   Operation(const Operation&) = delete;
@@ -91,9 +91,9 @@ class Operation {
   /// controller's answer; after that the link is cut, on which the controller stops by itself.
   boost::asio::awaitable<void> shut_down();
 
-  std::variant<Started, Refusal> start(const StartRequest& request);
+  std::variant<Started, CommandRefusal> start(const StartRequest& request);
   /// `run_id` when the command names a run: it must be the active one.
-  std::optional<Refusal> command(Command command, std::optional<std::int64_t> run_id = {});
+  std::optional<CommandRefusal> command(Command command, std::optional<std::int64_t> run_id = {});
   /// The commands that lead out of the present state and are taken now.
   [[nodiscard]] std::vector<Command> exits() const;
 
@@ -101,7 +101,7 @@ class Operation {
   /// is of another cell. Throws what cannot be read.
   void keep_place_in(const std::filesystem::path& file);
   /// Where the block was found; nothing as long as it stands where the cell's file says.
-  [[nodiscard]] const std::optional<LocatedPlace>& place() const { return place_; }
+  [[nodiscard]] const std::optional<BlockPose>& place() const { return place_; }
 
   [[nodiscard]] Status status() const;
   [[nodiscard]] std::uint64_t sequence() const { return status_.sequence; }
@@ -119,7 +119,7 @@ class Operation {
   /// With its block where it was found last.
   [[nodiscard]] const Cell& cell() const { return cell_; }
   [[nodiscard]] const TipRegions& tip_regions() const { return *tip_regions_; }
-  [[nodiscard]] const TouchStore& store() const { return store_; }
+  [[nodiscard]] const RunStore& store() const { return store_; }
 
   /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on a thread of its own.
   boost::asio::awaitable<PlanOutcome> plan_recipe(std::string name);
@@ -132,8 +132,8 @@ class Operation {
  private:
   // commands and status (operation.cpp)
   boost::asio::awaitable<void> wait_for_end(std::chrono::milliseconds at_most);
-  [[nodiscard]] std::optional<Refusal> objection(Command command) const;  // commands.cpp
-  void heed(Command command);                                             // commands.cpp
+  [[nodiscard]] std::optional<CommandRefusal> objection(Command command) const;  // commands.cpp
+  void heed(Command command);                                                    // commands.cpp
   void enter(State state);
   void apply(Event event);
   void raise(Fault fault, Event event);
@@ -149,7 +149,7 @@ class Operation {
   boost::asio::awaitable<bool> get_permission();
   boost::asio::awaitable<void> wait_until_readier(std::optional<cs8::State> told,
                                                   std::chrono::steady_clock::time_point at_latest);
-  void wait_for(const Awaited* awaited);
+  void wait_for(const AwaitedAction* awaited);
   [[nodiscard]] bool is_permitted() const;
   [[nodiscard]] std::uint32_t permit_number() const;
 
@@ -185,7 +185,7 @@ class Operation {
   bool take_move(const cs8::MoveReply& reply);
   void expect_stop(cs8::Outcome outcome);
   bool keep_late_touch(const calib::PlannedTouch& planned, const cs8::TouchResult& result);
-  void close_run(const std::string& outcome);
+  void close_run(RunOutcome outcome);
 
   /// A touch as it is about to be commanded, and the way to it.
   struct PreparedTouch {
@@ -218,9 +218,9 @@ class Operation {
   void settle_hold(Command command);
 
   // touches by hand, and where the block is (by_hand.cpp, guided.cpp)
-  std::optional<Refusal> locate();
-  std::optional<Refusal> take();
-  std::optional<Refusal> undo();
+  std::optional<CommandRefusal> locate();
+  std::optional<CommandRefusal> take();
+  std::optional<CommandRefusal> undo();
   void hear_by_hand(const cs8::State& state);
   void tell_guide();
   [[nodiscard]] std::vector<Unmet> unmet_for_hands(const std::string& recipe) const;
@@ -228,13 +228,13 @@ class Operation {
   void leave_locating();
   boost::asio::awaitable<void> await_guided_touch();
   std::optional<std::string> take_guided(const HandTouch& touch);
-  [[nodiscard]] std::optional<Refusal> refuse_undo() const;
+  [[nodiscard]] std::optional<CommandRefusal> refuse_undo() const;
   void undo_guided();
-  std::optional<Refusal> begin_pass();
+  std::optional<CommandRefusal> begin_pass();
   boost::asio::awaitable<void> pass_block();
   boost::asio::awaitable<bool> go_around_block();
   void keep_found_place();
-  void use_place(LocatedPlace place);
+  void use_place(BlockPose place);
   void begin_place_check();
   void check_place(const calib::Touch& touch);
   [[nodiscard]] Fault placed_fault(Fault fault, int face) const;
@@ -270,7 +270,7 @@ class Operation {
   const Cell& configured_;                 // as its file has it
   Cell cell_;                              // with the block where it was found
   std::optional<TipRegions> tip_regions_;  // of cell_
-  TouchStore& store_;
+  RunStore& store_;
   Endpoint endpoint_;
   Clock clock_;
   cs8::Client client_;
@@ -322,7 +322,7 @@ class Operation {
   std::optional<HandGuide> guide_;        // ... the one that is awaited
   bool passing_ = false;                  // once around the block, without a run
   std::vector<calib::JointVector> pass_;  // postures of it
-  std::optional<LocatedPlace> place_;
+  std::optional<BlockPose> place_;
   int place_count_ = 0;               // of places used: a plan made with an older one is none
   std::filesystem::path place_file_;  // empty: nowhere
   std::optional<calib::OnlineArmEstimate> place_check_;  // of the run, with the touches that found the place

@@ -33,7 +33,7 @@ std::uint32_t Operation::permit_number() const {
   return passing_ ? 0 : static_cast<std::uint32_t>(run_->id());
 }
 
-void Operation::wait_for(const Awaited* awaited) {
+void Operation::wait_for(const AwaitedAction* awaited) {
   const auto name = awaited ? std::optional(std::string(awaited->name)) : std::nullopt;
   if (status_.waiting_for == name) return;
   if (awaited) spdlog::info("waiting: {}", awaited->words);
@@ -62,7 +62,7 @@ asio::awaitable<bool> Operation::get_permission() {
       raise(not_ready_fault(awaited_confirmation()), Event::kNotReadyFault);
     } else if (permit->reason == cs8::PermitReason::kRefused) {
       const cs8::Rejected refused{static_cast<cs8::RejectReason>(permit->detail)};
-      const Awaited* awaited = awaited_after(refused.reason, told ? told->flags : 0);
+      const AwaitedAction* awaited = awaited_after_rejection(refused.reason, told ? told->flags : 0);
       if (!awaited) {
         raise(fault_of(refused).fault, Event::kAbortFault);
       } else {

@@ -51,7 +51,7 @@ std::vector<Unmet> Operation::unmet_for(const std::string& recipe) const {
     found.push_back(unmet(FaultCode::kFaultUnacknowledged, status_.fault->message()));
   if (!cell_.probe.tip_is_contact_point && cell_.speeds.contact_m_s() != cell_.probe.calibration_speed_m_s)
     found.push_back(unmet(FaultCode::kProbeNotCalibrated));
-  if (const auto gap = temperature_gap(cell_)) found.push_back({"temperature_missing", *gap});
+  if (const auto gap = unknown_temperature_reason(cell_)) found.push_back({"temperature_missing", *gap});
   const auto outcome = planned(recipe);
   const auto* refusal = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
   if (refusal) found.push_back(unmet(FaultCode::kRecipeUnreachable, refusal->message));

@@ -88,7 +88,7 @@ void Operation::restore_run() {
   if (!stored) return;
   if (const auto why = why_not_resumable(cell_, *stored, config_digest_)) {
     spdlog::warn("run {} was interrupted and cannot be resumed: {}", stored->id, *why);
-    RunEnd end{.outcome = "interrupted", .verdict = "incomplete", .ended_at = now_text()};
+    RunEnd end{.outcome = RunOutcome::kInterrupted, .verdict = Verdict::kIncomplete, .ended_at = now_text()};
     end.fault_code = std::string(describe(FaultCode::kDaemonRestarted).name);
     end.fault_message = Fault{FaultCode::kDaemonRestarted, "it cannot be resumed: " + *why}.message();
     store_.finish_run(stored->id, end);
@@ -96,10 +96,10 @@ void Operation::restore_run() {
   }
   run_.emplace(stored->id, *tip_regions_, cell_.recipes.at(stored->recipe), stored->started_at);
   run_->restore(store_.touches(stored->id), stored->touches_total);
-  conditions_ = stored->trace_json.value_or("");
+  conditions_ = stored->conditions_json.value_or("");
   run_open_ = true;
   set_logged_run(stored->id);
-  guided_ = is_guided(stored->trace_json);
+  guided_ = is_guided(stored->conditions_json);
   interrupted_ = Interrupted{stored->plan_id, store_.plan_changes(stored->id)};
   if (const auto open = store_.open_command(stored->id)) {
     if (auto command = command_from_text(open->touch_json)) {

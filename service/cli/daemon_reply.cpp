@@ -13,16 +13,16 @@ json parse_reply(const ApiReply& reply) {
     return json::parse(reply.body);
   } catch (const json::exception&) {
     throw DaemonUnreachable(
-        fmt::format("what answers is no touchcald (status {}); check --daemon", reply.status));
+        fmt::format("the server is not touchcald (status {}); check --daemon", reply.status));
   }
 }
 
-ExitCode tell_problem(const ApiReply& reply, bool json_only) {
+ExitCode print_problem(const ApiReply& reply, bool json_only) {
   const json problem = parse_reply(reply);
   if (json_only) fmt::print("{}\n", reply.body);
   std::string line = problem.value("detail", reply.body);
   if (reply.status == 401)
-    line = "the daemon wants its token: name its state directory with --state DIR, or set TOUCHCAL_TOKEN";
+    line = "the daemon requires its token: name its state directory with --state DIR, or set TOUCHCAL_TOKEN";
   if (problem.contains("exits")) {
     std::string exits;
     for (const json& exit : problem["exits"]) exits += (exits.empty() ? "" : ", ") + exit.get<std::string>();

@@ -7,10 +7,10 @@
 
 namespace cell {
 
-/// The document that the daemon answered. Throws DaemonUnreachable when what answers is no touchcald.
+/// The document in a reply. Throws DaemonUnreachable if the peer is not touchcald.
 nlohmann::json parse_reply(const ApiReply& reply);
 
-/// Tells a problem document that the daemon answered; the exit code that goes with it.
-ExitCode tell_problem(const ApiReply& reply, bool json);
+/// Prints the problem document of a reply; returns its exit code.
+ExitCode print_problem(const ApiReply& reply, bool json);
 
 }  // namespace cell

@@ -48,8 +48,8 @@ void write_files(const IdentifyArguments& arguments, const Cell& cell,
   if (arguments.arm_file.empty()) return;
   write_whole_file(arguments.arm_file, calibrated_arm_document(cell, result), arguments.overwrite);
   const nlohmann::json& verdict = document.at("verdict");
-  tell_warnings(export_warnings(cell.own_frames, verdict.at("accepted").get<bool>(),
-                                verdict.at("reasons").get<std::vector<std::string>>()));
+  print_warnings(export_warnings(cell.own_frames, verdict.at("accepted").get<bool>(),
+                                 verdict.at("reasons").get<std::vector<std::string>>()));
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   problem.touches = file.touches;
   const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
   if (result.status != calib::IdentificationStatus::kConverged)
-    return tell_refusal(arguments.touches_file, result);
+    return print_refusal(arguments.touches_file, result);
   const TipRegions regions(cell);
   const ResultContext context{
       .complete = true,
@@ -76,7 +76,7 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (json) {
     fmt::print("{}\n", document);
   } else {
-    tell_warnings(file.warnings);
+    print_warnings(file.warnings);
     fmt::print("{}", result_text(parsed));
   }
   return parsed.at("verdict").at("accepted").get<bool>() ? kExitDone : kExitLimitsMissed;

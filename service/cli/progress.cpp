@@ -16,7 +16,7 @@ constexpr int kBarWidth = 30;
 
 std::string figures(const json& status) {
   if (status.at("waiting_for").is_string())
-    return fmt::format("waiting: {}", awaited_words(status.at("waiting_for").get<std::string>()));
+    return fmt::format("waiting: {}", awaited_instruction(status.at("waiting_for").get<std::string>()));
   std::string text = status.at("touches_total").is_number()
                          ? fmt::format("touch {} of {}", status.at("touches_done").get<int>(),
                                        status.at("touches_total").get<int>())
@@ -46,7 +46,7 @@ std::string guidance(const json& status) {
                         status.at("by_hand_total").get<int>());
   text += status.at("by_hand_words").get<std::string>();
   if (status.at("waiting_for").is_string())
-    text += fmt::format("\nwaiting: {}", awaited_words(status.at("waiting_for").get<std::string>()));
+    text += fmt::format("\nwaiting: {}", awaited_instruction(status.at("waiting_for").get<std::string>()));
   return text;
 }
 

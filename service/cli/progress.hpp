@@ -5,17 +5,17 @@
 
 namespace cell {
 
-/// What a person at the pendant is to do; empty when nothing is asked of one.
+/// The instruction to the person at the pendant, if any.
 std::string guidance(const nlohmann::json& status);
 
-/// Shows how a run goes, from one status document after the other: a bar that is drawn anew on a terminal, a
-/// plain line at each change worth one elsewhere.
+/// Shows the progress of a run from successive status documents: a bar that is redrawn on a terminal, a line
+/// at each relevant change elsewhere.
 class Progress {
  public:
   explicit Progress(bool on_terminal) : on_terminal_(on_terminal) {}
 
   void show(const nlohmann::json& status);
-  /// Ends the line that is being drawn.
+  /// Ends the line under way.
   void finish();
 
  private:

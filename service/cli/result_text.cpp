@@ -32,7 +32,7 @@ std::string status_of(const json& parameter) {
   return fmt::format("grouped into {}{}", into, factors.size() > kShown ? ", ..." : "");
 }
 
-/// A part of a result document; one that an older daemon wrote may lack it.
+/// A member of a result document; documents of an older daemon may lack it.
 const json& part(const json& object, const char* key) {
   static const json nothing;
   const auto found = object.is_object() ? object.find(key) : object.end();
@@ -96,7 +96,7 @@ std::string artefact_text(const json& parameters) {
   return lines;
 }
 
-/// What the tip's uncertainty is made of, and where it is how large.
+/// The tip's uncertainty by source and by region.
 std::string tip_text(const json& tip) {
   std::string lines = "\npredicted uncertainty of the tip, rms\n";
   const auto line = [&lines](const std::string& where, const json& value) {
@@ -192,7 +192,7 @@ std::string status_text(const json& status) {
       yes_no(status.at("controller_touch_tested"), "made", "missing"), text_or_unknown(status.at("probe")),
       text_or_unknown(status.at("controller_permit")));
   if (status.at("waiting_for").is_string())
-    lines += fmt::format("waiting     {}\n", awaited_words(text(status.at("waiting_for"))));
+    lines += fmt::format("waiting     {}\n", awaited_instruction(text(status.at("waiting_for"))));
   if (status.at("run_id").is_string()) {
     lines += fmt::format(
         "run         {} ({}), {} of {} touches, {} identifiable, condition number {}, tip +- {} mm, verdict "

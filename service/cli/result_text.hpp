@@ -5,14 +5,14 @@
 
 namespace cell {
 
-/// A result document (touchcal/result/1) for people: the errors, rank and condition numbers, the distances of
+/// A result document (touchcal/result/1) as text: the errors, rank and condition numbers, the distances of
 /// each plane before and after, the verdict with its reasons.
 std::string result_text(const nlohmann::json& result);
 
 /// The status document in a few lines.
 std::string status_text(const nlohmann::json& status);
 
-/// What more touches would bring, of a status document: a line, or nothing.
+/// The benefit of further touches in a status document: a line, or nothing.
 std::string more_text(const nlohmann::json& status);
 
 /// The history as a table, newest first.

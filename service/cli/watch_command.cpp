@@ -1,4 +1,4 @@
-// touchcal run, watch and locate: what takes its time is followed to its end.
+// touchcal run, watch and locate: they follow the cell until the end.
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
@@ -17,10 +17,10 @@ namespace {
 
 using nlohmann::json;
 
-/// How long a watcher waits for a change before it asks anew.
+/// Longest wait for a change before the next request.
 constexpr int kWaitSeconds = 10;
 
-/// How long run waits for a cell that is being made ready.
+/// Longest wait of `run` for a cell that is being made ready.
 constexpr int kReadyWaitSeconds = 5;
 
 bool is_over(const json& status) {
@@ -28,7 +28,7 @@ bool is_over(const json& status) {
   return kOver.contains(status.at("state").get<std::string>());
 }
 
-/// `end` is a status or, where another run is under way by now, the run's own document.
+/// `end` is a status or, if another run is under way by now, the document of the run.
 ExitCode exit_code_of_end(const json& end) {
   const std::string verdict = end.at("verdict");
   if (verdict == "accepted") return kExitDone;
@@ -43,8 +43,8 @@ json wait_for_change(const ApiClient& daemon, const json& status, int wait_s) {
   return parse_reply(daemon.get(target, std::chrono::seconds(wait_s + 10)));
 }
 
-/// A daemon that was just started is still looking for its controller: give it a moment. Touches by hand need
-/// no more than that, in manual mode nothing else is ready.
+/// Waits for a daemon that was just started and still connects to its controller. Guided runs need only the
+/// connection; in manual mode nothing else is ready.
 void wait_until_ready(const ApiClient& daemon, bool guided) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kReadyWaitSeconds);
   json status = parse_reply(daemon.get("/api/v1/status"));
@@ -68,7 +68,7 @@ json watch_to_end(const ApiClient& daemon, const json& run_id, bool silent) {
       break;
     }
     if (!silent) progress.show(status);
-    // Where nobody sits who could resume, a run on hold with a fault is not waited for.
+    // Without a person who could resume, a run that a fault holds is not waited for.
     const bool unattended = silent || isatty(STDOUT_FILENO) == 0;
     if (is_over(status) ||
         (unattended && status.at("state") == "HELD" && status.at("fault_code").is_string()))
@@ -91,12 +91,13 @@ ExitCode tell_end(const ApiClient& daemon, const json& run_id, const json& end, 
   }
   const ExitCode code = exit_code_of_end(end);
   if (code == kExitDone || code == kExitLimitsMissed) return code;
-  const auto told = [&end](const char* key) {
+  const auto text_at = [&end](const char* key) {
     return end.contains(key) && end[key].is_string() ? end[key].get<std::string>() : std::string();
   };
-  const std::string message = told("fault_message"), next = told("fault_next_step");
-  fmt::print(stderr, "the run is {}{}{}; {}\n", is_status ? "in " : "", told(is_status ? "state" : "outcome"),
-             message.empty() ? "" : ": " + message, next.empty() ? "touchcal status tells more" : next);
+  const std::string message = text_at("fault_message"), next = text_at("fault_next_step");
+  fmt::print(stderr, "the run is {}{}{}; {}\n", is_status ? "in " : "",
+             text_at(is_status ? "state" : "outcome"), message.empty() ? "" : ": " + message,
+             next.empty() ? "touchcal status tells more" : next);
   return code;
 }
 
@@ -129,7 +130,7 @@ std::string place_text(const json& place) {
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json_only) {
   wait_until_ready(daemon, arguments.guided);
   const ApiReply reply = daemon.post("/api/v1/runs", run_body(arguments).dump());
-  if (reply.status != 201) return tell_problem(reply, json_only);
+  if (reply.status != 201) return print_problem(reply, json_only);
   const json run_id = parse_reply(reply).at("id");
   return tell_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
 }
@@ -147,7 +148,7 @@ ExitCode watch_command(const ApiClient& daemon, bool json_only) {
 ExitCode locate_command(const ApiClient& daemon, bool json_only) {
   const json place_before = parse_reply(daemon.get("/api/v1/cell")).at("place");
   const ApiReply reply = daemon.post("/api/v1/cell/locate", {});
-  if (reply.status != 202) return tell_problem(reply, json_only);
+  if (reply.status != 202) return print_problem(reply, json_only);
   json status = parse_reply(reply);
   std::string said;
   const bool passes = status.at("by_hand_step") == "passing";
@@ -161,8 +162,9 @@ ExitCode locate_command(const ApiClient& daemon, bool json_only) {
   const bool failed = status.at("fault_code").is_string();
   const ApiReply cell = daemon.get("/api/v1/cell");
   if (!failed && !is_found() && parse_reply(cell).at("place") == place_before) {
-    fmt::print(stderr,
-               "locating was broken off: no new place is kept; touchcal locate goes on or begins anew\n");
+    fmt::print(
+        stderr,
+        "locating was interrupted: no new pose is stored; touchcal locate continues or starts again\n");
     return kExitFailed;
   }
   if (json_only) {

@@ -5,12 +5,10 @@
 #include "cs8_protocol/messages.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/base/version.hpp"
-#include "service/documents/place_view.hpp"
+#include "service/documents/internal/place_view.hpp"
 
 namespace cell {
 namespace {
-
-Json text_or_null(const std::optional<std::string>& text) { return text ? Json(*text) : Json(nullptr); }
 
 Json texts(const std::map<std::string, std::string>& certificate) {
   if (certificate.empty()) return nullptr;
@@ -19,17 +17,12 @@ Json texts(const std::map<std::string, std::string>& certificate) {
   return object;
 }
 
-Json touching_name(std::optional<Touching> touching) {
-  if (!touching) return nullptr;
-  return *touching == Touching::kGuided ? "guided" : "automatic";
-}
-
 }  // namespace
 
-Json conditions_json(const Cell& cell, const Conditions& conditions) {
+Json conditions_json(const Cell& cell, const RunConditions& conditions) {
   return {
-      {"operator", text_or_null(conditions.operator_name)},
-      {"config_digest", text_or_null(conditions.config_digest)},
+      {"operator", value_or_null(conditions.operator_name)},
+      {"config_digest", value_or_null(conditions.config_digest)},
       {"block_temperature_c", number(cell.block.temperature_c)},
       {"std_temperature_k", cell.block.temperature_c ? number(cell.block.std_temperature_k) : Json(nullptr)},
       {"thermal_expansion_per_k",
@@ -39,21 +32,20 @@ Json conditions_json(const Cell& cell, const Conditions& conditions) {
       {"versions",
        {{"touchcal", kVersion},
         {"protocol", cs8::kProtocolVersion},
-        {"controller_application", text_or_null(conditions.controller_application)}}},
-      {"controller_session",
-       conditions.controller_session ? Json(*conditions.controller_session) : Json(nullptr)},
-      {"touching", touching_name(conditions.touching)},
-      {"place", place_view(conditions.place)}};
+        {"controller_application", value_or_null(conditions.controller_application)}}},
+      {"controller_session", value_or_null(conditions.controller_session)},
+      {"touching", conditions.touch_mode ? Json(touch_mode_name(*conditions.touch_mode)) : Json(nullptr)},
+      {"place", block_pose_json(conditions.place)}};
 }
 
-std::string conditions_document(const Cell& cell, const Conditions& conditions) {
+std::string conditions_document(const Cell& cell, const RunConditions& conditions) {
   return text_of(conditions_json(cell, conditions));
 }
 
 bool is_guided(const std::optional<std::string>& conditions) {
   if (!conditions) return false;
   const Json found = Json::parse(*conditions, nullptr, false);
-  return found.is_object() && found.value("touching", Json()) == "guided";
+  return found.is_object() && found.value("touching", Json()) == touch_mode_name(TouchMode::kGuided);
 }
 
 }  // namespace cell

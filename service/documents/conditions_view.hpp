@@ -9,13 +9,13 @@
 
 namespace cell {
 
-/// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; null where
-/// unknown.
-nlohmann::ordered_json conditions_json(const Cell& cell, const Conditions& conditions);
-/// The same as text: what is kept with a run.
-std::string conditions_document(const Cell& cell, const Conditions& conditions);
+/// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; unknown
+/// ones are null.
+nlohmann::ordered_json conditions_json(const Cell& cell, const RunConditions& conditions);
+/// The same as text, as stored with a run.
+std::string conditions_document(const Cell& cell, const RunConditions& conditions);
 
-/// Whether a person made the touches of a run that kept these conditions; false when they do not say.
+/// True if these stored conditions say that a person made the touches.
 bool is_guided(const std::optional<std::string>& conditions);
 
 }  // namespace cell

@@ -1,4 +1,4 @@
-#include "service/documents/decision_rule_view.hpp"
+#include "service/documents/internal/decision_rule_view.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -10,7 +10,7 @@ Json decision_rule_json(const std::vector<Criterion>& criteria, const Acceptance
   Json list = Json::array();
   for (const Criterion& criterion : criteria) {
     list.push_back({{"name", criterion.name},
-                    {"plane", criterion.plane ? Json(*criterion.plane) : Json(nullptr)},
+                    {"plane", value_or_null(criterion.plane)},
                     {"unit", criterion.unit},
                     {"value", number(criterion.value)},
                     {"limit", criterion.limit},

@@ -2,32 +2,28 @@
 
 #include <nlohmann/json.hpp>
 
-#include "calib_core/geometry/units.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"
+#include "service/documents/internal/geometry_json.hpp"
 #include "service/run/run_conditions.hpp"
 
 namespace cell {
 namespace {
 
-template <class T>
-Json value_or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
 Json id_or_null(const std::optional<std::int64_t>& id) {
   return id ? Json(std::to_string(*id)) : Json(nullptr);
 }
 
-/// How many touches a run makes is known once it is planned; until then there are none.
+/// Null before the run is planned.
 Json count_once_planned(int touches_total) { return touches_total > 0 ? Json(touches_total) : Json(nullptr); }
 
 Json run_json(const StoredRun& run) {
   return {{"id", std::to_string(run.id)},
           {"recipe", run.recipe},
-          {"touching", is_guided(run.trace_json) ? "guided" : "automatic"},
-          {"outcome", run.outcome},
-          {"verdict", run.verdict},
+          {"touching",
+           touch_mode_name(is_guided(run.conditions_json) ? TouchMode::kGuided : TouchMode::kAutomatic)},
+          {"outcome", run_outcome_name(run.outcome)},
+          {"verdict", verdict_name(run.verdict)},
           {"touches_done", run.touches_done},
           {"touches_total", count_once_planned(run.touches_total)},
           {"started_at", run.started_at},
@@ -36,19 +32,17 @@ Json run_json(const StoredRun& run) {
           {"fault_message", value_or_null(run.fault_message)}};
 }
 
-/// What a person who touches by hand is told.
+/// Instructions to a person who touches by hand.
 void add_by_hand(Json& document, const std::optional<HandGuide>& guide) {
-  document["by_hand"] = guide ? Json(guide->activity) : Json(nullptr);
-  document["by_hand_step"] = guide ? Json(guide->step) : Json(nullptr);
+  document["by_hand"] = guide ? Json(hand_activity_name(guide->activity)) : Json(nullptr);
+  document["by_hand_step"] = guide ? Json(hand_step_name(guide->step)) : Json(nullptr);
   document["by_hand_plane"] = guide ? Json(guide->plane) : Json(nullptr);
   document["by_hand_index"] = guide ? Json(guide->index) : Json(nullptr);
   document["by_hand_total"] = guide ? Json(guide->total) : Json(nullptr);
   document["by_hand_words"] = guide ? Json(guide->words) : Json(nullptr);
   document["by_hand_problem"] = guide && guide->problem ? Json(*guide->problem) : Json(nullptr);
-  Json& joints = document["by_hand_joints_deg"] = nullptr;
-  if (!guide || !guide->about_joints) return;
-  joints = Json::array();
-  for (const double joint : *guide->about_joints) joints.push_back(calib::degrees_from_radians(joint));
+  document["by_hand_joints_deg"] =
+      guide && guide->about_joints ? joints_deg_json(*guide->about_joints) : Json(nullptr);
 }
 
 }  // namespace
@@ -76,7 +70,7 @@ std::string status_document(const Status& status) {
                 {"identifiable_count", value_or_null(status.identifiable_count)},
                 {"condition_number", number(status.condition_number)},
                 {"predicted_tip_rms_mm", number_mm(status.predicted_tip_rms_m)},
-                {"more_would_bring", value_or_null(status.more_would_bring)},
+                {"more_would_bring", value_or_null(status.touch_benefit)},
                 {"eta_s", number(status.eta_s)},
                 {"verdict", verdict_name(status.verdict)},
                 {"controller_connected", status.controller.connected},
@@ -107,7 +101,7 @@ std::string status_document(const Status& status) {
 
 std::string run_document(const StoredRun& run) {
   Json document = run_json(run);
-  document["conditions"] = run.trace_json ? Json::parse(*run.trace_json) : Json(nullptr);
+  document["conditions"] = run.conditions_json ? Json::parse(*run.conditions_json) : Json(nullptr);
   return text_of(document);
 }
 
@@ -120,9 +114,9 @@ std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std:
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches) {
   Json list = Json::array();
   for (const StoredTouch& touch : touches) {
-    Json joints = Json::array();
-    for (const std::int32_t microdeg : touch.joints) joints.push_back(microdeg / 1e6);
-    list.push_back({{"plane", touch.plane}, {"role", role_name(touch.role)}, {"joints_deg", joints}});
+    list.push_back({{"plane", touch.plane},
+                    {"role", role_name(touch.role)},
+                    {"joints_deg", joints_deg_json(touch.joints)}});
   }
   return text_of({{"schema", "touchcal/touches/1"}, {"arm", cell.arm.name}, {"touches", list}});
 }

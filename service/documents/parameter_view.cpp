@@ -12,7 +12,7 @@
 namespace cell {
 namespace {
 
-/// An artefact parameter is identified when the touches took this part of its prior deviation away.
+/// An artefact parameter is identified if the touches reduced its prior deviation by this share.
 constexpr double kIdentifiedFall = 0.1;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // shown as null
@@ -95,9 +95,12 @@ const char* unit_name(calib::ArtefactKind kind) {
       return "rad";
     case calib::ArtefactKind::kTemperature:
       return "degC";
-    default:
+    case calib::ArtefactKind::kFaceOffset:
+    case calib::ArtefactKind::kStylusRadius:
+    case calib::ArtefactKind::kPretravel:
       return "mm";
   }
+  return "";
 }
 
 std::string arm_parameter_name(int index) {

@@ -4,20 +4,20 @@
 
 #include "calib_core/identification/identify.hpp"
 
-/// The parts of a result document that tell of parameters. Lengths are in mm, angles in rad.
+/// The parts of a result document about parameters. Lengths are in mm, angles in rad.
 namespace cell {
 
-/// A candidate's value in the unit that documents show it in: mm or rad.
+/// A candidate's value in its document unit: mm or rad.
 double shown(int index, double value);
 
-/// All 37 candidates. With a prior all that are not excluded have an error and are `identified`; the rank of
-/// the touches is `identifiable_count` all the same.
+/// All 37 candidates. With a prior every one that is not excluded has an error and is `identified`;
+/// `identifiable_count` is still the rank of the touches.
 nlohmann::ordered_json parameters_json(const calib::IdentificationProblem& problem,
                                        const calib::IdentificationOptions& options,
                                        const calib::IdentificationResult& result);
 
-/// What is not exactly known of block, ball and probe. `identified`: the touches say more of it than was
-/// written down; else `prior`.
+/// The uncertain quantities of block, ball and probe. `identified`: the touches improve on the given value;
+/// else `prior`.
 nlohmann::ordered_json artefact_parameters_json(const calib::IdentificationProblem& problem,
                                                 const calib::IdentificationResult& result);
 

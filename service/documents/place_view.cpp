@@ -1,4 +1,4 @@
-#include "service/documents/place_view.hpp"
+#include "service/documents/internal/place_view.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +14,7 @@ Json list(const Eigen::Vector3d& values, double scale) {
 
 }  // namespace
 
-Json place_view(const std::optional<LocatedPlace>& place) {
+Json block_pose_json(const std::optional<BlockPose>& place) {
   if (!place) return nullptr;
   constexpr double kMillimetres = 1e3, kDegrees = 1.0 / calib::kRadiansPerDegree;
   const Eigen::Matrix<double, 6, 1> std = place->covariance.diagonal().cwiseSqrt();

@@ -9,7 +9,8 @@
 #include "calib_core/identification/validate.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"
-#include "service/documents/decision_rule_view.hpp"
+#include "service/documents/internal/decision_rule_view.hpp"
+#include "service/documents/internal/geometry_json.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/validation_view.hpp"
@@ -70,11 +71,7 @@ Json scale_json(const std::optional<calib::ScaleCheck>& scale) {
           {"warning", scale->warning.empty() ? Json(nullptr) : Json(scale->warning)}};
 }
 
-Json millimetres(const Eigen::Vector3d& vector_m) {
-  return {mm_from_metres(vector_m.x()), mm_from_metres(vector_m.y()), mm_from_metres(vector_m.z())};
-}
-
-/// Cells are counted with x running fastest, then y, then z; null where no posture of the arm puts the tip.
+/// Order of cells: x fastest, then y, then z; null where the arm cannot reach.
 Json map_json(const Cell& cell, const std::optional<calib::UncertaintyMap>& map) {
   if (!map) return nullptr;
   Json values = Json::array();
@@ -85,10 +82,10 @@ Json map_json(const Cell& cell, const std::optional<calib::UncertaintyMap>& map)
                                  map->grid.cell_size_m.z() * map->grid.counts[2]);
   return {{"box",
            {{"name", cell.workspace_box.name},
-            {"min_mm", millimetres(min_m)},
-            {"max_mm", millimetres(min_m + extent_m)}}},
+            {"min_mm", vector_mm_json(min_m)},
+            {"max_mm", vector_mm_json(min_m + extent_m)}}},
           {"counts", map->grid.counts},
-          {"cell_mm", millimetres(map->grid.cell_size_m)},
+          {"cell_mm", vector_mm_json(map->grid.cell_size_m)},
           {"values_mm", values}};
 }
 
@@ -170,7 +167,7 @@ Json touches_json(const Cell& cell, const calib::IdentificationProblem& problem,
   return list;
 }
 
-/// Known once the touches are complete: the repetitions are of all of them.
+/// Null before the touches are complete: a repetition needs all of them.
 Json validation_json(const calib::IdentificationProblem& problem, const calib::IdentificationOptions& options,
                      const calib::IdentificationResult& result, bool complete, const Json& parameters) {
   if (!complete || result.status != calib::IdentificationStatus::kConverged) return nullptr;

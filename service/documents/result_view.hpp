@@ -12,18 +12,18 @@ namespace cell {
 
 struct ResultContext {
   bool complete = true;               // every touch was made
-  std::vector<std::string> warnings;  // of the touches' file; identify's own are in the result
-  std::string conditions;             // as kept with the run; empty: what the cell's files tell
+  std::vector<std::string> warnings;  // of the touches file; those of identify() are in the result
+  std::string conditions;             // as stored with the run; empty: those of the cell's files
 };
 
-/// touchcal/result/1 (service/doc/surfaces.md, section 5), one JSON document as text. `problem` is what was
-/// identified: rejected touches are counted in its touches, from 1. `identifiable_count` is the rank that the
-/// touches show, also with a prior, where all errors that are not excluded are identified.
+/// touchcal/result/1, one JSON document as text. `problem` is the input of the identification: rejected
+/// touches are numbers of its touches, from 1. `identifiable_count` is the rank of the touches, also with a
+/// prior, with which every error that is not excluded is identified.
 std::string result_document(const TipRegions& regions, const Recipe& recipe,
                             const calib::IdentificationProblem& problem,
                             const calib::IdentificationResult& result, const ResultContext& context);
 
-/// What is predicted of the tip: `tip_uncertainty` of a result and of a plan.
+/// `tip_uncertainty` of a result and of a plan.
 nlohmann::ordered_json tip_json(const Cell& cell, const TipPrediction& tip);
 
 /// The distances of one role's touches, a plane at a time, along the outward normals.

@@ -9,20 +9,20 @@
 namespace cell {
 namespace {
 
-/// `parameters`: those of the result document; what is not estimated has no new error either.
+/// `parameters`: those of the result document; a parameter that is not estimated has no new error.
 Json new_errors_json(const Json& parameters, const calib::Repetition& repetition) {
   Json list = Json::array();
   for (int i = 0; i < calib::kErrorParameterCount; ++i) {
     const Json& parameter = parameters[static_cast<std::size_t>(i)];
-    const bool told = repetition.done() && parameter["status"] == "identified";
+    const bool is_known = repetition.done() && parameter["status"] == "identified";
     list.push_back(
         {{"name", parameter["name"]},
          {"frame", parameter["frame"]},
          {"kind", parameter["kind"]},
          {"unit", parameter["unit"]},
          {"status", parameter["status"]},
-         {"new_error", told ? number(shown(i, repetition.new_errors[i])) : Json(nullptr)},
-         {"std_new_error", told ? number(shown(i, repetition.std_new_errors[i])) : Json(nullptr)}});
+         {"new_error", is_known ? number(shown(i, repetition.new_errors[i])) : Json(nullptr)},
+         {"std_new_error", is_known ? number(shown(i, repetition.std_new_errors[i])) : Json(nullptr)}});
   }
   return list;
 }

@@ -14,26 +14,21 @@
 namespace cell {
 namespace {
 
-template <class T>
-Json value_or_null(const std::optional<T>& value) {
-  return value ? Json(*value) : Json(nullptr);
-}
-
-/// The wire's whole number of 10^-6 degrees, written without a rounding.
+/// An integer of 10^-6 degrees as degrees, without rounding.
 std::string degrees_text(std::int64_t microdegrees) {
   constexpr std::int64_t kPerDegree = 1'000'000;
   const std::int64_t size = std::abs(microdegrees);
   return fmt::format("{}{}.{:06}", microdegrees < 0 ? "-" : "", size / kPerDegree, size % kPerDegree);
 }
 
-Json run_json(const StoredRun& run) {
+Json recorded_run_json(const StoredRun& run) {
   return {{"id", std::to_string(run.id)},
           {"recipe", run.recipe},
           {"operator", value_or_null(run.operator_name)},
           {"started_at", run.started_at},
           {"ended_at", value_or_null(run.ended_at)},
-          {"outcome", run.outcome},
-          {"verdict", run.verdict},
+          {"outcome", run_outcome_name(run.outcome)},
+          {"verdict", verdict_name(run.verdict)},
           {"touches_done", run.touches_done},
           {"touches_total", run.touches_total > 0 ? Json(run.touches_total) : Json(nullptr)},
           {"fault_code", value_or_null(run.fault_code)},
@@ -43,8 +38,7 @@ Json run_json(const StoredRun& run) {
           {"block_temperature_c", number(run.block_temperature_c)}};
 }
 
-/// What the result says of the touch at this place in the run; an object without members when it says
-/// nothing.
+/// The entry of the result for the touch at this index; an empty object if there is none.
 Json verdict_on(const Json& result, std::size_t index) {
   static const Json nothing = Json::object();
   if (!result.is_object() || !result.contains("touches")) return nothing;
@@ -104,7 +98,7 @@ Json report_json(const RunRecord& record) {
     faults.push_back({{"at", fault->at}, {"code", fault->code}, {"message", fault->message}});
   return {{"schema", "touchcal/report/1"},
           {"touchcal_version", kVersion},
-          {"run", run_json(record.run)},
+          {"run", recorded_run_json(record.run)},
           {"raw_data",
            {{"sha256", sha256_hex(raw_data_text(record.touches))},
             {"of", "the first nine columns of the CSV form, without its heading"}}},

@@ -10,8 +10,7 @@
 
 namespace cell {
 
-/// All that is kept of a run. A report is made of this and of nothing else: it is the same whenever it is
-/// made.
+/// Everything stored about a run. A report depends on nothing else, so it can be repeated.
 struct RunRecord {
   StoredRun run;
   std::vector<StoredTouch> touches;
@@ -21,15 +20,15 @@ struct RunRecord {
   std::optional<std::string> result_json;  // touchcal/result/1
 };
 
-/// touchcal/report/1: the run, its result document and every touch with what became of it. Joints are in
-/// degrees, distances in mm along the outward normals; null is unknown.
+/// touchcal/report/1: the run, its result document and every touch with its use. Joints are in degrees,
+/// distances in mm along the outward normals; null is unknown.
 nlohmann::ordered_json report_json(const RunRecord& record);
 
-/// The touches as the controller answered them, a line each: number in the run, plane, role, six joint angles
-/// in degrees to the last digit that came over the wire. `raw_data.sha256` of the report is taken over it.
+/// The touches as answered by the controller, one line each: number in the run, plane, role, six joint angles
+/// in degrees with every digit of the wire. `raw_data.sha256` of the report is the digest of this text.
 std::string raw_data_text(const std::vector<StoredTouch>& touches);
 
-/// The report's touches as a table for a spreadsheet; its first nine columns are raw_data_text().
+/// The touches as CSV; the first nine columns are raw_data_text().
 std::string report_csv(const nlohmann::ordered_json& report);
 
 }  // namespace cell

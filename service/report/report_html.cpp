@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "service/report/html.hpp"
-#include "service/report/report_parts.hpp"
+#include "service/report/internal/html.hpp"
+#include "service/report/internal/report_parts.hpp"
 
 namespace cell {
 namespace {
@@ -50,7 +50,7 @@ std::string bullets(const Json& texts) {
   return items.empty() ? items : html::element("ul", items) + "\n";
 }
 
-/// A name of a document as words: "held_out_mean" is "held out mean".
+/// A field name as words: "held_out_mean" becomes "held out mean".
 std::string words_of(const Json& name) {
   std::string words = text_or_unknown(name);
   std::ranges::replace(words, '_', ' ');
@@ -100,7 +100,7 @@ std::string certificate_text(const Json& certificate) {
   return words.empty() ? "unknown" : words;
 }
 
-/// Where the block stood: as the cell's file has it, or where it was located.
+/// The place of the block: that of the cell's file, or the located one.
 std::string place_text(const Json& conditions) {
   if (!conditions.is_object() || !conditions.contains("place")) return "unknown";
   const Json& place = part(conditions, "place");

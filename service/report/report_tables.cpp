@@ -3,8 +3,8 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "service/report/html.hpp"
-#include "service/report/report_parts.hpp"
+#include "service/report/internal/html.hpp"
+#include "service/report/internal/report_parts.hpp"
 
 namespace cell {
 namespace {
@@ -14,7 +14,7 @@ using html::Row;
 constexpr std::array kKinds{"alpha", "d", "theta", "r", "beta"};
 const Row kKindHeading{"j", "Δα rad", "Δd mm", "Δθ rad", "Δr mm", "Δβ rad"};
 
-/// An entry of a table of errors by frame: the figure, or why there is none.
+/// An entry of a table of errors by frame: the number, or the mark of its absence.
 std::string entry(const Json& parameters, int frame, const std::string& kind, const char* field,
                   const char* length_format, const char* angle_format) {
   for (const Json& parameter : parameters) {

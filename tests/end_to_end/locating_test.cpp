@@ -80,7 +80,7 @@ TEST_F(BlockElsewhere, IsFoundBySixTouchesAndCalibratesTheArmThere) {
   EXPECT_FALSE(loop_.status().by_hand);
   ASSERT_TRUE(loop_.operation().place());
 
-  const cell::LocatedPlace& place = *loop_.operation().place();
+  const cell::BlockPose& place = *loop_.operation().place();
   const Eigen::Isometry3d off = moved_block().inverse() * place.cell_from_block;
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LT(std::abs(off.translation()[axis]), 3.0 * std::sqrt(place.covariance(axis, axis))) << axis;
@@ -97,7 +97,7 @@ TEST_F(BlockElsewhere, IsFoundBySixTouchesAndCalibratesTheArmThere) {
   const calib::IdentificationResult& result = loop_.operation().run()->latest();
   ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
   EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
-  EXPECT_NE(loop_.store().run(id)->trace_json->find("shift_mm"), std::string::npos);
+  EXPECT_NE(loop_.store().run(id)->conditions_json->find("shift_mm"), std::string::npos);
 }
 
 TEST_F(BlockElsewhere, ATouchTakenBackIsMadeAgainAndTheDialogueCanBeLeft) {

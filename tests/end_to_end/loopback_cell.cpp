@@ -106,7 +106,8 @@ void LoopbackCell::run_until_over() {
 
 std::int64_t LoopbackCell::start(const std::string& recipe) {
   const auto answer = operation_->start({.recipe = recipe});
-  if (const auto* refusal = std::get_if<cell::Refusal>(&answer)) throw std::runtime_error(refusal->detail);
+  if (const auto* refusal = std::get_if<cell::CommandRefusal>(&answer))
+    throw std::runtime_error(refusal->detail);
   return std::get<cell::Started>(answer).run_id;
 }
 

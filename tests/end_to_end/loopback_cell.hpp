@@ -61,7 +61,7 @@ class LoopbackCell {
   [[nodiscard]] cell::Operation& operation() { return *operation_; }
   [[nodiscard]] cell::Status status() const { return operation_->status(); }
   [[nodiscard]] std::string fault_name() const;  // empty without a fault
-  [[nodiscard]] cell::TouchStore& store() { return store_; }
+  [[nodiscard]] cell::RunStore& store() { return store_; }
   [[nodiscard]] std::filesystem::path store_file() const { return folder_ / "touchcal.sqlite"; }
   [[nodiscard]] boost::asio::io_context& io() { return io_; }
 
@@ -72,7 +72,7 @@ class LoopbackCell {
   void shut_down();
 
   Folder folder_;
-  cell::TouchStore store_;
+  cell::RunStore store_;
   boost::asio::io_context io_{1};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
   std::unique_ptr<sim::Server> server_;

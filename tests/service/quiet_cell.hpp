@@ -14,7 +14,7 @@ namespace cell {
 class QuietCell {
  public:
   boost::asio::io_context& context() { return context_; }
-  TouchStore& store() { return store_; }
+  RunStore& store() { return store_; }
   Operation& operation() { return operation_; }
 
  private:
@@ -27,7 +27,7 @@ class QuietCell {
   }
 
   Folder folder_;
-  TouchStore store_{folder_.path() / "touchcal.sqlite"};
+  RunStore store_{folder_.path() / "touchcal.sqlite"};
   boost::asio::io_context context_{1};
   boost::asio::ip::tcp::socket held_port_{context_};
   Operation operation_{context_.get_executor(), edf(), store_, nobody(), "instance", [] {

@@ -1,4 +1,4 @@
-#include "service/http/routes/result_routes.hpp"
+#include "service/http/routes/internal/result_routes.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -20,7 +20,7 @@
 namespace cell {
 namespace {
 
-/// Documents give lengths in mm and angles in rad; the cell is another when its arm differs by more.
+/// In mm and rad: a larger difference of a nominal parameter means another arm.
 constexpr double kSameNominal = 1e-9;
 
 struct Identified {
@@ -30,10 +30,10 @@ struct Identified {
 };
 
 HttpResponse conflict(const std::string& detail) {
-  return to_response({.status = 409, .kind = "no-result", .detail = detail});
+  return to_response({.status = 409, .kind = ProblemKind::kNoResult, .detail = detail});
 }
 
-/// What the run's stored touches give now: the same as then, to the bit, as long as the cell is the same.
+/// Identifies the stored touches of a run again: the same result, bit by bit, while the cell is the same.
 std::variant<Identified, HttpResponse> identify_stored(const Operation& operation, std::int64_t id) {
   const Cell& cell = operation.cell();
   const auto recipe = cell.recipes.find(operation.store().run(id)->recipe);
@@ -64,7 +64,7 @@ std::optional<std::string> known_document(const Operation& operation, std::int64
 }
 
 RunRecord record_of(const Operation& operation, const StoredRun& run) {
-  const TouchStore& store = operation.store();
+  const RunStore& store = operation.store();
   RunRecord record{.run = run,
                    .touches = store.touches(run.id),
                    .superseded = store.superseded_touches(run.id),
@@ -76,7 +76,7 @@ RunRecord record_of(const Operation& operation, const StoredRun& run) {
   return record;
 }
 
-/// It is opened from where it was saved: the daemon's own pages allow no styles of a document.
+/// Served as a download: the content security policy of the daemon allows no inline styles.
 HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64_t run, std::string body) {
   return {.content_type = std::string(type),
           .body = std::move(body),
@@ -88,12 +88,13 @@ HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64
 
 HttpResponse get_result(const Operation& operation, std::int64_t id) {
   if (auto document = known_document(operation, id)) return {.body = std::move(*document)};
-  // A run that the daemon's own end cut off has touches and no result: they are identified now.
+  // A run that ended with the daemon has touches and no result: they are identified now.
   auto found = identify_stored(operation, id);
   if (auto* response = std::get_if<HttpResponse>(&found)) return std::move(*response);
   const Identified& identified = std::get<Identified>(found);
-  const ResultContext context{
-      .complete = false, .warnings = {}, .conditions = operation.store().run(id)->trace_json.value_or("")};
+  const ResultContext context{.complete = false,
+                              .warnings = {},
+                              .conditions = operation.store().run(id)->conditions_json.value_or("")};
   return {.body = result_document(operation.tip_regions(), *identified.recipe, identified.problem,
                                   identified.result, context)};
 }
@@ -102,8 +103,8 @@ HttpResponse get_arm(const Operation& operation, std::int64_t id) {
   const auto document = known_document(operation, id);
   if (document && !has_this_nominal(*document, operation.cell().arm.model)) {
     return conflict(
-        "the cell's nominal arm is another one than in this run; its result tells the errors that were "
-        "found then");
+        "the cell's nominal arm differs from that of this run; the result of the run holds the errors that "
+        "were identified then");
   }
   auto found = identify_stored(operation, id);
   if (auto* response = std::get_if<HttpResponse>(&found)) return std::move(*response);
@@ -113,11 +114,11 @@ HttpResponse get_arm(const Operation& operation, std::int64_t id) {
 HttpResponse get_report(const Operation& operation, const StoredRun& run, const std::string& format) {
   if (format != "html" && format != "csv" && format != "json") {
     return to_response({.status = 400,
-                        .kind = "query",
+                        .kind = ProblemKind::kQuery,
                         .detail = "format is html, csv or json; touchcal report makes a PDF of the first",
                         .parameter = "format"});
   }
-  // Once as text and back: what came from outside and is no UTF-8 is none in any of the forms.
+  // Once to text and back: replaces bytes from outside that are not UTF-8, for all formats.
   const std::string document = text_of(report_json(record_of(operation, run)));
   if (format == "json") return {.body = document};
   const Json report = Json::parse(document);

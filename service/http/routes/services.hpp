@@ -12,7 +12,7 @@ namespace cell {
 
 class Operation;
 
-/// What answers are made from. `operation` must outlive it.
+/// What handlers use. `operation` must outlive it.
 struct Services {
   Services(Operation& to_serve, Tokens to_ask_for);
 
@@ -22,7 +22,7 @@ struct Services {
   Metrics metrics;
   AnswerStore answers;
   AuditLog audit;
-  std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // of events; a reader may outlive this
+  std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // event streams; a stream may outlive this
 };
 
 }  // namespace cell

@@ -52,11 +52,11 @@ StatusFeed::~StatusFeed() {
   if (following_) operation_.on_change({});
 }
 
-void StatusFeed::follow(std::function<void(const Status&)> told) {
+void StatusFeed::follow(std::function<void(const Status&)> listener) {
   following_ = true;
-  operation_.on_change([this, told = std::move(told)](const Status& status) {
+  operation_.on_change([this, listener = std::move(listener)](const Status& status) {
     keep(status);
-    told(status);
+    listener(status);
     for (asio::steady_timer* timer : waiting_) timer->cancel();
   });
 }

@@ -136,8 +136,8 @@ TEST_F(LocatingTheBlock, ATouchTakenByWordSaysLess) {
 
 TEST_F(LocatingTheBlock, ThePassLeavesItsDistanceOverEveryFace) {
   take_all();
-  const Cell there = cell_at(cell_, {.cell_from_block = locating_.fit()->old_from_new,
-                                     .std_block_pose = locating_.fit()->std_block_pose});
+  const Cell there = cell_with_block_pose(cell_, {.cell_from_block = locating_.fit()->old_from_new,
+                                                  .std_block_pose = locating_.fit()->std_block_pose});
   const auto postures = pass_postures(there, locating_.touches());
   ASSERT_TRUE(std::holds_alternative<std::vector<calib::JointVector>>(postures))
       << std::get<std::string>(postures);
@@ -157,16 +157,16 @@ TEST_F(LocatingTheBlock, APlaceIsReadBackAsItWasWritten) {
   take_all();
   const Folder folder;
   const std::filesystem::path file = folder.path() / "place.json";
-  EXPECT_FALSE(read_place(file));
-  const LocatedPlace place{.cell_from_block = locating_.fit()->old_from_new,
-                           .covariance = locating_.fit()->covariance,
-                           .std_block_pose = locating_.fit()->std_block_pose,
-                           .touches = locating_.touches(),
-                           .located_at = "2026-11-22T03:00:00.000Z",
-                           .digest = place_digest(cell_)};
-  write_place(file, place);
-  write_place(file, place);
-  const auto read = read_place(file);
+  EXPECT_FALSE(read_block_pose(file));
+  const BlockPose place{.cell_from_block = locating_.fit()->old_from_new,
+                        .covariance = locating_.fit()->covariance,
+                        .std_block_pose = locating_.fit()->std_block_pose,
+                        .touches = locating_.touches(),
+                        .located_at = "2026-11-22T03:00:00.000Z",
+                        .digest = block_pose_digest(cell_)};
+  write_block_pose(file, place);
+  write_block_pose(file, place);
+  const auto read = read_block_pose(file);
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->cell_from_block.isApprox(place.cell_from_block, 1e-12));
   EXPECT_TRUE(read->covariance.isApprox(place.covariance, 1e-12));
@@ -174,24 +174,24 @@ TEST_F(LocatingTheBlock, APlaceIsReadBackAsItWasWritten) {
   ASSERT_EQ(read->touches.size(), 6U);
   EXPECT_TRUE(read->touches[5].joints.isApprox(place.touches[5].joints, 1e-12));
   EXPECT_EQ(read->digest, place.digest);
-  EXPECT_NE(place_digest(shipped_cell("edf")), place.digest);
+  EXPECT_NE(block_pose_digest(shipped_cell("edf")), place.digest);
 }
 
 TEST_F(LocatingTheBlock, APlaceThatWasChangedByOtherMeansIsRefused) {
   take_all();
   const Folder folder;
   const std::filesystem::path file = folder.path() / "place.json";
-  write_place(file, {.cell_from_block = locating_.fit()->old_from_new,
-                     .covariance = locating_.fit()->covariance,
-                     .std_block_pose = {},
-                     .touches = locating_.touches(),
-                     .located_at = "2026-11-22T03:00:00.000Z",
-                     .digest = place_digest(cell_)});
+  write_block_pose(file, {.cell_from_block = locating_.fit()->old_from_new,
+                          .covariance = locating_.fit()->covariance,
+                          .std_block_pose = {},
+                          .touches = locating_.touches(),
+                          .located_at = "2026-11-22T03:00:00.000Z",
+                          .digest = block_pose_digest(cell_)});
   nlohmann::json changed;
   std::ifstream(file) >> changed;
   changed["shift_mm"][2] = changed["shift_mm"][2].get<double>() + 250.0;
   std::ofstream(file) << changed;
-  EXPECT_THROW(static_cast<void>(read_place(file)), ConfigError);
+  EXPECT_THROW(static_cast<void>(read_block_pose(file)), ConfigError);
 }
 
 cs8::State state_at(const calib::JointVector& joints, bool touched) {

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
-#include "service/documents/decision_rule_view.hpp"
+#include "service/documents/internal/decision_rule_view.hpp"
 
 namespace cell {
 namespace {

@@ -4,12 +4,11 @@
 #include <string_view>
 #include <vector>
 
-/// Pieces of HTML. Text becomes markup here and nowhere else: what comes from a robot, a file or an operator
-/// stays text.
+/// Elements of HTML. The only place that escapes text, so that text from a robot, a file or an operator never
+/// becomes markup.
 namespace cell::html {
 
-/// The text with the five characters that mean something in HTML written as references; bytes that are no
-/// character of a page (controls) are left out.
+/// The text with the five special characters of HTML as references; control characters are left out.
 std::string escaped(std::string_view text);
 
 /// <name attributes>inner</name>; `inner` is markup.
@@ -21,7 +20,7 @@ std::string paragraph(std::string_view text);
 /// A row of cells; each is text.
 using Row = std::vector<std::string>;
 
-/// A table with a caption and a heading; no rows: a line that says so.
+/// A table with caption and heading; without rows, a line that says so.
 std::string table(std::string_view caption, const Row& heading, const std::vector<Row>& rows);
 
 }  // namespace cell::html

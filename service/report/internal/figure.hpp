@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-/// A plot of points in SVG, readable in print and without colour: series differ in their shape.
+/// A plot of points in SVG, readable in print without colour: series differ in their marks.
 namespace cell {
 
 enum class Mark { kRing, kDot, kCross };
@@ -19,18 +19,18 @@ struct Series {
 
 struct Figure {
   std::string title;
-  std::string x_label;  // of what is counted: ticked at whole numbers
+  std::string x_label;  // ticks at whole numbers
   std::string y_label;
   std::vector<Series> series;
   std::optional<double> level;  // a horizontal line
   std::string level_name;
 };
 
-/// Where an axis from `low` to `high` (low < high, both finite) is ticked: multiples of 1, 2 or 5 times a
-/// power of ten, three to eight of them.
+/// Ticks of an axis from `low` to `high` (low < high, both finite): three to eight multiples of 1, 2 or 5
+/// times a power of ten.
 std::vector<double> ticks(double low, double high);
 
-/// The figure as one <svg> element; points that are not finite are left out.
+/// The figure as one <svg> element; non-finite points are left out.
 std::string svg(const Figure& figure);
 
 }  // namespace cell

@@ -15,18 +15,18 @@ namespace cell {
 inline constexpr int kEventStreamsMax = 32;
 inline constexpr std::string_view kRunEventsPath = "/api/v1/runs/{id}/events";
 
-/// What one reader of server-sent events gets: `status` for each change, in order, each once; `reset` with
-/// the whole status when what the reader saw last is of another instance or too long ago; `run` with the
-/// run's document as the last one of a run's stream. Ids are INSTANCE-SEQUENCE.
+/// Server-sent events for one client: `status` for each change, in order, once each; `reset` with the whole
+/// status if the client's last event is of another instance or too old; `run` with the document of the run at
+/// the end of a run's stream. Ids are INSTANCE-SEQUENCE.
 class EventStream final : public EventSource {
  public:
-  /// `run_id`: only what happens while this run is the one of the status.
+  /// `run_id`: only changes during this run.
   EventStream(Services& services, std::optional<std::int64_t> run_id,
               std::optional<std::string> last_event_id);
   ~EventStream() override;
 
   [[nodiscard]] static int open_count(const Services& services) { return *services.open_streams; }
-  /// The reader has seen the end of its run: an answer 204 tells it not to come again.
+  /// The client has seen the end of its run: the answer 204 ends its reconnecting.
   [[nodiscard]] static bool is_over(const std::optional<std::string>& last_event_id);
 
   std::string due() override;
@@ -41,7 +41,7 @@ class EventStream final : public EventSource {
   Services& services_;
   std::optional<std::int64_t> run_id_;
   std::shared_ptr<int> open_;
-  std::string first_;  // the event that the reader begins with, if any
+  std::string first_;  // the first event, if any
   std::uint64_t seen_ = 0;
   bool ended_ = false;
 };

@@ -8,7 +8,7 @@
 namespace cell {
 
 /// `place` of the cell and of a run: located_at, shift_mm, turn_deg (rotation vector in R_-1 as the cell's
-/// file has it) and their standard deviations; null when the block stands where its file says.
-nlohmann::ordered_json place_view(const std::optional<LocatedPlace>& place);
+/// file has it) and their standard deviations; null if the block stands where the cell's file says.
+nlohmann::ordered_json block_pose_json(const std::optional<BlockPose>& place);
 
 }  // namespace cell

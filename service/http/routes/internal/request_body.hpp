@@ -9,13 +9,13 @@
 
 namespace cell {
 
-/// What a request's body names: {"recipe":"edf-25"}.
+/// The single member of a request body: {"recipe":"edf-25"}.
 struct NamedText {
   std::string key;
   std::string text;
 };
 
-/// A body that is an object with exactly one of these keys and a text behind it, or what is wrong with it.
+/// Reads a body that must be an object with exactly one of these keys and a string value.
 std::variant<NamedText, Problem> named_text(const std::string& body, std::span<const std::string_view> keys);
 
 }  // namespace cell

@@ -6,15 +6,16 @@
 
 namespace cell {
 
-/// touchcal/plan/1 (service/doc/surfaces.md, section 6) with a plan_id that is null: what is predicted, what
-/// limits it, and every step of every touch. In `joints_deg` the nominal arm's ball touches the nominal face.
+/// touchcal/plan/1 with plan_id null: the predicted figures, what limits them, and every step of every touch.
+/// In `joints_deg` the ball of the nominal arm touches the nominal face.
 nlohmann::ordered_json plan_json(const TipRegions& regions, const Recipe& recipe,
                                  const calib::TouchPlan& plan, const PlannedIdentification& planned);
 
-/// Causes with a smaller share are in the figures only, not in words.
-inline constexpr double kShareToldMin = 0.05;
+/// Sources with a smaller share appear in the figures only, not in words.
+inline constexpr double kShareReportedMin = 0.05;
 
-/// The causes of the predicted tip error in the workspace box, largest first, with their share of its square.
+/// The sources of the predicted tip error in the workspace box, largest first, with their share of its
+/// square.
 struct ErrorShare {
   std::string source;
   double rms_m = 0.0;  // from this source alone

@@ -7,8 +7,8 @@
 
 namespace cell {
 
-/// What the body of POST runs asks for: a recipe, itself or by a plan; who asks and how warm the block is
-/// where that is told. Else what is wrong with it.
+/// Reads the body of POST runs: a recipe, or a plan of one; optionally the operator and who makes the
+/// touches.
 std::variant<StartRequest, Problem> read_start(const HttpRequest& request, const Operation& operation);
 
 }  // namespace cell

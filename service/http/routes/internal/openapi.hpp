@@ -4,7 +4,7 @@
 
 namespace cell {
 
-/// The OpenAPI 3.1 document of all routes (route_table.hpp) with the schemas of what they take and give
+/// The OpenAPI 3.1 document of all routes (route_table.hpp) with the schemas of their documents
 /// (schemas.hpp).
 const std::string& openapi_document();
 

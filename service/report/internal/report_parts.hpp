@@ -5,22 +5,22 @@
 
 #include "service/base/json_figures.hpp"
 
-/// The parts of the HTML report. Each takes the report or its result document and gives markup.
+/// Parts of the HTML report. Each takes the report or its result document and returns markup.
 namespace cell {
 
-/// A part of a document; null where it is not there, as in one that an older daemon wrote.
+/// A member of a document; null if absent, as in documents of an older daemon.
 const Json& part(const Json& object, const char* key);
 
-/// Whether a part is this text.
+/// True if the value is this string.
 bool is(const Json& value, std::string_view text);
 
-/// A figure for people, "unknown" when it is none; `format` is fmt's.
+/// A number in fmt's `format`; "unknown" for anything else.
 std::string figure_text(const Json& value, const char* format);
 
-/// The same, but nothing for what is no figure.
+/// The same, but empty for anything else.
 std::string figure_if_known(const Json& value, const char* format);
 
-/// A text as it stands there, "unknown" when it is none.
+/// A string; "unknown" for anything else.
 std::string text_or_unknown(const Json& value);
 
 // report_tables.cpp

@@ -8,12 +8,12 @@
 
 namespace cell {
 
-/// POST plan: the plan of a recipe that has been planned (see recipe_to_plan), touchcal/plan/1; 422 with what
-/// was tried when there is none.
+/// POST plan: touchcal/plan/1 of a recipe that has been planned (see recipe_to_plan); 422 with what was tried
+/// if there is no plan.
 HttpResponse post_plan(const HttpRequest& request, const Operation& operation);
 
-/// The recipe that has to be planned (Operation::plan_recipe, seconds) before a POST plan can be answered;
-/// nothing when the body does not name one of this cell, or it has been planned.
+/// The recipe that must be planned (Operation::plan_recipe, seconds) before a POST plan can be answered;
+/// nothing if it has been planned or the body names none of this cell.
 std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Operation& operation);
 
 /// GET runs/{id}/plan of a run that is in the store: the plan it follows; 409 before it is made.
