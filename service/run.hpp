@@ -57,12 +57,12 @@ class Run {
   /// Leaves out the touches to fit from this place on; how many.
   int drop_fitted(std::size_t first);
 
-  /// Stores the touch, then counts it. Throws what the store throws; the touch does not count then.
-  void add(TouchStore& store, const StoredTouch& touch);
-  /// The last touch again, in its place; it is kept apart. Throws what the store throws.
-  void replace_last(TouchStore& store, const StoredTouch& again, const std::string& reason);
-  /// The last touch is kept apart and counts no more; it is next() again. Throws what the store throws.
-  void withdraw_last(TouchStore& store, const std::string& reason);
+  /// One touch more. It is stored before it is added: what does not outlive the daemon does not count.
+  void add(const StoredTouch& touch);
+  /// The last touch again, in its place; stored before.
+  void replace_last(const StoredTouch& again);
+  /// The last touch counts no more, as is stored before; it is next() again.
+  void withdraw_last();
   /// Makes latest() from all touches; false when it is. Apart from add(), as it takes its time.
   bool identify();
 

@@ -139,18 +139,20 @@ Locating::Locating(const Cell& cell)
 HandGuide Locating::guide() const {
   const int total = static_cast<int>(spots_.size());
   const int made = static_cast<int>(touches_.size());
-  HandGuide guide{
-      .activity = "locate", .index = std::min(made + 1, total), .total = total, .problem = problem_};
+  HandGuide guide{.activity = HandActivity::kLocate,
+                  .index = std::min(made + 1, total),
+                  .total = total,
+                  .problem = problem_};
   const PlaceSpot& spot = spots_[static_cast<std::size_t>(guide.index - 1)];
   guide.plane = spot.face + 1;
   if (fit_) {
-    guide.step = "pass";
+    guide.step = HandStep::kPass;
     guide.words =
         "the place is found: jog the arm clear of the block, then touchcal locate once more to go once "
         "around "
         "it 30 mm off its faces, at 10 % speed and without a touch; after that the place counts";
   } else if (made == total) {
-    guide.step = "undo";
+    guide.step = HandStep::kUndo;
     guide.words =
         "the place is not found: touchcal undo takes the last touch back, so that it can be made again; "
         "touchcal stop ends this";

@@ -9,7 +9,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/digest.hpp"
 #include "service/http/access.hpp"
 #include "service/http/event_stream.hpp"
@@ -41,15 +41,12 @@ HttpResponse busy(std::string detail, const char* retry_after_s) {
 
 bool changes_something(const HttpRequest& request) { return request.method != "GET"; }
 
-std::string now_text(std::chrono::hours ago = {}) {
-  return format_utc(std::chrono::system_clock::now() - ago);
-}
-
 /// What a key was answered before, or why it is not taken; nothing when it is new.
-std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed) {
+std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed,
+                                          std::chrono::system_clock::time_point now) {
   KeyLookUp found;
   try {
-    found = answers.take(keyed, now_text(std::chrono::hours(AnswerStore::kKeptHours)));
+    found = answers.take(keyed, format_utc(now - std::chrono::hours(AnswerStore::kKeptHours)));
   } catch (const std::exception& error) {
     spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
     return to_response(
@@ -72,19 +69,21 @@ std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedReque
 
 }  // namespace
 
-Api::Api(asio::any_io_executor executor, Operation& operation, Tokens tokens)
+Api::Api(asio::any_io_executor executor, CellOperation& operation, Tokens tokens)
     : executor_(executor), services_(operation, std::move(tokens)) {
   services_.feed.follow([this](const Status& status) { services_.metrics.follow(status); });
 }
 
 Api::~Api() { worker_.join(); }
 
-Services::Services(Operation& to_serve, Tokens to_ask_for)
+Services::Services(CellOperation& to_serve, Tokens to_ask_for)
     : operation(to_serve),
       tokens(std::move(to_ask_for)),
       feed(to_serve),
       answers(to_serve.store().database()),
       audit(to_serve.store().database()) {}
+
+std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
 
 HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
   services_.metrics.count_request("", "", problem.status);
@@ -129,10 +128,11 @@ asio::awaitable<HttpResponse> Api::obey(const HttpRequest& request, const Admitt
   if (is_stop(*admitted.route)) {
     response = handle(admitted, request, services_);
   } else if (!write_audit(request, "asked", true) && !only_halts(*admitted.route)) {
-    response = to_response({.status = 503,
-                            .kind = "audit",
-                            .detail = "the command was not taken as it cannot be written down; make room on "
-                                      "the disk of the state directory. Stop, abort and pause are taken all the same"});
+    response = to_response(
+        {.status = 503,
+         .kind = "audit",
+         .detail = "the command was not taken as it cannot be written down; make room on "
+                   "the disk of the state directory. Stop, abort and pause are taken all the same"});
     co_return response;
   } else {
     response = co_await obey_once(request, admitted);
@@ -151,7 +151,8 @@ asio::awaitable<HttpResponse> Api::obey_once(const HttpRequest& request, const A
   const KeyedRequest keyed{.key = *request.idempotency_key,
                            .request = request.method + " " + request.path,
                            .body_digest = sha256_hex(request.body)};
-  if (auto answered = answer_to_key(services_.answers, keyed)) co_return *std::move(answered);
+  if (auto answered = answer_to_key(services_.answers, keyed, services_.operation.clocks().system()))
+    co_return *std::move(answered);
   response = co_await make_answer(request, admitted);
   if (response.status >= 300) {
     services_.answers.give_up(keyed);

@@ -16,8 +16,8 @@ namespace cell {
 /// down is refused, but for a stop.
 class Api {
  public:
-  /// `operation` must outlive it.
-  Api(boost::asio::any_io_executor executor, Operation& operation, Tokens tokens);
+  /// `operation` must outlive it; its clock is also that of what is written down here.
+  Api(boost::asio::any_io_executor executor, CellOperation& operation, Tokens tokens);
   ~Api();
 
   /// `request` must outlive the answer.
@@ -31,6 +31,7 @@ class Api {
   boost::asio::awaitable<HttpResponse> make_answer(const HttpRequest& request, const Admitted& admitted);
   boost::asio::awaitable<HttpResponse> obey(const HttpRequest& request, const Admitted& admitted);
   boost::asio::awaitable<HttpResponse> obey_once(const HttpRequest& request, const Admitted& admitted);
+  [[nodiscard]] std::string now_text() const;
   bool write_audit(const HttpRequest& request, const std::string& outcome, bool at_once);
   boost::asio::awaitable<void> slow_down(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_status(const HttpRequest& request, const Admitted& admitted);

@@ -1,6 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/refusals.hpp"
 #include "service/http/route_table.hpp"
 #include "service/http/services.hpp"
@@ -68,24 +68,24 @@ std::vector<Route> command_routes() {
   };
 }
 
-HttpResponse from_refusal(const Refusal& refusal, const Operation& operation) {
+HttpResponse from_refusal(const CommandRefusal& refusal, const CellOperation& operation) {
   Problem problem{.status = 409, .kind = "state", .detail = refusal.detail};
   switch (refusal.kind) {
-    case Refusal::Kind::kState:
+    case CommandRefusal::Kind::kState:
       break;
-    case Refusal::Kind::kPreconditions:
+    case CommandRefusal::Kind::kPreconditions:
       problem.kind = "preconditions";
       break;
-    case Refusal::Kind::kUnknownRecipe:
+    case CommandRefusal::Kind::kUnknownRecipe:
       problem.status = 422;
       problem.kind = "unknown-recipe";
       problem.pointer = "/recipe";
       break;
-    case Refusal::Kind::kOtherKey:
+    case CommandRefusal::Kind::kOtherKey:
       problem.status = 422;
       problem.kind = "idempotency-key";
       break;
-    case Refusal::Kind::kNotThisRun:
+    case CommandRefusal::Kind::kNotThisRun:
       problem.kind = "not-this-run";
       break;
   }

@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/json_view.hpp"
 
 namespace cell {

@@ -37,8 +37,8 @@ Json run_json(const StoredRun& run) {
 
 /// What a person who touches by hand is told.
 void add_by_hand(Json& document, const std::optional<HandGuide>& guide) {
-  document["by_hand"] = guide ? Json(guide->activity) : Json(nullptr);
-  document["by_hand_step"] = guide ? Json(guide->step) : Json(nullptr);
+  document["by_hand"] = guide ? Json(hand_activity_name(guide->activity)) : Json(nullptr);
+  document["by_hand_step"] = guide ? Json(hand_step_name(guide->step)) : Json(nullptr);
   document["by_hand_plane"] = guide ? Json(guide->plane) : Json(nullptr);
   document["by_hand_index"] = guide ? Json(guide->index) : Json(nullptr);
   document["by_hand_total"] = guide ? Json(guide->total) : Json(nullptr);

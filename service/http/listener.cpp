@@ -14,8 +14,9 @@ namespace cell {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-HttpListener::HttpListener(asio::any_io_executor executor, const tcp::endpoint& address, Operation& operation,
-                           Tokens tokens, HttpLimits limits, std::shared_ptr<asio::ssl::context> tls)
+HttpListener::HttpListener(asio::any_io_executor executor, const tcp::endpoint& address,
+                           CellOperation& operation, Tokens tokens, HttpLimits limits,
+                           std::shared_ptr<asio::ssl::context> tls)
     : executor_(executor),
       acceptor_(executor, address),
       address_(acceptor_.local_endpoint()),

@@ -12,7 +12,7 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 
 /// Accepts connections on one address and serves the API over them, HTTP/1.1, with TLS where there is a
 /// certificate.
@@ -20,7 +20,7 @@ class HttpListener {
  public:
   /// Binds at once; port 0 takes a free one. Throws boost::system::system_error when the address is taken.
   HttpListener(boost::asio::any_io_executor executor, const boost::asio::ip::tcp::endpoint& address,
-               Operation& operation, Tokens tokens, HttpLimits limits = {},
+               CellOperation& operation, Tokens tokens, HttpLimits limits = {},
                std::shared_ptr<boost::asio::ssl::context> tls = nullptr);
 
   void launch();

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/request_body.hpp"
 
 namespace cell {
@@ -23,7 +23,7 @@ HttpResponse refuse(const PlanRefusal& refusal) {
 
 }  // namespace
 
-HttpResponse post_plan(const HttpRequest& request, const Operation& operation) {
+HttpResponse post_plan(const HttpRequest& request, const CellOperation& operation) {
   const auto named = named_text(request.body, kPlanKeys);
   if (const auto* problem = std::get_if<Problem>(&named)) return to_response(*problem);
   const std::string& recipe = std::get<NamedText>(named).text;
@@ -44,7 +44,7 @@ HttpResponse post_plan(const HttpRequest& request, const Operation& operation) {
   return {.status = 200, .body = std::get<std::shared_ptr<const Plan>>(*outcome)->document};
 }
 
-std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Operation& operation) {
+std::optional<std::string> recipe_to_plan(const HttpRequest& request, const CellOperation& operation) {
   const auto named = named_text(request.body, kPlanKeys);
   const auto* recipe = std::get_if<NamedText>(&named);
   if (!recipe || !operation.cell().recipes.contains(recipe->text) || operation.planned(recipe->text))
@@ -52,7 +52,7 @@ std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Oper
   return recipe->text;
 }
 
-HttpResponse get_plan(const Operation& operation, std::int64_t id) {
+HttpResponse get_plan(const CellOperation& operation, std::int64_t id) {
   if (auto document = operation.store().plan_json(id)) return {.status = 200, .body = *std::move(document)};
   return to_response(
       {.status = 409, .kind = "no-plan", .detail = fmt::format("run {} has no plan that was kept", id)});

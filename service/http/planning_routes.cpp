@@ -1,7 +1,7 @@
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
 #include "config/touches_file.hpp"
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/plan_routes.hpp"
 #include "service/http/result_view.hpp"
 #include "service/http/route_table.hpp"

@@ -4,9 +4,9 @@
 
 namespace cell {
 
-struct Refusal;
+struct CommandRefusal;
 
 /// A command that was not taken, as a problem document with the commands that the state allows.
-HttpResponse from_refusal(const Refusal& refusal, const Operation& operation);
+HttpResponse from_refusal(const CommandRefusal& refusal, const CellOperation& operation);
 
 }  // namespace cell

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/json_figures.hpp"
 #include "service/http/result_routes.hpp"
 #include "service/report/report_document.hpp"
@@ -12,7 +12,7 @@
 namespace cell {
 namespace {
 
-RunRecord record_of(const Operation& operation, const StoredRun& run) {
+RunRecord record_of(const CellOperation& operation, const StoredRun& run) {
   const TouchStore& store = operation.store();
   RunRecord record{.run = run,
                    .touches = store.touches(run.id),
@@ -35,7 +35,7 @@ HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64
 
 }  // namespace
 
-HttpResponse get_report(const Operation& operation, const StoredRun& run, const std::string& format) {
+HttpResponse get_report(const CellOperation& operation, const StoredRun& run, const std::string& format) {
   if (format != "html" && format != "csv" && format != "json") {
     return to_response({.status = 400,
                         .kind = "query",

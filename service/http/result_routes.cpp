@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/identification_problem.hpp"
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/calibrated_arm.hpp"
 #include "service/http/parameter_view.hpp"
 #include "service/http/result_view.hpp"
@@ -27,7 +27,7 @@ HttpResponse conflict(const std::string& detail) {
 }
 
 /// What the run's stored touches give now: the same as then, to the bit, as long as the cell is the same.
-std::variant<Identified, HttpResponse> identify_stored(const Operation& operation, std::int64_t id) {
+std::variant<Identified, HttpResponse> identify_stored(const CellOperation& operation, std::int64_t id) {
   const Cell& cell = operation.cell();
   const auto recipe = cell.recipes.find(operation.store().run(id)->recipe);
   if (recipe == cell.recipes.end())
@@ -50,7 +50,7 @@ bool has_this_nominal(const std::string& result_json, const calib::KinematicMode
   return true;
 }
 
-std::optional<std::string> known_document(const Operation& operation, std::int64_t id) {
+std::optional<std::string> known_document(const CellOperation& operation, std::int64_t id) {
   if (auto stored = operation.store().result_json(id)) return stored;  // the run is over
   const Run* live = operation.run();
   return live && live->id() == id ? operation.result_json() : std::nullopt;
@@ -58,7 +58,7 @@ std::optional<std::string> known_document(const Operation& operation, std::int64
 
 }  // namespace
 
-HttpResponse get_result(const Operation& operation, std::int64_t id) {
+HttpResponse get_result(const CellOperation& operation, std::int64_t id) {
   if (auto document = known_document(operation, id)) return {.body = std::move(*document)};
   // A run that the daemon's own end cut off has touches and no result: they are identified now.
   auto found = identify_stored(operation, id);
@@ -70,7 +70,7 @@ HttpResponse get_result(const Operation& operation, std::int64_t id) {
                                   identified.result, context)};
 }
 
-HttpResponse get_arm(const Operation& operation, std::int64_t id) {
+HttpResponse get_arm(const CellOperation& operation, std::int64_t id) {
   const auto document = known_document(operation, id);
   if (document && !has_this_nominal(*document, operation.cell().arm.model)) {
     return conflict(

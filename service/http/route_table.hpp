@@ -50,7 +50,7 @@ inline constexpr std::size_t kTouchesBytesMax = 1024 * 1024;
 struct Call {
   const HttpRequest& request;
   Services& services;
-  Operation& operation;
+  CellOperation& operation;
   std::string_view id;  // what stands at {id}
   const Cell& cell;     // on a worker one of its own: the operation's may be located elsewhere meanwhile
 

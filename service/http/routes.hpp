@@ -12,7 +12,7 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 struct Services;
 
 /// What stands behind the question mark; a name that is given twice is there twice.
@@ -61,6 +61,6 @@ std::optional<std::pair<std::string, Query>> parse_target(std::string_view targe
 /// waits (Pace) is answered by api.hpp.
 HttpResponse route(const HttpRequest& request, Services& services);
 /// The same with services of its own.
-HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens);
+HttpResponse route(const HttpRequest& request, CellOperation& operation, const Tokens& tokens);
 
 }  // namespace cell

@@ -1,6 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/json_view.hpp"
 #include "service/http/plan_routes.hpp"
 #include "service/http/refusals.hpp"
@@ -51,7 +51,8 @@ HttpResponse post_runs(const Call& call) {
   const auto wanted = read_start(call.request, call.operation);
   if (const auto* problem = std::get_if<Problem>(&wanted)) return to_response(*problem);
   const auto outcome = call.operation.start(std::get<StartRequest>(wanted));
-  if (const auto* refusal = std::get_if<Refusal>(&outcome)) return from_refusal(*refusal, call.operation);
+  if (const auto* refusal = std::get_if<CommandRefusal>(&outcome))
+    return from_refusal(*refusal, call.operation);
   const std::int64_t id = std::get<Started>(outcome).run_id;
   HttpResponse response = json_response(201, run_document(call.operation.store().run(id).value()));
   response.headers = {{"Location", fmt::format("/api/v1/runs/{}", id)}};

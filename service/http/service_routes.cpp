@@ -1,6 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/access.hpp"
 #include "service/http/openapi.hpp"
 #include "service/http/route_table.hpp"

@@ -15,7 +15,7 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 
 /// As many changes as a reader may miss and still get them one by one.
 inline constexpr std::size_t kChangesKept = 1024;
@@ -36,7 +36,7 @@ class StatusFeed {
   };
 
   /// `operation` must outlive the feed.
-  explicit StatusFeed(Operation& operation);
+  explicit StatusFeed(CellOperation& operation);
   ~StatusFeed();
   StatusFeed(const StatusFeed&) = delete;
   StatusFeed& operator=(const StatusFeed&) = delete;
@@ -62,7 +62,7 @@ class StatusFeed {
  private:
   void keep(const Status& status);
 
-  Operation& operation_;
+  CellOperation& operation_;
   std::string instance_id_;
   std::string etag_;
   std::deque<Change> changes_;  // never empty; the newest is the last

@@ -1,4 +1,4 @@
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/event_stream.hpp"
 #include "service/http/route_table.hpp"
 #include "service/http/services.hpp"

@@ -86,7 +86,7 @@ TEST_F(Operator, AnAbortedRunIsLeftByClearAndReset) {
 TEST_F(Operator, AStopInASearchTakesTheStylusBackAndTheNextRunBeginsWithTheRestOfTheWay) {
   // A hundred times as fast as an arm: a search takes longer than the 20 ms between two reports of the state.
   loop_.serve({}, 100.0);
-  std::optional<cell::Refusal> refusal;
+  std::optional<cell::CommandRefusal> refusal;
   bool stopped = false;
   std::vector<cs8::MessageType> asked;
   Relay relay(loop_.io(), loop_.port(), [&](const cs8::Message& message) {
@@ -204,7 +204,7 @@ TEST_F(Operator, ACommandForARunThatIsOverIsRefused) {
   loop_.run_until(State::kExecute);
   const auto refusal = loop_.operation().command(Command::kPause, id);
   ASSERT_TRUE(refusal);
-  EXPECT_EQ(refusal->kind, cell::Refusal::Kind::kNotThisRun);
+  EXPECT_EQ(refusal->kind, cell::CommandRefusal::Kind::kNotThisRun);
   EXPECT_EQ(loop_.status().state, State::kExecute);
 }
 

@@ -83,7 +83,7 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.controller.touch_tested = true;
   busy.controller.permit = "awaited";
   busy.controller.probe = "free";
-  busy.by_hand = HandGuide{.activity = "guided",
+  busy.by_hand = HandGuide{.activity = HandActivity::kGuided,
                            .plane = 3,
                            .index = 1,
                            .total = 6,
