@@ -18,7 +18,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/daemon/listen_address.hpp"
@@ -58,11 +58,11 @@ class DirectoryLock {
 };
 
 /// At once and then daily. A failure is repeated the next day.
-asio::awaitable<void> delete_old_runs(const RunStore& store, int retain_days) {
+asio::awaitable<void> delete_old_runs(const RunStore& store, Clocks clocks, int retain_days) {
   asio::steady_timer day(co_await asio::this_coro::executor);
   for (;;) {
     try {
-      const auto oldest = std::chrono::system_clock::now() - std::chrono::days(retain_days);
+      const auto oldest = clocks.system() - std::chrono::days(retain_days);
       const int deleted = delete_runs_before(store.database(), format_utc(oldest));
       if (deleted > 0) spdlog::info("{} runs older than {} days were deleted", deleted, retain_days);
     } catch (const std::exception& error) {
@@ -92,13 +92,13 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const DirectoryLock lock(options.state_directory);
   RunStore store(options.state_directory / kStoreFile);
   const Tokens tokens = load_or_make_tokens(options.state_directory);
-  const auto clock = [] { return std::chrono::system_clock::now(); };
+  const Clocks clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now};
 
   asio::io_context context(1);
   if (options.retain_days)
-    asio::co_spawn(context, delete_old_runs(store, *options.retain_days), asio::detached);
-  Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
-                      random_hex(8), clock);
+    asio::co_spawn(context, delete_old_runs(store, clocks, *options.retain_days), asio::detached);
+  CellOperation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
+                          random_hex(8), clocks);
   operation.keep_place_in(options.state_directory / kBlockPoseFile);
   Api api(context.get_executor(), operation, tokens);
   std::optional<HttpListener> listener;

@@ -102,21 +102,18 @@ int Run::drop_fit_touches(std::size_t first) {
   return static_cast<int>(before - plan_.touches.size());
 }
 
-void Run::add(RunStore& store, const StoredTouch& touch) {
-  store.append_touch(id_, touch);
+void Run::add(const StoredTouch& touch) {
   touches_.push_back(touch);
   problem_.touches.push_back(to_touch(touch));
 }
 
-void Run::replace_last(RunStore& store, const StoredTouch& again, const std::string& reason) {
-  store.replace_touch(id_, again, reason);
+void Run::replace_last(const StoredTouch& again) {
   touches_.back() = again;
   problem_.touches.back() = to_touch(again);
   identified_count_ = 0;
 }
 
-void Run::withdraw_last(RunStore& store, const std::string& reason) {
-  store.withdraw_touch(id_, touches_.back().number, reason);
+void Run::withdraw_last() {
   touches_.pop_back();
   problem_.touches.pop_back();
   identified_count_ = 0;

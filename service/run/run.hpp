@@ -58,12 +58,12 @@ class Run {
   /// Leaves out the touches to fit from this index on; returns how many.
   int drop_fit_touches(std::size_t first);
 
-  /// Stores the touch, then adds it. Throws what the store throws; the touch is not added then.
-  void add(RunStore& store, const StoredTouch& touch);
-  /// Replaces the last touch, which is kept as superseded. Throws what the store throws.
-  void replace_last(RunStore& store, const StoredTouch& again, const std::string& reason);
-  /// Removes the last touch, which is kept as superseded and becomes next(). Throws what the store throws.
-  void withdraw_last(RunStore& store, const std::string& reason);
+  /// Adds a touch that has been stored: what does not outlive the daemon does not count.
+  void add(const StoredTouch& touch);
+  /// Replaces the last touch; the store has replaced it before.
+  void replace_last(const StoredTouch& again);
+  /// Removes the last touch, which becomes next(); the store has withdrawn it before.
+  void withdraw_last();
   /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
 

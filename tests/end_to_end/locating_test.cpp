@@ -53,13 +53,13 @@ class BlockElsewhere : public ::testing::Test {
       EXPECT_FALSE(loop_.status().by_hand->problem) << *loop_.status().by_hand->problem;
       EXPECT_NE(loop_.status().by_hand->words, before->words);
     }
-    EXPECT_EQ(loop_.status().by_hand->step, "pass");
+    EXPECT_EQ(loop_.status().by_hand->step, cell::HandStep::kPass);
     pendant.hand_back();
   }
   void go_around() {
     loop_.command(Command::kLocate);
     EXPECT_EQ(loop_.status().state, State::kStarting);
-    EXPECT_EQ(loop_.status().by_hand->step, "passing");
+    EXPECT_EQ(loop_.status().by_hand->step, cell::HandStep::kPassing);
     EXPECT_TRUE(loop_.is_refused(Command::kUndo));
     loop_.run_until([](const cell::Status& status) { return !cell::is_active(status.state); });
   }
@@ -131,7 +131,7 @@ TEST_F(BlockElsewhere, ATouchOnTheWayAroundTheBlockEndsTheDialogueWithoutAPlace)
   launch();
   locate_by_hand();
   move_block(Eigen::Translation3d(0.0, -0.06, 0.0) * moved_block());  // up, into the way
-  EXPECT_EQ(loop_.status().by_hand->step, "pass");
+  EXPECT_EQ(loop_.status().by_hand->step, cell::HandStep::kPass);
   go_around();
   EXPECT_EQ(loop_.status().state, State::kAborted);
   EXPECT_EQ(loop_.fault_name(), "unexpected_contact");

@@ -6,7 +6,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/store/maintenance.hpp"
 #include "sim_controller/server.hpp"
@@ -46,9 +46,9 @@ class MortalDaemon {
   void launch() {
     io_ = std::make_unique<boost::asio::io_context>(1);
     store_ = std::make_unique<cell::RunStore>(store_file());
-    operation_ = std::make_unique<cell::Operation>(io_->get_executor(), cell, *store_,
-                                                   cell::Endpoint{"127.0.0.1", server_->port()}, "restart",
-                                                   std::chrono::system_clock::now);
+    operation_ = std::make_unique<cell::CellOperation>(
+        io_->get_executor(), cell, *store_, cell::Endpoint{"127.0.0.1", server_->port()}, "restart",
+        cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
     operation_->launch();
   }
   /// Nothing of the daemon gets to act any more.
@@ -100,7 +100,7 @@ class MortalDaemon {
     return operation_->status();
   }
 
-  [[nodiscard]] cell::Operation& operation() { return *operation_; }
+  [[nodiscard]] cell::CellOperation& operation() { return *operation_; }
   [[nodiscard]] cell::RunStore& store() { return *store_; }
   [[nodiscard]] cell::Status status() const { return operation_->status(); }
   [[nodiscard]] std::filesystem::path store_file() const { return folder_ / "touchcal.sqlite"; }
@@ -113,7 +113,7 @@ class MortalDaemon {
   std::optional<sim::Server> server_;
   std::unique_ptr<boost::asio::io_context> io_;
   std::unique_ptr<cell::RunStore> store_;
-  std::unique_ptr<cell::Operation> operation_;
+  std::unique_ptr<cell::CellOperation> operation_;
   long steps_ = 0;
 };
 

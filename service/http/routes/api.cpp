@@ -9,7 +9,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/base/digest.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/http/auth/access.hpp"
@@ -42,15 +42,12 @@ HttpResponse busy(std::string detail, const char* retry_after_s) {
 
 bool is_command(const HttpRequest& request) { return request.method != "GET"; }
 
-std::string now_text(std::chrono::hours ago = {}) {
-  return format_utc(std::chrono::system_clock::now() - ago);
-}
-
 /// The stored answer to a key, or its refusal; nothing for a new key.
-std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed) {
+std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed,
+                                          std::chrono::system_clock::time_point now) {
   KeyLookUp found;
   try {
-    found = answers.take(keyed, now_text(std::chrono::hours(AnswerStore::kKeptHours)));
+    found = answers.take(keyed, format_utc(now - std::chrono::hours(AnswerStore::kKeptHours)));
   } catch (const std::exception& error) {
     spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
     return to_response({.status = 503,
@@ -74,14 +71,14 @@ std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedReque
 
 }  // namespace
 
-Api::Api(asio::any_io_executor executor, Operation& operation, Tokens tokens)
+Api::Api(asio::any_io_executor executor, CellOperation& operation, Tokens tokens)
     : executor_(executor), services_(operation, std::move(tokens)) {
   services_.feed.follow([this](const Status& status) { services_.metrics.follow(status); });
 }
 
 Api::~Api() { worker_.join(); }
 
-Services::Services(Operation& to_serve, Tokens to_ask_for)
+Services::Services(CellOperation& to_serve, Tokens to_ask_for)
     : operation(to_serve),
       tokens(std::move(to_ask_for)),
       feed(to_serve),
@@ -166,7 +163,8 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
   const KeyedRequest keyed{.key = *request.idempotency_key,
                            .request = request.method + " " + request.path,
                            .body_digest = sha256_hex(request.body)};
-  if (auto answered = answer_to_key(services_.answers, keyed)) co_return *std::move(answered);
+  if (auto answered = answer_to_key(services_.answers, keyed, services_.operation.clocks().system()))
+    co_return *std::move(answered);
   response = co_await make_answer(request, admitted);
   if (response.status >= 300) {
     services_.answers.give_up(keyed);
@@ -181,6 +179,8 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
   }
   co_return response;
 }
+
+std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
 
 bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bool at_once) {
   const AuditEntry entry{.at = now_text(),

@@ -17,8 +17,8 @@ namespace cell {
 /// recorded is refused, except one that halts.
 class Api final : public RequestHandler {
  public:
-  /// `operation` must outlive it.
-  Api(boost::asio::any_io_executor executor, Operation& operation, Tokens tokens);
+  /// `operation` must outlive it; its clock also dates what is recorded here.
+  Api(boost::asio::any_io_executor executor, CellOperation& operation, Tokens tokens);
   ~Api() override;
 
   boost::asio::awaitable<HttpResponse> answer(const HttpRequest& request) override;
@@ -34,6 +34,7 @@ class Api final : public RequestHandler {
   boost::asio::awaitable<HttpResponse> execute_command(const HttpRequest& request, const Admitted& admitted);
   boost::asio::awaitable<HttpResponse> execute_command_once(const HttpRequest& request,
                                                             const Admitted& admitted);
+  [[nodiscard]] std::string now_text() const;
   bool write_audit(const HttpRequest& request, const std::string& outcome, bool at_once);
   boost::asio::awaitable<void> delay_wrong_token(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_status(const HttpRequest& request, const Admitted& admitted);

@@ -1,4 +1,4 @@
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/cell_view.hpp"
 #include "service/documents/scene_view.hpp"
 #include "service/http/routes/route_table.hpp"

@@ -1,6 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/routes/internal/refusals.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
@@ -66,7 +66,7 @@ std::vector<Route> command_routes() {
   };
 }
 
-HttpResponse refusal_response(const CommandRefusal& refusal, const Operation& operation) {
+HttpResponse refusal_response(const CommandRefusal& refusal, const CellOperation& operation) {
   Problem problem{.status = 409, .kind = ProblemKind::kState, .detail = refusal.detail};
   switch (refusal.kind) {
     case CommandRefusal::Kind::kState:

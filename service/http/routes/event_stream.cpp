@@ -4,7 +4,7 @@
 
 #include <charconv>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 
 namespace cell {

@@ -7,7 +7,7 @@
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
 #include "config/touches_file.hpp"
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/result_view.hpp"
 #include "service/http/routes/internal/request_body.hpp"
 #include "service/http/routes/route_table.hpp"
@@ -59,7 +59,7 @@ HttpResponse post_identify(const Call& call) {
 
 }  // namespace
 
-HttpResponse post_plan(const HttpRequest& request, const Operation& operation) {
+HttpResponse post_plan(const HttpRequest& request, const CellOperation& operation) {
   const auto named = named_text(request.body, kPlanKeys);
   if (const auto* problem = std::get_if<Problem>(&named)) return to_response(*problem);
   const std::string& recipe = std::get<NamedText>(named).text;
@@ -81,7 +81,7 @@ HttpResponse post_plan(const HttpRequest& request, const Operation& operation) {
   return {.status = 200, .body = std::get<std::shared_ptr<const Plan>>(*outcome)->document};
 }
 
-std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Operation& operation) {
+std::optional<std::string> recipe_to_plan(const HttpRequest& request, const CellOperation& operation) {
   const auto named = named_text(request.body, kPlanKeys);
   const auto* recipe = std::get_if<NamedText>(&named);
   if (!recipe || !operation.cell().recipes.contains(recipe->text) || operation.planned(recipe->text))
@@ -89,7 +89,7 @@ std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Oper
   return recipe->text;
 }
 
-HttpResponse get_plan(const Operation& operation, std::int64_t id) {
+HttpResponse get_plan(const CellOperation& operation, std::int64_t id) {
   if (auto document = operation.store().plan_json(id)) return {.status = 200, .body = *std::move(document)};
   return to_response({.status = 409,
                       .kind = ProblemKind::kNoPlan,

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/identification_problem.hpp"
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/result_view.hpp"
@@ -34,7 +34,7 @@ HttpResponse conflict(const std::string& detail) {
 }
 
 /// Identifies the stored touches of a run again: the same result, bit by bit, while the cell is the same.
-std::variant<Identified, HttpResponse> identify_stored(const Operation& operation, std::int64_t id) {
+std::variant<Identified, HttpResponse> identify_stored(const CellOperation& operation, std::int64_t id) {
   const Cell& cell = operation.cell();
   const auto recipe = cell.recipes.find(operation.store().run(id)->recipe);
   if (recipe == cell.recipes.end())
@@ -57,13 +57,13 @@ bool has_this_nominal(const std::string& result_json, const calib::KinematicMode
   return true;
 }
 
-std::optional<std::string> known_document(const Operation& operation, std::int64_t id) {
+std::optional<std::string> known_document(const CellOperation& operation, std::int64_t id) {
   if (auto stored = operation.store().result_json(id)) return stored;  // the run is over
   const Run* live = operation.run();
   return live && live->id() == id ? operation.result_json() : std::nullopt;
 }
 
-RunRecord record_of(const Operation& operation, const StoredRun& run) {
+RunRecord record_of(const CellOperation& operation, const StoredRun& run) {
   const RunStore& store = operation.store();
   RunRecord record{.run = run,
                    .touches = store.touches(run.id),
@@ -86,7 +86,7 @@ HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64
 
 }  // namespace
 
-HttpResponse get_result(const Operation& operation, std::int64_t id) {
+HttpResponse get_result(const CellOperation& operation, std::int64_t id) {
   if (auto document = known_document(operation, id)) return {.body = std::move(*document)};
   // A run that ended with the daemon has touches and no result: they are identified now.
   auto found = identify_stored(operation, id);
@@ -99,7 +99,7 @@ HttpResponse get_result(const Operation& operation, std::int64_t id) {
                                   identified.result, context)};
 }
 
-HttpResponse get_arm(const Operation& operation, std::int64_t id) {
+HttpResponse get_arm(const CellOperation& operation, std::int64_t id) {
   const auto document = known_document(operation, id);
   if (document && !has_this_nominal(*document, operation.cell().arm.model)) {
     return conflict(
@@ -111,7 +111,7 @@ HttpResponse get_arm(const Operation& operation, std::int64_t id) {
   return {.body = calibrated_arm_document(operation.cell(), std::get<Identified>(found).result)};
 }
 
-HttpResponse get_report(const Operation& operation, const StoredRun& run, const std::string& format) {
+HttpResponse get_report(const CellOperation& operation, const StoredRun& run, const std::string& format) {
   if (format != "html" && format != "csv" && format != "json") {
     return to_response({.status = 400,
                         .kind = ProblemKind::kQuery,

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/services.hpp"
 
@@ -143,7 +143,7 @@ HttpResponse route(const HttpRequest& request, Services& services) {
   return handle(std::get<Admitted>(admitted), request, services);
 }
 
-HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens) {
+HttpResponse route(const HttpRequest& request, CellOperation& operation, const Tokens& tokens) {
   Services services(operation, tokens);
   return route(request, services);
 }

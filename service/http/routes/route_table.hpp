@@ -49,7 +49,7 @@ inline constexpr std::size_t kTouchesBytesMax = 1024 * 1024;
 struct Call {
   const HttpRequest& request;
   Services& services;
-  Operation& operation;
+  CellOperation& operation;
   std::string_view id;  // the segment at {id}
   const Cell& cell;     // on the worker a copy: locating may change that of the operation
 

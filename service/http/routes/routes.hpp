@@ -5,13 +5,13 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 struct Services;
 
 /// Answers a request at once, by the routes of route_table.hpp. Requests that wait (DispatchMode) go through
 /// api.hpp.
 HttpResponse route(const HttpRequest& request, Services& services);
 /// The same with its own services.
-HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens);
+HttpResponse route(const HttpRequest& request, CellOperation& operation, const Tokens& tokens);
 
 }  // namespace cell

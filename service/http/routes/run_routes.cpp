@@ -1,6 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
 #include "service/http/routes/internal/refusals.hpp"

@@ -1,6 +1,6 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/internal/openapi.hpp"
 #include "service/http/routes/route_table.hpp"

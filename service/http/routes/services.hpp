@@ -10,13 +10,13 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 
 /// What handlers use. `operation` must outlive it.
 struct Services {
-  Services(Operation& to_serve, Tokens to_ask_for);
+  Services(CellOperation& to_serve, Tokens to_ask_for);
 
-  Operation& operation;
+  CellOperation& operation;
   Tokens tokens;
   StatusFeed feed;
   Metrics metrics;

@@ -19,7 +19,7 @@ Problem wrong(std::string pointer, std::string detail) {
   return {.kind = ProblemKind::kBody, .detail = std::move(detail), .pointer = std::move(pointer)};
 }
 
-std::optional<Problem> read_recipe(const json& body, const Operation& operation, StartRequest& start) {
+std::optional<Problem> read_recipe(const json& body, const CellOperation& operation, StartRequest& start) {
   const bool by_plan = body.contains("plan_id");
   if (by_plan && body.contains("recipe")) return wrong("", "give one of 'recipe' or 'plan_id'");
   const char* key = by_plan ? "plan_id" : "recipe";
@@ -62,7 +62,7 @@ std::optional<Problem> read_touching(const json& body, StartRequest& start) {
   return std::nullopt;
 }
 
-std::variant<StartRequest, Problem> read_body(const json& body, const Operation& operation) {
+std::variant<StartRequest, Problem> read_body(const json& body, const CellOperation& operation) {
   if (!body.is_object()) return wrong("", "an object is required");
   for (const auto& [key, value] : body.items()) {
     if (key != "recipe" && key != "plan_id" && key != "operator" && key != "touching")
@@ -78,7 +78,7 @@ std::variant<StartRequest, Problem> read_body(const json& body, const Operation&
 
 }  // namespace
 
-std::variant<StartRequest, Problem> read_start(const HttpRequest& request, const Operation& operation) {
+std::variant<StartRequest, Problem> read_start(const HttpRequest& request, const CellOperation& operation) {
   try {
     auto read = read_body(parse_strict_json("request body", request.body, kBodyBytesMax), operation);
     if (auto* start = std::get_if<StartRequest>(&read)) start->idempotency_key = request.idempotency_key;

@@ -8,7 +8,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <stdexcept>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 
 namespace cell {
@@ -42,7 +42,7 @@ std::string StatusFeed::Change::document(std::optional<std::int64_t> age_ms) con
   return text;
 }
 
-StatusFeed::StatusFeed(Operation& operation) : operation_(operation) {
+StatusFeed::StatusFeed(CellOperation& operation) : operation_(operation) {
   const Status status = operation.status();
   instance_id_ = status.instance_id;
   keep(status);

@@ -15,7 +15,7 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 
 /// Number of changes that a client may miss and still receive one by one.
 inline constexpr std::size_t kChangesKept = 1024;
@@ -35,7 +35,7 @@ class StatusFeed {
   };
 
   /// `operation` must outlive the feed.
-  explicit StatusFeed(Operation& operation);
+  explicit StatusFeed(CellOperation& operation);
   ~StatusFeed();
   StatusFeed(const StatusFeed&) = delete;
   StatusFeed& operator=(const StatusFeed&) = delete;
@@ -61,7 +61,7 @@ class StatusFeed {
  private:
   void keep(const Status& status);
 
-  Operation& operation_;
+  CellOperation& operation_;
   std::string instance_id_;
   std::string etag_;
   std::deque<Change> changes_;  // never empty; the newest is the last

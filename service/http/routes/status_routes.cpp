@@ -1,4 +1,4 @@
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"

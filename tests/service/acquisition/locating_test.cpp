@@ -205,41 +205,41 @@ TEST_F(LocatingTheBlock, ATouchIsWhereTheProbeReadsTouchedFirst) {
   const calib::JointVector on = person_.on(place_spots(cell_)[0]);
   calib::JointVector before = on;
   before[1] += 1e-4;
-  EXPECT_FALSE(watch.hear(state_at(on, true)));  // nobody saw it free
-  EXPECT_FALSE(watch.hear(state_at(before, false)));
+  EXPECT_FALSE(watch.on_controller_state(state_at(on, true)));  // nobody saw it free
+  EXPECT_FALSE(watch.on_controller_state(state_at(before, false)));
   cs8::State between = state_at(before, false);
   between.flags = cs8::kSettled | cs8::kArmCalibrated;  // its two inputs change one after the other
-  EXPECT_FALSE(watch.hear(between));
-  const auto touch = watch.hear(state_at(on, true));
+  EXPECT_FALSE(watch.on_controller_state(between));
+  const auto touch = watch.on_controller_state(state_at(on, true));
   ASSERT_TRUE(touch);
   EXPECT_EQ(touch->wire_joints, to_wire(on));
   EXPECT_GT(*touch->moved_m, 0.0);
   EXPECT_LT(*touch->moved_m, 2e-4);
-  EXPECT_FALSE(watch.hear(state_at(on, true)));  // once
+  EXPECT_FALSE(watch.on_controller_state(state_at(on, true)));  // once
 }
 
 TEST_F(LocatingTheBlock, NothingIsTakenByWordFromAFreeProbeOrAMovingArm) {
   HandTouchWatch watch(cell_.arm.model);
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
   const calib::JointVector on = person_.on(place_spots(cell_)[0]);
-  watch.hear(state_at(on, false));
+  watch.on_controller_state(state_at(on, false));
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
   cs8::State moving = state_at(on, true);
   moving.flags &= ~std::uint32_t{cs8::kSettled};
-  watch.hear(moving);
+  watch.on_controller_state(moving);
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
-  watch.hear(state_at(on, true));
+  watch.on_controller_state(state_at(on, true));
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take())) << "it was given out when the probe tripped";
 }
 
 TEST_F(LocatingTheBlock, AContactIsOneTouchHoweverOftenItIsAskedFor) {
   HandTouchWatch watch(cell_.arm.model);
   const calib::JointVector on = person_.on(place_spots(cell_)[0]);
-  watch.hear(state_at(on, true));  // it touched before anybody looked
+  watch.on_controller_state(state_at(on, true));  // it touched before anybody looked
   EXPECT_TRUE(std::holds_alternative<HandTouch>(watch.take()));
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
-  watch.hear(state_at(on, false));
-  EXPECT_TRUE(watch.hear(state_at(on, true)));
+  watch.on_controller_state(state_at(on, false));
+  EXPECT_TRUE(watch.on_controller_state(state_at(on, true)));
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
 }
 
@@ -247,10 +247,10 @@ TEST_F(LocatingTheBlock, NothingIsTakenFromAProbeInFaultOrAnArmWithoutReferences
   const calib::JointVector on = person_.on(place_spots(cell_)[0]);
   for (const std::uint32_t lost : {std::uint32_t{cs8::kProbeTouched}, std::uint32_t{cs8::kArmCalibrated}}) {
     HandTouchWatch watch(cell_.arm.model);
-    watch.hear(state_at(on, false));
+    watch.on_controller_state(state_at(on, false));
     cs8::State state = state_at(on, true);
     state.flags &= ~lost;
-    EXPECT_FALSE(watch.hear(state)) << lost;
+    EXPECT_FALSE(watch.on_controller_state(state)) << lost;
     EXPECT_TRUE(std::holds_alternative<std::string>(watch.take())) << lost;
   }
 }

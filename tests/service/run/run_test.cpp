@@ -28,6 +28,12 @@ class RunTest : public ::testing::Test {
     run_.set_plan(plan);
   }
 
+  /// As a touch is kept: stored, then added to the run.
+  void keep(cell::Run& run, const StoredTouch& touch) {
+    store_.append_touch(run.id(), touch);
+    run.add(touch);
+  }
+
   Folder folder_;
   RunStore store_{folder_.path() / "touchcal.sqlite"};
   TipRegions regions_{edf()};
@@ -40,7 +46,7 @@ TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
     EXPECT_FALSE(run_.complete());
     ASSERT_NE(run_.next(), nullptr);
     EXPECT_EQ(run_.next()->face, touch.face);
-    run_.add(store_, stored(++number, touch));
+    keep(run_, stored(++number, touch));
     EXPECT_EQ(run_.touches_done(), number);
     EXPECT_EQ(run_.latest().fitted_touch_count, number - 1) << "not yet";
     run_.identify();
@@ -63,14 +69,14 @@ TEST_F(RunTest, WhatIsLeftTakesAsMuchLongerThanPlannedAsWhatIsMadeTook) {
   }
   run_.set_plan(plan);
   EXPECT_EQ(run_.remaining_s(0.0), plan.duration_s());
-  run_.add(store_, stored(1, table3_touches()[0]));
-  run_.add(store_, stored(2, table3_touches()[1]));
+  keep(run_, stored(1, table3_touches()[0]));
+  keep(run_, stored(2, table3_touches()[1]));
   EXPECT_DOUBLE_EQ(run_.remaining_s(7.0), (2.0 + 20.0 + 5.0) * 7.0 / (2.0 + 6.0 + 2.0 + 4.0));
 }
 
 TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
-  run_.add(store_, stored(1, table3_touches()[0]));
-  EXPECT_THROW(run_.add(store_, stored(1, table3_touches()[1])), std::exception);
+  keep(run_, stored(1, table3_touches()[0]));
+  EXPECT_THROW(keep(run_, stored(1, table3_touches()[1])), std::exception);
   EXPECT_EQ(run_.touches_done(), 1);
   run_.identify();
   EXPECT_EQ(run_.latest().fitted_touch_count, 1);
@@ -93,7 +99,7 @@ TEST_F(RunTest, ATouchThatIsPutOffComesBehindTheOthersOfItsRoleOnce) {
 TEST_F(RunTest, TellsWhatMoreTouchesWouldBringOnceAllIsSeen) {
   int number = 0;
   for (const calib::Touch& touch : table3_touches()) {
-    run_.add(store_, stored(++number, touch));
+    keep(run_, stored(++number, touch));
     if (number == 30) {
       run_.identify();
       EXPECT_FALSE(run_.touch_benefit());
@@ -107,7 +113,7 @@ TEST_F(RunTest, TellsWhatMoreTouchesWouldBringOnceAllIsSeen) {
 TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
   Recipe asking = edf().recipes.at("edf-25");
   int number = 0;
-  for (const calib::Touch& touch : table3_touches()) run_.add(store_, stored(++number, touch));
+  for (const calib::Touch& touch : table3_touches()) keep(run_, stored(++number, touch));
   run_.identify();
   const double reached_m = run_.predicted_tip_rms_m().value();
   EXPECT_FALSE(run_.meets_accuracy_goal()) << "nothing was asked for";
@@ -116,7 +122,7 @@ TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
     cell::Run run(store_.begin_run({.recipe = "edf-25"}), regions_, asking, "start");
     EXPECT_FALSE(run.meets_accuracy_goal());
     number = 0;
-    for (const calib::Touch& touch : table3_touches()) run.add(store_, stored(++number, touch));
+    for (const calib::Touch& touch : table3_touches()) keep(run, stored(++number, touch));
     run.identify();
     EXPECT_EQ(run.meets_accuracy_goal(), share > 1.0);
   }

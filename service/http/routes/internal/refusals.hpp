@@ -4,10 +4,10 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 struct CommandRefusal;
 
 /// A refused command as a problem document with the commands that the state allows.
-HttpResponse refusal_response(const CommandRefusal& refusal, const Operation& operation);
+HttpResponse refusal_response(const CommandRefusal& refusal, const CellOperation& operation);
 
 }  // namespace cell

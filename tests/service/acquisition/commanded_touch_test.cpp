@@ -1,11 +1,11 @@
-#include "service/acquisition/resumption.hpp"
+#include "service/acquisition/commanded_touch.hpp"
 
 #include <gtest/gtest.h>
 
 namespace cell {
 namespace {
 
-TEST(Resumption, ACommandComesBackFromItsTextToTheBit) {
+TEST(CommandedTouch, ACommandComesBackFromItsTextToTheBit) {
   calib::PlannedTouch touch{
       .face = 3, .role = calib::TouchRole::kHeldOut, .predicted_position_error_m = 1.0 / 3.0};
   touch.joints << 0.1, -0.2, 1.0 / 3.0, 0.4, -0.5, 1e-17;
@@ -24,7 +24,7 @@ TEST(Resumption, ACommandComesBackFromItsTextToTheBit) {
   EXPECT_EQ(back.search_end_joints, touch.search_end_joints);
 }
 
-TEST(Resumption, TextThatIsNoCommandGivesNone) {
+TEST(CommandedTouch, TextThatIsNoCommandGivesNone) {
   for (const char* text : {"", "{}", "[1]", R"({"face":1,"role":0,"joints_rad":[1]})"})
     EXPECT_FALSE(command_from_text(text)) << text;
 }
