@@ -1,7 +1,11 @@
 #include "service/http/server/internal/response_text.hpp"
 
 #include <algorithm>
+// Boost's string_view, in status.hpp, needs std::ostream before it.
+// clang-format off
+#include <ostream>
 #include <boost/beast/http/status.hpp>
+// clang-format on
 
 namespace cell {
 namespace {
