@@ -9,6 +9,9 @@
 
 #include "calib_core/kinematic_model.hpp"
 
+/// By hand rather than with FCL: capsules against boxes and capsules need two distances with a closed form,
+/// exact but for rounding and without a virtual call, which a plan takes millions of times, and calib_core
+/// needs no further library.
 namespace calib {
 
 /// A body of the arm or the probe: all points within radius_m of a segment, fixed in one frame of the arm.

@@ -7,7 +7,9 @@
 
 namespace calib {
 
-/// Iterates from an estimate to the minimum over the kept touches.
+/// Iterates from an estimate to the minimum over the kept touches. By hand rather than with Ceres: the
+/// problem is small and dense with exact derivatives, and the benchmark beside Ceres (tests/benchmark) finds
+/// this more than ten times as fast.
 class Iterations {
  public:
   /// The conditions are those of the `identifiable` among the fit's columns. All three must outlive this.

@@ -9,7 +9,8 @@
 namespace cell {
 
 /// What a monitoring system scrapes (GET /metrics): Prometheus text, names that begin with touchcal_, base
-/// units.
+/// units. Of prometheus-cpp the core only: its own HTTP server would be a second port without our access
+/// rules.
 class Metrics {
  public:
   Metrics();

@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-/// A plot of points in SVG, readable in print and without colour: series differ in their shape.
+/// A plot of points in SVG, readable in print and without colour: series differ in their shape. No plotting
+/// library: those for C++ on Debian 12 start a program (gnuplot) or a toolkit (Qt), which the daemon of a
+/// cell does not have.
 namespace cell {
 
 enum class Mark { kRing, kDot, kCross };

@@ -5,7 +5,8 @@
 #include <vector>
 
 /// Pieces of HTML. Text becomes markup here and nowhere else: what comes from a robot, a file or an operator
-/// stays text.
+/// stays text. No template engine: one document has one layout, and a template would be a file to find at run
+/// time.
 namespace cell::html {
 
 /// The text with the five characters that mean something in HTML written as references; bytes that are no
