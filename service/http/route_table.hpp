@@ -94,7 +94,7 @@ bool only_halts(const Route& route);
 
 struct Admitted {
   const Route* route = nullptr;
-  std::string_view id;  // into the request's path
+  std::string id;  // what stands at {id}, decoded
 };
 
 /// The route that a request means, or why it is refused: 404, 405, 401, 403, 400, 413, 415.

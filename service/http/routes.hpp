@@ -21,7 +21,7 @@ using Query = std::multimap<std::string, std::string>;
 /// A request as routes see it: parsed, bounded, no sockets.
 struct HttpRequest {
   std::string method;  // "GET"
-  std::string path;    // "/api/v1/runs/7", without the query
+  std::string path;    // "/api/v1/runs/7", without the query, percent-encoded
   Query query;
   std::optional<std::string> authorization;
   std::optional<std::string> content_type;
@@ -54,8 +54,13 @@ struct Problem {
 
 HttpResponse to_response(const Problem& problem);
 
-/// A target as it stands in the request line, taken apart; nothing when it is not an absolute path.
+/// A target as it stands in the request line, taken apart, and its query percent-decoded; a plus sign stays
+/// one. The path stays encoded, so that an encoded slash does not split a segment. Nothing when the target is
+/// not an absolute path, is malformed (RFC 3986), or contains a control character, as it stands or encoded.
 std::optional<std::pair<std::string, Query>> parse_target(std::string_view target);
+
+/// One segment of such a path, percent-decoded.
+std::string decode_segment(std::string_view segment);
 
 /// Version 1 of the API (contract.md, section 4), as far as it can be answered at once: route_table.hpp. What
 /// waits (Pace) is answered by api.hpp.

@@ -135,8 +135,26 @@ std::string method_of(const Incoming& request) {
              : std::string(request.method_string());
 }
 
+/// A stop is taken whatever its query is.
+std::optional<std::pair<std::string, Query>> target_of(const Incoming& incoming) {
+  const std::string_view target = view(incoming.target());
+  if (auto parsed = parse_target(target)) return parsed;
+  auto path = parse_target(target.substr(0, target.find('?')));
+  const Route* route = path ? find_route(view(incoming.method_string()), path->first) : nullptr;
+  return route && is_stop(*route) ? std::move(path) : std::nullopt;
+}
+
+Problem bad_target(std::string_view target) {
+  return {.kind = "target",
+          .detail =
+              target.starts_with('/')
+                  ? "the target is malformed (RFC 3986): a % takes two hexadecimal digits behind it, control "
+                    "characters are not allowed, and [ ] { } | \" < > # and spaces are percent-encoded"
+                  : "the target must be a path"};
+}
+
 std::optional<HttpRequest> to_request(Incoming& incoming, const Ends& ends) {
-  auto target = parse_target(view(incoming.target()));
+  auto target = target_of(incoming);
   if (!target) return std::nullopt;
   return HttpRequest{.method = method_of(incoming),
                      .path = std::move(target->first),
@@ -168,8 +186,8 @@ std::optional<Problem> problem_of(const boost::system::error_code& failure) {
 
 /// How long this request's body may be: a route may take more than the others.
 std::uint64_t body_bytes_max(const Incoming& request, const HttpLimits& limits) {
-  const beast::string_view target = request.target();
-  const Route* route = find_route(view(request.method_string()), view(target.substr(0, target.find('?'))));
+  const auto target = target_of(request);
+  const Route* route = target ? find_route(view(request.method_string()), target->first) : nullptr;
   return route && route->body_bytes_max > kBodyBytesMax ? route->body_bytes_max : limits.body_bytes_max;
 }
 
@@ -261,7 +279,8 @@ asio::awaitable<std::optional<Problem>> Session<Stream>::read_request(Parser& pa
 template <class Stream>
 asio::awaitable<void> Session<Stream>::write_events(const HttpRequest& request) {
   const auto id = match("/api/v1/runs/{id}/events", request.path);
-  const std::optional<std::int64_t> run_id = id ? std::optional(std::stoll(std::string(*id))) : std::nullopt;
+  const std::optional<std::int64_t> run_id =
+      id ? std::optional(std::stoll(decode_segment(*id))) : std::nullopt;
   EventStream events(api_.services(), run_id, request.last_event_id);
   while (true) {
     std::string text = events.due();
@@ -290,7 +309,7 @@ asio::awaitable<bool> Session<Stream>::serve_one() {
   std::optional<HttpRequest> request;
   if (!problem) {
     request = to_request(parser.get(), ends_);
-    if (!request) problem = Problem{.kind = "target", .detail = "the target must be a path"};
+    if (!request) problem = bad_target(view(parser.get().target()));
   }
   if (problem) {
     const HttpRequest refused{.method = method_of(parser.get()),

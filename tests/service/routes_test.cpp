@@ -360,16 +360,6 @@ TEST_F(RoutesTest, ARepeatedStartGetsTheRunThatItsKeyBegan) {
       << "taken, then refused";
 }
 
-TEST(ParseTarget, TakesPathAndQueryApart) {
-  const auto parsed = parse_target("/a/b?x=1&y=&z&x=2&&w=a=b");
-  ASSERT_TRUE(parsed);
-  EXPECT_EQ(parsed->first, "/a/b");
-  EXPECT_EQ(parsed->second, (Query{{"", ""}, {"w", "a=b"}, {"x", "1"}, {"x", "2"}, {"y", ""}, {"z", ""}}));
-  EXPECT_EQ(parse_target("/")->second.size(), 0u);
-  for (const char* target : {"", "*", "http://127.0.0.1/api/v1/status", "127.0.0.1:80", "?x=1"})
-    EXPECT_FALSE(parse_target(target)) << target;
-}
-
 TEST_F(RoutesTest, ALongPollThatMakesNoSenseIsRefused) {
   for (const char* query : {"wait_s=-1&after=7", "wait_s=x&after=7", "wait_s=20&after=-7", "wait_s=20&after=",
                             "wait_s=3601&after=7", "wait_s=1.5&after=7", "wait=20&after=7"}) {
