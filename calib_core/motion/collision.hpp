@@ -10,6 +10,9 @@
 #include "calib_core/geometry/box.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
 
+/// By hand rather than with FCL: capsules against boxes and capsules need two distances with a closed form,
+/// exact but for rounding and without a virtual call, which a plan takes millions of times, and calib_core
+/// needs no further library.
 namespace calib {
 
 /// Collision checks of capsules and boxes. A library for general shapes would not give the distance of a

@@ -16,7 +16,7 @@ namespace {
 
 /// First part of an include path of what a folder may use beside the standard library.
 const std::map<std::string, std::set<std::string>> kMayInclude{
-    {"calib_core", {"calib_core", "Eigen", "unsupported"}},
+    {"calib_core", {"calib_core", "Eigen", "boost"}},
     {"cs8_protocol", {"cs8_protocol", "boost"}},
     {"config", {"config", "calib_core", "nlohmann", "Eigen"}},
     {"sim_controller",

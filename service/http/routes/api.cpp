@@ -15,6 +15,7 @@
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
+#include "service/http/server/internal/target.hpp"
 
 namespace cell {
 
@@ -113,13 +114,19 @@ asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
 
 std::unique_ptr<EventSource> Api::events(const HttpRequest& request) {
   const auto id = match(kRunEventsPath, request.path);
-  const std::optional<std::int64_t> run_id = id ? std::optional(std::stoll(std::string(*id))) : std::nullopt;
+  const std::optional<std::int64_t> run_id =
+      id ? std::optional(std::stoll(decode_segment(*id))) : std::nullopt;
   return std::make_unique<EventStream>(services_, run_id, request.last_event_id);
 }
 
 std::size_t Api::body_bytes_max(std::string_view method, std::string_view path) const {
   const Route* route = find_route(method, path);
   return route ? route->body_bytes_max : kBodyBytesMax;
+}
+
+bool Api::ignores_query(std::string_view method, std::string_view path) const {
+  const Route* route = find_route(method, path);
+  return route && is_stop(*route);
 }
 
 asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const Admitted& admitted) {

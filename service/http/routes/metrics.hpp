@@ -8,7 +8,8 @@
 
 namespace cell {
 
-/// Metrics in the Prometheus text format (GET /metrics): names begin with touchcal_, base units.
+/// Metrics in the Prometheus text format (GET /metrics): names begin with touchcal_, base units. Only the
+/// core of prometheus-cpp: its own HTTP server would be a second port without our access rules.
 class Metrics {
  public:
   Metrics();

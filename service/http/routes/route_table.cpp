@@ -9,6 +9,7 @@
 #include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/services.hpp"
+#include "service/http/server/internal/target.hpp"
 
 namespace cell {
 namespace {
@@ -108,11 +109,11 @@ std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tok
       continue;
     }
     if (auto refused = refuse_access(request, candidate.access, tokens)) return *std::move(refused);
-    if (is_stop(candidate)) return Admitted{&candidate, *id};
+    if (is_stop(candidate)) return Admitted{&candidate, decode_segment(*id)};
     if (auto refused = refuse_query(candidate, request.query)) return *std::move(refused);
     if (auto refused = refuse_body(candidate, request)) return *std::move(refused);
     if (auto refused = refuse_key(request)) return *std::move(refused);
-    return Admitted{&candidate, *id};
+    return Admitted{&candidate, decode_segment(*id)};
   }
   if (allowed.empty()) return not_found(fmt::format("there is nothing at {}", request.path));
   HttpResponse response =

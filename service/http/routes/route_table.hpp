@@ -93,7 +93,7 @@ bool halts_only(const Route& route);
 
 struct Admitted {
   const Route* route = nullptr;
-  std::string_view id;  // view into the path of the request
+  std::string id;  // the segment at {id}, decoded
 };
 
 /// The route of a request, or its refusal: 404, 405, 401, 403, 400, 413, 415.

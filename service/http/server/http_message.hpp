@@ -18,7 +18,7 @@ using Query = std::multimap<std::string, std::string>;
 /// A request as routes see it: parsed and bounded, without its socket.
 struct HttpRequest {
   std::string method;  // "GET"
-  std::string path;    // "/api/v1/runs/7", without the query
+  std::string path;    // "/api/v1/runs/7", without the query, percent-encoded
   Query query;
   std::optional<std::string> authorization;
   std::optional<std::string> content_type;

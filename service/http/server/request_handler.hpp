@@ -42,6 +42,8 @@ class RequestHandler {
   virtual std::unique_ptr<EventSource> events(const HttpRequest& request) = 0;
   /// How long the body of a request to this path may be; kBodyBytesMax where there is no such route.
   [[nodiscard]] virtual std::size_t body_bytes_max(std::string_view method, std::string_view path) const = 0;
+  /// Whether a request is taken whatever its query is, as a stop is.
+  [[nodiscard]] virtual bool ignores_query(std::string_view method, std::string_view path) const = 0;
   /// The largest body that any route takes.
   [[nodiscard]] virtual std::size_t largest_body_bytes() const = 0;
 };

@@ -139,8 +139,27 @@ std::string method_of(const Incoming& request) {
              : std::string(request.method_string());
 }
 
-std::optional<HttpRequest> to_request(Incoming& incoming, const Ends& ends) {
-  auto target = parse_target(view(incoming.target()));
+/// The parsed target. A stop is taken even with a malformed query.
+std::optional<std::pair<std::string, Query>> target_of(const Incoming& incoming,
+                                                       const RequestHandler& handler) {
+  const std::string_view target = view(incoming.target());
+  if (auto parsed = parse_target(target)) return parsed;
+  auto path = parse_target(target.substr(0, target.find('?')));
+  const bool is_taken = path && handler.ignores_query(view(incoming.method_string()), path->first);
+  return is_taken ? std::move(path) : std::nullopt;
+}
+
+Problem bad_target(std::string_view target) {
+  return {.kind = ProblemKind::kTarget,
+          .detail =
+              target.starts_with('/')
+                  ? "the target is malformed (RFC 3986): a % takes two hexadecimal digits behind it, control "
+                    "characters are not allowed, and [ ] { } | \" < > # and spaces are percent-encoded"
+                  : "the target must be a path"};
+}
+
+std::optional<HttpRequest> to_request(Incoming& incoming, const Ends& ends, const RequestHandler& handler) {
+  auto target = target_of(incoming, handler);
   if (!target) return std::nullopt;
   return HttpRequest{.method = method_of(incoming),
                      .path = std::move(target->first),
@@ -175,9 +194,9 @@ std::optional<Problem> problem_of(const boost::system::error_code& failure) {
 /// Largest body of this request.
 std::uint64_t body_bytes_max(const Incoming& request, const RequestHandler& handler,
                              const HttpLimits& limits) {
-  const beast::string_view target = request.target();
+  const auto target = target_of(request, handler);
   const std::size_t of_route =
-      handler.body_bytes_max(view(request.method_string()), view(target.substr(0, target.find('?'))));
+      target ? handler.body_bytes_max(view(request.method_string()), target->first) : kBodyBytesMax;
   return of_route > kBodyBytesMax ? of_route : limits.body_bytes_max;
 }
 
@@ -294,8 +313,8 @@ asio::awaitable<bool> Session<Stream>::serve_one() {
   const unsigned minor = parser.get().version() % 10;
   std::optional<HttpRequest> request;
   if (!problem) {
-    request = to_request(parser.get(), ends_);
-    if (!request) problem = Problem{.kind = ProblemKind::kTarget, .detail = "the target must be a path"};
+    request = to_request(parser.get(), ends_, handler_);
+    if (!request) problem = bad_target(view(parser.get().target()));
   }
   if (problem) {
     const HttpRequest refused{.method = method_of(parser.get()),

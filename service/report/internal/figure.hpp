@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
-/// A plot of points in SVG, readable in print without colour: series differ in their marks.
+/// A plot of points in SVG, readable in print without colour: series differ in their marks. No plotting
+/// library: those for C++ on Debian 12 start a program (gnuplot) or need a toolkit (Qt), which a daemon
+/// lacks.
 namespace cell {
 
 enum class Mark { kRing, kDot, kCross };

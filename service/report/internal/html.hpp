@@ -5,7 +5,8 @@
 #include <vector>
 
 /// Elements of HTML. The only place that escapes text, so that text from a robot, a file or an operator never
-/// becomes markup.
+/// becomes markup. No template engine: one document has one layout, and a template would be a file to find at
+/// run time.
 namespace cell::html {
 
 /// The text with the five special characters of HTML as references; control characters are left out.
