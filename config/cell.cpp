@@ -29,7 +29,7 @@ calib::ErrorTolerances prior_tolerances(const Cell& cell) {
   calib::ErrorTolerances tolerances = cell.arm.std_errors;
   const auto& parameters = calib::error_parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (tolerances[i] || parameters[i].group() != calib::ParameterGroup::kPlace) continue;
+    if (tolerances[i] || parameters[i].group() != calib::ParameterGroup::kBlockPose) continue;
     tolerances[i] =
         parameters[i].is_length() ? cell.unknown_place_std.length_m : cell.unknown_place_std.angle_rad;
   }

@@ -113,7 +113,7 @@ struct Cell {
   std::map<std::string, Recipe> recipes;
   std::string default_recipe;
   calib::JointVector park_joints;
-  double nominal_miss_m = 0.0;
+  double nominal_position_error_m = 0.0;
   PlaceTolerance unknown_place_std;
   double stylus_tilt_max_rad = 0.0;
   double touch_noise_m = 0.0;  // one standard deviation of a touch along the normal, all in all

@@ -6,7 +6,7 @@ namespace cell {
 
 calib::IdentificationProblem identification_problem(const Cell& cell, const Recipe& recipe) {
   calib::IdentificationProblem problem{.nominal = cell.arm.model,
-                                       .artefact = calib::describe(artefact_knowledge(cell)),
+                                       .artefact = calib::make_artefact(artefact_knowledge(cell)),
                                        .touch_noise_m = cell.touch_noise_m,
                                        .tolerances = prior_tolerances(cell),
                                        .std_compliance_rad_per_nm = cell.arm.std_compliance_rad_per_nm};

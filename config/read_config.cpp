@@ -93,11 +93,11 @@ void read_space(const JsonObject& object, Cell& cell) {
 void read_touch_conditions(const JsonObject& object, Cell& cell) {
   constexpr NumberRange kMisses{.min = kPositive.min, .max = 100.0};  // mm: beyond, no search would be safe
   constexpr NumberRange kTilts{.min = kPositive.min, .max = 89.0};    // degrees
-  cell.nominal_miss_m = object.metres("nominal_miss", kMisses);
+  cell.nominal_position_error_m = object.metres("nominal_miss", kMisses);
   cell.stylus_tilt_max_rad = calib::radians_from_degrees(object.at("stylus_tilt_max_deg").number(kTilts));
   cell.touch_noise_m = object.metres("touch_noise", kNotNegative);
-  cell.unknown_place_std = {.length_m = cell.nominal_miss_m,
-                            .angle_rad = cell.nominal_miss_m / calib::kPlaceLeverMetres};
+  cell.unknown_place_std = {.length_m = cell.nominal_position_error_m,
+                            .angle_rad = cell.nominal_position_error_m / calib::kBlockPoseLeverMetres};
   if (const auto place = object.find("unknown_place_std")) {
     const JsonObject given = place->object({"length_mm", "angle_rad"});
     cell.unknown_place_std = {.length_m = given.metres("length", kPositive),

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+/// A layer of our own on nlohmann::json, whose parser takes the last of two equal keys without a word and has
+/// no limit of size or nesting.
 namespace cell {
 
 /// Deeper nesting than this is refused: writing or destroying a very deep document would end the process.

@@ -10,7 +10,8 @@
 #include "cs8_protocol/messages.hpp"
 
 /// Bytes to messages and back, by the one declaration in messages.hpp. Byte order and bounds are known here
-/// only.
+/// only. No serialization library (Protocol Buffers and the like): the other end is a VAL 3 program, which
+/// reads and writes bytes of a socket and has no such library.
 namespace cs8 {
 
 enum class DecodeErrorKind {

@@ -60,7 +60,7 @@ Room room_around(const calib::CollisionScene& scene, const calib::Chain& chain, 
   };
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const calib::Capsule& body = scene.bodies[i];
-    const calib::Segment& here = placed.emplace_back(calib::place(body, chain));
+    const calib::Segment& here = placed.emplace_back(calib::axis_in_block(body, chain));
     if (static_cast<int>(i) == yielding) continue;
     for (const calib::Box& obstacle : scene.obstacles) {
       consider(calib::segment_box_distance_m(here, obstacle) - body.radius_m, body.name, obstacle.name);

@@ -16,7 +16,7 @@ double growth(const ArtefactKnowledge& knowledge) {
   return 1.0 + knowledge.thermal_expansion_per_k * knowledge.warmer_than_20_c_k;
 }
 
-/// A parameter that moves one face only.
+/// A parameter that affects one face only.
 ArtefactParameter of_face(const ArtefactKnowledge& knowledge, std::size_t face, std::string what,
                           ArtefactKind kind, double nominal, const Shift& shift) {
   ArtefactParameter parameter;
@@ -28,7 +28,7 @@ ArtefactParameter of_face(const ArtefactKnowledge& knowledge, std::size_t face, 
   return parameter;
 }
 
-/// Turning the normal by an angle about an edge through the face's centre c adds (edge x n) . (P - c).
+/// Rotating the normal by an angle about an edge through the centre c of the face adds (edge x n) . (P - c).
 Shift tilt_about(const Face& face, const Eigen::Vector3d& edge) {
   const Eigen::Vector3d turned = edge.cross(face.plane.outward);
   return {-turned.dot(face.center_m), turned};
@@ -51,10 +51,11 @@ void add_face(const ArtefactKnowledge& knowledge, std::size_t index, std::vector
   }
 }
 
-/// A parameter that moves every face by `constant(face)`.
+/// A parameter that shifts every face by `constant(face)`.
 template <class Constant>
-void add_common(const ArtefactKnowledge& knowledge, std::string name, ArtefactKind kind, double nominal,
-                double std, const Constant& constant, std::vector<ArtefactParameter>& all) {
+void add_for_all_faces(const ArtefactKnowledge& knowledge, std::string name, ArtefactKind kind,
+                       double nominal, double std, const Constant& constant,
+                       std::vector<ArtefactParameter>& all) {
   if (std <= 0.0) return;
   ArtefactParameter parameter{std::move(name), kind, nominal, std, {}};
   for (const Face& face : knowledge.faces) {
@@ -73,7 +74,7 @@ std::optional<int> offset_parameter(const std::vector<ArtefactParameter>& all, i
   return std::nullopt;
 }
 
-/// Faces that look the same way lie |o_a - o_b| apart, opposite ones o_a + o_b.
+/// The distance of faces with the same normal is |o_a - o_b|, with opposite normals o_a + o_b.
 ArtefactEquation equation_of(const ArtefactKnowledge& knowledge, const KnownLength& length,
                              const std::vector<ArtefactParameter>& all) {
   const Plane& a = knowledge.faces[static_cast<std::size_t>(length.faces[0])].plane;
@@ -93,7 +94,7 @@ ArtefactEquation equation_of(const ArtefactKnowledge& knowledge, const KnownLeng
 
 }  // namespace
 
-Artefact describe(const ArtefactKnowledge& knowledge) {
+Artefact make_artefact(const ArtefactKnowledge& knowledge) {
   Artefact artefact;
   for (std::size_t face = 0; face < knowledge.faces.size(); ++face) {
     Face warm = knowledge.faces[face];
@@ -101,13 +102,13 @@ Artefact describe(const ArtefactKnowledge& knowledge) {
     artefact.contact_planes.push_back(contact_plane(warm, knowledge.stylus));
     add_face(knowledge, face, artefact.parameters);
   }
-  add_common(
+  add_for_all_faces(
       knowledge, "stylus_radius", ArtefactKind::kStylusRadius, knowledge.stylus.radius_m,
       knowledge.std_radius_m, [](const Face&) { return -1.0; }, artefact.parameters);
-  add_common(
+  add_for_all_faces(
       knowledge, "pretravel", ArtefactKind::kPretravel, knowledge.stylus.pretravel_m,
       knowledge.std_pretravel_m, [](const Face&) { return 1.0; }, artefact.parameters);
-  add_common(
+  add_for_all_faces(
       knowledge, "block_temperature", ArtefactKind::kTemperature, 20.0 + knowledge.warmer_than_20_c_k,
       knowledge.thermal_expansion_per_k == 0.0 ? 0.0 : knowledge.std_temperature_k,
       [&](const Face& face) { return -knowledge.thermal_expansion_per_k * face.plane.offset_m; },
@@ -125,7 +126,8 @@ Artefact exact_artefact(std::vector<Plane> contact_planes) {
   return artefact;
 }
 
-void place_planes(const Artefact& artefact, const Eigen::VectorXd& errors, std::vector<Plane>& planes) {
+void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& errors,
+                            std::vector<Plane>& planes) {
   planes.assign(artefact.contact_planes.begin(), artefact.contact_planes.end());
   for (Eigen::Index k = 0; k < errors.size(); ++k) {
     const auto& shifts = artefact.parameters[static_cast<std::size_t>(k)].shifts;

@@ -12,41 +12,40 @@
 
 namespace calib {
 
-/// How well one face is known. One standard deviation each; 0 is exactly known.
-/// An estimated face has no figure to start from but its drawing: its offset and tilts are free.
+/// How well one face is known: standard deviations, 0 is exactly known. An estimated face is known from its
+/// drawing only: its offset and tilts have no prior.
 struct FaceUncertainty {
   double std_offset_m = 0.0;
   double std_tilt_rad = 0.0;  // about each of the face's two edges
   bool estimated = false;
 };
 
-/// Two parallel faces that lie a certified length apart, at 20 degrees C.
+/// The certified distance of two parallel faces at 20 degrees C.
 struct KnownLength {
   std::array<int, 2> faces{};  // indices
   double value_m = 0.0;
   double std_m = 0.0;
 };
 
-/// All that the touches are measured against: the faces, the ball, and how well each is known. Revolute
-/// joints measure no length, so these are the only rulers, and what is wrong with them the residuals do not
-/// show.
+/// The material measure of a calibration: the faces and the ball, with the uncertainty of each. Revolute
+/// joints measure no length, so these are the only length references, and the residuals do not show their
+/// errors.
 struct ArtefactKnowledge {
   std::vector<Face> faces;                          // at 20 degrees C
-  std::vector<FaceUncertainty> face_uncertainties;  // one a face, or empty: all exactly known
+  std::vector<FaceUncertainty> face_uncertainties;  // one per face, or empty: all exactly known
   std::vector<KnownLength> lengths;
   Stylus stylus;
   double std_radius_m = 0.0;
   double std_pretravel_m = 0.0;
-  double warmer_than_20_c_k = 0.0;  // the block's temperature less 20 degrees C
+  double warmer_than_20_c_k = 0.0;  // temperature of the block minus 20 degrees C
   double std_temperature_k = 0.0;
   double thermal_expansion_per_k = 0.0;
 };
 
 enum class ArtefactKind { kFaceOffset, kFaceTilt, kStylusRadius, kPretravel, kTemperature };
 
-/// One of these quantities as a parameter of the identification: what is wrong with it, beside the kinematic
-/// errors. It shifts the signed distance of a ball's centre P from face f by
-/// value * (constant[f] + per_metre[f] . P).
+/// One of these quantities as a parameter of the identification; its value is the error of the quantity. It
+/// changes the signed distance of a ball centre P from face f by value * (constant[f] + per_metre[f] . P).
 struct ArtefactParameter {
   struct Shift {
     double constant = 0.0;
@@ -55,9 +54,9 @@ struct ArtefactParameter {
 
   std::string name;  // "stylus_radius", "plane3_offset", "plane3_tilt_u"
   ArtefactKind kind = ArtefactKind::kFaceOffset;
-  double nominal = 0.0;       // as it was written down: metres, radians or degrees C
-  std::optional<double> std;  // of its error; nothing for a face estimated in place
-  std::vector<Shift> shifts;  // one a face
+  double nominal = 0.0;       // the given value: metres, radians or degrees C
+  std::optional<double> std;  // of its error; nothing for a face that is estimated in place
+  std::vector<Shift> shifts;  // one per face
 };
 
 /// A certified length as an equation between artefact parameters: sum of weight * parameter = value.
@@ -68,20 +67,21 @@ struct ArtefactEquation {
 };
 
 struct Artefact {
-  std::vector<Plane> contact_planes;  // one a face: where the ball's centre is at the trigger, all as written
-  std::vector<ArtefactParameter> parameters;  // those that are not exactly known
+  std::vector<Plane> contact_planes;  // one per face, nominal: the plane of the ball centre at the trigger
+  std::vector<ArtefactParameter> parameters;  // of quantities that are not exactly known
   std::vector<ArtefactEquation> equations;
 };
 
-/// The contact planes with these errors of the parameters: as they are written down but for what is wrong
-/// with them. Takes no memory when `planes` has room. The normals are not brought back to unit length: to
-/// first order they are.
-void place_planes(const Artefact& artefact, const Eigen::VectorXd& errors, std::vector<Plane>& planes);
+/// Sets `planes` to the contact planes with these errors of the artefact parameters. Allocates no memory when
+/// the capacity of `planes` suffices. The normals are not normalised again: their length is 1 to first order.
+void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& errors,
+                            std::vector<Plane>& planes);
 
-/// The contact planes at the block's temperature, and the parameters that are not exactly known, faces first.
-Artefact describe(const ArtefactKnowledge& knowledge);
+/// The contact planes at the temperature of the block, and the parameters of everything that is not exactly
+/// known, faces first.
+Artefact make_artefact(const ArtefactKnowledge& knowledge);
 
-/// Faces that are exactly known, given where the ball's centre is at the trigger.
+/// An artefact with exactly known contact planes.
 Artefact exact_artefact(std::vector<Plane> contact_planes);
 
 }  // namespace calib

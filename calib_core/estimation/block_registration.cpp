@@ -14,18 +14,18 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Smaller than this, frame 1's alpha does not tell theta0 and theta1 apart.
+/// Sine of alpha1 below which theta0 and theta1 cannot be separated.
 constexpr double kSineParallel = 1e-9;
-/// What a turn of the block is compared with a shift by, when the touches are looked at for their rank.
+/// Lever that compares rotations of the block with translations in the rank check.
 constexpr double kBlockSizeMetres = 0.075;
-/// The smallest singular value of the six touches' rows, of unit normals and turns times kBlockSizeMetres.
+/// Smallest accepted singular value of the six rows: unit normals, rotations divided by kBlockSizeMetres.
 constexpr double kRankMin = 0.05;
 constexpr int kStepsMax = 50;
 constexpr double kStepSmall = 1e-12;
 
 double with_sign_of(double size, double other) { return other < 0.0 ? -size : size; }
 
-std::string plane_name(int face) { return "plane " + std::to_string(face + 1); }
+std::string name_of(int face) { return face_name(static_cast<std::size_t>(face)); }
 
 Eigen::Isometry3d moved_by(const Vector6& twist) {
   const Eigen::Vector3d turn = twist.tail<3>();
@@ -36,18 +36,18 @@ Eigen::Isometry3d moved_by(const Vector6& twist) {
   return pose;
 }
 
-class PlaceFit {
+class RegistrationFit {
  public:
-  explicit PlaceFit(const BlockPlaceProblem& problem) : problem_(problem) {
+  explicit RegistrationFit(const BlockRegistrationProblem& problem) : problem_(problem) {
     const PreparedModel prepared = prepare(problem.nominal);
-    for (const PlaceTouch& touch : problem.touches) {
+    for (const RegistrationTouch& touch : problem.touches) {
       chains_.push_back(forward_chain(prepared, touch.joints));
       planes_.push_back(contact_plane(problem.faces[static_cast<std::size_t>(touch.face)], problem.stylus));
     }
   }
 
-  std::variant<BlockPlaceFit, BlockPlaceRefusal> solve() {
-    if (auto refusal = find_too_little()) return *refusal;
+  std::variant<BlockRegistration, BlockRegistrationRefusal> solve() {
+    if (auto refusal = find_insufficient_data()) return *refusal;
     bool small = false;
     for (int step = 0; step < kStepsMax && !small; ++step) {
       linearise();
@@ -57,24 +57,25 @@ class PlaceFit {
       small = twist.norm() < kStepSmall;
     }
     if (!small || Eigen::AngleAxisd(old_from_new_.linear()).angle() > kBlockTurnMaxRadians)
-      return BlockPlaceRefusal{
+      return BlockRegistrationRefusal{
           "the touches fit no block that is turned by less than 20 degrees: faces were mixed up, or a touch "
-          "was none of this block; touch the faces again in the order that is asked for"};
+          "was not on this block; touch the faces again in the requested order"};
     linearise();
-    if (auto refusal = find_off_face()) return *refusal;
+    if (auto refusal = find_touch_off_face()) return *refusal;
     if (smallest_singular_value() < kRankMin)
-      return BlockPlaceRefusal{
-          "the touches do not tell the block's place: spread them, three on one face, two on a side, one on "
+      return BlockRegistrationRefusal{
+          "the touches do not determine the block's position: spread them, three on one face, two on a side, "
+          "one on "
           "an end"};
     return result();
   }
 
  private:
-  [[nodiscard]] Eigen::Vector3d ball_m(std::size_t i) const {  // in R_-1 as it is taken to stand now
+  [[nodiscard]] Eigen::Vector3d ball_m(std::size_t i) const {  // in the current R_-1
     return old_from_new_.inverse() * chains_[i].tip_in_block_m();
   }
 
-  /// Weighted signed distances, and how a further move of the block takes them away.
+  /// Weighted signed distances and their derivatives by a further motion of the block.
   void linearise() {
     const auto count = static_cast<Eigen::Index>(chains_.size());
     rows_.resize(count, 6);
@@ -89,9 +90,9 @@ class PlaceFit {
     }
   }
 
-  /// What needs no place to be seen: distances between the balls are the same wherever the block stands.
-  [[nodiscard]] std::optional<BlockPlaceRefusal> find_too_little() const {
-    if (chains_.size() < 6) return BlockPlaceRefusal{"six touches are needed"};
+  /// Checks that need no pose: the distances between touches do not depend on it.
+  [[nodiscard]] std::optional<BlockRegistrationRefusal> find_insufficient_data() const {
+    if (chains_.size() < 6) return BlockRegistrationRefusal{"six touches are needed"};
     std::map<int, std::vector<Eigen::Vector3d>> of_face;
     for (std::size_t i = 0; i < chains_.size(); ++i)
       of_face[problem_.touches[i].face].push_back(chains_[i].tip_in_block_m());
@@ -104,33 +105,33 @@ class PlaceFit {
         for (const auto& b : points)
           for (const auto& c : points)
             height_m = std::max(height_m, (b - a).cross(c - a).norm() / std::max(length_m, 1e-9));
-      if (length_m < kPlaceSpreadMinMetres)
-        return BlockPlaceRefusal{"the touches on " + plane_name(face) +
-                                 " are too near to each other; touch it farther apart"};
-      if (points.size() > 2 && height_m < kPlaceSpreadMinMetres)
-        return BlockPlaceRefusal{"the touches on " + plane_name(face) +
-                                 " lie on one line; touch it in a triangle"};
+      if (length_m < kRegistrationSpreadMinMetres)
+        return BlockRegistrationRefusal{"the touches on " + name_of(face) +
+                                        " are too near to each other; touch it farther apart"};
+      if (points.size() > 2 && height_m < kRegistrationSpreadMinMetres)
+        return BlockRegistrationRefusal{"the touches on " + name_of(face) +
+                                        " lie on one line; touch it in a triangle"};
     }
     return std::nullopt;
   }
 
-  [[nodiscard]] std::optional<BlockPlaceRefusal> find_off_face() const {
+  [[nodiscard]] std::optional<BlockRegistrationRefusal> find_touch_off_face() const {
     for (std::size_t i = 0; i < chains_.size(); ++i) {
       const Face& face = problem_.faces[static_cast<std::size_t>(problem_.touches[i].face)];
-      const std::string which =
-          "touch " + std::to_string(i + 1) + " on " + plane_name(problem_.touches[i].face);
+      const std::string which = "touch " + std::to_string(i + 1) + " on " + name_of(problem_.touches[i].face);
       const Eigen::Vector3d off_m = ball_m(i) - face.center_m;
       if (std::abs(off_m.dot(face.edge_u)) > face.half_extent_m.x() + kOffFaceMaxMetres ||
           std::abs(off_m.dot(face.edge_v())) > face.half_extent_m.y() + kOffFaceMaxMetres)
-        return BlockPlaceRefusal{which +
-                                 " lies beside its face: faces were mixed up, or another thing was "
-                                 "touched; touch the faces again in the order that is asked for"};
+        return BlockRegistrationRefusal{which +
+                                        " lies beside its face: faces were mixed up, or another thing was "
+                                        "touched; touch the faces again in the requested order"};
       const Eigen::Vector3d stylus =
           old_from_new_.linear().transpose() * chains_[i].block_from_frame.back().linear().col(2);
       if (-stylus.dot(face.plane.outward) < std::cos(problem_.tilt_max_rad + kTiltMarginRadians))
-        return BlockPlaceRefusal{which +
-                                 " leans farther out of the face's normal than the cell allows, or faces "
-                                 "were mixed up; touch the faces again in the order that is asked for"};
+        return BlockRegistrationRefusal{
+            which +
+            " is inclined to the normal of its face by more than the cell allows, or faces were "
+            "mixed up; touch the faces again in the requested order"};
     }
     return std::nullopt;
   }
@@ -143,9 +144,9 @@ class PlaceFit {
     return unit.jacobiSvd().singularValues().minCoeff();
   }
 
-  [[nodiscard]] BlockPlaceFit result() const {
-    BlockPlaceFit fit{.old_from_new = old_from_new_, .model = problem_.nominal};
-    set_place(fit.model, old_from_new_.inverse() * place_of(problem_.nominal));
+  [[nodiscard]] BlockRegistration result() const {
+    BlockRegistration fit{.old_from_new = old_from_new_, .model = problem_.nominal};
+    set_block_pose(fit.model, old_from_new_.inverse() * block_pose_of(problem_.nominal));
     const Eigen::MatrixXd inverse = rows_.completeOrthogonalDecomposition().pseudoInverse();
     const Eigen::MatrixXd arm = weighted_arm_rows(fit.model);
     fit.covariance = inverse *
@@ -159,7 +160,7 @@ class PlaceFit {
     return fit;
   }
 
-  /// What one standard deviation of each error of arm and tool does to the weighted distances.
+  /// Change of the weighted distances per standard deviation of each error of arm and tool.
   [[nodiscard]] Eigen::MatrixXd weighted_arm_rows(const KinematicModel& model) const {
     Eigen::MatrixXd rows(chains_.size(), kErrorParameterCount);
     for (std::size_t i = 0; i < chains_.size(); ++i) {
@@ -170,26 +171,26 @@ class PlaceFit {
     }
     for (int column = 0; column < kErrorParameterCount; ++column) {
       const auto index = static_cast<std::size_t>(column);
-      const bool of_place = error_parameters()[index].group() == ParameterGroup::kPlace;
-      rows.col(column) *= of_place ? 0.0 : problem_.arm_errors[index].value_or(0.0);
+      const bool is_pose = error_parameters()[index].group() == ParameterGroup::kBlockPose;
+      rows.col(column) *= is_pose ? 0.0 : problem_.arm_errors[index].value_or(0.0);
     }
     return rows;
   }
 
-  /// From the block's move to the parameters that carry it: where two of them do the same (frame 1's axis
-  /// along frame 0's), each takes half.
-  static void set_deviations(BlockPlaceFit& fit) {
+  /// Converts the covariance of the block's motion to the six parameters of its pose. Where two of them have
+  /// the same effect (parallel axes of frames 0 and 1), each takes half.
+  static void set_deviations(BlockRegistration& fit) {
     std::vector<int> columns;
     for (int i = 0; i < kErrorParameterCount; ++i)
-      if (error_parameters()[static_cast<std::size_t>(i)].group() == ParameterGroup::kPlace)
+      if (error_parameters()[static_cast<std::size_t>(i)].group() == ParameterGroup::kBlockPose)
         columns.push_back(i);
     Eigen::MatrixXd twists(6, static_cast<Eigen::Index>(columns.size()));
     constexpr double kSmall = 1e-6;
-    const Eigen::Isometry3d here = place_of(fit.model);
+    const Eigen::Isometry3d here = block_pose_of(fit.model);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       ErrorVector error = ErrorVector::Zero();
       error[columns[k]] = kSmall;
-      const Eigen::Isometry3d move = place_of(apply(fit.model, error)) * here.inverse();
+      const Eigen::Isometry3d move = block_pose_of(apply(fit.model, error)) * here.inverse();
       const Eigen::AngleAxisd turn(move.linear());
       twists.col(static_cast<Eigen::Index>(k)) << move.translation() / kSmall,
           turn.axis() * turn.angle() / kSmall;
@@ -198,11 +199,11 @@ class PlaceFit {
     const Eigen::MatrixXd covariance = to_parameters * fit.covariance * to_parameters.transpose();
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const auto index = static_cast<Eigen::Index>(k);
-      fit.std_place[static_cast<std::size_t>(columns[k])] = std::sqrt(covariance(index, index));
+      fit.std_block_pose[static_cast<std::size_t>(columns[k])] = std::sqrt(covariance(index, index));
     }
   }
 
-  const BlockPlaceProblem& problem_;
+  const BlockRegistrationProblem& problem_;
   std::vector<Chain> chains_;
   std::vector<Plane> planes_;
   Eigen::Isometry3d old_from_new_ = Eigen::Isometry3d::Identity();
@@ -212,11 +213,11 @@ class PlaceFit {
 
 }  // namespace
 
-Eigen::Isometry3d place_of(const KinematicModel& model) {
+Eigen::Isometry3d block_pose_of(const KinematicModel& model) {
   return frame_transform(model.links[0]) * frame_transform(model.links[1]);
 }
 
-void set_place(KinematicModel& model, const Eigen::Isometry3d& pose) {
+void set_block_pose(KinematicModel& model, const Eigen::Isometry3d& pose) {
   LinkParameters& base = model.links[0];
   LinkParameters& first = model.links[1];
   const Eigen::Matrix3d turn = pose.linear();
@@ -228,7 +229,7 @@ void set_place(KinematicModel& model, const Eigen::Isometry3d& pose) {
     position = Eigen::AngleAxisd(-base.theta_rad, Eigen::Vector3d::UnitZ()) * position;
     first.r_m = -position.y() / sine;
     first.d_m = position.x();
-  } else {  // parallel axes: r1 stays, r0 takes all of the height
+  } else {  // parallel axes: r1 is kept, r0 takes the height
     const Eigen::Vector2d across = position.head<2>();
     const double sign = with_sign_of(1.0, first.d_m);
     first.d_m = sign * across.norm();
@@ -245,8 +246,9 @@ void set_place(KinematicModel& model, const Eigen::Isometry3d& pose) {
   first.theta_rad = std::atan2(rest(1, 0), rest(0, 0));
 }
 
-std::variant<BlockPlaceFit, BlockPlaceRefusal> fit_block_place(const BlockPlaceProblem& problem) {
-  return PlaceFit(problem).solve();
+std::variant<BlockRegistration, BlockRegistrationRefusal> register_block(
+    const BlockRegistrationProblem& problem) {
+  return RegistrationFit(problem).solve();
 }
 
 }  // namespace calib

@@ -10,64 +10,65 @@
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
 
-/// Where the block stands: six touches, made by hand, and the arm as it is known.
+/// The pose of the block relative to the arm, from six touches made by hand.
 namespace calib {
 
-/// Puts the arm at a pose in R_-1 through the parameters of frames 0 and 1: Rot(z,theta0) Trans(z,r0)
-/// Rot(x,alpha1) Trans(x,d1) Rot(z,theta1) Trans(z,r1) is any pose. Signs stay as they were; beta1 becomes 0.
-void set_place(KinematicModel& model, const Eigen::Isometry3d& block_from_frame1);
+/// Sets the pose of the arm in R_-1 with the parameters of frames 0 and 1: Rot(z,theta0) Trans(z,r0)
+/// Rot(x,alpha1) Trans(x,d1) Rot(z,theta1) Trans(z,r1) is a general pose. The signs of sin(alpha1) and d1 are
+/// kept; beta1 becomes 0.
+void set_block_pose(KinematicModel& model, const Eigen::Isometry3d& block_from_frame1);
 
-/// The pose that set_place() sets: R_1 with joint 1 at 0, in R_-1.
-Eigen::Isometry3d place_of(const KinematicModel& model);
+/// The pose that set_block_pose() sets: R_1 in R_-1 with joint 1 at 0.
+Eigen::Isometry3d block_pose_of(const KinematicModel& model);
 
-/// The ball of a stylus that a person brought to a face.
-struct PlaceTouch {
-  int face = 0;  // index into the faces
+/// A touch that a person made by hand.
+struct RegistrationTouch {
+  int face = 0;  // index of the face
   JointVector joints = JointVector::Zero();
-  double std_m = 0.0;  // of the ball along the face's normal: the trigger, and what the arm moved since
+  double std_m = 0.0;  // of the ball along the normal of the face: trigger, and motion of the arm since
 };
 
-struct BlockPlaceProblem {
-  KinematicModel nominal;   // with the block where it was last known to stand
+struct BlockRegistrationProblem {
+  KinematicModel nominal;   // with the last known pose of the block
   std::vector<Face> faces;  // in R_-1
   Stylus stylus;
-  std::vector<PlaceTouch> touches;
+  std::vector<RegistrationTouch> touches;
   double tilt_max_rad = 0.0;  // stylus axis to inward normal
-  /// One standard deviation of each error of arm and tool, which the touches do not tell from the place;
-  /// those of the place are not looked at.
+  /// Standard deviations of the errors of arm and tool, which these touches cannot separate from the pose of
+  /// the block; those of the pose are ignored.
   ErrorTolerances arm_errors{};
 };
 
-struct BlockPlaceFit {
-  /// R_-1 as it stands now, in R_-1 as it was believed to stand.
+struct BlockRegistration {
+  /// Pose of the current R_-1 in the last known R_-1.
   Eigen::Isometry3d old_from_new;
-  KinematicModel model;  // nominal with frames 0 and 1 as they are now
-  /// Of the block's shift (metres) above its turn (rotation vector, radians), in R_-1.
+  KinematicModel model;  // nominal with the new frames 0 and 1
+  /// Covariance of the block's translation (metres) above its rotation vector (radians), in R_-1.
   Eigen::Matrix<double, 6, 6> covariance;
-  /// One standard deviation of the six errors of the place, by covariance; nothing elsewhere.
-  ErrorTolerances std_place{};
-  double residual_rms_m = 0.0;  // 0 for six touches, which six numbers always fit
+  /// Standard deviations of the six errors of the block pose from `covariance`; nothing elsewhere.
+  ErrorTolerances std_block_pose{};
+  double residual_rms_m = 0.0;  // 0 for six touches: there are six unknowns
 };
 
-/// Why touches do not tell where the block stands: one sentence with the remedy.
-struct BlockPlaceRefusal {
+/// Why the touches do not determine the pose of the block: one sentence with the remedy.
+struct BlockRegistrationRefusal {
   std::string message;
 };
 
-/// A block that stands turned by more than this (20 degrees) is not told from one whose faces were mixed up.
+/// A rotation larger than this (20 degrees) cannot be distinguished from touches on the wrong faces.
 inline constexpr double kBlockTurnMaxRadians = 0.35;
-/// Touches of one face that are nearer to each other, or to one line, tell too little of its tilt.
-inline constexpr double kPlaceSpreadMinMetres = 0.02;
-/// A touch may lean by so much more than the limit.
+/// Touches of one face that are closer to each other, or to one line, do not determine its tilt.
+inline constexpr double kRegistrationSpreadMinMetres = 0.02;
+/// A stylus may be inclined by this much more than tilt_max_rad.
 inline constexpr double kTiltMarginRadians = 0.1;
-/// A touch may lie so far outside the rectangle of its face; the ball's radius and the arm's errors are in
-/// it.
+/// A touch may lie this far outside the rectangle of its face: ball radius and errors of the arm.
 inline constexpr double kOffFaceMaxMetres = 0.02;
 
-/// Gauss-Newton over the six numbers of a rigid move, weighted by each touch's deviation. Three faces with
-/// independent normals are needed, three touches (not on a line) on one of them and two on another. Refused:
-/// touches too near to each other, faces mixed up, a ball that touches from the inside or beside its face, a
-/// turn over kBlockTurnMaxRadians. The covariance takes the arm's own errors as they are linearised there.
-std::variant<BlockPlaceFit, BlockPlaceRefusal> fit_block_place(const BlockPlaceProblem& problem);
+/// Gauss-Newton for the rigid motion of the block, weighted by the standard deviation of each touch. It needs
+/// three faces with independent normals: three touches (not on a line) on one and two on another. Refused:
+/// touches too close to each other, mixed-up faces, a ball inside the block or beside its face, a rotation
+/// over kBlockTurnMaxRadians. The covariance includes the errors of the arm to first order.
+std::variant<BlockRegistration, BlockRegistrationRefusal> register_block(
+    const BlockRegistrationProblem& problem);
 
 }  // namespace calib

@@ -5,23 +5,25 @@
 #include <numbers>
 #include <sstream>
 
+#include "calib_core/geometry/face.hpp"
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/numerics/halton.hpp"
 
 namespace calib {
 namespace {
 
-/// About their mean: tilts to 3 degrees from the normal may well be 4 from it.
-constexpr double kAlikeTiltsRadians = 5.0 * kRadiansPerDegree;
+/// Stylus directions within this angle of their mean do not separate the parameters. Tilts of up to 3 degrees
+/// from the normal may be 4 degrees from the mean.
+constexpr double kSimilarTiltsRadians = 5.0 * kRadiansPerDegree;
 
-/// Rows and leading columns of the choice: the touches', then one a certified length that binds an estimated
-/// face, in the same unit (metres).
+/// Rows and leading columns for choose_identifiable(): one row per touch, then one per certified length of an
+/// estimated face, in the same unit (metres).
 struct ChoiceMatrix {
   Eigen::MatrixXd kinematic;
   Eigen::MatrixXd leading;
 };
 
-std::vector<std::size_t> free_parameters(const Artefact& artefact) {
+std::vector<std::size_t> parameters_without_prior(const Artefact& artefact) {
   std::vector<std::size_t> free;
   for (std::size_t k = 0; k < artefact.parameters.size(); ++k) {
     if (!artefact.parameters[k].std) free.push_back(k);
@@ -36,7 +38,7 @@ ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefa
     touch = moved_onto_plane(prepared, artefact.contact_planes[static_cast<std::size_t>(touch.face)], touch);
   }
   const Eigen::MatrixXd rows = observe(nominal, artefact.contact_planes, touches, formulation).matrix;
-  const std::vector<std::size_t> free = free_parameters(artefact);
+  const std::vector<std::size_t> free = parameters_without_prior(artefact);
   if (free.empty()) return {rows, {}};
 
   const auto touch_count = rows.rows();
@@ -62,7 +64,7 @@ ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefa
   return matrix;
 }
 
-std::vector<Touch> well_spread_touches(std::size_t face_count) {
+std::vector<Touch> well_distributed_touches(std::size_t face_count) {
   constexpr int kTouchesPerFace = 24;
   constexpr double kReach = 0.7 * std::numbers::pi;
   const JointRanges ranges{JointVector::Constant(-kReach), JointVector::Constant(kReach)};
@@ -76,7 +78,7 @@ std::vector<Touch> well_spread_touches(std::size_t face_count) {
   return touches;
 }
 
-/// |R_ii| under which the declared noise gives a parameter more than a weak one's standard deviation.
+/// |R_ii| below which the declared noise gives a parameter a standard deviation above weak_std().
 WeakDiagonals weak_diagonals(const IdentificationProblem& problem, const std::vector<std::size_t>& touches,
                              Formulation formulation) {
   WeakDiagonals weak{};
@@ -90,7 +92,7 @@ WeakDiagonals weak_diagonals(const IdentificationProblem& problem, const std::ve
     noise *= std::sqrt(squares / static_cast<double>(touches.size()));
   }
   for (std::size_t i = 0; i < weak.size(); ++i) {
-    weak[i] = noise / (error_parameters()[i].is_length() ? kWeakLengthMetres : kWeakAngleRadians);
+    weak[i] = noise / weak_std(error_parameters()[i]);
   }
   return weak;
 }
@@ -107,25 +109,30 @@ std::string whole_degrees(double rad) {
 
 }  // namespace
 
+double weak_std(const ErrorParameter& parameter) {
+  return parameter.is_length() ? kWeakLengthMetres : kWeakAngleRadians;
+}
+
 IdentifiableSet attainable_set(const KinematicModel& nominal, const Artefact& artefact,
                                const IdentifiabilityOptions& options) {
-  const ChoiceMatrix matrix = choice_matrix(
-      nominal, artefact, well_spread_touches(artefact.contact_planes.size()), Formulation::kSignedDistance);
+  const ChoiceMatrix matrix =
+      choice_matrix(nominal, artefact, well_distributed_touches(artefact.contact_planes.size()),
+                    Formulation::kSignedDistance);
   return choose_identifiable(matrix.kinematic, options, {}, matrix.leading);
 }
 
 Attainable attainable_parameters(const IdentificationProblem& problem,
                                  const IdentifiabilityOptions& options) {
-  // A given tolerance drops parameters on purpose: it does not count as something the touches fail to show.
+  // A given tolerance excludes parameters deliberately: these do not count as missing.
   IdentifiabilityOptions without_tolerance = options;
   without_tolerance.qr_tolerance.reset();
   const auto count = [&](const KinematicModel& arm) {
     return static_cast<int>(attainable_set(arm, problem.artefact, without_tolerance).columns.size());
   };
-  KinematicModel cranked = problem.nominal;
-  cranked.links.back().d_m += 0.05;
-  cranked.links.back().alpha_rad += 0.3;
-  return {count(problem.nominal), count(cranked)};
+  KinematicModel off_axis = problem.nominal;
+  off_axis.links.back().d_m += 0.05;
+  off_axis.links.back().alpha_rad += 0.3;
+  return {count(problem.nominal), count(off_axis)};
 }
 
 IdentifiableSet choose_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
@@ -172,31 +179,31 @@ std::optional<double> tilt_spread_rad(const IdentificationProblem& problem,
 
 std::string explain_rank(const IdentificationProblem& problem, const std::vector<std::size_t>& touches,
                          const IdentifiableSet& identifiable, const Attainable& attainable) {
-  const auto shown = static_cast<int>(identifiable.columns.size());
+  const auto identified = static_cast<int>(identifiable.columns.size());
   std::ostringstream text;
-  if (shown >= attainable.count) {
+  if (identified >= attainable.count) {
     text << attainable.count << " is the most that touches with this stylus can show";
     if (attainable.off_axis_count > attainable.count) {
       text << ": its tip is on the last joint's axis; " << attainable.off_axis_count << " with a tip off it";
     }
     return text.str();
   }
-  text << "the touches show " << shown << " of the " << attainable.count
+  text << "the touches show " << identified << " of the " << attainable.count
        << " parameters that this cell can show: ";
-  std::string bare;
+  std::string untouched;
   double widest = 0.0;
   for (int face = 0; face < static_cast<int>(problem.artefact.contact_planes.size()); ++face) {
     if (const auto spread = tilt_spread_rad(problem, touches, face)) {
       widest = std::max(widest, *spread);
     } else {
-      bare += (bare.empty() ? "plane " : ", plane ") + std::to_string(face + 1);
+      untouched += (untouched.empty() ? "" : ", ") + face_name(static_cast<std::size_t>(face));
     }
   }
-  if (widest <= kAlikeTiltsRadians) {
+  if (widest <= kSimilarTiltsRadians) {
     text << "tilts within " << whole_degrees(widest) << " degrees everywhere; tilt the stylus more";
-    if (!bare.empty()) text << ", and there is no touch on " << bare;
-  } else if (!bare.empty()) {
-    text << "there is no touch on " << bare << "; touch it too";
+    if (!untouched.empty()) text << ", and there is no touch on " << untouched;
+  } else if (!untouched.empty()) {
+    text << "there is no touch on " << untouched << "; touch it too";
   } else {
     text << "they are too alike or too few; spread them over the faces and over postures and tilts";
   }

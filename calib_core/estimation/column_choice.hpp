@@ -1,37 +1,43 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "calib_core/identification/identify.hpp"
+#include "calib_core/estimation/identification_problem.hpp"
 
 namespace calib {
 
-/// A parameter is held when the declared noise alone would give it a larger standard deviation than this,
-/// found along with those before it, those after it known: a guess, not a result.
+/// A parameter is held at nominal when the declared noise alone would give it a larger standard deviation,
+/// estimated together with the previous columns while the later ones are known.
 inline constexpr double kWeakLengthMetres = 1e-3;
 inline constexpr double kWeakAngleRadians = 3e-3;
 
-/// What touches well spread over all faces, reachable or not, would show.
+/// The limit for this parameter.
+double weak_std(const ErrorParameter& parameter);
+
+/// The parameters that well-distributed touches on all faces would determine, reachable or not.
 IdentifiableSet attainable_set(const KinematicModel& nominal, const Artefact& artefact,
                                const IdentifiabilityOptions& options);
 
-/// How many that are, with the tip where it is and with a tip off the last joint's axis.
+/// Their number, with the given tip and with a tip off the axis of the last joint.
 Attainable attainable_parameters(const IdentificationProblem& problem, const IdentifiabilityOptions& options);
 
-/// The choice on the nominal model with each touch moved onto its nominal face. `touches` are indices.
+/// Chooses the identifiable columns on the nominal model, with each touch moved onto its nominal face.
+/// `touches` are indices.
 IdentifiableSet choose_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
                                const std::vector<std::size_t>& touches);
 
-/// What is estimated, indices into ArmVector: the chosen columns, or with the prior all that are not
-/// excluded; with stiffness the compliances too.
+/// Indices into ArmVector of the estimated parameters: the chosen columns, or with the prior all that are not
+/// excluded; with stiffness also the compliances.
 std::vector<int> estimated_columns(const IdentificationOptions& options, const IdentifiableSet& chosen);
 
-/// Why not more is seen: the stylus, or what is wrong with the touches. One sentence or two.
+/// Why not more parameters are identifiable: the stylus, or the distribution of the touches. One or two
+/// sentences.
 std::string explain_rank(const IdentificationProblem& problem, const std::vector<std::size_t>& touches,
                          const IdentifiableSet& identifiable, const Attainable& attainable);
 
-/// The largest angle between the last frame's z axis and the mean one, over the touches of a face; radians.
+/// The largest angle between the z axis of the last frame and its mean, over the touches of a face; radians.
 /// Nothing for a face without touches.
 std::optional<double> tilt_spread_rad(const IdentificationProblem& problem,
                                       const std::vector<std::size_t>& touches, int face);

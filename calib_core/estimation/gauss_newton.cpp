@@ -10,7 +10,7 @@
 namespace calib {
 namespace {
 
-/// Steps under this that no longer shrink have reached the rounding of the weakest direction.
+/// Smaller steps that no longer shrink are rounding errors of the weakest direction.
 constexpr double kStepNormRounding = 1e-8;
 
 std::string scientific(double value) {
@@ -22,8 +22,8 @@ std::string scientific(double value) {
 
 }  // namespace
 
-Iterations::Iterations(const IdentificationProblem& problem, const IdentificationOptions& options,
-                       LeastSquares& fit, const std::vector<int>& identifiable)
+GaussNewton::GaussNewton(const IdentificationProblem& problem, const IdentificationOptions& options,
+                         LeastSquares& fit, const std::vector<int>& identifiable)
     : problem_(problem), options_(options), fit_(fit) {
   for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
     if (std::ranges::binary_search(identifiable, fit.arm_columns()[i])) {
@@ -33,13 +33,13 @@ Iterations::Iterations(const IdentificationProblem& problem, const Identificatio
   history_.reserve(static_cast<std::size_t>(std::max(0, options.iterations_max)));
 }
 
-Estimate Iterations::nominal() const {
+Estimate GaussNewton::start() const {
   Estimate estimate{problem_.start, {}};
   estimate.artefact.setZero(static_cast<Eigen::Index>(problem_.artefact.parameters.size()));
   return estimate;
 }
 
-bool Iterations::run(Estimate& estimate, bool with_conditions) {
+bool GaussNewton::run(Estimate& estimate, bool with_conditions) {
   history_.clear();
   message_.clear();
   double before = std::numeric_limits<double>::infinity();
@@ -47,12 +47,11 @@ bool Iterations::run(Estimate& estimate, bool with_conditions) {
     fit_.linearise(estimate);
     if (!fit_.solve()) {
       solvable_ = std::isfinite(fit_.residual_rms_m());
-      message_ = solvable_ ? "the touches and the standard deviations that are given leave a direction open "
-                             "(touch more, or give what "
-                             "fits) at step " +
-                                 std::to_string(i + 1) + history_text()
-                           : "the iteration left the finite numbers at step " + std::to_string(i + 1) +
-                                 history_text();
+      message_ = std::string(solvable_ ? "touches and standard deviations leave a direction undetermined "
+                                         "(touch more, or give more "
+                                         "standard deviations) at step "
+                                       : "the iteration reached numbers that are not finite at step ") +
+                 std::to_string(i + 1) + history_text();
       return false;
     }
     const auto conditions = with_conditions ? fit_.conditions(positions_) : LeastSquares::Conditions{};
@@ -68,7 +67,7 @@ bool Iterations::run(Estimate& estimate, bool with_conditions) {
   return false;
 }
 
-std::string Iterations::history_text() const {
+std::string GaussNewton::history_text() const {
   std::string text;
   for (const Iteration& iteration : history_) {
     text += (text.empty() ? " (residual rms " : ", ") + scientific(mm_from_metres(iteration.residual_rms_m)) +

@@ -7,17 +7,21 @@
 
 namespace calib {
 
-/// Iterates from an estimate to the minimum over the kept touches.
-class Iterations {
+/// Gauss-Newton iteration of a least squares problem to its minimum over the kept touches. Our own rather
+/// than Ceres: the problem is small and dense with exact derivatives, and the benchmark beside Ceres
+/// (tests/benchmark) finds this more than ten times as fast.
+class GaussNewton {
  public:
-  /// The conditions are those of the `identifiable` among the fit's columns. All three must outlive this.
-  Iterations(const IdentificationProblem& problem, const IdentificationOptions& options, LeastSquares& fit,
-             const std::vector<int>& identifiable);
+  /// Iteration::condition_number is that of the `identifiable` columns of the fit. Keeps references to the
+  /// other arguments.
+  GaussNewton(const IdentificationProblem& problem, const IdentificationOptions& options, LeastSquares& fit,
+              const std::vector<int>& identifiable);
 
-  /// Where every identification starts: the problem's start, and an artefact as it was written down.
-  [[nodiscard]] Estimate nominal() const;
+  /// The estimate that every identification starts from: the start of the problem and the nominal artefact.
+  [[nodiscard]] Estimate start() const;
 
-  /// Converged, or why not in message(). Leaves the fit linearised and solved at the estimate.
+  /// Iterates from `estimate`. False when it does not converge; message() says why. On convergence the fit is
+  /// linearised and solved at the final estimate but for the last step.
   bool run(Estimate& estimate, bool with_conditions);
 
   [[nodiscard]] const std::vector<Iteration>& history() const { return history_; }
@@ -30,7 +34,7 @@ class Iterations {
   const IdentificationProblem& problem_;
   const IdentificationOptions& options_;
   LeastSquares& fit_;
-  std::vector<Eigen::Index> positions_;  // of the identifiable among the estimated columns
+  std::vector<Eigen::Index> positions_;  // of the identifiable columns among the estimated ones
   std::vector<Iteration> history_;
   std::string message_;
   bool solvable_ = true;

@@ -2,23 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <sstream>
 
+#include "calib_core/geometry/face.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/scaled_cholesky.hpp"
 
 namespace calib {
 namespace {
 
-/// Two planes this close (metres, and the same in direction) are one.
+/// Two planes closer than this are one (metres; also the difference of the normals).
 constexpr double kSamePlane = 1e-4;
 
-/// Joints that differ by less (radians) make one posture.
+/// Postures whose joints differ by less are the same (radians).
 constexpr double kSamePostureRadians = 1e-4;
 
-/// Nothing is as far off as this (metres, radians, degrees, rad/Nm): a parameter that is no surer is not
-/// known at all.
-constexpr double kBeyondAllMeasure = 1.0;
+/// No error is this large (metres, radians, degrees, rad/Nm): a parameter with this standard deviation is
+/// unconstrained.
+constexpr double kUnconstrainedStd = 1.0;
 
 std::string compliance_name(std::size_t index) {
   return "the compliance of joint " + std::to_string(kCompliantJoints.at(index) + 1);
@@ -34,7 +35,6 @@ std::string unknown_name(const IdentificationProblem& problem, const LeastSquare
   return compliance_name(static_cast<std::size_t>(column - kErrorParameterCount));
 }
 
-std::string plane_name(std::size_t face) { return "plane " + std::to_string(face + 1); }
 std::string touch_name(std::size_t index) { return "touch " + std::to_string(index + 1); }
 
 std::string millimetres(double m) {
@@ -44,11 +44,11 @@ std::string millimetres(double m) {
   return text.str();
 }
 
-std::optional<Refusal> bad(std::string message) {
-  return Refusal{IdentificationStatus::kBadInput, std::move(message)};
+std::optional<InputRefusal> bad(std::string message) {
+  return InputRefusal{IdentificationStatus::kBadInput, std::move(message)};
 }
 
-std::optional<Refusal> bad_touch(const IdentificationProblem& problem, Formulation formulation) {
+std::optional<InputRefusal> bad_touch(const IdentificationProblem& problem, Formulation formulation) {
   const auto& planes = problem.artefact.contact_planes;
   for (std::size_t i = 0; i < problem.touches.size(); ++i) {
     const Touch& touch = problem.touches[i];
@@ -61,14 +61,14 @@ std::optional<Refusal> bad_touch(const IdentificationProblem& problem, Formulati
                  std::to_string(planes.size()) + " planes");
     }
     if (planes[face].offset_m == 0.0 && formulation == Formulation::kPlaneCoefficients) {
-      return bad(plane_name(face) +
+      return bad(face_name(face) +
                  " goes through the origin, where eq. 6 has no form; use the formulation signed_distance");
     }
   }
   return std::nullopt;
 }
 
-std::optional<Refusal> bad_arm(const IdentificationProblem& problem) {
+std::optional<InputRefusal> bad_arm(const IdentificationProblem& problem) {
   for (int i = 0; i < kErrorParameterCount; ++i) {
     if (!std::isfinite(parameter_value(problem.nominal, i))) {
       return bad(error_parameters()[static_cast<std::size_t>(i)].name() +
@@ -79,38 +79,39 @@ std::optional<Refusal> bad_arm(const IdentificationProblem& problem) {
   return std::nullopt;
 }
 
-std::optional<Refusal> bad_planes(const std::vector<Plane>& planes) {
+std::optional<InputRefusal> bad_planes(const std::vector<Plane>& planes) {
   for (std::size_t a = 0; a < planes.size(); ++a) {
     if (!planes[a].outward.allFinite() || !std::isfinite(planes[a].offset_m)) {
-      return bad(plane_name(a) + " is not made of finite numbers");
+      return bad(face_name(a) + " is not made of finite numbers");
     }
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
       const bool same_direction = (planes[a].outward - planes[b].outward).norm() < kSamePlane;
       const double apart = std::abs(planes[a].offset_m - planes[b].offset_m);
       if (same_direction && apart < kSamePlane) {
-        return Refusal{IdentificationStatus::kCoincidingPlanes, plane_name(a) + " and " + plane_name(b) +
-                                                                    " coincide (" + millimetres(apart) +
-                                                                    " apart); describe one flat once"};
+        return InputRefusal{IdentificationStatus::kCoincidingPlanes, face_name(a) + " and " + face_name(b) +
+                                                                         " coincide (" + millimetres(apart) +
+                                                                         " apart); describe one flat once"};
       }
     }
   }
   return std::nullopt;
 }
 
-std::optional<Refusal> bad_prior(const IdentificationProblem& problem, const IdentificationOptions& options) {
+std::optional<InputRefusal> bad_prior(const IdentificationProblem& problem,
+                                      const IdentificationOptions& options) {
   const auto singular = [](const std::string& name, double std) {
     std::ostringstream value;
     value << std;
-    return Refusal{IdentificationStatus::kSingularPrior,
-                   "the standard deviation of " + name + " is " + value.str() +
-                       ", which makes the prior singular; give one over 0, or exclude the parameter"};
+    return InputRefusal{IdentificationStatus::kSingularPrior,
+                        "the standard deviation of " + name + " is " + value.str() +
+                            ", which makes the prior singular; give one over 0, or exclude the parameter"};
   };
   const auto unfit = [](const std::optional<double>& std) {
     return std && !(*std > 0.0 && std::isfinite(*std));
   };
   const auto& excluded = options.identifiability.excluded;
   for (std::size_t i = 0; i < problem.tolerances.size(); ++i) {
-    // Without the prior a tolerance only says what the unseen errors may be: 0 is that there are none.
+    // Without the prior a tolerance only bounds the unobserved errors: 0 means that there are none.
     const bool is_prior = options.prior && std::ranges::find(excluded, static_cast<int>(i)) == excluded.end();
     if (!is_prior && problem.tolerances[i] == 0.0) continue;
     if (unfit(problem.tolerances[i])) return singular(error_parameters()[i].name(), *problem.tolerances[i]);
@@ -142,8 +143,8 @@ std::pair<std::size_t, double> nearest_other(const std::vector<Plane>& planes, s
   return nearest;
 }
 
-/// Where the missing touches are best made: each on the plane that then has the fewest.
-std::string missing_on_planes(std::vector<int> have, int missing) {
+/// A distribution of the missing touches: each on the face that then has the fewest.
+std::string missing_on_faces(std::vector<int> have, int missing) {
   std::vector<int> add(have.size(), 0);
   for (int i = 0; i < missing; ++i) {
     const auto fewest = static_cast<std::size_t>(std::ranges::min_element(have) - have.begin());
@@ -153,7 +154,7 @@ std::string missing_on_planes(std::vector<int> have, int missing) {
   std::string text;
   for (std::size_t face = 0; face < add.size(); ++face) {
     if (add[face] == 0) continue;
-    text += (text.empty() ? "" : ", ") + std::to_string(add[face]) + " on " + plane_name(face);
+    text += (text.empty() ? "" : ", ") + std::to_string(add[face]) + " on " + face_name(face);
   }
   return text;
 }
@@ -167,8 +168,8 @@ bool all_one_posture(const IdentificationProblem& problem, const std::vector<std
 
 }  // namespace
 
-std::optional<Refusal> find_bad_input(const IdentificationProblem& problem,
-                                      const IdentificationOptions& options) {
+std::optional<InputRefusal> find_invalid_input(const IdentificationProblem& problem,
+                                               const IdentificationOptions& options) {
   if (auto refusal = bad_arm(problem)) return refusal;
   if (auto refusal = bad_planes(problem.artefact.contact_planes)) return refusal;
   if (auto refusal = bad_touch(problem, options.formulation)) return refusal;
@@ -191,8 +192,8 @@ std::optional<Refusal> find_bad_input(const IdentificationProblem& problem,
   return bad_prior(problem, options);
 }
 
-Sorted sort_touches(const IdentificationProblem& problem, const IdentificationOptions& options) {
-  Sorted sorted;
+SortedTouches sort_touches(const IdentificationProblem& problem, const IdentificationOptions& options) {
+  SortedTouches sorted;
   const PreparedModel start = prepare(apply(problem.nominal, problem.start));
   const auto& planes = problem.artefact.contact_planes;
   for (std::size_t i = 0; i < problem.touches.size(); ++i) {
@@ -207,23 +208,23 @@ Sorted sort_touches(const IdentificationProblem& problem, const IdentificationOp
     }
     const auto [other, other_distance] = nearest_other(planes, own, tip);
     if (options.robust && other_distance <= kOnOtherPlaneMetres) {
-      sorted.wrong_plane.push_back({i, distance, RejectionReason::kWrongPlane});
+      sorted.wrong_face.push_back({i, distance, RejectionReason::kWrongFace});
       continue;
     }
     const std::string nearest = other == own ? ""
                                              : ", and " + millimetres(other_distance) +
-                                                   " off the nearest other one, " + plane_name(other);
+                                                   " off the nearest other one, " + face_name(other);
     sorted.refusal =
-        Refusal{IdentificationStatus::kFarTouch,
-                touch_name(i) + " is " + millimetres(std::abs(distance)) + " off its " + plane_name(own) +
-                    nearest + " (by the nominal arm); correct its plane or joints, or remove it"};
+        InputRefusal{IdentificationStatus::kFarTouch,
+                     touch_name(i) + " is " + millimetres(std::abs(distance)) + " off its " + face_name(own) +
+                         nearest + " (by the nominal arm); correct its plane or joints, or remove it"};
     return sorted;
   }
   return sorted;
 }
 
-std::optional<Refusal> find_too_little(const IdentificationProblem& problem,
-                                       const std::vector<std::size_t>& fitted, int needed) {
+std::optional<InputRefusal> find_insufficient_data(const IdentificationProblem& problem,
+                                                   const std::vector<std::size_t>& fitted, int needed) {
   std::vector<int> on_face(problem.artefact.contact_planes.size(), 0);
   for (const std::size_t index : fitted) {
     ++on_face[static_cast<std::size_t>(problem.touches[index].face)];
@@ -231,56 +232,58 @@ std::optional<Refusal> find_too_little(const IdentificationProblem& problem,
   const auto have = static_cast<int>(fitted.size());
   const auto faces = std::ranges::count_if(on_face, [](int count) { return count > 0; });
   if (have < needed) {
-    return Refusal{IdentificationStatus::kTooFewTouches,
-                   std::to_string(have) + " touches, but " + std::to_string(needed) +
-                       " parameters need at least " + std::to_string(needed) + ": " +
-                       std::to_string(needed - have) + " more are missing (" +
-                       missing_on_planes(on_face, needed - have) + ")"};
+    return InputRefusal{IdentificationStatus::kTooFewTouches,
+                        std::to_string(have) + " touches, but " + std::to_string(needed) +
+                            " parameters need at least " + std::to_string(needed) + ": " +
+                            std::to_string(needed - have) + " more are missing (" +
+                            missing_on_faces(on_face, needed - have) + ")"};
   }
   if (have > 1 && all_one_posture(problem, fitted)) {
-    return Refusal{IdentificationStatus::kOnePosture,
-                   "all " + std::to_string(have) +
-                       " touches are one posture; spread them over the faces and over postures and tilts"};
+    return InputRefusal{
+        IdentificationStatus::kOnePosture,
+        "all " + std::to_string(have) +
+            " touches are one posture; spread them over the faces and over postures and tilts"};
   }
   if (faces == 1 && on_face.size() > 1) {
     const auto only = std::ranges::find_if(on_face, [](int count) { return count > 0; });
-    return Refusal{IdentificationStatus::kOnePlane,
-                   "all " + std::to_string(have) + " touches are on " +
-                       plane_name(static_cast<std::size_t>(only - on_face.begin())) +
-                       "; one plane does not fix an arm, touch the others too"};
+    return InputRefusal{IdentificationStatus::kOneFace,
+                        "all " + std::to_string(have) + " touches are on " +
+                            face_name(static_cast<std::size_t>(only - on_face.begin())) +
+                            "; one plane does not fix an arm, touch the others too"};
   }
   return std::nullopt;
 }
 
-std::optional<Refusal> find_untold(const IdentificationProblem& problem, const IdentificationOptions& options,
-                                   LeastSquares& fit, const Estimate& estimate) {
+std::optional<InputRefusal> find_unconstrained(const IdentificationProblem& problem,
+                                               const IdentificationOptions& options, LeastSquares& fit,
+                                               const Estimate& estimate) {
   const Eigen::VectorXd precision = prior_precision(problem, fit.arm_columns(), options.prior);
-  std::vector<Eigen::Index> without;
+  std::vector<Eigen::Index> without_prior;
   for (Eigen::Index k = 0; k < precision.size(); ++k) {
     const bool chosen = !options.prior && k < fit.arm_count() &&
                         fit.arm_columns()[static_cast<std::size_t>(k)] < kErrorParameterCount;
-    if (precision[k] == 0.0 && !chosen) without.push_back(k);
+    if (precision[k] == 0.0 && !chosen) without_prior.push_back(k);
   }
-  if (without.empty()) return std::nullopt;
+  if (without_prior.empty()) return std::nullopt;
 
-  // A prior that says hardly anything makes the problem solvable; who keeps to it has nothing else.
+  // A very wide prior makes the problem solvable; unknowns that keep its width are unconstrained.
   fit.linearise(estimate);
   Eigen::MatrixXd information = fit.information();
-  for (const Eigen::Index k : without) information(k, k) += 1.0 / (kBeyondAllMeasure * kBeyondAllMeasure);
-  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(scale.asDiagonal() * information * scale.asDiagonal());
-  if (cholesky.info() != Eigen::Success) return std::nullopt;  // the iteration will say so
+  for (const Eigen::Index k : without_prior)
+    information(k, k) += 1.0 / (kUnconstrainedStd * kUnconstrainedStd);
+  const ScaledCholesky cholesky(information);
+  if (!cholesky.is_positive_definite()) return std::nullopt;  // reported by the iteration
   std::string names;
-  for (const Eigen::Index k : without) {
-    const Eigen::VectorXd column = cholesky.solve(Eigen::VectorXd::Unit(precision.size(), k));
-    if (scale[k] * std::sqrt(column[k]) < 0.5 * kBeyondAllMeasure) continue;
+  for (const Eigen::Index k : without_prior) {
+    if (cholesky.inverse_diagonal_root(k) < 0.5 * kUnconstrainedStd) continue;
     names += (names.empty() ? "" : ", ") + unknown_name(problem, fit, k);
   }
   if (names.empty()) return std::nullopt;
-  return Refusal{options.prior ? IdentificationStatus::kSingularPrior : IdentificationStatus::kUnobservable,
-                 "neither a standard deviation nor any of the " + std::to_string(fit.touches().size()) +
-                     " touches tells anything of " + names +
-                     "; give a standard deviation, touch what shows it, or leave it out"};
+  return InputRefusal{
+      options.prior ? IdentificationStatus::kSingularPrior : IdentificationStatus::kUnobservable,
+      "neither a standard deviation nor any of the " + std::to_string(fit.touches().size()) +
+          " touches constrains " + names +
+          "; give a standard deviation, touch faces that depend on it, or exclude it"};
 }
 
 }  // namespace calib

@@ -1,19 +1,17 @@
 #include "calib_core/estimation/least_squares.hpp"
 
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "calib_core/numerics/scaled_cholesky.hpp"
+
 namespace calib {
 namespace {
 
-/// Above this the smallest eigenvalue of W^T W has lost its digits, and the singular values are computed.
+/// For a larger condition number the smallest eigenvalue of W^T W is not accurate; the singular values of W
+/// are computed instead.
 constexpr double kGramConditionMax = 1e4;
-
-double row_factor(const Plane& plane, Formulation formulation) {
-  return formulation == Formulation::kSignedDistance ? 1.0 : 1.0 / std::abs(plane.offset_m);
-}
 
 std::optional<double> tolerance_of(const IdentificationProblem& problem, int arm_column) {
   if (arm_column < kErrorParameterCount) return problem.tolerances[static_cast<std::size_t>(arm_column)];
@@ -30,7 +28,7 @@ Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std:
   const auto of = [](const std::optional<double>& std) { return std ? 1.0 / (*std * *std) : 0.0; };
   for (Eigen::Index k = 0; k < arm_count; ++k) {
     const int column = arm_columns[static_cast<std::size_t>(k)];
-    // A compliance has its prior always: touches alone tell it badly.
+    // A compliance always has its prior: touches alone determine it poorly.
     if (with_tolerances || column >= kErrorParameterCount) precision[k] = of(tolerance_of(problem, column));
   }
   for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -39,12 +37,8 @@ Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std:
   return precision;
 }
 
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information) {
-  const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(scale.asDiagonal() * information * scale.asDiagonal());
-  return scale.asDiagonal() *
-         cholesky.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols())) *
-         scale.asDiagonal();
+Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information) {
+  return ScaledCholesky(information).inverse();
 }
 
 LeastSquares::LeastSquares(const IdentificationProblem& problem, const IdentificationOptions& options,
@@ -60,7 +54,7 @@ LeastSquares::LeastSquares(const IdentificationProblem& problem, const Identific
   }
   set_weights(options.formulation);
   keep(std::vector<bool>(touches_.size(), true));
-  size_memory();
+  allocate_buffers();
 }
 
 LeastSquares::LeastSquares(const LeastSquares& other, const IdentificationOptions& options,
@@ -76,26 +70,26 @@ LeastSquares::LeastSquares(const LeastSquares& other, const IdentificationOption
       weights_(other.weights_),
       precision_(prior_precision(problem_, arm_columns_, options.prior)),
       joints_(other.joints_) {
-  size_memory();
+  allocate_buffers();
 }
 
-void LeastSquares::size_memory() {
+void LeastSquares::allocate_buffers() {
   const auto rows = static_cast<Eigen::Index>(touches_.size());
   planes_ = problem_.artefact.contact_planes;
-  rows_.resize(rows, precision_.size());
-  residuals_m_.resize(rows);
-  weighted_residuals_.resize(rows);
-  step_.setZero(precision_.size());
+  rows_.all.resize(rows, precision_.size());
+  rows_.residuals_m.resize(rows);
+  rows_.weighted_residuals.resize(rows);
+  normal_.step.setZero(precision_.size());
 }
 
 void LeastSquares::set_weights(Formulation formulation) {
   weights_.resize(static_cast<Eigen::Index>(touches_.size()));
   for (Eigen::Index row = 0; row < weights_.size(); ++row) {
     const Touch& touch = problem_.touches[touches_[static_cast<std::size_t>(row)]];
-    weights_[row] =
-        row_factor(problem_.artefact.contact_planes[static_cast<std::size_t>(touch.face)], formulation);
+    weights_[row] = std::abs(
+        row_factor(problem_.artefact.contact_planes[static_cast<std::size_t>(touch.face)], formulation));
   }
-  // On average a row weighs what the declared noise makes it weigh, so that priors keep their share.
+  // The mean square weight is that of the declared noise, so that the priors keep their relative weight.
   const double mean_square =
       weights_.size() == 0 ? 1.0 : weights_.squaredNorm() / static_cast<double>(weights_.size());
   weights_ /= std::sqrt(mean_square) * noise_unit_m_;
@@ -115,33 +109,33 @@ void LeastSquares::fill_row(Eigen::Index row, const PreparedModel& model) {
   const Eigen::Vector3d tip = chain.tip_in_block_m();
   const ArmRow slopes = distance_derivatives(model, chain, plane.outward);
   const double weight = weights_[row];
-  residuals_m_[row] = signed_distance_m(plane, tip);
-  weighted_residuals_[row] = weight * residuals_m_[row];
+  rows_.residuals_m[row] = signed_distance_m(plane, tip);
+  rows_.weighted_residuals[row] = weight * rows_.residuals_m[row];
   Eigen::Index column = 0;
-  for (const int arm_column : arm_columns_) rows_(row, column++) = weight * slopes[arm_column];
+  for (const int arm_column : arm_columns_) rows_.all(row, column++) = weight * slopes[arm_column];
   for (const ArtefactParameter& parameter : problem_.artefact.parameters) {
     const auto& shift = parameter.shifts[face];
-    rows_(row, column++) = weight * (shift.constant + shift.per_metre.dot(tip));
+    rows_.all(row, column++) = weight * (shift.constant + shift.per_metre.dot(tip));
   }
 }
 
 void LeastSquares::add_priors(const Estimate& estimate) {
-  information_.diagonal() += precision_;
+  normal_.information.diagonal() += precision_;
   Eigen::Index k = 0;
   for (const int column : arm_columns_) {
-    gradient_[k] -= precision_[k] * estimate.arm[column];
+    normal_.gradient[k] -= precision_[k] * estimate.arm[column];
     ++k;
   }
-  gradient_.tail(estimate.artefact.size()) -=
+  normal_.gradient.tail(estimate.artefact.size()) -=
       precision_.tail(estimate.artefact.size()).cwiseProduct(estimate.artefact);
   for (const ArtefactEquation& equation : problem_.artefact.equations) {
     const double precision = 1.0 / (equation.std_m * equation.std_m);
     double misclosure = equation.value_m;
     for (const auto& [index, weight] : equation.weights) misclosure -= weight * estimate.artefact[index];
     for (const auto& [i, weight_i] : equation.weights) {
-      gradient_[arm_count() + i] += precision * weight_i * misclosure;
+      normal_.gradient[arm_count() + i] += precision * weight_i * misclosure;
       for (const auto& [j, weight_j] : equation.weights) {
-        information_(arm_count() + i, arm_count() + j) += precision * weight_i * weight_j;
+        normal_.information(arm_count() + i, arm_count() + j) += precision * weight_i * weight_j;
       }
     }
   }
@@ -149,65 +143,65 @@ void LeastSquares::add_priors(const Estimate& estimate) {
 
 void LeastSquares::linearise(const Estimate& estimate) {
   const PreparedModel model = prepare(apply(problem_.nominal, estimate.arm));
-  place_planes(problem_.artefact, estimate.artefact, planes_);
-  for (Eigen::Index row = 0; row < rows_.rows(); ++row) fill_row(row, model);
+  correct_contact_planes(problem_.artefact, estimate.artefact, planes_);
+  for (Eigen::Index row = 0; row < rows_.all.rows(); ++row) fill_row(row, model);
 
   const bool all = kept_count_ == static_cast<int>(kept_.size());
   if (!all) {
-    kept_rows_ = rows_;
-    for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
-      if (!kept_[static_cast<std::size_t>(row)]) kept_rows_.row(row).setZero();
+    rows_.kept = rows_.all;
+    for (Eigen::Index row = 0; row < rows_.all.rows(); ++row) {
+      if (!kept_[static_cast<std::size_t>(row)]) rows_.kept.row(row).setZero();
     }
   }
-  const Eigen::MatrixXd& heard = all ? rows_ : kept_rows_;
-  touch_information_.setZero(rows_.cols(), rows_.cols());
-  touch_information_.selfadjointView<Eigen::Lower>().rankUpdate(heard.transpose());
-  touch_information_.triangularView<Eigen::StrictlyUpper>() = touch_information_.transpose();
-  touch_gradient_.noalias() = heard.transpose() * weighted_residuals_;
-  touch_gradient_ = -touch_gradient_;
-  information_ = touch_information_;
-  gradient_ = touch_gradient_;
+  const Eigen::MatrixXd& fitted_rows = all ? rows_.all : rows_.kept;
+  normal_.touch_information.setZero(rows_.all.cols(), rows_.all.cols());
+  normal_.touch_information.selfadjointView<Eigen::Lower>().rankUpdate(fitted_rows.transpose());
+  normal_.touch_information.triangularView<Eigen::StrictlyUpper>() = normal_.touch_information.transpose();
+  normal_.touch_gradient.noalias() = fitted_rows.transpose() * rows_.weighted_residuals;
+  normal_.touch_gradient = -normal_.touch_gradient;
+  normal_.information = normal_.touch_information;
+  normal_.gradient = normal_.touch_gradient;
   add_priors(estimate);
 }
 
 bool LeastSquares::solve() {
-  leverages_.resize(0);
-  column_scale_ = information_.diagonal();
-  if (!column_scale_.allFinite() || (column_scale_.array() <= 0.0).any()) return false;
+  normal_.leverages.resize(0);
+  normal_.column_scale = normal_.information.diagonal();
+  if (!normal_.column_scale.allFinite() || (normal_.column_scale.array() <= 0.0).any()) return false;
   if (unit_columns_) {
-    column_scale_ = column_scale_.cwiseSqrt().cwiseInverse();
+    normal_.column_scale = normal_.column_scale.cwiseSqrt().cwiseInverse();
   } else {
-    column_scale_.setOnes();
+    normal_.column_scale.setOnes();
   }
-  scaled_.noalias() = column_scale_.asDiagonal() * information_;
-  scaled_.array().rowwise() *= column_scale_.transpose().array();
-  cholesky_.compute(scaled_);
-  if (cholesky_.info() != Eigen::Success) return false;
-  step_ = column_scale_.cwiseProduct(gradient_);
-  cholesky_.solveInPlace(step_);
-  step_.array() *= column_scale_.array();
-  return step_.allFinite();
+  normal_.scaled.noalias() = normal_.column_scale.asDiagonal() * normal_.information;
+  normal_.scaled.array().rowwise() *= normal_.column_scale.transpose().array();
+  normal_.cholesky.compute(normal_.scaled);
+  if (normal_.cholesky.info() != Eigen::Success) return false;
+  normal_.step = normal_.column_scale.cwiseProduct(normal_.gradient);
+  normal_.cholesky.solveInPlace(normal_.step);
+  normal_.step.array() *= normal_.column_scale.array();
+  return normal_.step.allFinite();
 }
 
 Estimate LeastSquares::stepped(Estimate from) const {
   Eigen::Index k = 0;
-  for (const int column : arm_columns_) from.arm[column] += step_[k++];
-  from.artefact += step_.tail(from.artefact.size());
+  for (const int column : arm_columns_) from.arm[column] += normal_.step[k++];
+  from.artefact += normal_.step.tail(from.artefact.size());
   return from;
 }
 
 double LeastSquares::residual_rms_m() const {
   double sum = 0.0;
-  for (Eigen::Index row = 0; row < residuals_m_.size(); ++row) {
-    if (kept_[static_cast<std::size_t>(row)]) sum += residuals_m_[row] * residuals_m_[row];
+  for (Eigen::Index row = 0; row < rows_.residuals_m.size(); ++row) {
+    if (kept_[static_cast<std::size_t>(row)]) sum += rows_.residuals_m[row] * rows_.residuals_m[row];
   }
   return kept_count_ == 0 ? 0.0 : std::sqrt(sum / kept_count_);
 }
 
 Eigen::MatrixXd LeastSquares::gradient_covariance() const {
-  if (!weights_differ_) return touch_information_;
-  Eigen::MatrixXd weighted = rows_;
-  for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
+  if (!weights_differ_) return normal_.touch_information;
+  Eigen::MatrixXd weighted = rows_.all;
+  for (Eigen::Index row = 0; row < rows_.all.rows(); ++row) {
     weighted.row(row) *= kept_[static_cast<std::size_t>(row)] ? weights_[row] * noise_unit_m_ : 0.0;
   }
   return weighted.transpose() * weighted;
@@ -234,16 +228,16 @@ int LeastSquares::degrees_of_freedom() const {
 }
 
 const Eigen::VectorXd& LeastSquares::leverages() {
-  if (leverages_.size() == rows_.rows()) return leverages_;
-  Eigen::MatrixXd half = column_scale_.asDiagonal() * rows_.transpose();
-  cholesky_.matrixL().solveInPlace(half);
-  leverages_ = half.colwise().squaredNorm();
-  return leverages_;
+  if (normal_.leverages.size() == rows_.all.rows()) return normal_.leverages;
+  Eigen::MatrixXd half = normal_.column_scale.asDiagonal() * rows_.all.transpose();
+  normal_.cholesky.matrixL().solveInPlace(half);
+  normal_.leverages = half.colwise().squaredNorm();
+  return normal_.leverages;
 }
 
 double LeastSquares::extreme_ratio(const Eigen::MatrixXd& gram) {
-  eigen_.compute(gram, Eigen::EigenvaluesOnly);
-  const auto& values = eigen_.eigenvalues();
+  spectrum_.eigen.compute(gram, Eigen::EigenvaluesOnly);
+  const auto& values = spectrum_.eigen.eigenvalues();
   if (values[0] <= 0.0) return std::numeric_limits<double>::infinity();
   return std::sqrt(values[values.size() - 1] / values[0]);
 }
@@ -251,24 +245,26 @@ double LeastSquares::extreme_ratio(const Eigen::MatrixXd& gram) {
 LeastSquares::Conditions LeastSquares::conditions(const std::vector<Eigen::Index>& positions) {
   const auto count = static_cast<Eigen::Index>(positions.size());
   if (count == 0) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  gram_.resize(count, count);
+  spectrum_.gram.resize(count, count);
   for (Eigen::Index j = 0; j < count; ++j) {
     for (Eigen::Index i = 0; i < count; ++i) {
-      gram_(i, j) =
-          touch_information_(positions[static_cast<std::size_t>(i)], positions[static_cast<std::size_t>(j)]);
+      spectrum_.gram(i, j) = normal_.touch_information(positions[static_cast<std::size_t>(i)],
+                                                       positions[static_cast<std::size_t>(j)]);
     }
   }
-  unit_gram_ = gram_;
+  spectrum_.unit_gram = spectrum_.gram;
   for (Eigen::Index j = 0; j < count; ++j) {
-    for (Eigen::Index i = 0; i < count; ++i) unit_gram_(i, j) /= std::sqrt(gram_(i, i) * gram_(j, j));
+    for (Eigen::Index i = 0; i < count; ++i)
+      spectrum_.unit_gram(i, j) /= std::sqrt(spectrum_.gram(i, i) * spectrum_.gram(j, j));
   }
-  Conditions result{extreme_ratio(gram_), extreme_ratio(unit_gram_)};
+  Conditions result{extreme_ratio(spectrum_.gram), extreme_ratio(spectrum_.unit_gram)};
   if (result.condition_number < kGramConditionMax && result.scaled_condition_number < kGramConditionMax) {
     return result;
   }
-  Eigen::MatrixXd columns(rows_.rows(), count);
-  for (Eigen::Index j = 0; j < count; ++j) columns.col(j) = rows_.col(positions[static_cast<std::size_t>(j)]);
-  for (Eigen::Index row = 0; row < rows_.rows(); ++row) {
+  Eigen::MatrixXd columns(rows_.all.rows(), count);
+  for (Eigen::Index j = 0; j < count; ++j)
+    columns.col(j) = rows_.all.col(positions[static_cast<std::size_t>(j)]);
+  for (Eigen::Index row = 0; row < rows_.all.rows(); ++row) {
     if (!kept_[static_cast<std::size_t>(row)]) columns.row(row).setZero();
   }
   result.condition_number = condition_number(columns);

@@ -1,82 +1,79 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <vector>
 
-#include "calib_core/identification/identify.hpp"
+#include "calib_core/estimation/estimate.hpp"
+#include "calib_core/estimation/identification_problem.hpp"
 
 namespace calib {
 
-/// Where the iteration stands: errors of the arm (0 where not estimated) and of the artefact.
-struct Estimate {
-  ArmVector arm = ArmVector::Zero();
-  Eigen::VectorXd artefact;
-};
-
-/// What one standard deviation says of one unknown; precision 0 says nothing.
+/// Reciprocal prior variance of each unknown; 0 where it has no prior.
 Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std::vector<int>& arm_columns,
                                 bool with_tolerances);
 
-/// Inverse of an information matrix, positive definite; its rows of different units are scaled for the
-/// digits.
-Eigen::MatrixXd covariance_of(const Eigen::MatrixXd& information);
+/// Inverse of a positive definite information matrix: the covariance. See ScaledCholesky.
+Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information);
 
-/// The weighted least squares problem behind an identification, and the memory its iterations use. The
-/// unknowns are the given columns of the arm (indices into ArmVector), then every artefact parameter. Rows
-/// are divided by the declared noise (by 1 m when none is declared); in the formulation of eq. 6 they are
-/// weighted as there.
+/// The weighted least squares problem of an identification. Its buffers are reused from one iteration to the
+/// next. The unknowns are the given columns of the arm (indices into ArmVector), then all artefact
+/// parameters. Rows are divided by the declared noise (by 1 m when none is declared) and weighted by the
+/// formulation.
 class LeastSquares {
  public:
-  /// `touches` are indices into the problem's; all are kept at first. The problem must outlive this.
+  /// `touches` are indices into the touches of the problem; all are kept initially. Keeps a reference to the
+  /// problem.
   LeastSquares(const IdentificationProblem& problem, const IdentificationOptions& options,
                std::vector<int> arm_columns, std::vector<std::size_t> touches);
 
-  /// The same touches, kept or not, with other columns of the arm.
+  /// The same touches and selection with other columns of the arm.
   LeastSquares(const LeastSquares& other, const IdentificationOptions& options, std::vector<int> arm_columns);
 
-  /// Touches that are not kept have rows and residuals, but no say.
+  /// Selects the touches that are fitted. The others still have rows and residuals.
   void keep(const std::vector<bool>& kept);
 
   void linearise(const Estimate& estimate);
 
-  /// The step to the minimum of the linearised problem; false when that has none.
+  /// Computes the step to the minimum of the linearised problem; false when it has no unique minimum.
   bool solve();
-  [[nodiscard]] const Eigen::VectorXd& step() const { return step_; }
-  [[nodiscard]] Estimate stepped(Estimate from) const;
-  [[nodiscard]] double arm_step_norm() const { return step_.head(arm_count()).norm(); }
+  [[nodiscard]] const Eigen::VectorXd& step() const { return normal_.step; }
+  [[nodiscard]] Estimate stepped(Estimate from) const;  // from + step
+  [[nodiscard]] double arm_step_norm() const { return normal_.step.head(arm_count()).norm(); }
 
   [[nodiscard]] Eigen::Index arm_count() const { return static_cast<Eigen::Index>(arm_columns_.size()); }
-  [[nodiscard]] Eigen::Index unknown_count() const { return step_.size(); }
+  [[nodiscard]] Eigen::Index unknown_count() const { return normal_.step.size(); }
   [[nodiscard]] const std::vector<int>& arm_columns() const { return arm_columns_; }
   [[nodiscard]] const std::vector<std::size_t>& touches() const { return touches_; }
   [[nodiscard]] const std::vector<bool>& kept() const { return kept_; }
   [[nodiscard]] int kept_count() const { return kept_count_; }
 
-  /// Signed distances from the planes as estimated, metres, one a touch.
-  [[nodiscard]] const Eigen::VectorXd& residuals_m() const { return residuals_m_; }
+  /// Signed distances from the estimated planes, metres, one per touch.
+  [[nodiscard]] const Eigen::VectorXd& residuals_m() const { return rows_.residuals_m; }
   [[nodiscard]] double residual_rms_m() const;  // of the kept touches
-  /// The weighted rows, one a touch, one column an unknown.
-  [[nodiscard]] const Eigen::MatrixXd& rows() const { return rows_; }
-  [[nodiscard]] Eigen::VectorXd weighted_targets() const { return -weighted_residuals_; }
+  /// The weighted rows: one per touch, one column per unknown.
+  [[nodiscard]] const Eigen::MatrixXd& rows() const { return rows_.all; }
+  [[nodiscard]] Eigen::VectorXd weighted_targets() const { return -rows_.weighted_residuals; }
   [[nodiscard]] double noise_unit_m() const { return noise_unit_m_; }
 
-  /// rows^T rows of the kept touches, without and with the prior.
-  [[nodiscard]] const Eigen::MatrixXd& touch_information() const { return touch_information_; }
-  [[nodiscard]] const Eigen::MatrixXd& information() const { return information_; }
+  /// rows^T rows of the kept touches, without and with the priors.
+  [[nodiscard]] const Eigen::MatrixXd& touch_information() const { return normal_.touch_information; }
+  [[nodiscard]] const Eigen::MatrixXd& information() const { return normal_.information; }
   /// rows^T (-weighted residuals) of the kept touches.
-  [[nodiscard]] const Eigen::VectorXd& touch_gradient() const { return touch_gradient_; }
-  /// Covariance of the touches' gradient for noise of one unit: their information, but for eq. 6.
+  [[nodiscard]] const Eigen::VectorXd& touch_gradient() const { return normal_.touch_gradient; }
+  /// Covariance of touch_gradient() for noise of one unit. Equals touch_information() except for eq. 6.
   [[nodiscard]] Eigen::MatrixXd gradient_covariance() const;
-  /// Kept residuals, priors and equations, each over its standard deviation, squared and summed.
+  /// Sum of squares of the kept residuals, priors and equations, each divided by its standard deviation.
   [[nodiscard]] double chi_square(const Estimate& estimate) const;
-  /// Terms of that sum less unknowns.
+  /// Number of terms of that sum minus number of unknowns.
   [[nodiscard]] int degrees_of_freedom() const;
-  /// After solve(): how much of each touch's own variance the fit takes up, for weights of unit noise.
+  /// After solve(): the leverage of each touch, the fraction of its variance that the fit absorbs; for
+  /// weights of unit noise.
   const Eigen::VectorXd& leverages();
 
-  /// sigma_max / sigma_min (eq. 16) of the touches' rows in these columns of the arm, and after columns of
-  /// unit norm. `positions` index arm_columns().
+  /// sigma_max / sigma_min (eq. 16) of the rows in these columns of the arm, as they are and scaled to unit
+  /// norm. `positions` are indices into arm_columns().
   struct Conditions {
     double condition_number = 0.0;
     double scaled_condition_number = 0.0;
@@ -84,7 +81,21 @@ class LeastSquares {
   Conditions conditions(const std::vector<Eigen::Index>& positions);
 
  private:
-  void size_memory();
+  struct Rows {
+    Eigen::MatrixXd all, kept;
+    Eigen::VectorXd residuals_m, weighted_residuals;
+  };
+  struct NormalEquations {
+    Eigen::MatrixXd touch_information, information, scaled;
+    Eigen::VectorXd touch_gradient, gradient, column_scale, step, leverages;
+    Eigen::LLT<Eigen::MatrixXd> cholesky;
+  };
+  struct Spectrum {
+    Eigen::MatrixXd gram, unit_gram;
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+  };
+
+  void allocate_buffers();
   void set_weights(Formulation formulation);
   void fill_row(Eigen::Index row, const PreparedModel& model);
   void add_priors(const Estimate& estimate);
@@ -98,17 +109,13 @@ class LeastSquares {
   bool unit_columns_ = true;
   bool weights_differ_ = false;
   double noise_unit_m_ = 1.0;
-  Eigen::VectorXd weights_;             // of a row, 1/m
-  Eigen::VectorXd precision_;           // of the unknowns' priors
-  std::vector<PreparedJoints> joints_;  // one a touch
-  std::vector<Plane> planes_;           // contact planes as estimated; normals not of unit length when tilted
-  Eigen::MatrixXd rows_, kept_rows_;
-  Eigen::VectorXd residuals_m_, weighted_residuals_;
-  Eigen::MatrixXd touch_information_, information_, scaled_;
-  Eigen::VectorXd touch_gradient_, gradient_, column_scale_, step_, leverages_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
-  Eigen::MatrixXd gram_, unit_gram_;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
+  Eigen::VectorXd weights_;             // one per row, 1/m
+  Eigen::VectorXd precision_;           // of the priors
+  std::vector<PreparedJoints> joints_;  // one per touch
+  std::vector<Plane> planes_;           // estimated contact planes; normals of unit length to first order
+  Rows rows_;
+  NormalEquations normal_;
+  Spectrum spectrum_;
 };
 
 }  // namespace calib

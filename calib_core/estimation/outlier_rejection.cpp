@@ -4,41 +4,41 @@
 #include <cmath>
 #include <limits>
 
+#include "calib_core/estimation/goodness_of_fit.hpp"
 #include "calib_core/estimation/internal/least_trimmed_squares.hpp"
-#include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
 namespace calib {
 namespace {
 
-/// More robust rounds than this do not settle.
+/// A selection that has not settled after this many rounds will not settle.
 constexpr int kRobustRoundsMax = 20;
 
-/// What an arm may well be off by, or its block: the wide prior of the robust start.
+/// Standard deviations of the wide prior of the robust start: plausible errors of arm and block.
 constexpr double kPlausibleMetres = 0.010;
 constexpr double kPlausibleRadians = 0.020;
-constexpr double kLargeNoiseMetres = 1e-4;  // of a touch, where none is declared
+constexpr double kLargeNoiseMetres = 1e-4;  // noise of a touch when none is declared
 
-/// The chance of the robust start's random subsets: fixed, so that the same touches give the same result.
+/// Seed of the random subsets: fixed, so that the same touches give the same result.
 constexpr std::uint64_t kRobustSeed = 20111101;
 
 }  // namespace
 
-bool RobustSearch::nothing_suspect() {
+bool OutlierRejection::is_consistent() {
   if (!known_noise_) return fit_.residuals_m().cwiseAbs().maxCoeff() < kScatterMinMetres;
-  return studentized(fit_).maxCoeff() <=
-         largest_expected(fit_.kept_count(), std::numeric_limits<double>::infinity());
+  return studentized_residuals(fit_).maxCoeff() <=
+         studentized_residual_max(fit_.kept_count(), std::numeric_limits<double>::infinity());
 }
 
-void RobustSearch::run(const std::vector<int>& identifiable) {
-  Estimate estimate = iterations_.nominal();
+void OutlierRejection::run(const std::vector<int>& identifiable) {
+  Estimate estimate = iteration_.start();
   const std::vector<bool> core = start(identifiable, estimate);
   std::vector<bool> kept = core;
-  // The half that agrees best scatters too little to judge the others by: it is kept until no more join it.
+  // The scatter of the best half is too small to test the others: the half is kept until no touch joins it.
   bool growing = true;
   for (int round = 0; round < kRobustRoundsMax; ++round) {
     fit_.keep(kept);
-    if (!iterations_.run(estimate, false)) return;
-    const std::vector<bool> good = judged(estimate);
+    if (!iteration_.run(estimate, false)) return;
+    const std::vector<bool> good = find_inliers(estimate);
     std::vector<bool> next = good;
     for (std::size_t i = 0; growing && i < next.size(); ++i) next[i] = good[i] || core[i];
     if (growing && next == kept) {
@@ -50,7 +50,7 @@ void RobustSearch::run(const std::vector<int>& identifiable) {
   }
 }
 
-std::vector<bool> RobustSearch::start(const std::vector<int>& identifiable, Estimate& estimate) {
+std::vector<bool> OutlierRejection::start(const std::vector<int>& identifiable, Estimate& estimate) {
   std::vector<bool> all(fit_.touches().size(), true);
   fit_.keep(all);
   fit_.linearise(estimate);
@@ -83,15 +83,15 @@ std::vector<bool> RobustSearch::start(const std::vector<int>& identifiable, Esti
   return all;
 }
 
-std::vector<bool> RobustSearch::judged(const Estimate& estimate) {
-  const Eigen::VectorXd sizes = studentized(fit_);
+std::vector<bool> OutlierRejection::find_inliers(const Estimate& estimate) {
+  const Eigen::VectorXd sizes = studentized_residuals(fit_);
   const auto estimated = estimated_noise_m(fit_, estimate);
   const double scatter = std::max(estimated.value_or(0.0), kScatterMinMetres) / fit_.noise_unit_m();
-  const bool declared_holds = known_noise_ && scatter <= 1.0;
-  const double unit = declared_holds ? 1.0 : scatter;
+  const bool noise_as_declared = known_noise_ && scatter <= 1.0;
+  const double unit = noise_as_declared ? 1.0 : scatter;
   const double degrees =
-      declared_holds ? std::numeric_limits<double>::infinity() : std::max(1, fit_.degrees_of_freedom());
-  const double limit = unit * largest_expected(static_cast<int>(sizes.size()), degrees);
+      noise_as_declared ? std::numeric_limits<double>::infinity() : std::max(1, fit_.degrees_of_freedom());
+  const double limit = unit * studentized_residual_max(static_cast<int>(sizes.size()), degrees);
   std::vector<bool> kept(static_cast<std::size_t>(sizes.size()));
   for (std::size_t i = 0; i < kept.size(); ++i) {
     kept[i] = sizes[static_cast<Eigen::Index>(i)] <= limit;

@@ -6,28 +6,28 @@
 
 namespace calib {
 
-/// Which touches belong together. Ends with the kept ones set in the fit, and converged or not.
-class RobustSearch {
+/// Finds the touches that are inconsistent with the others. run() leaves the consistent ones kept in the fit.
+class OutlierRejection {
  public:
-  RobustSearch(const IdentificationProblem& problem, LeastSquares& fit, Iterations& iterations)
-      : known_noise_(problem.touch_noise_m > 0.0), fit_(fit), iterations_(iterations) {}
+  OutlierRejection(const IdentificationProblem& problem, LeastSquares& fit, GaussNewton& iteration)
+      : known_noise_(problem.touch_noise_m > 0.0), fit_(fit), iteration_(iteration) {}
 
-  /// Whether the declared noise explains the residuals of the fit at hand.
-  [[nodiscard]] bool nothing_suspect();
+  /// Whether the declared noise explains the residuals of the current fit.
+  [[nodiscard]] bool is_consistent();
 
   void run(const std::vector<int>& identifiable);
 
  private:
-  /// A high-breakdown start: least trimmed squares of the problem linearised at the nominal arm, then
-  /// concentrated once more where that leads.
+  /// A robust start: least trimmed squares of the problem linearised at the nominal arm, then once more at
+  /// the resulting arm. Returns the half of the touches that agrees best.
   std::vector<bool> start(const std::vector<int>& identifiable, Estimate& estimate);
 
-  /// The touches whose residuals a good touch could have.
-  std::vector<bool> judged(const Estimate& estimate);
+  /// Whether each residual is compatible with the noise.
+  std::vector<bool> find_inliers(const Estimate& estimate);
 
   bool known_noise_;
   LeastSquares& fit_;
-  Iterations& iterations_;
+  GaussNewton& iteration_;
 };
 
 }  // namespace calib

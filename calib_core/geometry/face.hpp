@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <string>
 
 #include "calib_core/geometry/plane.hpp"
 
@@ -16,13 +18,17 @@ struct Face {
   [[nodiscard]] Eigen::Vector3d edge_v() const { return plane.outward.cross(edge_u); }
 };
 
+/// The name of a face in messages: "plane 1" for index 0. Files, the API and the page call a face a plane and
+/// count from 1.
+inline std::string face_name(std::size_t index) { return "plane " + std::to_string(index + 1); }
+
 /// The ball that touches. A tip that is itself the contact point has radius 0 and pre-travel 0.
 struct Stylus {
   double radius_m = 0.0;
-  double pretravel_m = 0.0;  // how far the ball's undeflected centre goes on after contact until the trigger
+  double pretravel_m = 0.0;  // travel of the undeflected ball centre from contact to trigger
 };
 
-/// Where the ball's undeflected centre P is at the trigger: outward . P = offset + radius - pretravel.
+/// The plane of the undeflected ball centre P at the trigger: outward . P = offset + radius - pretravel.
 inline Plane contact_plane(const Face& face, const Stylus& stylus) {
   return {face.plane.outward, face.plane.offset_m + stylus.radius_m - stylus.pretravel_m};
 }

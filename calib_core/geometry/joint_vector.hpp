@@ -6,10 +6,10 @@ namespace calib {
 
 inline constexpr int kJointCount = 6;
 
-/// Six joint positions as the controller gives them, joint 1 first; radians (metres for a prismatic joint).
+/// Six joint positions as the controller reports them, joint 1 first; radians (metres for a prismatic joint).
 using JointVector = Eigen::Matrix<double, kJointCount, 1>;
 
-/// The range each joint may take, both ends included; same units as JointVector.
+/// Joint limits, both ends included; units as in JointVector.
 struct JointRanges {
   JointVector lower;
   JointVector upper;

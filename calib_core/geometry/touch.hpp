@@ -4,12 +4,13 @@
 
 namespace calib {
 
-/// fit: identifies; held_out: validates, never fitted; proof: on another artefact or place, never fitted.
+/// What a touch is for. kFit: identification. kHeldOut: validation, never fitted. kProof: on another artefact
+/// or at another place, never fitted.
 enum class TouchRole { kFit, kHeldOut, kProof };
 
-/// One contact: the joints latched at the trigger and the face they were captured on.
+/// One contact: the joints latched at the trigger and the face that was touched.
 struct Touch {
-  int face = 0;  // index into the block's faces; people and files count planes from 1
+  int face = 0;  // index of the face; see face_name()
   JointVector joints = JointVector::Zero();
   TouchRole role = TouchRole::kFit;
 };

@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-/// Unit conversions. Everything inside touchcal is SI: metres, radians, seconds. Files, the API and people
-/// use millimetres and degrees; their readers and writers convert here and nowhere else.
+/// Unit conversions. touchcal computes in SI units: metres, radians, seconds. Files, the API and messages use
+/// millimetres and degrees; only their readers and writers convert.
 namespace calib {
 
 inline constexpr double kMetresPerMillimetre = 1e-3;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/estimation/gauss_newton.hpp"
@@ -13,21 +14,21 @@
 namespace calib {
 namespace {
 
-/// How many parameters the touches show, however weakly: several of them may share one weak direction.
-int shown_at_all(const IdentificationProblem& problem, IdentificationOptions options,
-                 const std::vector<std::size_t>& touches) {
+/// How many parameters the touches determine, however weakly: several may share one weak direction.
+int count_with_weak(const IdentificationProblem& problem, IdentificationOptions options,
+                    const std::vector<std::size_t>& touches) {
   options.hold_weak = false;
   options.identifiability.qr_tolerance.reset();
   return static_cast<int>(choose_columns(problem, options, touches).columns.size());
 }
 
-void refuse(IdentificationResult& result, Refusal refusal) {
+void refuse(IdentificationResult& result, InputRefusal refusal) {
   result.status = refusal.status;
   result.message = std::move(refusal.message);
 }
 
-/// Names what was left out, with its residual at the final arm.
-void name_rejected(const IdentificationProblem& problem, const LeastSquares& fit, const Estimate& estimate,
+/// Lists the rejected touches with their residuals at the final arm.
+void list_rejected(const IdentificationProblem& problem, const LeastSquares& fit, const Estimate& estimate,
                    IdentificationResult& result) {
   const KinematicModel arm = apply(problem.nominal, estimate.arm);
   for (std::size_t i = 0; i < fit.touches().size(); ++i) {
@@ -36,14 +37,14 @@ void name_rejected(const IdentificationProblem& problem, const LeastSquares& fit
         {fit.touches()[i], fit.residuals_m()[static_cast<Eigen::Index>(i)], RejectionReason::kOutlier});
   }
   for (RejectedTouch& rejected : result.rejected) {
-    if (rejected.reason != RejectionReason::kWrongPlane) continue;
+    if (rejected.reason != RejectionReason::kWrongFace) continue;
     const Touch& touch = problem.touches[rejected.touch];
     rejected.residual_m = signed_distances_m(arm, problem.artefact.contact_planes, std::span(&touch, 1))[0];
   }
   std::ranges::sort(result.rejected, {}, &RejectedTouch::touch);
 }
 
-void name_weak(IdentificationResult& result) {
+void warn_of_weak(IdentificationResult& result) {
   std::string names;
   for (int i = 0; i < kErrorParameterCount; ++i) {
     const auto& candidate = result.identifiable.candidates[static_cast<std::size_t>(i)];
@@ -55,49 +56,50 @@ void name_weak(IdentificationResult& result) {
                             "; spread the touches over more postures and tilts");
 }
 
-/// Everything that is said of a converged identification.
-void assess(const IdentificationProblem& problem, const IdentificationOptions& options, LeastSquares& fit,
-            const Estimate& estimate, IdentificationResult& result) {
+/// Goodness of fit, uncertainty and scale check of a converged identification.
+void evaluate(const IdentificationProblem& problem, const IdentificationOptions& options, LeastSquares& fit,
+              const Estimate& estimate, IdentificationResult& result) {
   result.noise_estimated_m = estimated_noise_m(fit, estimate);
   result.lack_of_fit = lack_of_fit(problem, fit, estimate);
-  if (problem.touch_noise_m <= 0.0 && !result.noise_estimated_m) return;  // nothing to be sure from
-  const Linearisation whole = linearise_whole(options, fit, estimate);
-  result.certainty =
-      certainty(problem, options, result.identifiable, fit, whole, estimate, result.lack_of_fit);
-  result.scale = check_scale(problem, options, fit, whole, *result.certainty, estimate);
+  if (problem.touch_noise_m <= 0.0 && !result.noise_estimated_m) return;  // no noise to propagate
+  const FullLinearisation whole = linearise_all_parameters(options, fit, estimate);
+  result.uncertainty =
+      propagate_uncertainty(problem, options, result.identifiable, fit, whole, estimate, result.lack_of_fit);
+  result.scale = check_scale(problem, options, fit, whole, *result.uncertainty, estimate);
 }
 
 void solve(const IdentificationProblem& problem, const IdentificationOptions& options,
            const std::vector<std::size_t>& fitted, IdentificationResult& result) {
   LeastSquares fit(problem, options, estimated_columns(options, result.identifiable), fitted);
-  Iterations iterations(problem, options, fit, result.identifiable.columns);
-  Estimate estimate = iterations.nominal();
-  if (auto refusal = find_untold(problem, options, fit, estimate)) {
+  GaussNewton iteration(problem, options, fit, result.identifiable.columns);
+  Estimate estimate = iteration.start();
+  if (auto refusal = find_unconstrained(problem, options, fit, estimate)) {
     refuse(result, std::move(*refusal));
     return;
   }
-  bool converged = iterations.run(estimate, true);
+  bool converged = iteration.run(estimate, true);
   const bool all_converged = converged;
-  if (options.robust && iterations.solvable()) {
-    RobustSearch search(problem, fit, iterations);
-    if (!converged || !search.nothing_suspect()) {
-      search.run(result.identifiable.columns);
-      estimate = iterations.nominal();
-      converged = iterations.run(estimate, true);
+  if (options.robust && iteration.solvable()) {
+    OutlierRejection rejection(problem, fit, iteration);
+    if (!converged || !rejection.is_consistent()) {
+      rejection.run(result.identifiable.columns);
+      estimate = iteration.start();
+      converged = iteration.run(estimate, true);
     }
   }
-  result.iterations = iterations.history();
+  result.iterations = iteration.history();
   result.fitted_touch_count = fit.kept_count();
-  name_rejected(problem, fit, estimate, result);
+  list_rejected(problem, fit, estimate, result);
   if (!converged) {
-    result.status = iterations.solvable() && options.prior && iterations.history().empty()
+    result.status = iteration.solvable() && options.prior && iteration.history().empty()
                         ? IdentificationStatus::kSingularPrior
                         : IdentificationStatus::kNotConverged;
-    result.message = iterations.message();
+    result.message = iteration.message();
     if (all_converged) {
       result.status = IdentificationStatus::kContradictory;
-      result.message = "no half of the " + std::to_string(fitted.size()) + " touches agrees on an arm (" +
-                       iterations.message() + "); check planes, block and probe, and touch again";
+      result.message = "no half of the " + std::to_string(fitted.size()) +
+                       " touches is consistent with one arm (" + iteration.message() +
+                       "); check planes, block and probe, and touch again";
     }
     return;
   }
@@ -112,19 +114,18 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
   result.errors = estimate.arm;
   result.artefact_errors = estimate.artefact;
   result.calibrated = apply(problem.nominal, estimate.arm);
-  assess(problem, options, fit, estimate, result);
+  evaluate(problem, options, fit, estimate, result);
 }
 
-/// The identified parameter that the touches leave least certain, when that is more than a weak one's
-/// standard deviation: late columns make those before them uncertain, which the choice cannot see.
+/// The identified parameter with the largest standard deviation relative to weak_std(), when it exceeds that.
+/// The column choice cannot find it: later columns increase the uncertainty of earlier ones.
 std::optional<int> weakest(const IdentificationResult& result) {
   std::optional<int> weakest;
-  if (!result.certainty) return weakest;
+  if (!result.uncertainty) return weakest;
   double most = 1.0;
   for (const int column : result.identifiable.columns) {
-    const double limit = error_parameters()[static_cast<std::size_t>(column)].is_length() ? kWeakLengthMetres
-                                                                                          : kWeakAngleRadians;
-    const double share = std::sqrt(result.certainty->identified(column, column)) / limit;
+    const double limit = weak_std(error_parameters()[static_cast<std::size_t>(column)]);
+    const double share = std::sqrt(result.uncertainty->identified(column, column)) / limit;
     if (share <= most) continue;
     most = share;
     weakest = column;
@@ -132,10 +133,11 @@ std::optional<int> weakest(const IdentificationResult& result) {
   return weakest;
 }
 
-Refusal nothing_shown(std::size_t touch_count) {
-  return {IdentificationStatus::kUnobservable,
-          "none of the parameters is shown by these " + std::to_string(touch_count) +
-              " touches well enough for the declared noise; spread them over faces, postures and tilts"};
+InputRefusal nothing_identifiable(std::size_t touch_count) {
+  return {IdentificationStatus::kUnobservable, "these " + std::to_string(touch_count) +
+                                                   " touches determine none of the parameters well enough "
+                                                   "for the declared noise; spread them over faces, "
+                                                   "postures and tilts"};
 }
 
 std::vector<std::size_t> without(std::vector<std::size_t> touches,
@@ -146,8 +148,8 @@ std::vector<std::size_t> without(std::vector<std::size_t> touches,
   return touches;
 }
 
-/// Solves; holds what comes out as a guess, one after the other, and solves again. `result` is taken as it is
-/// before the first solution.
+/// Solves, then holds the weakest parameter at nominal and solves again until none is too weak. `before` is
+/// the result before the first solution.
 IdentificationResult solve_and_hold(const IdentificationProblem& problem,
                                     const IdentificationOptions& options,
                                     const std::vector<std::size_t>& fitted,
@@ -155,18 +157,18 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
   const bool may_hold = options.hold_weak && !options.prior && !problem.columns;
   IdentificationResult result = before;
   solve(problem, options, fitted, result);
-  IdentificationOptions settled = options;  // which touches belong together is known from the first solution
+  IdentificationOptions settled = options;  // the outliers are known from the first solution
   settled.robust = false;
   while (result.status == IdentificationStatus::kConverged) {
-    const auto guess = may_hold ? weakest(result) : std::nullopt;
-    if (!guess) break;
+    const auto weak = may_hold ? weakest(result) : std::nullopt;
+    if (!weak) break;
     IdentificationResult next = before;
     next.identifiable = result.identifiable;
-    std::erase(next.identifiable.columns, *guess);
-    next.identifiable.candidates[static_cast<std::size_t>(*guess)].status = ParameterStatus::kWeak;
+    std::erase(next.identifiable.columns, *weak);
+    next.identifiable.candidates[static_cast<std::size_t>(*weak)].status = ParameterStatus::kWeak;
     next.rejected = result.rejected;
     if (next.identifiable.columns.empty()) {
-      refuse(next, nothing_shown(fitted.size()));
+      refuse(next, nothing_identifiable(fitted.size()));
       return next;
     }
     solve(problem, settled, without(fitted, result.rejected), next);
@@ -175,68 +177,87 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
   return result;
 }
 
+/// Sets the identifiable columns: the given ones, or a choice.
+void choose(const IdentificationProblem& problem, const IdentificationOptions& options,
+            const std::vector<std::size_t>& fitted, IdentificationResult& result) {
+  result.attainable =
+      problem.attainable ? *problem.attainable : attainable_parameters(problem, options.identifiability);
+  if (!problem.columns) {
+    result.identifiable = choose_columns(problem, options, fitted);
+    result.rank_explanation = explain_rank(problem, fitted, result.identifiable, result.attainable);
+    return;
+  }
+  result.identifiable.columns = *problem.columns;
+  for (const int column : *problem.columns) {
+    result.identifiable.candidates[static_cast<std::size_t>(column)].status = ParameterStatus::kIdentified;
+  }
+}
+
+/// Whether the touches are too few or determine too few parameters, after choose().
+std::optional<InputRefusal> find_deficit(const IdentificationProblem& problem,
+                                         const IdentificationOptions& options, const SortedTouches& sorted,
+                                         const IdentificationResult& result) {
+  if (options.prior) {
+    if (!sorted.fitted.empty()) return std::nullopt;
+    return InputRefusal{result.status, "0 touches: there is nothing to identify from"};
+  }
+  const int attainable = result.attainable.count;
+  if (auto refusal = find_insufficient_data(problem, sorted.fitted, attainable)) {
+    if (!sorted.wrong_face.empty()) {
+      refusal->message += "; " + std::to_string(sorted.wrong_face.size()) +
+                          " others are on another plane than stated; check the plane numbers";
+    }
+    return refusal;
+  }
+  const auto identified = static_cast<int>(result.identifiable.columns.size());
+  if (identified == 0) return nothing_identifiable(sorted.fitted.size());
+  if (!problem.columns && identified < attainable &&
+      count_with_weak(problem, options, sorted.fitted) < attainable) {
+    return InputRefusal{IdentificationStatus::kUnobservable, result.rank_explanation};
+  }
+  return std::nullopt;
+}
+
+/// The non-zero singular values of W at the nominal model.
+std::vector<double> nominal_singular_values(const IdentificationProblem& problem,
+                                            const IdentificationOptions& options,
+                                            const std::vector<std::size_t>& fitted, int count) {
+  std::vector<Touch> touches;
+  for (const std::size_t index : fitted) touches.push_back(problem.touches[index]);
+  const Eigen::VectorXd sigma = largest_singular_values(
+      observe(problem.nominal, problem.artefact.contact_planes, touches, options.formulation).matrix, count);
+  return {sigma.begin(), sigma.end()};
+}
+
 }  // namespace
 
 IdentificationResult identify(const IdentificationProblem& problem, const IdentificationOptions& options) {
   IdentificationResult result;
   result.calibrated = problem.nominal;
-  if (auto refusal = find_bad_input(problem, options)) {
+  if (auto refusal = find_invalid_input(problem, options)) {
     refuse(result, std::move(*refusal));
     return result;
   }
-  Sorted sorted = sort_touches(problem, options);
+  SortedTouches sorted = sort_touches(problem, options);
   result.fitted_touch_count = static_cast<int>(sorted.fitted.size());
-  result.rejected = sorted.wrong_plane;
+  result.rejected = sorted.wrong_face;
   if (sorted.refusal) {
     refuse(result, std::move(*sorted.refusal));
     return result;
   }
-  result.attainable =
-      problem.attainable ? *problem.attainable : attainable_parameters(problem, options.identifiability);
-  if (problem.columns) {
-    result.identifiable.columns = *problem.columns;
-    for (const int column : *problem.columns) {
-      result.identifiable.candidates[static_cast<std::size_t>(column)].status = ParameterStatus::kIdentified;
-    }
-  } else {
-    result.identifiable = choose_columns(problem, options, sorted.fitted);
-    result.rank_explanation = explain_rank(problem, sorted.fitted, result.identifiable, result.attainable);
-  }
-
-  const auto shown = static_cast<int>(result.identifiable.columns.size());
-  if (!options.prior) {
-    if (auto refusal = find_too_little(problem, sorted.fitted, result.attainable.count)) {
-      if (!sorted.wrong_plane.empty()) {
-        refusal->message += "; " + std::to_string(sorted.wrong_plane.size()) +
-                            " others are on another plane than their own, look at the planes' numbers";
-      }
-      refuse(result, std::move(*refusal));
-      return result;
-    }
-    if (shown == 0) {
-      refuse(result, nothing_shown(sorted.fitted.size()));
-      return result;
-    }
-    if (!problem.columns && shown < result.attainable.count &&
-        shown_at_all(problem, options, sorted.fitted) < result.attainable.count) {
-      result.status = IdentificationStatus::kUnobservable;
-      result.message = result.rank_explanation;
-      return result;
-    }
-  } else if (sorted.fitted.empty()) {
-    result.message = "0 touches: there is nothing to identify from";
+  choose(problem, options, sorted.fitted, result);
+  if (auto refusal = find_deficit(problem, options, sorted, result)) {
+    refuse(result, std::move(*refusal));
     return result;
   }
 
-  std::vector<Touch> touches;
-  for (const std::size_t index : sorted.fitted) touches.push_back(problem.touches[index]);
-  const Eigen::VectorXd sigma = largest_singular_values(
-      observe(problem.nominal, problem.artefact.contact_planes, touches, options.formulation).matrix, shown);
-  result.singular_values.assign(sigma.begin(), sigma.end());
+  const std::size_t chosen_count = result.identifiable.columns.size();
+  result.singular_values =
+      nominal_singular_values(problem, options, sorted.fitted, static_cast<int>(chosen_count));
   result = solve_and_hold(problem, options, sorted.fitted, result);
-  if (!options.prior) name_weak(result);
+  if (!options.prior) warn_of_weak(result);
   if (result.scale && !result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
-  if (!problem.columns && result.identifiable.columns.size() < static_cast<std::size_t>(shown)) {
+  if (!problem.columns && result.identifiable.columns.size() < chosen_count) {
     result.singular_values.resize(result.identifiable.columns.size());
     result.rank_explanation = explain_rank(problem, sorted.fitted, result.identifiable, result.attainable);
   }

@@ -20,7 +20,7 @@ std::vector<Touch> kept_touches(const IdentificationProblem& problem, const Iden
   return touches;
 }
 
-/// From the calibrated arm, with the columns that were chosen for it.
+/// The problem that starts from the calibrated arm with the columns that were chosen for it.
 IdentificationProblem from_calibrated(IdentificationProblem problem, const IdentificationResult& result,
                                       std::vector<Touch> touches) {
   problem.touches = std::move(touches);
@@ -40,7 +40,7 @@ Repetition repeat(const IdentificationProblem& problem, const IdentificationOpti
   if (!repetition.done()) return repetition;
   repetition.new_errors = again.errors - problem.start;
   repetition.std_new_errors =
-      (again.certainty->identified + again.certainty->held).diagonal();  // variances as yet
+      (again.uncertainty->identified + again.uncertainty->held).diagonal();  // variances here
   return repetition;
 }
 
@@ -49,14 +49,15 @@ Repetition repeat_with_others(const IdentificationProblem& problem, const Identi
   const auto count = static_cast<int>(touches.size());
   const int needed = result.attainable.count + kSpareTouchesMin;
   if (count < needed) {
-    return {.message = "another set takes at least " + std::to_string(needed) + " touches, and there are " +
-                       std::to_string(count) + "; hold more of them out or give another file",
+    return {.message = "the repetition with another set needs at least " + std::to_string(needed) +
+                       " touches, and there are " + std::to_string(count) +
+                       "; hold out more touches or give another file",
             .touch_count = count};
   }
   Repetition repetition = repeat(from_calibrated(problem, result, std::move(touches)), options);
   if (repetition.done()) {
     repetition.std_new_errors =
-        (repetition.std_new_errors + (result.certainty->identified + result.certainty->held).diagonal())
+        (repetition.std_new_errors + (result.uncertainty->identified + result.uncertainty->held).diagonal())
             .cwiseSqrt();
   }
   return repetition;
@@ -75,7 +76,7 @@ Validation validate(const IdentificationProblem& problem, const IdentificationOp
   IdentificationResult& result = validation.result;
   if (result.status != IdentificationStatus::kConverged) return validation;
 
-  IdentificationOptions all_kept = options;  // which touches belong together is settled
+  IdentificationOptions all_kept = options;  // the outliers are known
   all_kept.robust = false;
   validation.same_touches =
       repeat(from_calibrated(problem, result, kept_touches(problem, result, TouchRole::kFit)), all_kept);

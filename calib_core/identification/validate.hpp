@@ -7,20 +7,20 @@
 
 namespace calib {
 
-/// The same touches must give the calibrated arm again: no new error beyond this (metres and radians).
+/// The same touches must give the calibrated arm again: bound on the new errors (metres and radians).
 inline constexpr double kSameTouchesErrorMax = 1e-9;
 
-/// Another set repeats the identification only with so many touches more than parameters.
+/// A repetition with another set needs this many more touches than parameters.
 inline constexpr int kSpareTouchesMin = 5;
 
-/// The same columns identified anew from the calibrated arm.
+/// A second identification of the same columns that starts from the calibrated arm.
 struct Repetition {
   IdentificationStatus status = IdentificationStatus::kTooFewTouches;
-  std::string message;  // why there is none, one sentence, unless converged
+  std::string message;  // one sentence, unless converged: why there is none
   int touch_count = 0;
   int iteration_count = 0;
-  ArmVector new_errors = ArmVector::Zero();      // added to those of the calibrated arm
-  ArmVector std_new_errors = ArmVector::Zero();  // both sets taken for independent; 0 for the same touches
+  ArmVector new_errors = ArmVector::Zero();      // in addition to those of the calibrated arm
+  ArmVector std_new_errors = ArmVector::Zero();  // for independent sets; 0 for the same touches
 
   [[nodiscard]] bool done() const { return status == IdentificationStatus::kConverged; }
   [[nodiscard]] double new_error_max() const { return new_errors.lpNorm<Eigen::Infinity>(); }
@@ -37,13 +37,12 @@ struct Validation {
   }
 };
 
-/// Identifies, and when that converges, identifies again from the calibrated arm: with the same touches, and
-/// with another set. That is `other_touches` (their roles are not looked at), or the problem's held-out ones
-/// when there are none.
+/// Identifies; on convergence identifies again from the calibrated arm with the same touches and with another
+/// set: `other_touches` (of any role), or the held-out touches of the problem when there are none.
 Validation validate(const IdentificationProblem& problem, const IdentificationOptions& options,
                     std::span<const Touch> other_touches = {});
 
-/// The same of a result that is known already: identify()'s of this problem and these options.
+/// The same for a known `result` of identify() with this problem and these options.
 Validation validate(const IdentificationProblem& problem, const IdentificationOptions& options,
                     IdentificationResult result, std::span<const Touch> other_touches = {});
 

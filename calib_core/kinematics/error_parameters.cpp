@@ -1,6 +1,7 @@
 #include "calib_core/kinematics/error_parameters.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "calib_core/kinematics/gravity.hpp"
 
@@ -52,39 +53,38 @@ auto& value_of(Model& model, const ErrorParameter& parameter) {
     case ParameterKind::kR:
       return link.r_m;
     case ParameterKind::kBeta:
-      break;
+      return link.beta_rad;
   }
-  return link.beta_rad;
+  throw std::logic_error("parameter_value: no such kind");
 }
 
 JointVector torques_nm(const PreparedModel& prepared, const Chain& chain) {
   return prepared.has_masses ? gravity_torques_nm(prepared.model, chain) : JointVector::Zero();
 }
 
-/// Where a frame's theta stands among the parameters; its r follows. alpha d theta r beta of a frame lie
-/// together.
+/// Index of a frame's theta. The five parameters of a frame are contiguous: alpha d theta r beta.
 constexpr Eigen::Index theta_index(Eigen::Index frame) { return frame == 0 ? 0 : 5 * frame - 1; }
 
 /// Derivatives along a unit vector of a point fixed in R_last_frame.
 ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, const JointVector& torques,
                          const Eigen::Vector3d& point_m, int last_frame, const Eigen::Vector3d& direction) {
   ArmRow row = ArmRow::Zero();
-  // A turn about an axis through the frame's origin moves the point along `direction` by axis . lever, a
-  // shift along the axis by axis . direction. theta and r act on z of R_j; alpha and d of the next frame on x
-  // of R_j once turned by its beta; that beta on y of R_j.
+  // A rotation about an axis through the frame's origin moves the point along `direction` by axis . lever, a
+  // translation along the axis by axis . direction. theta and r act about and along z of R_j; alpha and d of
+  // the next frame about and along x of R_j rotated by its beta; that beta about y of R_j.
   for (Eigen::Index frame = 0; frame <= last_frame; ++frame) {
     const auto& here = chain.block_from_frame[static_cast<std::size_t>(frame)];
     const Eigen::Vector3d lever = (point_m - here.translation()).cross(direction);
     const auto x = here.linear().col(0), y = here.linear().col(1), z = here.linear().col(2);
-    const double z_turns = z.dot(lever), z_shifts = z.dot(direction);
+    const double about_z = z.dot(lever), along_z = z.dot(direction);
     const Eigen::Index theta = theta_index(frame);
-    row[theta] = z_turns;
-    row[theta + 1] = z_shifts;
+    row[theta] = about_z;
+    row[theta + 1] = along_z;
     if (frame == last_frame) break;
     const CosSin& beta = prepared.beta[static_cast<std::size_t>(frame) + 1];
     const Eigen::Index alpha = theta_index(frame + 1) - 2;
-    row[alpha] = beta.cos * x.dot(lever) - beta.sin * z_turns;
-    row[alpha + 1] = beta.cos * x.dot(direction) - beta.sin * z_shifts;
+    row[alpha] = beta.cos * x.dot(lever) - beta.sin * about_z;
+    row[alpha + 1] = beta.cos * x.dot(direction) - beta.sin * along_z;
     row[alpha + 4] = y.dot(lever);
   }
   for (int i = 0; i < kComplianceCount; ++i) {
@@ -99,8 +99,8 @@ ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, cons
 
 ParameterGroup ErrorParameter::group() const {
   if (frame == 7) return ParameterGroup::kTool;
-  // theta0 r0 alpha1 d1 theta1 r1 say where the block stands; beta1 is the same direction as these.
-  return frame <= 1 && kind != ParameterKind::kBeta ? ParameterGroup::kPlace : ParameterGroup::kArm;
+  // theta0 r0 alpha1 d1 theta1 r1 are the pose of the block; beta1 does not add a direction to them.
+  return frame <= 1 && kind != ParameterKind::kBeta ? ParameterGroup::kBlockPose : ParameterGroup::kArm;
 }
 
 std::string ErrorParameter::name() const { return std::string(kind_name(kind)) + std::to_string(frame); }

@@ -1,6 +1,6 @@
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,14 +13,14 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-/// Of joint 5: below it the wrist is straight.
+/// Sine of joint 5 below which the wrist is straight.
 constexpr double kStraightSine = 1e-12;
 
 const LinkParameters& link(const KinematicModel& model, int frame) {
   return model.links[static_cast<std::size_t>(frame)];
 }
 
-/// The nearest number of quarter turns, 0 to 3.
+/// The nearest multiple of a quarter turn, 0 to 3.
 int quarter_turns(double angle_rad) {
   const auto quarters = std::lround(angle_rad / (kTurn / 4.0));
   return static_cast<int>(((quarters % 4) + 4) % 4);
@@ -33,7 +33,7 @@ double side(double alpha_rad) { return quarter_turns(alpha_rad) == 1 ? 1.0 : -1.
 
 constexpr std::array kSideways{2, 4, 5, 6};  // frames
 
-bool is_of_this_family(const KinematicModel& model) {
+bool has_spherical_wrist(const KinematicModel& model) {
   constexpr double kSmallErrorRad = 0.1;
   const bool revolute =
       std::ranges::all_of(model.joint_types, [](JointType type) { return type == JointType::kRevolute; });
@@ -49,8 +49,8 @@ bool is_of_this_family(const KinematicModel& model) {
   return true;
 }
 
-/// Whether the closed form is the model's own.
-bool is_exactly_of_it(const PreparedModel& prepared) {
+/// Whether the closed form solves the model without a remaining error.
+bool closed_form_is_exact(const PreparedModel& prepared) {
   constexpr double kExactRad = 1e-12;
   const KinematicModel& model = prepared.model;
   for (int frame = 2; frame <= kJointCount; ++frame) {
@@ -70,7 +70,7 @@ Eigen::Vector3d unturned_x(double sine, const Eigen::Vector3d& v) {
   return {v.x(), sine * v.z(), -sine * v.y()};
 }
 
-/// (a + ib)(c - id): std::complex asks for infinities at each product.
+/// (a + ib)(c - id), without the checks for infinity of std::complex.
 std::complex<double> times_conjugate(const std::complex<double>& a, const std::complex<double>& b) {
   return {a.real() * b.real() + a.imag() * b.imag(), a.imag() * b.real() - a.real() * b.imag()};
 }
@@ -78,7 +78,7 @@ std::complex<double> times(const std::complex<double>& a, const std::complex<dou
   return times_conjugate(a, std::conj(b));
 }
 
-/// Every combination of the whole turns of the joints that lies in the ranges.
+/// Appends every combination of full joint turns that is within the ranges.
 void add_turns(const JointVector& joints, const JointVector& turns, const JointRanges& ranges,
                std::vector<JointVector>& found) {
   std::vector<JointVector> turned{joints};
@@ -119,7 +119,7 @@ std::optional<JointVector> solve_near(const PreparedModel& prepared, const Eigen
     const Vector6 error = pose_error(block_from_tip, chain.block_from_frame.back());
     if (!error.allFinite()) return std::nullopt;
     if (error.norm() < kErrorSmall) return joints;
-    // Damped in proportion to what is missing: pure Newton near the solution, bounded far from it.
+    // The damping vanishes with the error: Newton's method near the solution, bounded steps far from it.
     const auto jacobian = pose_jacobian(prepared.model, chain);
     const double damping = 1e-2 * error.squaredNorm();
     const Eigen::Matrix<double, 6, 6> normal =
@@ -134,11 +134,11 @@ std::optional<JointVector> solve_near(const PreparedModel& prepared, const Eigen
 
 }  // namespace
 
-struct InverseKinematics::Signs {
+struct InverseKinematics::Branch {
   double shoulder = 1.0, elbow = 1.0, wrist = 1.0;
 };
 
-struct InverseKinematics::Arm {
+struct InverseKinematics::ArmSolution {
   double theta1 = 0.0, theta2 = 0.0, theta3 = 0.0;
   std::complex<double> turn1, turn23;  // of theta1 and of theta2 + theta3
   bool shoulders_meet = false, elbows_meet = false;
@@ -149,9 +149,9 @@ InverseKinematics::InverseKinematics(const KinematicModel& model) : prepared_(pr
     offsets_rad_[joint] = std::remainder(link(model, joint + 1).theta_rad, kTurn);
     turns_[joint] = kTurn / std::abs(model.gains[static_cast<std::size_t>(joint)]);
   }
-  if (!is_of_this_family(model)) return;
-  kind_ = is_exactly_of_it(prepared_) ? Kind::kThis : Kind::kNearlyThis;
-  // Peel off what comes before joint 1's turn and after joint 6's.
+  if (!has_spherical_wrist(model)) return;
+  structure_ = closed_form_is_exact(prepared_) ? Structure::kSphericalWrist : Structure::kNearSphericalWrist;
+  // Constant transforms before the rotation of joint 1 and after the rotation of joint 6.
   LinkParameters until_joint1 = link(model, 1);
   until_joint1.theta_rad = 0.0;
   frame1_from_block_ = (frame_transform(link(model, 0)) * frame_transform(until_joint1)).inverse();
@@ -160,7 +160,7 @@ InverseKinematics::InverseKinematics(const KinematicModel& model) : prepared_(pr
   side4_ = side(link(model, 4).alpha_rad);
   side5_ = side(link(model, 5).alpha_rad);
   side6_ = side(link(model, 6).alpha_rad);
-  // Seen along joint 2's axis: the upper arm is (upper, 0), the forearm ends at Rot(theta_3) forearm.
+  // Seen along the axis of joint 2: the upper arm is (upper, 0), the forearm ends at Rot(theta_3) forearm.
   upper_m_ = link(model, 3).d_m;
   lateral_m_ = -side2_ * (link(model, 2).r_m + link(model, 3).r_m);
   const std::complex<double> forearm(link(model, 4).d_m, -side4_ * link(model, 4).r_m);
@@ -172,15 +172,15 @@ Eigen::Isometry3d InverseKinematics::frame1_from_wrist(const Eigen::Isometry3d& 
   return frame1_from_block_ * block_from_tip * tip_from_wrist_;
 }
 
-/// Joints 1 to 3 that put the wrist's centre at `wrist_m`, given in frame 1 at theta_1 = 0.
-std::optional<InverseKinematics::Arm> InverseKinematics::place_wrist(const Eigen::Vector3d& wrist_m,
-                                                                     const Signs& signs) const {
-  constexpr double kRounding = 1e-11;  // metres, and of the cosine: what counts as just in reach
-  Arm arm;
+/// Joints 1 to 3 that bring the wrist centre to `wrist_m`, given in frame 1 at theta_1 = 0.
+std::optional<InverseKinematics::ArmSolution> InverseKinematics::solve_arm(const Eigen::Vector3d& wrist_m,
+                                                                           const Branch& branch) const {
+  constexpr double kRounding = 1e-11;  // metres, and of the cosine: still within reach
+  ArmSolution arm;
   const double from_axis_squared = wrist_m.head<2>().squaredNorm();
   const double radial_squared = from_axis_squared - lateral_m_ * lateral_m_;
   if (!(radial_squared >= -kRounding * std::abs(lateral_m_))) return std::nullopt;
-  const double radial_m = signs.shoulder * std::sqrt(std::max(radial_squared, 0.0));
+  const double radial_m = branch.shoulder * std::sqrt(std::max(radial_squared, 0.0));
   arm.shoulders_meet = radial_m == 0.0;
   arm.turn1 = from_axis_squared > 0.0
                   ? times_conjugate({wrist_m.x(), wrist_m.y()}, {radial_m, lateral_m_}) / from_axis_squared
@@ -193,7 +193,7 @@ std::optional<InverseKinematics::Arm> InverseKinematics::place_wrist(const Eigen
   if (!(std::abs(cosine) <= 1.0 + kRounding)) return std::nullopt;
   const double sine = std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0));
   arm.elbows_meet = sine == 0.0;
-  const std::complex<double> bend(std::clamp(cosine, -1.0, 1.0), signs.elbow * sine);
+  const std::complex<double> bend(std::clamp(cosine, -1.0, 1.0), branch.elbow * sine);
   const std::complex<double> turn3 = times_conjugate(bend, forearm_direction_);
   const std::complex<double> reach_m = upper_m_ + forearm_m_ * bend;
   const std::complex<double> turn2 =
@@ -205,15 +205,16 @@ std::optional<InverseKinematics::Arm> InverseKinematics::place_wrist(const Eigen
   return arm;
 }
 
-/// All joints, joint positions: joints 4 to 6 give Rot(z,theta4) Rot(x,alpha5) Rot(z,theta5) Rot(x,alpha6)
-/// Rot(z,theta6) = what joints 1 to 3 leave of `turned`, R_6 in frame 1 at theta_1 = 0.
-JointVector InverseKinematics::turn_wrist(const Eigen::Matrix3d& turned, const Arm& arm, double wrist,
-                                          bool& is_straight) const {
+/// All joint positions. Joints 4 to 6 satisfy Rot(z,theta4) Rot(x,alpha5) Rot(z,theta5) Rot(x,alpha6)
+/// Rot(z,theta6) = the part of `frame1_from_frame6` (at theta_1 = 0) that joints 1 to 3 do not contribute.
+JointVector InverseKinematics::solve_wrist(const Eigen::Matrix3d& frame1_from_frame6, const ArmSolution& arm,
+                                           double wrist_sign, bool& is_straight) const {
   const auto seen_from_forearm = [&](const Eigen::Vector3d& v) {
     return unturned_x(side4_, unturned_z(arm.turn23, unturned_x(side2_, unturned_z(arm.turn1, v))));
   };
-  const Eigen::Vector3d x = seen_from_forearm(turned.col(0)), z = seen_from_forearm(turned.col(2));
-  const double sine = wrist * std::sqrt(z.x() * z.x() + z.y() * z.y());
+  const Eigen::Vector3d x = seen_from_forearm(frame1_from_frame6.col(0)),
+                        z = seen_from_forearm(frame1_from_frame6.col(2));
+  const double sine = wrist_sign * std::sqrt(z.x() * z.x() + z.y() * z.y());
   is_straight = std::abs(sine) < kStraightSine;
   const std::complex<double> turn4 =
       is_straight ? std::polar(1.0, offsets_rad_[3]) : std::complex<double>(z.x(), z.y()) * (side6_ / sine);
@@ -234,25 +235,25 @@ JointVector InverseKinematics::turn_wrist(const Eigen::Matrix3d& turned, const A
 
 Postures InverseKinematics::solve(const Eigen::Isometry3d& block_from_tip) const {
   Postures found;
-  if (kind_ == Kind::kAnother) return found;
+  if (structure_ == Structure::kUnsupported) return found;
   const Eigen::Isometry3d wanted = frame1_from_wrist(block_from_tip);
   for (const double shoulder : {1.0, -1.0}) {
     bool shoulders_meet = false;
     for (const double elbow : {1.0, -1.0}) {
-      const auto arm = place_wrist(wanted.translation(), {shoulder, elbow});
+      const auto arm = solve_arm(wanted.translation(), {shoulder, elbow});
       if (!arm) break;
       bool is_straight = false;
-      found.push_back(turn_wrist(wanted.linear(), *arm, 1.0, is_straight));
-      if (!is_straight) found.push_back(turn_wrist(wanted.linear(), *arm, -1.0, is_straight));
+      found.push_back(solve_wrist(wanted.linear(), *arm, 1.0, is_straight));
+      if (!is_straight) found.push_back(solve_wrist(wanted.linear(), *arm, -1.0, is_straight));
       shoulders_meet = arm->shoulders_meet;
       if (arm->elbows_meet) break;
     }
     if (shoulders_meet) break;
   }
-  return kind_ == Kind::kThis ? found : polished(found, block_from_tip);
+  return structure_ == Structure::kSphericalWrist ? found : refined(found, block_from_tip);
 }
 
-Postures InverseKinematics::polished(const Postures& rough, const Eigen::Isometry3d& block_from_tip) const {
+Postures InverseKinematics::refined(const Postures& rough, const Eigen::Isometry3d& block_from_tip) const {
   constexpr double kSameRad = 1e-7;
   Postures found;
   for (const JointVector& start : rough) {
@@ -265,7 +266,7 @@ Postures InverseKinematics::polished(const Postures& rough, const Eigen::Isometr
   return found;
 }
 
-InverseKinematics::Signs InverseKinematics::signs_of(const JointVector& joints) const {
+InverseKinematics::Branch InverseKinematics::branch_of(const JointVector& joints) const {
   const auto theta = [&](int joint) {
     return offsets_rad_[joint - 1] +
            prepared_.model.gains[static_cast<std::size_t>(joint - 1)] * joints[joint - 1];
@@ -279,13 +280,13 @@ InverseKinematics::Signs InverseKinematics::signs_of(const JointVector& joints) 
 
 std::optional<JointVector> InverseKinematics::follow(const Eigen::Isometry3d& block_from_tip,
                                                      const JointVector& start) const {
-  if (kind_ != Kind::kThis) return solve_near(prepared_, block_from_tip, start);
+  if (structure_ != Structure::kSphericalWrist) return solve_near(prepared_, block_from_tip, start);
   const Eigen::Isometry3d wanted = frame1_from_wrist(block_from_tip);
-  const Signs signs = signs_of(start);
-  const auto arm = place_wrist(wanted.translation(), signs);
+  const Branch branch = branch_of(start);
+  const auto arm = solve_arm(wanted.translation(), branch);
   if (!arm) return std::nullopt;
   bool is_straight = false;
-  JointVector joints = turn_wrist(wanted.linear(), *arm, signs.wrist, is_straight);
+  JointVector joints = solve_wrist(wanted.linear(), *arm, branch.wrist, is_straight);
   for (int joint = 0; joint < kJointCount; ++joint) {
     joints[joint] += turns_[joint] * std::nearbyint((start[joint] - joints[joint]) / turns_[joint]);
   }

@@ -12,10 +12,11 @@
 
 namespace calib {
 
-/// What is left between the pose asked for and the forward kinematics of a solution: metres, radians.
+/// Bound on the difference between the requested pose and the forward kinematics of a solution: metres,
+/// radians.
 inline constexpr double kPoseErrorMax = 1e-9;
 
-/// The postures of one pose: one a branch (shoulder, elbow, wrist), on the stack.
+/// The postures that reach one pose, at most one per branch (shoulder, elbow, wrist). Uses no heap memory.
 class Postures {
  public:
   static constexpr std::size_t kMax = 8;
@@ -32,42 +33,45 @@ class Postures {
   std::size_t size_ = 0;
 };
 
-/// Joint vectors that bring R_7 to a pose, for six revolute joints that end in a spherical wrist: alpha2 and
-/// alpha4 to alpha6 a quarter turn, alpha3 zero, offsets d2 r2 d3 r3 d4 r4, any frames 0, 1 and 7. A model
-/// that is off this structure by small errors is solved in closed form without them and polished by
-/// solve_near. Closed form: Craig, Introduction to Robotics, chapter 4. Holds what no pose changes; takes no
-/// memory from the heap after it is made.
+/// Joint vectors that bring R_7 to a pose, for an arm of six revolute joints with a spherical wrist: alpha2
+/// and alpha4 to alpha6 are a quarter turn, alpha3 is 0, offsets d2 r2 d3 r3 d4 r4, frames 0, 1 and 7
+/// arbitrary. Prismatic joints are not supported. A model with small errors on top of this structure is
+/// solved in closed form without the errors, then refined by solve_near. Closed form: Craig, Introduction to
+/// Robotics, chapter 4. No member function allocates heap memory.
 class InverseKinematics {
  public:
   explicit InverseKinematics(const KinematicModel& model);
 
-  /// Every branch, each joint within half a turn of 0; ranges are not looked at. Branches that meet (wrist or
-  /// elbow straight, the wrist's centre as near to joint 1's axis as it can be) come once; with the wrist
-  /// straight joint 4 is put at 0. Empty when the pose is out of reach or the arm is of another kind.
+  /// All branches, each joint within half a turn of 0; joint limits are not checked. Branches that coincide
+  /// (straight wrist or elbow, wrist centre at its smallest distance from the axis of joint 1) are returned
+  /// once; with a straight wrist joint 4 is 0. Empty when the pose is out of reach or the arm has another
+  /// structure.
   [[nodiscard]] Postures solve(const Eigen::Isometry3d& block_from_tip) const;
 
-  /// The posture of the same branch as `start` and within half a turn of it, joint by joint; nothing out of
-  /// reach. For a model that is off the structure, Newton from `start`: see solve_near.
+  /// The posture on the same branch as `start`, each joint within half a turn of it; nothing when the pose is
+  /// out of reach. A model without the exact structure is solved by Newton's method from `start`: see
+  /// solve_near.
   [[nodiscard]] std::optional<JointVector> follow(const Eigen::Isometry3d& block_from_tip,
                                                   const JointVector& start) const;
 
-  /// What a whole turn of each joint's axis is in joint positions, radians.
+  /// A full turn of each joint axis in joint positions, radians.
   [[nodiscard]] const JointVector& turns() const { return turns_; }
 
  private:
-  enum class Kind { kAnother, kNearlyThis, kThis };
-  struct Signs;  // +1 or -1 each: which branch
-  struct Arm;    // joints 1 to 3 of one
+  enum class Structure { kUnsupported, kNearSphericalWrist, kSphericalWrist };
+  struct Branch;       // one sign each for shoulder, elbow and wrist
+  struct ArmSolution;  // joints 1 to 3 of one branch
 
   [[nodiscard]] Eigen::Isometry3d frame1_from_wrist(const Eigen::Isometry3d& block_from_tip) const;
-  [[nodiscard]] std::optional<Arm> place_wrist(const Eigen::Vector3d& wrist_m, const Signs& signs) const;
-  [[nodiscard]] JointVector turn_wrist(const Eigen::Matrix3d& turned, const Arm& arm, double wrist,
-                                       bool& is_straight) const;
-  [[nodiscard]] Signs signs_of(const JointVector& joints) const;
-  [[nodiscard]] Postures polished(const Postures& rough, const Eigen::Isometry3d& block_from_tip) const;
+  [[nodiscard]] std::optional<ArmSolution> solve_arm(const Eigen::Vector3d& wrist_m,
+                                                     const Branch& branch) const;
+  [[nodiscard]] JointVector solve_wrist(const Eigen::Matrix3d& frame1_from_frame6, const ArmSolution& arm,
+                                        double wrist_sign, bool& is_straight) const;
+  [[nodiscard]] Branch branch_of(const JointVector& joints) const;
+  [[nodiscard]] Postures refined(const Postures& rough, const Eigen::Isometry3d& block_from_tip) const;
 
   PreparedModel prepared_;
-  Kind kind_ = Kind::kAnother;
+  Structure structure_ = Structure::kUnsupported;
   Eigen::Isometry3d frame1_from_block_, tip_from_wrist_;
   double side2_ = 0.0, side4_ = 0.0, side5_ = 0.0, side6_ = 0.0;  // sines of the quarter turns
   double upper_m_ = 0.0, lateral_m_ = 0.0, forearm_m_ = 0.0;
@@ -75,12 +79,12 @@ class InverseKinematics {
   JointVector offsets_rad_, turns_;
 };
 
-/// The same with the whole turns that fit into the joint ranges, in a list.
+/// All branches with all full turns that are within the joint ranges.
 std::vector<JointVector> inverse_kinematics(const KinematicModel& model, const JointRanges& ranges,
                                             const Eigen::Isometry3d& block_from_tip);
 
-/// Newton from a near start, for any model: the joint vector that brings R_7 to the pose, or nothing when it
-/// does not converge, as at a singular posture or out of reach. Ranges are not checked.
+/// Newton's method from a near start, for any model: the joint vector that brings R_7 to the pose, or nothing
+/// when it does not converge (singular posture, out of reach). Joint limits are not checked.
 std::optional<JointVector> solve_near(const KinematicModel& model, const Eigen::Isometry3d& block_from_tip,
                                       const JointVector& start);
 

@@ -9,15 +9,16 @@ namespace calib {
 namespace {
 
 CosSin cos_sin(double angle_rad) {
-  if (angle_rad == 0.0) return {};  // most angles of a nominal arm: worth the question
+  if (angle_rad == 0.0) return {};  // most angles of a nominal arm are 0
   return {std::cos(angle_rad), std::sin(angle_rad)};
 }
 
-/// The chain of a rigid arm, each step in the columns of the frame before: 4-vectors, two packets each.
-void place_frames(const PreparedModel& prepared, const PreparedJoints& joints, Chain& chain) {
+/// The chain of a rigid arm. Each step changes the columns of the previous frame; 4-vectors, as they fill two
+/// SIMD registers each.
+void compute_rigid_chain(const PreparedModel& prepared, const PreparedJoints& joints, Chain& chain) {
   Eigen::Vector4d x = Eigen::Vector4d::UnitX(), y = Eigen::Vector4d::UnitY(), z = Eigen::Vector4d::UnitZ();
   Eigen::Vector4d origin_m = Eigen::Vector4d::UnitW();
-  // Turns the first axis towards the second.
+  // Rotates the first axis towards the second.
   const auto turn = [](const CosSin& angle, Eigen::Vector4d& first, Eigen::Vector4d& second) {
     const Eigen::Vector4d turned = angle.cos * first + angle.sin * second;
     second = angle.cos * second - angle.sin * first;
@@ -57,7 +58,7 @@ Eigen::Isometry3d frame_transform(const LinkParameters& link) {
   const double cb = std::cos(link.beta_rad), sb = std::sin(link.beta_rad);
   const double ct = std::cos(link.theta_rad), st = std::sin(link.theta_rad);
 
-  // Rot(y,beta) Rot(x,alpha), column by column, then Rot(z,theta) mixes the first two.
+  // Rot(y,beta) Rot(x,alpha) by columns; then Rot(z,theta) combines the first two.
   const Eigen::Vector3d x(cb, 0.0, -sb);
   const Eigen::Vector3d y(sb * sa, ca, cb * sa);
   const Eigen::Vector3d z(sb * ca, -sa, cb * ca);
@@ -94,11 +95,11 @@ PreparedJoints prepare(const std::array<double, kJointCount>& gains, const Joint
 
 Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints) {
   Chain chain;
-  place_frames(prepared, joints, chain);
+  compute_rigid_chain(prepared, joints, chain);
   if (prepared.is_compliant) {
     const Eigen::Map<const JointVector> compliance(prepared.model.compliance_rad_per_nm.data());
     const JointVector moved = compliance.cwiseProduct(gravity_torques_nm(prepared.model, chain));
-    place_frames(prepared, prepare(prepared.model.gains, joints.joints + moved), chain);
+    compute_rigid_chain(prepared, prepare(prepared.model.gains, joints.joints + moved), chain);
   }
   return chain;
 }

@@ -7,8 +7,8 @@
 
 namespace calib {
 
-/// Frames R_0 to R_7: 0 places the arm in the block's frame R_-1, 1 to 6 are the joints, 7 ends in the centre
-/// of the stylus ball.
+/// Frames R_0 to R_7. R_0 is the arm's base in the block's frame R_-1, R_1 to R_6 belong to the joints, the
+/// origin of R_7 is the centre of the stylus ball.
 inline constexpr int kFrameCount = 8;
 
 /// Constant parameters of one frame (Khalil and Kleinfinger's modified DH, with Hayati's beta).
@@ -24,7 +24,7 @@ struct LinkParameters {
 
 enum class JointType { kRevolute, kPrismatic };
 
-/// What hangs on one frame.
+/// The mass that moves with one frame.
 struct PointMass {
   double mass_kg = 0.0;
   Eigen::Vector3d center_in_frame_m = Eigen::Vector3d::Zero();
@@ -34,22 +34,22 @@ struct KinematicModel {
   std::array<LinkParameters, kFrameCount> links{};
   std::array<JointType, kJointCount> joint_types{};                     // of frames 1 to 6
   std::array<double, kJointCount> gains{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};  // K_j of eq. 1
-  /// Gravity turns a revolute joint by compliance * moment; see gravity_torques_nm(). All 0: a rigid arm.
-  std::array<PointMass, kFrameCount> masses{};  // that of frame 0 does not move
+  /// Gravity deflects a revolute joint by compliance * torque; see gravity_torques_nm(). All 0: a rigid arm.
+  std::array<PointMass, kFrameCount> masses{};  // the mass of frame 0 does not move
   std::array<double, kJointCount> compliance_rad_per_nm{};
-  /// Unit vector in R_1, which turns with joint 1: it has to lie along joint 1's axis (an arm that stands or
-  /// hangs).
+  /// The direction of gravity, a unit vector in R_1. R_1 turns with joint 1, so the vector has to be parallel
+  /// to the axis of joint 1: the arm stands on the floor or hangs from the ceiling.
   Eigen::Vector3d down_in_frame_1{0.0, 0.0, -1.0};
 };
 
-/// Every frame of the arm in the block's frame R_-1.
+/// The pose of every frame of the arm in the block's frame R_-1.
 struct Chain {
   std::array<Eigen::Isometry3d, kFrameCount> block_from_frame;
 
   [[nodiscard]] Eigen::Vector3d tip_in_block_m() const { return block_from_frame.back().translation(); }
 };
 
-/// Transform of one frame in the one before it.
+/// Pose of a frame in the previous frame.
 Eigen::Isometry3d frame_transform(const LinkParameters& link);
 
 struct CosSin {
@@ -57,42 +57,43 @@ struct CosSin {
   double sin = 0.0;
 };
 
-/// A model with all worked out that no joint changes: for many joint vectors.
+/// A model with the sines and cosines of its constant angles. Compute it once to evaluate many joint vectors.
 struct PreparedModel {
   KinematicModel model;
   std::array<CosSin, kFrameCount> alpha;
   std::array<CosSin, kFrameCount> beta;
-  std::array<CosSin, kFrameCount> theta;  // at a joint, its offset
+  std::array<CosSin, kFrameCount> theta;  // at a joint, of its offset
   bool has_masses = false;
   bool is_compliant = false;
 };
 
 PreparedModel prepare(const KinematicModel& model);
 
-/// All frames at a joint vector. A compliant joint stands where gravity, acting on the undeflected chain,
-/// takes it.
+/// All frames at a joint vector. A compliant joint is deflected by the torque that gravity exerts on the
+/// undeflected chain.
 Chain forward_chain(const PreparedModel& prepared, const JointVector& joints);
 Chain forward_chain(const KinematicModel& model, const JointVector& joints);
 
-/// A joint vector with all worked out that no error of the arm changes: for many models of one arm.
+/// A joint vector with the sines and cosines of its joint angles. Compute it once to evaluate many models of
+/// one arm.
 struct PreparedJoints {
   JointVector joints;
-  std::array<CosSin, kJointCount> turned;  // by gain * position; of a prismatic joint, not used
+  std::array<CosSin, kJointCount> turned;  // of gain * position; not used for a prismatic joint
 };
 
 PreparedJoints prepare(const std::array<double, kJointCount>& gains, const JointVector& joints);
 
-/// The same chain; `joints` must have been prepared with the model's gains.
+/// As above; `joints` must have been prepared with the gains of the model.
 Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints);
 
-/// R_7 in R_-1; its origin is the centre of the stylus ball.
+/// Pose of R_7 in R_-1; its origin is the centre of the stylus ball.
 Eigen::Isometry3d forward_kinematics(const KinematicModel& model, const JointVector& joints);
 
 /// Bound on |forward_kinematics - reference| for this size of arm; see tests/data/reference_poses.csv.
 inline constexpr double kPositionErrorMaxMetres = 1e-9;
 
-/// d tip / d joint, 3 x 6, in R_-1: metres per radian (per metre for a prismatic joint). Leaves out that the
-/// moment of gravity changes too: a relative error of the order of the deflection, in radians.
+/// d tip / d joint, 3 x 6, in R_-1: metres per radian (per metre for a prismatic joint). The change of the
+/// gravity torque is neglected: a relative error of the order of the deflection in radians.
 Eigen::Matrix<double, 3, kJointCount> tip_jacobian(const KinematicModel& model, const Chain& chain);
 
 }  // namespace calib

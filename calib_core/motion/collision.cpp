@@ -6,30 +6,30 @@
 
 namespace calib {
 
-Segment place(const Capsule& body, const Chain& chain) {
+Segment axis_in_block(const Capsule& body, const Chain& chain) {
   const Eigen::Isometry3d& block_from_frame = chain.block_from_frame[static_cast<std::size_t>(body.frame)];
   return {block_from_frame * body.from_m, block_from_frame * body.to_m};
 }
 
 Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box) {
-  const Eigen::Vector3d way = segment.to_m - segment.from_m;
-  // From the box to a point: how far the point is outside it, axis by axis.
+  const Eigen::Vector3d span = segment.to_m - segment.from_m;
+  // Vector from the box to a point of the segment.
   const auto outside = [&](double t) -> Eigen::Vector3d {
-    const Eigen::Vector3d point = segment.from_m + t * way;
+    const Eigen::Vector3d point = segment.from_m + t * span;
     return point - point.cwiseMax(box.min_m).cwiseMin(box.max_m);
   };
-  // Half the derivative of the squared distance: continuous, never falling, linear between the places where
-  // the segment crosses one of the box's six planes. Its zero is the nearest point.
-  const auto slope = [&](double t) { return outside(t).dot(way); };
+  // Half the derivative of the squared distance: continuous, monotonic, and linear between the points where
+  // the segment crosses one of the six planes of the box. Its root is the nearest point.
+  const auto slope = [&](double t) { return outside(t).dot(span); };
   if (slope(0.0) >= 0.0) return outside(0.0);
   if (slope(1.0) <= 0.0) return outside(1.0);
 
   double before = 0.0, after = 1.0;
   double slope_before = slope(0.0), slope_after = slope(1.0);
   for (int axis = 0; axis < 3; ++axis) {
-    if (way[axis] == 0.0) continue;
+    if (span[axis] == 0.0) continue;
     for (const double plane : {box.min_m[axis], box.max_m[axis]}) {
-      const double t = (plane - segment.from_m[axis]) / way[axis];
+      const double t = (plane - segment.from_m[axis]) / span[axis];
       if (!(t > before && t < after)) continue;
       const double here = slope(t);
       (here < 0.0 ? before : after) = t;
@@ -45,8 +45,7 @@ double segment_box_distance_m(const Segment& segment, const Box& box) {
 }
 
 bool is_apart(const Segment& segment, const Box& box, double distance_m) {
-  const auto before =
-      segment.from_m.cwiseMax(segment.to_m) - box.min_m;  // negative: all of it before the box
+  const auto before = segment.from_m.cwiseMax(segment.to_m) - box.min_m;  // negative: entirely before the box
   const auto behind = segment.from_m.cwiseMin(segment.to_m) - box.max_m;
   if (std::max(behind.maxCoeff(), -before.minCoeff()) >= distance_m) return true;
   return segment_box_distance_m(segment, box) >= distance_m;
@@ -64,7 +63,7 @@ double segment_distance_m(const Eigen::Vector3d& from_a, const Eigen::Vector3d& 
   const auto along = [](double numerator, double length_squared) {
     return length_squared > 0.0 ? std::clamp(numerator / length_squared, 0.0, 1.0) : 0.0;
   };
-  // On skew lines the common perpendicular, clamped to a; then the point of b nearest to it, and once more a.
+  // The common perpendicular of the lines, clamped to a; then the nearest point of b; then that of a again.
   const double determinant = aa * bb - ab * ab;
   const double first =
       determinant > 0.0 ? std::clamp((ab * apart.dot(b) - bb * apart.dot(a)) / determinant, 0.0, 1.0) : 0.0;
@@ -74,7 +73,7 @@ double segment_distance_m(const Eigen::Vector3d& from_a, const Eigen::Vector3d& 
 }
 
 bool is_apart(const Segment& a, const Segment& b, double distance_m) {
-  // Of spheres around them: |a| + |b| + 2 distance at most, twice as large.
+  // Bounding spheres: both sides of the comparison are twice the distance.
   const double lengths_m = (a.to_m - a.from_m).norm() + (b.to_m - b.from_m).norm();
   const double needed_m = lengths_m + 2.0 * distance_m;
   if ((a.from_m + a.to_m - b.from_m - b.to_m).squaredNorm() >= needed_m * needed_m) return true;
@@ -82,11 +81,11 @@ bool is_apart(const Segment& a, const Segment& b, double distance_m) {
 }
 
 std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain, double clearance_m) {
-  std::vector<Segment> placed;
-  placed.reserve(scene.bodies.size());
+  std::vector<Segment> axes;
+  axes.reserve(scene.bodies.size());
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const Capsule& body = scene.bodies[i];
-    const Segment& here = placed.emplace_back(place(body, chain));
+    const Segment& here = axes.emplace_back(axis_in_block(body, chain));
     for (const Box& obstacle : scene.obstacles) {
       if (is_apart(here, obstacle, body.radius_m + clearance_m + body.margin_m)) continue;
       return Clash{body.name, obstacle.name, segment_box_distance_m(here, obstacle) - body.radius_m};
@@ -95,9 +94,9 @@ std::optional<Clash> find_clash(const CollisionScene& scene, const Chain& chain,
       const Capsule& other = scene.bodies[j];
       const double radii_m = body.radius_m + other.radius_m;
       if (are_neighbours(body, other)) continue;
-      if (is_apart(here, placed[j], radii_m + self_clearance_m(clearance_m))) continue;
+      if (is_apart(here, axes[j], radii_m + self_clearance_m(clearance_m))) continue;
       return Clash{body.name, other.name,
-                   segment_distance_m(here.from_m, here.to_m, placed[j].from_m, placed[j].to_m) - radii_m};
+                   segment_distance_m(here.from_m, here.to_m, axes[j].from_m, axes[j].to_m) - radii_m};
     }
   }
   return std::nullopt;

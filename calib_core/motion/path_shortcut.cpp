@@ -7,38 +7,38 @@
 namespace calib {
 namespace {
 
-/// A posture is drawn by half of its way, a quarter and so on: each costs two looks at moves.
-constexpr int kDrawsMax = 3;
+/// A posture is moved by a half, a quarter and so on of its distance; each try checks two moves.
+constexpr int kTriesMax = 3;
 
-JointVector draw(const WayJudge& judge, const JointVector& before, const JointVector& loose,
-                 const JointVector& behind) {
-  const JointVector whole = nearest_on_move(before, behind, loose) - loose;
-  JointVector drawn = loose;
+JointVector move_closer(const MoveCriteria& criteria, const JointVector& before, const JointVector& posture,
+                        const JointVector& after) {
+  const JointVector whole = nearest_on_move(before, after, posture) - posture;
+  JointVector moved = posture;
   double step = 0.5;
-  for (int i = 0; i < kDrawsMax; ++i, step /= 2.0) {
-    const JointVector tried = drawn + step * whole;
-    if (judge.is_clear(before, tried) && judge.is_clear(tried, behind)) drawn = tried;
+  for (int i = 0; i < kTriesMax; ++i, step /= 2.0) {
+    const JointVector tried = moved + step * whole;
+    if (criteria.is_clear(before, tried) && criteria.is_clear(tried, after)) moved = tried;
   }
-  return drawn;
+  return moved;
 }
 
-double way_s(const WayJudge& judge, const std::vector<JointVector>& way) {
+double path_s(const MoveCriteria& criteria, const std::vector<JointVector>& path) {
   double sum = 0.0;
-  for (std::size_t i = 1; i < way.size(); ++i) sum += judge.seconds(way[i - 1], way[i]);
+  for (std::size_t i = 1; i < path.size(); ++i) sum += criteria.seconds(path[i - 1], path[i]);
   return sum;
 }
 
 }  // namespace
 
-std::vector<JointVector> tighten_way(const WayJudge& judge, const std::vector<JointVector>& way) {
-  if (way.size() < 3) return way;
-  std::vector<JointVector> tight{way.front()};
-  for (std::size_t i = 1; i + 1 < way.size(); ++i) {
-    if (judge.is_clear(tight.back(), way[i + 1])) continue;
-    tight.push_back(draw(judge, tight.back(), way[i], way[i + 1]));
+std::vector<JointVector> shortcut_path(const MoveCriteria& criteria, const std::vector<JointVector>& path) {
+  if (path.size() < 3) return path;
+  std::vector<JointVector> shorter{path.front()};
+  for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+    if (criteria.is_clear(shorter.back(), path[i + 1])) continue;
+    shorter.push_back(move_closer(criteria, shorter.back(), path[i], path[i + 1]));
   }
-  tight.push_back(way.back());
-  return way_s(judge, tight) < way_s(judge, way) ? tight : way;
+  shorter.push_back(path.back());
+  return path_s(criteria, shorter) < path_s(criteria, path) ? shorter : path;
 }
 
 }  // namespace calib

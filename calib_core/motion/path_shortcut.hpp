@@ -7,15 +7,15 @@
 
 namespace calib {
 
-/// What a way is judged by: whether a straight joint move is clear, and how long it takes.
-struct WayJudge {
+/// The criteria of a path: whether a straight joint move is clear, and its time.
+struct MoveCriteria {
   std::function<bool(const JointVector& from, const JointVector& to)> is_clear;
   std::function<double(const JointVector& from, const JointVector& to)> seconds;
 };
 
-/// A shorter way with the same ends and no more postures: each one in between in turn is drawn towards the
-/// straight move between its neighbours, as far as both its own moves stay clear, or left out where that move
-/// is clear. Both ends belong to `way`, which must be clear; so is the one returned, and it takes no longer.
-std::vector<JointVector> tighten_way(const WayJudge& judge, const std::vector<JointVector>& way);
+/// Shortens a path: each intermediate posture in turn is left out when the straight move between its
+/// neighbours is clear, else moved towards that move as far as both adjacent moves stay clear. `path`
+/// includes both ends and must be clear. The result has the same ends, is clear and takes no longer.
+std::vector<JointVector> shortcut_path(const MoveCriteria& criteria, const std::vector<JointVector>& path);
 
 }  // namespace calib

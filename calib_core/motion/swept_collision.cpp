@@ -12,20 +12,20 @@ double distance_m(const Segment& a, const Segment& b) {
   return segment_distance_m(a.from_m, a.to_m, b.from_m, b.to_m);
 }
 
-/// Bounds on where a body's middle line may be, seen from a frame, in any posture.
+/// Bounds on the position of a body's axis relative to the joints after a frame, in any posture.
 struct Reach {
-  JointVector levers_m = JointVector::Zero();   // distance from each joint's axis; 1 for a sliding joint
+  JointVector levers_m = JointVector::Zero();   // distance from each joint's axis; 1 for a prismatic joint
   JointVector origins_m = JointVector::Zero();  // ... from each joint's origin
 };
 
 Reach reach_of(const KinematicModel& model, const Capsule& body, int from_frame) {
-  // The frames behind the last joint do not turn: there the ends are known exactly.
+  // The frames after the last joint are fixed to it: the ends are known exactly there.
   int frame = body.frame;
   std::array<Eigen::Vector3d, 2> ends_m{body.from_m, body.to_m};
   for (; frame > kJointCount; --frame) {
     for (auto& end_m : ends_m) end_m = frame_transform(model.links[static_cast<std::size_t>(frame)]) * end_m;
   }
-  // The lever is a bound on the distance from the joint's axis: the distance itself at the body's own joint.
+  // A bound on the distance from the joint's axis; exact at the body's own joint.
   double lever_m = std::max(ends_m[0].head<2>().norm(), ends_m[1].head<2>().norm());
   double from_origin_m = std::max(ends_m[0].norm(), ends_m[1].norm());
   Reach reach;
@@ -42,15 +42,16 @@ Reach reach_of(const KinematicModel& model, const Capsule& body, int from_frame)
 
 }  // namespace
 
-/// How the arm moves at one place of a move; times are shares of the move.
+/// The motion of the arm at one point of a move; time runs from 0 to 1 over the move.
 struct SweptCollision::Motion {
-  JointVector moved;                                  // of each axis, all in all, positive
-  JointVector turned_until;                           // moved by the axes before each and by all of them
-  std::array<Eigen::Vector3d, kFrameCount> turn, go;  // of each frame: angular velocity, that of its origin
+  JointVector moved;         // absolute motion of each axis
+  JointVector turned_until;  // sum of `moved` over the previous axes and over all axes
+  std::array<Eigen::Vector3d, kFrameCount> turn,
+      go;  // of each frame: angular velocity, velocity of its origin
   std::array<Eigen::Vector3d, kFrameCount> origin_m;
 
   Motion(const KinematicModel& model, const JointVector& move);
-  void look_at(const KinematicModel& model, const JointVector& move, const Chain& chain);
+  void evaluate(const KinematicModel& model, const JointVector& move, const Chain& chain);
 };
 
 SweptCollision::Motion::Motion(const KinematicModel& model, const JointVector& move) {
@@ -63,8 +64,8 @@ SweptCollision::Motion::Motion(const KinematicModel& model, const JointVector& m
   turned_until.array() += before;
 }
 
-void SweptCollision::Motion::look_at(const KinematicModel& model, const JointVector& move,
-                                     const Chain& chain) {
+void SweptCollision::Motion::evaluate(const KinematicModel& model, const JointVector& move,
+                                      const Chain& chain) {
   turn[0] = go[0] = Eigen::Vector3d::Zero();
   origin_m[0] = chain.block_from_frame[0].translation();
   for (std::size_t frame = 1; frame < kFrameCount; ++frame) {
@@ -107,52 +108,51 @@ Clash SweptCollision::clash(const Pair& pair, double gap_m) const {
   return {body.name, other.name, gap_m - body.radius_m - other.radius_m};
 }
 
-/// How far the move may go on with the body off this obstacle. The obstacle lies behind the plane through its
-/// nearest point whose normal is the gap's; the body is `gap` before it, and both its ends have to use that
-/// up.
-double SweptCollision::safe_share(const Pair& pair, const Motion& motion, const Segment& body,
-                                  const Eigen::Vector3d& gap_m) const {
-  const double apart_m = gap_m.norm(), spare_m = apart_m - pair.spent_m;
+/// The time for which the body certainly stays clear of this obstacle. The obstacle lies behind the plane
+/// through its nearest point with the normal of the gap; both ends of the body have to travel the gap first.
+double SweptCollision::safe_step(const Pair& pair, const Motion& motion, const Segment& body,
+                                 const Eigen::Vector3d& gap_m) const {
+  const double apart_m = gap_m.norm(), spare_m = apart_m - pair.required_m;
   const auto frame = static_cast<std::size_t>(scene_.bodies[pair.body].frame);
   const Eigen::Vector3d& origin_m = motion.origin_m[frame];
   const auto leaving = [&](const Eigen::Vector3d& end_m) {
     return gap_m.dot(motion.go[frame] + motion.turn[frame].cross(end_m - origin_m)) / apart_m;
   };
   const double speed = std::min(leaving(body.from_m), leaving(body.to_m));
-  // |d2 p / dt2| of a point: each joint j's turn u_j acts on the distance from its origin, which itself turns
-  // with the joints before j, twice (its axis and its lever), and with those from j on, once.
+  // Bound on |d2 p / dt2| of a point: the rotation of joint j acts on the lever from its origin. The
+  // rotations of the previous joints change axis and lever, those from j on the lever only.
   const double acceleration = motion.moved.cwiseProduct(pair.reaches_m).dot(motion.turned_until);
   return (speed + std::sqrt(speed * speed + 2.0 * acceleration * spare_m)) / acceleration;
 }
 
 std::optional<Clash> SweptCollision::find_clash(const JointVector& from, const JointVector& to) const {
-  // Both ends of a step are clear, so a step of twice the allowed error goes no deeper than the error.
+  // Both ends of a step are clear, so a step of twice the allowed error penetrates by at most the error.
   constexpr double kStepMinMetres = 2.0 * kSweptErrorMaxMetres;
   constexpr double kEarly = 0.5;
   const JointVector move = to - from;
   Motion motion(prepared_.model, move);
-  std::vector<Segment> placed(scene_.bodies.size());
-  // Shares of the move at which each pair is looked at next, at the latest, and if there is a look anyhow.
+  std::vector<Segment> axes(scene_.bodies.size());
+  // Times when each pair has to be checked next, and when it is checked if another pair is due.
   std::vector<double> due(pairs_.size(), 0.0), early(pairs_.size(), 0.0);
   for (double share = 0.0; share <= 1.0;) {
     const Chain chain = forward_chain(prepared_, from + share * move);
-    motion.look_at(prepared_.model, move, chain);
-    for (std::size_t i = 0; i < placed.size(); ++i) placed[i] = place(scene_.bodies[i], chain);
+    motion.evaluate(prepared_.model, move, chain);
+    for (std::size_t i = 0; i < axes.size(); ++i) axes[i] = axis_in_block(scene_.bodies[i], chain);
     double next = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       if (early[i] <= share) {
         const Pair& pair = pairs_[i];
-        const Segment& body = placed[pair.body];
+        const Segment& body = axes[pair.body];
         const Eigen::Vector3d box_gap_m = pair.is_obstacle
                                               ? segment_box_gap_m(body, scene_.obstacles[pair.other])
                                               : Eigen::Vector3d::Zero();
-        const double apart_m = pair.is_obstacle ? box_gap_m.norm() : distance_m(body, placed[pair.other]);
-        const double spare_m = apart_m - pair.spent_m;
-        if (!(spare_m >= 0.0)) return clash(pair, apart_m);  // not-a-number is not clear either
+        const double apart_m = pair.is_obstacle ? box_gap_m.norm() : distance_m(body, axes[pair.other]);
+        const double spare_m = apart_m - pair.required_m;
+        if (!(spare_m >= 0.0)) return clash(pair, apart_m);  // NaN is not clear either
         const double approach_m = pair.levers_m.dot(motion.moved);
         double step = spare_m / approach_m;
         if (pair.is_obstacle && apart_m > 0.0) {
-          step = std::max(step, safe_share(pair, motion, body, box_gap_m));
+          step = std::max(step, safe_step(pair, motion, body, box_gap_m));
         }
         due[i] = share + std::max(step, kStepMinMetres / approach_m);
         if (step < kStepMinMetres / approach_m && share < 1.0) due[i] = std::min(due[i], 1.0);
@@ -165,8 +165,8 @@ std::optional<Clash> SweptCollision::find_clash(const JointVector& from, const J
   return std::nullopt;
 }
 
-std::optional<Clash> find_clash_on_way(const CollisionScene& scene, const KinematicModel& model,
-                                       const JointVector& from, const JointVector& to, double clearance_m) {
+std::optional<Clash> find_clash_on_move(const CollisionScene& scene, const KinematicModel& model,
+                                        const JointVector& from, const JointVector& to, double clearance_m) {
   return SweptCollision(scene, model, clearance_m).find_clash(from, to);
 }
 

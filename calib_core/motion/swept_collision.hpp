@@ -10,15 +10,14 @@
 
 namespace calib {
 
-/// How much nearer than the clearance two things may come between the postures that find_clash_on_way looks
-/// at.
+/// How much closer than the clearance two objects may come between the postures that are checked.
 inline constexpr double kSweptErrorMaxMetres = 1e-3;
 
-/// Looks for what is too near on straight joint moves of one arm in one scene: find_clash on the whole of a
-/// move, both ends included. Conservative advancement: a pair is looked at again when the joints have gone
-/// far enough to use up the distance it had (Mirtich, Impulse-based dynamic simulation of rigid body systems,
-/// 1996), counted along the normal at the nearest points where speed and acceleration allow more; so nothing
-/// deeper than kSweptErrorMaxMetres is missed.
+/// Collision check of straight joint moves: find_clash on the whole move, both ends included. Conservative
+/// advancement (Mirtich, Impulse-based dynamic simulation of rigid body systems, 1996): a pair is checked
+/// again when the joints may have moved far enough to close its distance. For obstacles, bounds on speed and
+/// acceleration along the normal at the nearest points allow longer steps. Nothing deeper than
+/// kSweptErrorMaxMetres is missed.
 class SweptCollision {
  public:
   SweptCollision(const CollisionScene& scene, const KinematicModel& model, double clearance_m);
@@ -26,19 +25,19 @@ class SweptCollision {
   [[nodiscard]] std::optional<Clash> find_clash(const JointVector& from, const JointVector& to) const;
 
  private:
-  /// Two things that may meet; indices into the scene.
+  /// Two objects that may collide; indices into the scene.
   struct Pair {
     std::size_t body = 0;
     std::size_t other = 0;  // an obstacle, or another body
     bool is_obstacle = false;
-    double spent_m = 0.0;   // radii and clearance
-    JointVector levers_m;   // metres that they come nearer at most for each radian of each joint
-    JointVector reaches_m;  // obstacles: the body's distance from each joint's origin at most
+    double required_m = 0.0;  // required distance of the axes: radii and clearance
+    JointVector levers_m;     // largest approach per radian of each joint
+    JointVector reaches_m;    // obstacles: largest distance of the body from each joint's origin
   };
   struct Motion;
 
-  [[nodiscard]] double safe_share(const Pair& pair, const Motion& motion, const Segment& body,
-                                  const Eigen::Vector3d& gap_m) const;
+  [[nodiscard]] double safe_step(const Pair& pair, const Motion& motion, const Segment& body,
+                                 const Eigen::Vector3d& gap_m) const;
   [[nodiscard]] Clash clash(const Pair& pair, double gap_m) const;
 
   CollisionScene scene_;
@@ -47,7 +46,7 @@ class SweptCollision {
 };
 
 /// SweptCollision for a single move.
-std::optional<Clash> find_clash_on_way(const CollisionScene& scene, const KinematicModel& model,
-                                       const JointVector& from, const JointVector& to, double clearance_m);
+std::optional<Clash> find_clash_on_move(const CollisionScene& scene, const KinematicModel& model,
+                                        const JointVector& from, const JointVector& to, double clearance_m);
 
 }  // namespace calib

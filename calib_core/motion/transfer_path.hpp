@@ -10,11 +10,11 @@
 
 namespace calib {
 
-/// What the arm moves in between touches. Made once for many ways.
+/// The collision scene and park posture for moves between touches. Construct it once for many paths.
 class TransferSpace {
  public:
-  /// `clearance_m` is kept by every body to every obstacle; the park posture is free of obstacles, with the
-  /// arm raised.
+  /// Every body keeps `clearance_m` to every obstacle. The park posture has the arm raised, clear of
+  /// obstacles.
   TransferSpace(const KinematicModel& model, const CollisionScene& scene, const JointVector& park_joints,
                 double clearance_m)
       : collision_(scene, model, clearance_m), park_joints_(park_joints) {}
@@ -29,26 +29,26 @@ class TransferSpace {
   JointVector park_joints_;
 };
 
-/// A way has at most this many postures between its ends.
+/// Largest number of postures between the ends of a path.
 inline constexpr std::size_t kTransferPosturesMax = 4;
 
-/// Postures that lead from `from` to `to` in straight joint moves, all clear; neither end included, empty
-/// when the direct move is clear. Tried, the shortest first: the direct move and ways through the park
-/// posture and through raised postures, which have joints 2 and 3 (one or both) where the park posture has
-/// them and the others as at the end they belong to. Nothing when none of them is clear, as from a start
-/// inside the clearance.
-std::optional<std::vector<JointVector>> find_way(const TransferSpace& space, const JointVector& from,
-                                                 const JointVector& to);
+/// Intermediate postures of a clear path of straight joint moves from `from` to `to`; empty when the direct
+/// move is clear. Candidates, the shortest first: the direct move, and paths through the park posture and
+/// through raised postures. A raised posture is that of an end with joint 2, joint 3 or both moved to their
+/// positions in the park posture. Nothing when no candidate is clear, for example when `from` violates the
+/// clearance.
+std::optional<std::vector<JointVector>> find_path(const TransferSpace& space, const JointVector& from,
+                                                  const JointVector& to);
 
-/// Both ends and what is between.
-std::vector<JointVector> whole_way(const JointVector& from, const std::vector<JointVector>& via,
-                                   const JointVector& to);
+/// The path with both ends.
+std::vector<JointVector> whole_path(const JointVector& from, const std::vector<JointVector>& via,
+                                    const JointVector& to);
 
-/// The posture on the straight joint move that is nearest to this one, by the length of the joint vector.
+/// The posture on the straight joint move that is nearest to `joints` in joint space.
 JointVector nearest_on_move(const JointVector& from, const JointVector& to, const JointVector& joints);
 
-/// Whether find_way leads to the park posture with at most one posture between. Two postures for which this
-/// holds always have a way from one to the other.
-bool is_near_park(const TransferSpace& space, const JointVector& joints);
+/// Whether find_path leads to the park posture with at most one intermediate posture. Between any two
+/// postures for which this holds there is a path.
+bool can_reach_park(const TransferSpace& space, const JointVector& joints);
 
 }  // namespace calib

@@ -10,15 +10,14 @@
 namespace calib {
 namespace {
 
-/// Rounding leaves a dependent column this far from zero, relative to the longest column. Eq. 13's tolerance
-/// falls below it when there are few rows; between it and the weakest real direction lie nine orders of
-/// magnitude.
+/// The rounding error of a dependent column relative to the longest column. The tolerance of eq. 13 is
+/// smaller when there are few rows; the weakest independent direction is nine orders of magnitude larger.
 constexpr double kRoundingRelative = 1e-13;
 
-/// Eigenvalues of W^T W under this share of the largest have too few digits for singular values.
+/// Eigenvalues of W^T W below this fraction of the largest are not accurate enough for singular values.
 constexpr double kGramRelative = 1e-7;
 
-/// Factors smaller than this, relative to the largest, are rounding.
+/// Factors below this fraction of the largest are rounding errors.
 constexpr double kFactorRelative = 1e-9;
 
 std::vector<int> column_order(const IdentifiabilityOptions& options) {
@@ -50,7 +49,7 @@ class Reflectors {
     }
   }
 
-  /// Keeps a column that apply_to() has been through; returns it with its tail reflected onto one entry.
+  /// Keeps a column that apply_to() has transformed; its tail is reflected onto one entry.
   void keep(Eigen::VectorXd& column) {
     auto tail = column.tail(rows_ - count());
     const double norm = tail.norm();
@@ -68,7 +67,7 @@ class Reflectors {
   std::vector<Eigen::VectorXd> vectors_;
 };
 
-/// What one unit of a dependent column adds to each kept one: R f = top of the reflected column.
+/// The factors f of a dependent column as a combination of the kept ones: R f = top of the reflected column.
 std::vector<std::pair<int, double>> combination(const std::vector<Eigen::VectorXd>& kept_columns,
                                                 const std::vector<int>& kept,
                                                 const Eigen::VectorXd& reflected) {
@@ -86,7 +85,7 @@ std::vector<std::pair<int, double>> combination(const std::vector<Eigen::VectorX
   return result;
 }
 
-/// The R of [leading, W], whose columns hang together as those of W do: the same decomposition of fewer rows.
+/// The R of [leading, W]. Its columns have the linear dependences of W, with fewer rows to decompose.
 Eigen::MatrixXd with_fewer_rows(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
                                 const Eigen::MatrixXd& leading) {
   Eigen::MatrixXd all(observation_matrix.rows(), leading.cols() + observation_matrix.cols());
@@ -174,7 +173,7 @@ Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>&
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix.transpose() * matrix,
                                                                Eigen::EigenvaluesOnly);
     const Eigen::VectorXd values = eigen.eigenvalues().tail(count).reverse();
-    // Squared, the smallest keeps its digits only when it is not too small.
+    // Squaring costs half of the digits.
     if (values[count - 1] > kGramRelative * values[0]) return values.cwiseSqrt();
   }
   const Eigen::VectorXd all = singular_values(matrix);

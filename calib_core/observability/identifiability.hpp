@@ -10,25 +10,26 @@
 
 namespace calib {
 
-/// What the observation matrix says of a candidate.
+/// What the observation matrix determines of a candidate.
 enum class ParameterStatus {
   kIdentified,
-  kGrouped,   // its column is a combination of identified ones, which carry its effect
-  kNoEffect,  // a column of zeros
+  kGrouped,   // its column is a combination of identified columns, which absorb its effect
+  kNoEffect,  // its column is zero
   kExcluded,  // by the options
-  kWeak,      // independent, but under the given tolerance or too weak for the noise
+  kWeak,      // independent, but below the tolerance or too weak for the declared noise
 };
 
 struct IdentifiabilityOptions {
   std::optional<double> qr_tolerance;  // on |R_ii|; eq. 13 when absent
   std::vector<int> tried_last;         // candidates moved to the end of the column order, in this order
-  std::vector<int> excluded;           // candidates never identified
+  std::vector<int> excluded;           // candidates that are never identified
 };
 
-/// |R_ii| up to which a candidate is weak, one a candidate; 0 lets everything through.
+/// |R_ii| up to which a candidate is weak, one per candidate; 0 disables the limit.
 using WeakDiagonals = std::array<double, kErrorParameterCount>;
 
-/// Status of a candidate; for a grouped one what one unit of it adds to which identified ones (SI units).
+/// Status of a candidate. For a grouped one: identified parameter and change of it per unit of the candidate
+/// (SI units).
 struct CandidateStatus {
   ParameterStatus status = ParameterStatus::kNoEffect;
   std::vector<std::pair<int, double>> grouped_with;
@@ -38,13 +39,14 @@ struct IdentifiableSet {
   std::vector<int> columns;  // identified candidates, ascending
   std::array<CandidateStatus, kErrorParameterCount> candidates;
   double smallest_kept = 0.0;    // |R_ii|
-  double largest_dropped = 0.0;  // |R_ii|: the gap between the two is the certainty of the choice
+  double largest_dropped = 0.0;  // |R_ii|; a wide gap to smallest_kept makes the choice clear
 };
 
-/// QR without pivoting in the wanted column order (eq. 12 to 14): a column whose |R_ii| is under the
-/// tolerance depends on the ones before it and is left out of the rest of the decomposition. W is meant to be
-/// that of the nominal model with each touch on its nominal face. `leading` columns (as many rows, any
-/// number) come before all candidates: faces estimated in place, which take up what they explain.
+/// Chooses the identifiable columns by QR without pivoting in the given column order (eq. 12 to 14). A column
+/// with |R_ii| below the tolerance depends on the previous ones and is left out of the remaining
+/// decomposition. W should be that of the nominal model with each touch on its nominal face. `leading`
+/// columns (same number of rows) come before all candidates: faces that are estimated in place and explain
+/// part of W.
 IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
                                     const IdentifiabilityOptions& options,
                                     const WeakDiagonals& weak_diagonals = {},
@@ -57,7 +59,8 @@ Eigen::MatrixXd select_columns(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
 /// Singular values, descending.
 Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
 
-/// The `count` largest singular values, descending; quicker where they are not far apart.
+/// The `count` largest singular values, descending. Faster than singular_values() unless they differ by
+/// orders of magnitude.
 Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int count);
 
 /// sigma_max / sigma_min (eq. 16); infinite when sigma_min is 0.

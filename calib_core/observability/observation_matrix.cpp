@@ -6,14 +6,9 @@ namespace calib {
 namespace {
 
 constexpr int kMoveStepsMax = 12;
-/// What a Newton step leaves is the square of what was there, over a length of the arm's size.
-constexpr double kNextStepIsThereMetres = 1e-8;
-constexpr double kOnPlaneMetres = 1e-14;  // two digits above the rounding of a reach of a metre
-
-/// Factor that turns a signed distance into the formulation's row.
-double row_factor(const Plane& plane, Formulation formulation) {
-  return formulation == Formulation::kSignedDistance ? 1.0 : -1.0 / plane.offset_m;
-}
+/// Newton's method converges quadratically: the next distance is this one squared over the size of the arm.
+constexpr double kLastStepMetres = 1e-8;
+constexpr double kOnPlaneMetres = 1e-14;  // two digits above the rounding error at a reach of 1 m
 
 }  // namespace
 
@@ -59,7 +54,7 @@ Touch moved_onto_plane(const PreparedModel& model, const Plane& contact_plane, c
     const double squared = slope.squaredNorm();
     if (squared < 1e-12) break;  // no joint moves the tip along the normal here
     moved.joints -= slope.transpose() * (distance / squared);
-    if (std::abs(distance) < kNextStepIsThereMetres) break;
+    if (std::abs(distance) < kLastStepMetres) break;
   }
   return moved;
 }

@@ -14,17 +14,17 @@
 namespace calib {
 namespace {
 
-/// Poses tried for each candidate wanted.
+/// Poses tried per wanted candidate.
 constexpr int kPosesPerCandidate = 20;
-/// Of the poses, those on the rim of what may be touched. 20,000 such candidates are as good as 80,000 even
-/// ones.
+/// The fraction of poses on the rim. 20,000 such candidates are as good as 80,000 uniformly distributed ones.
 constexpr double kRimShare = 0.7;
 /// Poses between two reports of progress.
-constexpr int kPosesInARow = 256;
+constexpr int kPosesPerReport = 256;
 
-/// The same posture as near to `wanted` as whole turns bring it within the ranges; nothing when no turn does.
-std::optional<JointVector> turned_into(const JointRanges& ranges, const JointVector& turns,
-                                       const JointVector& wanted, JointVector joints) {
+/// The posture, changed by full turns, that is nearest to `wanted` within the ranges; nothing when there is
+/// none.
+std::optional<JointVector> wrap_into(const JointRanges& ranges, const JointVector& turns,
+                                     const JointVector& wanted, JointVector joints) {
   for (int joint = 0; joint < kJointCount; ++joint) {
     const double turn = turns[joint];
     double& angle = joints[joint];
@@ -35,11 +35,11 @@ std::optional<JointVector> turned_into(const JointRanges& ranges, const JointVec
   return ranges.contains(joints) ? std::optional(joints) : std::nullopt;
 }
 
-/// Tries poses of one face.
+/// Tries random poses of one face.
 class FaceSearch {
  public:
   FaceSearch(const PlanningProblem& problem, const TouchMaker& maker, int face, UniformChance& chance)
-      : problem_(problem), maker_(maker), around_(find_touched(problem, face)), chance_(chance) {
+      : problem_(problem), maker_(maker), target_(find_target(problem, face)), chance_(chance) {
     effort_.face = face;
   }
 
@@ -51,13 +51,13 @@ class FaceSearch {
     int in_range = 0;
     for (const JointVector& branch : branches) {
       const auto joints =
-          turned_into(problem_.joint_ranges, maker_.inverse().turns(), problem_.park_joints, branch);
+          wrap_into(problem_.joint_ranges, maker_.inverse().turns(), problem_.park_joints, branch);
       if (!joints) continue;
       ++in_range;
       ++effort_.tried;
-      const auto touch = maker_.make(around_, pose, *joints);
-      if (const auto* refusal = std::get_if<Refusal>(&touch)) {
-        ++refusals_[*refusal];
+      const auto touch = maker_.make(target_, pose, *joints);
+      if (const auto* infeasibility = std::get_if<TouchInfeasibility>(&touch)) {
+        ++infeasibilities_[*infeasibility];
       } else {
         ++effort_.feasible;
         candidates.push_back({effort_.face, pose, *joints, std::get<PlannedTouch>(touch).clear_joints});
@@ -72,8 +72,9 @@ class FaceSearch {
   [[nodiscard]] int feasible() const { return effort_.feasible; }
 
   [[nodiscard]] FaceEffort effort() const {
-    std::map<std::string, int> counts;  // causes that read alike are one
-    for (const auto& [refusal, count] : refusals_) counts[describe(problem_, refusal)] += count;
+    std::map<std::string, int> counts;  // causes with the same text are counted together
+    for (const auto& [infeasibility, count] : infeasibilities_)
+      counts[describe(problem_, infeasibility)] += count;
     if (out_of_reach_ > 0) counts["out of reach"] += out_of_reach_;
     if (out_of_ranges_ > 0) counts["joint ranges"] += out_of_ranges_;
     FaceEffort effort = effort_;
@@ -85,11 +86,11 @@ class FaceSearch {
  private:
   const PlanningProblem& problem_;
   const TouchMaker& maker_;
-  TouchedFace around_;
+  TouchTarget target_;
   UniformChance& chance_;
   int poses_ = 0, out_of_reach_ = 0, out_of_ranges_ = 0;
   FaceEffort effort_;
-  std::map<Refusal, int> refusals_;
+  std::map<TouchInfeasibility, int> infeasibilities_;
 };
 
 }  // namespace
@@ -107,7 +108,7 @@ CandidatePool find_candidates(const PlanningProblem& problem, const PlanningProg
 
   CandidatePool pool;
   const auto missing = [&] { return problem.candidate_count - static_cast<int>(pool.candidates.size()); };
-  std::vector<FaceSearch*> open;  // that may find more
+  std::vector<FaceSearch*> open;  // those that may find more
   for (FaceSearch& search : searches) open.push_back(&search);
   while (missing() > 0 && !open.empty()) {
     const int share = (missing() + static_cast<int>(open.size()) - 1) / static_cast<int>(open.size());
@@ -117,7 +118,7 @@ CandidatePool find_candidates(const PlanningProblem& problem, const PlanningProg
       const int wanted = search->feasible() + share;
       while (search->feasible() < wanted && search->poses() < poses_max) {
         search->try_pose(pool.candidates);
-        if (progress && search->poses() % kPosesInARow == 0) {
+        if (progress && search->poses() % kPosesPerReport == 0) {
           progress("candidates",
                    1.0 - std::max(missing(), 0) / static_cast<double>(std::max(problem.candidate_count, 1)));
         }

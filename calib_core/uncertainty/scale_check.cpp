@@ -3,25 +3,27 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/scaled_cholesky.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
 namespace calib {
 namespace {
 
-/// What nobody promises may be this large (metres, radians): free, as good as.
+/// Standard deviation of a parameter without a tolerance (metres, radians): practically free.
 constexpr double kFreeStd = 1.0;
-constexpr double kExactStd = 1e-12;  // of what is promised to be exact
+constexpr double kExactStd = 1e-12;  // of a tolerance of 0
 
-/// Planes that miss a common point by less than this (metres) meet in it.
+/// Planes with a smaller distance to a common point (metres) intersect in it.
 constexpr double kCommonPointMetres = 1e-6;
 
-/// A parameter of which the touches say less than this share of its variance is not judged by them.
+/// A parameter is not tested when the touches determine less than this fraction of its prior variance.
 constexpr double kInformedShareMin = 1e-6;
 
-/// The nominal lengths of an arm: the direction in which a common stretch moves the errors.
+/// The nominal lengths of an arm: the direction of a scale error in the space of the errors.
 ArmVector lengths_of(const KinematicModel& nominal) {
   ArmVector lengths = ArmVector::Zero();
   for (int i = 0; i < kErrorParameterCount; ++i) {
@@ -30,25 +32,25 @@ ArmVector lengths_of(const KinematicModel& nominal) {
   return lengths;
 }
 
-/// The lengths of arm and tool as the estimated columns carry them, and nothing of the place.
+/// The lengths of arm and tool among the estimated columns, without those of the block pose.
 ArmVector own_lengths(const KinematicModel& nominal, const std::vector<int>& columns) {
   const ArmVector all = lengths_of(nominal);
   ArmVector own = ArmVector::Zero();
   for (const int column : columns) {
     const bool of_arm =
         column < kErrorParameterCount &&
-        error_parameters()[static_cast<std::size_t>(column)].group() != ParameterGroup::kPlace;
+        error_parameters()[static_cast<std::size_t>(column)].group() != ParameterGroup::kBlockPose;
     if (of_arm) own[column] = all[column];
   }
   return own;
 }
 
-/// The maximum a posteriori problem in all errors, the estimated compliances and the artefact; the place
-/// free.
-class Guard {
+/// The maximum a posteriori problem in all errors, the estimated compliances and the artefact; the block pose
+/// is free.
+class ScaleTest {
  public:
-  Guard(const IdentificationProblem& problem, const LeastSquares& fit, const Linearisation& whole,
-        double noise_ratio, const Estimate& estimate)
+  ScaleTest(const IdentificationProblem& problem, const LeastSquares& fit, const FullLinearisation& whole,
+            double noise_ratio, const Estimate& estimate)
       : information_(whole.touch_information / (noise_ratio * noise_ratio)), precision_(information_.rows()) {
     Eigen::VectorXd values(information_.rows());
     values << estimate.arm, estimate.artefact;
@@ -65,17 +67,14 @@ class Guard {
         }
       }
     }
-    scale_ = posterior.diagonal().cwiseSqrt().cwiseInverse();
-    cholesky_.compute(scale_.asDiagonal() * posterior * scale_.asDiagonal());
+    cholesky_.emplace(posterior);
   }
 
-  [[nodiscard]] bool solvable() const { return cholesky_.info() == Eigen::Success; }
+  [[nodiscard]] bool solvable() const { return cholesky_->is_positive_definite(); }
 
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const {
-    return scale_.asDiagonal() * cholesky_.solve(scale_.asDiagonal() * right);
-  }
+  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const { return cholesky_->solve(right); }
 
-  /// The stretch along `lengths` and its standard deviation, beside errors that keep to the priors.
+  /// The change along `lengths` and its standard deviation, next to errors within the priors.
   [[nodiscard]] std::pair<double, double> stretch(const ArmVector& lengths) const {
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(information_.rows());
     direction.head(kArmParameterCount) = lengths;
@@ -87,7 +86,7 @@ class Guard {
     return {moment / information, 1.0 / std::sqrt(information)};
   }
 
-  /// Correction of artefact parameter k over the standard deviation it has when all priors are right.
+  /// Correction of artefact parameter k divided by its standard deviation under the priors.
   [[nodiscard]] std::optional<double> correction(const IdentificationProblem& problem, std::size_t k) const {
     const auto& std = problem.artefact.parameters[k].std;
     if (!std) return std::nullopt;
@@ -107,12 +106,12 @@ class Guard {
     for (int i = 0; i < kArmParameterCount; ++i) {
       std::optional<double> std;
       if (i >= kErrorParameterCount) {
-        // A compliance that was not estimated is not there.
+        // A compliance that was not estimated is fixed at its nominal value.
         const bool estimated = std::ranges::find(columns, i) != columns.end();
         std = estimated
                   ? problem.std_compliance_rad_per_nm[static_cast<std::size_t>(i - kErrorParameterCount)]
                   : kExactStd;
-      } else if (error_parameters()[static_cast<std::size_t>(i)].group() != ParameterGroup::kPlace) {
+      } else if (error_parameters()[static_cast<std::size_t>(i)].group() != ParameterGroup::kBlockPose) {
         std = problem.tolerances[static_cast<std::size_t>(i)];
       }
       precision_[i] = 1.0 / std::pow(std::max(std.value_or(kFreeStd), kExactStd), 2);
@@ -124,8 +123,8 @@ class Guard {
   }
 
   Eigen::MatrixXd information_;
-  Eigen::VectorXd precision_, targets_, right_, scale_;
-  Eigen::LLT<Eigen::MatrixXd> cholesky_;
+  Eigen::VectorXd precision_, targets_, right_;
+  std::optional<ScaledCholesky> cholesky_;
 };
 
 std::vector<std::size_t> touched_faces(const IdentificationProblem& problem, const LeastSquares& fit) {
@@ -139,9 +138,9 @@ std::vector<std::size_t> touched_faces(const IdentificationProblem& problem, con
   return touched;
 }
 
-/// The faces whose place is known: those whose offset has no parameter, or one with a standard deviation, or
-/// that a certified length ties to another.
-bool is_placed(const Artefact& artefact, std::size_t face) {
+/// Whether the offset of a face is known: it has no parameter, or one with a prior, or a certified length
+/// ties it to another face.
+bool has_known_offset(const Artefact& artefact, std::size_t face) {
   for (std::size_t k = 0; k < artefact.parameters.size(); ++k) {
     const ArtefactParameter& parameter = artefact.parameters[k];
     if (parameter.kind != ArtefactKind::kFaceOffset || parameter.shifts[face].constant == 0.0) continue;
@@ -154,24 +153,25 @@ bool is_placed(const Artefact& artefact, std::size_t face) {
   return true;
 }
 
-/// Whether the touched faces hold a length: planes that all meet in one point are met by an arm of any size.
-bool holds_a_length(const IdentificationProblem& problem, const LeastSquares& fit) {
-  std::vector<Plane> placed;
+/// Whether the touched faces determine a length. An arm of any size can touch planes that intersect in one
+/// point.
+bool determine_a_length(const IdentificationProblem& problem, const LeastSquares& fit) {
+  std::vector<Plane> known;
   for (const std::size_t face : touched_faces(problem, fit)) {
-    if (is_placed(problem.artefact, face)) placed.push_back(problem.artefact.contact_planes[face]);
+    if (has_known_offset(problem.artefact, face)) known.push_back(problem.artefact.contact_planes[face]);
   }
-  Eigen::MatrixXd normals(static_cast<Eigen::Index>(placed.size()), 3);
+  Eigen::MatrixXd normals(static_cast<Eigen::Index>(known.size()), 3);
   Eigen::VectorXd offsets(normals.rows());
   for (Eigen::Index row = 0; row < normals.rows(); ++row) {
-    normals.row(row) = placed[static_cast<std::size_t>(row)].outward;
-    offsets[row] = placed[static_cast<std::size_t>(row)].offset_m;
+    normals.row(row) = known[static_cast<std::size_t>(row)].outward;
+    offsets[row] = known[static_cast<std::size_t>(row)].offset_m;
   }
-  if (placed.empty()) return false;
+  if (known.empty()) return false;
   const Eigen::Vector3d point = normals.completeOrthogonalDecomposition().solve(offsets);
   return (normals * point - offsets).lpNorm<Eigen::Infinity>() > kCommonPointMetres;
 }
 
-/// No touch says anything of the scale: it is the nominal arm's, within the tolerances.
+/// The touches do not determine the scale: it is that of the nominal arm within the tolerances.
 ScaleCheck without_length(const IdentificationProblem& problem) {
   ScaleCheck check{.source = ScaleSource::kPrior};
   const ArmVector lengths = lengths_of(problem.nominal);
@@ -179,11 +179,10 @@ ScaleCheck without_length(const IdentificationProblem& problem) {
   for (int i = 0; i < kErrorParameterCount; ++i) {
     const auto& parameter = error_parameters()[static_cast<std::size_t>(i)];
     const auto& tolerance = problem.tolerances[static_cast<std::size_t>(i)];
-    if (lengths[i] == 0.0 || parameter.group() == ParameterGroup::kPlace || !tolerance) continue;
+    if (lengths[i] == 0.0 || parameter.group() == ParameterGroup::kBlockPose || !tolerance) continue;
     information += std::pow(lengths[i] / std::max(*tolerance, kExactStd), 2);
   }
-  check.std_relative =
-      1.0 / std::sqrt(information);  // infinite where nobody promises anything: shown as unknown
+  check.std_relative = 1.0 / std::sqrt(information);  // infinite without any tolerance: reported as unknown
   check.warning =
       "no length was touched: the touched faces all meet in one point, which an arm of any size can touch; "
       "the "
@@ -191,8 +190,8 @@ ScaleCheck without_length(const IdentificationProblem& problem) {
   return check;
 }
 
-/// Faces that look the same way give a length in which the ball cancels; so do two outside lengths of
-/// different size.
+/// The distance of two faces with the same normal does not depend on the ball; nor does the difference of two
+/// outside lengths.
 ScaleSource source_of(const IdentificationProblem& problem, const IdentificationOptions& options,
                       const LeastSquares& fit) {
   if (options.prior) return ScaleSource::kPrior;
@@ -228,13 +227,13 @@ std::string figure(double value, int digits) {
   return text.str();
 }
 
-/// How far the ball's radius (less pre-travel) would have to be wrong to make this stretch, metres.
+/// The error of ball radius minus pre-travel that would cause this scale error, metres.
 double ball_error_for(const ArmVector& own, const LeastSquares& fit, double stretch) {
   const Eigen::Index rows = fit.rows().rows();
   const Eigen::MatrixXd arm_rows = fit.rows().leftCols(fit.arm_count());
   const Eigen::VectorXd all_one = Eigen::VectorXd::Constant(rows, 1.0 / fit.noise_unit_m());
-  const Eigen::MatrixXd flat = (arm_rows.transpose() * arm_rows).eval();
-  const Eigen::VectorXd moved = flat.ldlt().solve(arm_rows.transpose() * all_one);
+  const Eigen::MatrixXd gram = (arm_rows.transpose() * arm_rows).eval();
+  const Eigen::VectorXd moved = gram.ldlt().solve(arm_rows.transpose() * all_one);
   double along = 0.0;
   for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
     along += own[fit.arm_columns()[i]] * moved[static_cast<Eigen::Index>(i)];
@@ -246,21 +245,21 @@ double ball_error_for(const ArmVector& own, const LeastSquares& fit, double stre
 }  // namespace
 
 ScaleCheck check_scale(const IdentificationProblem& problem, const IdentificationOptions& options,
-                       const LeastSquares& fit, const Linearisation& whole, const Certainty& certainty,
-                       const Estimate& estimate) {
-  if (!holds_a_length(problem, fit)) return without_length(problem);
+                       const LeastSquares& fit, const FullLinearisation& whole,
+                       const UncertaintyBudget& uncertainty, const Estimate& estimate) {
+  if (!determine_a_length(problem, fit)) return without_length(problem);
   ScaleCheck check;
   check.source = source_of(problem, options, fit);
   const ArmVector own = own_lengths(problem.nominal, fit.arm_columns());
   if (own.squaredNorm() > 0.0) {
-    // Not of what is grouped: that trades one parameter for another and stretches nothing.
+    // Without grouped parameters: exchanging one for another does not change the scale.
     check.std_relative =
-        std::sqrt(own.dot((certainty.identified + certainty.held) * own)) / own.squaredNorm();
+        std::sqrt(own.dot((uncertainty.identified + uncertainty.held) * own)) / own.squaredNorm();
   }
-  const double ratio = certainty.noise_m > 0.0 ? certainty.noise_m / fit.noise_unit_m() : 1.0;
-  const Guard guard(problem, fit, whole, ratio, estimate);
-  if (!guard.solvable()) return check;
-  const auto [stretch, std] = guard.stretch(lengths_of(problem.nominal));
+  const double ratio = uncertainty.noise_m > 0.0 ? uncertainty.noise_m / fit.noise_unit_m() : 1.0;
+  const ScaleTest test(problem, fit, whole, ratio, estimate);
+  if (!test.solvable()) return check;
+  const auto [stretch, std] = test.stretch(lengths_of(problem.nominal));
   check.stretch_relative = stretch;
   if (std < 0.1) check.significance = std::abs(stretch) / std;
   if (check.significance && *check.significance > kScaleSignificanceMax) {
@@ -276,9 +275,9 @@ ScaleCheck check_scale(const IdentificationProblem& problem, const Identificatio
   }
   for (std::size_t k = 0; k < problem.artefact.parameters.size(); ++k) {
     const ArtefactParameter& parameter = problem.artefact.parameters[k];
-    const auto correction = guard.correction(problem, k);
+    const auto correction = test.correction(problem, k);
     if (!correction || std::abs(*correction) <= kArtefactSignificanceMax) continue;
-    check.warning = "the touches contradict the " + parameter.name + " that was written down, by " +
+    check.warning = "the touches contradict the given " + parameter.name + " by " +
                     figure(std::abs(*correction), 1) +
                     " standard deviations: check stylus radius, pre-travel, block size and block temperature "
                     "before the result is used";

@@ -18,15 +18,11 @@ PointDerivatives derivatives_of(const KinematicModel& model, const Chain& chain,
                                tool ? kToolFrame : kFrameCount - 1);
 }
 
-/// Rounding may leave a sum of squares a little below 0; what is not a number stays so.
+/// Rounding may make a sum of squares slightly negative; NaN stays NaN.
 double root_of_sum_of_squares(double sum) { return sum < 0.0 ? 0.0 : std::sqrt(sum); }
 
-bool is_inside(const Box& box, const Eigen::Vector3d& point_m) {
-  return (point_m.array() >= box.min_m.array()).all() && (point_m.array() <= box.max_m.array()).all();
-}
-
-/// Adds up J^T J over postures.
-class Sum {
+/// Mean of J^T J over postures.
+class JacobianMean {
  public:
   void add(const PointDerivatives& derivatives) {
     ++count_;
@@ -46,7 +42,7 @@ class Sum {
 
  private:
   int count_ = 0;
-  ArmMatrix sum_ = ArmMatrix::Zero();  // its lower triangle
+  ArmMatrix sum_ = ArmMatrix::Zero();  // lower triangle
 };
 
 }  // namespace
@@ -67,20 +63,20 @@ std::optional<double> TipRegion::rms_m(const ArmMatrix& covariance) const {
   return root_of_sum_of_squares(mean_square.cwiseProduct(covariance).sum());
 }
 
-TipRegion over_postures(const KinematicModel& model, std::span<const JointVector> postures,
-                        const ToolCentre& tool) {
-  Sum sum;
+TipRegion region_over_postures(const KinematicModel& model, std::span<const JointVector> postures,
+                               const ToolCentre& tool) {
+  JacobianMean sum;
   for (const JointVector& joints : postures) {
     sum.add(derivatives_of(model, forward_chain(model, joints), tool));
   }
   return sum.region();
 }
 
-TipRegion over_joint_ranges(const KinematicModel& model, const JointRanges& ranges, const ToolCentre& tool,
-                            int count) {
+TipRegion region_over_joint_ranges(const KinematicModel& model, const JointRanges& ranges,
+                                   const ToolCentre& tool, int count) {
   std::vector<JointVector> postures;
   for (int i = 1; i <= count; ++i) postures.push_back(halton_posture(i, ranges));
-  return over_postures(model, postures, tool);
+  return region_over_postures(model, postures, tool);
 }
 
 std::vector<JointVector> postures_in_box(const KinematicModel& model, const JointRanges& ranges,
@@ -90,15 +86,14 @@ std::vector<JointVector> postures_in_box(const KinematicModel& model, const Join
   const int tries_max = kTriesPerPosture * count;
   for (int i = 1; i <= tries_max && std::ssize(inside) < count; ++i) {
     const JointVector joints = halton_posture(i, ranges);
-    if (is_inside(box, tool_centre_in_block_m(forward_chain(prepared, joints), tool)))
-      inside.push_back(joints);
+    if (box.contains(tool_centre_in_block_m(forward_chain(prepared, joints), tool))) inside.push_back(joints);
   }
   return inside;
 }
 
-TipRegion over_box(const KinematicModel& model, const JointRanges& ranges, const Box& box,
-                   const ToolCentre& tool, int count) {
-  return over_postures(model, postures_in_box(model, ranges, box, tool, count), tool);
+TipRegion region_over_box(const KinematicModel& model, const JointRanges& ranges, const Box& box,
+                          const ToolCentre& tool, int count) {
+  return region_over_postures(model, postures_in_box(model, ranges, box, tool, count), tool);
 }
 
 std::optional<int> BoxGrid::cell_of(const Eigen::Vector3d& point_in_block_m) const {
@@ -107,16 +102,16 @@ std::optional<int> BoxGrid::cell_of(const Eigen::Vector3d& point_in_block_m) con
     const int count = counts[static_cast<std::size_t>(axis)];
     const double cells = (point_in_block_m[axis] - min_m[axis]) / cell_size_m[axis];
     if (!(cells >= 0.0 && cells <= count)) return std::nullopt;
-    // The far face belongs to the last cell.
+    // The upper boundary belongs to the last cell.
     index[static_cast<std::size_t>(axis)] = std::min(static_cast<int>(cells), count - 1);
   }
   return index[0] + counts[0] * (index[1] + counts[1] * index[2]);
 }
 
-BoxGrid divide(const Box& box, double edge_m) {
+BoxGrid divide_box(const Box& box, double edge_m) {
   const Eigen::Vector3d extent_m = box.max_m - box.min_m;
   if (!(edge_m > 0.0) || !(extent_m.array() > 0.0).all()) {
-    throw std::invalid_argument("divide: the box and the edge must have extent");
+    throw std::invalid_argument("divide_box: the box and the edge must have extent");
   }
   BoxGrid grid{.min_m = box.min_m, .cell_size_m = extent_m};
   for (int axis = 0; axis < 3; ++axis) {
@@ -129,14 +124,14 @@ BoxGrid divide(const Box& box, double edge_m) {
 
 TipMap make_tip_map(const KinematicModel& model, std::span<const JointVector> postures, const BoxGrid& grid,
                     const ToolCentre& tool) {
-  std::vector<Sum> sums(static_cast<std::size_t>(grid.cell_count()));
+  std::vector<JacobianMean> sums(static_cast<std::size_t>(grid.cell_count()));
   for (const JointVector& joints : postures) {
     const Chain chain = forward_chain(model, joints);
     const auto cell = grid.cell_of(tool_centre_in_block_m(chain, tool));
     if (cell) sums[static_cast<std::size_t>(*cell)].add(derivatives_of(model, chain, tool));
   }
   TipMap map{.grid = grid, .cells = {}};
-  for (const Sum& sum : sums) map.cells.push_back(sum.region());
+  for (const JacobianMean& sum : sums) map.cells.push_back(sum.region());
   return map;
 }
 

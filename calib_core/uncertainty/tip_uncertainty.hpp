@@ -6,30 +6,30 @@
 #include <span>
 #include <vector>
 
+#include "calib_core/geometry/box.hpp"
 #include "calib_core/geometry/joint_vector.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
-#include "calib_core/motion/collision.hpp"
 
-/// How far off a point of the calibrated arm is predicted to be, in R_-1. Everywhere below, `covariance` is
-/// that of the errors of the identified model, all 39 of them (metres, radians, radians per newton metre):
-/// symmetric, finite, with the unseen directions in it. A predicted deviation is the root of the mean square
-/// of the distance between where the point is and where the model has it, to first order in the errors.
+/// The predicted position error of a point of the calibrated arm, in R_-1. `covariance` is that of all 39
+/// errors of the identified model (metres, radians, radians per newton metre): symmetric, finite, including
+/// the unseen directions. The predicted error is the root mean square distance between the actual position of
+/// the point and the position by the model, to first order in the errors.
 namespace calib {
 
-/// The point: R_6 from a tool whose origin it is, or nothing for the centre of the stylus ball (R_7's
-/// origin).
+/// The point: the origin of a tool given by its pose in R_6, or nothing for the centre of the stylus ball
+/// (the origin of R_7).
 using ToolCentre = std::optional<Eigen::Isometry3d>;
 
-/// Where the point is, in R_-1.
+/// Position of the point in R_-1.
 Eigen::Vector3d tool_centre_in_block_m(const Chain& chain, const ToolCentre& tool);
 
 /// sqrt(trace(J C J^T)), J the derivative of the point, 3 x 39. Metres.
 double tip_std_m(const KinematicModel& model, const JointVector& joints, const ArmMatrix& covariance,
                  const ToolCentre& tool = std::nullopt);
 
-/// Some postures of the nominal arm, as far as the predicted deviation over them needs to know them. Made
-/// once, so that a figure is one product.
+/// A set of postures of the nominal arm, reduced to what the predicted error over them depends on. Compute it
+/// once; each prediction is then one product.
 struct TipRegion {
   int posture_count = 0;
   ArmMatrix mean_square = ArmMatrix::Zero();  // mean over the postures of J^T J
@@ -38,50 +38,50 @@ struct TipRegion {
   [[nodiscard]] std::optional<double> rms_m(const ArmMatrix& covariance) const;
 };
 
-/// These postures, such as those of the touches for what is predicted at the block.
-TipRegion over_postures(const KinematicModel& model, std::span<const JointVector> postures,
-                        const ToolCentre& tool = std::nullopt);
+/// The region of given postures, such as those of the touches for the prediction at the block.
+TipRegion region_over_postures(const KinematicModel& model, std::span<const JointVector> postures,
+                               const ToolCentre& tool = std::nullopt);
 
-/// `count` postures that fill the joint ranges evenly.
-TipRegion over_joint_ranges(const KinematicModel& model, const JointRanges& ranges,
-                            const ToolCentre& tool = std::nullopt, int count = 500);
+/// The region of `count` postures that fill the joint ranges evenly.
+TipRegion region_over_joint_ranges(const KinematicModel& model, const JointRanges& ranges,
+                                   const ToolCentre& tool = std::nullopt, int count = 500);
 
-/// postures_in_box gives up after this many postures tried for each one wanted.
+/// postures_in_box tries at most this many postures per requested one.
 inline constexpr int kTriesPerPosture = 400;
 
-/// Up to `count` postures that have the point inside the box: those of an even filling of the joint ranges,
-/// so no inverse kinematics is needed and any arm will do. Fewer, or none, where the arm hardly reaches the
-/// box. Collisions are not looked at.
+/// Up to `count` postures with the point inside the box, from postures that fill the joint ranges evenly:
+/// needs no inverse kinematics and works for any arm. Fewer, or none, when the arm hardly reaches the box.
+/// Collisions are not checked.
 std::vector<JointVector> postures_in_box(const KinematicModel& model, const JointRanges& ranges,
                                          const Box& box, const ToolCentre& tool = std::nullopt,
                                          int count = 500);
 
-/// over_postures of postures_in_box.
-TipRegion over_box(const KinematicModel& model, const JointRanges& ranges, const Box& box,
-                   const ToolCentre& tool = std::nullopt, int count = 500);
+/// The region of postures_in_box().
+TipRegion region_over_box(const KinematicModel& model, const JointRanges& ranges, const Box& box,
+                          const ToolCentre& tool = std::nullopt, int count = 500);
 
-/// Equal cells that fill a box, their edges as near to a wanted length as they can be. Cells are counted with
-/// x running fastest, then y, then z.
+/// Equal cells that fill a box. Cells are numbered with x running fastest, then y, then z.
 struct BoxGrid {
   Eigen::Vector3d min_m;
   Eigen::Vector3d cell_size_m;
   std::array<int, 3> counts{};  // along x, y, z
 
   [[nodiscard]] int cell_count() const { return counts[0] * counts[1] * counts[2]; }
-  /// The cell a point lies in, or nothing outside of the box.
+  /// The cell that contains the point, or nothing outside the box.
   [[nodiscard]] std::optional<int> cell_of(const Eigen::Vector3d& point_in_block_m) const;
 };
 
-/// A box without extent along some axis, or an edge that is not positive: std::logic_error.
-BoxGrid divide(const Box& box, double edge_m);
+/// Divides a box into cells with edges as close to `edge_m` as possible. Throws std::logic_error when the box
+/// has no extent along some axis or the edge is not positive.
+BoxGrid divide_box(const Box& box, double edge_m);
 
-/// The predicted deviation in every cell, metres; nothing where no posture puts the point.
+/// The predicted error in every cell, metres; nothing in cells without a posture.
 struct UncertaintyMap {
   BoxGrid grid;
   std::vector<std::optional<double>> rms_m;
 };
 
-/// A box cell by cell, each cell a region of the postures that fall into it. Made once, like TipRegion.
+/// The cells of a box, each with the region of the postures in it. Compute it once, like TipRegion.
 struct TipMap {
   BoxGrid grid;
   std::vector<TipRegion> cells;
@@ -89,7 +89,7 @@ struct TipMap {
   [[nodiscard]] UncertaintyMap evaluate(const ArmMatrix& covariance) const;
 };
 
-/// Sorts the postures into the cells; those that have the point outside of all cells count nowhere.
+/// Assigns the postures to the cells; those with the point outside all cells are ignored.
 TipMap make_tip_map(const KinematicModel& model, std::span<const JointVector> postures, const BoxGrid& grid,
                     const ToolCentre& tool = std::nullopt);
 

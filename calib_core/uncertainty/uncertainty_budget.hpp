@@ -9,19 +9,7 @@
 
 namespace calib {
 
-/// Chi-square of the residuals against the declared noise: whole and face by face (a face without touches has
-/// p = 1). A small p says that the model does not describe what was touched.
-struct LackOfFit {
-  double chi_square = 0.0;
-  double degrees_of_freedom = 0.0;
-  double p = 1.0;
-  std::vector<double> p_of_face;
-};
-
-/// Below this p the declared noise is not believed: the estimated one takes its place in all uncertainties.
-inline constexpr double kLackOfFitWidens = 0.05;
-
-/// One cause of uncertainty and what it alone makes of the errors' covariance.
+/// One source of uncertainty and its contribution to the covariance of the errors.
 struct UncertaintySource {
   std::string name;  // "touch_noise", "block_size", "squareness", "stylus_radius", ...
   ArmMatrix covariance = ArmMatrix::Zero();
@@ -32,26 +20,28 @@ struct Correlation {
   double coefficient = 0.0;
 };
 
-/// How sure the identified errors are. Covariances are of true less identified errors, metres and radians. An
-/// identified error stands for a combination (itself and what is grouped into it): `identified` is of that
-/// combination. An error that was excluded or held is there all the same, within the maker's tolerances, and
-/// falsifies the others: `held`. What is grouped or without effect is unknown within them too: `unseen`.
-struct Certainty {
-  double noise_m = 0.0;             // of a touch, as used: declared, or estimated when it is not believed
+/// Uncertainty of the identified errors. Covariances are those of true minus identified errors, metres and
+/// radians. An identified error is a combination of itself and the parameters grouped with it; `identified`
+/// is the covariance of that combination. A parameter that was excluded or held at nominal still has an error
+/// within the maker's tolerance, which biases the others: `held`. Grouped parameters and those without effect
+/// are also unknown within their tolerances: `unseen`.
+struct UncertaintyBudget {
+  double noise_m = 0.0;  // of a touch: the declared one, or the estimated one when that is rejected
   double degrees_of_freedom = 0.0;  // of that noise; infinite when declared
   double coverage_factor = 0.0;     // 95 %, Student
   ArmMatrix identified = ArmMatrix::Zero();
   ArmMatrix held = ArmMatrix::Zero();
   ArmMatrix unseen = ArmMatrix::Zero();
-  std::vector<int> unseen_without_tolerance;  // unseen errors of which nobody says how large they may be
-  Eigen::Matrix<double, kArmParameterCount, Eigen::Dynamic> unknown_directions;  // one a member of that list
-  std::vector<UncertaintySource> sources;                                        // they add up to all three
+  std::vector<int> unseen_without_tolerance;  // unseen errors without a tolerance
+  Eigen::Matrix<double, kArmParameterCount, Eigen::Dynamic>
+      unknown_directions;                  // one per member of that list
+  std::vector<UncertaintySource> sources;  // their sum is that of the three above
   Eigen::VectorXd artefact_std;
-  std::vector<Correlation> correlations;  // the strongest, strongest first
+  std::vector<Correlation> correlations;  // the strongest ones in descending order
 
-  /// All of it: what a prediction at any pose and for any tool needs.
+  /// The total covariance, for predictions at any pose and with any tool.
   [[nodiscard]] ArmMatrix covariance() const { return identified + held + unseen; }
-  /// One standard deviation of an identified error (or compliance), by its index in ArmVector.
+  /// Standard deviation of an identified error (or compliance) by its index in ArmVector.
   [[nodiscard]] double std_error(int index) const {
     return std::sqrt(identified(index, index) + held(index, index));
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 #include "calib_core/numerics/distributions.hpp"
 
@@ -19,11 +20,6 @@ std::vector<int> all_arm_columns() {
   return columns;
 }
 
-double survival(double chi_square, double degrees) {
-  const double shrink = std::min(1.0, kChiSquareDegreesMax / degrees);
-  return chi_square_survival(chi_square * shrink, degrees * shrink);
-}
-
 const char* source_name(ArtefactKind kind) {
   switch (kind) {
     case ArtefactKind::kFaceOffset:
@@ -35,27 +31,27 @@ const char* source_name(ArtefactKind kind) {
     case ArtefactKind::kPretravel:
       return "pretravel";
     case ArtefactKind::kTemperature:
-      break;
+      return "block_temperature";
   }
-  return "block_temperature";
+  throw std::logic_error("source_name: no such kind");
 }
 
-/// Adds covariances up by the name of their source.
-class Budget {
+/// Sums covariances by the name of their source.
+class SourceSum {
  public:
-  explicit Budget(const LeastSquares& fit, const Eigen::MatrixXd& covariance)
+  explicit SourceSum(const LeastSquares& fit, const Eigen::MatrixXd& covariance)
       : columns_(fit.arm_columns()), covariance_(covariance) {}
 
   void add(const std::string& name, const Eigen::MatrixXd& of_unknowns) {
-    ArmMatrix& sum = source(name).covariance;
+    ArmMatrix& covariance = source(name).covariance;
     for (std::size_t j = 0; j < columns_.size(); ++j) {
       for (std::size_t i = 0; i < columns_.size(); ++i) {
-        sum(columns_[i], columns_[j]) +=
+        covariance(columns_[i], columns_[j]) +=
             of_unknowns(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
       }
     }
   }
-  /// What a prior equation `direction . unknowns = value` of this precision contributes.
+  /// Adds the contribution of a prior equation `direction . unknowns = value` of this precision.
   void add_equation(const std::string& name, const Eigen::VectorXd& direction, double precision) {
     const Eigen::VectorXd moved = covariance_ * direction * std::sqrt(precision);
     ArmVector arm = ArmVector::Zero();
@@ -76,7 +72,7 @@ class Budget {
 };
 
 void add_priors(const IdentificationProblem& problem, const IdentificationOptions& options,
-                const LeastSquares& fit, Budget& budget) {
+                const LeastSquares& fit, SourceSum& sum) {
   const Eigen::VectorXd precision = prior_precision(problem, fit.arm_columns(), options.prior);
   const auto& parameters = problem.artefact.parameters;
   for (Eigen::Index k = 0; k < precision.size(); ++k) {
@@ -84,18 +80,19 @@ void add_priors(const IdentificationProblem& problem, const IdentificationOption
     const Eigen::Index artefact = k - fit.arm_count();
     const char* name =
         artefact < 0 ? "makers_tolerances" : source_name(parameters[static_cast<std::size_t>(artefact)].kind);
-    budget.add_equation(name, Eigen::VectorXd::Unit(precision.size(), k), precision[k]);
+    sum.add_equation(name, Eigen::VectorXd::Unit(precision.size(), k), precision[k]);
   }
   for (const ArtefactEquation& equation : problem.artefact.equations) {
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(precision.size());
     for (const auto& [index, weight] : equation.weights) direction[fit.arm_count() + index] = weight;
-    budget.add_equation("block_size", direction, 1.0 / (equation.std_m * equation.std_m));
+    sum.add_equation("block_size", direction, 1.0 / (equation.std_m * equation.std_m));
   }
 }
 
-/// Errors that were not estimated: each is there within its tolerance, and moves what was estimated.
+/// Adds the errors that were not estimated: each is within its tolerance and biases the estimated ones.
 void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
-                const LeastSquares& fit, const Linearisation& whole, Budget& budget, Certainty& result) {
+                const LeastSquares& fit, const FullLinearisation& whole, SourceSum& sum,
+                UncertaintyBudget& result) {
   std::vector<ArmVector> unknown;
   for (int column = 0; column < kErrorParameterCount; ++column) {
     if (std::ranges::find(fit.arm_columns(), column) != fit.arm_columns().end()) continue;
@@ -119,8 +116,8 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
   for (std::size_t i = 0; i < unknown.size(); ++i) {
     result.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown[i];
   }
-  if (!result.held.isZero(0.0)) budget.source("held").covariance = result.held;
-  budget.source("unseen").covariance = result.unseen;
+  if (!result.held.isZero(0.0)) sum.source("held").covariance = result.held;
+  sum.source("unseen").covariance = result.unseen;
 }
 
 std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vector<int>& columns) {
@@ -140,70 +137,41 @@ std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vecto
 
 }  // namespace
 
-Linearisation linearise_whole(const IdentificationOptions& options, LeastSquares& fit,
-                              const Estimate& estimate) {
+FullLinearisation linearise_all_parameters(const IdentificationOptions& options, LeastSquares& fit,
+                                           const Estimate& estimate) {
   LeastSquares everything(fit, options, all_arm_columns());
   everything.linearise(estimate);
-  Linearisation whole{everything.touch_information(), everything.touch_gradient(), {}, {}};
+  FullLinearisation whole{everything.touch_information(), everything.touch_gradient(), {}, {}};
   for (const int column : fit.arm_columns()) whole.estimated.push_back(column);
   for (Eigen::Index k = 0; k < estimate.artefact.size(); ++k) {
     whole.estimated.push_back(kArmParameterCount + k);
   }
-  whole.estimated_covariance = covariance_of(fit.information());
+  whole.estimated_covariance = inverse_information(fit.information());
   return whole;
 }
 
-std::optional<LackOfFit> lack_of_fit(const IdentificationProblem& problem, LeastSquares& fit,
-                                     const Estimate& estimate) {
-  const int degrees = fit.degrees_of_freedom();
-  if (problem.touch_noise_m <= 0.0 || degrees <= 0) return std::nullopt;
-  LackOfFit result;
-  result.chi_square = fit.chi_square(estimate);
-  result.degrees_of_freedom = degrees;
-  result.p = survival(result.chi_square, degrees);
-  const Eigen::VectorXd& leverages = fit.leverages();
-  const std::size_t faces = problem.artefact.contact_planes.size();
-  std::vector<double> sum(faces, 0.0), freedom(faces, 0.0);
-  for (Eigen::Index row = 0; row < leverages.size(); ++row) {
-    const auto index = static_cast<std::size_t>(row);
-    if (!fit.kept()[index]) continue;
-    const auto face = static_cast<std::size_t>(problem.touches[fit.touches()[index]].face);
-    const double scaled = fit.residuals_m()[row] / fit.noise_unit_m();
-    sum[face] += scaled * scaled;
-    freedom[face] += std::max(0.0, 1.0 - leverages[row]);
-  }
-  for (std::size_t face = 0; face < faces; ++face) {
-    result.p_of_face.push_back(freedom[face] > 0.5 ? survival(sum[face], freedom[face]) : 1.0);
-  }
-  return result;
-}
-
-std::optional<double> estimated_noise_m(const LeastSquares& fit, const Estimate& estimate) {
-  const int degrees = fit.degrees_of_freedom();
-  if (degrees <= 0) return std::nullopt;
-  return fit.noise_unit_m() * std::sqrt(fit.chi_square(estimate) / degrees);
-}
-
-Certainty certainty(const IdentificationProblem& problem, const IdentificationOptions& options,
-                    const IdentifiableSet& identifiable, const LeastSquares& fit, const Linearisation& whole,
-                    const Estimate& estimate, const std::optional<LackOfFit>& misfit) {
-  Certainty result;
+UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
+                                        const IdentificationOptions& options,
+                                        const IdentifiableSet& identifiable, const LeastSquares& fit,
+                                        const FullLinearisation& whole, const Estimate& estimate,
+                                        const std::optional<LackOfFit>& misfit) {
+  UncertaintyBudget result;
   const auto estimated = estimated_noise_m(fit, estimate);
-  const bool believed = problem.touch_noise_m > 0.0 &&
-                        !(misfit && misfit->p<kLackOfFitWidens&& * estimated> problem.touch_noise_m);
-  result.noise_m = believed ? problem.touch_noise_m : estimated.value_or(0.0);
+  const bool is_rejected = misfit && misfit->p < kLackOfFitWidens && estimated > problem.touch_noise_m;
+  const bool use_declared = problem.touch_noise_m > 0.0 && !is_rejected;
+  result.noise_m = use_declared ? problem.touch_noise_m : estimated.value_or(0.0);
   result.degrees_of_freedom =
-      believed ? std::numeric_limits<double>::infinity() : std::max(1, fit.degrees_of_freedom());
+      use_declared ? std::numeric_limits<double>::infinity() : std::max(1, fit.degrees_of_freedom());
   result.coverage_factor = student_two_sided_factor(kConfidence, result.degrees_of_freedom);
 
   const Eigen::MatrixXd& covariance = whole.estimated_covariance;
   const double ratio = result.noise_m / fit.noise_unit_m();
   const Eigen::MatrixXd of_noise = ratio * ratio * (covariance * fit.gradient_covariance() * covariance);
-  Budget budget(fit, covariance);
-  budget.add("touch_noise", of_noise);
-  add_priors(problem, options, fit, budget);
-  add_unseen(problem, identifiable, fit, whole, budget, result);
-  result.sources = budget.take();
+  SourceSum sum(fit, covariance);
+  sum.add("touch_noise", of_noise);
+  add_priors(problem, options, fit, sum);
+  add_unseen(problem, identifiable, fit, whole, sum, result);
+  result.sources = sum.take();
   for (const UncertaintySource& source : result.sources) {
     const bool of_fit = source.name != "unseen" && source.name != "held";
     if (of_fit) result.identified += source.covariance;

@@ -1,33 +1,35 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "calib_core/estimation/goodness_of_fit.hpp"
 #include "calib_core/estimation/least_squares.hpp"
+#include "calib_core/uncertainty/uncertainty_budget.hpp"
 
 namespace calib {
 
-/// The converged problem seen whole: the touches' information on every arm parameter and every artefact
-/// parameter (rows and columns: ArmVector, then the artefact), estimated or not, at the final estimate.
-struct Linearisation {
+/// The linearisation of the converged problem in all parameters, estimated or not: information of the touches
+/// on arm and artefact (rows and columns: ArmVector, then the artefact parameters) at the final estimate.
+struct FullLinearisation {
   Eigen::MatrixXd touch_information;
   Eigen::VectorXd touch_gradient;
-  std::vector<Eigen::Index> estimated;   // which of its columns were estimated, ascending
-  Eigen::MatrixXd estimated_covariance;  // of those, for the declared noise: inverse of the information
+  std::vector<Eigen::Index> estimated;  // the estimated columns, ascending
+  Eigen::MatrixXd
+      estimated_covariance;  // of these columns, for the declared noise: inverse of the information
 };
 
 /// `fit` must have been solved at `estimate`.
-Linearisation linearise_whole(const IdentificationOptions& options, LeastSquares& fit,
-                              const Estimate& estimate);
+FullLinearisation linearise_all_parameters(const IdentificationOptions& options, LeastSquares& fit,
+                                           const Estimate& estimate);
 
-/// Nothing without a declared noise or without a degree of freedom.
-std::optional<LackOfFit> lack_of_fit(const IdentificationProblem& problem, LeastSquares& fit,
-                                     const Estimate& estimate);
-
-/// The residuals over the degrees of freedom, metres; nothing without any.
-std::optional<double> estimated_noise_m(const LeastSquares& fit, const Estimate& estimate);
-
-/// Covariances by propagation: of touches, of everything that is known with an uncertainty only, and of what
-/// the touches do not see, each through the gain of the fit that was made.
-Certainty certainty(const IdentificationProblem& problem, const IdentificationOptions& options,
-                    const IdentifiableSet& identifiable, const LeastSquares& fit, const Linearisation& whole,
-                    const Estimate& estimate, const std::optional<LackOfFit>& misfit);
+/// Propagates through the gain of the fit: the noise of the touches, the uncertainty of everything that has a
+/// prior, and the errors that the touches do not determine.
+UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
+                                        const IdentificationOptions& options,
+                                        const IdentifiableSet& identifiable, const LeastSquares& fit,
+                                        const FullLinearisation& whole, const Estimate& estimate,
+                                        const std::optional<LackOfFit>& misfit);
 
 }  // namespace calib

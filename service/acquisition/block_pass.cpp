@@ -27,11 +27,11 @@ class Pass {
   explicit Pass(const Cell& cell)
       : cell_(cell),
         scene_(cell.collision_scene()),
-        down_(calib::place_of(cell.arm.model).linear() * cell.arm.model.down_in_frame_1) {}
+        down_(calib::block_pose_of(cell.arm.model).linear() * cell.arm.model.down_in_frame_1) {}
 
   /// The clear posture over a touch: in its orientation; else with the stylus leaning off the normal, turned
   /// about itself, whichever is nearest to the touch.
-  [[nodiscard]] std::optional<calib::JointVector> over(const calib::PlaceTouch& touch) const {
+  [[nodiscard]] std::optional<calib::JointVector> over(const calib::RegistrationTouch& touch) const {
     const calib::Plane& plane = cell_.block.faces[static_cast<std::size_t>(touch.face)].plane;
     Eigen::Isometry3d pose = calib::forward_kinematics(cell_.arm.model, touch.joints);
     const double off_m = calib::signed_distance_m(plane, pose.translation()) - cell_.probe.stylus.radius_m;
@@ -68,7 +68,8 @@ class Pass {
  private:
   [[nodiscard]] bool is_clear(const calib::JointVector& joints) const {
     return cell_.arm.joint_ranges.contains(joints) &&
-           !calib::find_clash(scene_, calib::forward_chain(cell_.arm.model, joints), cell_.nominal_miss_m);
+           !calib::find_clash(scene_, calib::forward_chain(cell_.arm.model, joints),
+                              cell_.nominal_position_error_m);
   }
 
   const Cell& cell_;
@@ -79,11 +80,11 @@ class Pass {
 }  // namespace
 
 std::variant<std::vector<calib::JointVector>, std::string> pass_postures(
-    const Cell& cell, const std::vector<calib::PlaceTouch>& touches) {
+    const Cell& cell, const std::vector<calib::RegistrationTouch>& touches) {
   const Pass pass(cell);
   std::vector<calib::JointVector> postures;
   std::map<int, int> count_of_face;
-  for (const calib::PlaceTouch& touch : touches) {
+  for (const calib::RegistrationTouch& touch : touches) {
     int& count = count_of_face[touch.face];
     const auto joints = pass.over(touch);
     if (!joints) continue;

@@ -18,6 +18,6 @@ inline constexpr double kPassSpeedShare = 0.1;
 /// was found. Touches for which there is none are left out as long as each of their faces keeps one; else it
 /// is said which face has none.
 std::variant<std::vector<calib::JointVector>, std::string> pass_postures(
-    const Cell& cell, const std::vector<calib::PlaceTouch>& touches);
+    const Cell& cell, const std::vector<calib::RegistrationTouch>& touches);
 
 }  // namespace cell

@@ -4,7 +4,7 @@
 
 namespace cell {
 
-std::optional<HandTouch> HandTouchWatch::hear(const cs8::State& state) {
+std::optional<HandTouch> HandTouchWatch::on_controller_state(const cs8::State& state) {
   const cs8::ProbeInputs probe = cs8::probe_inputs(state.flags);
   const calib::JointVector joints = from_wire(state.joints);
   const Eigen::Vector3d ball_m = calib::forward_chain(prepared_, joints).tip_in_block_m();

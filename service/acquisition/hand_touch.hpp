@@ -26,7 +26,7 @@ class HandTouchWatch {
 
   /// The next state; a touch when the probe was free before and reads touched now, and the joints are
   /// referenced.
-  std::optional<HandTouch> hear(const cs8::State& state);
+  std::optional<HandTouch> on_controller_state(const cs8::State& state);
   /// Where the arm stands now, by a person's word; or why that is no touch: the probe does not read touched,
   /// the arm moves, nothing was heard, or this contact was given out before. A contact is one touch: the
   /// probe must be free before the next.

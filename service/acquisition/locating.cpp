@@ -21,7 +21,7 @@ constexpr double kErrorShare = 1.0 / 6.0;
 constexpr double kSameContactMetres = 0.002;
 
 Eigen::Vector3d up_in_block(const Cell& cell) {
-  const Eigen::Matrix3d turn = calib::place_of(cell.arm.model).linear();
+  const Eigen::Matrix3d turn = calib::block_pose_of(cell.arm.model).linear();
   return -(turn * cell.arm.model.down_in_frame_1);
 }
 
@@ -121,7 +121,8 @@ std::vector<PlaceSpot> place_spots(const Cell& cell) {
 
 calib::ErrorTolerances believable_errors(const Cell& cell) {
   calib::ErrorTolerances errors = prior_tolerances(cell);
-  for (auto& error : errors) error = std::max(kErrorShare * cell.nominal_miss_m, error.value_or(0.0));
+  for (auto& error : errors)
+    error = std::max(kErrorShare * cell.nominal_position_error_m, error.value_or(0.0));
   return errors;
 }
 
@@ -139,18 +140,20 @@ Locating::Locating(const Cell& cell)
 HandGuide Locating::guide() const {
   const int total = static_cast<int>(spots_.size());
   const int made = static_cast<int>(touches_.size());
-  HandGuide guide{
-      .activity = "locate", .index = std::min(made + 1, total), .total = total, .problem = problem_};
+  HandGuide guide{.activity = HandActivity::kLocate,
+                  .index = std::min(made + 1, total),
+                  .total = total,
+                  .problem = problem_};
   const PlaceSpot& spot = spots_[static_cast<std::size_t>(guide.index - 1)];
   guide.plane = spot.face + 1;
   if (fit_) {
-    guide.step = "pass";
+    guide.step = HandStep::kPass;
     guide.words =
         "the place is found: jog the arm clear of the block, then touchcal locate once more to go once "
         "around "
         "it 30 mm off its faces, at 10 % speed and without a touch; after that the place counts";
   } else if (made == total) {
-    guide.step = "undo";
+    guide.step = HandStep::kUndo;
     guide.words =
         "the place is not found: touchcal undo takes the last touch back, so that it can be made again; "
         "touchcal stop ends this";
@@ -177,7 +180,8 @@ void Locating::take(const HandTouch& touch) {
   };
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     // On another face a touch near an edge may well be near; the same contact once more is not.
-    const double apart_min_m = touches_[i].face == face ? calib::kPlaceSpreadMinMetres : kSameContactMetres;
+    const double apart_min_m =
+        touches_[i].face == face ? calib::kRegistrationSpreadMinMetres : kSameContactMetres;
     if ((ball_m(touches_[i].joints) - ball_m(touch.joints)).norm() < apart_min_m) {
       problem_ = fmt::format("that is where touch {} was: touch {}", i + 1, spots_[touches_.size()].words);
       return;
@@ -198,13 +202,13 @@ void Locating::undo() {
 
 void Locating::find_place() {
   if (touches_.size() < spots_.size()) return;
-  calib::BlockPlaceProblem problem = problem_of_place_;
+  calib::BlockRegistrationProblem problem = problem_of_place_;
   problem.touches = touches_;
-  auto outcome = calib::fit_block_place(problem);
-  if (auto* refusal = std::get_if<calib::BlockPlaceRefusal>(&outcome)) {
+  auto outcome = calib::register_block(problem);
+  if (auto* refusal = std::get_if<calib::BlockRegistrationRefusal>(&outcome)) {
     problem_ = std::move(refusal->message);
   } else {
-    fit_ = std::get<calib::BlockPlaceFit>(std::move(outcome));
+    fit_ = std::get<calib::BlockRegistration>(std::move(outcome));
   }
 }
 

@@ -45,19 +45,19 @@ class Locating {
   /// Forgets the last touch; nothing happens when there is none.
   void undo();
 
-  [[nodiscard]] const std::vector<calib::PlaceTouch>& touches() const { return touches_; }
+  [[nodiscard]] const std::vector<calib::RegistrationTouch>& touches() const { return touches_; }
   /// Once all touches are made and fit.
-  [[nodiscard]] const std::optional<calib::BlockPlaceFit>& fit() const { return fit_; }
+  [[nodiscard]] const std::optional<calib::BlockRegistration>& fit() const { return fit_; }
 
  private:
   void find_place();
 
-  calib::BlockPlaceProblem problem_of_place_;  // without touches
+  calib::BlockRegistrationProblem problem_of_place_;  // without touches
   double touch_noise_m_ = 0.0;
   double overtravel_m_ = 0.0;
   std::vector<PlaceSpot> spots_;
-  std::vector<calib::PlaceTouch> touches_;
-  std::optional<calib::BlockPlaceFit> fit_;
+  std::vector<calib::RegistrationTouch> touches_;
+  std::optional<calib::BlockRegistration> fit_;
   std::optional<std::string> problem_;
 };
 

@@ -1,7 +1,11 @@
-// What stands in the way of a start: all of it at once, before anything moves.
+#include "service/acquisition/preconditions.hpp"
+
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include <algorithm>
+#include <array>
+
+#include "service/acquisition/link_fault.hpp"
 #include "service/run/run_conditions.hpp"
 
 namespace cell {
@@ -33,29 +37,37 @@ std::vector<Unmet> unmet_by(const cs8::State& state) {
 
 }  // namespace
 
-std::vector<Unmet> Operation::unmet_preconditions() const {
-  if (!client_.connected()) {
+std::vector<Unmet> unmet_by_controller(bool connected, const std::optional<cs8::State>& state,
+                                       const std::optional<Fault>& fault) {
+  if (!connected) {
     return {{std::string(describe(FaultCode::kControllerNotConnected).name),
-             status_.fault ? status_.fault->message() : "there is no link to the controller yet"}};
+             fault ? fault->message() : "there is no link to the controller yet"}};
   }
-  const auto state = client_.latest_state();
   if (!state) return {unmet(FaultCode::kControllerStateUnknown)};
   return unmet_by(*state);
 }
 
-/// Those of a run by this recipe.
-std::vector<Unmet> Operation::unmet_for(const std::string& recipe) const {
-  std::vector<Unmet> found = unmet_preconditions();
+std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& cell,
+                                 const std::optional<Fault>& fault, const PlanRefusal* no_plan) {
+  std::vector<Unmet> found = std::move(by_controller);
   // Reset and clear acknowledge too; a fault with which a run came to its end is still there to be read.
-  if (status_.fault && !is_link_fault(status_.fault->code))
-    found.push_back(unmet(FaultCode::kFaultUnacknowledged, status_.fault->message()));
-  if (!cell_.probe.tip_is_contact_point && cell_.speeds.contact_m_s() != cell_.probe.calibration_speed_m_s)
+  if (fault && !is_link_fault(fault->code))
+    found.push_back(unmet(FaultCode::kFaultUnacknowledged, fault->message()));
+  if (!cell.probe.tip_is_contact_point && cell.speeds.contact_m_s() != cell.probe.calibration_speed_m_s)
     found.push_back(unmet(FaultCode::kProbeNotCalibrated));
-  if (const auto gap = temperature_gap(cell_)) found.push_back({"temperature_missing", *gap});
-  const auto outcome = planned(recipe);
-  const auto* refusal = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
-  if (refusal) found.push_back(unmet(FaultCode::kRecipeUnreachable, refusal->message));
+  if (const auto gap = unknown_temperature_reason(cell)) found.push_back({"temperature_missing", *gap});
+  if (no_plan) found.push_back(unmet(FaultCode::kRecipeUnreachable, no_plan->message));
   return found;
+}
+
+std::vector<Unmet> unmet_without_motion(std::vector<Unmet> of_run) {
+  constexpr std::array kForMotion{
+      FaultCode::kEmergencyStop, FaultCode::kNotRemote,    FaultCode::kNotPowered,        FaultCode::kHold,
+      FaultCode::kProbeTouched,  FaultCode::kMonitorSpeed, FaultCode::kProbeNotCalibrated};
+  std::erase_if(of_run, [&](const Unmet& one) {
+    return std::ranges::any_of(kForMotion, [&](FaultCode code) { return describe(code).name == one.code; });
+  });
+  return of_run;
 }
 
 }  // namespace cell

@@ -54,7 +54,7 @@ TouchJudgement judge_spread(double spread_m, const TouchHistory& history) {
     return fault(FaultCode::kRetriesWorse,
                  fmt::format("{:.3f} mm, then {}", calib::mm_from_metres(*history.spread_m), detail),
                  Event::kHoldFault);
-  return again_or_hold(FaultCode::kTouchSpread, detail, history.attempts, kAgainMax);
+  return again_or_hold(FaultCode::kTouchSpread, detail, history.attempts, kRetriesMax);
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ TouchJudgement judge_touch(const Cell& cell, const calib::PlannedTouch& planned,
                  Event::kSuspendFault);
   if (history.last_contact == result.contact)
     return again_or_hold(FaultCode::kRepeatedTouch, {}, history.attempts, 1);
-  if (const auto why = implausible(cell, planned, result))
+  if (const auto why = implausibility_reason(cell, planned, result))
     return fault(FaultCode::kImplausibleTouch, *why, Event::kAbortFault);
   const auto spread = contact_spread_m(cell, result);
   if (spread && *spread > kContactSpreadMaxMetres) return judge_spread(*spread, history);

@@ -33,7 +33,7 @@ struct TouchJudgement {
 };
 
 /// Touches are made again by themselves at most so often.
-inline constexpr int kAgainMax = 2;
+inline constexpr int kRetriesMax = 2;
 
 /// A search that ends this near to its beginning met something before the face.
 inline constexpr double kEarlyContactMetres = 5e-4;

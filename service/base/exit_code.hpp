@@ -2,10 +2,10 @@
 
 namespace cell {
 
-/// Exit codes of all three programs (service/doc/surfaces.md, section 2).
+/// Exit codes of all three programs.
 enum ExitCode : int {
   kExitDone = 0,
-  kExitLimitsMissed = 1,  // the job ran, its acceptance limits were missed
+  kExitLimitsMissed = 1,  // the job is done, a limit of acceptance is missed
   kExitUsage = 2,
   kExitBadInput = 3,
   kExitRefused = 4,      // too few touches, unobservable, unreachable

@@ -4,18 +4,23 @@
 #include <optional>
 #include <string>
 
-/// How figures and texts look in every document.
+/// How figures and texts are written in every document.
 namespace cell {
 
 using Json = nlohmann::ordered_json;
 
-/// A figure that is not there, or is no number, is null: never 0, never NaN.
+/// An absent or non-finite figure is null: never 0, never NaN.
 Json number(std::optional<double> value);
 
 /// The same in millimetres.
 Json number_mm(std::optional<double> value_m);
 
-/// Text from outside (a robot's message, an operator's key) may be no UTF-8: it is shown as far as it is.
+/// An absent value is null. For bool, the integers of documents, double and std::string.
+template <class T>
+Json value_or_null(const std::optional<T>& value);
+
+/// The document as text. Bytes from outside (a robot's message, an operator's key) that are not UTF-8 are
+/// replaced.
 std::string text_of(const Json& document);
 
 }  // namespace cell

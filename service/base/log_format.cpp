@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kNone = 0;
 
-// Written by the daemon's thread; the planner's thread may write a line meanwhile.
+// Set by the daemon's thread while the planner's thread may log.
 std::atomic<std::int64_t> logged_run{kNone};
 std::atomic<int> logged_touch{kNone};
 

@@ -10,16 +10,16 @@ class formatter;
 
 namespace cell {
 
-/// Of what the daemon's log is about now: each line tells it, whoever writes the line.
+/// The run that every log line names until this is called again, whoever writes the line.
 void set_logged_run(std::optional<std::int64_t> run_id);
-/// From 1, as the store counts; nothing between touches.
+/// The touch likewise, from 1 as in the store; nothing between touches.
 void set_logged_touch(std::optional<int> number);
 
-/// A line for people: time, level, run and touch where there are, message.
+/// One line of text: time, level, run and touch if any, message.
 std::unique_ptr<spdlog::formatter> text_log_format();
 
-/// An object a line: {"time":RFC 3339,"level":...,"message":...,"run":"7","touch":12}; run and touch are null
-/// where there is none. `run` is a text as everywhere in the API.
+/// One JSON object per line: {"time":RFC 3339,"level":...,"message":...,"run":"7","touch":12}; run and touch
+/// may be null. `run` is a string, as everywhere in the API.
 std::unique_ptr<spdlog::formatter> json_log_format();
 
 }  // namespace cell

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-/// What a daemon keeps between its runs lies in one directory; the names of its files stand here only.
+/// The state directory: what a daemon keeps on disk. The names of its files are defined here only.
 namespace cell {
 
 inline constexpr std::string_view kStoreFile = "touchcal.sqlite";

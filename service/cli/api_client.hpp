@@ -8,7 +8,7 @@
 
 namespace cell {
 
-/// The daemon cannot be reached, or what answers is not it.
+/// The daemon cannot be reached, or the peer is not touchcald.
 struct DaemonUnreachable : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -18,12 +18,12 @@ struct ApiReply {
   std::string body;
 };
 
-/// One daemon's API, a connection a request.
+/// Client of a daemon's API; one connection per request.
 class ApiClient {
  public:
   /// `url`: http://HOST:PORT or https://HOST:PORT. With https the daemon's certificate must name HOST and be
-  /// signed by one in `ca_file` (PEM), or by one this machine trusts when that is empty. Throws
-  /// std::invalid_argument when `url` is none of these.
+  /// signed by one in `ca_file` (PEM), or, if that is empty, by one this machine trusts. Throws
+  /// std::invalid_argument for any other `url`.
   ApiClient(const std::string& url, std::optional<std::string> token, std::filesystem::path ca_file = {});
 
   /// `target` with its query; `body` is JSON. Throws DaemonUnreachable.
@@ -44,8 +44,8 @@ class ApiClient {
   std::filesystem::path ca_file_;
 };
 
-/// The token that changes things: TOUCHCAL_TOKEN, else the daemon's file in its state directory; nothing when
-/// neither is there.
+/// The operate token: TOUCHCAL_TOKEN, else the file in the state directory of the daemon; nothing without
+/// either.
 std::optional<std::string> find_operate_token(const std::filesystem::path& state_directory);
 
 }  // namespace cell

@@ -8,8 +8,8 @@
 #include "service/base/exit_code.hpp"
 #include "service/cli/api_client.hpp"
 
-/// touchcal's commands. Each prints to standard output (with `json` one document and nothing else), tells
-/// errors on standard error and returns the exit code.
+/// The commands of touchcal. Each prints to standard output (with `json` one document and nothing else),
+/// reports errors on standard error and returns the exit code.
 namespace cell {
 
 struct IdentifyArguments {
@@ -31,7 +31,7 @@ struct ValidateArguments {
 /// The paper's validations; kExitLimitsMissed when the same touches give another arm.
 ExitCode validate_command(const ValidateArguments& arguments, bool json);
 
-/// More than anybody waits for.
+/// Upper bound of --places.
 inline constexpr int kFitCountMax = 2'000;
 inline constexpr int kPlaceCountMax = 1'000;
 
@@ -50,22 +50,22 @@ struct PlanArguments {
   std::vector<double> place_yaw_deg;  // range of its turn, two numbers; none when empty
   int place_count = 24;
 };
-/// Plans touches and tells what they are predicted to give, or ranks places of the block; kExitRefused when
-/// there is no plan (at any place).
+/// Plans touches and reports the predicted figures, or ranks places of the block; kExitRefused without a plan
+/// (at any place).
 ExitCode plan_command(const PlanArguments& arguments, bool json);
 
 struct RunArguments {
-  std::string recipe;         // one of the cell's; not looked at with a plan
-  std::string plan_id;        // of a plan the daemon has made; empty for none
-  std::string operator_name;  // who answers for the run; empty for nobody named
+  std::string recipe;         // of the cell; ignored with a plan
+  std::string plan_id;        // of a plan of the daemon; empty for none
+  std::string operator_name;  // may be empty
   bool guided = false;        // a person makes the touches with the pendant
 };
 /// Starts a run and watches it to its end.
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);
-/// Watches the run under way to its end, whatever is started behind it.
+/// Watches the run under way to its end, also if another one is started after it.
 ExitCode watch_command(const ApiClient& daemon, bool json);
-/// Locates the block: tells each touch that the person at the pendant is to make until the block is found;
-/// given once more, follows the arm around it until the place counts.
+/// Locates the block: reports each touch that the person at the pendant has to make until the block is
+/// located; given once more, follows the arm around it until the pose is accepted.
 ExitCode locate_command(const ApiClient& daemon, bool json);
 /// Prints the link that opens the operator's page with the token in it, for a browser on this machine.
 ExitCode page_command(const ApiClient& daemon, bool json);
@@ -94,7 +94,7 @@ ExitCode report_command(const ApiClient& daemon, const ReportArguments& argument
 /// touch-test, take, undo: of the cell.
 ExitCode give_command(const ApiClient& daemon, const std::string& command, bool json);
 
-/// std::invalid_argument when this cannot be the id of a run.
+/// Throws std::invalid_argument if this cannot be the id of a run.
 void demand_run_id(const std::string& text);
 
 }  // namespace cell

@@ -8,8 +8,8 @@ class App;
 
 namespace cell {
 
-/// What a shell needs to complete every command of `app` and the options of each: a script for "bash" or
-/// "zsh". An option's value is completed as a file.
+/// A completion script for "bash" or "zsh" with every command of `app` and its options. Option values
+/// complete as files.
 std::string completion_script(const CLI::App& app, const std::string& shell);
 
 }  // namespace cell

@@ -44,7 +44,7 @@ void demand_run_id(const std::string& text) {
 ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool json_only) {
   demand_run_id(run_id);
   const ApiReply run = daemon.get("/api/v1/runs/" + run_id);
-  if (run.status != 200) return tell_problem(run, json_only);
+  if (run.status != 200) return print_problem(run, json_only);
   const ApiReply result = daemon.get("/api/v1/runs/" + run_id + "/result");
   if (json_only) {
     fmt::print("{}\n", result.status == 200 ? result.body : run.body);

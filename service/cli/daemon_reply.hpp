@@ -23,7 +23,7 @@ Document read_reply(const ApiReply& reply, Document (*read)(std::string_view)) {
   }
 }
 
-/// Tells a problem document that the daemon answered; the exit code that goes with it.
-ExitCode tell_problem(const ApiReply& reply, bool json);
+/// Prints the problem document of a reply; returns its exit code.
+ExitCode print_problem(const ApiReply& reply, bool json);
 
 }  // namespace cell

@@ -14,7 +14,7 @@ ExitCode export_command(const ApiClient& daemon, const ExportArguments& argument
   demand_run_id(arguments.run_id);
   const std::string run = "/api/v1/runs/" + arguments.run_id;
   const ApiReply arm = daemon.get(run + "/arm");
-  if (arm.status != 200) return tell_problem(arm, json);
+  if (arm.status != 200) return print_problem(arm, json);
   const ApiReply reply = daemon.get(run + "/result");
   if (reply.status != 200) return tell_problem(reply, json);
   const ResultDocument result = read_result(reply.body);

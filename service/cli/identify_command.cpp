@@ -58,7 +58,7 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   problem.touches = file.touches;
   const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
   if (result.status != calib::IdentificationStatus::kConverged)
-    return tell_refusal(arguments.touches_file, result);
+    return print_refusal(arguments.touches_file, result);
   const TipRegions regions(cell);
   const ResultContext context{
       .complete = true,

@@ -19,19 +19,27 @@ const Recipe& recipe_named(const Cell& cell, const std::string& name) {
   throw ConfigError(cell.file.string(), "/recipes", "has no recipe " + in_quotes(name) + "; it has " + known);
 }
 
-ExitCode tell_refusal(const std::filesystem::path& touches_file, const calib::IdentificationResult& result) {
+ExitCode print_refusal(const std::filesystem::path& touches_file, const calib::IdentificationResult& result) {
   fmt::print(stderr, "{}: {}\n", touches_file.string(), result.message);
   switch (result.status) {
     case calib::IdentificationStatus::kBadInput:
     case calib::IdentificationStatus::kCoincidingPlanes:
     case calib::IdentificationStatus::kSingularPrior:
       return kExitBadInput;
-    default:
+    case calib::IdentificationStatus::kConverged:
+    case calib::IdentificationStatus::kNotConverged:
+    case calib::IdentificationStatus::kTooFewTouches:
+    case calib::IdentificationStatus::kOneFace:
+    case calib::IdentificationStatus::kOnePosture:
+    case calib::IdentificationStatus::kUnobservable:
+    case calib::IdentificationStatus::kFarTouch:
+    case calib::IdentificationStatus::kContradictory:
       return kExitRefused;
   }
+  return kExitRefused;
 }
 
-void tell_warnings(const std::vector<std::string>& warnings) {
+void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 }
 
@@ -41,7 +49,7 @@ void write_whole_file(const std::string& file, const std::string& text, bool ove
     return;
   }
   if (!overwrite && std::filesystem::exists(file))
-    throw std::invalid_argument(file + " is there already; choose another name or give --force");
+    throw std::invalid_argument(file + " exists; choose another name or give --force");
   const std::string unfinished = fmt::format("{}.{}.unfinished", file, getpid());
   std::ofstream stream(unfinished, std::ios::binary);
   stream << text;

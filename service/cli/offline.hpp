@@ -8,22 +8,22 @@
 #include "config/cell.hpp"
 #include "service/base/exit_code.hpp"
 
-/// What the commands that need no daemon have in common.
+/// Shared by the commands that need no daemon.
 namespace cell {
 
-/// The cell's default recipe when `name` is empty. ConfigError when the cell has no such recipe.
+/// The recipe of this name; the cell's default one if `name` is empty. Throws ConfigError if there is none.
 const Recipe& recipe_named(const Cell& cell, const std::string& name);
 
-/// Tells on standard error, in one line, why touches did not give a result; the exit code that goes with it.
-ExitCode tell_refusal(const std::filesystem::path& touches_file, const calib::IdentificationResult& result);
+/// Prints on standard error, in one line, why the touches give no result; returns the exit code.
+ExitCode print_refusal(const std::filesystem::path& touches_file, const calib::IdentificationResult& result);
 
-void tell_warnings(const std::vector<std::string>& warnings);
+void print_warnings(const std::vector<std::string>& warnings);
 
-/// Writes a whole file or nothing; "-" is standard output. std::invalid_argument when the file is there and
-/// may not be overwritten, std::runtime_error when it cannot be written.
+/// Writes a whole file or nothing; "-" is standard output. Throws std::invalid_argument if the file exists
+/// and must not be overwritten, std::runtime_error if it cannot be written.
 void write_whole_file(const std::string& file, const std::string& text, bool overwrite);
 
-/// Warns of what somebody who uses the exported arm has to know.
+/// Warnings for users of the exported arm.
 std::vector<std::string> export_warnings(const std::vector<int>& cell_frames, bool accepted,
                                          const std::vector<std::string>& reasons);
 

@@ -97,7 +97,7 @@ ExitCode plan_places(const Cell& cell, const Recipe& recipe, const PlanArguments
   if (findings.front().figures) return kExitDone;
   fmt::print(stderr, "{}: at none of {} places there is a plan; where the block is now: {}\n",
              cell.file.string(), findings.size(),
-             std::ranges::find(findings, true, &PlaceFinding::present)->reason);
+             std::ranges::find(findings, true, &PlaceCandidate::present)->reason);
   return kExitRefused;
 }
 

@@ -6,7 +6,7 @@
 
 namespace cell {
 
-/// Shows on standard error how far planning is: a line drawn anew on a terminal, nothing elsewhere.
+/// Shows the progress of planning on standard error: a line that is redrawn on a terminal, nothing elsewhere.
 class PlanningBar {
  public:
   explicit PlanningBar(bool on_terminal) : on_terminal_(on_terminal) {}
@@ -16,7 +16,7 @@ class PlanningBar {
   [[nodiscard]] calib::PlanningProgress progress() {
     return [this](std::string_view stage, double share) { show(stage, share); };
   }
-  /// Takes the line away.
+  /// Erases the line.
   void finish();
 
  private:

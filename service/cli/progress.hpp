@@ -9,8 +9,8 @@ namespace cell {
 /// What a person at the pendant is to do; empty when nothing is asked of one.
 std::string guidance(const StatusDocument& status);
 
-/// Shows how a run goes, from one status document after the other: a bar that is drawn anew on a terminal, a
-/// plain line at each change worth one elsewhere.
+/// Shows the progress of a run from successive status documents: a bar that is redrawn on a terminal, a line
+/// at each relevant change elsewhere.
 class Progress {
  public:
   explicit Progress(bool on_terminal) : on_terminal_(on_terminal) {}

@@ -20,7 +20,7 @@
 namespace cell {
 namespace {
 
-/// A folder of its own, gone with this.
+/// A temporary directory.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -41,7 +41,7 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-/// Runs a program that is found in PATH, silent; its exit code, or nothing when there is no such program.
+/// Runs a program from PATH without output; returns its exit code, or nothing if there is no such program.
 std::optional<int> run_silently(std::vector<std::string> words) {
   posix_spawn_file_actions_t files;
   ::posix_spawn_file_actions_init(&files);
@@ -61,7 +61,7 @@ std::optional<int> run_silently(std::vector<std::string> words) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// A browser prints the page. Nothing in it is a script, and it needs nothing from elsewhere.
+/// A browser prints the page, which has no scripts and no external resources.
 std::string pdf_of(const std::string& page) {
   const ScratchFolder folder;
   const std::string from = folder.file("report.html").string(), to = folder.file("report.pdf").string();
@@ -74,7 +74,7 @@ std::string pdf_of(const std::string& page) {
                                    "--no-pdf-header-footer",
                                    "--print-to-pdf=" + to,
                                    from};
-    if (::geteuid() == 0) words.emplace_back("--no-sandbox");  // it has none for root
+    if (::geteuid() == 0) words.emplace_back("--no-sandbox");  // chromium has no sandbox for root
     const auto code = run_silently(std::move(words));
     if (!code) continue;
     if (*code != 0 || !std::filesystem::exists(to))
@@ -96,11 +96,11 @@ ExitCode report_command(const ApiClient& daemon, const ReportArguments& argument
   demand_run_id(arguments.run_id);
   const bool as_pdf = !json && arguments.format == "pdf";
   if (as_pdf && arguments.file == "-" && ::isatty(STDOUT_FILENO) == 1)
-    throw std::invalid_argument("a PDF is nothing to read in a terminal; give --out FILE");
+    throw std::invalid_argument("a PDF cannot be shown in a terminal; give --out FILE");
   const std::string format = json ? "json" : as_pdf ? "html" : arguments.format;
   const ApiReply reply =
       daemon.get(fmt::format("/api/v1/runs/{}/report?format={}", arguments.run_id, format));
-  if (reply.status != 200) return tell_problem(reply, json);
+  if (reply.status != 200) return print_problem(reply, json);
   write_whole_file(arguments.file, as_pdf ? pdf_of(reply.body) : reply.body, arguments.overwrite);
   if (arguments.file != "-") fmt::print("{}: the report of run {}\n", arguments.file, arguments.run_id);
   return kExitDone;

@@ -9,7 +9,7 @@
 
 namespace cell {
 
-/// A result document (touchcal/result/1) for people: the errors, rank and condition numbers, the distances of
+/// A result document (touchcal/result/1) as text: the errors, rank and condition numbers, the distances of
 /// each plane before and after, the verdict with its reasons.
 std::string result_text(const ResultDocument& result);
 

@@ -1,4 +1,4 @@
-// touchcal: the command line. Talks to a daemon, or identifies offline.
+// touchcal: the command line, for a daemon or offline.
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <functional>
@@ -15,18 +15,18 @@ namespace {
 
 const std::map<std::string, std::string> kCellCommands{
     {"pause", "hold the run after the touch under way"},
-    {"resume", "go on with the run that is on hold"},
+    {"resume", "continue the run on hold"},
     {"abort", "end the run at once; the cell must be cleared afterwards"},
     {"stop", "stop motion and end the run"},
-    {"acknowledge", "take the fault off the screen"},
-    {"clear", "leave ABORTED once its cause is gone"},
+    {"acknowledge", "acknowledge the fault"},
+    {"clear", "leave ABORTED once its cause is removed"},
     {"reset", "make the cell ready for a run"},
-    {"retry", "make the touch again that holds the run"},
-    {"skip", "leave the touch out that holds the run; the run is then incomplete"},
-    {"confirm", "tell what has to be confirmed at the cell"},
-    {"touch-test", "ask for the test of the stylus by hand"},
-    {"take", "take the touch that the arm stands at"},
-    {"undo", "take the last touch back that was made by hand"},
+    {"retry", "repeat the touch that holds the run"},
+    {"skip", "leave out the touch that holds the run; the run is then incomplete"},
+    {"confirm", "report what to confirm at the cell"},
+    {"touch-test", "report the state of the touch test of the stylus"},
+    {"take", "record the present contact, made by hand"},
+    {"undo", "discard the last touch made by hand"},
 };
 
 std::string environment_or(const char* name, const std::string& otherwise) {
@@ -45,13 +45,13 @@ class CommandLine {
     add_run();
     add_for_daemon("watch", "watch the run under way",
                    [this](const cell::ApiClient& daemon) { return cell::watch_command(daemon, json_); });
-    add_for_daemon("status", "what the cell is doing",
+    add_for_daemon("status", "show the state of the cell",
                    [this](const cell::ApiClient& daemon) { return cell::status_command(daemon, json_); });
     add_for_daemon("page", "print the link that opens the operator's page",
                    [this](const cell::ApiClient& daemon) { return cell::page_command(daemon, json_); });
-    add_for_daemon("runs", "the history, newest first",
+    add_for_daemon("runs", "list the runs, newest first",
                    [this](const cell::ApiClient& daemon) { return cell::runs_command(daemon, json_); });
-    auto* show = add_for_daemon("show", "one run and its result", [this](const cell::ApiClient& daemon) {
+    auto* show = add_for_daemon("show", "show one run and its result", [this](const cell::ApiClient& daemon) {
       return cell::show_command(daemon, run_id_, json_);
     });
     show->add_option("RUN", run_id_, "id of the run")->required();
@@ -67,8 +67,7 @@ class CommandLine {
         return cell::give_command(daemon, command, json_);
       });
     }
-    add_for_daemon("locate",
-                   "find where the block is, by six touches that are jogged to; then once around it",
+    add_for_daemon("locate", "locate the block by six touches made by hand, then pass once around it",
                    [this](const cell::ApiClient& daemon) { return cell::locate_command(daemon, json_); });
     add_completion();
   }
@@ -88,7 +87,7 @@ class CommandLine {
     identify->add_option("--cell", identify_.cell_file, "cell file")->required();
     identify->add_option("--touches", identify_.touches_file, "touches, JSON or CSV")->required();
     identify->add_option("--recipe", identify_.recipe,
-                         "whose identification options hold; default: the cell's first");
+                         "recipe whose identification options apply; default: the cell's first");
     identify->add_option("--export", identify_.arm_file, "write the calibrated arm to this arm file");
     identify->add_option("--map", identify_.map_file,
                          "write the predicted uncertainty over the workspace box to this CSV file");
@@ -105,44 +104,46 @@ class CommandLine {
     validate->add_option("--other", validate_.other_file,
                          "touches of another set; default: the held-out ones of --touches");
     validate->add_option("--recipe", validate_.recipe,
-                         "whose identification options hold; default: the cell's first");
+                         "recipe whose identification options apply; default: the cell's first");
     validate->add_flag("--json", json_, "one JSON document on standard output");
     validate->callback([this] { action_ = [this] { return cell::validate_command(validate_, json_); }; });
   }
 
   void add_plan() {
-    auto* plan = app_.add_subcommand("plan", "plan touches and tell what they will show (offline)");
+    auto* plan = app_.add_subcommand("plan", "plan touches and predict their result (offline)");
     plan->add_option("--cell", plan_.cell_file, "cell file")->required();
     plan->add_option("--recipe", plan_.recipe, "the recipe; default: the cell's first");
     plan->add_option("--fit", plan_.fit_count, "touches to fit, over all planes, in place of the recipe's")
         ->check(CLI::Range(1, cell::kFitCountMax));
     std::vector<std::string> criteria;
     for (const auto& [unused, name] : cell::kCriterionNames) criteria.emplace_back(name);
-    plan->add_option("--criterion", plan_.criterion, "what the touches are chosen for")
+    plan->add_option("--criterion", plan_.criterion, "criterion that the touches are chosen by")
         ->check(CLI::IsMember(criteria));
-    plan->add_option("--accuracy", plan_.tip_rms_max_mm,
-                     "the fewest touches, at most --fit or the recipe's, whose predicted tip error is within "
-                     "so many mm")
+    plan->add_option(
+            "--accuracy", plan_.tip_rms_max_mm,
+            "plan the fewest touches, at most --fit or the recipe's, with a predicted tip error within "
+            "this, mm")
         ->check(CLI::Range(1e-6, 1e3));
     plan->add_option("--workspace-box", plan_.workspace_box_mm,
-                     "where the tip is to be right: minX,minY,minZ,maxX,maxY,maxZ in R_-1, mm")
+                     "box in which the tip error is predicted: minX,minY,minZ,maxX,maxY,maxZ in R_-1, mm")
         ->delimiter(',')
         ->expected(6);
     auto* place = plan->add_flag("--place", plan_.place, "search places for the block and rank them");
     plan->add_option("--place-min", plan_.place_min_mm,
-                     "from where the block may be moved, X,Y,Z along R_-1 as it is now, mm")
+                     "lower end of the block's shift, X,Y,Z along the present R_-1, mm")
         ->delimiter(',')
         ->expected(3)
         ->needs(place);
-    plan->add_option("--place-max", plan_.place_max_mm, "and to where")
+    plan->add_option("--place-max", plan_.place_max_mm, "upper end of the block's shift, X,Y,Z, mm")
         ->delimiter(',')
         ->expected(3)
         ->needs(place);
-    plan->add_option("--place-yaw", plan_.place_yaw_deg, "turns about R_-1's y axis to try, MIN,MAX, degrees")
+    plan->add_option("--place-yaw", plan_.place_yaw_deg,
+                     "range of rotation about R_-1's y axis, MIN,MAX, degrees")
         ->delimiter(',')
         ->expected(2)
         ->needs(place);
-    plan->add_option("--places", plan_.place_count, "how many places to try")
+    plan->add_option("--places", plan_.place_count, "number of places to try")
         ->needs(place)
         ->check(CLI::Range(1, cell::kPlaceCountMax))
         ->default_str("24");
@@ -157,15 +158,16 @@ class CommandLine {
         "run", "start a run and watch it to its end",
         [this](const cell::ApiClient& daemon) { return cell::run_command(daemon, run_, json_); });
     auto* recipe = run->add_option("RECIPE", run_.recipe, "name of the recipe")->default_str(run_.recipe);
-    run->add_option("--plan", run_.plan_id, "id of a plan that the daemon has made, in place of a recipe")
+    run->add_option("--plan", run_.plan_id, "id of a plan of the daemon, in place of a recipe")
         ->excludes(recipe);
-    run->add_flag("--guided", run_.guided, "the touches are made by hand with the pendant");
-    run->add_option("--operator", run_.operator_name, "who answers for the run; kept with its result");
+    run->add_flag("--guided", run_.guided, "a person makes the touches with the pendant");
+    run->add_option("--operator", run_.operator_name,
+                    "the person responsible for the run; stored with its result");
   }
 
   void add_report() {
     auto* report = add_for_daemon(
-        "report", "write a run's report: HTML unless another form is asked for",
+        "report", "write the report of a run, as HTML by default",
         [this](const cell::ApiClient& daemon) { return cell::report_command(daemon, report_, json_); });
     report->add_option("RUN", report_.run_id, "id of the run")->required();
     auto* html = report->add_flag_callback(
@@ -182,7 +184,7 @@ class CommandLine {
   }
 
   void add_completion() {
-    auto* completion = app_.add_subcommand("completion", "print what a shell needs to complete touchcal");
+    auto* completion = app_.add_subcommand("completion", "print a shell completion script for touchcal");
     completion->add_option("SHELL", shell_, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
     completion->callback([this] {
       action_ = [this] {
@@ -200,7 +202,7 @@ class CommandLine {
     sub->add_option("--state", state_directory_, "the daemon's state directory, where its token is")
         ->default_str(state_directory_);
     sub->add_option("--ca", ca_file_,
-                    "certificates (PEM) that an https daemon's is signed by; also TOUCHCAL_CA")
+                    "certificates (PEM) that sign the one of an https daemon; also TOUCHCAL_CA")
         ->default_str(ca_file_);
     sub->add_flag("--json", json_, "one JSON document on standard output");
     sub->callback([this, command] {
@@ -218,8 +220,7 @@ class CommandLine {
   cell::PlanArguments plan_;
   cell::ExportArguments export_;
   cell::ReportArguments report_;
-  // Read here and not by CLI11's envname: there the environment of one subcommand would beat the flag of
-  // another.
+  // Not by CLI11's envname: with it the environment of one subcommand would override the flag of another.
   std::string daemon_url_ = environment_or("TOUCHCAL_DAEMON", "http://127.0.0.1:8080");
   std::string state_directory_ = environment_or("TOUCHCAL_STATE", cell::default_state_directory().string());
   std::string ca_file_ = environment_or("TOUCHCAL_CA", "");

@@ -1,4 +1,4 @@
-// touchcal run, watch and locate: what takes its time is followed to its end.
+// touchcal run, watch and locate: they follow the cell until the end.
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
@@ -19,7 +19,7 @@ namespace {
 /// How long a watcher waits for a change before it asks anew.
 constexpr int kWaitSeconds = 10;
 
-/// How long run waits for a cell that is being made ready.
+/// Longest wait of `run` for a cell that is being made ready.
 constexpr int kReadyWaitSeconds = 5;
 
 /// What the daemon last answered of a run that is followed.
@@ -47,8 +47,8 @@ ApiReply wait_for_change(const ApiClient& daemon, const StatusDocument& status, 
   return daemon.get(target, std::chrono::seconds(wait_s + 10));
 }
 
-/// A daemon that was just started is still looking for its controller: give it a moment. Touches by hand need
-/// no more than that, in manual mode nothing else is ready.
+/// Waits for a daemon that was just started and still connects to its controller. Guided runs need only the
+/// connection; in manual mode nothing else is ready.
 void wait_until_ready(const ApiClient& daemon, bool guided) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kReadyWaitSeconds);
   StatusDocument status = read_reply(daemon.get("/api/v1/status"), read_status);
@@ -74,7 +74,7 @@ Answer watch_to_end(const ApiClient& daemon, const std::string& run_id, bool sil
       break;
     }
     if (!silent) progress.show(status);
-    // Where nobody sits who could resume, a run on hold with a fault is not waited for.
+    // Without a person who could resume, a run that a fault holds is not waited for.
     const bool unattended = silent || isatty(STDOUT_FILENO) == 0;
     if (is_over(status) || (unattended && status.state == "HELD" && status.fault_code)) break;
     answer = status_answer(wait_for_change(daemon, status, kWaitSeconds));

@@ -18,7 +18,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/daemon/listen_address.hpp"
@@ -35,7 +35,7 @@ namespace asio = boost::asio;
 
 namespace {
 
-/// Held while a daemon uses a state directory: two would count the same touches twice.
+/// Lock of a state directory: two daemons would record the same touches twice.
 class DirectoryLock {
  public:
   explicit DirectoryLock(const std::filesystem::path& directory)
@@ -57,12 +57,12 @@ class DirectoryLock {
   int descriptor_;
 };
 
-/// At once and then every day. What cannot be deleted now is deleted another day.
-asio::awaitable<void> forget_old_runs(const TouchStore& store, int retain_days) {
+/// At once and then daily. A failure is repeated the next day.
+asio::awaitable<void> delete_old_runs(const RunStore& store, Clocks clocks, int retain_days) {
   asio::steady_timer day(co_await asio::this_coro::executor);
   for (;;) {
     try {
-      const auto oldest = std::chrono::system_clock::now() - std::chrono::days(retain_days);
+      const auto oldest = clocks.system() - std::chrono::days(retain_days);
       const int deleted = delete_runs_before(store.database(), format_utc(oldest));
       if (deleted > 0) spdlog::info("{} runs older than {} days were deleted", deleted, retain_days);
     } catch (const std::exception& error) {
@@ -73,9 +73,9 @@ asio::awaitable<void> forget_old_runs(const TouchStore& store, int retain_days) 
   }
 }
 
-/// Planning takes tens of MB for a second and identification some hundred kB for a millisecond. glibc would
-/// keep all of it, once for each thread; so large pieces go back to the system when they are freed.
-void keep_memory_small() {
+/// Planning needs tens of MB for a second, identification some hundred kB for a millisecond. By default glibc
+/// retains them, per thread; with these limits large blocks return to the system when freed.
+void limit_allocator() {
   constexpr int kLargePieceBytes = 128 * 1024;
   mallopt(M_ARENA_MAX, 1);
   mallopt(M_MMAP_THRESHOLD, kLargePieceBytes);
@@ -85,20 +85,20 @@ void keep_memory_small() {
 }  // namespace
 
 void run_daemon(const Cell& cell, const DaemonOptions& options) {
-  keep_memory_small();
+  limit_allocator();
   if (std::filesystem::create_directories(options.state_directory)) {
     std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
   }
   const DirectoryLock lock(options.state_directory);
-  TouchStore store(options.state_directory / kStoreFile);
+  RunStore store(options.state_directory / kStoreFile);
   const Tokens tokens = load_or_make_tokens(options.state_directory);
-  const auto clock = [] { return std::chrono::system_clock::now(); };
+  const Clocks clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now};
 
   asio::io_context context(1);
   if (options.retain_days)
-    asio::co_spawn(context, forget_old_runs(store, *options.retain_days), asio::detached);
-  Operation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
-                      random_hex(8), clock);
+    asio::co_spawn(context, delete_old_runs(store, clocks, *options.retain_days), asio::detached);
+  CellOperation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
+                          random_hex(8), clocks);
   operation.keep_place_in(options.state_directory / kBlockPoseFile);
   Api api(context.get_executor(), operation, tokens);
   std::optional<HttpListener> listener;
@@ -115,11 +115,11 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   signals.async_wait([&](const boost::system::error_code& failure, int signal) {
     if (failure) return;
     spdlog::info("signal {}: stopping", signal);
-    supervision.tell_stopping();
+    supervision.notify_stopping();
     listener->close();
     asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
     signals.async_wait(
-        [&](const boost::system::error_code&, int) { context.stop(); });  // a second one: at once
+        [&](const boost::system::error_code&, int) { context.stop(); });  // a second signal: at once
   });
   operation.launch();
   listener->launch();
@@ -127,7 +127,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const auto address = listener->address();
   fmt::print("listening on {}:{}\n", options.listen.host, address.port());
   std::fflush(stdout);
-  supervision.tell_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
+  supervision.notify_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
   context.run();
 }
 

@@ -12,15 +12,15 @@ namespace cell {
 struct DaemonOptions {
   std::filesystem::path state_directory;
   Endpoint listen{"127.0.0.1", 8080};
-  std::vector<std::string> host_names;    // by which clients may call it, beside its address
-  std::optional<Endpoint> controller;     // the cell's when absent
-  std::optional<int> retain_days;         // how long runs are kept; for ever when absent
-  std::filesystem::path tls_certificate;  // PEM, its chain behind it; with tls_key: TLS
+  std::vector<std::string> host_names;    // accepted in Host, besides its address
+  std::optional<Endpoint> controller;     // absent: the cell's
+  std::optional<int> retain_days;         // absent: runs are kept for ever
+  std::filesystem::path tls_certificate;  // PEM, followed by its chain; with tls_key: TLS
   std::filesystem::path tls_key;
 };
 
-/// Serves one cell until SIGINT or SIGTERM; a running motion is stopped then. Prints "listening on HOST:PORT"
-/// on standard output when ready. Throws std::exception when it cannot start (address taken, state not
+/// Serves one cell until SIGINT or SIGTERM, which stop a motion under way. Prints "listening on HOST:PORT" on
+/// standard output when ready. Throws std::exception if it cannot start (address in use, state directory not
 /// writable).
 void run_daemon(const Cell& cell, const DaemonOptions& options);
 

@@ -33,7 +33,7 @@ tcp::endpoint listen_address(boost::asio::io_context& context, const DaemonOptio
 std::shared_ptr<boost::asio::ssl::context> tls_context(const DaemonOptions& options) {
   if (options.tls_certificate.empty() && options.tls_key.empty()) return nullptr;
   if (options.tls_certificate.empty() || options.tls_key.empty())
-    throw std::runtime_error("--tls-cert and --tls-key belong together: give both");
+    throw std::runtime_error("--tls-cert and --tls-key must be given together");
   return make_tls_context(options.tls_certificate, options.tls_key);
 }
 

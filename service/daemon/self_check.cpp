@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The folder itself, or the nearest one above that is there: where it would be made.
+/// The directory itself, or its nearest existing parent.
 fs::path nearest_existing(fs::path directory) {
   std::error_code ignored;
   directory = fs::absolute(directory);
@@ -32,8 +32,8 @@ void check_state(const fs::path& directory) {
   const fs::path existing = nearest_existing(directory);
   std::error_code ignored;
   if (!fs::is_directory(existing, ignored)) {
-    throw std::runtime_error(
-        fmt::format("--state {}: {} is no folder; name another", directory.string(), existing.string()));
+    throw std::runtime_error(fmt::format("--state {}: {} is not a directory; name another",
+                                         directory.string(), existing.string()));
   }
   if (::access(existing.c_str(), W_OK | X_OK) != 0) {
     throw std::runtime_error(
@@ -50,7 +50,7 @@ void check_address(const DaemonOptions& options) {
   acceptor.open(address.protocol(), failure);
   if (!failure) acceptor.set_option(asio::socket_base::reuse_address(true), failure);
   if (!failure) acceptor.bind(address, failure);
-  // In use: by this daemon, most likely, which is checked while it runs.
+  // In use, most likely by the daemon that this check runs beside.
   if (!failure || failure == asio::error::address_in_use) return;
   throw std::runtime_error(fmt::format("--listen {}:{}: {}; give another address", options.listen.host,
                                        options.listen.port, failure.message()));

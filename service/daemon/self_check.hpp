@@ -8,12 +8,12 @@
 
 namespace cell {
 
-/// What would keep a daemon with these options from starting: all of it at once, each in one line with what
-/// to do. Changes nothing and leaves a daemon that runs alone.
+/// Everything that would keep a daemon with these options from starting, one line each with what to do.
+/// Changes nothing, also beside a running daemon.
 struct SelfCheck {
-  std::vector<std::string> bad_files;  // the cell and what it names
+  std::vector<std::string> bad_files;  // the cell file and the files it names
   std::vector<std::string> troubles;   // state directory, tokens, address
-  std::string cell_name;               // empty when its file is bad
+  std::string cell_name;               // empty if its file is invalid
 };
 SelfCheck check_daemon(const std::filesystem::path& cell_file, const DaemonOptions& options);
 

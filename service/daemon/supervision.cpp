@@ -6,7 +6,7 @@ namespace cell {
 
 namespace {
 
-/// Of the time after which systemd gives up: one lost sign is no harm.
+/// Share of the watchdog time between two notifications: one may be lost.
 constexpr int kBeatsPerTimeout = 3;
 
 }  // namespace
@@ -17,18 +17,18 @@ Supervision::Supervision(const boost::asio::any_io_executor& executor) : timer_(
     period_ = std::chrono::microseconds(timeout_us / kBeatsPerTimeout);
 }
 
-void Supervision::tell_ready(const std::string& status) {
+void Supervision::notify_ready(const std::string& status) {
   sd_notify(0, ("READY=1\nSTATUS=" + status).c_str());
-  if (period_.count() > 0) beat();
+  if (period_.count() > 0) notify_watchdog();
 }
 
-void Supervision::tell_stopping() { sd_notify(0, "STOPPING=1\nSTATUS=stops the robot and closes"); }
+void Supervision::notify_stopping() { sd_notify(0, "STOPPING=1\nSTATUS=stops the robot and closes"); }
 
-void Supervision::beat() {
+void Supervision::notify_watchdog() {
   sd_notify(0, "WATCHDOG=1");
   timer_.expires_after(period_);
   timer_.async_wait([this](const boost::system::error_code& failure) {
-    if (!failure) beat();
+    if (!failure) notify_watchdog();
   });
 }
 

@@ -7,24 +7,23 @@
 
 namespace cell {
 
-/// What systemd is told of a service of Type=notify (sd_notify(3)). A process that systemd did not start has
-/// nobody to tell: then nothing happens.
+/// Notifications to systemd for a service of Type=notify (sd_notify(3)). Without systemd they do nothing.
 class Supervision {
  public:
-  /// `executor` is the daemon's thread: as long as it turns, the watchdog (WatchdogSec) is kept quiet.
+  /// `executor` is the daemon's thread: while it runs, the watchdog (WatchdogSec) is notified.
   explicit Supervision(const boost::asio::any_io_executor& executor);
   Supervision(const Supervision&) = delete;
   Supervision& operator=(const Supervision&) = delete;
 
-  /// The daemon serves; `status` is what `systemctl status` shows. Begins the sign of life.
-  void tell_ready(const std::string& status);
-  void tell_stopping();
+  /// The daemon serves; `systemctl status` shows `status`. Starts the watchdog notifications.
+  void notify_ready(const std::string& status);
+  void notify_stopping();
 
  private:
-  void beat();
+  void notify_watchdog();
 
   boost::asio::steady_timer timer_;
-  std::chrono::microseconds period_{};  // zero: nobody waits for a sign of life
+  std::chrono::microseconds period_{};  // zero: no watchdog
 };
 
 }  // namespace cell

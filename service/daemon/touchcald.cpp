@@ -34,13 +34,13 @@ bool is_host_name(const std::string& name) {
   });
 }
 
-/// Maintenance of the database, beside a daemon that may run: the exit code.
+/// Maintenance of the database, also beside a running daemon. Returns the exit code.
 int keep_state(const std::filesystem::path& database, const std::string& backup, bool verify) {
   if (verify) {
     const std::vector<std::string> damage = cell::find_damage(database);
     for (const std::string& line : damage) std::cerr << database.string() << ": " << line << '\n';
     if (!damage.empty()) {
-      std::cerr << "put the last backup in its place while no daemon runs\n";
+      std::cerr << "stop the daemon and restore the last backup\n";
       return cell::kExitBadInput;
     }
     std::cout << database.string() << " is in order\n";
@@ -51,7 +51,7 @@ int keep_state(const std::filesystem::path& database, const std::string& backup,
   return cell::kExitDone;
 }
 
-/// All that stands in the way of a start, at once.
+/// Reports everything that prevents a start.
 cell::ExitCode tell_check(const std::string& cell_file, const cell::SelfCheck& check) {
   for (const std::string& line : check.bad_files) std::cerr << line << '\n';
   for (const std::string& line : check.troubles) std::cerr << line << '\n';
@@ -71,17 +71,18 @@ void begin_log(const std::string& format) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("touchcald: drives the touches of one robot cell, identifies the arm, serves the JSON API");
+  CLI::App app(
+      "touchcald: executes the touches of one robot cell, identifies the arm and serves the JSON API");
   std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key, log_format = "text";
   std::vector<std::string> host_names;
   bool check = false, verify = false;
   int retain_days = 0;
   app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json");
   app.add_option("--listen", listen, "HOST:PORT of the API")->default_str("127.0.0.1:8080");
-  app.add_option("--host-name", host_names, "a name that clients may call the daemon by, beside its address")
+  app.add_option("--host-name", host_names, "a host name that clients may use, besides the address")
       ->check(CLI::Validator(
           [](const std::string& name) {
-            return is_host_name(name) ? "" : "'" + name + "' is no host's name";
+            return is_host_name(name) ? "" : "'" + name + "' is not a host name";
           },
           "NAME"));
   app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's");
@@ -90,17 +91,16 @@ int main(int argc, char** argv) {
                  "certificate, PEM; with --tls-key the API is served over TLS");
   app.add_option("--tls-key", tls_key, "the certificate's key, PEM");
   app.add_option("--log-format", log_format,
-                 "what the log on standard error is made of: text, or json, an object a line")
+                 "format of the log on standard error: text, or json (one object per line)")
       ->check(CLI::IsMember({"text", "json"}))
       ->default_str(log_format);
-  app.add_flag(
-      "--check", check,
-      "look at the cell and all it names, the state directory, its tokens, the address and TLS, tell "
-      "all that is wrong, then exit");
+  app.add_flag("--check", check,
+               "check the cell and its files, the state directory, the tokens, the address and TLS, report "
+               "every error, then exit");
   app.add_option("--backup", backup,
                  "copy the state's database into this new file, then exit; a daemon may run");
-  app.add_flag("--verify", verify, "look for damage in the state's database, then exit; a daemon may run");
-  app.add_option("--retain-days", retain_days, "delete runs that are older, but for the last accepted one")
+  app.add_flag("--verify", verify, "check the state's database for damage, then exit; a daemon may run");
+  app.add_option("--retain-days", retain_days, "delete older runs, except the last accepted one")
       ->check(CLI::PositiveNumber);
   app.set_version_flag("--version", std::string("touchcald ") + cell::kVersion);
 

@@ -43,14 +43,14 @@ Eigen::Isometry3d pose_of(const Eigen::Vector3d& shift_m, const Eigen::Vector3d&
   return pose;
 }
 
-/// Over the document without its checksum, with sorted keys.
+/// Of the document without its checksum, keys sorted.
 std::string checksum_of(const std::string& text) { return sha256_hex(nlohmann::json::parse(text).dump()); }
 
 std::runtime_error trouble(const std::filesystem::path& file) {
   return std::runtime_error(fmt::format("{}: {}", file.string(), std::strerror(errno)));
 }
 
-/// Closes what it holds, whatever happens.
+/// Owns a file descriptor.
 class Descriptor {
  public:
   Descriptor(const std::filesystem::path& file, int flags)
@@ -80,9 +80,9 @@ class Descriptor {
 
 }  // namespace
 
-std::string place_document(const LocatedPlace& place) {
+std::string block_pose_document(const BlockPose& place) {
   const Eigen::Matrix<double, 6, 1> std = place.covariance.diagonal().cwiseSqrt();
-  Json document{{"schema", kPlaceSchema},
+  Json document{{"schema", kBlockPoseSchema},
                 {"located_at", place.located_at},
                 {"digest", place.digest},
                 {"shift_mm", list_of(place.cell_from_block.translation(), 1e3)},
@@ -92,47 +92,47 @@ std::string place_document(const LocatedPlace& place) {
   Json& covariance = document["covariance_si"] = Json::array();
   for (int row = 0; row < 6; ++row) covariance.push_back(list_of(place.covariance.row(row)));
   Json& errors = document["std_errors_si"] = Json::object();
-  for (std::size_t i = 0; i < place.std_place.size(); ++i)
-    if (place.std_place[i]) errors[calib::error_parameters()[i].name()] = *place.std_place[i];
+  for (std::size_t i = 0; i < place.std_block_pose.size(); ++i)
+    if (place.std_block_pose[i]) errors[calib::error_parameters()[i].name()] = *place.std_block_pose[i];
   Json& touches = document["touches"] = Json::array();
-  for (const calib::PlaceTouch& touch : place.touches)
+  for (const calib::RegistrationTouch& touch : place.touches)
     touches.push_back({{"plane", touch.face + 1},
                        {"joints_deg", list_of(touch.joints, 1.0 / calib::kRadiansPerDegree)},
                        {"std_mm", calib::mm_from_metres(touch.std_m)}});
-  document[std::string(kPlaceChecksum)] = checksum_of(document.dump());
+  document[std::string(kBlockPoseChecksum)] = checksum_of(document.dump());
   return document.dump();
 }
 
-void write_place(const std::filesystem::path& file, const LocatedPlace& place) {
+void write_block_pose(const std::filesystem::path& file, const BlockPose& place) {
   std::filesystem::path beside = file;
   beside += ".new";
   {
     const Descriptor made(beside, O_WRONLY | O_CREAT | O_TRUNC);
-    made.write(place_document(place) + '\n');
+    made.write(block_pose_document(place) + '\n');
     made.make_durable();
   }
   std::filesystem::rename(beside, file);
   Descriptor(file.parent_path().empty() ? "." : file.parent_path(), O_RDONLY | O_DIRECTORY).make_durable();
 }
 
-std::optional<LocatedPlace> read_place(const std::filesystem::path& file) {
+std::optional<BlockPose> read_block_pose(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) return std::nullopt;
   const std::string source = file.string();
   const nlohmann::json json = read_json_file(file);
   const JsonObject document =
       JsonValue(source, json)
-          .document(kPlaceSchema,
+          .document(kBlockPoseSchema,
                     {"schema", "located_at", "digest", "shift_mm", "turn_rad", "std_shift_mm", "std_turn_rad",
-                     "covariance_si", "std_errors_si", "touches", kPlaceChecksum});
+                     "covariance_si", "std_errors_si", "touches", kBlockPoseChecksum});
   nlohmann::json summed = json;
-  summed.erase(std::string(kPlaceChecksum));
-  if (document.at(kPlaceChecksum).text() != sha256_hex(summed.dump()))
-    document.at(kPlaceChecksum)
+  summed.erase(std::string(kBlockPoseChecksum));
+  if (document.at(kBlockPoseChecksum).text() != sha256_hex(summed.dump()))
+    document.at(kBlockPoseChecksum)
         .fail(
-            "is not that of the file, which was changed since the block was located; remove the file, then "
+            "does not match: the file was changed after the block was located; remove the file, then "
             "touchcal "
             "locate finds the block");
-  LocatedPlace place{.located_at = document.at("located_at").text(), .digest = document.at("digest").text()};
+  BlockPose place{.located_at = document.at("located_at").text(), .digest = document.at("digest").text()};
   place.cell_from_block =
       pose_of(document.at("shift_mm").numbers<3>() * 1e-3, document.at("turn_rad").numbers<3>());
   const auto rows = document.at("covariance_si").items(6, 6);
@@ -140,8 +140,8 @@ std::optional<LocatedPlace> read_place(const std::filesystem::path& file) {
     place.covariance.row(row) = rows[static_cast<std::size_t>(row)].numbers<6>().transpose();
   for (const auto& [name, value] : document.at("std_errors_si").members()) {
     const auto index = calib::error_parameter_index(name);
-    if (!index) value.fail("is no error of an arm");
-    place.std_place[static_cast<std::size_t>(*index)] = value.number(kNotNegative);
+    if (!index) value.fail("is not the name of an arm error");
+    place.std_block_pose[static_cast<std::size_t>(*index)] = value.number(kNotNegative);
   }
   for (const JsonValue& value : document.at("touches").items(kTouchesMin, kTouchesMax)) {
     const JsonObject touch = value.object({"plane", "joints_deg", "std_mm"});

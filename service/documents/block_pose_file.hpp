@@ -9,18 +9,18 @@
 
 namespace cell {
 
-inline constexpr std::string_view kPlaceSchema = "touchcal/place/1";
+inline constexpr std::string_view kBlockPoseSchema = "touchcal/place/1";
 
-/// A file that was changed by other means than write_place() is refused: the arm goes by it.
-inline constexpr std::string_view kPlaceChecksum = "sha256";
+/// A file that anything but write_block_pose() has changed is refused, since the arm moves by it.
+inline constexpr std::string_view kBlockPoseChecksum = "sha256";
 
-/// schema, located_at, digest, shift_mm, turn_rad (rotation vector), std_shift_mm, std_turn_rad, and what a
-/// reader needs to make it again. One JSON document.
-std::string place_document(const LocatedPlace& place);
+/// One JSON document: schema, located_at, digest, shift_mm, turn_rad (rotation vector), std_shift_mm,
+/// std_turn_rad, and the touches and covariance that restore the value.
+std::string block_pose_document(const BlockPose& place);
 
-/// Durable when it returns: the file is the old one or the new one at every instant. std::runtime_error.
-void write_place(const std::filesystem::path& file, const LocatedPlace& place);
-/// Nothing when there is no such file. ConfigError when it cannot be read as one.
-std::optional<LocatedPlace> read_place(const std::filesystem::path& file);
+/// Atomic, and durable on return. Throws std::runtime_error.
+void write_block_pose(const std::filesystem::path& file, const BlockPose& place);
+/// Nothing if there is no such file. Throws ConfigError if it is invalid.
+std::optional<BlockPose> read_block_pose(const std::filesystem::path& file);
 
 }  // namespace cell

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
-#include "service/base/json_figures.hpp"
-#include "service/documents/place_view.hpp"
+#include "service/documents/internal/geometry_json.hpp"
+#include "service/documents/internal/place_view.hpp"
 #include "service/documents/scene_view.hpp"
 #include "service/run/fault_table.hpp"
 
@@ -13,14 +13,6 @@ namespace {
 
 using calib::mm_from_metres;
 
-Json vector_mm(const Eigen::Vector3d& point_m) {
-  return {mm_from_metres(point_m.x()), mm_from_metres(point_m.y()), mm_from_metres(point_m.z())};
-}
-
-Json box_json(const calib::Box& box) {
-  return {{"name", box.name}, {"min_mm", vector_mm(box.min_m)}, {"max_mm", vector_mm(box.max_m)}};
-}
-
 Json faces_json(const Block& block) {
   Json faces = Json::array();
   for (const calib::Face& face : block.faces) {
@@ -28,7 +20,7 @@ Json faces_json(const Block& block) {
     faces.push_back({{"plane", faces.size() + 1},
                      {"outward", {outward.x(), outward.y(), outward.z()}},
                      {"offset_mm", mm_from_metres(face.plane.offset_m)},
-                     {"center_mm", vector_mm(face.center_m)},
+                     {"center_mm", vector_mm_json(face.center_m)},
                      {"edge_u", {face.edge_u.x(), face.edge_u.y(), face.edge_u.z()}},
                      {"half_extent_mm",
                       {mm_from_metres(face.half_extent_m.x()), mm_from_metres(face.half_extent_m.y())}}});
@@ -63,7 +55,7 @@ std::string recipes_document(const Cell& cell) {
   return text_of({{"recipes", list}, {"default", cell.default_recipe}});
 }
 
-std::string cell_document(const Cell& cell, const std::optional<LocatedPlace>& place) {
+std::string cell_document(const Cell& cell, const std::optional<BlockPose>& place) {
   Json keep_out = Json::array();
   for (const calib::Box& box : cell.keep_out_boxes) keep_out.push_back(box_json(box));
   return text_of({{"name", cell.name},
@@ -72,7 +64,7 @@ std::string cell_document(const Cell& cell, const std::optional<LocatedPlace>& p
                    {{"name", cell.block.name},
                     {"temperature_c", number(cell.block.temperature_c)},
                     {"faces", faces_json(cell.block)}}},
-                  {"place", place_view(place)},
+                  {"place", block_pose_json(place)},
                   {"probe",
                    {{"name", cell.probe.name},
                     {"tip_is_contact_point", cell.probe.tip_is_contact_point},
@@ -81,7 +73,7 @@ std::string cell_document(const Cell& cell, const std::optional<LocatedPlace>& p
                   {"default_recipe", cell.default_recipe},
                   {"workspace_box", box_json(cell.workspace_box)},
                   {"keep_out_boxes", keep_out},
-                  {"nominal_miss_mm", mm_from_metres(cell.nominal_miss_m)},
+                  {"nominal_miss_mm", mm_from_metres(cell.nominal_position_error_m)},
                   {"touch_noise_mm", mm_from_metres(cell.touch_noise_m)},
                   {"acceptance", limits_json(cell.acceptance)},
                   {"scene", scene_json(cell)},

@@ -8,14 +8,13 @@
 
 namespace cell {
 
-/// The recipes by name, which one is taken by default, and how many touches each makes.
+/// The recipes by name, the default one, and the number of touches of each.
 std::string recipes_document(const Cell& cell);
 
-/// What the cell is made of, in the units of its files.
-/// `place`: where the block was located, if it was.
-std::string cell_document(const Cell& cell, const std::optional<LocatedPlace>& place);
+/// The parts of the cell, in the units of its files. `place`: the located pose of the block, if any.
+std::string cell_document(const Cell& cell, const std::optional<BlockPose>& place);
 
-/// The fault table (service/faults.hpp).
+/// The fault table (service/run/fault_table.hpp).
 std::string faults_document();
 
 }  // namespace cell

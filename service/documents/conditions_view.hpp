@@ -15,7 +15,7 @@ ConditionsDocument conditions_of(const Cell& cell, const Conditions& conditions)
 /// The same as text: what is kept with a run.
 std::string conditions_document(const Cell& cell, const Conditions& conditions);
 
-/// Whether a person made the touches of a run that kept these conditions; false when they do not say.
+/// True if these stored conditions say that a person made the touches.
 bool is_guided(const std::optional<std::string>& conditions);
 
 }  // namespace cell

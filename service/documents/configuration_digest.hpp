@@ -7,10 +7,10 @@
 
 namespace cell {
 
-/// SHA-256 in lower-case hex over the files a cell was read from (Cell::files), in that order: of each the
-/// JSON with sorted keys and without white space, ended by a line feed. Another layout of a file is the same
-/// digest, another figure is not. Nothing for a cell that was not read from files. Throws ConfigError when
-/// one cannot be read any more.
+/// SHA-256, lower-case hexadecimal, over the files that a cell was read from (Cell::files), in their order:
+/// the JSON of each with sorted keys and without white space, followed by a line feed. The layout of a file
+/// does not matter, its figures do. Nothing for a cell that was not read from files. Throws ConfigError if a
+/// file can no longer be read.
 std::optional<std::string> configuration_digest(const Cell& cell);
 
 }  // namespace cell

@@ -4,7 +4,6 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "calib_core/geometry/units.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/figures.hpp"
@@ -133,9 +132,9 @@ std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std:
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches) {
   Json list = Json::array();
   for (const StoredTouch& touch : touches) {
-    Json joints = Json::array();
-    for (const std::int32_t microdeg : touch.joints) joints.push_back(microdeg / 1e6);
-    list.push_back({{"plane", touch.plane}, {"role", role_name(touch.role)}, {"joints_deg", joints}});
+    list.push_back({{"plane", touch.plane},
+                    {"role", role_name(touch.role)},
+                    {"joints_deg", joints_deg_json(touch.joints)}});
   }
   return text_of({{"schema", "touchcal/touches/1"}, {"arm", cell.arm.name}, {"touches", list}});
 }

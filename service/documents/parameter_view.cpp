@@ -11,7 +11,7 @@
 namespace cell {
 namespace {
 
-/// An artefact parameter is identified when the touches took this part of its prior deviation away.
+/// An artefact parameter is identified if the touches reduced its prior deviation by this share.
 constexpr double kIdentifiedFall = 0.1;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // shown as null
@@ -34,7 +34,7 @@ const char* status_name(calib::ParameterStatus status) {
 
 const char* group_name(calib::ParameterGroup group) {
   switch (group) {
-    case calib::ParameterGroup::kPlace:
+    case calib::ParameterGroup::kBlockPose:
       return "place";
     case calib::ParameterGroup::kArm:
       return "arm";
@@ -66,8 +66,8 @@ std::array<std::vector<CarriedError>, calib::kErrorParameterCount> carried(
 
 /// One standard deviation of an estimated arm parameter, SI.
 std::optional<double> std_of(const calib::IdentificationResult& result, int index) {
-  if (!result.certainty) return std::nullopt;
-  return result.certainty->std_error(index);
+  if (!result.uncertainty) return std::nullopt;
+  return result.uncertainty->std_error(index);
 }
 
 std::optional<std::array<std::optional<double>, 2>> interval_of(int index, double error,
@@ -97,9 +97,12 @@ const char* unit_name(calib::ArtefactKind kind) {
       return "rad";
     case calib::ArtefactKind::kTemperature:
       return "degC";
-    default:
+    case calib::ArtefactKind::kFaceOffset:
+    case calib::ArtefactKind::kStylusRadius:
+    case calib::ArtefactKind::kPretravel:
       return "mm";
   }
+  return "";
 }
 
 std::string arm_parameter_name(int index) {
@@ -146,7 +149,7 @@ std::vector<ArtefactParameter> artefact_parameters_of(const calib::Identificatio
     const auto index = static_cast<Eigen::Index>(i);
     const std::string unit = unit_name(parameter.kind);
     const double scale = unit == "mm" ? calib::mm_from_metres(1.0) : 1.0;
-    const double std = result.certainty ? result.certainty->artefact_std[index] : kUnknown;
+    const double std = result.uncertainty ? result.uncertainty->artefact_std[index] : kUnknown;
     const bool identified = !parameter.std || std < (1.0 - kIdentifiedFall) * *parameter.std;
     const bool estimated = result.artefact_errors.size() > index;
     ArtefactParameter& shown_as = list.emplace_back();

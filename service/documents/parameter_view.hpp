@@ -5,10 +5,10 @@
 #include "calib_core/identification/identify.hpp"
 #include "service/documents/parameter_document.hpp"
 
-/// The parts of a result document that tell of parameters. Lengths are in mm, angles in rad.
+/// The parts of a result document about parameters. Lengths are in mm, angles in rad.
 namespace cell {
 
-/// A candidate's value in the unit that documents show it in: mm or rad.
+/// A candidate's value in its document unit: mm or rad.
 double shown(int index, double value);
 
 /// All 37 candidates. With a prior all that are not excluded have an error and are `identified`; the rank of

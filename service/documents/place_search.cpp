@@ -15,8 +15,8 @@
 namespace cell {
 namespace {
 
-/// The i-th place, counted from 1, of a sequence that fills the range evenly.
-BlockPlace place_in(const PlaceRange& range, int i) {
+/// The i-th place, from 1, of a Halton sequence over the range.
+BlockDisplacement place_in(const PlaceRange& range, int i) {
   const Eigen::Vector3d share(calib::van_der_corput(i, 2), calib::van_der_corput(i, 3),
                               calib::van_der_corput(i, 5));
   return {range.min.shift_m + share.cwiseProduct(range.max.shift_m - range.min.shift_m),
@@ -30,51 +30,51 @@ class PlaceSearch {
         recipe_(recipe),
         in_box_(calib::postures_in_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box)) {}
 
-  void plan(PlaceFinding& finding, std::optional<int> candidate_count) const {
-    const Cell there = with_block_at(cell_, finding.place);
+  void plan(PlaceCandidate& candidate, std::optional<int> candidate_count) const {
+    const Cell there = with_block_displaced(cell_, candidate.place);
     calib::PlanningProblem problem = planning_problem(there, recipe_);
     if (candidate_count) problem.candidate_count = *candidate_count;
     const auto outcome = calib::plan_touches(problem);
-    finding.fully_planned = !candidate_count;
-    finding.figures.reset();
+    candidate.fully_planned = !candidate_count;
+    candidate.figures.reset();
     if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome)) {
-      finding.reason = reason_of(*failure);
+      candidate.reason = reason_of(*failure);
     } else {
-      judge(there, std::get<calib::TouchPlan>(outcome), finding);
+      judge(there, std::get<calib::TouchPlan>(outcome), candidate);
     }
   }
 
-  /// The figure that places are ranked by; infinite without one.
-  [[nodiscard]] double error_m(const PlaceFinding& finding) const {
+  /// The figure that places are ranked by; infinite without a plan.
+  [[nodiscard]] double error_m(const PlaceCandidate& candidate) const {
     constexpr double kNone = std::numeric_limits<double>::infinity();
-    if (!finding.figures) return kNone;
+    if (!candidate.figures) return kNone;
     const bool over_ranges = recipe_.goal.criterion == calib::PlanCriterion::kTipInJointRanges;
-    return (over_ranges ? finding.figures->joint_ranges_rms_m : finding.figures->workspace_box_rms_m)
+    return (over_ranges ? candidate.figures->joint_ranges_rms_m : candidate.figures->workspace_box_rms_m)
         .value_or(kNone);
   }
 
  private:
-  void judge(const Cell& there, const calib::TouchPlan& plan, PlaceFinding& finding) const {
+  void judge(const Cell& there, const calib::TouchPlan& plan, PlaceCandidate& candidate) const {
     const PlannedIdentification planned = identify_planned(there, recipe_, plan);
-    if (!planned.result.certainty) {
-      finding.reason = planned.result.message;
+    if (!planned.result.uncertainty) {
+      candidate.reason = planned.result.message;
       return;
     }
-    const calib::Certainty& certainty = *planned.result.certainty;
+    const calib::UncertaintyBudget& uncertainty = *planned.result.uncertainty;
     const calib::KinematicModel& model = there.arm.model;
-    finding.figures =
-        PlaceFigures{.workspace_box_rms_m = predicted_rms_m(calib::over_postures(model, in_box_), certainty),
-                     .joint_ranges_rms_m =
-                         predicted_rms_m(calib::over_joint_ranges(model, there.arm.joint_ranges), certainty),
-                     .condition_number = planned.result.iterations.back().condition_number,
-                     .duration_s = plan.duration_s(),
-                     .touch_count = static_cast<int>(plan.touches.size())};
+    candidate.figures = PlaceFigures{
+        .workspace_box_rms_m = predicted_rms_m(calib::region_over_postures(model, in_box_), uncertainty),
+        .joint_ranges_rms_m =
+            predicted_rms_m(calib::region_over_joint_ranges(model, there.arm.joint_ranges), uncertainty),
+        .condition_number = planned.result.iterations.back().condition_number,
+        .duration_s = plan.duration_s(),
+        .touch_count = static_cast<int>(plan.touches.size())};
   }
 
   static std::string reason_of(const calib::PlanningFailure& failure) {
     if (failure.kind != calib::PlanningFailure::Kind::kFace) return failure.reason;
-    return fmt::format("plane {}: {} of {} touches can be made, in the way most often: {}", failure.face + 1,
-                       failure.found, failure.wanted, failure.reason);
+    return fmt::format("plane {}: {} of {} touches can be made, most frequent obstruction: {}",
+                       failure.face + 1, failure.found, failure.wanted, failure.reason);
   }
 
   const Cell& cell_;
@@ -84,31 +84,31 @@ class PlaceSearch {
 
 }  // namespace
 
-std::vector<PlaceFinding> search_places(const Cell& cell, const Recipe& recipe, const PlaceRange& range,
-                                        const PlaceSearchOptions& options,
-                                        const calib::PlanningProgress& progress) {
+std::vector<PlaceCandidate> search_places(const Cell& cell, const Recipe& recipe, const PlaceRange& range,
+                                          const PlaceSearchOptions& options,
+                                          const calib::PlanningProgress& progress) {
   const PlaceSearch search(cell, recipe);
   const int full_count = std::min(options.full_count, options.place_count + 1);
   const auto tell = [&](const std::string& stage, int done) {
     if (progress) progress(stage, static_cast<double>(done) / (options.place_count + 1 + full_count));
   };
-  std::vector<PlaceFinding> findings{{.present = true}};
-  for (int i = 1; i <= options.place_count; ++i) findings.push_back({.place = place_in(range, i)});
-  for (std::size_t i = 0; i < findings.size(); ++i) {
-    tell(fmt::format("place {} of {}", i + 1, findings.size()), static_cast<int>(i));
-    search.plan(findings[i], options.coarse_candidate_count);
+  std::vector<PlaceCandidate> candidates{{.present = true}};
+  for (int i = 1; i <= options.place_count; ++i) candidates.push_back({.place = place_in(range, i)});
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    tell(fmt::format("place {} of {}", i + 1, candidates.size()), static_cast<int>(i));
+    search.plan(candidates[i], options.coarse_candidate_count);
   }
   const auto rank = [&] {
-    std::ranges::stable_sort(findings, {},
-                             [&](const PlaceFinding& finding) { return search.error_m(finding); });
+    std::ranges::stable_sort(candidates, {},
+                             [&](const PlaceCandidate& candidate) { return search.error_m(candidate); });
   };
   rank();
-  for (int i = 0; i < full_count && findings[static_cast<std::size_t>(i)].figures; ++i) {
+  for (int i = 0; i < full_count && candidates[static_cast<std::size_t>(i)].figures; ++i) {
     tell(fmt::format("best place {} of {}", i + 1, full_count), options.place_count + 1 + i);
-    search.plan(findings[static_cast<std::size_t>(i)], std::nullopt);
+    search.plan(candidates[static_cast<std::size_t>(i)], std::nullopt);
   }
   rank();
-  return findings;
+  return candidates;
 }
 
 }  // namespace cell

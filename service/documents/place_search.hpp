@@ -11,11 +11,11 @@
 namespace cell {
 
 struct PlaceRange {
-  BlockPlace min, max;
+  BlockDisplacement min, max;
 };
 
-/// What a plan there is predicted to give, over the workspace box and the joint ranges as they are in the
-/// room: the same for all places.
+/// Predicted figures of a plan at a place. Workspace box and joint ranges are fixed in the room, the same for
+/// all places.
 struct PlaceFigures {
   std::optional<double> workspace_box_rms_m;
   std::optional<double> joint_ranges_rms_m;
@@ -24,24 +24,24 @@ struct PlaceFigures {
   int touch_count = 0;
 };
 
-struct PlaceFinding {
-  BlockPlace place;
-  bool present = false;                 // where the block is now
-  bool fully_planned = false;           // else from few candidates: a little worse than it could be
-  std::optional<PlaceFigures> figures;  // nothing when there is no plan
+struct PlaceCandidate {
+  BlockDisplacement place;
+  bool present = false;                 // the present place
+  bool fully_planned = false;           // else with few candidates: slightly worse
+  std::optional<PlaceFigures> figures;  // absent if there is no plan
   std::string reason;                   // why not
 };
 
 struct PlaceSearchOptions {
-  int place_count = 24;  // spread evenly over the range, besides the present one
-  int full_count = 3;    // of them, the best, with all candidates
+  int place_count = 24;  // spread over the range, besides the present one
+  int full_count = 3;    // the best of them are planned with all candidates
   int coarse_candidate_count = 2'000;
 };
 
-/// Tries places and ranks them by the predicted tip error over the recipe's region; those without a plan come
-/// last.
-std::vector<PlaceFinding> search_places(const Cell& cell, const Recipe& recipe, const PlaceRange& range,
-                                        const PlaceSearchOptions& options,
-                                        const calib::PlanningProgress& progress = {});
+/// Plans at several places and ranks them by the predicted tip error over the recipe's region; places without
+/// a plan come last.
+std::vector<PlaceCandidate> search_places(const Cell& cell, const Recipe& recipe, const PlaceRange& range,
+                                          const PlaceSearchOptions& options,
+                                          const calib::PlanningProgress& progress = {});
 
 }  // namespace cell

@@ -1,4 +1,4 @@
-#include "service/documents/place_view.hpp"
+#include "service/documents/internal/place_view.hpp"
 
 #include <nlohmann/json.hpp>
 

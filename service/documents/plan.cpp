@@ -1,10 +1,8 @@
 #include "service/documents/plan.hpp"
 
-#include <openssl/evp.h>
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <stdexcept>
 
@@ -19,23 +17,16 @@ namespace {
 
 using calib::mm_from_metres;
 
-constexpr std::size_t kIdBytes = 8;
+/// Hexadecimal digits of an id.
+constexpr std::size_t kIdDigits = 16;
 
-/// Postures by which it is told how near the tip comes to what is out of its reach.
+/// Postures sampled to estimate how near the tip comes to an unreachable target.
 constexpr int kReachPostures = 20'000;
 
-/// Reasons named for a face, the most frequent ones.
-constexpr std::size_t kObstructionsTold = 3;
+/// Number of obstructions reported for a face, the most frequent ones.
+constexpr std::size_t kObstructionsReported = 3;
 
-std::string digest(const std::string& text) {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> bytes{};
-  EVP_Digest(text.data(), text.size(), bytes.data(), nullptr, EVP_sha256(), nullptr);
-  std::string hex;
-  for (std::size_t i = 0; i < kIdBytes; ++i) hex += fmt::format("{:02x}", bytes[i]);
-  return hex;
-}
-
-/// How near the nominal tip comes to a box, or to a point when both corners are one. Metres.
+/// Smallest distance of the nominal tip from a box, or from a point if both corners are equal. Metres.
 double nearest_tip_m(const Arm& arm, const Eigen::Vector3d& min_m, const Eigen::Vector3d& max_m) {
   const calib::PreparedModel model = calib::prepare(arm.model);
   double nearest_m = std::numeric_limits<double>::infinity();
@@ -52,7 +43,7 @@ PlanRefusal refuse_workspace_box(const Cell& cell) {
   return {
       .kind = PlanRefusal::Kind::kWorkspaceBox,
       .message = fmt::format(
-          "the workspace box \"{}\" is out of the arm's range: none of {} postures of its joint ranges has "
+          "the workspace box \"{}\" is out of the arm's range: none of {} postures in the joint ranges has "
           "the tip in it, the nearest is {:.0f} mm off; move the box (\"workspace_box\" in the cell's file)",
           box.name, kReachPostures, mm_from_metres(nearest_tip_m(cell.arm, box.min_m, box.max_m)))};
 }
@@ -62,18 +53,18 @@ const calib::FaceEffort* effort_of(const calib::PlanningFailure& failure) {
   return found == failure.efforts.end() ? nullptr : &*found;
 }
 
-/// The face with too few touches, told apart: out of reach, or in reach and always something in the way.
+/// Refusal for a face with too few touches: out of reach, or in reach and always obstructed.
 PlanRefusal refuse_face(const Cell& cell, const calib::PlanningFailure& failure) {
   const Eigen::Vector3d& center_m = cell.block.faces[static_cast<std::size_t>(failure.face)].center_m;
   const double nearest_mm = mm_from_metres(nearest_tip_m(cell.arm, center_m, center_m));
   const calib::FaceEffort* effort = effort_of(failure);
-  // Fewer on this plane than it needs itself, or fewer on all together, this one having the fewest.
+  // Too few on this plane itself, or too few in total with the fewest on this plane.
   const bool over_all = effort && effort->feasible != failure.found;
   std::string message = fmt::format("plane {}: {} of {} touches {}can be made", failure.face + 1,
                                     failure.found, failure.wanted, over_all ? "over all planes " : "");
   if (effort) message += fmt::format(", after {} postures tried", effort->tried);
   message +=
-      fmt::format("; in the way most often: {}; the tip comes as near as {:.0f} mm to the plane's centre",
+      fmt::format("; most frequent obstruction: {}; the tip comes as near as {:.0f} mm to the plane's centre",
                   failure.reason, nearest_mm);
   message += failure.found > 0 ? "; ask for fewer touches, or move the block (touchcal plan --place)"
                                : "; move the block (touchcal plan --place), or leave the plane out";
@@ -86,29 +77,29 @@ PlanRefusal refuse(const Cell& cell, const Recipe& recipe, const calib::Planning
       return {.kind = PlanRefusal::Kind::kPark,
               .message = failure.reason + "; choose other park_joints_deg in the cell's file"};
     case calib::PlanningFailure::Kind::kAccuracy:
-      return {
-          .kind = PlanRefusal::Kind::kAccuracy,
-          .message = fmt::format(
-              "a predicted tip error of {:.4g} mm cannot be had{}: {}; allow more touches (--fit) against "
-              "touch_noise, give better figures of block and probe against the rest",
-              mm_from_metres(recipe.goal.tip_rms_max_m.value_or(0.0)),
-              failure.best_tip_rms_m
-                  ? fmt::format(", the best is {:.4g} mm", mm_from_metres(*failure.best_tip_rms_m))
-                  : std::string(),
-              failure.reason),
-          .efforts = failure.efforts};
-    case calib::PlanningFailure::Kind::kPlanes:
-      return {
-          .kind = PlanRefusal::Kind::kTouches,
-          .message = failure.reason + "; touch more planes, or exclude the parameters that these do not show",
-          .efforts = failure.efforts};
+      return {.kind = PlanRefusal::Kind::kAccuracy,
+              .message = fmt::format(
+                  "a predicted tip error of {:.4g} mm is not attainable{}: {}; allow more touches (--fit) to "
+                  "reduce "
+                  "touch_noise, give better figures of block and probe to reduce the rest",
+                  mm_from_metres(recipe.goal.tip_rms_max_m.value_or(0.0)),
+                  failure.best_tip_rms_m
+                      ? fmt::format(", the best is {:.4g} mm", mm_from_metres(*failure.best_tip_rms_m))
+                      : std::string(),
+                  failure.reason),
+              .efforts = failure.efforts};
+    case calib::PlanningFailure::Kind::kUnidentifiable:
+      return {.kind = PlanRefusal::Kind::kTouches,
+              .message = failure.reason +
+                         "; touch more planes, or exclude the parameters that these planes do not determine",
+              .efforts = failure.efforts};
     case calib::PlanningFailure::Kind::kFace:
       break;
   }
   return refuse_face(cell, failure);
 }
 
-/// Touches that cannot show what they are to show; with a prior any number will do.
+/// Refuses fewer touches than parameters; with a prior any number will do.
 std::optional<PlanRefusal> refuse_too_few(const Recipe& recipe, const calib::PlanningProblem& problem) {
   const int needed = problem.knowledge.attainable.value().count;
   if (recipe.identification.prior || problem.goal.fit_count >= needed) return std::nullopt;
@@ -126,7 +117,7 @@ PlannedIdentification identify_planned(const Cell& cell, const Recipe& recipe, c
   calib::IdentificationProblem& problem = planned_run.problem;
   const calib::PreparedModel nominal = calib::prepare(problem.nominal);
   for (const calib::PlannedTouch& planned : plan.touches) {
-    // A temperature or a pre-travel puts the trigger a little off the drawn face that was aimed at.
+    // Temperature and pre-travel displace the trigger slightly from the nominal face.
     const calib::Plane& contact = problem.artefact.contact_planes[static_cast<std::size_t>(planned.face)];
     problem.touches.push_back(
         calib::moved_onto_plane(nominal, contact, {planned.face, planned.joints, planned.role}));
@@ -149,9 +140,10 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
   Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};
   const PlannedIdentification planned = identify_planned(cell, recipe, plan.touches);
   if (planned.result.status != calib::IdentificationStatus::kConverged) {
-    return PlanRefusal{.kind = PlanRefusal::Kind::kTouches,
-                       .message = fmt::format("the planned touches would not do: {}", planned.result.message),
-                       .efforts = plan.touches.efforts};
+    return PlanRefusal{
+        .kind = PlanRefusal::Kind::kTouches,
+        .message = fmt::format("the planned touches are not sufficient: {}", planned.result.message),
+        .efforts = plan.touches.efforts};
   }
   PlanDocument document = plan_of(regions, recipe, plan.touches, planned);
   plan.id = digest(document_text(document));
@@ -165,10 +157,10 @@ std::vector<std::string> effort_lines(const std::vector<calib::FaceEffort>& effo
   for (const calib::FaceEffort& effort : efforts) {
     std::string line = fmt::format("plane {}: {} of {} postures tried can be touched", effort.face + 1,
                                    effort.feasible, effort.tried);
-    for (std::size_t i = 0; i < std::min(effort.obstructions.size(), kObstructionsTold); ++i) {
+    for (std::size_t i = 0; i < std::min(effort.obstructions.size(), kObstructionsReported); ++i) {
       const calib::Obstruction& obstruction = effort.obstructions[i];
       line +=
-          fmt::format("{} {} ({})", i == 0 ? "; in the way:" : ",", obstruction.reason, obstruction.count);
+          fmt::format("{} {} ({})", i == 0 ? "; obstructed by:" : ",", obstruction.reason, obstruction.count);
     }
     lines.push_back(line);
   }

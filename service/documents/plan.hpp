@@ -11,15 +11,15 @@
 
 namespace cell {
 
-/// identify() on a plan's touches as the nominal arm would make them, exactly on the faces: rank, condition
-/// numbers and uncertainties of a run that goes as planned. The errors are all 0.
+/// identify() on the touches of a plan as the nominal arm would make them, exactly on the faces: rank,
+/// condition numbers and uncertainties of a run that goes as planned. All errors are 0.
 struct PlannedIdentification {
   calib::IdentificationProblem problem;
   calib::IdentificationResult result;
 };
 PlannedIdentification identify_planned(const Cell& cell, const Recipe& recipe, const calib::TouchPlan& plan);
 
-/// A plan as it is shown and as it is run.
+/// A plan with its document.
 struct Plan {
   std::string id;  // digest of the document: the same problem gives the same id
   std::string recipe;
@@ -31,15 +31,15 @@ struct Plan {
 struct PlanRefusal {
   enum class Kind { kPark, kFace, kAccuracy, kWorkspaceBox, kTouches };
   Kind kind = Kind::kFace;
-  std::string message;  // one line: what was wanted, the best that can be had, what stands in the way
+  std::string message;  // one line: what was requested, the best attainable, the obstruction
   std::vector<calib::FaceEffort> efforts;  // what was tried
 };
 
-/// Plans a recipe's touches and predicts what they give. Takes seconds; deterministic.
+/// Plans the touches of a recipe and predicts their result. Takes seconds; deterministic.
 std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recipe& recipe,
                                           const calib::PlanningProgress& progress = {});
 
-/// One line for each face: how many postures were tried and what kept most of them from being touches.
+/// One line for each face: the postures tried and the most frequent obstructions.
 std::vector<std::string> effort_lines(const std::vector<calib::FaceEffort>& efforts);
 
 }  // namespace cell

@@ -1,4 +1,4 @@
-#include "service/documents/plan_view.hpp"
+#include "service/documents/internal/plan_view.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -102,20 +102,20 @@ std::vector<PlanDocument::Effort> efforts_of(const std::vector<calib::FaceEffort
 std::string accuracy_words(const std::vector<ErrorShare>& shares) {
   std::string words;
   for (const ErrorShare& share : shares) {
-    if (share.share < kShareToldMin) break;
+    if (share.share < kShareReportedMin) break;
     words += fmt::format("{}{} {:.0f} % ({:.3f} mm alone)", words.empty() ? "" : ", ", share.source,
                          100.0 * share.share, mm_from_metres(share.rms_m));
   }
   return words.empty() ? words : "the tip error in the workspace box comes from: " + words;
 }
 
-/// Where in the workspace box nothing is predicted, as the arm does not come there.
+/// The part of the workspace box that the arm does not reach.
 std::optional<std::string> out_of_reach_words(const TipPrediction& tip) {
   if (!tip.map) return std::nullopt;
   const auto cells = tip.map->rms_m.size();
   const auto out = std::ranges::count(tip.map->rms_m, std::optional<double>{});
   if (out == 0) return std::nullopt;
-  return fmt::format("the tip does not come to {} of the workspace box's {} cells", out, cells);
+  return fmt::format("the tip does not reach {} of the {} cells of the workspace box", out, cells);
 }
 
 PlanDocument::Limits limits_of(const calib::TouchPlan& plan, const TipPrediction& tip) {

@@ -12,8 +12,8 @@ namespace cell {
 
 struct ResultContext {
   bool complete = true;               // every touch was made
-  std::vector<std::string> warnings;  // of the touches' file; identify's own are in the result
-  std::string conditions;             // as kept with the run; empty: what the cell's files tell
+  std::vector<std::string> warnings;  // of the touches file; those of identify() are in the result
+  std::string conditions;             // as stored with the run; empty: those of the cell's files
 };
 
 /// touchcal/result/1 (service/doc/surfaces.md, section 5). `problem` is what was identified: rejected touches

@@ -3,16 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
+#include "service/documents/internal/geometry_json.hpp"
 
 namespace cell {
 namespace {
 
-using calib::degrees_from_radians;
 using calib::mm_from_metres;
-
-Json vector_mm(const Eigen::Vector3d& point_m) {
-  return {mm_from_metres(point_m.x()), mm_from_metres(point_m.y()), mm_from_metres(point_m.z())};
-}
 
 /// As the arm's file has them: at a joint, theta is the offset.
 Json frames_json(const calib::KinematicModel& model) {
@@ -32,8 +28,8 @@ Json bodies_json(const std::vector<calib::Capsule>& bodies) {
   for (const calib::Capsule& body : bodies) {
     list.push_back({{"name", body.name},
                     {"frame", body.frame},
-                    {"from_mm", vector_mm(body.from_m)},
-                    {"to_mm", vector_mm(body.to_m)},
+                    {"from_mm", vector_mm_json(body.from_m)},
+                    {"to_mm", vector_mm_json(body.to_m)},
                     {"radius_mm", mm_from_metres(body.radius_m)}});
   }
   return list;
@@ -44,27 +40,19 @@ Json bodies_json(const std::vector<calib::Capsule>& bodies) {
 Json scene_json(const Cell& cell) {
   Json solids = Json::array();
   for (const calib::Box& box : cell.block.solids) {
-    solids.push_back(
-        {{"name", box.name}, {"min_mm", vector_mm(box.min_m)}, {"max_mm", vector_mm(box.max_m)}});
+    solids.push_back(box_json(box));
   }
-  Json park = Json::array();
-  for (const double joint_rad : cell.park_joints) park.push_back(degrees_from_radians(joint_rad));
   return {{"frames", frames_json(cell.arm.model)},
           {"gains", cell.arm.model.gains},
           {"arm_bodies", bodies_json(cell.arm.bodies)},
           {"probe_bodies", bodies_json(cell.probe.bodies)},
           {"solids", solids},
-          {"park_joints_deg", park}};
+          {"park_joints_deg", joints_deg_json(cell.park_joints)}};
 }
 
-std::string joints_document(const std::optional<cs8::State>& told, const Status& status) {
-  Json joints = nullptr;
-  if (told) {
-    joints = Json::array();
-    for (const std::int32_t microdeg : told->joints) joints.push_back(microdeg / 1e6);
-  }
-  return text_of({{"joints_deg", joints},
-                  {"data_age_ms", status.data_age_ms ? Json(*status.data_age_ms) : Json(nullptr)},
+std::string joints_document(const std::optional<cs8::State>& state, const Status& status) {
+  return text_of({{"joints_deg", state ? joints_deg_json(state->joints) : Json(nullptr)},
+                  {"data_age_ms", value_or_null(status.data_age_ms)},
                   {"sequence", status.sequence},
                   {"instance_id", status.instance_id}});
 }

@@ -10,11 +10,11 @@
 
 namespace cell {
 
-/// What the cell looks like: the arm's frames, its and the probe's bodies, what stands around it. In R_-1,
+/// The geometry of the cell: the arm's frames, the bodies of arm and probe, the solids around. In R_-1;
 /// bodies in the frame that they move with.
 Json scene_json(const Cell& cell);
 
-/// Where the arm is. `told`: the controller's newest state; nothing when it told none.
-std::string joints_document(const std::optional<cs8::State>& told, const Status& status);
+/// The posture of the arm. `state`: the controller's newest state, if any.
+std::string joints_document(const std::optional<cs8::State>& state, const Status& status);
 
 }  // namespace cell

@@ -1,11 +1,11 @@
-#include "service/report/figure.hpp"
+#include "service/report/internal/figure.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "service/report/html.hpp"
+#include "service/report/internal/html.hpp"
 
 namespace cell {
 namespace {
@@ -28,7 +28,7 @@ struct Range {
     high = any ? std::max(high, value) : value;
     any = true;
   }
-  /// Some room around; a range without width gets one.
+  /// Adds a margin; an empty range gets a width.
   void widen() {
     const double width = high - low;
     const double room = width > 0.0 ? 0.06 * width : std::max(1e-3, 0.1 * std::abs(high));

@@ -1,4 +1,4 @@
-#include "service/report/html.hpp"
+#include "service/report/internal/html.hpp"
 
 #include <spdlog/fmt/fmt.h>
 

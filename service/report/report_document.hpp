@@ -10,8 +10,7 @@
 
 namespace cell {
 
-/// All that is kept of a run. A report is made of this and of nothing else: it is the same whenever it is
-/// made.
+/// Everything stored about a run. A report depends on nothing else, so it can be repeated.
 struct RunRecord {
   StoredRun run;
   std::vector<StoredTouch> touches;
@@ -24,8 +23,8 @@ struct RunRecord {
 /// touchcal/report/1, one JSON document as text.
 std::string report_document(const RunRecord& record);
 
-/// The touches as the controller answered them, a line each: number in the run, plane, role, six joint angles
-/// in degrees to the last digit that came over the wire. `raw_data.sha256` of the report is taken over it.
+/// The touches as answered by the controller, one line each: number in the run, plane, role, six joint angles
+/// in degrees with every digit of the wire. `raw_data.sha256` of the report is the digest of this text.
 std::string raw_data_text(const std::vector<StoredTouch>& touches);
 
 /// The report's touches as a table for a spreadsheet; its first nine columns are raw_data_text().

@@ -3,13 +3,13 @@
 #include <map>
 #include <tuple>
 
-#include "service/report/figure.hpp"
-#include "service/report/report_parts.hpp"
+#include "service/report/internal/figure.hpp"
+#include "service/report/internal/report_parts.hpp"
 
 namespace cell {
 namespace {
 
-/// The figures of one plane and role: distances before and after, and what is left after.
+/// The series of one plane and role: distances before and after, and the residuals.
 struct PlaneFigures {
   Series nominal{"nominal", Mark::kRing, {}, false};
   Series calibrated{"calibrated", Mark::kDot, {}, false};

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include "service/report/html.hpp"
-#include "service/report/report_parts.hpp"
+#include "service/report/internal/html.hpp"
+#include "service/report/internal/report_parts.hpp"
 
 namespace cell {
 namespace {

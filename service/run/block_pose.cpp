@@ -6,7 +6,7 @@
 
 namespace cell {
 
-std::string place_digest(const Cell& cell) {
+std::string block_pose_digest(const Cell& cell) {
   std::string text = cell.arm.name;
   const auto add = [&text](double number) { text += ' ' + plain_number(number); };
   for (const calib::LinkParameters& link : cell.arm.model.links)
@@ -21,10 +21,10 @@ std::string place_digest(const Cell& cell) {
   return sha256_hex(text).substr(0, 32);
 }
 
-Cell cell_at(const Cell& cell, const LocatedPlace& place) {
+Cell cell_with_block_pose(const Cell& cell, const BlockPose& place) {
   Cell there = with_block_moved(cell, place.cell_from_block);
-  for (std::size_t i = 0; i < place.std_place.size(); ++i)
-    if (place.std_place[i]) there.arm.std_errors[i] = place.std_place[i];
+  for (std::size_t i = 0; i < place.std_block_pose.size(); ++i)
+    if (place.std_block_pose[i]) there.arm.std_errors[i] = place.std_block_pose[i];
   return there;
 }
 

@@ -8,21 +8,22 @@
 
 namespace cell {
 
-/// Where the block was found by touching it. Kept in the state directory; the cell's file stays as it is.
-struct LocatedPlace {
-  Eigen::Isometry3d cell_from_block;  // R_-1 as it stands, in R_-1 as the cell's file has it
-  Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  // of shift above turn
-  calib::ErrorTolerances std_place{};      // one standard deviation of the six errors of the place
-  std::vector<calib::PlaceTouch> touches;  // that it was found with
-  std::string located_at;                  // RFC 3339
-  std::string digest;                      // place_digest() of the cell that it was found in
+/// Pose of the block as located by touches. Kept in the state directory; the cell's file is not changed.
+struct BlockPose {
+  Eigen::Isometry3d cell_from_block;  // R_-1 as located, in R_-1 of the cell's file
+  Eigen::Matrix<double, 6, 6> covariance =
+      Eigen::Matrix<double, 6, 6>::Zero();        // translation first, then rotation
+  calib::ErrorTolerances std_block_pose{};        // standard deviations of the six pose errors
+  std::vector<calib::RegistrationTouch> touches;  // it was computed from
+  std::string located_at;                         // RFC 3339
+  std::string digest;                             // block_pose_digest() of the cell it was located in
 };
 
-/// Of all that a place is relative to: the arm's frames, the faces and the ball. A place of another digest is
-/// that of another cell.
-std::string place_digest(const Cell& cell);
+/// Digest of all that a pose depends on: the arm's frames, the faces and the ball. A pose with another digest
+/// belongs to another cell.
+std::string block_pose_digest(const Cell& cell);
 
-/// The cell with its block where it was found, and its place as uncertain as that: what runs plan with.
-Cell cell_at(const Cell& cell, const LocatedPlace& place);
+/// The cell with its block at this pose and with the uncertainty of this pose: what runs are planned with.
+Cell cell_with_block_pose(const Cell& cell, const BlockPose& place);
 
 }  // namespace cell

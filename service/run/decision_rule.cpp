@@ -12,9 +12,9 @@ using calib::mm_from_metres;
 
 namespace {
 
-/// A touch's noise as the result's own uncertainties use it.
+/// Standard deviation of one touch, as in the uncertainties of the result.
 double noise_m(const calib::IdentificationResult& result, const Cell& cell) {
-  return result.certainty ? result.certainty->noise_m : cell.touch_noise_m;
+  return result.uncertainty ? result.uncertainty->noise_m : cell.touch_noise_m;
 }
 
 void add_held_out(const calib::FaceDistances& face, double noise, const Cell& cell,
@@ -70,9 +70,10 @@ Judgement judge_by_rule(const calib::IdentificationResult& result,
   Judgement judgement = judge(result, options, cell.acceptance, tip_box_rms_m, complete);
   if (!cell.acceptance.guarded) return judgement;
   for (const Criterion& criterion : criteria(result, cell, tip_box_rms_m)) {
-    if (!criterion.within_limit() || criterion.proved()) continue;  // out of it: told already
+    if (!criterion.within_limit() || criterion.proved()) continue;  // outside: judge() has reported it
     judgement.reasons.push_back(fmt::format(
-        "{}{} is {:.3f} {} and uncertain by {:.3f} (k = 2): within its limit of {:.3f} it is not proved",
+        "{}{} is {:.3f} {} with an expanded uncertainty of {:.3f} (k = 2): conformance with the limit of "
+        "{:.3f} is not proved",
         criterion.name, criterion.plane ? fmt::format(" of plane {}", *criterion.plane) : "",
         *criterion.value, criterion.unit, criterion.expanded_uncertainty.value_or(0.0), criterion.limit));
   }

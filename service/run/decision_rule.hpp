@@ -10,17 +10,17 @@
 
 namespace cell {
 
-/// Of a result's expanded uncertainties: 95 % of a normal distribution.
+/// Coverage factor of expanded uncertainties: 95 % of a normal distribution.
 inline constexpr double kCoverageFactor = 2.0;
 
-/// A figure of a result that has an upper limit.
+/// A figure of a result with its upper limit.
 struct Criterion {
   std::string name;             // "held_out_mean"
   std::optional<int> plane;     // from 1
   std::string unit;             // "mm", or "1" for a ratio
-  std::optional<double> value;  // in that unit; nothing when there is no honest figure
+  std::optional<double> value;  // in that unit; absent if it cannot be computed
   double limit = 0.0;
-  /// k = 2. Nothing for a figure that is exact or is itself an uncertainty.
+  /// k = 2. Absent for a figure that is exact or is itself an uncertainty.
   std::optional<double> expanded_uncertainty;
 
   /// The value itself is within the limit: simple acceptance.
@@ -29,14 +29,14 @@ struct Criterion {
   [[nodiscard]] bool proved() const;
 };
 
-/// The limits of the cell that a figure of this result is held against. The uncertainty of a mean of n
-/// held-out touches has the noise of a touch over root n and the face's own standard deviation in it, that
-/// of their rms the noise over root 2n.
+/// Every figure of the result that the cell limits. The uncertainty of the mean of n held-out touches
+/// combines the noise of one touch over root n with the standard deviation of the face; that of their rms is
+/// the noise over root 2n.
 std::vector<Criterion> criteria(const calib::IdentificationResult& result, const Cell& cell,
                                 std::optional<double> tip_box_rms_m);
 
-/// judge() of verdict.hpp with the cell's limits and by the rule that its file names: where it wants
-/// conformance proved, a value within its limit is not enough.
+/// judge() of verdict.hpp with the cell's limits and the decision rule of its file: a guarded rule accepts
+/// only proved conformance.
 Judgement judge_by_rule(const calib::IdentificationResult& result,
                         const calib::IdentificationOptions& options, const Cell& cell,
                         std::optional<double> tip_box_rms_m, bool complete);

@@ -6,8 +6,8 @@
 
 namespace cell {
 
-/// Everything that can go wrong in a run or with the controller. The table in faults.cpp says of each what
-/// the operator reads; the API, the command line and (later) the page take it from there.
+/// Every fault of a run or of the controller. The table in fault_table.cpp holds what the operator reads; the
+/// API, the command line and the page take it from there.
 enum class FaultCode {
   kControllerNotConnected,
   kControllerStateUnknown,
@@ -73,8 +73,8 @@ enum class FaultCode {
   kBlockMoved,
 };
 
-/// What a fault makes of the run. A command or start that is refused changes nothing; a warning lets the run
-/// go on and is kept with it.
+/// Effect of a fault on the run. A refused command or start changes nothing; a warning is kept with the run,
+/// which continues.
 enum class FaultKind { kRefused, kWarning, kHeld, kSuspended, kAborted };
 std::string_view fault_kind_name(FaultKind kind);  // "held"
 
@@ -85,14 +85,14 @@ struct FaultEntry {
   std::string_view robot_action;  // what the robot did
   std::string_view next_step;     // what to do now
   FaultKind kind = FaultKind::kAborted;
-  /// Which of the ways in which probing is known to fail this is: "P10"; several with a space between them.
+  /// Codes of the known failure modes of probing that this fault covers: "P10"; separated by spaces.
   std::string_view modes = {};
 };
 
 std::span<const FaultEntry> fault_table();
 const FaultEntry& describe(FaultCode code);
 
-/// A fault that occurred: the table's entry and what was special about this one.
+/// A fault that occurred: its code and the details of this occurrence.
 struct Fault {
   FaultCode code = FaultCode::kControllerUnreachable;
   std::string detail;

@@ -2,17 +2,29 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "calib_core/geometry/joint_vector.hpp"
 
 namespace cell {
 
-/// What a person who touches by hand is told: in the status, as long as touches are awaited.
+/// What touches by hand are made for.
+enum class HandActivity { kLocate, kGuided };
+std::string_view hand_activity_name(HandActivity activity);  // "locate", "guided"
+
+/// What is awaited of the person.
+enum class HandStep {
+  kTouch,
+  kUndo,     // the touches determine no pose of the block
+  kPass,     // the pass around the located block is due
+  kPassing,  // nothing: the arm goes around the block
+};
+std::string_view hand_step_name(HandStep step);  // "touch", "undo", "pass", "passing"
+
+/// Instructions to a person who touches by hand: part of the status while touches are awaited.
 struct HandGuide {
-  std::string activity;  // "locate", "guided"
-  /// What is awaited: "touch"; "undo", as the touches give no place; "pass", once around the block that was
-  /// found; "passing", the arm goes around it.
-  std::string step = "touch";
+  HandActivity activity = HandActivity::kGuided;
+  HandStep step = HandStep::kTouch;
   int plane = 0;  // the face to touch, from 1
   int index = 0;  // of the touch, from 1
   int total = 0;

@@ -8,15 +8,15 @@
 namespace cell {
 namespace {
 
-/// The smallest box along the new axes that holds the box.
+/// Axis-aligned bounding box in the new frame.
 calib::Box moved(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
   const Eigen::Vector3d middle_m = new_from_old * (0.5 * (box.min_m + box.max_m));
   const Eigen::Vector3d half_m = new_from_old.linear().cwiseAbs() * (0.5 * (box.max_m - box.min_m));
   return {box.name, middle_m - half_m, middle_m + half_m};
 }
 
-/// A box that is turned, in pieces of about this size, each held by a box along the new axes: so much less is
-/// taken for forbidden than by one box around all of it.
+/// A rotated box is cut into pieces of about this size; their bounding boxes forbid less space than one
+/// bounding box of the whole.
 constexpr double kPieceMetres = 0.2;
 
 std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, const calib::Box& box) {
@@ -42,7 +42,7 @@ std::vector<calib::Box> moved_in_pieces(const Eigen::Isometry3d& new_from_old, c
 Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new) {
   Cell there = cell;
   const Eigen::Isometry3d new_from_old = old_from_new.inverse();
-  calib::set_place(there.arm.model, new_from_old * calib::place_of(cell.arm.model));
+  calib::set_block_pose(there.arm.model, new_from_old * calib::block_pose_of(cell.arm.model));
   there.keep_out_boxes.clear();
   for (const calib::Box& box : cell.keep_out_boxes) {
     const auto pieces = moved_in_pieces(new_from_old, box);
@@ -52,7 +52,7 @@ Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new) {
   return there;
 }
 
-Cell with_block_at(const Cell& cell, const BlockPlace& place) {
+Cell with_block_displaced(const Cell& cell, const BlockDisplacement& place) {
   return with_block_moved(
       cell, Eigen::Translation3d(place.shift_m) * Eigen::AngleAxisd(place.yaw_rad, Eigen::Vector3d::UnitY()));
 }

@@ -6,18 +6,18 @@
 
 namespace cell {
 
-/// How far the block is moved from where the cell has it, in R_-1 as it is there; then turned about R_-1's
-/// y axis. The arm and all else in the room stay.
-struct BlockPlace {
+/// Displacement of the block from its place in the cell, in R_-1 before the move: a translation, then a
+/// rotation about the y axis of R_-1. The arm and the surroundings do not move.
+struct BlockDisplacement {
   Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
   double yaw_rad = 0.0;
 };
 
-/// The cell with its block elsewhere. R_-1 moves with the block: faces and solids keep their coordinates, the
-/// arm's frames 0 and 1, the keep-out boxes and the workspace box get others. The workspace box, when it is
-/// no longer along the axes, becomes the smallest one along them that holds it; a keep-out box becomes pieces
-/// that are such. `old_from_new`: R_-1 as it stands then, in R_-1 as the cell has it.
+/// The cell with its block moved. R_-1 moves with the block: faces and solids keep their coordinates; the
+/// arm's frames 0 and 1, the keep-out boxes and the workspace box change theirs. A rotated workspace box is
+/// replaced by its axis-aligned bounding box, a rotated keep-out box by bounding boxes of its pieces.
+/// `old_from_new`: R_-1 after the move, in R_-1 of the cell.
 Cell with_block_moved(const Cell& cell, const Eigen::Isometry3d& old_from_new);
-Cell with_block_at(const Cell& cell, const BlockPlace& place);
+Cell with_block_displaced(const Cell& cell, const BlockDisplacement& place);
 
 }  // namespace cell

@@ -14,9 +14,19 @@ std::optional<State> after_pause(State state) {
     case State::kHolding:
     case State::kHeld:
       return state;
-    default:
+    case State::kStopped:
+    case State::kResetting:
+    case State::kIdle:
+    case State::kStarting:
+    case State::kCompleting:
+    case State::kComplete:
+    case State::kStopping:
+    case State::kAborting:
+    case State::kAborted:
+    case State::kClearing:
       return std::nullopt;
   }
+  return std::nullopt;
 }
 
 std::optional<State> after_resume(State state) {
@@ -29,13 +39,24 @@ std::optional<State> after_resume(State state) {
     case State::kUnsuspending:
     case State::kExecute:
       return state;
-    default:
+    case State::kStopped:
+    case State::kResetting:
+    case State::kIdle:
+    case State::kStarting:
+    case State::kCompleting:
+    case State::kComplete:
+    case State::kHolding:
+    case State::kSuspending:
+    case State::kStopping:
+    case State::kAborting:
+    case State::kAborted:
+    case State::kClearing:
       return std::nullopt;
   }
+  return std::nullopt;
 }
 
-/// With another touch than resume: a run that goes on takes neither, as nobody could tell which touch is
-/// meant.
+/// Retry and skip concern the touch that holds the run; a run that continues has none, so it refuses both.
 std::optional<State> after_retry_or_skip(State state) {
   if (state == State::kHeld) return State::kUnholding;
   return state == State::kUnholding ? std::optional(state) : std::nullopt;
@@ -52,17 +73,26 @@ State after_stop(State state) {
     case State::kAborting:
     case State::kAborted:
     case State::kClearing:
-      return state;  // nothing moves there, or it is already being stopped
+      return state;  // nothing moves, or the stop is under way
     case State::kIdle:
     case State::kComplete:
     case State::kResetting:
       return State::kStopped;
-    default:
+    case State::kStarting:
+    case State::kExecute:
+    case State::kCompleting:
+    case State::kHolding:
+    case State::kHeld:
+    case State::kUnholding:
+    case State::kSuspending:
+    case State::kSuspended:
+    case State::kUnsuspending:
       return State::kStopping;
   }
+  return state;
 }
 
-/// A person may jog there, and touch the block.
+/// States in which a person may jog the arm and touch the block.
 bool can_locate(State state) {
   return state == State::kStopped || state == State::kResetting || state == State::kIdle ||
          state == State::kComplete;
@@ -197,7 +227,7 @@ State after_event(State state, Event event) {
   if (event == Event::kSuspendFault) return state == State::kExecute ? State::kSuspending : state;
   if (event == Event::kLinkDown) {
     if (is_active(state)) return State::kAborting;
-    // Nothing moves: looking for the controller again needs nobody's word.
+    // Nothing moves: reconnecting needs no command.
     return state == State::kIdle ? State::kResetting : state;
   }
   switch (state) {
@@ -223,9 +253,14 @@ State after_event(State state, Event event) {
       return State::kAborted;
     case State::kClearing:
       return State::kStopped;
-    default:
-      return state;
+    case State::kStopped:
+    case State::kIdle:
+    case State::kComplete:
+    case State::kHeld:
+    case State::kAborted:
+      break;  // they wait for a command
   }
+  return state;
 }
 
 std::vector<Command> exits(State state) {
@@ -246,9 +281,20 @@ bool is_active(State state) {
     case State::kAborted:
     case State::kClearing:
       return false;
-    default:
+    case State::kStarting:
+    case State::kExecute:
+    case State::kCompleting:
+    case State::kHolding:
+    case State::kHeld:
+    case State::kUnholding:
+    case State::kSuspending:
+    case State::kSuspended:
+    case State::kUnsuspending:
+    case State::kStopping:
+    case State::kAborting:
       return true;
   }
+  return false;
 }
 
 }  // namespace cell

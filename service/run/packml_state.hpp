@@ -7,7 +7,7 @@
 
 namespace cell {
 
-/// PackML's states (ISA-TR88.00.02); those in -ing end by themselves.
+/// PackML states (ISA-TR88.00.02); acting states (-ing) end by themselves.
 enum class State {
   kStopped,
   kResetting,
@@ -28,18 +28,18 @@ enum class State {
   kClearing,
 };
 
-/// What a person (or a supervisor in a person's name) may ask for.
+/// Commands of an operator or of a supervisor system.
 enum class Command {
   kStart,
   kPause,
   kResume,
-  kRetry,      // the touch that held the run is made again
-  kSkip,       // it is left out; the run stays incomplete
-  kTake,       // by hand: the stylus stands where it should
-  kUndo,       // by hand: the last touch was none
-  kConfirm,    // tells what to confirm at the cell; never stands in for the key there
-  kTouchTest,  // tells how the touch test stands
-  kLocate,     // a person begins to touch the block to find where it is
+  kRetry,      // repeats the touch that held the run
+  kSkip,       // leaves it out; the run stays incomplete
+  kTake,       // by hand: records the contact under way
+  kUndo,       // by hand: discards the last touch
+  kConfirm,    // reports what to confirm at the cell; never replaces the key there
+  kTouchTest,  // reports the state of the touch test
+  kLocate,     // starts locating the block by touches of a person
   kStop,
   kAbort,
   kClear,
@@ -51,26 +51,26 @@ inline constexpr std::array kCommands{
     Command::kTake,  Command::kUndo,  Command::kConfirm, Command::kTouchTest, Command::kLocate,
     Command::kStop,  Command::kAbort, Command::kClear,   Command::kReset,     Command::kAcknowledge};
 
-/// What happens inside: the acting state is done, or something went wrong that a person can mend on the spot
-/// (hold), that passes by itself while the arm waits (suspend; the end of a suspension is kDone) or that ends
-/// the run (abort), or nobody made the cell ready in time (a start ends, a run on hold stays there).
+/// Internal events: the acting state is done (kDone, also at the end of a suspension); a fault that a person
+/// can remove on the spot (hold), that passes while the arm waits (suspend) or that ends the run (abort); the
+/// cell was not made ready in time (a start ends, a held run stays held); the link is down.
 enum class Event { kDone, kHoldFault, kSuspendFault, kAbortFault, kNotReadyFault, kLinkDown };
 
 std::string_view state_name(State state);  // "EXECUTE"
 /// "pause", "touch-test": as in the API's path and on the command line.
 std::string_view command_name(Command command);
 
-/// The state a command leads to; nothing when the state does not allow it. Repeating a command whose effect
-/// is under way or reached gives the state itself. Stop is always allowed.
+/// The state that a command leads to; nothing if the state does not allow it. Repeating a command whose
+/// effect is under way or reached gives the state itself. Stop is always allowed.
 std::optional<State> after_command(State state, Command command);
 
 /// The state an event leads to.
 State after_event(State state, Event event);
 
-/// Commands that lead out of a state: none is a dead end. Each is a route of the API: start is POST /runs.
+/// Commands that lead out of a state; every state has one. Each is a route of the API: start is POST /runs.
 std::vector<Command> exits(State state);
 
-/// A run is under way: the arm may move, and no other run may start.
+/// True during a run: the arm may move, and no other run may start.
 bool is_active(State state);
 
 }  // namespace cell

@@ -5,7 +5,7 @@
 
 namespace cell {
 
-/// What the planner needs to know of the cell to make a recipe's touches.
+/// The planner's input for a recipe in this cell.
 calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe);
 
 }  // namespace cell

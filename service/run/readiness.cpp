@@ -11,7 +11,7 @@ using cs8::RejectReason;
 
 struct Remedy {
   RejectReason refusal;
-  Awaited awaited;
+  AwaitedAction awaited;
 };
 
 constexpr std::array kRemedies{
@@ -29,33 +29,33 @@ constexpr std::array kRemedies{
     Remedy{RejectReason::kProbeInputs, {"probe_inputs", "check the probe's cable: its two inputs disagree"}},
 };
 
-constexpr Awaited kConfirmation{"confirmation", "press the confirmation key at the cell"};
+constexpr AwaitedAction kConfirmation{"confirmation", "press the confirmation key at the cell"};
 
-const Awaited& remedy_of(RejectReason refusal) {
+const AwaitedAction& remedy_of(RejectReason refusal) {
   return std::ranges::find(kRemedies, refusal, &Remedy::refusal)->awaited;
 }
 
 }  // namespace
 
-const Awaited* awaited_after(RejectReason refusal, std::uint32_t flags) {
+const AwaitedAction* awaited_after_rejection(RejectReason refusal, std::uint32_t flags) {
   if (std::ranges::find(kRemedies, refusal, &Remedy::refusal) == kRemedies.end()) return nullptr;
   const bool untested = (flags & cs8::kTouchTested) == 0;
   return &remedy_of(untested && refusal != RejectReason::kProbeInputs ? RejectReason::kTouchTestMissing
                                                                       : refusal);
 }
 
-const Awaited& awaited_confirmation() { return kConfirmation; }
+const AwaitedAction& awaited_confirmation() { return kConfirmation; }
 
-const Awaited& awaited_touch_test() { return remedy_of(RejectReason::kTouchTestMissing); }
+const AwaitedAction& awaited_touch_test() { return remedy_of(RejectReason::kTouchTestMissing); }
 
-std::string_view awaited_words(std::string_view name) {
+std::string_view awaited_instruction(std::string_view name) {
   if (name == kConfirmation.name) return kConfirmation.words;
   const auto found =
       std::ranges::find_if(kRemedies, [name](const Remedy& remedy) { return remedy.awaited.name == name; });
   return found == kRemedies.end() ? name : found->awaited.words;
 }
 
-Fault not_ready_fault(const Awaited& awaited) {
+Fault not_ready_fault(const AwaitedAction& awaited) {
   if (awaited.name == kConfirmation.name) return {FaultCode::kNotConfirmed, {}};
   if (&awaited == &remedy_of(RejectReason::kTouchTestMissing)) return {FaultCode::kTouchTestMissing, {}};
   if (&awaited == &remedy_of(RejectReason::kCellOpen)) return {FaultCode::kCellOpen, {}};

@@ -9,30 +9,30 @@
 
 namespace cell {
 
-/// Something that a person at the cell does before the arm may move.
-struct Awaited {
+/// What a person at the cell must do before the arm may move.
+struct AwaitedAction {
   std::string_view name;   // in the API: "touch_test"
   std::string_view words;  // what to do
 };
 
-/// What a refused Begin waits for; nothing when no person at the cell can mend it. The touch test comes
-/// before what else is missing, as it is made in manual mode or with power off, but not with a probe whose
-/// inputs disagree. `flags` are State's.
-const Awaited* awaited_after(cs8::RejectReason refusal, std::uint32_t flags);
+/// What a refused Begin waits for; null if no person at the cell can remove the reason. The touch test comes
+/// before other reasons, since it is made in manual mode or with power off, but not while the two inputs of
+/// the probe disagree. `flags` are those of State.
+const AwaitedAction* awaited_after_rejection(cs8::RejectReason refusal, std::uint32_t flags);
 
-/// A Begin that was taken waits for this.
-const Awaited& awaited_confirmation();
+/// What an accepted Begin waits for.
+const AwaitedAction& awaited_confirmation();
 
-/// The touch test by hand, whatever else is missing.
-const Awaited& awaited_touch_test();
+/// The touch test by hand.
+const AwaitedAction& awaited_touch_test();
 
-/// What to do for what the API calls `name`; the name itself when it is none.
-std::string_view awaited_words(std::string_view name);
+/// The instruction for an API name; the name itself if it is unknown.
+std::string_view awaited_instruction(std::string_view name);
 
-/// It was waited for in vain.
-Fault not_ready_fault(const Awaited& awaited);
+/// The fault when the action was not done in time.
+Fault not_ready_fault(const AwaitedAction& awaited);
 
-/// All of a State that a refusal can come from: while it stays, so does the refusal.
+/// The part of a State that decides about a refusal: while it is unchanged, so is the refusal.
 struct Readiness {
   std::uint32_t flags = 0;
   cs8::WorkingMode mode{};

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "config/identification_problem.hpp"
-#include "service/run/touch_benefit.hpp"
+#include "service/run/internal/touch_benefit.hpp"
 #include "service/run/touch_command.hpp"
 
 namespace cell {
@@ -29,11 +29,11 @@ void Run::restore(const std::vector<StoredTouch>& touches, int touches_total) {
 void Run::change_plan(const PlanChange& change) {
   const auto place = static_cast<std::size_t>(change.place);
   switch (change.kind) {
-    case PlanChange::Kind::kPutOff:
-      put_off(place);
+    case PlanChange::Kind::kDefer:
+      defer(place);
       break;
-    case PlanChange::Kind::kDropFitted:
-      drop_fitted(place);
+    case PlanChange::Kind::kDropFitTouches:
+      drop_fit_touches(place);
       break;
     case PlanChange::Kind::kSkip:
       skip(place);
@@ -44,7 +44,7 @@ void Run::change_plan(const PlanChange& change) {
 void Run::set_plan(calib::TouchPlan plan) {
   plan_changes_.clear();
   plan_ = std::move(plan);
-  put_off_.assign(plan_.touches.size(), false);
+  deferred_.assign(plan_.touches.size(), false);
 }
 
 const calib::PlannedTouch* Run::next() const { return planned(touches_made()); }
@@ -53,20 +53,20 @@ const calib::PlannedTouch* Run::planned(std::size_t index) const {
   return index < plan_.touches.size() ? &plan_.touches[index] : nullptr;
 }
 
-bool Run::put_off(std::size_t index) {
+bool Run::defer(std::size_t index) {
   std::size_t last = index;
   for (std::size_t i = index; i < plan_.touches.size(); ++i) {
     if (plan_.touches[i].role == plan_.touches[index].role) last = i;
   }
-  if (put_off_[index] || last == index) return false;
-  plan_changes_.push_back({PlanChange::Kind::kPutOff, static_cast<int>(index)});
-  put_off_[index] = true;
+  if (deferred_[index] || last == index) return false;
+  plan_changes_.push_back({PlanChange::Kind::kDefer, static_cast<int>(index)});
+  deferred_[index] = true;
   const auto rotate = [&](auto& values) {
     const auto from = values.begin() + static_cast<std::ptrdiff_t>(index);
     std::rotate(from, from + 1, values.begin() + static_cast<std::ptrdiff_t>(last) + 1);
   };
   rotate(plan_.touches);
-  rotate(put_off_);
+  rotate(deferred_);
   return true;
 }
 
@@ -77,46 +77,43 @@ void Run::skip(std::size_t index) {
   plan_changes_.push_back({PlanChange::Kind::kSkip, static_cast<int>(index)});
   const auto place = static_cast<std::ptrdiff_t>(index);
   plan_.touches.erase(plan_.touches.begin() + place);
-  put_off_.erase(put_off_.begin() + place);
+  deferred_.erase(deferred_.begin() + place);
   ++skipped_count_;
 }
 
-double Run::left_s(double elapsed_s) const {
+double Run::remaining_s(double elapsed_s) const {
   double made_s = 0.0;
   for (std::size_t i = 0; i < touches_made() && planned(i); ++i)
     made_s += planned(i)->travel_s + planned(i)->touch_s;
-  const double left_s = plan_.duration_s() - made_s;
-  return made_s > 0.0 ? left_s * elapsed_s / made_s : left_s;
+  const double remaining_s = plan_.duration_s() - made_s;
+  return made_s > 0.0 ? remaining_s * elapsed_s / made_s : remaining_s;
 }
 
-int Run::drop_fitted(std::size_t first) {
+int Run::drop_fit_touches(std::size_t first) {
   const std::size_t before = plan_.touches.size();
   if (first >= before) return 0;
-  plan_changes_.push_back({PlanChange::Kind::kDropFitted, static_cast<int>(first)});
+  plan_changes_.push_back({PlanChange::Kind::kDropFitTouches, static_cast<int>(first)});
   const auto from = plan_.touches.begin() + static_cast<std::ptrdiff_t>(first);
   plan_.touches.erase(
       std::remove_if(from, plan_.touches.end(),
                      [](const calib::PlannedTouch& touch) { return touch.role == calib::TouchRole::kFit; }),
       plan_.touches.end());
-  put_off_.assign(plan_.touches.size(), false);
+  deferred_.assign(plan_.touches.size(), false);
   return static_cast<int>(before - plan_.touches.size());
 }
 
-void Run::add(TouchStore& store, const StoredTouch& touch) {
-  store.append_touch(id_, touch);
+void Run::add(const StoredTouch& touch) {
   touches_.push_back(touch);
   problem_.touches.push_back(to_touch(touch));
 }
 
-void Run::replace_last(TouchStore& store, const StoredTouch& again, const std::string& reason) {
-  store.replace_touch(id_, again, reason);
+void Run::replace_last(const StoredTouch& again) {
   touches_.back() = again;
   problem_.touches.back() = to_touch(again);
   identified_count_ = 0;
 }
 
-void Run::withdraw_last(TouchStore& store, const std::string& reason) {
-  store.withdraw_touch(id_, touches_.back().number, reason);
+void Run::withdraw_last() {
   touches_.pop_back();
   problem_.touches.pop_back();
   identified_count_ = 0;
@@ -127,30 +124,30 @@ bool Run::identify() {
   identified_count_ = touches_.size();
   latest_ = calib::identify(problem_, recipe_.identification);
   predicted_tip_rms_m_.reset();
-  more_would_bring_.reset();
-  if (latest_.certainty) {
-    predicted_tip_rms_m_ = predicted_rms_m(regions_.tip().workspace_box, *latest_.certainty);
-    more_would_bring_ = weigh_more_touches();
+  touch_benefit_.reset();
+  if (latest_.uncertainty) {
+    predicted_tip_rms_m_ = predicted_rms_m(regions_.tip().workspace_box, *latest_.uncertainty);
+    touch_benefit_ = estimate_touch_benefit();
   }
   return true;
 }
 
-bool Run::sees_all() const {
+bool Run::sees_all_attainable() const {
   return latest_.status == calib::IdentificationStatus::kConverged &&
          static_cast<int>(latest_.identifiable.columns.size()) >= latest_.attainable.count;
 }
 
-bool Run::is_good_enough() const {
-  if (!recipe_.goal.tip_rms_max_m || !latest_.certainty || !sees_all()) return false;
+bool Run::meets_accuracy_goal() const {
+  if (!recipe_.goal.tip_rms_max_m || !latest_.uncertainty || !sees_all_attainable()) return false;
   if (latest_.lack_of_fit && !(latest_.lack_of_fit->p >= calib::kLackOfFitWidens)) return false;
   const bool over_ranges = recipe_.goal.criterion == calib::PlanCriterion::kTipInJointRanges;
   const auto rms_m =
-      over_ranges ? predicted_rms_m(regions_.tip().joint_ranges, *latest_.certainty) : predicted_tip_rms_m_;
+      over_ranges ? predicted_rms_m(regions_.tip().joint_ranges, *latest_.uncertainty) : predicted_tip_rms_m_;
   return rms_m && *rms_m <= *recipe_.goal.tip_rms_max_m;
 }
 
-std::optional<std::string> Run::weigh_more_touches() const {
-  if (!predicted_tip_rms_m_ || !sees_all()) return std::nullopt;
+std::optional<std::string> Run::estimate_touch_benefit() const {
+  if (!predicted_tip_rms_m_ || !sees_all_attainable()) return std::nullopt;
   std::vector<calib::Touch> candidates;
   const auto add_from = [&](std::size_t first) {
     for (std::size_t i = first; i < plan_.touches.size(); ++i) {
@@ -161,8 +158,8 @@ std::optional<std::string> Run::weigh_more_touches() const {
   if (plan_.touches.empty()) return std::nullopt;  // restored, and not planned again yet
   add_from(touches_made());
   if (candidates.empty()) add_from(0);
-  const auto further = best_further_touches(problem_, recipe_.identification, latest_, candidates,
-                                            regions_.tip().workspace_box, *predicted_tip_rms_m_);
+  const auto further = most_beneficial_touches(problem_, recipe_.identification, latest_, candidates,
+                                               regions_.tip().workspace_box, *predicted_tip_rms_m_);
   if (!further) return std::nullopt;
   return describe(*further, *predicted_tip_rms_m_);
 }

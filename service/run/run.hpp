@@ -13,10 +13,10 @@
 
 namespace cell {
 
-/// A stored touch in SI units: the only unit change on the way from the wire to the core.
+/// A stored touch in SI units: the only conversion between the wire and calib_core.
 calib::Touch to_touch(const StoredTouch& stored);
 
-/// One execution of a recipe: the touches so far and the latest result. The one mutable object of a run.
+/// One execution of a recipe: its plan, the touches so far and the latest result.
 class Run {
  public:
   /// `regions`, those of the cell, must outlive the run.
@@ -26,70 +26,72 @@ class Run {
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
   [[nodiscard]] const std::string& started_at() const { return started_at_; }
 
-  /// The touches that it made before the daemon was started anew, and how many its plan has, which is not
-  /// known here yet.
+  /// Restores the touches made before a restart of the daemon. `touches_total`: of the plan, which is set
+  /// later.
   void restore(const std::vector<StoredTouch>& touches, int touches_total);
   void set_plan(calib::TouchPlan plan);
-  /// Of the plan, those that were skipped among them.
+  /// Touches of the plan, skipped ones included.
   [[nodiscard]] int touches_total() const {
     return plan_.touches.empty() ? restored_total_ : static_cast<int>(plan_.touches.size()) + skipped_count_;
   }
   [[nodiscard]] int touches_done() const { return static_cast<int>(touches_.size()); }
   [[nodiscard]] bool complete() const { return touches_total() > 0 && touches_done() == touches_total(); }
-  /// How the plan was changed since it was set, in order; the same changes give the same plan.
+  /// Changes of the plan since it was set, in order; the same changes give the same plan.
   [[nodiscard]] const std::vector<PlanChange>& plan_changes() const { return plan_changes_; }
   void change_plan(const PlanChange& change);
-  /// The touch to make now, or null when all are made.
+  /// The touch to make now; null when all are made.
   [[nodiscard]] const calib::PlannedTouch* next() const;
 
-  /// The touch at a place of the plan, from 0, or null behind the last.
+  /// The touch at an index of the plan, from 0; null past the end.
   [[nodiscard]] const calib::PlannedTouch* planned(std::size_t index) const;
-  /// How many places of the plan are behind the run: the place of next().
+  /// Index of next() in the plan.
   [[nodiscard]] std::size_t touches_made() const { return touches_.size(); }
-  /// The touch at this place comes behind all others of its role. False when it did before, or is the last.
-  bool put_off(std::size_t index);
-  /// Predicted time of all that is left, to the park posture: the plan's, as much longer or shorter as what
-  /// is made took in `elapsed_s`.
-  [[nodiscard]] double left_s(double elapsed_s) const;
-  /// A person leaves out the touch to make now: the run never becomes complete. Nothing when there is none.
+  /// Moves the touch at this index behind all others of its role. False if it was deferred before or is the
+  /// last.
+  bool defer(std::size_t index);
+  /// Predicted remaining time up to the park posture: that of the plan, scaled by the ratio of `elapsed_s` to
+  /// the planned time of the touches made.
+  [[nodiscard]] double remaining_s(double elapsed_s) const;
+  /// Leaves out the touch to make now; the run can no longer be complete. Does nothing if there is none.
   void skip_next();
   [[nodiscard]] int skipped_count() const { return skipped_count_; }
-  /// Leaves out the touches to fit from this place on; how many.
-  int drop_fitted(std::size_t first);
+  /// Leaves out the touches to fit from this index on; returns how many.
+  int drop_fit_touches(std::size_t first);
 
-  /// Stores the touch, then counts it. Throws what the store throws; the touch does not count then.
-  void add(TouchStore& store, const StoredTouch& touch);
-  /// The last touch again, in its place; it is kept apart. Throws what the store throws.
-  void replace_last(TouchStore& store, const StoredTouch& again, const std::string& reason);
-  /// The last touch is kept apart and counts no more; it is next() again. Throws what the store throws.
-  void withdraw_last(TouchStore& store, const std::string& reason);
-  /// Makes latest() from all touches; false when it is. Apart from add(), as it takes its time.
+  /// Adds a touch that has been stored: what does not outlive the daemon does not count.
+  void add(const StoredTouch& touch);
+  /// Replaces the last touch; the store has replaced it before.
+  void replace_last(const StoredTouch& again);
+  /// Removes the last touch, which becomes next(); the store has withdrawn it before.
+  void withdraw_last();
+  /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
 
   [[nodiscard]] const std::vector<StoredTouch>& touches() const { return touches_; }
-  /// What identify() works on.
+  /// The input of identify().
   [[nodiscard]] const calib::IdentificationProblem& problem() const { return problem_; }
   [[nodiscard]] const calib::IdentificationResult& latest() const { return latest_; }
-  /// Predicted over the workspace box; nothing as long as there is no honest figure.
+  /// Predicted over the workspace box; absent while it cannot be computed.
   [[nodiscard]] std::optional<double> predicted_tip_rms_m() const { return predicted_tip_rms_m_; }
-  /// The accuracy that the recipe asks for is reached: the predicted tip error is within it, every parameter
-  /// that can be seen is, and the residuals are touch noise. Never where the recipe asks for none.
-  [[nodiscard]] bool is_good_enough() const;
-  /// What would lower predicted_tip_rms_m() most, in words; nothing before all is seen.
-  [[nodiscard]] const std::optional<std::string>& more_would_bring() const { return more_would_bring_; }
+  /// True if the recipe's accuracy goal is met: the predicted tip error is within it, every attainable
+  /// parameter is identified and the residuals agree with the touch noise. False for a recipe without a goal.
+  [[nodiscard]] bool meets_accuracy_goal() const;
+  /// Which further touches would lower predicted_tip_rms_m() most, in words; absent before all attainable
+  /// parameters are identified.
+  [[nodiscard]] const std::optional<std::string>& touch_benefit() const { return touch_benefit_; }
 
  private:
   void skip(std::size_t index);
-  [[nodiscard]] bool sees_all() const;
-  [[nodiscard]] std::optional<std::string> weigh_more_touches() const;
+  [[nodiscard]] bool sees_all_attainable() const;
+  [[nodiscard]] std::optional<std::string> estimate_touch_benefit() const;
 
   std::int64_t id_;
   const TipRegions& regions_;
   Recipe recipe_;
   std::string started_at_;
   calib::TouchPlan plan_;
-  std::vector<bool> put_off_;  // one a planned touch
-  int skipped_count_ = 0;      // no longer in the plan
+  std::vector<bool> deferred_;  // one a planned touch
+  int skipped_count_ = 0;       // no longer in the plan
   std::vector<PlanChange> plan_changes_;
   int restored_total_ = 0;  // as long as there is no plan
   std::vector<StoredTouch> touches_;
@@ -97,7 +99,7 @@ class Run {
   std::size_t identified_count_ = 0;  // of the touches
   calib::IdentificationResult latest_;
   std::optional<double> predicted_tip_rms_m_;
-  std::optional<std::string> more_would_bring_;
+  std::optional<std::string> touch_benefit_;
 };
 
 }  // namespace cell

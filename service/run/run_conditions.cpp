@@ -4,10 +4,21 @@
 
 namespace cell {
 
-std::optional<std::string> temperature_gap(const Cell& cell) {
+std::string_view touch_mode_name(TouchMode touching) {
+  switch (touching) {
+    case TouchMode::kAutomatic:
+      return "automatic";
+    case TouchMode::kGuided:
+      return "guided";
+  }
+  return "";
+}
+
+std::optional<std::string> unknown_temperature_reason(const Cell& cell) {
   if (cell.block.temperature_c) return std::nullopt;
   return fmt::format(
-      "nobody says how warm the block {} is; measure it and give it in the block's file (temperature_c)",
+      "the temperature of the block {} is unknown; measure it and enter it in the block's file "
+      "(temperature_c)",
       cell.block.name);
 }
 

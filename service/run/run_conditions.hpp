@@ -3,27 +3,29 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "config/cell.hpp"
 #include "service/run/block_pose.hpp"
 
 namespace cell {
 
-/// How a run's touches are made.
-enum class Touching { kAutomatic, kGuided };
+/// Who makes the touches of a run: the controller, or a person with the pendant.
+enum class TouchMode { kAutomatic, kGuided };
+std::string_view touch_mode_name(TouchMode touching);  // "automatic", "guided"
 
-/// What a result hangs on besides its touches: kept with every run. Nothing is unknown.
-struct Conditions {
+/// What a result depends on besides its touches; stored with every run. Absent means unknown.
+struct RunConditions {
   std::optional<std::string> operator_name;
   std::optional<std::string> config_digest;           // configuration_digest() at the daemon's start
-  std::optional<std::string> controller_application;  // as the controller told it, name and version
-  std::optional<std::uint32_t> controller_session;    // tells one start of the controller from the next
-  std::optional<Touching> touching;
-  std::optional<LocatedPlace> place;  // where the block was located; nothing where its file has it
+  std::optional<std::string> controller_application;  // name and version, as reported
+  std::optional<std::uint32_t> controller_session;    // distinguishes starts of the controller
+  std::optional<TouchMode> touch_mode;
+  std::optional<BlockPose> place;  // as located; absent if the block stands where its file says
 };
 
-/// Why a run cannot be made at a known temperature, and what to do: the block's file does not say how warm
-/// the block is. Nothing when all is well. Offline, where nobody can be asked, this is a warning.
-std::optional<std::string> temperature_gap(const Cell& cell);
+/// Why the block's temperature is unknown, and what to do; nothing if it is known. It prevents a run;
+/// offline, where nobody can measure it, it is a warning.
+std::optional<std::string> unknown_temperature_reason(const Cell& cell);
 
 }  // namespace cell

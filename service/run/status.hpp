@@ -12,7 +12,7 @@
 
 namespace cell {
 
-/// What is known of the controller; nothing is unknown, which is never shown as fine.
+/// What is known of the controller. Absent means unknown, which is never shown as good.
 struct ControllerView {
   bool connected = false;
   std::optional<bool> powered;
@@ -26,11 +26,11 @@ struct ControllerView {
   bool operator==(const ControllerView&) const = default;
 };
 
-/// What a supervisor polls: a value, made anew at each change. `sequence` counts the changes since the
-/// daemon's start, which `instance_id` names.
+/// What a supervisor polls: a value, replaced at each change. `sequence` counts the changes since the start
+/// of the daemon, which `instance_id` names.
 struct Status {
   State state = State::kStopped;
-  std::optional<std::string> waiting_for;  // of a person at the cell: "touch_test" (readiness.hpp)
+  std::optional<std::string> waiting_for;  // action of a person at the cell: "touch_test" (readiness.hpp)
   std::optional<std::int64_t> run_id;
   std::optional<std::string> recipe;
   int touches_done = 0;
@@ -38,22 +38,23 @@ struct Status {
   std::optional<int> plane;  // of the touch under way, from 1
   std::optional<int> identifiable_count;
   std::optional<double> condition_number;
-  std::optional<double> predicted_tip_rms_m;    // over the workspace box
-  std::optional<std::string> more_would_bring;  // "8 more on plane 5: 0.21 to 0.15 mm"
+  std::optional<double> predicted_tip_rms_m;  // over the workspace box
+  std::optional<std::string> touch_benefit;   // "8 more on plane 5: 0.21 to 0.15 mm"
   std::optional<double> eta_s;
   Verdict verdict = Verdict::kNone;
   ControllerView controller;
-  std::optional<HandGuide> by_hand;  // as long as touches are awaited of a person
+  std::optional<HandGuide> by_hand;  // while touches by hand are awaited
   std::optional<Fault> fault;
   std::optional<Fault> warning;  // the newest of the run
-  /// Of the last reference touch against the first, along the face's normal; nothing before the second.
+  /// Last reference touch minus the first, along the face's normal; absent before the second.
   std::optional<double> reference_drift_m;
   std::optional<std::int64_t> last_accepted_run_id;
   std::optional<std::string> last_accepted_at;
   std::uint64_t sequence = 0;
   std::string instance_id;
-  std::string since;                        // when the state was entered
-  std::optional<std::int64_t> data_age_ms;  // since the controller was last heard; not part of `sequence`
+  std::string since;  // when the state was entered
+  std::optional<std::int64_t>
+      data_age_ms;  // since the last message of the controller; not part of `sequence`
 };
 
 }  // namespace cell

@@ -11,21 +11,21 @@ constexpr double kMapCellsMax = 2000.0;  // a larger box gets coarser cells
 
 TipRegions::Regions regions_of(const Cell& cell, const calib::ToolCentre& tool) {
   const calib::JointRanges& ranges = cell.arm.joint_ranges;
-  return {.workspace_box = calib::over_box(cell.arm.model, ranges, cell.workspace_box, tool),
-          .joint_ranges = calib::over_joint_ranges(cell.arm.model, ranges, tool)};
+  return {.workspace_box = calib::region_over_box(cell.arm.model, ranges, cell.workspace_box, tool),
+          .joint_ranges = calib::region_over_joint_ranges(cell.arm.model, ranges, tool)};
 }
 
 calib::TipRegion over_fitted_touches(const calib::IdentificationProblem& problem,
                                      const calib::IdentificationResult& result) {
   std::vector<calib::JointVector> postures;
   for (const std::size_t i : fitted_touches(problem, result)) postures.push_back(problem.touches[i].joints);
-  return calib::over_postures(problem.nominal, postures);
+  return calib::region_over_postures(problem.nominal, postures);
 }
 
-calib::UncertaintyMap predicted_map(const calib::TipMap& map, const calib::Certainty& certainty) {
+calib::UncertaintyMap predicted_map(const calib::TipMap& map, const calib::UncertaintyBudget& uncertainty) {
   calib::UncertaintyMap predicted{.grid = map.grid, .rms_m = {}};
   for (const calib::TipRegion& region : map.cells)
-    predicted.rms_m.push_back(predicted_rms_m(region, certainty));
+    predicted.rms_m.push_back(predicted_rms_m(region, uncertainty));
   return predicted;
 }
 
@@ -42,13 +42,14 @@ std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& prob
   return fitted;
 }
 
-std::optional<double> predicted_rms_m(const calib::TipRegion& region, const calib::Certainty& certainty) {
-  for (const auto& direction : certainty.unknown_directions.colwise()) {
+std::optional<double> predicted_rms_m(const calib::TipRegion& region,
+                                      const calib::UncertaintyBudget& uncertainty) {
+  for (const auto& direction : uncertainty.unknown_directions.colwise()) {
     // Squares: those of no motion at all may come out a little under 0.
     const double square = direction.dot(region.mean_square * direction);
     if (!(square <= kUnknownMattersMetres * kUnknownMattersMetres)) return std::nullopt;
   }
-  return region.rms_m(certainty.covariance());
+  return region.rms_m(uncertainty.covariance());
 }
 
 const TipRegions::Regions& TipRegions::tip() const {
@@ -70,7 +71,7 @@ const calib::TipMap& TipRegions::map() const {
     const double edge_m = std::max(kMapCellMetres, std::cbrt(volume_m3 / kMapCellsMax));
     const auto postures = calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box,
                                                  std::nullopt, kMapPostureCount);
-    map_ = calib::make_tip_map(cell_.arm.model, postures, calib::divide(cell_.workspace_box, edge_m));
+    map_ = calib::make_tip_map(cell_.arm.model, postures, calib::divide_box(cell_.workspace_box, edge_m));
   }
   return *map_;
 }
@@ -78,19 +79,19 @@ const calib::TipMap& TipRegions::map() const {
 TipPrediction predict_tip(const TipRegions& regions, const calib::IdentificationProblem& problem,
                           const calib::IdentificationResult& result) {
   TipPrediction prediction;
-  if (!result.certainty) return prediction;
-  const calib::Certainty& certainty = *result.certainty;
+  if (!result.uncertainty) return prediction;
+  const calib::UncertaintyBudget& uncertainty = *result.uncertainty;
   const TipRegions::Regions& tip = regions.tip();
-  prediction.at_block_rms_m = predicted_rms_m(over_fitted_touches(problem, result), certainty);
-  prediction.workspace_box_rms_m = predicted_rms_m(tip.workspace_box, certainty);
-  prediction.joint_ranges_rms_m = predicted_rms_m(tip.joint_ranges, certainty);
-  for (const calib::UncertaintySource& source : certainty.sources)
+  prediction.at_block_rms_m = predicted_rms_m(over_fitted_touches(problem, result), uncertainty);
+  prediction.workspace_box_rms_m = predicted_rms_m(tip.workspace_box, uncertainty);
+  prediction.joint_ranges_rms_m = predicted_rms_m(tip.joint_ranges, uncertainty);
+  for (const calib::UncertaintySource& source : uncertainty.sources)
     prediction.sources.push_back({source.name, tip.workspace_box.rms_m(source.covariance)});
   for (const auto& [name, tool] : regions.tools()) {
-    prediction.tools.push_back({name, predicted_rms_m(tool.workspace_box, certainty),
-                                predicted_rms_m(tool.joint_ranges, certainty)});
+    prediction.tools.push_back({name, predicted_rms_m(tool.workspace_box, uncertainty),
+                                predicted_rms_m(tool.joint_ranges, uncertainty)});
   }
-  prediction.map = predicted_map(regions.map(), certainty);
+  prediction.map = predicted_map(regions.map(), uncertainty);
   return prediction;
 }
 

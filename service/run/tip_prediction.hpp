@@ -11,23 +11,24 @@
 
 namespace cell {
 
-/// An error that nobody has a tolerance for matters in a region when one unit of it (a metre or a radian),
-/// with what it does to the identified errors, moves the tip there by more than this, root mean square.
+/// An error without a tolerance matters in a region if one unit of it (a metre or a radian), with its effect
+/// on the identified errors, moves the tip there by more than this, root mean square.
 inline constexpr double kUnknownMattersMetres = 1e-3;
 
-/// The touches that a result was fitted to, indices into the problem's: those rejected are not among them.
+/// Indices of the touches that a result was fitted to: rejected ones are not among them.
 std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& problem,
                                         const calib::IdentificationResult& result);
 
-/// The predicted deviation over a region, metres. Nothing when an error of unknown size matters there, or
-/// when the region holds no posture: no figure is honest then.
-std::optional<double> predicted_rms_m(const calib::TipRegion& region, const calib::Certainty& certainty);
+/// The predicted deviation over a region, metres. Absent if an error of unknown size matters there or the
+/// region holds no posture: any figure would mislead.
+std::optional<double> predicted_rms_m(const calib::TipRegion& region,
+                                      const calib::UncertaintyBudget& uncertainty);
 
-/// Where a cell wants to know how far off its tip is predicted to be: postures of the nominal arm. Each
-/// region is made at its first need (milliseconds; the map about a tenth of a second) and kept. One thread.
+/// The regions in which a cell predicts the error of its tip: postures of the nominal arm. Each region is
+/// computed on first use (milliseconds; the map about a tenth of a second) and cached. Not thread-safe.
 class TipRegions {
  public:
-  /// Of the stylus tip or a named tool centre.
+  /// For the stylus tip or a named tool centre point.
   struct Regions {
     calib::TipRegion workspace_box;
     calib::TipRegion joint_ranges;
@@ -39,7 +40,7 @@ class TipRegions {
   [[nodiscard]] const Cell& cell() const { return cell_; }
   [[nodiscard]] const Regions& tip() const;
   [[nodiscard]] const std::map<std::string, Regions>& tools() const;
-  /// The workspace box in cells of about 100 mm.
+  /// The workspace box, divided into cells of about 100 mm.
   [[nodiscard]] const calib::TipMap& map() const;
 
  private:
@@ -49,7 +50,7 @@ class TipRegions {
   mutable std::optional<calib::TipMap> map_;
 };
 
-/// How far off the calibrated arm is predicted to be; nothing where there is no honest figure.
+/// Predicted tip errors of the calibrated arm; absent where a figure would mislead.
 struct TipPrediction {
   struct OfSource {
     std::string name;
@@ -69,7 +70,7 @@ struct TipPrediction {
   std::optional<calib::UncertaintyMap> map;
 };
 
-/// Nothing of it is known before the identification has converged.
+/// All absent before the identification has converged.
 TipPrediction predict_tip(const TipRegions& regions, const calib::IdentificationProblem& problem,
                           const calib::IdentificationResult& result);
 

@@ -1,4 +1,4 @@
-#include "service/run/touch_benefit.hpp"
+#include "service/run/internal/touch_benefit.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -21,7 +21,7 @@ double mean_square_m2(const Eigen::MatrixXd& information, const calib::TipRegion
                       const std::vector<int>& columns) {
   const auto count = static_cast<Eigen::Index>(columns.size());
   return region.mean_square(columns, columns)
-      .cwiseProduct(calib::covariance_of(information).topLeftCorner(count, count))
+      .cwiseProduct(calib::inverse_information(information).topLeftCorner(count, count))
       .sum();
 }
 
@@ -33,11 +33,11 @@ std::map<int, std::vector<Touch>> by_face(const std::vector<Touch>& candidates) 
 
 }  // namespace
 
-std::optional<FurtherTouches> best_further_touches(const calib::IdentificationProblem& problem,
-                                                   const calib::IdentificationOptions& options,
-                                                   const calib::IdentificationResult& result,
-                                                   const std::vector<Touch>& candidates,
-                                                   const calib::TipRegion& region, double tip_rms_m) {
+std::optional<TouchBenefit> most_beneficial_touches(const calib::IdentificationProblem& problem,
+                                                    const calib::IdentificationOptions& options,
+                                                    const calib::IdentificationResult& result,
+                                                    const std::vector<Touch>& candidates,
+                                                    const calib::TipRegion& region, double tip_rms_m) {
   if (result.status != calib::IdentificationStatus::kConverged) return std::nullopt;
   calib::IdentificationProblem longer = problem;
   std::vector<std::size_t> touches = fitted_touches(problem, result);
@@ -45,7 +45,7 @@ std::optional<FurtherTouches> best_further_touches(const calib::IdentificationPr
   std::vector<int> faces;
   for (const auto& [face, of_face] : by_face(candidates)) {
     faces.push_back(face);
-    for (std::size_t i = 0; i < kFurtherTouchCount; ++i) {
+    for (std::size_t i = 0; i < kBenefitTouchCount; ++i) {
       touches.push_back(longer.touches.size());
       longer.touches.push_back(of_face[i % of_face.size()]);
     }
@@ -58,18 +58,18 @@ std::optional<FurtherTouches> best_further_touches(const calib::IdentificationPr
   fit.linearise({result.errors, result.artefact_errors});
 
   const double now_m2 = mean_square_m2(fit.information(), region, columns);
-  std::optional<FurtherTouches> best;
+  std::optional<TouchBenefit> best;
   for (std::size_t i = 0; i < faces.size(); ++i) {
-    const auto first = static_cast<Eigen::Index>(made + i * kFurtherTouchCount);
-    const Eigen::MatrixXd rows = fit.rows().middleRows(first, kFurtherTouchCount);
+    const auto first = static_cast<Eigen::Index>(made + i * kBenefitTouchCount);
+    const Eigen::MatrixXd rows = fit.rows().middleRows(first, kBenefitTouchCount);
     const double then_m2 = mean_square_m2(fit.information() + rows.transpose() * rows, region, columns);
     const double rms_m = std::sqrt(std::max(0.0, tip_rms_m * tip_rms_m - (now_m2 - then_m2)));
-    if (!best || rms_m < best->tip_rms_m) best = FurtherTouches{faces[i], kFurtherTouchCount, rms_m};
+    if (!best || rms_m < best->tip_rms_m) best = TouchBenefit{faces[i], kBenefitTouchCount, rms_m};
   }
   return best;
 }
 
-std::string describe(const FurtherTouches& further, double tip_rms_m) {
+std::string describe(const TouchBenefit& further, double tip_rms_m) {
   const double now_mm = calib::mm_from_metres(tip_rms_m);
   const double then_mm = calib::mm_from_metres(further.tip_rms_m);
   const int digits = then_mm < 0.1 ? 3 : 2;

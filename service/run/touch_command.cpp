@@ -7,6 +7,7 @@
 
 #include "calib_core/geometry/plane.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/aimed_transfer.hpp"
 #include "calib_core/planning/online_estimate.hpp"
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
@@ -14,7 +15,7 @@
 namespace cell {
 namespace {
 
-static_assert(calib::kAimedTransferPosturesMax <= cs8::kViaCountMax, "a way fits into a command");
+static_assert(calib::kAimedTransferPosturesMax <= cs8::kViaCountMax, "a path fits into a command");
 
 template <class Command>
 void set_via(Command& command, const std::vector<calib::JointVector>& via) {
@@ -130,9 +131,15 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
     case cs8::RejectReason::kNotCalibrated:
     case cs8::RejectReason::kNotPermitted:
       return {{FaultCode::kTouchRejected, why}, true};
-    default:
-      return {{FaultCode::kTouchRejected, why}};
+    case cs8::RejectReason::kBusy:
+    case cs8::RejectReason::kResultUnacknowledged:
+    case cs8::RejectReason::kStaleSequence:
+    case cs8::RejectReason::kOutOfRange:
+    case cs8::RejectReason::kNothingToRetract:
+    case cs8::RejectReason::kRetractPending:
+      break;
   }
+  return {{FaultCode::kTouchRejected, why}};
 }
 
 namespace {
@@ -141,9 +148,9 @@ Eigen::Vector3d tip_in_block_m(const Cell& cell, const calib::JointVector& joint
   return calib::forward_kinematics(cell.arm.model, joints).translation();
 }
 
-/// How the tip is not on the way of the search; nothing when it is.
-std::optional<std::string> off_the_search(const Cell& cell, const calib::PlannedTouch& planned,
-                                          const Eigen::Vector3d& tip_m) {
+/// How the tip misses the search line; nothing if it lies on it.
+std::optional<std::string> off_search_line_reason(const Cell& cell, const calib::PlannedTouch& planned,
+                                                  const Eigen::Vector3d& tip_m) {
   // The controller moves its nominal ball on a straight line, whatever arm the touch was aimed with: the
   // contact lies on it, between both its ends.
   const Eigen::Vector3d begin_m = tip_in_block_m(cell, planned.approach_joints);
@@ -161,19 +168,19 @@ std::optional<std::string> off_the_search(const Cell& cell, const calib::Planned
 
 }  // namespace
 
-std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
-                                       const cs8::TouchResult& result) {
-  if (result.source == cs8::CaptureSource::kNone) return "it comes without captured joints";
+std::optional<std::string> implausibility_reason(const Cell& cell, const calib::PlannedTouch& planned,
+                                                 const cs8::TouchResult& result) {
+  if (result.source == cs8::CaptureSource::kNone) return "it has no captured joints";
   if (result.monitor_speed_percent != 100)
     return fmt::format("the monitor speed was {} % in the search: the pre-travel holds at 100 %",
                        result.monitor_speed_percent);
   const Eigen::Vector3d tip_m = tip_in_block_m(cell, from_wire(result.contact));
-  if (auto off = off_the_search(cell, planned, tip_m)) return off;
+  if (auto off = off_search_line_reason(cell, planned, tip_m)) return off;
   if (!cell.speeds.second) return std::nullopt;
-  if (result.first_source == cs8::CaptureSource::kNone)
-    return "it comes without the first of its two touches";
+  if (result.first_source == cs8::CaptureSource::kNone) return "the first of its two contacts is missing";
   const Eigen::Vector3d first_tip_m = tip_in_block_m(cell, from_wire(result.first_contact));
-  if (const auto off = off_the_search(cell, planned, first_tip_m)) return "of its first touch, " + *off;
+  if (const auto off = off_search_line_reason(cell, planned, first_tip_m))
+    return "in its first contact, " + *off;
   return std::nullopt;
 }
 

@@ -12,11 +12,11 @@
 
 namespace cell {
 
-/// Joint vectors in the wire's 10^-6 degrees, and back.
+/// Joint vectors in the 10^-6 degrees of the wire, and back.
 cs8::JointsMicrodeg to_wire(const calib::JointVector& joints);
 calib::JointVector from_wire(const cs8::JointsMicrodeg& joints);
 
-/// The guarded touch that makes a planned touch, reached through `via`.
+/// The guarded-touch command of a planned touch, reached through `via`.
 cs8::Touch touch_command(const Cell& cell, const calib::PlannedTouch& planned,
                          const std::vector<calib::JointVector>& via);
 
@@ -26,12 +26,12 @@ cs8::Travel travel_command(const Cell& cell, const calib::JointVector& target,
 
 cs8::Retract retract_command(const Cell& cell);
 
-/// What the run makes of an outcome: nothing (a contact, or a stop that was asked for), a fault to hold on (a
-/// person can mend it and try the touch again) or one that ends the run.
+/// Effect of an outcome on the run: none (a contact, or a requested stop), a fault that holds it (a person
+/// can remove the reason and repeat the touch) or one that ends it.
 struct OutcomeFault {
   Fault fault;
   bool holds = false;
-  bool suspends = false;  // the run goes on by itself once the reason is gone
+  bool suspends = false;  // the run continues by itself once the reason is gone
 
   [[nodiscard]] Event event() const {
     return suspends ? Event::kSuspendFault : holds ? Event::kHoldFault : Event::kAbortFault;
@@ -39,16 +39,16 @@ struct OutcomeFault {
 };
 std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std::int32_t error_number);
 
-/// The same of a command that was refused: it holds when a person at the cell can remove the reason.
+/// The same for a refused command: it holds the run if a person at the cell can remove the reason.
 OutcomeFault fault_of(const cs8::Rejected& rejected);
 
-/// Two contacts of one touch by an arm that repeats to 0.03 mm, the first at search speed, lie no farther
-/// apart.
+/// Largest distance between the two contacts of one touch, the first at search speed, for an arm with a
+/// repeatability of 0.03 mm.
 inline constexpr double kContactSpreadMaxMetres = 1e-4;
 
-/// Why a reported contact cannot be the one that was commanded, or nothing: the nominal model's ball must be
-/// on the line from the approach posture to the search's end; where a second touch is made, both are.
-std::optional<std::string> implausible(const Cell& cell, const calib::PlannedTouch& planned,
-                                       const cs8::TouchResult& result);
+/// Why a reported contact cannot be the commanded one; nothing if it can. The ball of the nominal model must
+/// lie on the line from the approach posture to the end of the search, in both contacts if there are two.
+std::optional<std::string> implausibility_reason(const Cell& cell, const calib::PlannedTouch& planned,
+                                                 const cs8::TouchResult& result);
 
 }  // namespace cell

@@ -15,7 +15,7 @@ namespace {
 
 using Reasons = std::vector<std::string>;
 
-// Every comparison is written so that a figure that is no number misses its limit.
+// Every comparison is written so that NaN misses its limit.
 
 void judge_fit(const calib::IdentificationResult& result, const AcceptanceLimits& limits, Reasons& reasons) {
   if (!result.iterations.empty() &&
@@ -29,16 +29,17 @@ void judge_fit(const calib::IdentificationResult& result, const AcceptanceLimits
     const auto faces = static_cast<double>(result.lack_of_fit->p_of_face.size());
     if (p * faces >= limits.lack_of_fit_p_min) continue;
     reasons.push_back(
-        fmt::format("lack of fit on plane {}: its residuals are no touch noise as declared (p = {:.1g}); "
-                    "look at this face",
+        fmt::format("lack of fit on plane {}: its residuals exceed the declared touch noise (p = {:.1g}); "
+                    "check this face",
                     face + 1, p));
   }
   if (result.lack_of_fit && !(result.lack_of_fit->p >= limits.lack_of_fit_p_min)) {
-    reasons.push_back(fmt::format(
-        "lack of fit: the residuals are no touch noise as declared (they say {:.1f} um; p = {:.1g}, at least "
-        "{:g} is wanted): something moves that the model does not have",
-        1e3 * mm_from_metres(result.noise_estimated_m.value_or(0.0)), result.lack_of_fit->p,
-        limits.lack_of_fit_p_min));
+    reasons.push_back(
+        fmt::format("lack of fit: the residuals exceed the declared touch noise (they show {:.1f} um; p = "
+                    "{:.1g}, the limit is "
+                    "{:g}): an effect is missing in the model",
+                    1e3 * mm_from_metres(result.noise_estimated_m.value_or(0.0)), result.lack_of_fit->p,
+                    limits.lack_of_fit_p_min));
   }
 }
 
@@ -64,11 +65,11 @@ void judge_set(const calib::IdentificationResult& result, const calib::Identific
   const auto shown = static_cast<int>(result.identifiable.columns.size());
   if (options.prior && shown < result.attainable.count) {
     reasons.push_back(
-        fmt::format("incomplete set: the touches show {} of {} parameters, the rest is the prior's word",
-                    shown, result.attainable.count));
+        fmt::format("incomplete set: the touches show {} of {} parameters, the prior gives the rest", shown,
+                    result.attainable.count));
     return;
   }
-  if (!held.empty()) reasons.push_back("incomplete set: these touches hardly show " + held);
+  if (!held.empty()) reasons.push_back("incomplete set: these touches barely determine " + held);
 }
 
 void judge_tip(std::optional<double> tip_box_rms_m, const AcceptanceLimits& limits, Reasons& reasons) {
@@ -79,7 +80,7 @@ void judge_tip(std::optional<double> tip_box_rms_m, const AcceptanceLimits& limi
         "the tip's uncertainty in the workspace box is unknown, the limit is {:.3f} mm", limit_mm));
   } else if (!(*tip_box_rms_m <= *limits.tip_box_rms_max_m)) {
     reasons.push_back(
-        fmt::format("the tip is predicted to be uncertain by {:.3f} mm in the workspace box, the limit is "
+        fmt::format("the predicted tip uncertainty in the workspace box is {:.3f} mm, the limit is "
                     "{:.3f} mm",
                     mm_from_metres(*tip_box_rms_m), limit_mm));
   }
@@ -104,20 +105,6 @@ void judge_held_out(const calib::IdentificationResult& result, const AcceptanceL
 
 }  // namespace
 
-std::string_view verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kNone:
-      return "none";
-    case Verdict::kAccepted:
-      return "accepted";
-    case Verdict::kRejected:
-      return "rejected";
-    case Verdict::kIncomplete:
-      return "incomplete";
-  }
-  return "";
-}
-
 bool is_estimated(const calib::IdentificationOptions& options, const calib::IdentifiableSet& identifiable,
                   int index) {
   const calib::ParameterStatus status = identifiable.candidates[static_cast<std::size_t>(index)].status;
@@ -128,7 +115,7 @@ bool is_estimated(const calib::IdentificationOptions& options, const calib::Iden
 Judgement judge(const calib::IdentificationResult& result, const calib::IdentificationOptions& options,
                 const AcceptanceLimits& limits, std::optional<double> tip_box_rms_m, bool complete) {
   Reasons reasons;
-  if (!complete) reasons.emplace_back("the run did not come to its end");
+  if (!complete) reasons.emplace_back("the run was not completed");
   if (result.status != calib::IdentificationStatus::kConverged) {
     reasons.push_back(result.message);
   } else {

@@ -20,7 +20,7 @@ KeyLookUp AnswerStore::take(const KeyedRequest& request, const std::string& olde
   }
   if (query.getColumn(0).getString() != request.request ||
       query.getColumn(1).getString() != request.body_digest) {
-    return KeyOfAnother{};
+    return KeyReused{};
   }
   StoredAnswer answer{.status = query.getColumn(2).getUInt(), .body = query.getColumn(4).getString()};
   nlohmann::json::parse(query.getColumn(3).getString()).get_to(answer.headers);

@@ -11,7 +11,7 @@
 
 namespace cell {
 
-/// A request as an Idempotency-Key knows it again.
+/// What identifies a repeated request.
 struct KeyedRequest {
   std::string key;
   std::string request;      // method and path: "POST /api/v1/runs"
@@ -26,25 +26,25 @@ struct StoredAnswer {
 
 /// The key is new: the caller answers, then calls keep() or give_up().
 struct KeyIsNew {};
-/// The key came with another request or body.
-struct KeyOfAnother {};
-/// The first request with this key has no answer yet.
+/// The key was used with another request or body.
+struct KeyReused {};
+/// The first request with this key is still being answered.
 struct KeyInProgress {};
 
-using KeyLookUp = std::variant<KeyIsNew, StoredAnswer, KeyOfAnother, KeyInProgress>;
+using KeyLookUp = std::variant<KeyIsNew, StoredAnswer, KeyReused, KeyInProgress>;
 
-/// First answers by Idempotency-Key, kept for a day and across restarts. Throws what the database throws.
+/// First answers by Idempotency-Key, kept for a day, also across restarts. Throws what the database throws.
 class AnswerStore {
  public:
   static constexpr int kKeptHours = 24;
 
   explicit AnswerStore(SharedDatabase database) : database_(std::move(database)) {}
 
-  /// `oldest` is the time, as in format_utc(), before which answers are forgotten: kKeptHours ago.
+  /// `oldest`, as in format_utc(): earlier answers are deleted, those before the last kKeptHours.
   KeyLookUp take(const KeyedRequest& request, const std::string& oldest);
-  /// The answer to the request that take() found to be new. Durable when this returns.
+  /// Stores the answer to a request that take() found to be new. Durable on return.
   void keep(const KeyedRequest& request, const StoredAnswer& answer, const std::string& now);
-  /// There is no answer worth keeping: the key is free again.
+  /// Releases the key without an answer.
   void give_up(const KeyedRequest& request) { in_progress_.erase(request.key); }
 
  private:

@@ -7,7 +7,7 @@
 namespace cell {
 
 void AuditLog::append(const AuditEntry& entry, bool at_once) {
-  std::optional<Unsynced> unsynced;
+  std::optional<RelaxedDurability> unsynced;
   if (!at_once) unsynced.emplace(*database_);
   SQLite::Transaction transaction(*database_);
   SQLite::Statement insert(

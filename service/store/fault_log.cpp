@@ -8,7 +8,7 @@ namespace cell {
 
 void FaultLog::append(std::optional<std::int64_t> run_id, const std::string& at, const std::string& code,
                       const std::string& message) {
-  const Unsynced unsynced(*database_);
+  const RelaxedDurability unsynced(*database_);
   SQLite::Transaction transaction(*database_);
   SQLite::Statement insert(*database_, "INSERT INTO faults(run_id, at, code, message) VALUES(?, ?, ?, ?)");
   if (run_id) insert.bind(1, *run_id);

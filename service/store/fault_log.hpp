@@ -17,17 +17,17 @@ struct StoredFault {
   std::string message;  // cause, then detail
 };
 
-/// Every fault that was raised, of runs and between them, oldest dropped. Throws what the database throws.
+/// Every fault, of runs and between them; the oldest are deleted. Throws what the database throws.
 class FaultLog {
  public:
   static constexpr int kKept = 10'000;
 
   explicit FaultLog(SharedDatabase database) : database_(std::move(database)) {}
 
-  /// Durable with the next touch that is stored: a fault is told at once and must not keep the arm waiting.
+  /// Durable with the next stored touch: the arm must not wait for the disk.
   void append(std::optional<std::int64_t> run_id, const std::string& at, const std::string& code,
               const std::string& message);
-  /// Newest first; only those before `before_id`, only those of a run when given.
+  /// Newest first; only those before `before_id` and only those of a run, if given.
   [[nodiscard]] std::vector<StoredFault> page(int limit, std::optional<std::int64_t> before_id = {},
                                               std::optional<std::int64_t> run_id = {}) const;
 

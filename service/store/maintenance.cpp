@@ -5,18 +5,26 @@
 
 #include <array>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+
+#include "service/store/internal/row_text.hpp"
 
 namespace cell {
 namespace {
 
-/// A daemon that writes meanwhile is waited for so long.
+/// How long to wait for a daemon that writes.
 constexpr int kBusyMilliseconds = 5000;
 
-constexpr const char* kNoSuchTouch =
-    "SELECT run_id, number FROM touches WHERE plane < 1 OR role NOT BETWEEN 0 AND 2 OR source NOT BETWEEN 0 "
-    "AND 2 OR number < 1 OR max(abs(j1_microdeg), abs(j2_microdeg), abs(j3_microdeg), abs(j4_microdeg), "
-    "abs(j5_microdeg), abs(j6_microdeg)) > 2147483648";
+/// A row of touches that no run can have made.
+std::string impossible_touches() {
+  std::string largest_joint = row::kJointColumns;
+  for (std::size_t at = 0; (at = largest_joint.find(", ", at)) != std::string::npos; at += 7)
+    largest_joint.replace(at, 2, "), abs(");
+  return "SELECT run_id, number FROM touches WHERE plane < 1 OR role NOT BETWEEN 0 AND 2 OR source NOT "
+         "BETWEEN 0 AND 2 OR number < 1 OR max(abs(" +
+         largest_joint + ")) > 2147483648";
+}
 
 SQLite::Database open_to_read(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw std::runtime_error(file.string() + ": there is no such file");
@@ -27,13 +35,13 @@ SQLite::Database open_to_read(const std::filesystem::path& file) {
 
 void back_up(const std::filesystem::path& database_file, const std::filesystem::path& copy) {
   if (std::filesystem::exists(copy))
-    throw std::runtime_error(copy.string() + ": is there already; give a new file");
+    throw std::runtime_error(copy.string() + ": the file exists; name a new one");
   try {
     SQLite::Database from = open_to_read(database_file);
     SQLite::Database to(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     to.exec("PRAGMA synchronous = FULL");
     SQLite::Backup backup(to, from);
-    backup.executeStep();  // all pages at once: one moment
+    backup.executeStep();  // all pages at once: a consistent snapshot
     if (backup.getRemainingPageCount() != 0) throw std::runtime_error("the database is busy; try again");
   } catch (const std::exception& error) {
     std::error_code ignored;
@@ -55,7 +63,7 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
       damage.push_back("table " + orphans.getColumn(0).getString() + ": a row belongs to no " +
                        orphans.getColumn(2).getString());
     }
-    SQLite::Statement touches(database, kNoSuchTouch);
+    SQLite::Statement touches(database, impossible_touches());
     while (touches.executeStep()) {
       damage.push_back("run " + touches.getColumn(0).getString() + ", touch " +
                        touches.getColumn(1).getString() + ": not a touch");
@@ -73,9 +81,10 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
   SQLite::Transaction transaction(*database);
   SQLite::Statement choose(*database,
                            "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
-                           "outcome <> 'running' AND id "
-                           "IS NOT (SELECT max(id) FROM runs WHERE verdict = 'accepted')");
+                           "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ?)");
   choose.bind(1, oldest);
+  choose.bind(2, std::string(run_outcome_name(RunOutcome::kRunning)));
+  choose.bind(3, std::string(verdict_name(Verdict::kAccepted)));
   choose.exec();
   for (const std::string table : kOfRuns)
     database->exec("DELETE FROM " + table + " WHERE run_id IN (SELECT id FROM old_runs)");

@@ -1,15 +1,17 @@
-// What a TouchStore writes; touch_store_queries.cpp reads it.
+// What a RunStore writes; run_store_queries.cpp reads it.
 #include "service/store/run_store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "service/store/internal/relaxed_durability.hpp"
+#include "service/store/internal/row_text.hpp"
 
 namespace cell {
 namespace {
 
-/// The log begins anew, so that no touch of a run finds it full. A reader may prevent it: then it grows.
-void empty_log(SQLite::Database& database) { database.tryExec("PRAGMA wal_checkpoint(RESTART)"); }
+/// Restarts the write-ahead log, so that no touch of a run finds it full. A reader may prevent it: then it
+/// grows.
+void restart_log(SQLite::Database& database) { database.tryExec("PRAGMA wal_checkpoint(RESTART)"); }
 
 template <class Value>
 void bind_or_null(SQLite::Statement& statement, int index, const std::optional<Value>& value) {
@@ -37,31 +39,15 @@ int bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouch
   return index;
 }
 
-std::string_view kind_name(PlanChange::Kind kind) {
-  switch (kind) {
-    case PlanChange::Kind::kPutOff:
-      return "put_off";
-    case PlanChange::Kind::kDropFitted:
-      return "drop_fitted";
-    case PlanChange::Kind::kSkip:
-      break;
-  }
-  return "skip";
-}
-
-/// Takes a touch out of those that count, inside the caller's transaction.
-void set_apart(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason) {
-  SQLite::Statement keep(
-      database,
-      "INSERT INTO superseded_touches(run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
-      "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, "
-      "aimed_with, reason) SELECT run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
-      "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, "
-      "aimed_with, ? FROM touches WHERE run_id = ? AND number = ?");
+/// Moves a touch to superseded_touches, inside the caller's transaction.
+void supersede(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason) {
+  SQLite::Statement keep(database, "INSERT INTO superseded_touches(run_id, " + row::kTouchColumns +
+                                       ", reason) SELECT run_id, " + row::kTouchColumns +
+                                       ", ? FROM touches WHERE run_id = ? AND number = ?");
   keep.bind(1, reason);
   keep.bind(2, run_id);
   keep.bind(3, number);
-  if (keep.exec() != 1) throw SQLite::Exception("there is no such touch to set apart");
+  if (keep.exec() != 1) throw SQLite::Exception("there is no such touch to supersede");
   SQLite::Statement remove(database, "DELETE FROM touches WHERE run_id = ? AND number = ?");
   remove.bind(1, run_id);
   remove.bind(2, number);
@@ -70,13 +56,10 @@ void set_apart(SQLite::Database& database, std::int64_t run_id, int number, cons
 
 }  // namespace
 
-struct TouchStore::Statements {
+struct RunStore::Statements {
   explicit Statements(SQLite::Database& database)
-      : append_touch(
-            database,
-            "INSERT INTO touches(run_id, number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, "
-            "j4_microdeg, j5_microdeg, j6_microdeg, source, overtravel_dmm, captured_at, session, "
-            "sequence, aimed_with) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+      : append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns +
+                                   ") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
         set_open_command(database,
                          "INSERT OR REPLACE INTO open_commands(run_id, session, sequence, aimed_with, "
                          "touch_json) VALUES(?, ?, ?, ?, ?)"),
@@ -87,12 +70,12 @@ struct TouchStore::Statements {
   SQLite::Statement make_durable;
 };
 
-TouchStore::TouchStore(const std::filesystem::path& file)
+RunStore::RunStore(const std::filesystem::path& file)
     : database_(open_database(file)), statements_(std::make_unique<Statements>(*database_)) {}
 
-TouchStore::~TouchStore() = default;
+RunStore::~RunStore() = default;
 
-std::int64_t TouchStore::begin_run(const NewRun& run) {
+std::int64_t RunStore::begin_run(const NewRun& run) {
   SQLite::Statement insert(*database_,
                            "INSERT INTO runs(recipe, touches_total, started_at, idempotency_key, "
                            "operator_name, block_temperature_c, config_digest, trace_json) "
@@ -104,15 +87,15 @@ std::int64_t TouchStore::begin_run(const NewRun& run) {
   bind_or_null(insert, 5, run.operator_name);
   bind_or_null(insert, 6, run.block_temperature_c);
   bind_or_null(insert, 7, run.config_digest);
-  bind_or_null(insert, 8, run.trace_json);
+  bind_or_null(insert, 8, run.conditions_json);
   insert.exec();
   const std::int64_t id = database_->getLastInsertRowid();
-  empty_log(*database_);
+  restart_log(*database_);
   return id;
 }
 
-void TouchStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
-                          const std::string& document) {
+void RunStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
+                        const std::string& document) {
   SQLite::Transaction transaction(*database_);
   SQLite::Statement insert(*database_, "INSERT OR IGNORE INTO plans(id, document) VALUES(?, ?)");
   insert.bind(1, plan_id);
@@ -126,24 +109,24 @@ void TouchStore::set_plan(std::int64_t run_id, int touches_total, const std::str
   transaction.commit();
 }
 
-void TouchStore::set_touches_total(std::int64_t run_id, int touches_total) {
+void RunStore::set_touches_total(std::int64_t run_id, int touches_total) {
   SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ? WHERE id = ?");
   update.bind(1, touches_total);
   update.bind(2, run_id);
   update.exec();
 }
 
-void TouchStore::append_plan_change(std::int64_t run_id, const PlanChange& change) {
-  const Unsynced unsynced(*database_);
+void RunStore::append_plan_change(std::int64_t run_id, const PlanChange& change) {
+  const RelaxedDurability unsynced(*database_);
   SQLite::Statement insert(*database_, "INSERT INTO plan_changes(run_id, kind, place) VALUES(?, ?, ?)");
   insert.bind(1, run_id);
-  insert.bind(2, std::string(kind_name(change.kind)));
+  insert.bind(2, std::string(row::plan_change_name(change.kind)));
   insert.bind(3, change.place);
   insert.exec();
 }
 
-void TouchStore::set_open_command(std::int64_t run_id, const OpenCommand& command) {
-  const Unsynced unsynced(*database_);
+void RunStore::set_open_command(std::int64_t run_id, const OpenCommand& command) {
+  const RelaxedDurability unsynced(*database_);
   SQLite::Statement& insert = statements_->set_open_command;
   insert.tryReset();
   insert.bind(1, run_id);
@@ -154,7 +137,7 @@ void TouchStore::set_open_command(std::int64_t run_id, const OpenCommand& comman
   insert.exec();
 }
 
-bool TouchStore::make_durable(std::int64_t run_id) {
+bool RunStore::make_durable(std::int64_t run_id) {
   try {
     SQLite::Statement& update = statements_->make_durable;
     update.tryReset();
@@ -166,32 +149,30 @@ bool TouchStore::make_durable(std::int64_t run_id) {
   }
 }
 
-void TouchStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
+void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
   SQLite::Statement& insert = statements_->append_touch;
   insert.tryReset();
   bind_touch(insert, run_id, touch);
   insert.exec();
 }
 
-void TouchStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {
+void RunStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {
   SQLite::Transaction transaction(*database_);
-  set_apart(*database_, run_id, number, reason);
+  supersede(*database_, run_id, number, reason);
   transaction.commit();
 }
 
-void TouchStore::replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason) {
+void RunStore::replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason) {
   SQLite::Transaction transaction(*database_);
-  set_apart(*database_, run_id, again.number, reason);
+  supersede(*database_, run_id, again.number, reason);
   append_touch(run_id, again);
   transaction.commit();
 }
 
-void TouchStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch) {
+void RunStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch) {
   SQLite::Statement insert(
-      *database_,
-      "INSERT INTO reference_touches(run_id, number, touches_done, j1_microdeg, j2_microdeg, j3_microdeg, "
-      "j4_microdeg, j5_microdeg, j6_microdeg, drift_mm, captured_at) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
-      "?)");
+      *database_, "INSERT INTO reference_touches(run_id, number, touches_done, " + row::kJointColumns +
+                      ", drift_mm, captured_at) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   int index = 0;
   insert.bind(++index, run_id);
   insert.bind(++index, touch.number);
@@ -202,7 +183,7 @@ void TouchStore::append_reference(std::int64_t run_id, const ReferenceTouch& tou
   insert.exec();
 }
 
-void TouchStore::append_resumption(std::int64_t run_id, const std::string& at, int touches_done) {
+void RunStore::append_resumption(std::int64_t run_id, const std::string& at, int touches_done) {
   SQLite::Statement insert(*database_, "INSERT INTO resumptions(run_id, at, touches_done) VALUES(?, ?, ?)");
   insert.bind(1, run_id);
   insert.bind(2, at);
@@ -210,12 +191,12 @@ void TouchStore::append_resumption(std::int64_t run_id, const std::string& at, i
   insert.exec();
 }
 
-void TouchStore::finish_run(std::int64_t run_id, const RunEnd& end) {
+void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
   SQLite::Statement update(*database_,
                            "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ?, fault_code = ?, "
                            "fault_message = ?, result_json = ? WHERE id = ?");
-  update.bind(1, end.outcome);
-  update.bind(2, end.verdict);
+  update.bind(1, std::string(run_outcome_name(end.outcome)));
+  update.bind(2, std::string(verdict_name(end.verdict)));
   update.bind(3, end.ended_at);
   bind_or_null(update, 4, end.fault_code);
   bind_or_null(update, 5, end.fault_message);
@@ -224,19 +205,22 @@ void TouchStore::finish_run(std::int64_t run_id, const RunEnd& end) {
   update.exec();
 }
 
-void TouchStore::set_result_json(std::int64_t run_id, const std::string& result_json) {
+void RunStore::set_result_json(std::int64_t run_id, const std::string& result_json) {
   SQLite::Statement update(*database_, "UPDATE runs SET result_json = ? WHERE id = ?");
   update.bind(1, result_json);
   update.bind(2, run_id);
   update.exec();
 }
 
-int TouchStore::finish_interrupted(const std::string& now, std::optional<std::int64_t> but) {
+int RunStore::finish_interrupted(const std::string& now, std::optional<std::int64_t> but) {
   SQLite::Statement update(*database_,
-                           "UPDATE runs SET outcome = 'interrupted', verdict = 'incomplete', ended_at = ? "
-                           "WHERE outcome = 'running' AND id IS NOT ?");
-  update.bind(1, now);
-  bind_or_null(update, 2, but);
+                           "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ? WHERE outcome = ? AND id "
+                           "IS NOT ?");
+  update.bind(1, std::string(run_outcome_name(RunOutcome::kInterrupted)));
+  update.bind(2, std::string(verdict_name(Verdict::kIncomplete)));
+  update.bind(3, now);
+  update.bind(4, std::string(run_outcome_name(RunOutcome::kRunning)));
+  bind_or_null(update, 5, but);
   return update.exec();
 }
 

@@ -9,11 +9,12 @@
 
 #include "calib_core/geometry/touch.hpp"
 #include "cs8_protocol/messages.hpp"
+#include "service/store/run_outcome.hpp"
 #include "service/store/schema.hpp"
 
 namespace cell {
 
-/// A touch as it was answered, exact: joints in the controller's own 10^-6 degrees.
+/// A touch exactly as the controller answered it: joints in 10^-6 degrees.
 struct StoredTouch {
   int number = 0;  // place in the run's plan, from 1
   int plane = 0;   // from 1
@@ -22,31 +23,29 @@ struct StoredTouch {
   cs8::CaptureSource source = cs8::CaptureSource::kLatched;
   int overtravel_dmm = 0;
   std::string captured_at;  // RFC 3339
-  /// The command that it answers: a session of the controller's application and a number in it; 0 when
-  /// unknown.
+  /// The command that it answers: session of the controller's application and sequence number; 0 if unknown.
   std::uint32_t session = 0;
   std::uint32_t sequence = 0;
-  int aimed_with = 0;  // how many touches aimed it; kNominalMiss when it was made with the nominal miss
+  int aimed_with = 0;  // touches behind the online estimate that aimed it; kNominalMiss: none was used
 };
 inline constexpr int kNominalMiss = -1;
 
-/// A touch that was made again, and why.
+/// A touch that was repeated, and why.
 struct SupersededTouch {
   StoredTouch touch;
   std::string reason;
 };
 
-/// A touch at the run's reference place: not one of the plan, and never fitted.
+/// A touch at the reference place of the run: not part of the plan, never fitted.
 struct ReferenceTouch {
   int number = 0;        // from 1
-  int touches_done = 0;  // of the run, when it was made
+  int touches_done = 0;  // of the run, at that time
   cs8::JointsMicrodeg joints{};
   std::optional<double> drift_mm;  // against the first one
   std::string captured_at;         // RFC 3339
 };
 
-/// A touch command that was sent and whose answer is not stored yet: by this the answer is known again after
-/// a restart.
+/// A touch command whose answer is not stored yet: it identifies the answer after a restart.
 struct OpenCommand {
   std::uint32_t session = 0;  // of the controller's application
   std::uint32_t sequence = 0;
@@ -54,11 +53,11 @@ struct OpenCommand {
   std::string touch_json;  // the touch as it was aimed
 };
 
-/// A run's plan is the one that it was planned with, and then these, in their order.
+/// One change of a run's plan; the plan of a run is its stored plan with all changes applied in order.
 struct PlanChange {
-  enum class Kind { kPutOff, kDropFitted, kSkip };
-  Kind kind = Kind::kPutOff;
-  int place = 0;  // in the plan as it was then, from 0
+  enum class Kind { kDefer, kDropFitTouches, kSkip };
+  Kind kind = Kind::kDefer;
+  int place = 0;  // index in the plan at that time, from 0
 };
 
 struct NewRun {
@@ -69,18 +68,18 @@ struct NewRun {
   std::optional<std::string> operator_name;
   std::optional<double> block_temperature_c;
   std::optional<std::string> config_digest;  // of the cell's files
-  std::optional<std::string> trace_json;  // versions, temperatures, controller: an object, free in its keys
+  std::optional<std::string>
+      conditions_json;  // versions, temperatures, controller: an object, free in its keys
 };
 
-/// How a run ended. `outcome`: complete, stopped, aborted, interrupted (the daemon went away during it, and
-/// it was not resumed).
+/// How a run ended.
 struct RunEnd {
-  std::string outcome;
-  std::string verdict;
+  RunOutcome outcome = RunOutcome::kComplete;
+  Verdict verdict = Verdict::kNone;
   std::string ended_at;
   std::optional<std::string> fault_code;
   std::optional<std::string> fault_message;
-  std::optional<std::string> result_json;  // the result document as it was served last
+  std::optional<std::string> result_json;  // the last result document
 };
 
 struct StoredRun {
@@ -90,59 +89,56 @@ struct StoredRun {
   int touches_done = 0;
   std::string started_at;
   std::optional<std::string> ended_at;
-  std::string outcome;  // running until it ended
-  std::string verdict;
+  RunOutcome outcome = RunOutcome::kRunning;
+  Verdict verdict = Verdict::kNone;
   std::optional<std::string> fault_code;
   std::optional<std::string> fault_message;
   std::optional<std::string> plan_id;
   std::optional<std::string> operator_name;
   std::optional<double> block_temperature_c;
   std::optional<std::string> config_digest;
-  std::optional<std::string> trace_json;
+  std::optional<std::string> conditions_json;
 };
 
-/// Runs and touches in one SQLite file: what a call wrote is durable when it returns, where it does not say
-/// otherwise. Every call may throw std::exception when the file cannot be read or written; nothing of that
-/// call is in the file then.
-class TouchStore {
+/// Runs and touches in one SQLite file. What a call writes is durable on return unless stated otherwise.
+/// Every call may throw std::exception if the file cannot be read or written; it has changed nothing then.
+class RunStore {
  public:
   /// Opens or creates the file. A file of a newer schema is refused.
-  explicit TouchStore(const std::filesystem::path& file);
-  ~TouchStore();
-  TouchStore(const TouchStore&) = delete;
-  TouchStore& operator=(const TouchStore&) = delete;
+  explicit RunStore(const std::filesystem::path& file);
+  ~RunStore();
+  RunStore(const RunStore&) = delete;
+  RunStore& operator=(const RunStore&) = delete;
 
-  /// The connection, for the other parts that keep to the same file.
+  /// The connection, shared with the other tables of the same file.
   [[nodiscard]] const SharedDatabase& database() const { return database_; }
 
   std::int64_t begin_run(const NewRun& run);
-  /// What the run follows, known once it is planned: how many touches, and the plan as it was shown. A plan
-  /// that several runs follow is kept once.
+  /// Stores the plan of the run, once it is known. A plan of several runs is stored once.
   void set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
                 const std::string& document);
-  /// A run that is accurate enough leaves out touches of its plan.
+  /// Changes the number of touches: a run that is accurate enough leaves some out.
   void set_touches_total(std::int64_t run_id, int touches_total);
-  /// Durable with the next touch: before that the plan is changed again in the same way.
+  /// Durable with the next touch; a lost change is made again in the same way.
   void append_plan_change(std::int64_t run_id, const PlanChange& change);
-  /// Call it before the command is sent: it outlives this process then. make_durable(), called while the arm
-  /// moves, lets it outlive the machine as well; false when that fails, which the next call that writes
-  /// tells.
+  /// Call it before the command is sent: it survives a crash of the process. make_durable(), called while the
+  /// arm moves, lets it survive a power failure as well; false if that fails, which the next write reports.
   void set_open_command(std::int64_t run_id, const OpenCommand& command);
   bool make_durable(std::int64_t run_id);
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
-  /// `again` takes the place of the touch with its number, which is kept apart.
+  /// `again` replaces the touch of its number, which is kept as superseded.
   void replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason);
-  /// The touch counts no more and is kept apart.
+  /// Removes the touch, which is kept as superseded.
   void withdraw_touch(std::int64_t run_id, int number, const std::string& reason);
   void append_reference(std::int64_t run_id, const ReferenceTouch& touch);
   void append_resumption(std::int64_t run_id, const std::string& at, int touches_done);
   void finish_run(std::int64_t run_id, const RunEnd& end);
   /// Replaces the result of a run that ended.
   void set_result_json(std::int64_t run_id, const std::string& result_json);
-  /// Ends runs that a previous daemon left open, as interrupted, all but `but`; returns how many.
+  /// Ends the runs that an earlier daemon left open, except `but`, as interrupted; returns how many.
   int finish_interrupted(const std::string& now, std::optional<std::int64_t> but = {});
 
-  /// Newest first; only runs before `before_id` when given.
+  /// Newest first; only runs before `before_id`, if given.
   [[nodiscard]] std::vector<StoredRun> runs(int limit, std::optional<std::int64_t> before_id = {}) const;
   [[nodiscard]] std::optional<StoredRun> run(std::int64_t id) const;
   [[nodiscard]] std::optional<StoredRun> run_with_key(const std::string& idempotency_key) const;
@@ -163,7 +159,7 @@ class TouchStore {
   struct Statements;
 
   SharedDatabase database_;
-  std::unique_ptr<Statements> statements_;  // those that a run uses at each touch, prepared once
+  std::unique_ptr<Statements> statements_;  // used at each touch, prepared once
 };
 
 }  // namespace cell

@@ -1,6 +1,7 @@
-// What a TouchStore reads.
+// What a RunStore reads.
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "service/store/internal/row_text.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
@@ -11,10 +12,6 @@ constexpr const char* kRunColumns =
     "(SELECT count(*) FROM touches WHERE run_id = runs.id), plan_id, operator_name, block_temperature_c, "
     "config_digest, trace_json FROM runs ";
 
-constexpr const char* kTouchColumns =
-    "SELECT number, plane, role, j1_microdeg, j2_microdeg, j3_microdeg, j4_microdeg, j5_microdeg, "
-    "j6_microdeg, source, overtravel_dmm, captured_at, session, sequence, aimed_with";
-
 std::optional<std::string> text_or_nothing(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getString());
 }
@@ -23,22 +20,22 @@ std::optional<double> number_or_nothing(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getDouble());
 }
 
-StoredRun read_run(SQLite::Statement& row) {
-  return {.id = row.getColumn(0).getInt64(),
-          .recipe = row.getColumn(1).getString(),
-          .touches_total = row.getColumn(2).getInt(),
-          .touches_done = row.getColumn(9).getInt(),
-          .started_at = row.getColumn(3).getString(),
-          .ended_at = text_or_nothing(row.getColumn(4)),
-          .outcome = row.getColumn(5).getString(),
-          .verdict = row.getColumn(6).getString(),
-          .fault_code = text_or_nothing(row.getColumn(7)),
-          .fault_message = text_or_nothing(row.getColumn(8)),
-          .plan_id = text_or_nothing(row.getColumn(10)),
-          .operator_name = text_or_nothing(row.getColumn(11)),
-          .block_temperature_c = number_or_nothing(row.getColumn(12)),
-          .config_digest = text_or_nothing(row.getColumn(13)),
-          .trace_json = text_or_nothing(row.getColumn(14))};
+StoredRun read_run(SQLite::Statement& query) {
+  return {.id = query.getColumn(0).getInt64(),
+          .recipe = query.getColumn(1).getString(),
+          .touches_total = query.getColumn(2).getInt(),
+          .touches_done = query.getColumn(9).getInt(),
+          .started_at = query.getColumn(3).getString(),
+          .ended_at = text_or_nothing(query.getColumn(4)),
+          .outcome = row::outcome_named(query.getColumn(5).getString()),
+          .verdict = row::verdict_named(query.getColumn(6).getString()),
+          .fault_code = text_or_nothing(query.getColumn(7)),
+          .fault_message = text_or_nothing(query.getColumn(8)),
+          .plan_id = text_or_nothing(query.getColumn(10)),
+          .operator_name = text_or_nothing(query.getColumn(11)),
+          .block_temperature_c = number_or_nothing(query.getColumn(12)),
+          .config_digest = text_or_nothing(query.getColumn(13)),
+          .conditions_json = text_or_nothing(query.getColumn(14))};
 }
 
 std::optional<StoredRun> first_run(SQLite::Statement& query) {
@@ -46,34 +43,29 @@ std::optional<StoredRun> first_run(SQLite::Statement& query) {
   return read_run(query);
 }
 
-cs8::JointsMicrodeg read_joints(SQLite::Statement& row, int first) {
+cs8::JointsMicrodeg read_joints(SQLite::Statement& query, int first) {
   cs8::JointsMicrodeg joints{};
   for (std::size_t i = 0; i < joints.size(); ++i)
-    joints[i] = row.getColumn(first + static_cast<int>(i)).getInt();
+    joints[i] = query.getColumn(first + static_cast<int>(i)).getInt();
   return joints;
 }
 
-StoredTouch read_touch(SQLite::Statement& row) {
-  return {.number = row.getColumn(0).getInt(),
-          .plane = row.getColumn(1).getInt(),
-          .role = static_cast<calib::TouchRole>(row.getColumn(2).getInt()),
-          .joints = read_joints(row, 3),
-          .source = static_cast<cs8::CaptureSource>(row.getColumn(9).getInt()),
-          .overtravel_dmm = row.getColumn(10).getInt(),
-          .captured_at = row.getColumn(11).getString(),
-          .session = row.getColumn(12).getUInt(),
-          .sequence = row.getColumn(13).getUInt(),
-          .aimed_with = row.getColumn(14).getInt()};
-}
-
-PlanChange::Kind kind_named(const std::string& name) {
-  if (name == "put_off") return PlanChange::Kind::kPutOff;
-  return name == "drop_fitted" ? PlanChange::Kind::kDropFitted : PlanChange::Kind::kSkip;
+StoredTouch read_touch(SQLite::Statement& query) {
+  return {.number = query.getColumn(0).getInt(),
+          .plane = query.getColumn(1).getInt(),
+          .role = static_cast<calib::TouchRole>(query.getColumn(2).getInt()),
+          .joints = read_joints(query, 3),
+          .source = static_cast<cs8::CaptureSource>(query.getColumn(9).getInt()),
+          .overtravel_dmm = query.getColumn(10).getInt(),
+          .captured_at = query.getColumn(11).getString(),
+          .session = query.getColumn(12).getUInt(),
+          .sequence = query.getColumn(13).getUInt(),
+          .aimed_with = query.getColumn(14).getInt()};
 }
 
 }  // namespace
 
-std::vector<StoredRun> TouchStore::runs(int limit, std::optional<std::int64_t> before_id) const {
+std::vector<StoredRun> RunStore::runs(int limit, std::optional<std::int64_t> before_id) const {
   SQLite::Statement query(*database_, std::string(kRunColumns) + "WHERE id < ? ORDER BY id DESC LIMIT ?");
   query.bind(1, before_id.value_or(INT64_MAX));
   query.bind(2, limit);
@@ -82,41 +74,43 @@ std::vector<StoredRun> TouchStore::runs(int limit, std::optional<std::int64_t> b
   return found;
 }
 
-std::optional<StoredRun> TouchStore::run(std::int64_t id) const {
+std::optional<StoredRun> RunStore::run(std::int64_t id) const {
   SQLite::Statement query(*database_, std::string(kRunColumns) + "WHERE id = ?");
   query.bind(1, id);
   return first_run(query);
 }
 
-std::optional<StoredRun> TouchStore::run_with_key(const std::string& idempotency_key) const {
+std::optional<StoredRun> RunStore::run_with_key(const std::string& idempotency_key) const {
   SQLite::Statement query(*database_, std::string(kRunColumns) + "WHERE idempotency_key = ?");
   query.bind(1, idempotency_key);
   return first_run(query);
 }
 
-std::optional<StoredRun> TouchStore::last_accepted() const {
+std::optional<StoredRun> RunStore::last_accepted() const {
   SQLite::Statement query(*database_,
-                          std::string(kRunColumns) + "WHERE verdict = 'accepted' ORDER BY id DESC LIMIT 1");
+                          std::string(kRunColumns) + "WHERE verdict = ? ORDER BY id DESC LIMIT 1");
+  query.bind(1, std::string(verdict_name(Verdict::kAccepted)));
   return first_run(query);
 }
 
-std::optional<StoredRun> TouchStore::running() const {
+std::optional<StoredRun> RunStore::running() const {
   SQLite::Statement query(*database_,
-                          std::string(kRunColumns) + "WHERE outcome = 'running' ORDER BY id DESC LIMIT 1");
+                          std::string(kRunColumns) + "WHERE outcome = ? ORDER BY id DESC LIMIT 1");
+  query.bind(1, std::string(run_outcome_name(RunOutcome::kRunning)));
   return first_run(query);
 }
 
-std::vector<StoredTouch> TouchStore::touches(std::int64_t run_id) const {
+std::vector<StoredTouch> RunStore::touches(std::int64_t run_id) const {
   SQLite::Statement query(*database_,
-                          std::string(kTouchColumns) + " FROM touches WHERE run_id = ? ORDER BY number");
+                          "SELECT " + row::kTouchColumns + " FROM touches WHERE run_id = ? ORDER BY number");
   query.bind(1, run_id);
   std::vector<StoredTouch> found;
   while (query.executeStep()) found.push_back(read_touch(query));
   return found;
 }
 
-std::vector<SupersededTouch> TouchStore::superseded_touches(std::int64_t run_id) const {
-  SQLite::Statement query(*database_, std::string(kTouchColumns) +
+std::vector<SupersededTouch> RunStore::superseded_touches(std::int64_t run_id) const {
+  SQLite::Statement query(*database_, "SELECT " + row::kTouchColumns +
                                           ", reason FROM superseded_touches WHERE run_id = ? ORDER BY id");
   query.bind(1, run_id);
   std::vector<SupersededTouch> found;
@@ -124,11 +118,10 @@ std::vector<SupersededTouch> TouchStore::superseded_touches(std::int64_t run_id)
   return found;
 }
 
-std::vector<ReferenceTouch> TouchStore::references(std::int64_t run_id) const {
-  SQLite::Statement query(*database_,
-                          "SELECT number, touches_done, j1_microdeg, j2_microdeg, j3_microdeg, j4_microdeg, "
-                          "j5_microdeg, j6_microdeg, drift_mm, captured_at FROM reference_touches "
-                          "WHERE run_id = ? ORDER BY number");
+std::vector<ReferenceTouch> RunStore::references(std::int64_t run_id) const {
+  SQLite::Statement query(*database_, "SELECT number, touches_done, " + row::kJointColumns +
+                                          ", drift_mm, captured_at FROM reference_touches "
+                                          "WHERE run_id = ? ORDER BY number");
   query.bind(1, run_id);
   std::vector<ReferenceTouch> found;
   while (query.executeStep()) {
@@ -141,7 +134,7 @@ std::vector<ReferenceTouch> TouchStore::references(std::int64_t run_id) const {
   return found;
 }
 
-std::optional<OpenCommand> TouchStore::open_command(std::int64_t run_id) const {
+std::optional<OpenCommand> RunStore::open_command(std::int64_t run_id) const {
   SQLite::Statement query(
       *database_,
       "SELECT session, sequence, aimed_with, touch_json FROM open_commands AS open WHERE run_id = ? "
@@ -156,23 +149,23 @@ std::optional<OpenCommand> TouchStore::open_command(std::int64_t run_id) const {
                      .touch_json = query.getColumn(3).getString()};
 }
 
-std::vector<PlanChange> TouchStore::plan_changes(std::int64_t run_id) const {
+std::vector<PlanChange> RunStore::plan_changes(std::int64_t run_id) const {
   SQLite::Statement query(*database_, "SELECT kind, place FROM plan_changes WHERE run_id = ? ORDER BY id");
   query.bind(1, run_id);
   std::vector<PlanChange> found;
   while (query.executeStep())
-    found.push_back({kind_named(query.getColumn(0).getString()), query.getColumn(1).getInt()});
+    found.push_back({row::plan_change_named(query.getColumn(0).getString()), query.getColumn(1).getInt()});
   return found;
 }
 
-std::optional<std::string> TouchStore::result_json(std::int64_t run_id) const {
+std::optional<std::string> RunStore::result_json(std::int64_t run_id) const {
   SQLite::Statement query(*database_, "SELECT result_json FROM runs WHERE id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return std::nullopt;
   return text_or_nothing(query.getColumn(0));
 }
 
-std::optional<std::string> TouchStore::plan_json(std::int64_t run_id) const {
+std::optional<std::string> RunStore::plan_json(std::int64_t run_id) const {
   SQLite::Statement query(
       *database_, "SELECT plans.document FROM runs JOIN plans ON plans.id = runs.plan_id WHERE runs.id = ?");
   query.bind(1, run_id);

@@ -9,7 +9,7 @@
 namespace cell {
 namespace {
 
-/// A longer wait for another reader would starve the heartbeat.
+/// A longer wait for another reader would delay the heartbeat.
 constexpr int kBusyMilliseconds = 100;
 
 constexpr const char* kRunsAndTouches = R"sql(
@@ -45,7 +45,7 @@ CREATE TABLE plans(id TEXT PRIMARY KEY, document TEXT NOT NULL) STRICT;
 ALTER TABLE runs ADD COLUMN plan_id TEXT;
 )sql";
 
-/// What a run needs to be resumed, and to be traced; the cell's diary.
+/// What resuming and tracing a run need; logs of faults and commands.
 constexpr const char* kDiary = R"sql(
 ALTER TABLE runs ADD COLUMN operator_name TEXT;
 ALTER TABLE runs ADD COLUMN block_temperature_c REAL;
@@ -132,9 +132,9 @@ CREATE TABLE answers(
 
 constexpr std::array kMigrations{kRunsAndTouches, kPlans, kDiary};
 
-/// Blocks that the log has already are written in a third of the time of new ones: it is made as long as a
-/// run of some hundred touches needs. Where that fails commits are slower, and nothing else.
-void make_room_in_log(SQLite::Database& database) {
+/// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
+/// for a run of some hundred touches. If that fails, commits are slower, and nothing else.
+void preallocate_log(SQLite::Database& database) {
   try {
     database.exec("CREATE TABLE IF NOT EXISTS room(bytes BLOB)");
     database.exec("INSERT INTO room VALUES(zeroblob(3000000))");
@@ -167,13 +167,13 @@ SharedDatabase open_database(const std::filesystem::path& file) try {
       std::make_shared<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   database->setBusyTimeout(kBusyMilliseconds);
   database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
-  // Before the log takes more than a run writes, TouchStore::begin_run() empties it.
+  // RunStore::begin_run() restarts the log before it grows beyond what a run writes.
   database->exec("PRAGMA wal_autocheckpoint = 4000");
   migrate(*database, file);
-  make_room_in_log(*database);
+  preallocate_log(*database);
   return database;
 } catch (const SQLite::Exception& error) {
-  throw std::runtime_error(file.string() + ": " + error.what() + "; mend the file or give another --state");
+  throw std::runtime_error(file.string() + ": " + error.what() + "; repair the file or give another --state");
 }
 
 }  // namespace cell

@@ -1,11 +1,13 @@
 // Arrows between the folders point one way: this table is the whole of what may include what.
 #include <gtest/gtest.h>
 
+#include <iterator>
 #include <map>
 #include <optional>
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "tests/architecture/source_files.hpp"
 
@@ -14,7 +16,7 @@ namespace {
 
 /// First part of an include path of what a folder may use beside the standard library.
 const std::map<std::string, std::set<std::string>> kMayInclude{
-    {"calib_core", {"calib_core", "Eigen", "unsupported"}},
+    {"calib_core", {"calib_core", "Eigen", "boost"}},
     {"cs8_protocol", {"cs8_protocol", "boost"}},
     {"config", {"config", "calib_core", "nlohmann", "Eigen"}},
     {"sim_controller",
@@ -22,6 +24,19 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"service",
      {"service", "config", "cs8_protocol", "calib_core", "boost", "nlohmann", "spdlog", "SQLiteCpp", "CLI",
       "openssl", "prometheus", "systemd", "Eigen", "fcntl.h", "malloc.h", "spawn.h", "unistd.h", "sys"}},
+};
+
+/// The layers of calib_core: which may include which. Nothing runs up, and nothing in a circle.
+const std::map<std::string, std::set<std::string>> kCoreLayerMayInclude{
+    {"geometry", {}},
+    {"numerics", {"geometry"}},
+    {"kinematics", {"geometry"}},
+    {"observability", {"geometry", "kinematics"}},
+    {"estimation", {"geometry", "numerics", "kinematics", "observability"}},
+    {"uncertainty", {"geometry", "numerics", "kinematics", "estimation"}},
+    {"identification", {"estimation", "uncertainty"}},
+    {"motion", {"geometry", "kinematics"}},
+    {"planning", {"geometry", "numerics", "kinematics", "estimation", "uncertainty", "motion"}},
 };
 
 /// Compiling one of these takes seconds: headers that many include leave them to the .cpp files.
@@ -52,6 +67,41 @@ TEST(Includes, FollowTheArrowsBetweenTheFolders) {
     }
   }
   EXPECT_GT(seen, 100) << "the test reads too little to mean anything";
+}
+
+TEST(Includes, OfTheCoreFollowTheArrowsBetweenItsLayers) {
+  int seen = 0;
+  for (const auto& file : source_files("calib_core")) {
+    const std::string layer = *std::next(file.lexically_relative(kRoot).begin());
+    ASSERT_TRUE(kCoreLayerMayInclude.contains(layer)) << file;
+    for (const std::string& line : read_lines(file)) {
+      const auto header = included(line);
+      if (!header || !header->starts_with("calib_core/")) continue;
+      ++seen;
+      const std::string target = *std::next(std::filesystem::path(*header).begin());
+      EXPECT_TRUE(target == layer || kCoreLayerMayInclude.at(layer).contains(target)) << file << ": " << line;
+    }
+  }
+  EXPECT_GT(seen, 100) << "the test reads too little to mean anything";
+}
+
+/// x/internal/ belongs to x: only x and its tests include from there.
+TEST(Includes, OfInternalHeadersStayInTheirFolder) {
+  std::vector<std::filesystem::path> files = source_files("tests");
+  for (const std::string& folder : kFolders) {
+    const auto more = source_files(folder);
+    files.insert(files.end(), more.begin(), more.end());
+  }
+  for (const auto& file : files) {
+    std::string place = file.lexically_relative(kRoot).string();
+    if (place.starts_with("tests/")) place.erase(0, 6);
+    for (const std::string& line : read_lines(file)) {
+      const auto header = included(line);
+      const std::size_t found = header ? header->find("/internal/") : std::string::npos;
+      if (found == std::string::npos) continue;
+      EXPECT_TRUE(place.starts_with(header->substr(0, found + 1))) << file << ": " << line;
+    }
+  }
 }
 
 TEST(Includes, KeepSlowLibrariesOutOfHeaders) {

@@ -1,6 +1,7 @@
 // The tree keeps its shape: what stands at the top, how long a file may be, which names say nothing.
 #include <gtest/gtest.h>
 
+#include <map>
 #include <regex>
 #include <set>
 #include <string>
@@ -40,6 +41,26 @@ TEST(Tree, HasNoNamesThatSayNothing) {
       EXPECT_FALSE(std::regex_search(file.filename().string(), vague)) << file;
     }
   }
+}
+
+/// Who reads a clock of its own, and why; everybody else is handed one.
+const std::map<std::string, std::string> kReadsAClock{
+    {"daemon.cpp", "hands the machine's clocks to all parts of the daemon"},
+    {"watch_command.cpp", "a program of its own, which waits for a daemon"},
+};
+
+TEST(Tree, ClocksAreHandedInInTheService) {
+  const std::regex clock("_clock::now\\b");
+  std::set<std::string> readers;
+  for (const auto& file : source_files("service")) {
+    for (const std::string& line : read_lines(file)) {
+      if (!std::regex_search(line, clock)) continue;
+      readers.insert(file.filename());
+      EXPECT_TRUE(kReadsAClock.contains(file.filename())) << file << ": " << line;
+    }
+  }
+  for (const auto& [file, reason] : kReadsAClock)
+    EXPECT_TRUE(readers.contains(file)) << file << " reads none";
 }
 
 TEST(Tree, TestsDoNotSleep) {

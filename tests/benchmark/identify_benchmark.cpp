@@ -17,6 +17,7 @@
 
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/identification/identify.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "tests/benchmark/bare_factorisations.hpp"
 #include "tests/benchmark/ceres_identify.hpp"
@@ -127,12 +128,12 @@ void live_after_one_touch(benchmark::State& state) {
   const calib::Touch last = problem.touches.back();
   constexpr double kTurn = 2.0;  // radians; half the range of the postures asked for
   const calib::JointRanges ranges{calib::JointVector::Constant(-kTurn), calib::JointVector::Constant(kTurn)};
-  const calib::TipRegion region = calib::over_joint_ranges(problem.nominal, ranges, {}, 500);
+  const calib::TipRegion region = calib::region_over_joint_ranges(problem.nominal, ranges, {}, 500);
   for (auto _ : state) {
     problem.touches.pop_back();
     problem.touches.push_back(last);
     latest = identify(problem, study().options);
-    benchmark::DoNotOptimize(region.rms_m(latest.certainty->covariance()));
+    benchmark::DoNotOptimize(region.rms_m(latest.uncertainty->covariance()));
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/planning/candidate_pool.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "config/read_config.hpp"
 #include "service/run/planning_problem.hpp"
 

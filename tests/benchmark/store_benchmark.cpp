@@ -39,7 +39,7 @@ struct Round {
 };
 
 Round make_round(const std::filesystem::path& folder) {
-  cell::TouchStore store(folder / "touchcal.sqlite");
+  cell::RunStore store(folder / "touchcal.sqlite");
   const std::int64_t run =
       store.begin_run({.recipe = "edf-25", .touches_total = kTouches, .started_at = "t"});
   SQLite::Database bare((folder / "bare.sqlite").string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);

@@ -7,6 +7,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/observability/observation_matrix.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
 
 namespace calib::study {
 
@@ -27,7 +28,7 @@ ErrorVector draw_errors(UniformChance& chance) {
 std::vector<ExactTouch> exact_touches(const KinematicModel& truth, int per_face, UniformChance& chance) {
   const std::vector<Plane> planes = paper::planes();
   const std::vector<Face> faces = tx90::faces();
-  const PlanningProblem cell{.nominal_miss_m = 0.012, .tilt_max_rad = radians_from_degrees(45.0)};
+  const PlanningProblem cell{.nominal_position_error_m = 0.012, .tilt_max_rad = radians_from_degrees(45.0)};
   std::vector<ExactTouch> touches;
   for (int k = 0; k < per_face; ++k) {
     for (std::size_t face = 0; face < planes.size(); ++face) {

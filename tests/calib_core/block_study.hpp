@@ -2,7 +2,8 @@
 
 #include <vector>
 
-#include "calib_core/planning/touch_feasibility.hpp"
+#include "calib_core/geometry/touch.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "tests/calib_core/paper.hpp"
 #include "tests/calib_core/tx90.hpp"
 

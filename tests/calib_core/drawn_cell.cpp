@@ -9,6 +9,8 @@
 #include "calib_core/identification/face_distances.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/numerics/halton.hpp"
+#include "calib_core/observability/observation_matrix.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
 
 namespace calib::drawn {
 
@@ -18,7 +20,7 @@ ErrorTolerances tolerances() {
   ErrorTolerances result;
   for (std::size_t i = 0; i < result.size(); ++i) {
     const ErrorParameter& parameter = error_parameters()[i];
-    if (parameter.group() == ParameterGroup::kPlace) {
+    if (parameter.group() == ParameterGroup::kBlockPose) {
       result[i] = parameter.is_length() ? kPlaceMetres : kPlaceRadians;
     }
   }
@@ -57,7 +59,7 @@ ArtefactKnowledge uncertain_artefact(std::size_t face_count) {
 IdentificationProblem problem(const ArtefactKnowledge& knowledge, double touch_noise_m) {
   IdentificationProblem problem;
   problem.nominal = paper::nominal();
-  problem.artefact = describe(knowledge);
+  problem.artefact = make_artefact(knowledge);
   problem.touch_noise_m = touch_noise_m;
   problem.tolerances = tolerances();
   return problem;
@@ -66,7 +68,7 @@ IdentificationProblem problem(const ArtefactKnowledge& knowledge, double touch_n
 Truth truth_of(const IdentificationProblem& cell, const ErrorVector& errors,
                const Eigen::VectorXd& artefact_errors) {
   Truth truth{errors, artefact_errors, apply(cell.nominal, errors), {}};
-  place_planes(cell.artefact, artefact_errors, truth.planes);
+  correct_contact_planes(cell.artefact, artefact_errors, truth.planes);
   return truth;
 }
 
@@ -90,7 +92,7 @@ Truth draw_truth(const IdentificationProblem& cell, UniformChance& chance) {
 
 std::vector<Touch> touches(const Truth& truth, const Manner& manner, UniformChance& chance) {
   const std::vector<Face> all = tx90::faces();
-  const PlanningProblem cell{.nominal_miss_m = 0.012, .tilt_max_rad = manner.tilt_max_rad};
+  const PlanningProblem cell{.nominal_position_error_m = 0.012, .tilt_max_rad = manner.tilt_max_rad};
   std::vector<Touch> made;
   while (std::ssize(made) < manner.count) {
     const std::size_t turn = made.size() % (manner.faces.empty() ? truth.planes.size() : manner.faces.size());
@@ -107,7 +109,7 @@ std::vector<Touch> touches(const Truth& truth, const Manner& manner, UniformChan
   return made;
 }
 
-double nominal_miss_m(const IdentificationProblem& cell, const std::vector<Touch>& touches) {
+double nominal_position_error_m(const IdentificationProblem& cell, const std::vector<Touch>& touches) {
   return signed_distances_m(cell.nominal, cell.artefact.contact_planes, touches).cwiseAbs().maxCoeff();
 }
 

@@ -55,7 +55,7 @@ std::vector<Touch> touches(const Truth& truth, const Manner& manner, UniformChan
 
 /// How far off the nominal arm believes a touch to be, at most: what an arm is found within before it is
 /// touched with.
-double nominal_miss_m(const IdentificationProblem& cell, const std::vector<Touch>& touches);
+double nominal_position_error_m(const IdentificationProblem& cell, const std::vector<Touch>& touches);
 
 /// Mean square of the distance between the tips of two arms, over the joint ranges.
 double tip_mean_square_over_ranges(const KinematicModel& one, const KinematicModel& other);

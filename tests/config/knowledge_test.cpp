@@ -55,9 +55,10 @@ double tolerance(const calib::ErrorTolerances& tolerances, const char* name) {
 TEST_F(Knowledge, ThePlaceOfTheBlockIsAsUncertainAsTheArmMayMissUnlessTheCellSaysBetter) {
   const Cell miss = read();
   const calib::ErrorTolerances from_miss = prior_tolerances(miss);
-  for (const char* name : {"r0", "d1", "r1"}) EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m);
+  for (const char* name : {"r0", "d1", "r1"})
+    EXPECT_EQ(tolerance(from_miss, name), miss.nominal_position_error_m);
   for (const char* name : {"theta0", "alpha1", "theta1"})
-    EXPECT_EQ(tolerance(from_miss, name), miss.nominal_miss_m / calib::kPlaceLeverMetres);
+    EXPECT_EQ(tolerance(from_miss, name), miss.nominal_position_error_m / calib::kBlockPoseLeverMetres);
   EXPECT_DOUBLE_EQ(tolerance(from_miss, "d3"), 0.3e-3);  // the maker's
   edit(kCell, [](json& cell) {
     cell["unknown_place_std"] = {{"length_mm", 5}, {"angle_rad", 0.004}};

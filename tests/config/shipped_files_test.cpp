@@ -80,7 +80,7 @@ TEST_P(EveryShippedCell, HidesATruthThatMissesByLessThanItDeclares) {
     const auto& outward = cell.block.faces[static_cast<std::size_t>(touch.face)].plane.outward;
     worst_m = std::max(worst_m, std::abs(outward.dot(miss_m)));
   }
-  EXPECT_LT(worst_m, cell.nominal_miss_m);
+  EXPECT_LT(worst_m, cell.nominal_position_error_m);
   EXPECT_GT(worst_m, metres_from_mm(3.0));  // a real arm: place errors of several mm
 }
 
@@ -142,7 +142,7 @@ TEST_P(DemoTruth, IsARealArmWithAllErrors) {
     const calib::ErrorParameter& parameter = calib::error_parameters()[i];
     const double error = std::abs(truth.errors[static_cast<Eigen::Index>(i)]);
     EXPECT_GT(error, 0.0) << parameter.name();
-    const bool is_place = parameter.group() == calib::ParameterGroup::kPlace;
+    const bool is_place = parameter.group() == calib::ParameterGroup::kBlockPose;
     const double error_max = !parameter.is_length() ? 0.005 : metres_from_mm(is_place ? 6.0 : 0.3);
     EXPECT_LE(error, error_max) << parameter.name();
   }

@@ -21,8 +21,8 @@ void expect_fault_and_refused_start(LoopbackCell& loop, const std::string& fault
   EXPECT_EQ(loop.fault_name(), fault);
   EXPECT_FALSE(loop.status().controller.connected);
   const auto answer = loop.operation().start({.recipe = kShortRecipe});
-  const auto& refusal = std::get<cell::Refusal>(answer);
-  EXPECT_EQ(refusal.kind, cell::Refusal::Kind::kPreconditions);
+  const auto& refusal = std::get<cell::CommandRefusal>(answer);
+  EXPECT_EQ(refusal.kind, cell::CommandRefusal::Kind::kPreconditions);
   ASSERT_EQ(refusal.unmet.size(), 1U);
   EXPECT_EQ(refusal.unmet.front().code, "controller_not_connected");
   EXPECT_EQ(refusal.unmet.front().detail, loop.status().fault->message());
@@ -66,8 +66,8 @@ TEST(CellFaults, ABlockOfUnknownTemperatureIsNotCalibratedOn) {
   loop.launch();
   loop.run_until(State::kIdle);
   const auto answer = loop.operation().start({.recipe = kShortRecipe});
-  const auto& refusal = std::get<cell::Refusal>(answer);
-  EXPECT_EQ(refusal.kind, cell::Refusal::Kind::kPreconditions);
+  const auto& refusal = std::get<cell::CommandRefusal>(answer);
+  EXPECT_EQ(refusal.kind, cell::CommandRefusal::Kind::kPreconditions);
   EXPECT_EQ(refusal.unmet.front().code, "temperature_missing");
   EXPECT_TRUE(loop.store().runs(10).empty());
 }
@@ -187,7 +187,7 @@ TEST_F(FailingStore, ADiskThatStaysFullIsToldAtEveryResetAndLosesNothing) {
 TEST_F(FailingStore, ARunThatCannotBeWrittenDoesNotBegin) {
   disk_.refuse_new_runs();
   const auto answer = loop_.operation().start({.recipe = kShortRecipe});
-  const auto* refusal = std::get_if<cell::Refusal>(&answer);
+  const auto* refusal = std::get_if<cell::CommandRefusal>(&answer);
   ASSERT_TRUE(refusal);
   ASSERT_EQ(refusal->unmet.size(), 1u);
   EXPECT_EQ(refusal->unmet[0].code, "store_not_writable");

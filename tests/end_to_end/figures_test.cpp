@@ -9,6 +9,7 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/identification/identify.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
 #include "calib_core/planning/online_estimate.hpp"
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/identification_problem.hpp"
@@ -50,7 +51,7 @@ class Figures : public ::testing::TestWithParam<const char*> {
         problem_(cell::identification_problem(cell_, cell_.recipes.at(kRecipe))) {
     // As in a run, the touches before a touch aim it.
     const calib::PlanningProblem planning = cell::planning_problem(cell_, cell_.recipes.at(kRecipe));
-    calib::Aim aim(planning);
+    calib::OnlineArmEstimate aim(planning);
     for (const calib::PlannedTouch& planned : plan_.touches) {
       auto made = calib::aim_touch(planning, aim, planned);
       if (std::holds_alternative<std::string>(made)) made = calib::nominal_touch(planning, planned);

@@ -20,7 +20,8 @@ class GuidedRun : public ::testing::Test {
     pendant_.take_over();
     const auto answer = loop_.operation().start(
         {.recipe = kShortRecipe, .idempotency_key = {}, .operator_name = {}, .guided = true});
-    if (const auto* refusal = std::get_if<cell::Refusal>(&answer)) throw std::runtime_error(refusal->detail);
+    if (const auto* refusal = std::get_if<cell::CommandRefusal>(&answer))
+      throw std::runtime_error(refusal->detail);
     loop_.run_until([](const cell::Status& status) { return status.by_hand.has_value(); });
     return std::get<cell::Started>(answer).run_id;
   }

@@ -18,7 +18,7 @@ using cs8::MessageType;
 using sim::Fault;
 
 /// Where silence is the fault, links that are silent for this long are lost, so that the test is short.
-constexpr std::chrono::milliseconds kSilenceMax{500};
+constexpr std::chrono::milliseconds kKeepAlivePeriod{500};
 
 /// How far the controller came with the n-th touch when the fault cut it off.
 enum class Reached {
@@ -52,7 +52,7 @@ void meet(const Case& link_case, std::uint32_t nth, int before) {
   const int captured = before + (link_case.reached == Reached::kCaptured ? 1 : 0);
   const int kept = before + (link_case.reached == Reached::kNotMade ? 0 : 1);
   LoopbackCell loop;
-  if (link_case.fault == Fault::kGoSilent) loop.cell.deadlines.heartbeat_timeout = kSilenceMax;
+  if (link_case.fault == Fault::kGoSilent) loop.cell.deadlines.heartbeat_timeout = kKeepAlivePeriod;
   loop.cell.deadlines.command = std::chrono::milliseconds(100);
   loop.serve({{link_case.fault, link_case.on, nth}});
   loop.launch();
@@ -63,8 +63,8 @@ void meet(const Case& link_case, std::uint32_t nth, int before) {
   EXPECT_EQ(loop.fault_name(), link_case.expected);
   expect_touches_once(loop, id, captured);
   const auto stored = loop.store().run(id).value();
-  EXPECT_EQ(stored.outcome, "aborted");
-  EXPECT_EQ(stored.verdict, "incomplete");
+  EXPECT_EQ(stored.outcome, cell::RunOutcome::kAborted);
+  EXPECT_EQ(stored.verdict, cell::Verdict::kIncomplete);
   EXPECT_EQ(stored.fault_code, link_case.expected);
 
   loop.leave_aborted();

@@ -53,13 +53,13 @@ class BlockElsewhere : public ::testing::Test {
       EXPECT_FALSE(loop_.status().by_hand->problem) << *loop_.status().by_hand->problem;
       EXPECT_NE(loop_.status().by_hand->words, before->words);
     }
-    EXPECT_EQ(loop_.status().by_hand->step, "pass");
+    EXPECT_EQ(loop_.status().by_hand->step, cell::HandStep::kPass);
     pendant.hand_back();
   }
   void go_around() {
     loop_.command(Command::kLocate);
     EXPECT_EQ(loop_.status().state, State::kStarting);
-    EXPECT_EQ(loop_.status().by_hand->step, "passing");
+    EXPECT_EQ(loop_.status().by_hand->step, cell::HandStep::kPassing);
     EXPECT_TRUE(loop_.is_refused(Command::kUndo));
     loop_.run_until([](const cell::Status& status) { return !cell::is_active(status.state); });
   }
@@ -80,12 +80,12 @@ TEST_F(BlockElsewhere, IsFoundBySixTouchesAndCalibratesTheArmThere) {
   EXPECT_FALSE(loop_.status().by_hand);
   ASSERT_TRUE(loop_.operation().place());
 
-  const cell::LocatedPlace& place = *loop_.operation().place();
+  const cell::BlockPose& place = *loop_.operation().place();
   const Eigen::Isometry3d off = moved_block().inverse() * place.cell_from_block;
   for (int axis = 0; axis < 3; ++axis) {
     EXPECT_LT(std::abs(off.translation()[axis]), 3.0 * std::sqrt(place.covariance(axis, axis))) << axis;
   }
-  EXPECT_LT(off.translation().norm(), loop_.cell.nominal_miss_m);
+  EXPECT_LT(off.translation().norm(), loop_.cell.nominal_position_error_m);
 
   loop_.relaunch();  // the next daemon knows it
   ASSERT_TRUE(loop_.operation().place());
@@ -97,7 +97,7 @@ TEST_F(BlockElsewhere, IsFoundBySixTouchesAndCalibratesTheArmThere) {
   const calib::IdentificationResult& result = loop_.operation().run()->latest();
   ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
   EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
-  EXPECT_NE(loop_.store().run(id)->trace_json->find("shift_mm"), std::string::npos);
+  EXPECT_NE(loop_.store().run(id)->conditions_json->find("shift_mm"), std::string::npos);
 }
 
 TEST_F(BlockElsewhere, ATouchTakenBackIsMadeAgainAndTheDialogueCanBeLeft) {
@@ -131,7 +131,7 @@ TEST_F(BlockElsewhere, ATouchOnTheWayAroundTheBlockEndsTheDialogueWithoutAPlace)
   launch();
   locate_by_hand();
   move_block(Eigen::Translation3d(0.0, -0.06, 0.0) * moved_block());  // up, into the way
-  EXPECT_EQ(loop_.status().by_hand->step, "pass");
+  EXPECT_EQ(loop_.status().by_hand->step, cell::HandStep::kPass);
   go_around();
   EXPECT_EQ(loop_.status().state, State::kAborted);
   EXPECT_EQ(loop_.fault_name(), "unexpected_contact");

@@ -75,7 +75,8 @@ void LoopbackCell::inject(const std::string& line) {
 
 void LoopbackCell::launch(std::optional<std::uint16_t> port) {
   operation_.emplace(io_.get_executor(), cell, store_, cell::Endpoint{"127.0.0.1", port.value_or(port_)},
-                     "end-to-end", std::chrono::system_clock::now);
+                     "end-to-end",
+                     cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
   if (!place_file.empty()) operation_->keep_place_in(place_file);
   operation_->launch();
 }
@@ -106,7 +107,8 @@ void LoopbackCell::run_until_over() {
 
 std::int64_t LoopbackCell::start(const std::string& recipe) {
   const auto answer = operation_->start({.recipe = recipe});
-  if (const auto* refusal = std::get_if<cell::Refusal>(&answer)) throw std::runtime_error(refusal->detail);
+  if (const auto* refusal = std::get_if<cell::CommandRefusal>(&answer))
+    throw std::runtime_error(refusal->detail);
   return std::get<cell::Started>(answer).run_id;
 }
 

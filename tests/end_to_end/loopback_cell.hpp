@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/store/run_store.hpp"
 #include "sim_controller/server.hpp"
 #include "tests/end_to_end/folder.hpp"
@@ -20,8 +20,8 @@ namespace touchcal::testing {
 inline constexpr const char* kShortRecipe = "short";
 inline constexpr int kShortTouchCount = 4 * (7 + 1);
 
-/// A daemon's Operation and the simulated controller on one io_context, over real sockets on loopback, with a
-/// store in a folder of its own. Change `cell` before launch().
+/// A daemon's CellOperation and the simulated controller on one io_context, over real sockets on loopback,
+/// with a store in a folder of its own. Change `cell` before launch().
 class LoopbackCell {
  public:
   explicit LoopbackCell(const std::string& cell_name = "edf");
@@ -58,10 +58,10 @@ class LoopbackCell {
   void leave_aborted();
   [[nodiscard]] bool is_refused(cell::Command command);
 
-  [[nodiscard]] cell::Operation& operation() { return *operation_; }
+  [[nodiscard]] cell::CellOperation& operation() { return *operation_; }
   [[nodiscard]] cell::Status status() const { return operation_->status(); }
   [[nodiscard]] std::string fault_name() const;  // empty without a fault
-  [[nodiscard]] cell::TouchStore& store() { return store_; }
+  [[nodiscard]] cell::RunStore& store() { return store_; }
   [[nodiscard]] std::filesystem::path store_file() const { return folder_ / "touchcal.sqlite"; }
   [[nodiscard]] boost::asio::io_context& io() { return io_; }
 
@@ -72,12 +72,12 @@ class LoopbackCell {
   void shut_down();
 
   Folder folder_;
-  cell::TouchStore store_;
+  cell::RunStore store_;
   boost::asio::io_context io_{1};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
   std::unique_ptr<sim::Server> server_;
   std::uint16_t port_ = 0;
-  std::optional<cell::Operation> operation_;
+  std::optional<cell::CellOperation> operation_;
 };
 
 }  // namespace touchcal::testing

@@ -60,8 +60,8 @@ TEST_F(Operator, AStoppedRunKeepsItsTouchesAndANewOneNeedsAReset) {
   EXPECT_GE(status.touches_done, 9);
   expect_touches_once(loop_, id, status.touches_done);
   const auto stored = loop_.store().run(id).value();
-  EXPECT_EQ(stored.outcome, "stopped");
-  EXPECT_EQ(stored.verdict, "incomplete");
+  EXPECT_EQ(stored.outcome, cell::RunOutcome::kStopped);
+  EXPECT_EQ(stored.verdict, cell::Verdict::kIncomplete);
 
   EXPECT_THROW(loop_.start(), std::runtime_error);
   loop_.command(Command::kReset);
@@ -86,7 +86,7 @@ TEST_F(Operator, AnAbortedRunIsLeftByClearAndReset) {
 TEST_F(Operator, AStopInASearchTakesTheStylusBackAndTheNextRunBeginsWithTheRestOfTheWay) {
   // A hundred times as fast as an arm: a search takes longer than the 20 ms between two reports of the state.
   loop_.serve({}, 100.0);
-  std::optional<cell::Refusal> refusal;
+  std::optional<cell::CommandRefusal> refusal;
   bool stopped = false;
   std::vector<cs8::MessageType> asked;
   Relay relay(loop_.io(), loop_.port(), [&](const cs8::Message& message) {
@@ -204,7 +204,7 @@ TEST_F(Operator, ACommandForARunThatIsOverIsRefused) {
   loop_.run_until(State::kExecute);
   const auto refusal = loop_.operation().command(Command::kPause, id);
   ASSERT_TRUE(refusal);
-  EXPECT_EQ(refusal->kind, cell::Refusal::Kind::kNotThisRun);
+  EXPECT_EQ(refusal->kind, cell::CommandRefusal::Kind::kNotThisRun);
   EXPECT_EQ(loop_.status().state, State::kExecute);
 }
 

@@ -58,7 +58,7 @@ void Pendant::wait_until_told() {
 
 void Pendant::go(const calib::JointVector& joints) {
   const calib::TransferSpace space(plant_.truth, there_.collision_scene(), there_.park_joints, kSeenMetres);
-  const auto way = calib::find_way(space, cell::from_wire(loop_.server().report().joints), joints);
+  const auto way = calib::find_path(space, cell::from_wire(loop_.server().report().joints), joints);
   if (!way) throw std::runtime_error("a person finds no way there");
   for (const calib::JointVector& via : *way)
     jog({.joints = via, .move_m = {}, .speed_m_s = kFastMetresPerSecond});

@@ -240,7 +240,7 @@ TEST(Daemon, EndsAtASignalInTheMiddleOfARunAndKeepsItsTouches) {
   EXPECT_EQ(run.wait().exit_code, cell::kExitUnreachable);
   cell.controller().signal(SIGTERM);
   EXPECT_EQ(cell.controller().wait().exit_code, 0);
-  const cell::TouchStore store(cell.store_file());
+  const cell::RunStore store(cell.store_file());
   EXPECT_EQ(store.run(1)->outcome, "stopped");
   EXPECT_GE(store.touches(1).size(), 3U);
 }

@@ -6,7 +6,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/store/maintenance.hpp"
 #include "sim_controller/server.hpp"
@@ -45,10 +45,10 @@ class MortalDaemon {
 
   void launch() {
     io_ = std::make_unique<boost::asio::io_context>(1);
-    store_ = std::make_unique<cell::TouchStore>(store_file());
-    operation_ = std::make_unique<cell::Operation>(io_->get_executor(), cell, *store_,
-                                                   cell::Endpoint{"127.0.0.1", server_->port()}, "restart",
-                                                   std::chrono::system_clock::now);
+    store_ = std::make_unique<cell::RunStore>(store_file());
+    operation_ = std::make_unique<cell::CellOperation>(
+        io_->get_executor(), cell, *store_, cell::Endpoint{"127.0.0.1", server_->port()}, "restart",
+        cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
     operation_->launch();
   }
   /// Nothing of the daemon gets to act any more.
@@ -80,7 +80,7 @@ class MortalDaemon {
   void start() {
     run_until(State::kIdle);
     if (const auto answer = operation_->start({.recipe = kFewTouches});
-        const auto* refusal = std::get_if<cell::Refusal>(&answer)) {
+        const auto* refusal = std::get_if<cell::CommandRefusal>(&answer)) {
       throw std::runtime_error(refusal->detail);
     }
   }
@@ -100,8 +100,8 @@ class MortalDaemon {
     return operation_->status();
   }
 
-  [[nodiscard]] cell::Operation& operation() { return *operation_; }
-  [[nodiscard]] cell::TouchStore& store() { return *store_; }
+  [[nodiscard]] cell::CellOperation& operation() { return *operation_; }
+  [[nodiscard]] cell::RunStore& store() { return *store_; }
   [[nodiscard]] cell::Status status() const { return operation_->status(); }
   [[nodiscard]] std::filesystem::path store_file() const { return folder_ / "touchcal.sqlite"; }
 
@@ -112,8 +112,8 @@ class MortalDaemon {
   boost::asio::io_context controller_io_{1};
   std::optional<sim::Server> server_;
   std::unique_ptr<boost::asio::io_context> io_;
-  std::unique_ptr<cell::TouchStore> store_;
-  std::unique_ptr<cell::Operation> operation_;
+  std::unique_ptr<cell::RunStore> store_;
+  std::unique_ptr<cell::CellOperation> operation_;
   long steps_ = 0;
 };
 
@@ -200,7 +200,8 @@ TEST(Restart, AnInterruptedRunThatIsStoppedStaysInterruptedAndTheNextOneCanStart
   daemon.start();
   daemon.run_until([](const cell::Status& status) { return status.touches_done >= 2; });
   ASSERT_EQ(daemon.restart().state, State::kHeld);
-  EXPECT_TRUE(std::holds_alternative<cell::Refusal>(daemon.operation().start({.recipe = kFewTouches})));
+  EXPECT_TRUE(
+      std::holds_alternative<cell::CommandRefusal>(daemon.operation().start({.recipe = kFewTouches})));
   daemon.command(Command::kStop);
   daemon.run_until(State::kStopped);
   EXPECT_EQ(daemon.store().run(1)->outcome, "interrupted");

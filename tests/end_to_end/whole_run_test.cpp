@@ -61,8 +61,8 @@ TEST_P(WholeRun, EndsCompleteWithThePromisedFiguresAndOnlyTableThreeIsFlagged) {
   EXPECT_GE(figures.rms_removed, kRmsRemovedMin);
 
   const auto stored = loop_.store().run(run_id_).value();
-  EXPECT_EQ(stored.outcome, "complete");
-  EXPECT_EQ(stored.verdict, cell::verdict_name(expected_verdict()));
+  EXPECT_EQ(stored.outcome, cell::RunOutcome::kComplete);
+  EXPECT_EQ(stored.verdict, expected_verdict());
   EXPECT_EQ(stored.touches_total, kTouchCount);
   EXPECT_EQ(stored.touches_done, kTouchCount);
   EXPECT_FALSE(stored.fault_code);
@@ -70,7 +70,7 @@ TEST_P(WholeRun, EndsCompleteWithThePromisedFiguresAndOnlyTableThreeIsFlagged) {
 }
 
 TEST_P(WholeRun, ItTellsWhatMoreTouchesWouldBring) {
-  EXPECT_THAT(loop_.status().more_would_bring.value_or(""),
+  EXPECT_THAT(loop_.status().touch_benefit.value_or(""),
               ::testing::MatchesRegex("8 more on plane [1-5]: .* to .* mm"));
 }
 
@@ -116,7 +116,7 @@ TEST_P(WholeRun, ItsTouchesReadBackFromAFileGiveTheSameResultToTheBit) {
   EXPECT_TRUE((again.errors.array() == live.errors.array()).all());
   const cell::TipRegions regions(loop_.cell);
   const auto stored = loop_.store().run(loop_.operation().run()->id());
-  const cell::ResultContext context{.warnings = {}, .conditions = stored->trace_json.value()};
+  const cell::ResultContext context{.warnings = {}, .conditions = stored->conditions_json.value()};
   EXPECT_TRUE(cell::result_document(regions, recipe, problem, again, context) ==
               loop_.operation().result_json());
 }
@@ -129,7 +129,7 @@ TEST(Conditions, AreKeptWithTheRunWhenItStarts) {
   const auto started = std::get<cell::Started>(
       loop.operation().start({.recipe = kShortRecipe, .idempotency_key = {}, .operator_name = "A. Turing"}));
   const cell::StoredRun stored = loop.store().run(started.run_id).value();
-  const auto kept = nlohmann::json::parse(stored.trace_json.value());
+  const auto kept = nlohmann::json::parse(stored.conditions_json.value());
   EXPECT_EQ(kept.at("operator"), "A. Turing");
   EXPECT_EQ(kept.at("config_digest"), stored.config_digest.value());
   EXPECT_EQ(kept.at("block_temperature_c"), loop.cell.block.temperature_c.value());

@@ -7,7 +7,12 @@
 #include <random>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
+#include "calib_core/planning/aimed_transfer.hpp"
 #include "calib_core/planning/online_estimate.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
+#include "calib_core/planning/touch_planning.hpp"
 #include "sim_controller/motion.hpp"
 #include "sim_controller/plant.hpp"
 #include "sim_controller/world.hpp"
@@ -25,8 +30,8 @@ constexpr double kBeyondShareMax = 0.003;
 
 cell::Cell cell_that_misses_much() {
   cell::Cell cell = shipped_cell("demo");
-  cell.nominal_miss_m = kNominalMissMetres;
-  cell.unknown_place_std = {kNominalMissMetres, kNominalMissMetres / kPlaceLeverMetres};
+  cell.nominal_position_error_m = kNominalMissMetres;
+  cell.unknown_place_std = {kNominalMissMetres, kNominalMissMetres / kBlockPoseLeverMetres};
   return cell;
 }
 
@@ -100,7 +105,7 @@ class SimulatedRun {
       sim::Path way = way_;
       learn();
       std::optional<AimedTouch> next;
-      if (i + 1 < count) next = prepare(i + 1, end_of(*touch));
+      if (i + 1 < count) next = prepare(i + 1, transfer_end_of(*touch));
       const std::string name =
           " touch " + std::to_string(i + 1) + " on plane " + std::to_string(touch->touch.face + 1);
       travel(way, "on the way to" + name);
@@ -124,7 +129,7 @@ class SimulatedRun {
     for (auto made : {aim_touch(planned_.problem, aim_, planned), nominal_touch(planned_.problem, planned)}) {
       auto* aimed = std::get_if<AimedTouch>(&made);
       if (!aimed) continue;
-      const auto via = find_aimed_transfer(planned_.problem, aim_, from, end_of(*aimed));
+      const auto via = find_aimed_transfer(planned_.problem, aim_, from, transfer_end_of(*aimed));
       if (!via) continue;
       way_ = {from.joints};
       way_.insert(way_.end(), via->begin(), via->end());
@@ -161,7 +166,7 @@ class SimulatedRun {
     if (std::abs(signed_distance_m(contact_plane(face, planned_.problem.stylus), ball_m)) >
         6.0 * planned_.cell.touch_noise_m)
       flight_.trouble = "another face was met by" + name;
-    flight_.predicted_m.push_back(touch.predicted_miss_m);
+    flight_.predicted_m.push_back(touch.predicted_position_error_m);
     flight_.searched_m.push_back(line.length_m);
     flight_.off_m.push_back((forward_chain(aimed.problem.nominal, touch.joints).tip_in_block_m() -
                              forward_chain(plant_.truth, touch.joints).tip_in_block_m())
@@ -170,7 +175,7 @@ class SimulatedRun {
 
   const Planned& planned_;
   sim::Plant plant_;
-  Aim aim_;
+  OnlineArmEstimate aim_;
   std::mt19937_64 chance_;
   sim::Path way_;                  // to the touch prepared last
   std::optional<Touch> captured_;  // not learnt yet

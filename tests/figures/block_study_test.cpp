@@ -6,6 +6,7 @@
 
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
 namespace calib::figures {

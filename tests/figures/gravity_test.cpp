@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
@@ -62,8 +63,8 @@ Tally calibrate(const cell::Cell& cell, const Touches& touches) {
     const std::vector<Touch> aimed = touches(chance);
     const DrawnArtefact drawn = draw_artefact(cell::artefact_knowledge(cell), chance);
     const KinematicModel rigid_truth = apply(cell.arm.model, draw_errors(cell.arm.std_errors, chance));
-    const Truth truth{drooping(rigid_truth, aimed), describe(drawn.truth).contact_planes};
-    problem.artefact = describe(drawn.known);
+    const Truth truth{drooping(rigid_truth, aimed), make_artefact(drawn.truth).contact_planes};
+    problem.artefact = make_artefact(drawn.known);
     problem.touches = captured(truth, aimed, cell.touch_noise_m, chance);
     const IdentificationResult rigid = identify(problem, recipe.identification);
     const IdentificationResult soft = identify(problem, compliant);
@@ -72,7 +73,7 @@ Tally calibrate(const cell::Cell& cell, const Touches& touches) {
     tally.rigid_m.push_back(tip_error_rms_m(rigid.calibrated, truth.arm, postures));
     tally.compliant_m.push_back(tip_error_rms_m(soft.calibrated, truth.arm, postures));
     tally.predicted_m.push_back(
-        over_postures(soft.calibrated, postures).rms_m(soft.certainty->covariance()).value());
+        region_over_postures(soft.calibrated, postures).rms_m(soft.uncertainty->covariance()).value());
   }
   return tally;
 }

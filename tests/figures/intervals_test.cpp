@@ -6,6 +6,7 @@
 
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
@@ -38,7 +39,7 @@ class Tally {
     columns_ = result.identifiable.columns;
     for (const int column : columns_) {
       const double half_width =
-          result.certainty->coverage_factor * std::sqrt(result.certainty->identified(column, column));
+          result.uncertainty->coverage_factor * std::sqrt(result.uncertainty->identified(column, column));
       if (std::abs(result.errors[column] - regrouped[column]) <= half_width) ++covered_[column];
     }
     block_.add(result, truth_, at_block_);
@@ -73,7 +74,7 @@ class Tally {
       const double error_m = tip_error_rms_m(result.calibrated, truth, postures);
       simulated += error_m * error_m;
       const double std_m =
-          over_postures(result.calibrated, postures).rms_m(result.certainty->covariance()).value();
+          region_over_postures(result.calibrated, postures).rms_m(result.uncertainty->covariance()).value();
       predicted += std_m * std_m;
       ++count;
     }
@@ -184,11 +185,11 @@ TEST(Intervals, WithAnUncertainArtefactCoverTheRegroupedTruthAsOftenAsTheySay) {
   Tally tally(cell, truth, aimed);
   for (int draw = 0; draw < kDrawCount; ++draw) {
     const DrawnArtefact drawn = draw_artefact(known, chance);
-    const std::vector<Plane> planes = describe(drawn.truth).contact_planes;
+    const std::vector<Plane> planes = make_artefact(drawn.truth).contact_planes;
     problem.artefact = exact_artefact(planes);
     problem.touches = captured({truth, planes}, aimed, 0.0, chance);
     const IdentificationResult regrouped = identify(problem, recipe.identification);
-    problem.artefact = describe(drawn.known);
+    problem.artefact = make_artefact(drawn.known);
     problem.touches = captured({truth, planes}, problem.touches, cell.touch_noise_m, chance);
     const IdentificationResult result = identify(problem, recipe.identification);
     ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;

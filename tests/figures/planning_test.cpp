@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "calib_core/planning/touch_feasibility.hpp"
 #include "service/run/tip_prediction.hpp"
 #include "tests/figures/simulated_cell.hpp"
@@ -30,8 +31,8 @@ Predicted predict(const cell::Cell& cell, const cell::Recipe& recipe, const std:
   if (result.status != IdentificationStatus::kConverged) throw std::runtime_error(result.message);
   const cell::TipRegions regions(cell);
   return {result.iterations.back().condition_number,
-          cell::predicted_rms_m(regions.tip().workspace_box, *result.certainty).value(),
-          cell::predicted_rms_m(regions.tip().joint_ranges, *result.certainty).value()};
+          cell::predicted_rms_m(regions.tip().workspace_box, *result.uncertainty).value(),
+          cell::predicted_rms_m(regions.tip().joint_ranges, *result.uncertainty).value()};
 }
 
 void print(const char* what, const Predicted& figures) {
@@ -87,7 +88,7 @@ std::vector<Touch> random_touches(const PlanningProblem& problem, int per_face, 
   constexpr int kAttemptsMax = 100'000;
   std::vector<Touch> touches;
   for (const TouchRequest& request : problem.requests) {
-    const TouchedFace around = find_touched(problem, request.face);
+    const TouchTarget around = find_target(problem, request.face);
     int found = 0;
     for (int attempt = 0; found < per_face; ++attempt) {
       if (attempt == kAttemptsMax) throw std::logic_error("too few touches can be made on the face");
@@ -131,10 +132,11 @@ TEST(FiguresOfPlanning, QuickHasHalfTheTipErrorOfAsManyRandomTouches) {
 KinematicModel draw_arm(const cell::Cell& cell, const ErrorTolerances& tolerances,
                         const std::vector<Touch>& touches, UniformChance& chance) {
   constexpr int kAttemptsMax = 1000;
-  const std::vector<Plane> planes = describe(cell::artefact_knowledge(cell)).contact_planes;
+  const std::vector<Plane> planes = make_artefact(cell::artefact_knowledge(cell)).contact_planes;
   for (int attempt = 0; attempt < kAttemptsMax; ++attempt) {
     const KinematicModel arm = apply(cell.arm.model, draw_errors(tolerances, chance));
-    if (signed_distances_m(arm, planes, touches).lpNorm<Eigen::Infinity>() <= cell.nominal_miss_m) return arm;
+    if (signed_distances_m(arm, planes, touches).lpNorm<Eigen::Infinity>() <= cell.nominal_position_error_m)
+      return arm;
   }
   throw std::logic_error("the tolerances hardly ever give an arm as good as the cell says");
 }
@@ -175,8 +177,8 @@ TEST(FiguresOfPlanning, WhatIsPredictedOfQuickIsWhatSimulatedRunsGive) {
   for (int draw = 0; draw < kTruthCount; ++draw) {
     const KinematicModel truth = draw_arm(demo(), problem.tolerances, quick_touches(), chance);
     const DrawnArtefact drawn = draw_artefact(known, chance);
-    problem.artefact = describe(drawn.known);
-    problem.touches = captured({truth, describe(drawn.truth).contact_planes}, quick_touches(),
+    problem.artefact = make_artefact(drawn.known);
+    problem.touches = captured({truth, make_artefact(drawn.truth).contact_planes}, quick_touches(),
                                demo().touch_noise_m, chance);
     const IdentificationResult result = identify(problem, recipe.identification);
     ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;

@@ -6,6 +6,7 @@
 
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
@@ -88,9 +89,9 @@ TEST_P(ScaleGuard, WarnsWhenItShouldAndOnlyThen) {
     DrawnArtefact drawn = draw_artefact(cell::artefact_knowledge(cell), chance);
     one.mishap(drawn.truth);
     Truth truth{apply(cell.arm.model, draw_errors(cell.arm.std_errors, chance)),
-                describe(drawn.truth).contact_planes};
+                make_artefact(drawn.truth).contact_planes};
     move_block(truth.contact_planes, one.displacement, chance);
-    problem.artefact = describe(drawn.known);
+    problem.artefact = make_artefact(drawn.known);
     problem.touches =
         captured(truth, even_touches(cell, one.face_count, kTouchCount / one.face_count, chance),
                  cell.touch_noise_m, chance);
@@ -169,8 +170,8 @@ Predicted predict(int face_count, double std_radius_m) {
   problem.touches = planned_touches(cell, recipe);
   const IdentificationResult result = identify(problem, recipe.identification);
   EXPECT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
-  const TipRegion ranges = over_joint_ranges(result.calibrated, cell.arm.joint_ranges);
-  return {ranges.rms_m(result.certainty->covariance()).value(), result.scale->std_relative};
+  const TipRegion ranges = region_over_joint_ranges(result.calibrated, cell.arm.joint_ranges);
+  return {ranges.rms_m(result.uncertainty->covariance()).value(), result.scale->std_relative};
 }
 
 TEST(ScaleGuard, IsHelpedByAPlateUnderTheBlockAsMuchAsWasWorkedOut) {

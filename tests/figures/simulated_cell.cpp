@@ -4,6 +4,10 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "calib_core/numerics/uniform_chance.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
+#include "calib_core/planning/touch_planning.hpp"
+
 namespace calib::figures {
 
 double median(std::vector<double> values) {
@@ -57,7 +61,7 @@ DrawnArtefact draw_artefact(const ArtefactKnowledge& known, UniformChance& chanc
 }
 
 std::vector<Touch> even_touches(const cell::Cell& cell, int face_count, int per_face, UniformChance& chance) {
-  const PlanningProblem limits{.nominal_miss_m = cell.nominal_miss_m,
+  const PlanningProblem limits{.nominal_position_error_m = cell.nominal_position_error_m,
                                .tilt_max_rad = cell.stylus_tilt_max_rad};
   std::vector<Touch> touches;
   for (int k = 0; k < per_face; ++k) {

@@ -6,6 +6,7 @@
 
 #include "calib_core/identification/identify.hpp"
 #include "calib_core/numerics/halton.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
 #include "service/run/planning_problem.hpp"
@@ -60,7 +61,7 @@ double tip_error_rms_m(const KinematicModel& model, const KinematicModel& truth,
 
 std::vector<JointVector> joints_of(std::span<const Touch> touches);
 
-/// The postures that over_joint_ranges predicts for.
+/// The postures that region_over_joint_ranges predicts for.
 std::vector<JointVector> postures_in(const JointRanges& ranges, int count);
 
 }  // namespace calib::figures

@@ -3,7 +3,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/service/shipped_cell.hpp"
 
@@ -14,8 +14,8 @@ namespace cell {
 class QuietCell {
  public:
   boost::asio::io_context& context() { return context_; }
-  TouchStore& store() { return store_; }
-  Operation& operation() { return operation_; }
+  RunStore& store() { return store_; }
+  CellOperation& operation() { return operation_; }
 
  private:
   /// Where nobody listens: a port that is bound, so that nobody else can take it.
@@ -27,12 +27,16 @@ class QuietCell {
   }
 
   Folder folder_;
-  TouchStore store_{folder_.path() / "touchcal.sqlite"};
+  RunStore store_{folder_.path() / "touchcal.sqlite"};
   boost::asio::io_context context_{1};
   boost::asio::ip::tcp::socket held_port_{context_};
-  Operation operation_{context_.get_executor(), edf(), store_, nobody(), "instance", [] {
-                         return std::chrono::system_clock::time_point{};
-                       }};
+  CellOperation operation_{
+      context_.get_executor(),
+      edf(),
+      store_,
+      nobody(),
+      "instance",
+      Clocks{[] { return std::chrono::system_clock::time_point{}; }, std::chrono::steady_clock::now}};
 };
 
 }  // namespace cell

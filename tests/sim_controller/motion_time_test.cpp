@@ -48,7 +48,7 @@ class MotionTime : public testing::DemoTouch {
                                    .stylus = demo().probe.stylus,
                                    .scene = demo().collision_scene(),
                                    .park_joints = demo().park_joints,
-                                   .nominal_miss_m = demo().nominal_miss_m,
+                                   .nominal_position_error_m = demo().nominal_position_error_m,
                                    .tilt_max_rad = demo().stylus_tilt_max_rad,
                                    .candidate_count = 1'000,
                                    .knowledge = cell::identification_problem(demo(), recipe()),
@@ -103,7 +103,7 @@ TEST_F(MotionTime, OfTravelIsWhatTheControllerTakes) {
         const double taken = taken_s(bench);
         EXPECT_EQ(bench.result<cs8::MoveResult>().outcome, cs8::Outcome::kArrived);
         bench.send(0, cs8::ResultAcknowledge{sequence});
-        EXPECT_NEAR(calib::way_time_s(model(), limits(), std::array{from, to}), taken, 0.02 + 0.02 * taken)
+        EXPECT_NEAR(calib::path_time_s(model(), limits(), std::array{from, to}), taken, 0.02 + 0.02 * taken)
             << "joint " << joint + 1 << " turned by " << turn;
       }
     }

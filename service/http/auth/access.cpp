@@ -46,11 +46,11 @@ std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access acc
   if (role == Role::kOperate) return std::nullopt;
   if (role == Role::kView) {
     if (access == Access::kView) return std::nullopt;
-    return to_response({.status = 403, .kind = "role", .detail = "the view token may only read"});
+    return to_response({.status = 403, .kind = ProblemKind::kRole, .detail = "the view token may only read"});
   }
   HttpResponse response = to_response(
       {.status = 401,
-       .kind = "token",
+       .kind = ProblemKind::kToken,
        .detail = fmt::format(
            "send 'Authorization: Bearer TOKEN'; the token stands in {} in the daemon's state directory",
            access == Access::kView ? kViewTokenFile : kOperateTokenFile)});
@@ -67,7 +67,8 @@ std::optional<HttpResponse> refuse_content_type(const HttpRequest& request) {
                          lower)) {
     return std::nullopt;
   }
-  return to_response({.status = 415, .kind = "content-type", .detail = "a body must be application/json"});
+  return to_response(
+      {.status = 415, .kind = ProblemKind::kContentType, .detail = "a body must be application/json"});
 }
 
 }  // namespace cell

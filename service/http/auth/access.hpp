@@ -9,7 +9,7 @@
 
 namespace cell {
 
-/// What a route asks of its caller: nothing, a token that may read, one that may change things.
+/// What a route requires: nothing, a token that may read, or one that may operate.
 enum class Access { kOpen, kView, kOperate };
 
 /// Whose token a request carries.
@@ -18,10 +18,10 @@ std::string_view role_name(Role role);  // "operate", "view", "wrong token", "no
 
 Role role_of(const HttpRequest& request, const Tokens& tokens);
 
-/// Nothing when the request may do what the route does. Reading needs no token on loopback.
+/// Nothing if access is granted. Reading needs no token on loopback.
 std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access access, const Tokens& tokens);
 
-/// A body must say that it is JSON: a web page elsewhere cannot send that without asking.
+/// A body must be declared as JSON: a foreign web page cannot send that without a CORS preflight.
 std::optional<HttpResponse> refuse_content_type(const HttpRequest& request);
 
 }  // namespace cell

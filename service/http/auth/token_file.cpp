@@ -17,7 +17,7 @@ std::optional<std::string> read_token(const std::filesystem::path& file) {
   constexpr auto kOthers = std::filesystem::perms::group_all | std::filesystem::perms::others_all;
   if ((status.permissions() & kOthers) != std::filesystem::perms::none) {
     throw std::runtime_error(
-        fmt::format("{0}: others than its owner may use it; remove the file to have a new token made, or "
+        fmt::format("{0}: others than its owner have access; remove the file to have a new token made, or "
                     "chmod 600 {0} when nobody has read it",
                     file.string()));
   }
@@ -25,7 +25,7 @@ std::optional<std::string> read_token(const std::filesystem::path& file) {
   std::getline(existing, token);
   if (token.size() < 2 * kTokenBytes) {
     throw std::runtime_error(file.string() +
-                             ": is no token of this daemon; remove the file to have a new one made");
+                             ": does not hold a token; remove the file to have a new one made");
   }
   return token;
 }

@@ -31,7 +31,7 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
   const int reason = errno;
   ::close(descriptor);
   if (durable) return;
-  ::unlink(file.c_str());  // half a token would stand in the way of the next start
+  ::unlink(file.c_str());  // a partial token would prevent the next start
   errno = reason;
   fail(file, "the token cannot be written");
 }
@@ -48,7 +48,7 @@ std::string load_or_make(const std::filesystem::path& file) {
 std::string random_hex(std::size_t bytes) {
   std::vector<unsigned char> random(bytes);
   if (RAND_bytes(random.data(), static_cast<int>(bytes)) != 1)
-    throw std::runtime_error("there are no random numbers");
+    throw std::runtime_error("no random numbers are available");
   std::string text;
   for (const unsigned char byte : random) text += fmt::format("{:02x}", byte);
   return text;

@@ -9,12 +9,13 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/use_awaitable.hpp>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/base/digest.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/http/auth/access.hpp"
-#include "service/http/routes/event_stream.hpp"
-#include "service/http/routes/plan_routes.hpp"
+#include "service/http/routes/internal/event_stream.hpp"
+#include "service/http/routes/internal/plan_routes.hpp"
+#include "service/http/server/internal/target.hpp"
 
 namespace cell {
 
@@ -23,63 +24,62 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// A long poll is answered after this long whatever it asked for; more of them than this at once.
+/// Longest wait of a long poll; at most so many at once.
 constexpr std::int64_t kWaitSecondsMax = 60;
 constexpr std::size_t kLongPollsMax = 128;
-/// Requests that wait for the worker, beside the one it has.
+/// Requests on the worker and queued for it.
 constexpr int kAtWorkMax = 4;
-/// From so many wrong tokens of one address on, each waits for its answer.
+/// After so many wrong tokens from one address, each further answer is delayed.
 constexpr int kWrongTokensFree = 5;
 constexpr std::size_t kWrongAddressesMax = 1024;
 constexpr std::size_t kActionBytesMax = 200;
 
 HttpResponse busy(std::string detail, const char* retry_after_s) {
-  HttpResponse response = to_response({.status = 503, .kind = "busy", .detail = std::move(detail)});
+  HttpResponse response =
+      to_response({.status = 503, .kind = ProblemKind::kBusy, .detail = std::move(detail)});
   response.headers.emplace_back("Retry-After", retry_after_s);
   return response;
 }
 
-bool changes_something(const HttpRequest& request) { return request.method != "GET"; }
+bool is_command(const HttpRequest& request) { return request.method != "GET"; }
 
-std::string now_text(std::chrono::hours ago = {}) {
-  return format_utc(std::chrono::system_clock::now() - ago);
-}
-
-/// What a key was answered before, or why it is not taken; nothing when it is new.
-std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed) {
+/// The stored answer to a key, or its refusal; nothing for a new key.
+std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed,
+                                          std::chrono::system_clock::time_point now) {
   KeyLookUp found;
   try {
-    found = answers.take(keyed, now_text(std::chrono::hours(AnswerStore::kKeptHours)));
+    found = answers.take(keyed, format_utc(now - std::chrono::hours(AnswerStore::kKeptHours)));
   } catch (const std::exception& error) {
     spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
-    return to_response(
-        {.status = 503, .kind = "idempotency-key", .detail = "earlier answers cannot be read; see the log"});
+    return to_response({.status = 503,
+                        .kind = ProblemKind::kIdempotencyKey,
+                        .detail = "earlier answers cannot be read; see the log"});
   }
   if (const auto* answer = std::get_if<StoredAnswer>(&found))
     return HttpResponse{.status = answer->status, .body = answer->body, .headers = answer->headers};
-  if (std::holds_alternative<KeyOfAnother>(found)) {
+  if (std::holds_alternative<KeyReused>(found)) {
     return to_response({.status = 422,
-                        .kind = "idempotency-key",
-                        .detail = "this Idempotency-Key came with another request; take a new one"});
+                        .kind = ProblemKind::kIdempotencyKey,
+                        .detail = "this Idempotency-Key was used with another request; take a new one"});
   }
   if (std::holds_alternative<KeyInProgress>(found)) {
     return to_response({.status = 409,
-                        .kind = "idempotency-key",
-                        .detail = "the first request with this Idempotency-Key is not answered yet"});
+                        .kind = ProblemKind::kIdempotencyKey,
+                        .detail = "the first request with this Idempotency-Key is still being answered"});
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-Api::Api(asio::any_io_executor executor, Operation& operation, Tokens tokens)
+Api::Api(asio::any_io_executor executor, CellOperation& operation, Tokens tokens)
     : executor_(executor), services_(operation, std::move(tokens)) {
   services_.feed.follow([this](const Status& status) { services_.metrics.follow(status); });
 }
 
 Api::~Api() { worker_.join(); }
 
-Services::Services(Operation& to_serve, Tokens to_ask_for)
+Services::Services(CellOperation& to_serve, Tokens to_ask_for)
     : operation(to_serve),
       tokens(std::move(to_ask_for)),
       feed(to_serve),
@@ -89,22 +89,22 @@ Services::Services(Operation& to_serve, Tokens to_ask_for)
 HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
   services_.metrics.count_request("", "", problem.status);
   HttpResponse response = to_response(problem);
-  if (changes_something(request)) write_audit(request, std::to_string(problem.status), false);
+  if (is_command(request)) write_audit(request, std::to_string(problem.status), false);
   return response;
 }
 
 asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
   const auto outcome = admit(request, services_.tokens);
   if (const auto* refused = std::get_if<HttpResponse>(&outcome)) {
-    if (changes_something(request)) write_audit(request, std::to_string(refused->status), false);
-    if (refused->status == 401) co_await slow_down(request);
+    if (is_command(request)) write_audit(request, std::to_string(refused->status), false);
+    if (refused->status == 401) co_await delay_wrong_token(request);
     services_.metrics.count_request("", "", refused->status);
     co_return *refused;
   }
   const Admitted& admitted = std::get<Admitted>(outcome);
   HttpResponse response;
-  if (changes_something(request)) {
-    response = co_await obey(request, admitted);
+  if (is_command(request)) {
+    response = co_await execute_command(request, admitted);
   } else {
     response = co_await make_answer(request, admitted);
   }
@@ -114,7 +114,8 @@ asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
 
 std::unique_ptr<EventSource> Api::events(const HttpRequest& request) {
   const auto id = match(kRunEventsPath, request.path);
-  const std::optional<std::int64_t> run_id = id ? std::optional(std::stoll(std::string(*id))) : std::nullopt;
+  const std::optional<std::int64_t> run_id =
+      id ? std::optional(std::stoll(decode_segment(*id))) : std::nullopt;
   return std::make_unique<EventStream>(services_, run_id, request.last_event_id);
 }
 
@@ -123,38 +124,44 @@ std::size_t Api::body_bytes_max(std::string_view method, std::string_view path) 
   return route ? route->body_bytes_max : kBodyBytesMax;
 }
 
+bool Api::ignores_query(std::string_view method, std::string_view path) const {
+  const Route* route = find_route(method, path);
+  return route && is_stop(*route);
+}
+
 asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const Admitted& admitted) {
-  const Pace pace = admitted.route->pace;
-  if (pace == Pace::kLongPoll) co_await wait_for_status(request, admitted);
-  if (pace == Pace::kPlanning) co_await wait_for_plan(request);
-  if (pace == Pace::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
-    co_return busy("as many event streams are open as there may be; poll GET /api/v1/status", "15");
-  if (pace != Pace::kWorker) co_return handle(admitted, request, services_);
+  const DispatchMode dispatch = admitted.route->dispatch;
+  if (dispatch == DispatchMode::kLongPoll) co_await wait_for_status(request, admitted);
+  if (dispatch == DispatchMode::kPlanning) co_await wait_for_plan(request);
+  if (dispatch == DispatchMode::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
+    co_return busy("too many event streams are open; poll GET /api/v1/status", "15");
+  if (dispatch != DispatchMode::kWorker) co_return handle(admitted, request, services_);
   HttpResponse response = co_await on_worker(request, admitted);
   co_return response;
 }
 
-/// A command: written down before it is taken, what came of it behind.
-asio::awaitable<HttpResponse> Api::obey(const HttpRequest& request, const Admitted& admitted) {
+/// A command: recorded before it is executed, its outcome afterwards.
+asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, const Admitted& admitted) {
   HttpResponse response;
   if (is_stop(*admitted.route)) {
     response = handle(admitted, request, services_);
-  } else if (!write_audit(request, "asked", true) && !only_halts(*admitted.route)) {
-    response = to_response(
-        {.status = 503,
-         .kind = "audit",
-         .detail = "the command was not taken as it cannot be written down; make room on "
-                   "the disk of the state directory. Stop, abort and pause are taken all the same"});
+  } else if (!write_audit(request, "asked", true) && !halts_only(*admitted.route)) {
+    response =
+        to_response({.status = 503,
+                     .kind = ProblemKind::kAudit,
+                     .detail = "the command was refused because it cannot be recorded; free space on "
+                               "the disk of the state directory. Stop, abort and pause are still executed"});
     co_return response;
   } else {
-    response = co_await obey_once(request, admitted);
+    response = co_await execute_command_once(request, admitted);
   }
   write_audit(request, std::to_string(response.status), false);
   co_return response;
 }
 
-/// With an Idempotency-Key a command is taken once; what was refused may be asked again with the same key.
-asio::awaitable<HttpResponse> Api::obey_once(const HttpRequest& request, const Admitted& admitted) {
+/// With an Idempotency-Key a command is executed once; a refused one may be sent again with the same key.
+asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& request,
+                                                        const Admitted& admitted) {
   HttpResponse response;
   if (!request.idempotency_key) {
     response = co_await make_answer(request, admitted);
@@ -163,7 +170,8 @@ asio::awaitable<HttpResponse> Api::obey_once(const HttpRequest& request, const A
   const KeyedRequest keyed{.key = *request.idempotency_key,
                            .request = request.method + " " + request.path,
                            .body_digest = sha256_hex(request.body)};
-  if (auto answered = answer_to_key(services_.answers, keyed)) co_return *std::move(answered);
+  if (auto answered = answer_to_key(services_.answers, keyed, services_.operation.clocks().system()))
+    co_return *std::move(answered);
   response = co_await make_answer(request, admitted);
   if (response.status >= 300) {
     services_.answers.give_up(keyed);
@@ -174,10 +182,12 @@ asio::awaitable<HttpResponse> Api::obey_once(const HttpRequest& request, const A
         keyed, {.status = response.status, .headers = response.headers, .body = response.body}, now_text());
   } catch (const std::exception& error) {
     services_.answers.give_up(keyed);
-    spdlog::error("the answer to an Idempotency-Key could not be kept: {}", error.what());
+    spdlog::error("the answer to an Idempotency-Key could not be stored: {}", error.what());
   }
   co_return response;
 }
+
+std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
 
 bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bool at_once) {
   const AuditEntry entry{.at = now_text(),
@@ -193,12 +203,12 @@ bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bo
     }
     return true;
   } catch (const std::exception& error) {
-    spdlog::error("{} {} could not be written down: {}", entry.action, outcome, error.what());
+    spdlog::error("{} {} could not be recorded: {}", entry.action, outcome, error.what());
     return false;
   }
 }
 
-asio::awaitable<void> Api::slow_down(const HttpRequest& request) {
+asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
   if (!request.authorization) co_return;
   if (wrong_tokens_.size() >= kWrongAddressesMax) wrong_tokens_.clear();
   if (++wrong_tokens_[request.remote] <= kWrongTokensFree) co_return;
@@ -219,7 +229,7 @@ asio::awaitable<void> Api::wait_for_status(const HttpRequest& request, const Adm
 asio::awaitable<void> Api::wait_for_plan(const HttpRequest& request) {
   const auto recipe = recipe_to_plan(request, services_.operation);
   if (!recipe) co_return;
-  // Another request may wait for the same plan: it is made once.
+  // Another request may wait for the same plan, which is made once.
   asio::steady_timer timer(executor_);
   while (services_.operation.is_planning()) {
     timer.expires_after(50ms);

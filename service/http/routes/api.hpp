@@ -12,29 +12,32 @@
 
 namespace cell {
 
-/// Requests in, answers out, over time: waits where a route has to (Pace), gives a repeated Idempotency-Key
-/// its first answer, and writes down every command and every refusal of one. A command that cannot be written
-/// down is refused, but for a stop.
+/// Answers requests: waits where a route requires it (DispatchMode), repeats the first answer to an
+/// Idempotency-Key, and records every command and every refusal in the audit log. A command that cannot be
+/// recorded is refused, except one that halts.
 class Api final : public RequestHandler {
  public:
-  /// `operation` must outlive it.
-  Api(boost::asio::any_io_executor executor, Operation& operation, Tokens tokens);
+  /// `operation` must outlive it; its clock also dates what is recorded here.
+  Api(boost::asio::any_io_executor executor, CellOperation& operation, Tokens tokens);
   ~Api() override;
 
   boost::asio::awaitable<HttpResponse> answer(const HttpRequest& request) override;
   HttpResponse refuse(const Problem& problem, const HttpRequest& request) override;
   std::unique_ptr<EventSource> events(const HttpRequest& request) override;
   [[nodiscard]] std::size_t body_bytes_max(std::string_view method, std::string_view path) const override;
+  [[nodiscard]] bool ignores_query(std::string_view method, std::string_view path) const override;
   [[nodiscard]] std::size_t largest_body_bytes() const override { return kTouchesBytesMax; }
 
   [[nodiscard]] Services& services() { return services_; }
 
  private:
   boost::asio::awaitable<HttpResponse> make_answer(const HttpRequest& request, const Admitted& admitted);
-  boost::asio::awaitable<HttpResponse> obey(const HttpRequest& request, const Admitted& admitted);
-  boost::asio::awaitable<HttpResponse> obey_once(const HttpRequest& request, const Admitted& admitted);
+  boost::asio::awaitable<HttpResponse> execute_command(const HttpRequest& request, const Admitted& admitted);
+  boost::asio::awaitable<HttpResponse> execute_command_once(const HttpRequest& request,
+                                                            const Admitted& admitted);
+  [[nodiscard]] std::string now_text() const;
   bool write_audit(const HttpRequest& request, const std::string& outcome, bool at_once);
-  boost::asio::awaitable<void> slow_down(const HttpRequest& request);
+  boost::asio::awaitable<void> delay_wrong_token(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_status(const HttpRequest& request, const Admitted& admitted);
   boost::asio::awaitable<void> wait_for_plan(const HttpRequest& request);
   boost::asio::awaitable<HttpResponse> on_worker(const HttpRequest& request, const Admitted& admitted);
@@ -42,8 +45,8 @@ class Api final : public RequestHandler {
   boost::asio::any_io_executor executor_;
   Services services_;
   boost::asio::thread_pool worker_{1};
-  int at_work_ = 0;                          // requests that the worker has, or that wait for it
-  std::map<std::string, int> wrong_tokens_;  // in a row, by address
+  int at_work_ = 0;                          // requests on the worker or queued for it
+  std::map<std::string, int> wrong_tokens_;  // consecutive ones, by address
 };
 
 }  // namespace cell

@@ -1,4 +1,4 @@
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/cell_view.hpp"
 #include "service/documents/scene_view.hpp"
 #include "service/http/routes/route_table.hpp"
@@ -21,22 +21,22 @@ std::vector<Route> cell_routes() {
   return {
       {.method = "GET",
        .path = "/api/v1/recipes",
-       .summary = "The recipes that a run may follow",
+       .summary = "The recipes of the cell",
        .handle = get_recipes,
        .answers = {{.schema = "Recipes"}}},
       {.method = "GET",
        .path = "/api/v1/cell",
-       .summary = "What the cell is made of: arm, block, probe, limits, speeds",
+       .summary = "The parts of the cell: arm, block, probe, limits, speeds",
        .handle = get_cell,
        .answers = {{.schema = "Cell"}}},
       {.method = "GET",
        .path = "/api/v1/cell/joints",
-       .summary = "Where the arm is, as the controller told last, and how old that is",
+       .summary = "The last reported posture of the arm and its age",
        .handle = get_joints,
        .answers = {{.schema = "Joints"}}},
       {.method = "GET",
        .path = "/api/v1/faults",
-       .summary = "All that can go wrong: cause, what the robot did, what to do",
+       .summary = "All faults: cause, reaction of the robot, what to do",
        .handle = get_faults,
        .answers = {{.schema = "Faults"}}},
   };

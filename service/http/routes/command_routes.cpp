@@ -1,7 +1,7 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
-#include "service/http/routes/refusals.hpp"
+#include "service/acquisition/cell_operation.hpp"
+#include "service/http/routes/internal/refusals.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 
@@ -10,7 +10,7 @@ namespace {
 
 HttpResponse give(const Call& call, Command command, std::optional<std::int64_t> run_id) {
   if (const auto refusal = call.operation.command(command, run_id))
-    return from_refusal(*refusal, call.operation);
+    return refusal_response(*refusal, call.operation);
   return json_response(202, call.services.feed.document());
 }
 
@@ -39,54 +39,52 @@ Route command(std::string_view path, std::string_view summary, HttpResponse (*ha
 
 std::vector<Route> command_routes() {
   return {
-      command("/api/v1/runs/{id}/pause", "Holds the run behind the touch under way",
+      command("/api/v1/runs/{id}/pause", "Holds the run after the touch under way",
               run_command<Command::kPause>),
-      command("/api/v1/runs/{id}/resume", "Goes on with a run on hold", run_command<Command::kResume>),
-      command("/api/v1/runs/{id}/retry", "Makes the touch again that holds the run",
+      command("/api/v1/runs/{id}/resume", "Continues a run on hold", run_command<Command::kResume>),
+      command("/api/v1/runs/{id}/retry", "Repeats the touch that holds the run",
               run_command<Command::kRetry>),
-      command("/api/v1/runs/{id}/skip", "Leaves the touch out that holds the run, which stays incomplete",
+      command("/api/v1/runs/{id}/skip", "Leaves out the touch that holds the run, which stays incomplete",
               run_command<Command::kSkip>),
       command("/api/v1/runs/{id}/abort", "Stops the arm where it is and ends the run",
               run_command<Command::kAbort>),
       command("/api/v1/cell/stop", "Stops the arm and ends the run; always taken",
               cell_command<Command::kStop>),
-      command("/api/v1/cell/confirm", "Tells what is to be confirmed at the cell, where the key is",
+      command("/api/v1/cell/confirm", "Reports what to confirm at the cell, with the key there",
               cell_command<Command::kConfirm>),
-      command("/api/v1/cell/touch-test", "Tells how the touch test of the stylus stands",
+      command("/api/v1/cell/touch-test", "Reports the state of the touch test of the stylus",
               cell_command<Command::kTouchTest>),
-      command("/api/v1/cell/take", "Takes the joints where the stylus touches now",
-              cell_command<Command::kTake>),
-      command("/api/v1/cell/undo", "Takes the last touch back that a person made",
-              cell_command<Command::kUndo>),
-      command("/api/v1/cell/locate", "Finds out where the block is, by six guided touches",
+      command("/api/v1/cell/take", "Records the present contact of the stylus", cell_command<Command::kTake>),
+      command("/api/v1/cell/undo", "Discards the last touch made by hand", cell_command<Command::kUndo>),
+      command("/api/v1/cell/locate", "Locates the block by six guided touches",
               cell_command<Command::kLocate>),
-      command("/api/v1/cell/acknowledge", "Takes note of the fault that is shown",
-              cell_command<Command::kAcknowledge>),
-      command("/api/v1/cell/clear", "Leaves ABORTED once the cause is gone", cell_command<Command::kClear>),
-      command("/api/v1/cell/reset", "Looks for the controller and makes ready",
+      command("/api/v1/cell/acknowledge", "Acknowledges the fault", cell_command<Command::kAcknowledge>),
+      command("/api/v1/cell/clear", "Leaves ABORTED once the cause is removed",
+              cell_command<Command::kClear>),
+      command("/api/v1/cell/reset", "Connects to the controller and makes the cell ready",
               cell_command<Command::kReset>),
   };
 }
 
-HttpResponse from_refusal(const Refusal& refusal, const Operation& operation) {
-  Problem problem{.status = 409, .kind = "state", .detail = refusal.detail};
+HttpResponse refusal_response(const CommandRefusal& refusal, const CellOperation& operation) {
+  Problem problem{.status = 409, .kind = ProblemKind::kState, .detail = refusal.detail};
   switch (refusal.kind) {
-    case Refusal::Kind::kState:
+    case CommandRefusal::Kind::kState:
       break;
-    case Refusal::Kind::kPreconditions:
-      problem.kind = "preconditions";
+    case CommandRefusal::Kind::kPreconditions:
+      problem.kind = ProblemKind::kPreconditions;
       break;
-    case Refusal::Kind::kUnknownRecipe:
+    case CommandRefusal::Kind::kUnknownRecipe:
       problem.status = 422;
-      problem.kind = "unknown-recipe";
+      problem.kind = ProblemKind::kUnknownRecipe;
       problem.pointer = "/recipe";
       break;
-    case Refusal::Kind::kOtherKey:
+    case CommandRefusal::Kind::kOtherKey:
       problem.status = 422;
-      problem.kind = "idempotency-key";
+      problem.kind = ProblemKind::kIdempotencyKey;
       break;
-    case Refusal::Kind::kNotThisRun:
-      problem.kind = "not-this-run";
+    case CommandRefusal::Kind::kNotThisRun:
+      problem.kind = ProblemKind::kNotThisRun;
       break;
   }
   for (const Unmet& unmet : refusal.unmet) problem.errors.emplace_back(unmet.code, unmet.detail);

@@ -1,10 +1,10 @@
-#include "service/http/routes/event_stream.hpp"
+#include "service/http/routes/internal/event_stream.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <charconv>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 
 namespace cell {
@@ -14,16 +14,16 @@ using namespace std::chrono_literals;
 namespace {
 
 constexpr std::string_view kEnd = "-end";
-/// A reader that sees nothing for so long may take its connection for dead, and so may we.
-constexpr std::chrono::seconds kSilenceMax{15};
-/// Bounds what is written at once.
+/// Longest silence: a comment then shows both ends that the connection lives.
+constexpr std::chrono::seconds kKeepAlivePeriod{15};
+/// Largest amount written at once.
 constexpr std::size_t kDueBytesMax = 64 * 1024;
 
 std::string event_text(std::string_view event, std::string_view id, std::string_view data) {
   return fmt::format("event: {}\nid: {}\ndata: {}\n\n", event, id, data);
 }
 
-/// The sequence in an id of this instance.
+/// The sequence number in an id of this instance.
 std::optional<std::uint64_t> sequence_of(std::string_view id, const std::string& instance_id) {
   if (!id.starts_with(instance_id + "-")) return std::nullopt;
   id.remove_prefix(instance_id.size() + 1);
@@ -89,6 +89,6 @@ std::string EventStream::end_of_run() {
   return event_text("run", id_of(seen_) + std::string(kEnd), run_document(*run));
 }
 
-boost::asio::awaitable<void> EventStream::wait() { co_await services_.feed.wait(seen_, kSilenceMax); }
+boost::asio::awaitable<void> EventStream::wait() { co_await services_.feed.wait(seen_, kKeepAlivePeriod); }
 
 }  // namespace cell

@@ -28,7 +28,7 @@ struct Metrics::Families {
   prometheus::Registry registry;
   Family<Gauge>& state = prometheus::BuildGauge()
                              .Name("touchcal_state")
-                             .Help("1 for the PackML state that the cell is in")
+                             .Help("1 for the present PackML state of the cell")
                              .Register(registry);
   Family<Counter>& requests = prometheus::BuildCounter()
                                   .Name("touchcal_http_requests_total")
@@ -41,15 +41,15 @@ struct Metrics::Families {
                          .Help("Touches that count, of all runs")
                          .Register(registry)
                          .Add({});
-  Gauge& connected = gauge(registry, "touchcal_controller_connected", "1 while there is a link");
+  Gauge& connected = gauge(registry, "touchcal_controller_connected", "1 while the controller is connected");
   Gauge& link_age = gauge(registry, "touchcal_link_age_seconds",
-                          "Since the controller was last heard; NaN when it never was");
+                          "Since the last message of the controller; NaN before the first");
   Gauge& touches_done = gauge(registry, "touchcal_run_touches_done", "Touches of the run so far");
   Gauge& condition =
       gauge(registry, "touchcal_run_condition_number", "Of the latest result; NaN before there is one");
   std::map<std::tuple<std::string_view, std::string_view, unsigned>, Counter*> counters;
   std::string shown_state;
-  std::string counted_fault;  // its code and words: the same fault counts once
+  std::string counted_fault;  // code and message: the same fault is counted once
   std::optional<std::int64_t> run_id;
   int touches_counted = 0;
 };

@@ -8,8 +8,8 @@
 
 namespace cell {
 
-/// What a monitoring system scrapes (GET /metrics): Prometheus text, names that begin with touchcal_, base
-/// units.
+/// Metrics in the Prometheus text format (GET /metrics): names begin with touchcal_, base units. Only the
+/// core of prometheus-cpp: its own HTTP server would be a second port without our access rules.
 class Metrics {
  public:
   Metrics();
@@ -17,12 +17,12 @@ class Metrics {
   Metrics(const Metrics&) = delete;
   Metrics& operator=(const Metrics&) = delete;
 
-  /// `method` and `route` as they are declared (their text must stay), so that there are as many labels as
-  /// routes; both empty for a refusal.
+  /// `method` and `route` as declared, which bounds the number of labels; their text must outlive this. Both
+  /// empty for a refusal.
   void count_request(std::string_view method, std::string_view route, unsigned status);
-  /// At each change of the status: counts touches, and faults by their code.
+  /// Call it at each change of the status: counts touches, and faults by code.
   void follow(const Status& status);
-  /// The figures now.
+  /// The present metrics.
   [[nodiscard]] std::string text(const Status& status);
 
  private:

@@ -1,4 +1,4 @@
-#include "service/http/routes/openapi.hpp"
+#include "service/http/routes/internal/openapi.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -28,10 +28,10 @@ Json parameters_json(const Route& route) {
   if (route.method == "POST") {
     parameters.push_back({{"name", "Idempotency-Key"},
                           {"in", "header"},
-                          {"description", "a repeat within 24 h gets the first answer"},
+                          {"description", "a repetition within 24 h gets the first answer"},
                           {"schema", {{"type", "string"}, {"minLength", 1}, {"maxLength", 255}}}});
   }
-  if (route.pace == Pace::kEvents) {
+  if (route.dispatch == DispatchMode::kEvents) {
     parameters.push_back({{"name", "Last-Event-ID"}, {"in", "header"}, {"schema", {{"type", "string"}}}});
   }
   return parameters;
@@ -43,7 +43,7 @@ Json responses_json(const Route& route) {
   Json responses = Json::object();
   for (const Answer& answer : route.answers) {
     Json& response = responses[std::to_string(answer.status)];  // one status may come in several forms
-    response["description"] = answer.status == 304 ? "known already" : "as asked";
+    response["description"] = answer.status == 304 ? "not modified" : "as asked";
     if (!answer.schema.empty()) {
       response["content"][std::string(answer.content_type)] = {{"schema", reference(answer.schema)}};
     } else if (answer.status == 200) {
@@ -65,7 +65,7 @@ Json operation_json(const Route& route) {
   operation["responses"] = responses_json(route);
   const Json token = {{{"operate", Json::array()}}};
   if (route.access == Access::kOperate) operation["security"] = token;
-  // Reading needs the view token from beyond loopback only.
+  // Reading on loopback needs no token.
   if (route.access == Access::kView) operation["security"] = {{{"view", Json::array()}}, Json::object()};
   return operation;
 }

@@ -1,4 +1,4 @@
-// The operator's page and what it loads.
+// The operator's page and its assets.
 #include <algorithm>
 
 #include "service/http/routes/route_table.hpp"
@@ -7,7 +7,7 @@
 namespace cell {
 namespace {
 
-/// The page asks nobody but this daemon, runs no script that does not come from it and stands in no frame.
+/// The page connects to this daemon only, runs only its scripts and is shown in no frame.
 constexpr std::string_view kPagePolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' data:; "
     "base-uri 'none'; frame-ancestors 'none'; form-action 'none'";
@@ -29,11 +29,11 @@ HttpResponse asset_response(const Call& call, const PageAsset& asset, std::strin
 
 HttpResponse get_page(const Call& call) { return asset_response(call, page_assets().front(), "no-cache"); }
 
-/// Compressed, whatever the client says that it takes: every browser takes it.
+/// Always compressed with gzip, which every browser accepts.
 HttpResponse get_asset(const Call& call) {
   const auto assets = page_assets().subspan(1);
   const auto found = std::ranges::find(assets, call.id, &PageAsset::name);
-  if (found == assets.end()) return not_found("the page has no such part; load it anew");
+  if (found == assets.end()) return not_found("the page has no such asset; reload it");
   return asset_response(call, *found, "public, max-age=31536000, immutable");
 }
 

@@ -1,4 +1,4 @@
-#include "service/http/routes/plan_routes.hpp"
+#include "service/http/routes/internal/plan_routes.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -7,9 +7,9 @@
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
 #include "config/touches_file.hpp"
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/result_view.hpp"
-#include "service/http/routes/request_body.hpp"
+#include "service/http/routes/internal/request_body.hpp"
 #include "service/http/routes/route_table.hpp"
 
 namespace cell {
@@ -21,7 +21,8 @@ constexpr std::array<std::string_view, 1> kPlanKeys{"recipe"};
 constexpr const char* kRetryAfterSeconds = "5";
 
 HttpResponse refuse(const PlanRefusal& refusal) {
-  Problem problem{.status = 422, .kind = "no-plan", .detail = refusal.message, .pointer = "/recipe"};
+  Problem problem{
+      .status = 422, .kind = ProblemKind::kNoPlan, .detail = refusal.message, .pointer = "/recipe"};
   for (const std::string& line : effort_lines(refusal.efforts)) problem.errors.emplace_back("tried", line);
   return to_response(problem);
 }
@@ -33,7 +34,7 @@ HttpResponse post_identify(const Call& call) {
   const auto named = cell.recipes.find(call.text("recipe").value_or(cell.default_recipe));
   if (named == cell.recipes.end()) {
     return to_response({.status = 422,
-                        .kind = "unknown-recipe",
+                        .kind = ProblemKind::kUnknownRecipe,
                         .detail = "this cell has no such recipe; GET /api/v1/recipes lists them",
                         .parameter = "recipe"});
   }
@@ -44,32 +45,35 @@ HttpResponse post_identify(const Call& call) {
     problem.touches = std::move(file.touches);
     const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
     if (result.status != calib::IdentificationStatus::kConverged)
-      return to_response(
-          {.status = 422, .kind = "not-identifiable", .detail = result.message, .pointer = "/touches"});
-    const TipRegions regions(cell);  // the operation's are for the thread of the sockets
+      return to_response({.status = 422,
+                          .kind = ProblemKind::kNotIdentifiable,
+                          .detail = result.message,
+                          .pointer = "/touches"});
+    const TipRegions regions(cell);  // those of the operation belong to the thread of the sockets
     return {.body = result_document(regions, recipe, problem, result,
                                     {.warnings = std::move(file.warnings), .conditions = {}})};
   } catch (const ConfigError& error) {
-    return to_response({.kind = "body", .detail = error.what(), .pointer = error.pointer()});
+    return to_response({.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()});
   }
 }
 
 }  // namespace
 
-HttpResponse post_plan(const HttpRequest& request, const Operation& operation) {
+HttpResponse post_plan(const HttpRequest& request, const CellOperation& operation) {
   const auto named = named_text(request.body, kPlanKeys);
   if (const auto* problem = std::get_if<Problem>(&named)) return to_response(*problem);
   const std::string& recipe = std::get<NamedText>(named).text;
   if (!operation.cell().recipes.contains(recipe)) {
     return to_response({.status = 422,
-                        .kind = "unknown-recipe",
+                        .kind = ProblemKind::kUnknownRecipe,
                         .detail = fmt::format("there is no recipe '{}'", recipe),
                         .pointer = "/recipe"});
   }
   const auto outcome = operation.planned(recipe);
   if (!outcome) {
-    HttpResponse busy = to_response(
-        {.status = 503, .kind = "planning", .detail = "another plan is being made; ask again in a moment"});
+    HttpResponse busy = to_response({.status = 503,
+                                     .kind = ProblemKind::kPlanning,
+                                     .detail = "another plan is being made; try again in a moment"});
     busy.headers.emplace_back("Retry-After", kRetryAfterSeconds);
     return busy;
   }
@@ -77,7 +81,7 @@ HttpResponse post_plan(const HttpRequest& request, const Operation& operation) {
   return {.status = 200, .body = std::get<std::shared_ptr<const Plan>>(*outcome)->document};
 }
 
-std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Operation& operation) {
+std::optional<std::string> recipe_to_plan(const HttpRequest& request, const CellOperation& operation) {
   const auto named = named_text(request.body, kPlanKeys);
   const auto* recipe = std::get_if<NamedText>(&named);
   if (!recipe || !operation.cell().recipes.contains(recipe->text) || operation.planned(recipe->text))
@@ -85,10 +89,11 @@ std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Oper
   return recipe->text;
 }
 
-HttpResponse get_plan(const Operation& operation, std::int64_t id) {
+HttpResponse get_plan(const CellOperation& operation, std::int64_t id) {
   if (auto document = operation.store().plan_json(id)) return {.status = 200, .body = *std::move(document)};
-  return to_response(
-      {.status = 409, .kind = "no-plan", .detail = fmt::format("run {} has no plan that was kept", id)});
+  return to_response({.status = 409,
+                      .kind = ProblemKind::kNoPlan,
+                      .detail = fmt::format("run {} has no plan that was kept", id)});
 }
 
 std::vector<Route> plan_routes() {
@@ -100,17 +105,19 @@ std::vector<Route> plan_routes() {
        .handle = post_a_plan,
        .answers = {{.schema = "Plan"}},
        .body_schema = "PlanRequest",
-       .pace = Pace::kPlanning},
+       .dispatch = DispatchMode::kPlanning},
       {.method = "POST",
        .path = "/api/v1/identify",
-       .summary = "Identifies the arm from a touches document; touches nothing else",
+       .summary = "Identifies the arm from a touches document; changes nothing",
        .access = Access::kOperate,
        .handle = post_identify,
        .answers = {{.schema = "Result"}},
-       .query = {{.name = "recipe", .words = "whose options to take; the cell's default", .is_text = true}},
+       .query = {{.name = "recipe",
+                  .words = "recipe whose options apply; the cell's default",
+                  .is_text = true}},
        .body_schema = "Touches",
        .body_bytes_max = kTouchesBytesMax,
-       .pace = Pace::kWorker},
+       .dispatch = DispatchMode::kWorker},
   };
 }
 

@@ -1,4 +1,4 @@
-#include "service/http/routes/result_routes.hpp"
+#include "service/http/routes/internal/result_routes.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -18,7 +18,7 @@
 namespace cell {
 namespace {
 
-/// Documents give lengths in mm and angles in rad; the cell is another when its arm differs by more.
+/// In mm and rad: a larger difference of a nominal parameter means another arm.
 constexpr double kSameNominal = 1e-9;
 
 struct Identified {
@@ -28,11 +28,11 @@ struct Identified {
 };
 
 HttpResponse conflict(const std::string& detail) {
-  return to_response({.status = 409, .kind = "no-result", .detail = detail});
+  return to_response({.status = 409, .kind = ProblemKind::kNoResult, .detail = detail});
 }
 
-/// What the run's stored touches give now: the same as then, to the bit, as long as the cell is the same.
-std::variant<Identified, HttpResponse> identify_stored(const Operation& operation, std::int64_t id) {
+/// Identifies the stored touches of a run again: the same result, bit by bit, while the cell is the same.
+std::variant<Identified, HttpResponse> identify_stored(const CellOperation& operation, std::int64_t id) {
   const Cell& cell = operation.cell();
   const auto recipe = cell.recipes.find(operation.store().run(id)->recipe);
   if (recipe == cell.recipes.end())
@@ -55,14 +55,14 @@ bool has_this_nominal(const std::string& result_json, const calib::KinematicMode
   return true;
 }
 
-std::optional<std::string> known_document(const Operation& operation, std::int64_t id) {
+std::optional<std::string> known_document(const CellOperation& operation, std::int64_t id) {
   if (auto stored = operation.store().result_json(id)) return stored;  // the run is over
   const Run* live = operation.run();
   return live && live->id() == id ? operation.result_json() : std::nullopt;
 }
 
-RunRecord record_of(const Operation& operation, const StoredRun& run) {
-  const TouchStore& store = operation.store();
+RunRecord record_of(const CellOperation& operation, const StoredRun& run) {
+  const RunStore& store = operation.store();
   RunRecord record{.run = run,
                    .touches = store.touches(run.id),
                    .superseded = store.superseded_touches(run.id),
@@ -74,7 +74,7 @@ RunRecord record_of(const Operation& operation, const StoredRun& run) {
   return record;
 }
 
-/// It is opened from where it was saved: the daemon's own pages allow no styles of a document.
+/// Served as a download: the content security policy of the daemon allows no inline styles.
 HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64_t run, std::string body) {
   return {.content_type = std::string(type),
           .body = std::move(body),
@@ -84,34 +84,35 @@ HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64
 
 }  // namespace
 
-HttpResponse get_result(const Operation& operation, std::int64_t id) {
+HttpResponse get_result(const CellOperation& operation, std::int64_t id) {
   if (auto document = known_document(operation, id)) return {.body = std::move(*document)};
-  // A run that the daemon's own end cut off has touches and no result: they are identified now.
+  // A run that ended with the daemon has touches and no result: they are identified now.
   auto found = identify_stored(operation, id);
   if (auto* response = std::get_if<HttpResponse>(&found)) return std::move(*response);
   const Identified& identified = std::get<Identified>(found);
-  const ResultContext context{
-      .complete = false, .warnings = {}, .conditions = operation.store().run(id)->trace_json.value_or("")};
+  const ResultContext context{.complete = false,
+                              .warnings = {},
+                              .conditions = operation.store().run(id)->conditions_json.value_or("")};
   return {.body = result_document(operation.tip_regions(), *identified.recipe, identified.problem,
                                   identified.result, context)};
 }
 
-HttpResponse get_arm(const Operation& operation, std::int64_t id) {
+HttpResponse get_arm(const CellOperation& operation, std::int64_t id) {
   const auto document = known_document(operation, id);
   if (document && !has_this_nominal(*document, operation.cell().arm.model)) {
     return conflict(
-        "the cell's nominal arm is another one than in this run; its result tells the errors that were "
-        "found then");
+        "the cell's nominal arm differs from that of this run; the result of the run holds the errors that "
+        "were identified then");
   }
   auto found = identify_stored(operation, id);
   if (auto* response = std::get_if<HttpResponse>(&found)) return std::move(*response);
   return {.body = calibrated_arm_document(operation.cell(), std::get<Identified>(found).result)};
 }
 
-HttpResponse get_report(const Operation& operation, const StoredRun& run, const std::string& format) {
+HttpResponse get_report(const CellOperation& operation, const StoredRun& run, const std::string& format) {
   if (format != "html" && format != "csv" && format != "json") {
     return to_response({.status = 400,
-                        .kind = "query",
+                        .kind = ProblemKind::kQuery,
                         .detail = "format is html, csv or json; touchcal report makes a PDF of the first",
                         .parameter = "format"});
   }

@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <charconv>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/services.hpp"
+#include "service/http/server/internal/target.hpp"
 
 namespace cell {
 namespace {
@@ -29,38 +30,39 @@ std::optional<std::int64_t> integer(std::string_view text) {
   return value;
 }
 
-/// A query is taken to the letter: a name that means nothing here is more likely a mistake than a wish.
+/// Unknown query parameters are refused: most likely they are mistakes.
 std::optional<HttpResponse> refuse_query(const Route& route, const Query& query) {
   for (const auto& [name, value] : query) {
     const auto known = std::ranges::find(route.query, std::string_view(name), &QueryParameter::name);
     std::string detail;
     if (known == route.query.end()) {
-      detail = route.query.empty() ? "this path takes no query" : "this path takes no such parameter";
+      detail =
+          route.query.empty() ? "this path has no query parameters" : "this path has no such query parameter";
     } else if (query.count(name) > 1) {
       detail = fmt::format("{} is given twice", name);
     } else if (const auto number = integer(value);
                !known->is_text && (!number || *number < known->minimum || *number > known->maximum)) {
-      detail = fmt::format("{} takes a whole number from {} to {}", name, known->minimum, known->maximum);
+      detail = fmt::format("{} must be a whole number from {} to {}", name, known->minimum, known->maximum);
     }
     if (!detail.empty())
-      return to_response({.kind = "query", .detail = std::move(detail), .parameter = name});
+      return to_response({.kind = ProblemKind::kQuery, .detail = std::move(detail), .parameter = name});
   }
   return std::nullopt;
 }
 
 std::optional<HttpResponse> refuse_body(const Route& route, const HttpRequest& request) {
   if (request.body.size() > route.body_bytes_max)
-    return to_response({.status = 413, .kind = "too-large", .detail = "the body is too large"});
+    return to_response({.status = 413, .kind = ProblemKind::kTooLarge, .detail = "the body is too large"});
   if (auto refused = refuse_content_type(request)) return refused;
   if (!route.body_schema.empty() || request.body.empty() || request.body == "{}") return std::nullopt;
-  return to_response({.kind = "body", .detail = "this path takes no body", .pointer = ""});
+  return to_response({.kind = ProblemKind::kBody, .detail = "this path takes no body", .pointer = ""});
 }
 
 std::optional<HttpResponse> refuse_key(const HttpRequest& request) {
   constexpr std::size_t kKeyMax = 255;
   const auto& key = request.idempotency_key;
   if (!key || (!key->empty() && key->size() <= kKeyMax)) return std::nullopt;
-  return to_response({.kind = "idempotency-key",
+  return to_response({.kind = ProblemKind::kIdempotencyKey,
                       .detail = fmt::format("an Idempotency-Key has 1 to {} characters", kKeyMax)});
 }
 
@@ -73,7 +75,7 @@ std::span<const Route> routes() {
 
 bool is_stop(const Route& route) { return route.path == "/api/v1/cell/stop"; }
 
-bool only_halts(const Route& route) {
+bool halts_only(const Route& route) {
   return is_stop(route) || route.path.ends_with("/abort") || route.path.ends_with("/pause");
 }
 
@@ -107,15 +109,15 @@ std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tok
       continue;
     }
     if (auto refused = refuse_access(request, candidate.access, tokens)) return *std::move(refused);
-    if (is_stop(candidate)) return Admitted{&candidate, *id};
+    if (is_stop(candidate)) return Admitted{&candidate, decode_segment(*id)};
     if (auto refused = refuse_query(candidate, request.query)) return *std::move(refused);
     if (auto refused = refuse_body(candidate, request)) return *std::move(refused);
     if (auto refused = refuse_key(request)) return *std::move(refused);
-    return Admitted{&candidate, *id};
+    return Admitted{&candidate, decode_segment(*id)};
   }
   if (allowed.empty()) return not_found(fmt::format("there is nothing at {}", request.path));
   HttpResponse response =
-      to_response({.status = 405, .kind = "method", .detail = "this path takes " + allowed});
+      to_response({.status = 405, .kind = ProblemKind::kMethod, .detail = "this path takes " + allowed});
   response.headers.emplace_back("Allow", allowed);
   return response;
 }
@@ -130,8 +132,9 @@ HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Servic
     return admitted.route->handle({request, services, services.operation, admitted.id, cell});
   } catch (const std::exception& error) {
     spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
-    return to_response(
-        {.status = 500, .kind = "internal", .detail = "the daemon could not do this; see its log"});
+    return to_response({.status = 500,
+                        .kind = ProblemKind::kInternal,
+                        .detail = "internal error; see the log of the daemon"});
   }
 }
 
@@ -141,7 +144,7 @@ HttpResponse route(const HttpRequest& request, Services& services) {
   return handle(std::get<Admitted>(admitted), request, services);
 }
 
-HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens) {
+HttpResponse route(const HttpRequest& request, CellOperation& operation, const Tokens& tokens) {
   Services services(operation, tokens);
   return route(request, services);
 }
@@ -163,7 +166,7 @@ HttpResponse json_response(unsigned status, std::string body) {
 }
 
 HttpResponse not_found(std::string detail) {
-  return to_response({.status = 404, .kind = "not-found", .detail = std::move(detail)});
+  return to_response({.status = 404, .kind = ProblemKind::kNotFound, .detail = std::move(detail)});
 }
 
 }  // namespace cell

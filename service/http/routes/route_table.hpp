@@ -11,22 +11,22 @@
 #include "service/http/routes/routes.hpp"
 #include "service/http/server/problem.hpp"
 
-/// One declaration a route: what answers it, who may ask, what it takes and what it gives. Requests are
-/// checked, the OpenAPI document is written and the metrics are labelled by it.
+/// One declaration per route: handler, access, parameters and answers. Checks of requests, the OpenAPI
+/// document and the labels of metrics follow from it.
 namespace cell {
 
 struct Cell;
 
-/// How an answer comes about.
-enum class Pace {
+/// How a request is dispatched.
+enum class DispatchMode {
   kAtOnce,
-  kLongPoll,  // at another status than the one that `after` names, or after `wait_s`
-  kPlanning,  // when the recipe has been planned
-  kWorker,    // by a thread of its own: the handler uses nothing but the request and Call::cell
+  kLongPoll,  // answered at a status other than `after`, or after `wait_s`
+  kPlanning,  // answered when the recipe has been planned
+  kWorker,    // on the worker thread: the handler may use only the request and Call::cell
   kEvents,    // a stream of events follows the header
 };
 
-/// A whole number in the query, or a text as it stands there.
+/// A query parameter: a whole number or a string.
 struct QueryParameter {
   std::string_view name;
   std::int64_t minimum = 0;
@@ -35,48 +35,48 @@ struct QueryParameter {
   bool is_text = false;
 };
 
-/// What a route gives when it does what it is asked. A schema is a name in schemas.hpp; none: no body.
+/// An answer in case of success. `schema`: a name in schemas.hpp; empty: no body.
 struct Answer {
   unsigned status = 200;
   std::string_view schema;
   std::string_view content_type = "application/json";
 };
 
-/// Of a touches document that is sent to be identified.
+/// Largest touches document for identification.
 inline constexpr std::size_t kTouchesBytesMax = 1024 * 1024;
 
-/// A request that its route admits.
+/// An admitted request.
 struct Call {
   const HttpRequest& request;
   Services& services;
-  Operation& operation;
-  std::string_view id;  // what stands at {id}
-  const Cell& cell;     // on a worker one of its own: the operation's may be located elsewhere meanwhile
+  CellOperation& operation;
+  std::string_view id;  // the segment at {id}
+  const Cell& cell;     // on the worker a copy: locating may change that of the operation
 
-  /// A query parameter of the route; it is within its bounds.
+  /// A query parameter of the route, checked against its bounds.
   [[nodiscard]] std::optional<std::int64_t> number(std::string_view name) const;
   [[nodiscard]] std::optional<std::string> text(std::string_view name) const;
-  /// `id` as the number of a run; nothing when it is none.
+  /// `id` as the number of a run, if it is one.
   [[nodiscard]] std::optional<std::int64_t> run_id() const;
 };
 
 struct Route {
   std::string_view method;
-  std::string_view path;  // "/api/v1/runs/{id}": {id} stands for any one segment
+  std::string_view path;  // "/api/v1/runs/{id}": {id} matches any one segment
   std::string_view summary;
   Access access = Access::kView;
   HttpResponse (*handle)(const Call&) = nullptr;
   std::vector<Answer> answers;
   std::vector<QueryParameter> query = {};
-  std::string_view body_schema = {};  // none: the route takes no body but {}
+  std::string_view body_schema = {};  // empty: the only body is {}
   std::size_t body_bytes_max = kBodyBytesMax;
-  Pace pace = Pace::kAtOnce;
+  DispatchMode dispatch = DispatchMode::kAtOnce;
 };
 
-/// Everything that the daemon answers to.
+/// All routes.
 std::span<const Route> routes();
 
-/// The routes by topic, which routes() puts together.
+/// The routes by topic.
 std::vector<Route> service_routes();  // health, metrics, this table
 std::vector<Route> status_routes();
 std::vector<Route> run_routes();
@@ -85,30 +85,29 @@ std::vector<Route> plan_routes();  // plan, identify
 std::vector<Route> cell_routes();  // what is configured
 std::vector<Route> page_routes();
 
-/// A stop is taken whatever comes with it, and whatever else does not work.
+/// A stop is executed whatever the request holds, and whatever else fails.
 bool is_stop(const Route& route);
 
-/// A stop, an abort or a pause: taken also when it cannot be written down.
-bool only_halts(const Route& route);
+/// A stop, an abort or a pause: executed even if it cannot be recorded.
+bool halts_only(const Route& route);
 
 struct Admitted {
   const Route* route = nullptr;
-  std::string_view id;  // into the request's path
+  std::string id;  // the segment at {id}, decoded
 };
 
-/// The route that a request means, or why it is refused: 404, 405, 401, 403, 400, 413, 415.
+/// The route of a request, or its refusal: 404, 405, 401, 403, 400, 413, 415.
 std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tokens& tokens);
 
-/// The route of a path for this method, whoever asks; null when there is none.
+/// The route of a path for this method, without any check; null if there is none.
 const Route* find_route(std::string_view method, std::string_view path);
 
-/// What is between {id}'s neighbours in `path`, empty without one; nothing when the path is another.
+/// The segment of `path` at {id}, empty for a pattern without {id}; nothing if the path does not match.
 std::optional<std::string_view> match(std::string_view pattern, std::string_view path);
 
-/// The answer of an admitted request; a failure inside is told without its inner workings and logged with
-/// them.
+/// The answer to an admitted request. An exception becomes a 500 without details, which are logged.
 HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services);
-/// The same on a thread of its own, with a copy of the cell.
+/// The same on the worker, with a copy of the cell.
 HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services,
                     const Cell& cell);
 

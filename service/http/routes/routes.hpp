@@ -5,13 +5,13 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 struct Services;
 
-/// Version 1 of the API (service/doc/surfaces.md), as far as it can be answered at once: route_table.hpp. What
-/// waits (Pace) is answered by api.hpp.
+/// Answers a request at once, by the routes of route_table.hpp. Requests that wait (DispatchMode) go through
+/// api.hpp.
 HttpResponse route(const HttpRequest& request, Services& services);
-/// The same with services of its own.
-HttpResponse route(const HttpRequest& request, Operation& operation, const Tokens& tokens);
+/// The same with its own services.
+HttpResponse route(const HttpRequest& request, CellOperation& operation, const Tokens& tokens);
 
 }  // namespace cell

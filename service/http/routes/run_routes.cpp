@@ -1,12 +1,12 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
-#include "service/http/routes/plan_routes.hpp"
-#include "service/http/routes/refusals.hpp"
-#include "service/http/routes/result_routes.hpp"
+#include "service/http/routes/internal/plan_routes.hpp"
+#include "service/http/routes/internal/refusals.hpp"
+#include "service/http/routes/internal/result_routes.hpp"
+#include "service/http/routes/internal/start_body.hpp"
 #include "service/http/routes/route_table.hpp"
-#include "service/http/routes/start_body.hpp"
 
 namespace cell {
 namespace {
@@ -48,10 +48,11 @@ HttpResponse of_run(const Call& call) {
 }
 
 HttpResponse post_runs(const Call& call) {
-  const auto wanted = read_start(call.request, call.operation);
-  if (const auto* problem = std::get_if<Problem>(&wanted)) return to_response(*problem);
-  const auto outcome = call.operation.start(std::get<StartRequest>(wanted));
-  if (const auto* refusal = std::get_if<Refusal>(&outcome)) return from_refusal(*refusal, call.operation);
+  const auto start = read_start(call.request, call.operation);
+  if (const auto* problem = std::get_if<Problem>(&start)) return to_response(*problem);
+  const auto outcome = call.operation.start(std::get<StartRequest>(start));
+  if (const auto* refusal = std::get_if<CommandRefusal>(&outcome))
+    return refusal_response(*refusal, call.operation);
   const std::int64_t id = std::get<Started>(outcome).run_id;
   HttpResponse response = json_response(201, run_document(call.operation.store().run(id).value()));
   response.headers = {{"Location", fmt::format("/api/v1/runs/{}", id)}};
@@ -85,11 +86,10 @@ std::vector<Route> run_routes() {
            "Result"),
       read("/api/v1/runs/{id}/arm", "The calibrated arm as a file; 409 before there is a result",
            of_run<arm_view>, "Arm"),
-      read("/api/v1/runs/{id}/plan", "The plan that the run follows; 409 before it is made",
-           of_run<plan_view>, "Plan"),
+      read("/api/v1/runs/{id}/plan", "The plan of the run; 409 before it is made", of_run<plan_view>, "Plan"),
       {.method = "GET",
        .path = "/api/v1/runs/{id}/report",
-       .summary = "The report of the run, to keep",
+       .summary = "The report of the run",
        .handle = of_run<report_view>,
        .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "Report"}},
        .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true}}},

@@ -1,8 +1,8 @@
 #include <spdlog/fmt/fmt.h>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
-#include "service/http/routes/openapi.hpp"
+#include "service/http/routes/internal/openapi.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 
@@ -13,11 +13,11 @@ constexpr std::string_view kPrometheusText = "text/plain; version=0.0.4; charset
 
 HttpResponse get_health(const Call&) { return json_response(200, R"({"status":"ok"})"); }
 
-/// Ready is a cell that would take a run now, or makes one.
+/// A cell is ready if it accepts a run now, or executes one.
 HttpResponse get_readiness(const Call& call) {
   const auto unmet = call.operation.unmet_preconditions();
   if (unmet.empty()) return json_response(200, R"({"status":"ready"})");
-  Problem problem{.status = 503, .kind = "not-ready", .detail = "a run cannot start"};
+  Problem problem{.status = 503, .kind = ProblemKind::kNotReady, .detail = "a run cannot start"};
   for (const Unmet& one : unmet) problem.errors.emplace_back(one.code, one.detail);
   return to_response(problem);
 }
@@ -51,7 +51,7 @@ std::vector<Route> service_routes() {
        .answers = {{.schema = "Health"}}},
       {.method = "GET",
        .path = "/readyz",
-       .summary = "A run could start now; else 503 with what stands in the way",
+       .summary = "A run can start now; else 503 with the unmet preconditions",
        .handle = get_readiness,
        .answers = {{.schema = "Health"}}},
       {.method = "GET",

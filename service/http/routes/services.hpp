@@ -10,19 +10,19 @@
 
 namespace cell {
 
-class Operation;
+class CellOperation;
 
-/// What answers are made from. `operation` must outlive it.
+/// What handlers use. `operation` must outlive it.
 struct Services {
-  Services(Operation& to_serve, Tokens to_ask_for);
+  Services(CellOperation& to_serve, Tokens to_ask_for);
 
-  Operation& operation;
+  CellOperation& operation;
   Tokens tokens;
   StatusFeed feed;
   Metrics metrics;
   AnswerStore answers;
   AuditLog audit;
-  std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // of events; a reader may outlive this
+  std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // event streams; a stream may outlive this
 };
 
 }  // namespace cell

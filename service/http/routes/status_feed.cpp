@@ -8,7 +8,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <stdexcept>
 
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 
 namespace cell {
@@ -42,7 +42,7 @@ std::string StatusFeed::Change::document(std::optional<std::int64_t> age_ms) con
   return text;
 }
 
-StatusFeed::StatusFeed(Operation& operation) : operation_(operation) {
+StatusFeed::StatusFeed(CellOperation& operation) : operation_(operation) {
   const Status status = operation.status();
   instance_id_ = status.instance_id;
   keep(status);
@@ -52,11 +52,11 @@ StatusFeed::~StatusFeed() {
   if (following_) operation_.on_change({});
 }
 
-void StatusFeed::follow(std::function<void(const Status&)> told) {
+void StatusFeed::follow(std::function<void(const Status&)> listener) {
   following_ = true;
-  operation_.on_change([this, told = std::move(told)](const Status& status) {
+  operation_.on_change([this, listener = std::move(listener)](const Status& status) {
     keep(status);
-    told(status);
+    listener(status);
     for (asio::steady_timer* timer : waiting_) timer->cancel();
   });
 }

@@ -1,5 +1,5 @@
-#include "service/acquisition/operation.hpp"
-#include "service/http/routes/event_stream.hpp"
+#include "service/acquisition/cell_operation.hpp"
+#include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 
@@ -34,27 +34,26 @@ std::vector<Route> status_routes() {
       {.method = "GET",
        .path = "/api/v1/status",
        .summary =
-           "What a supervisor polls: one flat document whose fields never come and go. With wait_s and "
-           "after the answer waits for another sequence, for 60 s at most",
+           "The status for polling: one flat document with a fixed set of fields. With wait_s and after the "
+           "answer waits for another sequence, for 60 s at most",
        .handle = get_status,
        .answers = {{.schema = "Status"}, {.status = 304}},
-       .query = {{"wait_s", 0, kWaitSecondsMax, "how long the answer may wait, with after"},
-                 {"after", 0, kSequenceMax, "the sequence that is known"}},
-       .pace = Pace::kLongPoll},
+       .query = {{"wait_s", 0, kWaitSecondsMax, "longest wait, with after"},
+                 {"after", 0, kSequenceMax, "the known sequence"}},
+       .dispatch = DispatchMode::kLongPoll},
       {.method = "GET",
        .path = "/api/v1/events",
-       .summary =
-           "Every change of the status as server-sent events; Last-Event-ID goes on where a reader left "
-           "off, an event 'reset' says that this is not possible",
+       .summary = "Every change of the status as server-sent events; Last-Event-ID continues after the last "
+                  "event; an event 'reset' says that this is not possible",
        .handle = get_events,
        .answers = {{.content_type = kEventStreamType}},
-       .pace = Pace::kEvents},
+       .dispatch = DispatchMode::kEvents},
       {.method = "GET",
        .path = kRunEventsPath,
        .summary = "The same for one run; an event 'run' ends it",
        .handle = get_events,
        .answers = {{.content_type = kEventStreamType}, {.status = 204}},
-       .pace = Pace::kEvents},
+       .dispatch = DispatchMode::kEvents},
   };
 }
 

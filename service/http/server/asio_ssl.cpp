@@ -1,2 +1,2 @@
-// The one place where Asio's own TLS functions are compiled, beside cs8_protocol/asio.cpp.
+// Compiles Asio's TLS functions, as cs8_protocol/asio.cpp does the others.
 #include <boost/asio/ssl/impl/src.hpp>

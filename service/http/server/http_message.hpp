@@ -9,16 +9,16 @@
 
 namespace cell {
 
-/// How long a body may be where its route does not take more.
+/// Largest body of a request whose route allows no more.
 inline constexpr std::size_t kBodyBytesMax = 64 * 1024;
 
-/// What stands behind the question mark; a name that is given twice is there twice.
+/// The decoded query; a name given twice occurs twice.
 using Query = std::multimap<std::string, std::string>;
 
-/// A request as routes see it: parsed, bounded, no sockets.
+/// A request as routes see it: parsed and bounded, without its socket.
 struct HttpRequest {
   std::string method;  // "GET"
-  std::string path;    // "/api/v1/runs/7", without the query
+  std::string path;    // "/api/v1/runs/7", without the query, percent-encoded
   Query query;
   std::optional<std::string> authorization;
   std::optional<std::string> content_type;

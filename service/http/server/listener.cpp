@@ -43,7 +43,7 @@ asio::awaitable<void> HttpListener::accept() {
     tcp::socket socket = co_await acceptor_.async_accept(asio::redirect_error(asio::use_awaitable, failure));
     if (failure == asio::error::operation_aborted) break;
     if (failure) {
-      // Out of descriptors: those who are served end in time.
+      // Out of descriptors: present connections will end.
       spdlog::warn("a connection could not be accepted: {}", failure.message());
       asio::steady_timer pause(executor_, std::chrono::milliseconds(100));
       co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, failure));

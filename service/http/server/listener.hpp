@@ -16,7 +16,7 @@ class RequestHandler;
 /// certificate.
 class HttpListener {
  public:
-  /// Binds at once; port 0 takes a free one. Throws boost::system::system_error when the address is taken.
+  /// Binds at once; port 0 takes a free one. Throws boost::system::system_error if the address is in use.
   /// `handler` must outlive the listener and its connections.
   HttpListener(boost::asio::any_io_executor executor, const boost::asio::ip::tcp::endpoint& address,
                RequestHandler& handler, HttpLimits limits = {},

@@ -46,8 +46,72 @@ const char* title_of(unsigned status) {
 
 }  // namespace
 
+std::string_view problem_kind_name(ProblemKind kind) {
+  switch (kind) {
+    case ProblemKind::kAudit:
+      return "audit";
+    case ProblemKind::kBody:
+      return "body";
+    case ProblemKind::kBusy:
+      return "busy";
+    case ProblemKind::kContentLength:
+      return "content-length";
+    case ProblemKind::kContentType:
+      return "content-type";
+    case ProblemKind::kExpect:
+      return "expect";
+    case ProblemKind::kHost:
+      return "host";
+    case ProblemKind::kHttp:
+      return "http";
+    case ProblemKind::kIdempotencyKey:
+      return "idempotency-key";
+    case ProblemKind::kInternal:
+      return "internal";
+    case ProblemKind::kMethod:
+      return "method";
+    case ProblemKind::kNoPlan:
+      return "no-plan";
+    case ProblemKind::kNoResult:
+      return "no-result";
+    case ProblemKind::kNotFound:
+      return "not-found";
+    case ProblemKind::kNotIdentifiable:
+      return "not-identifiable";
+    case ProblemKind::kNotReady:
+      return "not-ready";
+    case ProblemKind::kNotThisRun:
+      return "not-this-run";
+    case ProblemKind::kOrigin:
+      return "origin";
+    case ProblemKind::kPlanning:
+      return "planning";
+    case ProblemKind::kPreconditions:
+      return "preconditions";
+    case ProblemKind::kQuery:
+      return "query";
+    case ProblemKind::kRole:
+      return "role";
+    case ProblemKind::kState:
+      return "state";
+    case ProblemKind::kTarget:
+      return "target";
+    case ProblemKind::kToken:
+      return "token";
+    case ProblemKind::kTooLarge:
+      return "too-large";
+    case ProblemKind::kTransferEncoding:
+      return "transfer-encoding";
+    case ProblemKind::kUnknownPlan:
+      return "unknown-plan";
+    case ProblemKind::kUnknownRecipe:
+      return "unknown-recipe";
+  }
+  return "";
+}
+
 HttpResponse to_response(const Problem& problem) {
-  Json document{{"type", fmt::format("urn:touchcal:problem:{}", problem.kind)},
+  Json document{{"type", fmt::format("urn:touchcal:problem:{}", problem_kind_name(problem.kind))},
                 {"title", title_of(problem.status)},
                 {"status", problem.status},
                 {"detail", problem.detail}};

@@ -10,11 +10,45 @@
 
 namespace cell {
 
+/// Why a request is refused: the last part of a problem's type, "urn:touchcal:problem:KIND".
+enum class ProblemKind {
+  kAudit,
+  kBody,
+  kBusy,
+  kContentLength,
+  kContentType,
+  kExpect,
+  kHost,
+  kHttp,
+  kIdempotencyKey,
+  kInternal,
+  kMethod,
+  kNoPlan,
+  kNoResult,
+  kNotFound,
+  kNotIdentifiable,
+  kNotReady,
+  kNotThisRun,
+  kOrigin,
+  kPlanning,
+  kPreconditions,
+  kQuery,
+  kRole,
+  kState,
+  kTarget,
+  kToken,
+  kTooLarge,
+  kTransferEncoding,
+  kUnknownPlan,
+  kUnknownRecipe,
+};
+std::string_view problem_kind_name(ProblemKind kind);  // "no-plan"
+
 /// RFC 9457: what every refusal looks like. `pointer` names the place in a body that is at fault, `parameter`
 /// the query parameter.
 struct Problem {
   unsigned status = 400;
-  std::string_view kind;  // last part of the type: "urn:touchcal:problem:KIND"
+  ProblemKind kind = ProblemKind::kInternal;
   std::string detail;
   std::optional<std::string> pointer;
   std::vector<std::pair<std::string, std::string>> errors;  // code and detail of each unmet precondition

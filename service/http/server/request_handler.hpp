@@ -11,7 +11,7 @@
 
 namespace cell {
 
-/// What follows the header of an answer whose content type is kEventStreamType.
+/// The body of an answer whose content type is kEventStreamType.
 class EventSource {
  public:
   EventSource() = default;
@@ -19,14 +19,14 @@ class EventSource {
   EventSource(const EventSource&) = delete;
   EventSource& operator=(const EventSource&) = delete;
 
-  /// The events that are due, as text; empty when there are none.
+  /// The events that are due, as text; empty if there are none.
   virtual std::string due() = 0;
   [[nodiscard]] virtual bool ended() const = 0;
   /// Returns when an event may be due, or after a while.
   virtual boost::asio::awaitable<void> wait() = 0;
 };
 
-/// What a connection needs to know of the API. The server knows neither routes nor the cell.
+/// What a connection calls. The server knows neither routes nor the cell.
 class RequestHandler {
  public:
   RequestHandler() = default;
@@ -36,12 +36,14 @@ class RequestHandler {
 
   /// `request` must outlive the answer.
   virtual boost::asio::awaitable<HttpResponse> answer(const HttpRequest& request) = 0;
-  /// The answer to bytes that are not a request for this daemon. `request`: as far as it was understood.
+  /// The answer to bytes that are not a request for this daemon. `request`: as far as it was parsed.
   virtual HttpResponse refuse(const Problem& problem, const HttpRequest& request) = 0;
   /// The events of a request whose answer was a stream of them.
   virtual std::unique_ptr<EventSource> events(const HttpRequest& request) = 0;
   /// How long the body of a request to this path may be; kBodyBytesMax where there is no such route.
   [[nodiscard]] virtual std::size_t body_bytes_max(std::string_view method, std::string_view path) const = 0;
+  /// Whether a request is taken whatever its query is, as a stop is.
+  [[nodiscard]] virtual bool ignores_query(std::string_view method, std::string_view path) const = 0;
   /// The largest body that any route takes.
   [[nodiscard]] virtual std::size_t largest_body_bytes() const = 0;
 };

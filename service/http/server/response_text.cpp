@@ -1,59 +1,51 @@
-#include "service/http/server/response_text.hpp"
+#include "service/http/server/internal/response_text.hpp"
 
 #include <algorithm>
-#include <boost/beast/http/status.hpp>
+#include <boost/beast/core/buffers_range.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/serializer.hpp>
 
 namespace cell {
+
+namespace http = boost::beast::http;
+
 namespace {
 
-constexpr std::string_view kEveryAnswer =
-    "\r\nServer: touchcald\r\n"
-    "X-Content-Type-Options: nosniff\r\n"
-    "Referrer-Policy: no-referrer\r\n";
-
-/// Of all but the page, which has its own.
-constexpr std::string_view kOfTheApi =
-    "Cache-Control: no-store\r\n"
-    "Content-Security-Policy: default-src 'none'; frame-ancestors 'none'\r\n";
-
-std::string_view reason_of(unsigned status) {
-  const auto reason = boost::beast::http::obsolete_reason(static_cast<boost::beast::http::status>(status));
-  return {reason.data(), reason.size()};
+/// Everything but the body, which the response has already.
+http::response<http::empty_body> header_of(const HttpResponse& response, unsigned minor, bool keep_alive,
+                                           bool has_body) {
+  http::response<http::empty_body> header(static_cast<http::status>(response.status), minor == 0 ? 10 : 11);
+  header.set(http::field::server, "touchcald");
+  header.set("X-Content-Type-Options", "nosniff");
+  header.set("Referrer-Policy", "no-referrer");
+  const bool has_own_caching =  // as the page has
+      std::ranges::any_of(response.headers, [](const auto& own) { return own.first == "Cache-Control"; });
+  if (!has_own_caching) {
+    header.set(http::field::cache_control, "no-store");
+    header.set("Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'");
+  }
+  for (const auto& [name, value] : response.headers) header.insert(name, value);
+  header.keep_alive(keep_alive);
+  if (!has_body) return header;
+  header.set(http::field::content_type, response.content_type);
+  if (response.content_type != "text/event-stream") header.content_length(response.body.size());
+  return header;
 }
 
 }  // namespace
 
 std::string response_text(const HttpResponse& response, unsigned minor, bool keep_alive, bool head) {
   const bool has_body = response.status != 304 && response.status != 204;
-  const bool is_stream = response.content_type == "text/event-stream";
+  const auto header = header_of(response, minor, keep_alive, has_body);
+  http::response_serializer<http::empty_body> serializer(header);
   std::string text;
   text.reserve(512 + response.body.size());
-  text += minor == 0 ? "HTTP/1.0 " : "HTTP/1.1 ";
-  text += std::to_string(response.status);
-  text += ' ';
-  text += reason_of(response.status);
-  text += kEveryAnswer;
-  const bool has_own_caching = std::ranges::any_of(
-      response.headers, [](const auto& header) { return header.first == "Cache-Control"; });
-  if (!has_own_caching) text += kOfTheApi;
-  for (const auto& [name, value] : response.headers) {
-    text += name;
-    text += ": ";
-    text += value;
-    text += "\r\n";
-  }
-  if (keep_alive != (minor > 0)) text += keep_alive ? "Connection: keep-alive\r\n" : "Connection: close\r\n";
-  if (has_body) {
-    text += "Content-Type: ";
-    text += response.content_type;
-    text += "\r\n";
-    if (!is_stream) {
-      text += "Content-Length: ";
-      text += std::to_string(response.body.size());
-      text += "\r\n";
-    }
-  }
-  text += "\r\n";
+  boost::system::error_code failure;
+  serializer.next(failure, [&](boost::system::error_code&, const auto& buffers) {
+    for (const auto buffer : boost::beast::buffers_range_ref(buffers))
+      text.append(static_cast<const char*>(buffer.data()), buffer.size());
+  });
   if (has_body && !head) text += response.body;
   return text;
 }

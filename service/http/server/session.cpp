@@ -16,9 +16,9 @@
 #include <utility>
 #include <variant>
 
+#include "service/http/server/internal/response_text.hpp"
+#include "service/http/server/internal/target.hpp"
 #include "service/http/server/request_handler.hpp"
-#include "service/http/server/response_text.hpp"
-#include "service/http/server/target.hpp"
 
 namespace cell {
 
@@ -48,7 +48,7 @@ std::optional<std::string> field(const Incoming& request, beast::string_view nam
   return found == request.end() ? std::nullopt : std::optional<std::string>(found->value());
 }
 
-/// A field that holds a list may stand on several lines (RFC 9110, 5.3).
+/// A list field may be repeated (RFC 9110, 5.3).
 std::optional<std::string> list_field(const Incoming& request, http::field name) {
   std::optional<std::string> joined;
   const auto [first, last] = request.equal_range(name);
@@ -57,12 +57,12 @@ std::optional<std::string> list_field(const Incoming& request, http::field name)
   return joined;
 }
 
-/// One connection's two ends, and the names that the daemon goes by there: another Host is a page that
-/// reached us under a name of its own (DNS rebinding).
+/// The two ends of a connection and the accepted values of Host: another Host is a page that reached the
+/// daemon under a name of its own (DNS rebinding).
 struct Ends {
   bool from_loopback = false;
   std::string remote;
-  std::string scheme;  // of an Origin that is ours
+  std::string scheme;  // of an accepted Origin
   std::vector<std::string> hosts;
 
   Ends(const tcp::socket& socket, const char* own_scheme, const std::vector<std::string>& names)
@@ -89,55 +89,77 @@ struct Ends {
   }
 };
 
-/// What Beast let through and the RFCs do not. `raw_header`: the header's bytes, where folded lines still
-/// show.
+/// What Beast accepts although RFC 9110 and 9112 forbid it. `raw_header`: the bytes, which still show folded
+/// lines.
 std::optional<Problem> find_http_fault(const Incoming& request, std::string_view raw_header,
                                        const Ends& ends) {
   if (raw_header.find("\r\n ") != raw_header.npos || raw_header.find("\r\n\t") != raw_header.npos) {
-    return Problem{.kind = "http", .detail = "a header field stands on one line"};
+    return Problem{.kind = ProblemKind::kHttp, .detail = "a header field must be on one line"};
   }
   const auto hosts = request.count(http::field::host);
   if (hosts > 1 || (hosts == 0 && request.version() >= 11)) {
-    return Problem{.kind = "host", .detail = "exactly one Host is wanted"};
+    return Problem{.kind = ProblemKind::kHost, .detail = "exactly one Host is required"};
   }
   if (hosts == 1 && !ends.is_our_host(request[http::field::host])) {
     return Problem{.status = 421,
-                   .kind = "host",
-                   .detail = "this daemon does not go by that Host; --host-name gives it another name"};
+                   .kind = ProblemKind::kHost,
+                   .detail = "unknown Host; --host-name adds a name of the daemon"};
   }
   const auto codings = request.count(http::field::transfer_encoding);
   if (codings > 0 && (request.version() < 11 || codings > 1 ||
                       !beast::iequals(request[http::field::transfer_encoding], "chunked"))) {
-    return Problem{
-        .status = 501, .kind = "transfer-encoding", .detail = "the only transfer encoding is chunked"};
+    return Problem{.status = 501,
+                   .kind = ProblemKind::kTransferEncoding,
+                   .detail = "the only transfer encoding is chunked"};
   }
   if (request.count(http::field::content_length) > 1 ||
       request[http::field::content_length].find_first_not_of("0123456789") != beast::string_view::npos) {
-    return Problem{.kind = "content-length", .detail = "Content-Length is one number"};
+    return Problem{.kind = ProblemKind::kContentLength, .detail = "Content-Length must be one number"};
   }
   for (const http::field once : {http::field::authorization, http::field::content_type}) {
-    if (request.count(once) > 1) return Problem{.kind = "http", .detail = "a field is given twice"};
+    if (request.count(once) > 1)
+      return Problem{.kind = ProblemKind::kHttp, .detail = "a field is given twice"};
   }
   if (request.count("Idempotency-Key") > 1)
-    return Problem{.kind = "http", .detail = "a field is given twice"};
+    return Problem{.kind = ProblemKind::kHttp, .detail = "a field is given twice"};
   if (request.count(http::field::expect) > 0) {
-    return Problem{.status = 417, .kind = "expect", .detail = "Expect is not supported"};
+    return Problem{.status = 417, .kind = ProblemKind::kExpect, .detail = "Expect is not supported"};
   }
   if (request.count(http::field::origin) > 0 && !ends.is_our_origin(request[http::field::origin])) {
-    return Problem{.status = 403, .kind = "origin", .detail = "requests from other pages are not taken"};
+    return Problem{
+        .status = 403, .kind = ProblemKind::kOrigin, .detail = "requests from other origins are refused"};
   }
   return std::nullopt;
 }
 
-/// A HEAD is answered as a GET without its body.
+/// A HEAD is handled as a GET.
 std::string method_of(const Incoming& request) {
   return request.method() == http::verb::head || request.method_string().empty()
              ? "GET"
              : std::string(request.method_string());
 }
 
-std::optional<HttpRequest> to_request(Incoming& incoming, const Ends& ends) {
-  auto target = parse_target(view(incoming.target()));
+/// The parsed target. A stop is taken even with a malformed query.
+std::optional<std::pair<std::string, Query>> target_of(const Incoming& incoming,
+                                                       const RequestHandler& handler) {
+  const std::string_view target = view(incoming.target());
+  if (auto parsed = parse_target(target)) return parsed;
+  auto path = parse_target(target.substr(0, target.find('?')));
+  const bool is_taken = path && handler.ignores_query(view(incoming.method_string()), path->first);
+  return is_taken ? std::move(path) : std::nullopt;
+}
+
+Problem bad_target(std::string_view target) {
+  return {.kind = ProblemKind::kTarget,
+          .detail =
+              target.starts_with('/')
+                  ? "the target is malformed (RFC 3986): a % takes two hexadecimal digits behind it, control "
+                    "characters are not allowed, and [ ] { } | \" < > # and spaces are percent-encoded"
+                  : "the target must be a path"};
+}
+
+std::optional<HttpRequest> to_request(Incoming& incoming, const Ends& ends, const RequestHandler& handler) {
+  auto target = target_of(incoming, handler);
   if (!target) return std::nullopt;
   return HttpRequest{.method = method_of(incoming),
                      .path = std::move(target->first),
@@ -152,31 +174,33 @@ std::optional<HttpRequest> to_request(Incoming& incoming, const Ends& ends) {
                      .remote = ends.remote};
 }
 
-Problem too_large() { return {.status = 413, .kind = "too-large", .detail = "the body is too large"}; }
+Problem too_large() {
+  return {.status = 413, .kind = ProblemKind::kTooLarge, .detail = "the body is too large"};
+}
 
-/// The answer to bytes that are no request.
+/// The answer to bytes that are not a request; nothing if nobody can read one.
 std::optional<Problem> problem_of(const boost::system::error_code& failure) {
   if (failure == http::error::body_limit) return too_large();
   if (failure == http::error::header_limit || failure == http::error::buffer_overflow) {
-    return Problem{.status = 431, .kind = "too-large", .detail = "the header is too large"};
+    return Problem{.status = 431, .kind = ProblemKind::kTooLarge, .detail = "the header is too large"};
   }
   if (failure == http::error::end_of_stream || failure == http::error::partial_message) return std::nullopt;
   if (failure.category() == http::make_error_code(http::error::bad_method).category()) {
-    return Problem{.kind = "http", .detail = "this is no HTTP request: " + failure.message()};
+    return Problem{.kind = ProblemKind::kHttp, .detail = "not an HTTP request: " + failure.message()};
   }
-  return std::nullopt;  // a socket's own failure: nobody is there to read an answer
+  return std::nullopt;  // a socket error
 }
 
-/// How long this request's body may be: a route may take more than the others.
+/// Largest body of this request.
 std::uint64_t body_bytes_max(const Incoming& request, const RequestHandler& handler,
                              const HttpLimits& limits) {
-  const beast::string_view target = request.target();
+  const auto target = target_of(request, handler);
   const std::size_t of_route =
-      handler.body_bytes_max(view(request.method_string()), view(target.substr(0, target.find('?'))));
+      target ? handler.body_bytes_max(view(request.method_string()), target->first) : kBodyBytesMax;
   return of_route > kBodyBytesMax ? of_route : limits.body_bytes_max;
 }
 
-/// The connection's requests, one after another, over TLS or not.
+/// Serves the requests of a connection in order, with or without TLS.
 template <class Stream>
 class Session {
  public:
@@ -221,8 +245,7 @@ asio::awaitable<void> Session<Stream>::write(const std::string& text) {
   co_await asio::async_write(stream_, asio::buffer(text), asio::use_awaitable);
 }
 
-/// Reads a request's header; gives its bytes as they came, or why they are none. Throws when the connection
-/// ends.
+/// Reads the header of a request; returns its bytes, or the parse error. Throws when the connection ends.
 template <class Stream>
 asio::awaitable<std::variant<std::string, boost::system::error_code>> Session<Stream>::read_header(
     Parser& parser) {
@@ -238,8 +261,8 @@ asio::awaitable<std::variant<std::string, boost::system::error_code>> Session<St
   }
 }
 
-/// Reads one request; gives what is wrong with it. What its header already shows is told without waiting for
-/// its body, which may wait for a word of ours (Expect). Throws when the connection ends.
+/// Reads one request; returns what is wrong with it. An error in the header is reported before the body
+/// comes, which the client may hold back (Expect). Throws when the connection ends.
 template <class Stream>
 asio::awaitable<std::optional<Problem>> Session<Stream>::read_request(Parser& parser) {
   boost::system::error_code failure;
@@ -260,7 +283,7 @@ asio::awaitable<std::optional<Problem>> Session<Stream>::read_request(Parser& pa
   co_return problem;
 }
 
-/// A reader that does not take its events within the deadline loses its connection.
+/// A client that does not read its events within the deadline is disconnected.
 template <class Stream>
 asio::awaitable<void> Session<Stream>::write_events(const HttpRequest& request) {
   const std::unique_ptr<EventSource> events = handler_.events(request);
@@ -290,8 +313,8 @@ asio::awaitable<bool> Session<Stream>::serve_one() {
   const unsigned minor = parser.get().version() % 10;
   std::optional<HttpRequest> request;
   if (!problem) {
-    request = to_request(parser.get(), ends_);
-    if (!request) problem = Problem{.kind = "target", .detail = "the target must be a path"};
+    request = to_request(parser.get(), ends_, handler_);
+    if (!request) problem = bad_target(view(parser.get().target()));
   }
   if (problem) {
     const HttpRequest refused{.method = method_of(parser.get()),
@@ -323,7 +346,7 @@ asio::awaitable<void> Session<Stream>::serve() {
   co_await finish();
 }
 
-/// Ends a connection so that the last answer arrives: closing it over unread bytes would reset it.
+/// Closes a connection so that the last answer arrives: closing with unread bytes would reset it.
 template <class Stream>
 asio::awaitable<void> Session<Stream>::finish() {
   boost::system::error_code failure;

@@ -1,22 +1,52 @@
-#include "service/http/server/target.hpp"
+#include "service/http/server/internal/target.hpp"
+
+#include <algorithm>
+#include <boost/url/parse.hpp>
+#include <boost/url/pct_string_view.hpp>
+#include <boost/url/url_view.hpp>
 
 namespace cell {
+namespace {
+
+namespace urls = boost::urls;
+
+bool has_control(std::string_view text) {
+  return std::ranges::any_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; });
+}
+
+std::string decoded(urls::pct_string_view text) {
+  return text.decode();  // a plus sign stays one, unlike in url_view::params()
+}
+
+/// A trailing '&' adds no pair.
+Query decoded_query(const urls::url_view& target) {
+  Query query;
+  const auto pairs = target.encoded_params();
+  std::size_t left = pairs.size();
+  const std::string_view encoded = target.encoded_query();
+  if (encoded.empty() || encoded.ends_with('&')) left = left == 0 ? 0 : left - 1;
+  for (auto pair = pairs.begin(); left > 0; ++pair, --left)
+    query.emplace(decoded((*pair).key), decoded((*pair).value));
+  return query;
+}
+
+}  // namespace
 
 std::optional<std::pair<std::string, Query>> parse_target(std::string_view target) {
-  if (!target.starts_with('/')) return std::nullopt;
-  const std::size_t question = target.find('?');
-  Query query;
-  std::string_view rest =
-      question == std::string_view::npos ? std::string_view() : target.substr(question + 1);
-  while (!rest.empty()) {
-    const std::size_t end = rest.find('&');
-    const std::string_view pair = rest.substr(0, end);
-    const std::size_t equals = pair.find('=');
-    query.emplace(std::string(pair.substr(0, equals)),
-                  std::string(equals == std::string_view::npos ? "" : pair.substr(equals + 1)));
-    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-  }
-  return std::pair{std::string(target.substr(0, question)), std::move(query)};
+  const auto parsed = urls::parse_origin_form(target);
+  if (!parsed) return std::nullopt;
+  std::pair<std::string, Query> taken{parsed->encoded_path(), decoded_query(*parsed)};
+  const bool is_clean =
+      !has_control(parsed->path()) && std::ranges::none_of(taken.second, [](const auto& pair) {
+        return has_control(pair.first) || has_control(pair.second);
+      });
+  return is_clean ? std::optional(std::move(taken)) : std::nullopt;
+}
+
+std::string decode_segment(std::string_view segment) {
+  if (segment.find('%') == std::string_view::npos) return std::string(segment);
+  const auto encoded = urls::make_pct_string_view(segment);
+  return encoded ? decoded(*encoded) : std::string(segment);
 }
 
 }  // namespace cell

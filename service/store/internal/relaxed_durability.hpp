@@ -4,16 +4,16 @@
 
 namespace cell {
 
-/// What is committed while this lives outlives the process, and with the next commit behind it the machine.
-/// Not inside a transaction.
-class Unsynced {
+/// Commits during its lifetime survive a crash of the process, but a power failure only after the next full
+/// commit. Not inside a transaction.
+class RelaxedDurability {
  public:
-  explicit Unsynced(SQLite::Database& database) : database_(database) {
+  explicit RelaxedDurability(SQLite::Database& database) : database_(database) {
     database_.exec("PRAGMA synchronous = NORMAL");
   }
-  ~Unsynced() { database_.tryExec("PRAGMA synchronous = FULL"); }
-  Unsynced(const Unsynced&) = delete;
-  Unsynced& operator=(const Unsynced&) = delete;
+  ~RelaxedDurability() { database_.tryExec("PRAGMA synchronous = FULL"); }
+  RelaxedDurability(const RelaxedDurability&) = delete;
+  RelaxedDurability& operator=(const RelaxedDurability&) = delete;
 
  private:
   SQLite::Database& database_;

@@ -49,12 +49,12 @@ TEST(Artefact, ShiftsDistancesAsTheChangedArtefactDoes) {
       {"stylus_radius", 1e-6, [](auto& knowledge, double by) { knowledge.stylus.radius_m += by; }},
       {"pretravel", 1e-6, [](auto& knowledge, double by) { knowledge.stylus.pretravel_m += by; }},
       {"block_temperature", 1e-2, [](auto& knowledge, double by) { knowledge.warmer_than_20_c_k += by; }}};
-  const Artefact before = describe(everything_uncertain());
+  const Artefact before = make_artefact(everything_uncertain());
   const Eigen::Vector3d point_m(0.031, -0.087, 0.044);
   for (const Change& change : changes) {
     ArtefactKnowledge knowledge = everything_uncertain();
     change.apply(knowledge, change.by);
-    const Artefact after = describe(knowledge);
+    const Artefact after = make_artefact(knowledge);
     for (std::size_t face = 0; face < before.contact_planes.size(); ++face) {
       const double shifted_m = signed_distance_m(after.contact_planes[face], point_m) -
                                signed_distance_m(before.contact_planes[face], point_m);
@@ -67,8 +67,8 @@ TEST(Artefact, ShiftsDistancesAsTheChangedArtefactDoes) {
 }
 
 TEST(Artefact, HasAParameterForWhatIsUncertainOnly) {
-  EXPECT_TRUE(describe(drawn::certain_artefact(5)).parameters.empty());
-  const Artefact artefact = describe(everything_uncertain());
+  EXPECT_TRUE(make_artefact(drawn::certain_artefact(5)).parameters.empty());
+  const Artefact artefact = make_artefact(everything_uncertain());
   ASSERT_EQ(artefact.parameters.size(), 5u * 3u + 3u);
   std::set<std::string> names;
   for (const ArtefactParameter& each : artefact.parameters) {
@@ -81,13 +81,13 @@ TEST(Artefact, HasAParameterForWhatIsUncertainOnly) {
   EXPECT_EQ(parameter(artefact, "stylus_radius").nominal, 0.003);
   ArtefactKnowledge no_expansion = everything_uncertain();
   no_expansion.thermal_expansion_per_k = 0.0;
-  EXPECT_EQ(describe(no_expansion).parameters.size(), 5u * 3u + 2u);
+  EXPECT_EQ(make_artefact(no_expansion).parameters.size(), 5u * 3u + 2u);
 }
 
 TEST(Artefact, TellsAnEstimatedFaceByHavingNoStandardDeviation) {
   ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
   knowledge.face_uncertainties[4].estimated = true;
-  const Artefact artefact = describe(knowledge);
+  const Artefact artefact = make_artefact(knowledge);
   for (const ArtefactParameter& each : artefact.parameters) {
     EXPECT_EQ(each.std.has_value(), !each.name.starts_with("plane5_")) << each.name;
   }
@@ -106,7 +106,7 @@ TEST(Artefact, MakesALengthAnEquationBetweenOffsets) {
     };
     const double first_moved = 30e-6, second_moved = -70e-6;
     knowledge.lengths = {{faces, apart_m(first_moved, second_moved), 2e-6}};
-    const Artefact artefact = describe(knowledge);
+    const Artefact artefact = make_artefact(knowledge);
     ASSERT_EQ(artefact.equations.size(), 1u);
     const ArtefactEquation& equation = artefact.equations[0];
     EXPECT_EQ(equation.std_m, 2e-6);
@@ -124,7 +124,7 @@ TEST(Artefact, MakesALengthAnEquationBetweenOffsets) {
 TEST(Artefact, ALengthBetweenExactlyKnownFacesSaysNothing) {
   ArtefactKnowledge knowledge = drawn::certain_artefact(5);
   knowledge.lengths = {{{2, 4}, 0.150, 2e-6}};
-  EXPECT_TRUE(describe(knowledge).equations.empty());
+  EXPECT_TRUE(make_artefact(knowledge).equations.empty());
 }
 
 }  // namespace

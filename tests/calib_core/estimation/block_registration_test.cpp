@@ -6,8 +6,9 @@
 #include <array>
 #include <cmath>
 
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
 #include "calib_core/observability/observation_matrix.hpp"
-#include "calib_core/planning/touch_feasibility.hpp"
 #include "tests/calib_core/block_study.hpp"
 #include "tests/calib_core/tx90.hpp"
 
@@ -36,7 +37,7 @@ Eigen::Isometry3d moved_block() { return move_of({0.032, 0.004, -0.024}, radians
 /// An arm before a block that was moved.
 KinematicModel arm_before(const Eigen::Isometry3d& old_from_new, const ErrorVector& errors) {
   KinematicModel arm = paper::nominal();
-  set_place(arm, old_from_new.inverse() * place_of(arm));
+  set_block_pose(arm, old_from_new.inverse() * block_pose_of(arm));
   return apply(arm, errors);
 }
 
@@ -60,26 +61,27 @@ JointVector joints_on(const KinematicModel& arm, const Spot& spot) {
   throw std::runtime_error("out of reach");
 }
 
-BlockPlaceProblem problem_of(const KinematicModel& arm) {
-  BlockPlaceProblem problem{.nominal = paper::nominal(),
-                            .faces = tx90::faces(),
-                            .stylus = kBall,
-                            .touches = {},
-                            .tilt_max_rad = radians_from_degrees(45.0)};
+BlockRegistrationProblem problem_of(const KinematicModel& arm) {
+  BlockRegistrationProblem problem{.nominal = paper::nominal(),
+                                   .faces = tx90::faces(),
+                                   .stylus = kBall,
+                                   .touches = {},
+                                   .tilt_max_rad = radians_from_degrees(45.0)};
   for (const Spot& spot : kSpots)
     problem.touches.push_back({spot.face, joints_on(arm, spot), kTouchStdMetres});
   return problem;
 }
 
-BlockPlaceFit fit(const BlockPlaceProblem& problem) {
-  auto outcome = fit_block_place(problem);
-  if (auto* refusal = std::get_if<BlockPlaceRefusal>(&outcome)) throw std::runtime_error(refusal->message);
-  return std::get<BlockPlaceFit>(std::move(outcome));
+BlockRegistration fit(const BlockRegistrationProblem& problem) {
+  auto outcome = register_block(problem);
+  if (auto* refusal = std::get_if<BlockRegistrationRefusal>(&outcome))
+    throw std::runtime_error(refusal->message);
+  return std::get<BlockRegistration>(std::move(outcome));
 }
 
-std::string refusal(const BlockPlaceProblem& problem) {
-  const auto outcome = fit_block_place(problem);
-  const auto* refused = std::get_if<BlockPlaceRefusal>(&outcome);
+std::string refusal(const BlockRegistrationProblem& problem) {
+  const auto outcome = register_block(problem);
+  const auto* refused = std::get_if<BlockRegistrationRefusal>(&outcome);
   return refused ? refused->message : "";
 }
 
@@ -95,18 +97,18 @@ Eigen::Matrix<double, 6, 1> difference(const Eigen::Isometry3d& found, const Eig
 TEST(BlockPlace, ABlockThatWasMovedIsFoundWhereItStands) {
   const Eigen::Isometry3d is = moved_block();
   const KinematicModel arm = arm_before(is, ErrorVector::Zero());
-  const BlockPlaceFit found = fit(problem_of(arm));
+  const BlockRegistration found = fit(problem_of(arm));
   EXPECT_LT(difference(found.old_from_new, is).norm(), 1e-8);
   EXPECT_LT(found.residual_rms_m, 1e-9);
-  EXPECT_LT((place_of(found.model).matrix() - place_of(arm).matrix()).cwiseAbs().maxCoeff(), 1e-8);
+  EXPECT_LT((block_pose_of(found.model).matrix() - block_pose_of(arm).matrix()).cwiseAbs().maxCoeff(), 1e-8);
 }
 
 TEST(BlockPlace, AnyPlaceCanBeSetAndReadBack) {
   KinematicModel arm = paper::nominal();
   arm.links[1].beta_rad = 0.01;
-  const Eigen::Isometry3d pose = move_of({0.3, -0.2, 0.5}, 0.4, -0.3) * place_of(arm);
-  set_place(arm, pose);
-  EXPECT_LT((place_of(arm).matrix() - pose.matrix()).cwiseAbs().maxCoeff(), 1e-12);
+  const Eigen::Isometry3d pose = move_of({0.3, -0.2, 0.5}, 0.4, -0.3) * block_pose_of(arm);
+  set_block_pose(arm, pose);
+  EXPECT_LT((block_pose_of(arm).matrix() - pose.matrix()).cwiseAbs().maxCoeff(), 1e-12);
   EXPECT_EQ(arm.links[1].beta_rad, 0.0);
 }
 
@@ -118,7 +120,7 @@ TEST(BlockPlace, TheUncertaintyIsTheSpreadOfPlacesThatAreFound) {
   const Eigen::Isometry3d is = moved_block();
   ErrorTolerances arm_errors{};
   for (std::size_t i = 0; i < arm_errors.size(); ++i) {
-    if (error_parameters()[i].group() != ParameterGroup::kPlace)
+    if (error_parameters()[i].group() != ParameterGroup::kBlockPose)
       arm_errors[i] = error_parameters()[i].is_length() ? kArmLengthStd : kArmAngleStd;
   }
   UniformChance chance(6);
@@ -128,14 +130,14 @@ TEST(BlockPlace, TheUncertaintyIsTheSpreadOfPlacesThatAreFound) {
     for (int i = 0; i < kErrorParameterCount; ++i)
       errors[i] = arm_errors[static_cast<std::size_t>(i)].value_or(0.0) * study::normal(chance);
     const KinematicModel arm = arm_before(is, errors);
-    BlockPlaceProblem problem = problem_of(arm_before(is, ErrorVector::Zero()));
+    BlockRegistrationProblem problem = problem_of(arm_before(is, ErrorVector::Zero()));
     problem.arm_errors = arm_errors;
-    for (PlaceTouch& touch : problem.touches) {
+    for (RegistrationTouch& touch : problem.touches) {
       Plane met = contact_plane(problem.faces[static_cast<std::size_t>(touch.face)], kBall);
       met.offset_m += kTouchStdMetres * study::normal(chance);
       touch.joints = moved_onto_plane(arm, met, {.face = touch.face, .joints = touch.joints}).joints;
     }
-    const BlockPlaceFit found = fit(problem);
+    const BlockRegistration found = fit(problem);
     const auto off = difference(found.old_from_new, is);
     spread += off * off.transpose() / kDraws;
     told = found.covariance;
@@ -149,22 +151,22 @@ TEST(BlockPlace, TheUncertaintyIsTheSpreadOfPlacesThatAreFound) {
 }
 
 TEST(BlockPlace, TheSixParametersCarryTheUncertaintyOfTheMove) {
-  const BlockPlaceFit found = fit(problem_of(arm_before(moved_block(), ErrorVector::Zero())));
+  const BlockRegistration found = fit(problem_of(arm_before(moved_block(), ErrorVector::Zero())));
   int told = 0;
-  for (std::size_t i = 0; i < found.std_place.size(); ++i) {
-    const bool of_place = error_parameters()[i].group() == ParameterGroup::kPlace;
-    EXPECT_EQ(found.std_place[i].has_value(), of_place) << error_parameters()[i].name();
-    if (!found.std_place[i]) continue;
+  for (std::size_t i = 0; i < found.std_block_pose.size(); ++i) {
+    const bool of_place = error_parameters()[i].group() == ParameterGroup::kBlockPose;
+    EXPECT_EQ(found.std_block_pose[i].has_value(), of_place) << error_parameters()[i].name();
+    if (!found.std_block_pose[i]) continue;
     ++told;
-    EXPECT_GT(*found.std_place[i], 0.1 * kTouchStdMetres);
-    EXPECT_LT(*found.std_place[i], 100 * kTouchStdMetres);
+    EXPECT_GT(*found.std_block_pose[i], 0.1 * kTouchStdMetres);
+    EXPECT_LT(*found.std_block_pose[i], 100 * kTouchStdMetres);
   }
   EXPECT_EQ(told, 6);
 }
 
 class BlockPlaceRefused : public ::testing::Test {
  protected:
-  BlockPlaceProblem problem_ = problem_of(arm_before(moved_block(), ErrorVector::Zero()));
+  BlockRegistrationProblem problem_ = problem_of(arm_before(moved_block(), ErrorVector::Zero()));
   KinematicModel arm_ = arm_before(moved_block(), ErrorVector::Zero());
 };
 
@@ -193,7 +195,7 @@ TEST_F(BlockPlaceRefused, FacesThatWereMixedUp) {
 TEST_F(BlockPlaceRefused, AnyFaceThatIsTakenForAnother) {
   for (std::size_t i = 0; i < problem_.touches.size(); ++i) {
     for (int face = 0; face < 4; ++face) {
-      BlockPlaceProblem mixed = problem_;
+      BlockRegistrationProblem mixed = problem_;
       if (mixed.touches[i].face == face) continue;
       mixed.touches[i].face = face;
       EXPECT_FALSE(refusal(mixed).empty()) << "touch " << i << " for plane " << face + 1;

@@ -66,7 +66,7 @@ TEST(RankExplanation, NamesEveryPlaneThatWasNotTouched) {
     EXPECT_EQ(result.status, IdentificationStatus::kUnobservable);
     EXPECT_THAT(result.message, HasSubstr(says));
     EXPECT_LT(result.identifiable.columns.size(), 25u);
-    EXPECT_FALSE(result.certainty || result.scale || result.lack_of_fit);
+    EXPECT_FALSE(result.uncertainty || result.scale || result.lack_of_fit);
   }
 }
 
@@ -100,9 +100,9 @@ TEST(HeldErrors, MakeTheOthersUncertainByWhatTheyMayBe) {
   options.identifiability.excluded = {d3};
   const auto held = identify(problem, options);
   ASSERT_EQ(held.status, IdentificationStatus::kConverged) << held.message;
-  EXPECT_GT(held.certainty->held(r4, r4), 0.0);
-  EXPECT_GT(held.certainty->std_error(r4), std::sqrt(held.certainty->identified(r4, r4)));
-  EXPECT_TRUE(free.certainty->held.isZero(0.0));
+  EXPECT_GT(held.uncertainty->held(r4, r4), 0.0);
+  EXPECT_GT(held.uncertainty->std_error(r4), std::sqrt(held.uncertainty->identified(r4, r4)));
+  EXPECT_TRUE(free.uncertainty->held.isZero(0.0));
 }
 
 class Tilts : public ::testing::TestWithParam<double> {};
@@ -126,7 +126,7 @@ TEST_P(Tilts, OfWhatTheyHardlyShowNothingIsPrinted) {
     ASSERT_FALSE(result.warnings.empty());
     EXPECT_THAT(result.warnings.front(), HasSubstr(name));
     const double tolerance = problem.tolerances[static_cast<std::size_t>(column)].value();
-    EXPECT_NEAR(result.certainty->std_error(column), tolerance, 1e-9) << name;
+    EXPECT_NEAR(result.uncertainty->std_error(column), tolerance, 1e-9) << name;
   }
   RecordProperty("held", names);
   if (tilt_deg <= 3.0) {
@@ -135,7 +135,7 @@ TEST_P(Tilts, OfWhatTheyHardlyShowNothingIsPrinted) {
   // What is printed is no guess, whatever makes it uncertain.
   for (const int column : result.identifiable.columns) {
     const bool is_length = error_parameters()[static_cast<std::size_t>(column)].is_length();
-    const double std = std::sqrt(result.certainty->identified(column, column));
+    const double std = std::sqrt(result.uncertainty->identified(column, column));
     EXPECT_LE(std, is_length ? kWeakLengthMetres : kWeakAngleRadians) << column;
   }
 }
@@ -152,12 +152,12 @@ TEST_P(Tilts, ThePredictedTipErrorIsTheSimulatedOneWhateverIsHeld) {
     const auto truth = drawn::draw_truth(problem, chance);
     problem.touches =
         drawn::touches(truth, {.count = 100, .tilt_max_rad = radians_from_degrees(GetParam())}, chance);
-    if (drawn::nominal_miss_m(problem, problem.touches) > kFarOffMetres) continue;
+    if (drawn::nominal_position_error_m(problem, problem.touches) > kFarOffMetres) continue;
     ++draw;
     const auto result = identify(problem, options);
     ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
-    predicted += std::pow(over_joint_ranges(result.calibrated, tx90::joint_ranges(), std::nullopt, 200)
-                              .rms_m(result.certainty->covariance())
+    predicted += std::pow(region_over_joint_ranges(result.calibrated, tx90::joint_ranges(), std::nullopt, 200)
+                              .rms_m(result.uncertainty->covariance())
                               .value(),
                           2);
     simulated += drawn::tip_mean_square_over_ranges(result.calibrated, truth.arm);

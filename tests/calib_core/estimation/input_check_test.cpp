@@ -69,7 +69,7 @@ TEST_P(Refusals, HaveAStatusNumbersAndNoResult) {
   const auto result = identify(problem, options);
   EXPECT_EQ(result.status, GetParam().status);
   EXPECT_THAT(result.message, AllOf(HasSubstr(GetParam().says), ContainsRegex("[0-9]")));
-  EXPECT_FALSE(result.certainty || result.scale || result.lack_of_fit || result.noise_estimated_m);
+  EXPECT_FALSE(result.uncertainty || result.scale || result.lack_of_fit || result.noise_estimated_m);
   EXPECT_EQ(result.errors.norm(), 0.0);
   EXPECT_EQ(result.artefact_errors.size(), 0);
 }
@@ -96,7 +96,7 @@ const std::vector<BadInput>& bad_inputs() {
        [](Problem& problem, Options&) {
          for (Touch& touch : problem.touches) touch.role = TouchRole::kHeldOut;
        }},
-      {"AllOnOnePlane", Status::kOnePlane, "all 60 touches are on plane 3",
+      {"AllOnOnePlane", Status::kOneFace, "all 60 touches are on plane 3",
        [](Problem& problem, Options&) {
          problem = good_problem(240);
          keep_faces(problem, [](const Touch& touch) { return touch.face == 2; });
@@ -166,7 +166,7 @@ const std::vector<BadInput>& bad_inputs() {
        [](Problem&, Options& options) { options.stiffness = true; }},  // an arm without masses
       {"ALengthWithoutTolerance", Status::kSingularPrior, "length 1 is 0",
        [](Problem& problem, Options&) {
-         problem.artefact = describe(drawn::uncertain_artefact(4));
+         problem.artefact = make_artefact(drawn::uncertain_artefact(4));
          problem.artefact.equations = {{{{0, 1.0}}, 0.0, 0.0}};
        }},
       {"TooFewIterations", Status::kNotConverged, "no convergence in 1 iterations (residual rms ",
@@ -212,11 +212,11 @@ TEST(WrongPlane, IsNamedAndLeftOut) {
   problem.touches[77].role = TouchRole::kHeldOut;  // would spoil the validation
   const auto result = identify(problem, {});
   ASSERT_EQ(result.status, Status::kConverged) << result.message;
-  std::vector<std::size_t> named = rejected_for(result, RejectionReason::kWrongPlane);
+  std::vector<std::size_t> named = rejected_for(result, RejectionReason::kWrongFace);
   for (const std::size_t outlier : rejected_for(result, RejectionReason::kOutlier)) named.push_back(outlier);
   std::ranges::sort(named);
   EXPECT_EQ(named, (std::vector<std::size_t>{40, 41, 77}));
-  EXPECT_EQ(result.rejected.front().reason, RejectionReason::kWrongPlane);
+  EXPECT_EQ(result.rejected.front().reason, RejectionReason::kWrongFace);
   EXPECT_EQ(result.rejected.front().touch, 40u);
   EXPECT_NEAR(std::abs(result.rejected.front().residual_m), 0.150, 0.013);  // a ball on either side
   EXPECT_EQ(result.fitted_touch_count, 97);
@@ -241,7 +241,7 @@ TEST(ContradictoryTouches, GiveNoResult) {
     }
     EXPECT_EQ(result.status, Status::kContradictory);
     EXPECT_THAT(result.message, AllOf(HasSubstr("100 touches"), ContainsRegex("residual rms [0-9]")));
-    EXPECT_FALSE(result.certainty || result.scale || result.lack_of_fit);
+    EXPECT_FALSE(result.uncertainty || result.scale || result.lack_of_fit);
     EXPECT_EQ(result.errors.norm(), 0.0);
   }
 }
@@ -315,7 +315,7 @@ TEST(TheResult, IsTheSameToTheBitWhenRepeated) {
   const auto second = identify(problem, {});
   ASSERT_EQ(first.status, Status::kConverged) << first.message;
   EXPECT_EQ(first.errors, second.errors);
-  EXPECT_EQ(first.certainty->covariance(), second.certainty->covariance());
+  EXPECT_EQ(first.uncertainty->covariance(), second.uncertainty->covariance());
   EXPECT_EQ(first.rejected.size(), 1u);
   EXPECT_EQ(rejected_for(first, RejectionReason::kOutlier), rejected_for(second, RejectionReason::kOutlier));
 }

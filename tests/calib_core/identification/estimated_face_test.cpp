@@ -93,7 +93,7 @@ TEST(EstimatedFaces, AreBoundByACertifiedLength) {
     EXPECT_LT((found.result.artefact_errors - found.truth.artefact_errors).cwiseAbs().maxCoeff(),
               certified ? 5e-6 : 0.5e-3);
     EXPECT_EQ(found.problem.artefact.parameters[3].name, "stylus_radius");
-    return found.result.certainty->artefact_std[3];
+    return found.result.uncertainty->artefact_std[3];
   };
   EXPECT_GT(std_radius_m(false), 0.09e-3);
   EXPECT_LT(std_radius_m(true), 0.01e-3);
@@ -123,7 +123,7 @@ TEST(EstimatedFaces, ThatNobodyTouchedAreNamed) {
     EXPECT_EQ(result.status,
               prior ? IdentificationStatus::kSingularPrior : IdentificationStatus::kUnobservable);
     EXPECT_THAT(result.message, HasSubstr("plane5_offset, plane5_tilt_u, plane5_tilt_v"));
-    EXPECT_FALSE(result.certainty || result.scale || result.lack_of_fit);
+    EXPECT_FALSE(result.uncertainty || result.scale || result.lack_of_fit);
   }
 }
 
@@ -138,7 +138,7 @@ TEST(EstimatedFaces, CostNothingAtTheTipWhenTheRestIsKnown) {
   for (int draw = 0; draw < kDraws; ++draw) {
     IdentificationProblem problem = cell;
     for (int i = 0; i < kErrorParameterCount; ++i) {  // the frame is what the arm stands in
-      if (error_parameters()[static_cast<std::size_t>(i)].group() == ParameterGroup::kPlace) {
+      if (error_parameters()[static_cast<std::size_t>(i)].group() == ParameterGroup::kBlockPose) {
         problem.tolerances[static_cast<std::size_t>(i)] = 1e-9;
       }
     }
@@ -150,8 +150,9 @@ TEST(EstimatedFaces, CostNothingAtTheTipWhenTheRestIsKnown) {
     std::vector<JointVector> postures;
     for (const Touch& touch : problem.touches) postures.push_back(touch.joints);
     predicted +=
-        std::pow(over_postures(result.calibrated, postures).rms_m(result.certainty->covariance()).value(),
-                 2) /
+        std::pow(
+            region_over_postures(result.calibrated, postures).rms_m(result.uncertainty->covariance()).value(),
+            2) /
         kDraws;
   }
   EXPECT_NEAR(std::sqrt(square / predicted), 1.0, 0.25);

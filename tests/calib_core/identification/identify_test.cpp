@@ -100,22 +100,6 @@ INSTANTIATE_TEST_SUITE_P(BothFormulations, ReferenceSolution,
                                                                                    : "PlaneCoefficients";
                          });
 
-TEST(Observation, PlaneCoefficientsAreEquationSixOfThePaper) {
-  // Table II's coefficients, typed from the paper's geometry: a . x + 1 = 0.
-  const std::vector<Eigen::Vector3d> coefficients{
-      {0, 0, 1 / 0.075}, {1 / 0.075, 0, 0}, {0, 1 / 0.15, 0}, {0, 0, -1 / 0.075}};
-  const auto touches = exact_touches();
-  const KinematicModel model = paper::nominal();
-  const Observation observation = observe(model, paper::planes(), touches, Formulation::kPlaneCoefficients);
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    const Chain chain = forward_chain(model, touches[i].joints);
-    const Eigen::Vector3d& abc = coefficients[static_cast<std::size_t>(touches[i].face)];
-    const auto row = static_cast<Eigen::Index>(i);
-    EXPECT_NEAR(observation.output_error[row], -1.0 - abc.dot(chain.tip_in_block_m()), 1e-12);
-    EXPECT_LT((observation.matrix.row(row) - abc.transpose() * tip_derivatives(model, chain)).norm(), 1e-10);
-  }
-}
-
 TEST(Identify, GroupsR2WithR3AndCallsThetaSevenWithoutEffect) {
   const IdentificationResult result = identify(paper_problem(exact_touches()), paper_options());
   const CandidateStatus& r2 = candidate(result, "r2");

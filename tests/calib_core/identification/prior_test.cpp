@@ -43,7 +43,7 @@ drawn::Truth touched_truth(IdentificationProblem& problem, const drawn::Manner& 
   for (;;) {
     drawn::Truth truth = drawn::draw_truth(problem, chance);
     problem.touches = drawn::touches(truth, manner, chance);
-    if (drawn::nominal_miss_m(problem, problem.touches) < kFarOffMetres) return truth;
+    if (drawn::nominal_position_error_m(problem, problem.touches) < kFarOffMetres) return truth;
   }
 }
 
@@ -119,8 +119,8 @@ INSTANTIATE_TEST_SUITE_P(
 void PrintTo(const Comparison& comparison, std::ostream* out) { *out << comparison.name; }
 
 double predicted_over_ranges_m(const IdentificationResult& result) {
-  return over_joint_ranges(result.calibrated, tx90::joint_ranges(), std::nullopt, 200)
-      .rms_m(result.certainty.value().covariance())
+  return region_over_joint_ranges(result.calibrated, tx90::joint_ranges(), std::nullopt, 200)
+      .rms_m(result.uncertainty.value().covariance())
       .value();
 }
 
@@ -155,13 +155,13 @@ TEST(Prior, IsUsableFromTheFirstTouchAndGetsSurerWithEveryOne) {
     const auto result = identify(problem, with_prior());
     ASSERT_EQ(result.status, IdentificationStatus::kConverged) << count << ": " << result.message;
     ASSERT_TRUE(result.errors.allFinite() && result.artefact_errors.allFinite());
-    ASSERT_TRUE(result.certainty->covariance().allFinite() && result.certainty->artefact_std.allFinite());
+    ASSERT_TRUE(result.uncertainty->covariance().allFinite() && result.uncertainty->artefact_std.allFinite());
     EXPECT_TRUE(result.rejected.empty()) << count;
     const double predicted = predicted_over_ranges_m(result);
     EXPECT_LT(predicted, 1.05 * before) << count;  // measured at a slightly different arm each time
     before = predicted;
     for (int i = 0; i < kErrorParameterCount; ++i) {
-      const double std = std::sqrt(result.certainty->covariance()(i, i));
+      const double std = std::sqrt(result.uncertainty->covariance()(i, i));
       EXPECT_LE(std, problem.tolerances[static_cast<std::size_t>(i)].value() * (1.0 + 1e-9));
     }
   }
@@ -181,7 +181,7 @@ TEST(Prior, EstimatesWhatIsUncertainOfTheArtefactAlongWithTheArm) {
   ASSERT_EQ(result.artefact_errors.size(), std::ssize(parameters));
   for (Eigen::Index k = 0; k < result.artefact_errors.size(); ++k) {
     const auto& parameter = parameters[static_cast<std::size_t>(k)];
-    const double std = result.certainty->artefact_std[k];
+    const double std = result.uncertainty->artefact_std[k];
     EXPECT_LE(std, parameter.std.value() * (1.0 + 1e-9)) << parameter.name;
     EXPECT_LT(std::abs(result.artefact_errors[k] - truth.artefact_errors[k]), 4.0 * std) << parameter.name;
     if (parameter.kind == ArtefactKind::kStylusRadius) {
@@ -198,7 +198,7 @@ TEST(Prior, NamesAParameterThatNeitherTouchesNorAToleranceTell) {
   const auto result = identify(problem, with_prior());
   EXPECT_EQ(result.status, IdentificationStatus::kSingularPrior);
   EXPECT_THAT(result.message, HasSubstr("theta6"));
-  EXPECT_FALSE(result.certainty || result.scale || result.lack_of_fit);
+  EXPECT_FALSE(result.uncertainty || result.scale || result.lack_of_fit);
   EXPECT_EQ(result.errors.norm(), 0.0);
 }
 
@@ -228,7 +228,7 @@ TEST(Prior, OfAnImpossibleToleranceIsRefusedByName) {
       const auto result = identify(*singular, with_prior());
       EXPECT_EQ(result.status, IdentificationStatus::kSingularPrior) << name << " " << tolerance;
       EXPECT_THAT(result.message, HasSubstr(std::string(name) + " is " + number));
-      EXPECT_FALSE(result.certainty || result.scale || result.lack_of_fit);
+      EXPECT_FALSE(result.uncertainty || result.scale || result.lack_of_fit);
     }
   }
 }

@@ -27,11 +27,11 @@ double length(const std::vector<JointVector>& way) {
   return sum;
 }
 
-const WayJudge kRoundObstacle{is_clear, seconds};
+const MoveCriteria kRoundObstacle{is_clear, seconds};
 
 TEST(TightenedWay, IsShorterAndStillClear) {
   const std::vector<JointVector> wide{at(-2, 0), at(-2, 4), at(2, 4), at(2, 0)};
-  const std::vector<JointVector> tight = tighten_way(kRoundObstacle, wide);
+  const std::vector<JointVector> tight = shortcut_path(kRoundObstacle, wide);
   EXPECT_LT(length(tight), 0.75 * length(wide));
   EXPECT_EQ(tight.front(), wide.front());
   EXPECT_EQ(tight.back(), wide.back());
@@ -39,21 +39,21 @@ TEST(TightenedWay, IsShorterAndStillClear) {
 }
 
 TEST(TightenedWay, LeavesOutAPostureThatIsNotNeeded) {
-  const std::vector<JointVector> tight = tighten_way(kRoundObstacle, {at(-2, 2), at(0, 5), at(2, 2)});
+  const std::vector<JointVector> tight = shortcut_path(kRoundObstacle, {at(-2, 2), at(0, 5), at(2, 2)});
   EXPECT_EQ(tight, (std::vector{at(-2, 2), at(2, 2)}));
 }
 
 TEST(TightenedWay, IsTheGivenOneWhereAShorterOneTakesLonger) {
-  const WayJudge slow_near_by{is_clear, [](const JointVector& from, const JointVector& to) {
-                                return 100.0 / (1.0 + (from + to).norm());
-                              }};
+  const MoveCriteria slow_near_by{is_clear, [](const JointVector& from, const JointVector& to) {
+                                    return 100.0 / (1.0 + (from + to).norm());
+                                  }};
   const std::vector<JointVector> wide{at(-2, 0), at(0, 4), at(2, 0)};
-  EXPECT_EQ(tighten_way(slow_near_by, wide), wide);
+  EXPECT_EQ(shortcut_path(slow_near_by, wide), wide);
 }
 
 TEST(TightenedWay, OfADirectMoveIsTheMove) {
   const std::vector<JointVector> direct{at(-2, 2), at(2, 2)};
-  EXPECT_EQ(tighten_way(kRoundObstacle, direct), direct);
+  EXPECT_EQ(shortcut_path(kRoundObstacle, direct), direct);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ TEST(SweptCollision, FindsWhatAFineSamplingFindsAndNothingElse) {
   while (clear < 6 || clashes < 6) {
     const JointVector from = random_joints(), to = random_joints();
     if (find_clash(scene, forward_chain(paper::nominal(), from), kClearanceMetres)) continue;
-    const bool found = find_clash_on_way(scene, paper::nominal(), from, to, kClearanceMetres).has_value();
+    const bool found = find_clash_on_move(scene, paper::nominal(), from, to, kClearanceMetres).has_value();
     const double finer_m = kClearanceMetres + (found ? 0.0005 : -kSweptErrorMaxMetres);
     EXPECT_EQ(sampled_clash(scene, from, to, finer_m), found) << from.transpose() << " to " << to.transpose();
     ++(found ? clashes : clear);
@@ -57,15 +57,15 @@ TEST(SweptCollision, LooksAtBothEnds) {
   const CollisionScene scene = tx90::scene(0.003);
   const JointVector park = tx90::park_joints(), on_table = tx90::degrees(0, 60, 90, 0, 0, 0);
   ASSERT_TRUE(find_clash(scene, forward_chain(paper::nominal(), on_table), 0.0));
-  EXPECT_TRUE(find_clash_on_way(scene, paper::nominal(), park, on_table, 0.0));
-  EXPECT_TRUE(find_clash_on_way(scene, paper::nominal(), on_table, park, 0.0));
-  EXPECT_TRUE(find_clash_on_way(scene, paper::nominal(), on_table, on_table, 0.0));
-  EXPECT_FALSE(find_clash_on_way(scene, paper::nominal(), park, park, kClearanceMetres));
+  EXPECT_TRUE(find_clash_on_move(scene, paper::nominal(), park, on_table, 0.0));
+  EXPECT_TRUE(find_clash_on_move(scene, paper::nominal(), on_table, park, 0.0));
+  EXPECT_TRUE(find_clash_on_move(scene, paper::nominal(), on_table, on_table, 0.0));
+  EXPECT_FALSE(find_clash_on_move(scene, paper::nominal(), park, park, kClearanceMetres));
 }
 
 TEST(SweptCollision, APostureThatIsNotANumberIsNotClear) {
   const JointVector nowhere = JointVector::Constant(std::numeric_limits<double>::quiet_NaN());
-  EXPECT_TRUE(find_clash_on_way(tx90::scene(0.0), paper::nominal(), tx90::park_joints(), nowhere, 0.0));
+  EXPECT_TRUE(find_clash_on_move(tx90::scene(0.0), paper::nominal(), tx90::park_joints(), nowhere, 0.0));
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ class Transfer : public testing::Test {
     auto stops = between;
     stops.push_back(to);
     for (const JointVector& next : stops) {
-      EXPECT_FALSE(find_clash_on_way(scene_, model_, at, next, kClearanceMetres));
+      EXPECT_FALSE(find_clash_on_move(scene_, model_, at, next, kClearanceMetres));
       at = next;
     }
   }
@@ -33,14 +33,14 @@ class Transfer : public testing::Test {
 };
 
 TEST_F(Transfer, IsEmptyWhenTheDirectMoveIsClear) {
-  const auto way = find_way(space_, park_, tx90::degrees(40, -10, 60, 20, 80, 0));
+  const auto way = find_path(space_, park_, tx90::degrees(40, -10, 60, 20, 80, 0));
   ASSERT_TRUE(way);
   EXPECT_TRUE(way->empty());
 }
 
 TEST_F(Transfer, GoesOverTheBlockWhenItStandsInTheWay) {
-  ASSERT_TRUE(find_clash_on_way(scene_, model_, left_, right_, kClearanceMetres));
-  const auto way = find_way(space_, left_, right_);
+  ASSERT_TRUE(find_clash_on_move(scene_, model_, left_, right_, kClearanceMetres));
+  const auto way = find_path(space_, left_, right_);
   ASSERT_TRUE(way);
   EXPECT_FALSE(way->empty());
   EXPECT_LE(way->size(), kTransferPosturesMax);
@@ -48,11 +48,11 @@ TEST_F(Transfer, GoesOverTheBlockWhenItStandsInTheWay) {
 }
 
 TEST_F(Transfer, LeadsFromOnePostureNearParkToAnyOther) {
-  ASSERT_TRUE(is_near_park(space_, left_));
-  ASSERT_TRUE(is_near_park(space_, right_));
+  ASSERT_TRUE(can_reach_park(space_, left_));
+  ASSERT_TRUE(can_reach_park(space_, right_));
   for (const auto& [from, to] :
        {std::pair(left_, right_), std::pair(right_, left_), std::pair(park_, left_)}) {
-    const auto way = find_way(space_, from, to);
+    const auto way = find_path(space_, from, to);
     ASSERT_TRUE(way);
     expect_clear(from, *way, to);
   }
@@ -63,14 +63,14 @@ TEST_F(Transfer, FindsNoWayOutOfACage) {
   scene_.obstacles.push_back(
       {"cage", tip + Eigen::Vector3d(-0.3, -0.1, -0.3), tip + Eigen::Vector3d(0.3, -0.09, 0.3)});
   const TransferSpace caged(model_, scene_, park_, kClearanceMetres);
-  EXPECT_FALSE(find_way(caged, left_, right_));
-  EXPECT_FALSE(is_near_park(caged, left_));
+  EXPECT_FALSE(find_path(caged, left_, right_));
+  EXPECT_FALSE(can_reach_park(caged, left_));
 }
 
 TEST_F(Transfer, FindsNoWayFromAStartInsideTheClearance) {
   const JointVector near_table = tx90::degrees(0, 60, 90, 0, 0, 0);
   ASSERT_TRUE(find_clash(scene_, forward_chain(model_, near_table), kClearanceMetres));
-  EXPECT_FALSE(find_way(space_, near_table, park_));
+  EXPECT_FALSE(find_path(space_, near_table, park_));
 }
 
 }  // namespace

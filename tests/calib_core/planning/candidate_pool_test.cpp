@@ -48,16 +48,16 @@ TEST(CandidatePool, EveryCandidateIsATouchThatCanBeMade) {
   const CandidatePool pool = find_candidates(problem);
   for (const TouchCandidate& candidate : pool.candidates) {
     const auto touch =
-        make_touch(problem, find_touched(problem, candidate.face), candidate.pose, candidate.joints);
+        make_touch(problem, find_target(problem, candidate.face), candidate.pose, candidate.joints);
     ASSERT_TRUE(std::holds_alternative<PlannedTouch>(touch)) << std::get<std::string>(touch);
     EXPECT_EQ(std::get<PlannedTouch>(touch).clear_joints, candidate.clear_joints);
-    EXPECT_EQ(std::get<PlannedTouch>(touch).predicted_miss_m, problem.nominal_miss_m);
+    EXPECT_EQ(std::get<PlannedTouch>(touch).predicted_position_error_m, problem.nominal_position_error_m);
   }
 }
 
 /// The probe turned about the ball by what the true arm may be off, this way.
 Segment turned(const Segment& body, const Eigen::Vector3d& ball_m, const Eigen::Vector3d& axis) {
-  const Eigen::AngleAxisd turn(kOrientationMiss, axis);
+  const Eigen::AngleAxisd turn(kOrientationErrorMaxRadians, axis);
   return {ball_m + turn * (body.from_m - ball_m), ball_m + turn * (body.to_m - ball_m)};
 }
 
@@ -67,7 +67,7 @@ TEST(CandidatePool, TheBallTouchesFirstHoweverTheProbeIsTiltedAndTheArmIsOff) {
   double tilt_max_rad = 0.0;
   for (const TouchCandidate& candidate : pool.candidates) {
     tilt_max_rad = std::max(tilt_max_rad, candidate.pose.tilt_rad);
-    const int touched = find_touched(problem, candidate.face).touched;
+    const int touched = find_target(problem, candidate.face).solid;
     ASSERT_GE(touched, 0);
     const Box& solid = problem.scene.obstacles[static_cast<std::size_t>(touched)];
     const Chain chain = forward_chain(problem.nominal, candidate.joints);
@@ -77,8 +77,9 @@ TEST(CandidatePool, TheBallTouchesFirstHoweverTheProbeIsTiltedAndTheArmIsOff) {
       for (int way = 0; way < 8; ++way) {
         const double angle = way * std::numbers::pi / 4.0;
         const Eigen::Vector3d axis = probe.linear() * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
-        const Segment off = turned(place(body, chain), probe.translation(), axis);
-        // 1e-5: kOrientationMiss is taken times the distance, a little more than the turn lowers it.
+        const Segment off = turned(axis_in_block(body, chain), probe.translation(), axis);
+        // 1e-5: kOrientationErrorMaxRadians is taken times the distance, a little more than the turn lowers
+        // it.
         ASSERT_GT(segment_box_distance_m(off, solid), body.radius_m - 1e-5) << body.name;
       }
     }

@@ -44,7 +44,7 @@ struct TopTouch {
   }
 
   [[nodiscard]] std::string trouble() const {
-    const auto touch = make_touch(problem, find_touched(problem, 2), pose, joints);
+    const auto touch = make_touch(problem, find_target(problem, 2), pose, joints);
     const auto* text = std::get_if<std::string>(&touch);
     return text ? *text : "";
   }
@@ -67,8 +67,8 @@ TEST(TouchCandidate, PosesFillTheFaceAndTheTiltsAndKeepTheirLimits) {
       const Eigen::Vector3d ball = pose.block_from_tip.translation();
       EXPECT_NEAR(signed_distance_m(contact_plane(face, problem.stylus), ball), 0.0, 1e-12);
       const double u = (ball - face.center_m).dot(face.edge_u), v = (ball - face.center_m).dot(face.edge_v());
-      EXPECT_LE(std::abs(u), face.half_extent_m.x() - problem.nominal_miss_m);
-      EXPECT_LE(std::abs(v), face.half_extent_m.y() - problem.nominal_miss_m);
+      EXPECT_LE(std::abs(u), face.half_extent_m.x() - problem.nominal_position_error_m);
+      EXPECT_LE(std::abs(v), face.half_extent_m.y() - problem.nominal_position_error_m);
       EXPECT_NEAR(pose.block_from_tip.linear().determinant(), 1.0, 1e-12);
       EXPECT_NEAR(pose.block_from_tip.linear().col(2).dot(-face.plane.outward), std::cos(pose.tilt_rad),
                   1e-12);
@@ -84,22 +84,22 @@ TEST(TouchCandidate, PosesFillTheFaceAndTheTiltsAndKeepTheirLimits) {
 TEST(TouchCandidate, KnowsTheSolidThatIsTouchedAndWhatIsBehindIt) {
   const PlanningProblem problem = demo_problem();  // obstacles: block, plate, table
   for (const int side : {0, 1, 3}) {
-    const TouchedFace around = find_touched(problem, side);
-    EXPECT_EQ(around.touched, 0);
+    const TouchTarget around = find_target(problem, side);
+    EXPECT_EQ(around.solid, 0);
     EXPECT_EQ(around.is_behind, (std::vector{true, false, false}));
   }
-  EXPECT_EQ(find_touched(problem, 2).touched, 0);
-  EXPECT_EQ(find_touched(problem, 2).is_behind, (std::vector{true, true, true}));
-  EXPECT_EQ(find_touched(problem, 4).touched, 1);
-  EXPECT_EQ(find_touched(problem, 4).is_behind, (std::vector{false, true, true}));
+  EXPECT_EQ(find_target(problem, 2).solid, 0);
+  EXPECT_EQ(find_target(problem, 2).is_behind, (std::vector{true, true, true}));
+  EXPECT_EQ(find_target(problem, 4).solid, 1);
+  EXPECT_EQ(find_target(problem, 4).is_behind, (std::vector{false, true, true}));
 }
 
 TEST(TouchCandidate, AFaceInTheAirTouchesNothingAndHidesNothing) {
   PlanningProblem problem = demo_problem();
   problem.faces[2].plane.offset_m += 0.1;
   problem.faces[2].center_m.y() -= 0.1;
-  EXPECT_EQ(find_touched(problem, 2).touched, -1);
-  EXPECT_EQ(find_touched(problem, 2).is_behind, (std::vector{false, false, false}));
+  EXPECT_EQ(find_target(problem, 2).solid, -1);
+  EXPECT_EQ(find_target(problem, 2).is_behind, (std::vector{false, false, false}));
 }
 
 TEST(TouchCandidate, MakesATouchWhoseProbeStaysOverTheFace) { EXPECT_EQ(TopTouch(40).trouble(), ""); }

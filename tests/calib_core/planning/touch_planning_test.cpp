@@ -12,7 +12,8 @@
 #include "calib_core/motion/swept_collision.hpp"
 #include "calib_core/observability/identifiability.hpp"
 #include "calib_core/observability/observation_matrix.hpp"
-#include "calib_core/planning/online_estimate.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
+#include "calib_core/planning/transfer_planning.hpp"
 #include "tests/calib_core/tx90.hpp"
 
 namespace calib {
@@ -121,9 +122,10 @@ TEST_P(EveryPlan, InterleavesTheFacesAndFitsBeforeItHoldsOut) {
 }
 
 TEST_P(EveryPlan, BeginsWithTheNominalMissAndEndsWithASmallOne) {
-  EXPECT_EQ(touches_.front().predicted_miss_m, problem_.nominal_miss_m);
-  EXPECT_LT(touches_.back().predicted_miss_m, 0.25 * problem_.nominal_miss_m);
-  for (const PlannedTouch& touch : touches_) EXPECT_LE(touch.predicted_miss_m, problem_.nominal_miss_m);
+  EXPECT_EQ(touches_.front().predicted_position_error_m, problem_.nominal_position_error_m);
+  EXPECT_LT(touches_.back().predicted_position_error_m, 0.25 * problem_.nominal_position_error_m);
+  for (const PlannedTouch& touch : touches_)
+    EXPECT_LE(touch.predicted_position_error_m, problem_.nominal_position_error_m);
 }
 
 TEST_P(EveryPlan, StatesEachWayAndItsTime) {
@@ -135,11 +137,11 @@ TEST_P(EveryPlan, StatesEachWayAndItsTime) {
     way.insert(way.end(), touch.via.begin(), touch.via.end());
     way.push_back(touch.clear_joints);
     EXPECT_LE(touch.via.size(), kTransferPosturesMax);
-    EXPECT_NEAR(touch.travel_s, way_time_s(prepare(problem.nominal), problem.motion, way), 1e-9);
+    EXPECT_NEAR(touch.travel_s, path_time_s(prepare(problem.nominal), problem.motion, way), 1e-9);
     // The touch before may have had the smaller miss: both keep at least the least possible one.
     for (std::size_t leg = 1; leg < way.size(); ++leg) {
-      EXPECT_FALSE(find_clash_on_way(travel_scene(problem), problem.nominal, way[leg - 1], way[leg],
-                                     kPredictedMissMinMetres - kSweptErrorMaxMetres));
+      EXPECT_FALSE(find_clash_on_move(travel_scene(problem), problem.nominal, way[leg - 1], way[leg],
+                                      kPredictedPositionErrorMinMetres - kSweptErrorMaxMetres));
     }
     standing = touch.clear_joints;
     sum_s += touch.travel_s + touch.touch_s;
@@ -158,8 +160,8 @@ TEST_P(EveryPlan, StaysInTheJointRanges) {
 
 TEST_P(EveryPlan, TouchesTheFaceOnAStraightLineAlongItsNormal) {
   for (const PlannedTouch& touch : touches_) {
-    const bool is_aimed = touch.predicted_miss_m < problem_.nominal_miss_m;
-    const double standoff_m = std::max(touch.predicted_miss_m + 0.003, is_aimed ? 0.005 : 0.015);
+    const bool is_aimed = touch.predicted_position_error_m < problem_.nominal_position_error_m;
+    const double standoff_m = std::max(touch.predicted_position_error_m + 0.003, is_aimed ? 0.005 : 0.015);
     const Face& face = face_of(touch);
     const Eigen::Isometry3d contact = forward_kinematics(problem_.nominal, touch.joints);
     EXPECT_NEAR(signed_distance_m(contact_plane(face, problem_.stylus), contact.translation()), 0.0, 1e-9);
@@ -187,12 +189,12 @@ TEST_P(EveryPlan, KeepsTheArmClearFromTheClearPostureToTheContact) {
   std::erase_if(arm.bodies, [](const Capsule& body) { return body.frame == 7; });
   for (const PlannedTouch& touch : unaimed_) {
     EXPECT_FALSE(find_clash(problem_.scene, forward_chain(problem_.nominal, touch.clear_joints),
-                            problem_.nominal_miss_m));
+                            problem_.nominal_position_error_m));
     for (const auto& [from, to] : {std::pair(touch.clear_joints, touch.approach_joints),
                                    std::pair(touch.approach_joints, touch.joints)}) {
       for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
         const Chain chain = forward_chain(problem_.nominal, from + share * (to - from));
-        EXPECT_FALSE(find_clash(arm, chain, problem_.nominal_miss_m - 1e-4));
+        EXPECT_FALSE(find_clash(arm, chain, problem_.nominal_position_error_m - 1e-4));
       }
     }
   }
@@ -272,7 +274,7 @@ TEST_P(EveryPlan, HasAClearWayFromEachTouchToTheNextAlsoForAnArmThatMisses) {
       for (int step = 0; step <= steps; ++step) {
         const JointVector joints = way[leg - 1] + move * step / steps;
         ASSERT_FALSE(find_clash(problem_.scene, forward_chain(problem_.nominal, joints),
-                                problem_.nominal_miss_m - 1e-3));
+                                problem_.nominal_position_error_m - 1e-3));
         ASSERT_FALSE(find_clash(problem_.scene, forward_chain(truth, joints), 0.0));
       }
     }
@@ -293,8 +295,8 @@ TEST_P(EveryPlan, TravelsOutsideTheSlowZone) {
     way.insert(way.end(), between->begin(), between->end());
     way.push_back(touch.clear_joints);
     for (std::size_t leg = 1; leg < way.size(); ++leg) {
-      EXPECT_FALSE(find_clash_on_way(probe, problem_.nominal, way[leg - 1], way[leg],
-                                     problem_.nominal_miss_m + kSlowZoneMetres));
+      EXPECT_FALSE(find_clash_on_move(probe, problem_.nominal, way[leg - 1], way[leg],
+                                      problem_.nominal_position_error_m + kSlowZoneMetres));
     }
   }
 }

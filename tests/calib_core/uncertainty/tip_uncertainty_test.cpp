@@ -105,7 +105,8 @@ TEST(TipUncertainty, IsWhatArmsWithErrorsDrawnFromTheCovarianceShow) {
 TEST(TipUncertainty, OfARegionIsWhatArmsWithDrawnErrorsShowOverIt) {
   const ArmMatrix root = random_root(6);
   const std::vector<JointVector> postures = some_postures(20);
-  const double predicted = over_postures(arm(), postures, gripper()).rms_m(root * root.transpose()).value();
+  const double predicted =
+      region_over_postures(arm(), postures, gripper()).rms_m(root * root.transpose()).value();
   EXPECT_NEAR(drawn_rms_m(arm(), postures, gripper(), root) / predicted, 1.0, kDrawnShare);
 }
 
@@ -129,7 +130,7 @@ TEST(TipUncertainty, OfAnUncertainLengthIsThatLengthEverywhere) {
     for (const JointVector& joints : some_postures(20)) {
       EXPECT_NEAR(tip_std_m(arm(), joints, covariance), kStdM, 1e-15) << name;
     }
-    EXPECT_NEAR(over_joint_ranges(arm(), tx90::joint_ranges()).rms_m(covariance).value(), kStdM, 1e-15)
+    EXPECT_NEAR(region_over_joint_ranges(arm(), tx90::joint_ranges()).rms_m(covariance).value(), kStdM, 1e-15)
         << name;
   }
 }
@@ -176,15 +177,15 @@ TEST(TipRegion, MeanSquareIsThatOfItsPostures) {
   double sum = 0.0;
   for (const JointVector& joints : postures) sum += std::pow(tip_std_m(arm(), joints, covariance), 2);
   const double wanted = std::sqrt(sum / 50.0);
-  EXPECT_NEAR(over_postures(arm(), postures).rms_m(covariance).value(), wanted, 1e-12 * wanted);
-  const TipRegion ranges = over_joint_ranges(arm(), tx90::joint_ranges(), {}, 50);
+  EXPECT_NEAR(region_over_postures(arm(), postures).rms_m(covariance).value(), wanted, 1e-12 * wanted);
+  const TipRegion ranges = region_over_joint_ranges(arm(), tx90::joint_ranges(), {}, 50);
   EXPECT_EQ(ranges.posture_count, 50);
   EXPECT_NEAR(ranges.rms_m(covariance).value(), wanted, 1e-12 * wanted);
 }
 
 TEST(TipRegion, TheUsualCountOfPosturesIsEnoughForTheJointRanges) {
-  const TipRegion usual = over_joint_ranges(arm(), tx90::joint_ranges(), gripper());
-  const TipRegion many = over_joint_ranges(arm(), tx90::joint_ranges(), gripper(), 20000);
+  const TipRegion usual = region_over_joint_ranges(arm(), tx90::joint_ranges(), gripper());
+  const TipRegion many = region_over_joint_ranges(arm(), tx90::joint_ranges(), gripper(), 20000);
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     const ArmMatrix covariance = random_covariance(seed);
     EXPECT_NEAR(usual.rms_m(covariance).value() / many.rms_m(covariance).value(), 1.0, 0.03) << seed;
@@ -200,16 +201,16 @@ TEST(TipRegion, PosturesInABoxHaveThePointInside) {
       const Eigen::AlignedBox3d box(kInFrontOfTheArm.min_m, kInFrontOfTheArm.max_m);
       EXPECT_TRUE(box.contains(point_m(arm(), joints, tool)));
     }
-    EXPECT_EQ(over_box(arm(), tx90::joint_ranges(), kInFrontOfTheArm, tool, 300).posture_count, 300);
+    EXPECT_EQ(region_over_box(arm(), tx90::joint_ranges(), kInFrontOfTheArm, tool, 300).posture_count, 300);
   }
 }
 
 TEST(TipRegion, WithoutAPostureHasNoFigure) {
   const Box far{"out of reach", {5.0, 5.0, 5.0}, {6.0, 6.0, 6.0}};
-  const TipRegion region = over_box(arm(), tx90::joint_ranges(), far, {}, 20);
+  const TipRegion region = region_over_box(arm(), tx90::joint_ranges(), far, {}, 20);
   EXPECT_EQ(region.posture_count, 0);
   EXPECT_FALSE(region.rms_m(random_covariance(1)));
-  EXPECT_FALSE(over_postures(arm(), {}).rms_m(random_covariance(1)));
+  EXPECT_FALSE(region_over_postures(arm(), {}).rms_m(random_covariance(1)));
 }
 
 TEST(TipRegion, WhatIsNotANumberIsNotZero) {
@@ -217,7 +218,7 @@ TEST(TipRegion, WhatIsNotANumberIsNotZero) {
   covariance(3, 4) = std::numeric_limits<double>::quiet_NaN();
   const JointVector joints = some_postures(1).front();
   EXPECT_TRUE(std::isnan(tip_std_m(arm(), joints, covariance)));
-  EXPECT_TRUE(std::isnan(over_postures(arm(), {&joints, 1}).rms_m(covariance).value()));
+  EXPECT_TRUE(std::isnan(region_over_postures(arm(), {&joints, 1}).rms_m(covariance).value()));
 }
 
 TEST(TipRegion, TakesAPrismaticJointsRangeInMetres) {
@@ -229,12 +230,13 @@ TEST(TipRegion, TakesAPrismaticJointsRangeInMetres) {
   const ArmMatrix root = random_root(9);
   std::vector<JointVector> postures;
   for (int i = 1; i <= 10; ++i) postures.push_back(halton_posture(i, ranges));
-  const double predicted = over_joint_ranges(model, ranges, {}, 10).rms_m(root * root.transpose()).value();
+  const double predicted =
+      region_over_joint_ranges(model, ranges, {}, 10).rms_m(root * root.transpose()).value();
   EXPECT_NEAR(drawn_rms_m(model, postures, {}, root) / predicted, 1.0, kDrawnShare);
 }
 
 TEST(BoxGrid, CellsHaveAboutTheWantedEdgeAndFillTheBoxXFastest) {
-  const BoxGrid grid = divide({"box", {-0.3, -0.5, -0.25}, {0.32, 0.0, 0.55}}, 0.1);
+  const BoxGrid grid = divide_box({"box", {-0.3, -0.5, -0.25}, {0.32, 0.0, 0.55}}, 0.1);
   EXPECT_EQ(grid.counts, (std::array{6, 5, 8}));
   EXPECT_NEAR(grid.cell_size_m[0], 0.62 / 6, 1e-15);
   int wanted = 0;
@@ -251,24 +253,24 @@ TEST(BoxGrid, CellsHaveAboutTheWantedEdgeAndFillTheBoxXFastest) {
 }
 
 TEST(BoxGrid, TheBoxHasItsOwnFacesAndNothingBeyondThem) {
-  const BoxGrid grid = divide({"box", {0, 0, 0}, {1, 1, 1}}, 0.5);
+  const BoxGrid grid = divide_box({"box", {0, 0, 0}, {1, 1, 1}}, 0.5);
   EXPECT_EQ(grid.cell_of({0, 0, 0}), 0);
   EXPECT_EQ(grid.cell_of({1, 1, 1}), 7);
   EXPECT_FALSE(grid.cell_of({1.0001, 0.5, 0.5}));
   EXPECT_FALSE(grid.cell_of({0.5, -0.0001, 0.5}));
   EXPECT_FALSE(grid.cell_of({0.5, std::numeric_limits<double>::quiet_NaN(), 0.5}));
-  EXPECT_EQ(divide({"box", {0, 0, 0}, {1, 1, 0.01}}, 0.5).counts[2], 1) << "a thin box has one layer";
+  EXPECT_EQ(divide_box({"box", {0, 0, 0}, {1, 1, 0.01}}, 0.5).counts[2], 1) << "a thin box has one layer";
 }
 
 TEST(BoxGrid, NeedsExtent) {
-  EXPECT_THROW(divide(kInFrontOfTheArm, 0.0), std::logic_error);
-  EXPECT_THROW(divide({"flat", {0, 0, 0}, {1, 0, 1}}, 0.1), std::logic_error);
+  EXPECT_THROW(divide_box(kInFrontOfTheArm, 0.0), std::logic_error);
+  EXPECT_THROW(divide_box({"flat", {0, 0, 0}, {1, 0, 1}}, 0.1), std::logic_error);
 }
 
 TEST(UncertaintyMap, MeanSquareOverItsCellsIsTheRegions) {
   const ArmMatrix covariance = random_covariance(10);
   const auto postures = postures_in_box(arm(), tx90::joint_ranges(), kInFrontOfTheArm, gripper(), 1000);
-  const TipMap cells = make_tip_map(arm(), postures, divide(kInFrontOfTheArm, 0.1), gripper());
+  const TipMap cells = make_tip_map(arm(), postures, divide_box(kInFrontOfTheArm, 0.1), gripper());
   const UncertaintyMap map = cells.evaluate(covariance);
   ASSERT_EQ(std::ssize(map.rms_m), map.grid.cell_count());
   double sum = 0.0;
@@ -281,14 +283,14 @@ TEST(UncertaintyMap, MeanSquareOverItsCellsIsTheRegions) {
   }
   EXPECT_EQ(count, 1000);
   EXPECT_LT(empty, map.grid.cell_count() / 2);
-  const double wanted = over_postures(arm(), postures, gripper()).rms_m(covariance).value();
+  const double wanted = region_over_postures(arm(), postures, gripper()).rms_m(covariance).value();
   EXPECT_NEAR(std::sqrt(sum / count), wanted, 1e-12 * wanted);
 }
 
 TEST(UncertaintyMap, ACellHoldsThePosturesThatFallIntoItAndIsEmptyWithoutAny) {
   const JointVector joints = postures_in_box(arm(), tx90::joint_ranges(), kInFrontOfTheArm, {}, 1).front();
   const JointVector outside = tx90::degrees(180, 0, 60, 0, 90, 0);  // behind the arm
-  const BoxGrid grid = divide(kInFrontOfTheArm, 0.1);
+  const BoxGrid grid = divide_box(kInFrontOfTheArm, 0.1);
   ASSERT_FALSE(grid.cell_of(point_m(arm(), outside, {})));
   const int cell = grid.cell_of(point_m(arm(), joints, {})).value();
   const ArmMatrix covariance = random_covariance(12);

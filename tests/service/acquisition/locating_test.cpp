@@ -30,7 +30,7 @@ Eigen::Isometry3d true_move() {
 class Person {
  public:
   explicit Person(const Cell& cell) : arm_(cell.arm.model), cell_(cell), spots_(place_spots(cell)) {
-    calib::set_place(arm_, true_move().inverse() * calib::place_of(arm_));
+    calib::set_block_pose(arm_, true_move().inverse() * calib::block_pose_of(arm_));
   }
 
   [[nodiscard]] calib::JointVector on(const PlaceSpot& spot) const {
@@ -136,8 +136,8 @@ TEST_F(LocatingTheBlock, ATouchTakenByWordSaysLess) {
 
 TEST_F(LocatingTheBlock, ThePassLeavesItsDistanceOverEveryFace) {
   take_all();
-  const Cell there = cell_at(
-      cell_, {.cell_from_block = locating_.fit()->old_from_new, .std_place = locating_.fit()->std_place});
+  const Cell there = cell_with_block_pose(cell_, {.cell_from_block = locating_.fit()->old_from_new,
+                                                  .std_block_pose = locating_.fit()->std_block_pose});
   const auto postures = pass_postures(there, locating_.touches());
   ASSERT_TRUE(std::holds_alternative<std::vector<calib::JointVector>>(postures))
       << std::get<std::string>(postures);
@@ -157,41 +157,41 @@ TEST_F(LocatingTheBlock, APlaceIsReadBackAsItWasWritten) {
   take_all();
   const Folder folder;
   const std::filesystem::path file = folder.path() / "place.json";
-  EXPECT_FALSE(read_place(file));
-  const LocatedPlace place{.cell_from_block = locating_.fit()->old_from_new,
-                           .covariance = locating_.fit()->covariance,
-                           .std_place = locating_.fit()->std_place,
-                           .touches = locating_.touches(),
-                           .located_at = "2026-11-22T03:00:00.000Z",
-                           .digest = place_digest(cell_)};
-  write_place(file, place);
-  write_place(file, place);
-  const auto read = read_place(file);
+  EXPECT_FALSE(read_block_pose(file));
+  const BlockPose place{.cell_from_block = locating_.fit()->old_from_new,
+                        .covariance = locating_.fit()->covariance,
+                        .std_block_pose = locating_.fit()->std_block_pose,
+                        .touches = locating_.touches(),
+                        .located_at = "2026-11-22T03:00:00.000Z",
+                        .digest = block_pose_digest(cell_)};
+  write_block_pose(file, place);
+  write_block_pose(file, place);
+  const auto read = read_block_pose(file);
   ASSERT_TRUE(read);
   EXPECT_TRUE(read->cell_from_block.isApprox(place.cell_from_block, 1e-12));
   EXPECT_TRUE(read->covariance.isApprox(place.covariance, 1e-12));
-  EXPECT_EQ(read->std_place, place.std_place);
+  EXPECT_EQ(read->std_block_pose, place.std_block_pose);
   ASSERT_EQ(read->touches.size(), 6U);
   EXPECT_TRUE(read->touches[5].joints.isApprox(place.touches[5].joints, 1e-12));
   EXPECT_EQ(read->digest, place.digest);
-  EXPECT_NE(place_digest(shipped_cell("edf")), place.digest);
+  EXPECT_NE(block_pose_digest(shipped_cell("edf")), place.digest);
 }
 
 TEST_F(LocatingTheBlock, APlaceThatWasChangedByOtherMeansIsRefused) {
   take_all();
   const Folder folder;
   const std::filesystem::path file = folder.path() / "place.json";
-  write_place(file, {.cell_from_block = locating_.fit()->old_from_new,
-                     .covariance = locating_.fit()->covariance,
-                     .std_place = {},
-                     .touches = locating_.touches(),
-                     .located_at = "2026-11-22T03:00:00.000Z",
-                     .digest = place_digest(cell_)});
+  write_block_pose(file, {.cell_from_block = locating_.fit()->old_from_new,
+                          .covariance = locating_.fit()->covariance,
+                          .std_block_pose = {},
+                          .touches = locating_.touches(),
+                          .located_at = "2026-11-22T03:00:00.000Z",
+                          .digest = block_pose_digest(cell_)});
   nlohmann::json changed;
   std::ifstream(file) >> changed;
   changed["shift_mm"][2] = changed["shift_mm"][2].get<double>() + 250.0;
   std::ofstream(file) << changed;
-  EXPECT_THROW(static_cast<void>(read_place(file)), ConfigError);
+  EXPECT_THROW(static_cast<void>(read_block_pose(file)), ConfigError);
 }
 
 cs8::State state_at(const calib::JointVector& joints, bool touched) {
@@ -205,41 +205,41 @@ TEST_F(LocatingTheBlock, ATouchIsWhereTheProbeReadsTouchedFirst) {
   const calib::JointVector on = person_.on(place_spots(cell_)[0]);
   calib::JointVector before = on;
   before[1] += 1e-4;
-  EXPECT_FALSE(watch.hear(state_at(on, true)));  // nobody saw it free
-  EXPECT_FALSE(watch.hear(state_at(before, false)));
+  EXPECT_FALSE(watch.on_controller_state(state_at(on, true)));  // nobody saw it free
+  EXPECT_FALSE(watch.on_controller_state(state_at(before, false)));
   cs8::State between = state_at(before, false);
   between.flags = cs8::kSettled | cs8::kArmCalibrated;  // its two inputs change one after the other
-  EXPECT_FALSE(watch.hear(between));
-  const auto touch = watch.hear(state_at(on, true));
+  EXPECT_FALSE(watch.on_controller_state(between));
+  const auto touch = watch.on_controller_state(state_at(on, true));
   ASSERT_TRUE(touch);
   EXPECT_EQ(touch->wire_joints, to_wire(on));
   EXPECT_GT(*touch->moved_m, 0.0);
   EXPECT_LT(*touch->moved_m, 2e-4);
-  EXPECT_FALSE(watch.hear(state_at(on, true)));  // once
+  EXPECT_FALSE(watch.on_controller_state(state_at(on, true)));  // once
 }
 
 TEST_F(LocatingTheBlock, NothingIsTakenByWordFromAFreeProbeOrAMovingArm) {
   HandTouchWatch watch(cell_.arm.model);
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
   const calib::JointVector on = person_.on(place_spots(cell_)[0]);
-  watch.hear(state_at(on, false));
+  watch.on_controller_state(state_at(on, false));
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
   cs8::State moving = state_at(on, true);
   moving.flags &= ~std::uint32_t{cs8::kSettled};
-  watch.hear(moving);
+  watch.on_controller_state(moving);
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
-  watch.hear(state_at(on, true));
+  watch.on_controller_state(state_at(on, true));
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take())) << "it was given out when the probe tripped";
 }
 
 TEST_F(LocatingTheBlock, AContactIsOneTouchHoweverOftenItIsAskedFor) {
   HandTouchWatch watch(cell_.arm.model);
   const calib::JointVector on = person_.on(place_spots(cell_)[0]);
-  watch.hear(state_at(on, true));  // it touched before anybody looked
+  watch.on_controller_state(state_at(on, true));  // it touched before anybody looked
   EXPECT_TRUE(std::holds_alternative<HandTouch>(watch.take()));
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
-  watch.hear(state_at(on, false));
-  EXPECT_TRUE(watch.hear(state_at(on, true)));
+  watch.on_controller_state(state_at(on, false));
+  EXPECT_TRUE(watch.on_controller_state(state_at(on, true)));
   EXPECT_TRUE(std::holds_alternative<std::string>(watch.take()));
 }
 
@@ -247,10 +247,10 @@ TEST_F(LocatingTheBlock, NothingIsTakenFromAProbeInFaultOrAnArmWithoutReferences
   const calib::JointVector on = person_.on(place_spots(cell_)[0]);
   for (const std::uint32_t lost : {std::uint32_t{cs8::kProbeTouched}, std::uint32_t{cs8::kArmCalibrated}}) {
     HandTouchWatch watch(cell_.arm.model);
-    watch.hear(state_at(on, false));
+    watch.on_controller_state(state_at(on, false));
     cs8::State state = state_at(on, true);
     state.flags &= ~lost;
-    EXPECT_FALSE(watch.hear(state)) << lost;
+    EXPECT_FALSE(watch.on_controller_state(state)) << lost;
     EXPECT_TRUE(std::holds_alternative<std::string>(watch.take())) << lost;
   }
 }

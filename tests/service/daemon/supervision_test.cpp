@@ -43,17 +43,17 @@ class SupervisionTest : public ::testing::Test {
 TEST_F(SupervisionTest, TellsWhenTheDaemonServesAndWhenItStops) {
   Supervision supervision(io_.get_executor());
   EXPECT_EQ(told(), "");
-  supervision.tell_ready("cell demo");
+  supervision.notify_ready("cell demo");
   EXPECT_EQ(told(), "READY=1\nSTATUS=cell demo");
   EXPECT_EQ(told(), "") << "nobody waits for a sign of life";
-  supervision.tell_stopping();
+  supervision.notify_stopping();
   EXPECT_THAT(told(), StartsWith("STOPPING=1"));
 }
 
 TEST_F(SupervisionTest, GivesSignsOfLifeOnlyAsLongAsTheThreadTurns) {
   setenv("WATCHDOG_USEC", "3000", 1);
   Supervision supervision(io_.get_executor());
-  supervision.tell_ready("cell demo");
+  supervision.notify_ready("cell demo");
   EXPECT_THAT(told(), HasSubstr("READY=1"));
   EXPECT_EQ(told(), "WATCHDOG=1");
   EXPECT_EQ(told(), "") << "a thread that does not turn is silent";
@@ -64,7 +64,7 @@ TEST_F(SupervisionTest, GivesSignsOfLifeOnlyAsLongAsTheThreadTurns) {
 TEST_F(SupervisionTest, IsSilentWhereNobodyListens) {
   unsetenv("NOTIFY_SOCKET");
   Supervision supervision(io_.get_executor());
-  supervision.tell_ready("cell demo");
+  supervision.notify_ready("cell demo");
   EXPECT_EQ(told(), "");
 }
 

@@ -73,7 +73,7 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.identifiable_count = 3;
   busy.condition_number = 12.5;
   busy.predicted_tip_rms_m = 6e-5;
-  busy.more_would_bring = "8 more on plane 5: 0.21 to 0.15 mm";
+  busy.touch_benefit = "8 more on plane 5: 0.21 to 0.15 mm";
   busy.eta_s = 30.0;
   busy.controller.connected = true;
   busy.controller.powered = true;
@@ -83,7 +83,7 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.controller.touch_tested = true;
   busy.controller.permit = "awaited";
   busy.controller.probe = "free";
-  busy.by_hand = HandGuide{.activity = "guided",
+  busy.by_hand = HandGuide{.activity = HandActivity::kGuided,
                            .plane = 3,
                            .index = 1,
                            .total = 6,
@@ -124,8 +124,11 @@ TEST(StatusDocument, BytesThatAreNoTextAreShownAsFarAsTheyAre) {
 }
 
 TEST(RunsDocument, HasEachRunsFieldsAndWhereTheNextPageBegins) {
-  const StoredRun running{
-      .id = 2, .recipe = "edf-25", .started_at = "start", .outcome = "running", .verdict = "none"};
+  const StoredRun running{.id = 2,
+                          .recipe = "edf-25",
+                          .started_at = "start",
+                          .outcome = RunOutcome::kRunning,
+                          .verdict = Verdict::kNone};
   const json page = json::parse(runs_document({running}, 2));
   EXPECT_EQ(page.at("next_before"), "2");
   ASSERT_EQ(page.at("runs").size(), 1u);

@@ -15,7 +15,7 @@ namespace {
 TEST(ResultDocument, AnIntervalIsTheErrorAndTheCoverageFactorTimesItsDeviation) {
   const calib::IdentificationProblem problem = problem_of(edf().recipes.at("edf-25"));
   const auto identified = calib::identify(problem, edf().recipes.at("edf-25").identification);
-  const double factor = identified.certainty.value().coverage_factor;
+  const double factor = identified.uncertainty.value().coverage_factor;
   int seen = 0;
   for (const json& found : result().at("parameters")) {
     if (found.at("status") != "identified") continue;
@@ -97,7 +97,7 @@ TEST(ResultDocument, WithTheRecipeOfThePaper23AreIdentifiedAndTheRestIsNamed) {
 
 TEST(ResultDocument, AGroupedErrorIsTheSumOfTheOthersInTheUnitsShown) {
   const calib::KinematicModel& model = edf().arm.model;
-  const auto planes = calib::describe(artefact_knowledge(edf())).contact_planes;
+  const auto planes = calib::make_artefact(artefact_knowledge(edf())).contact_planes;
   std::vector<calib::Touch> on_face;
   for (const calib::Touch& touch : table3_touches())
     on_face.push_back(moved_onto_plane(model, planes[static_cast<std::size_t>(touch.face)], touch));

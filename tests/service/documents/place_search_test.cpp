@@ -18,15 +18,15 @@ using ::testing::HasSubstr;
 
 constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
-Eigen::Isometry3d old_from_new(const BlockPlace& place) {
+Eigen::Isometry3d old_from_new(const BlockDisplacement& place) {
   return Eigen::Translation3d(place.shift_m) * Eigen::AngleAxisd(place.yaw_rad, Eigen::Vector3d::UnitY());
 }
 
-const std::vector<BlockPlace> kPlaces{{.shift_m = {0.1, 0.0, 0.0}},
-                                      {.shift_m = {0.0, -0.3, 0.0}},
-                                      {.shift_m = {0.2, -0.1, -0.4}},
-                                      {.yaw_rad = 0.7},
-                                      {.shift_m = {-0.3, 0.2, 0.5}, .yaw_rad = -2.0}};
+const std::vector<BlockDisplacement> kPlaces{{.shift_m = {0.1, 0.0, 0.0}},
+                                             {.shift_m = {0.0, -0.3, 0.0}},
+                                             {.shift_m = {0.2, -0.1, -0.4}},
+                                             {.yaw_rad = 0.7},
+                                             {.shift_m = {-0.3, 0.2, 0.5}, .yaw_rad = -2.0}};
 
 /// The largest entry by which two poses differ.
 double difference(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
@@ -37,8 +37,8 @@ TEST(BlockPlaces, TheArmStaysInTheRoomWhateverItsShape) {
   for (const char* arm : {"tx90", "tx60", "three-parallel"}) {
     Cell cell = edf();
     cell.arm = read_arm(kSourceDir / "config/arms" / (std::string(arm) + ".json"));
-    for (const BlockPlace& place : kPlaces) {
-      const Cell there = with_block_at(cell, place);
+    for (const BlockDisplacement& place : kPlaces) {
+      const Cell there = with_block_displaced(cell, place);
       for (int i = 1; i <= 20; ++i) {
         const calib::JointVector joints = calib::halton_posture(i, cell.arm.joint_ranges);
         const auto now = calib::forward_kinematics(cell.arm.model, joints);
@@ -52,9 +52,9 @@ TEST(BlockPlaces, TheArmStaysInTheRoomWhateverItsShape) {
 TEST(BlockPlaces, AnArmWhoseFirstAxisIsAlongTheBlocksZStaysInTheRoomToo) {
   Cell cell = edf();
   cell.arm.model.links[1].alpha_rad = 0.0;
-  for (const BlockPlace& place : kPlaces) {
+  for (const BlockDisplacement& place : kPlaces) {
     if (place.yaw_rad != 0.0) continue;
-    const Cell there = with_block_at(cell, place);
+    const Cell there = with_block_displaced(cell, place);
     const calib::JointVector joints = calib::halton_posture(1, cell.arm.joint_ranges);
     EXPECT_LT(difference(old_from_new(place) * calib::forward_kinematics(there.arm.model, joints),
                          calib::forward_kinematics(cell.arm.model, joints)),
@@ -63,8 +63,8 @@ TEST(BlockPlaces, AnArmWhoseFirstAxisIsAlongTheBlocksZStaysInTheRoomToo) {
 }
 
 TEST(BlockPlaces, BoxesOfTheRoomStayAndThoseOfTheBlockGoWithIt) {
-  const BlockPlace place{.shift_m = {0.1, -0.2, 0.3}};
-  const Cell there = with_block_at(edf(), place);
+  const BlockDisplacement place{.shift_m = {0.1, -0.2, 0.3}};
+  const Cell there = with_block_displaced(edf(), place);
   ASSERT_FALSE(edf().keep_out_boxes.empty());
   EXPECT_LT((there.keep_out_boxes[0].min_m + place.shift_m - edf().keep_out_boxes[0].min_m).norm(), 1e-12);
   EXPECT_LT((there.workspace_box.max_m + place.shift_m - edf().workspace_box.max_m).norm(), 1e-12);
@@ -75,8 +75,8 @@ TEST(BlockPlaces, BoxesOfTheRoomStayAndThoseOfTheBlockGoWithIt) {
 TEST(BlockPlaces, ABoxThatIsTurnedIsHeldByTheOneThatStandsForIt) {
   const calib::Box& now = edf().workspace_box;
   for (const double yaw : {0.3, kQuarterTurn, -1.0}) {
-    const BlockPlace place{.yaw_rad = yaw};
-    const calib::Box then = with_block_at(edf(), place).workspace_box;
+    const BlockDisplacement place{.yaw_rad = yaw};
+    const calib::Box then = with_block_displaced(edf(), place).workspace_box;
     Eigen::Vector3d min_m = Eigen::Vector3d::Constant(1e9), max_m = -min_m;
     for (int corner = 0; corner < 8; ++corner) {
       const Eigen::Vector3d at_m(corner & 1 ? now.min_m.x() : now.max_m.x(),
@@ -92,8 +92,8 @@ TEST(BlockPlaces, ABoxThatIsTurnedIsHeldByTheOneThatStandsForIt) {
 
 TEST(BlockPlaces, PiecesOfATurnedTableHoldAllOfItAndLittleElse) {
   const calib::Box& table = edf().keep_out_boxes.at(0);
-  const BlockPlace place{.yaw_rad = 0.4};
-  const auto pieces = with_block_at(edf(), place).keep_out_boxes;
+  const BlockDisplacement place{.yaw_rad = 0.4};
+  const auto pieces = with_block_displaced(edf(), place).keep_out_boxes;
   const auto is_held = [&](const Eigen::Vector3d& in_room_m) {
     const Eigen::Vector3d point_m = old_from_new(place).inverse() * in_room_m;
     return std::ranges::any_of(pieces, [&](const calib::Box& piece) {
@@ -126,7 +126,7 @@ TEST(PlaceSearchFigures, RanksPlacesBySmallestErrorAndTellsWhyOthersWillNotDo) {
   EXPECT_TRUE(findings.front().fully_planned);
   double last_m = 0.0;
   int infeasible = 0;
-  for (const PlaceFinding& finding : findings) {
+  for (const PlaceCandidate& finding : findings) {
     if (finding.figures) {
       EXPECT_EQ(infeasible, 0) << "those without a plan come last";
       EXPECT_GE(finding.figures->workspace_box_rms_m.value(), last_m);

@@ -200,10 +200,10 @@ TEST(ResultDocument, NamesTheTouchesThatWereRejectedAndWhatWasEstimatedOfTheBloc
       {.name = "temperature", .kind = calib::ArtefactKind::kTemperature, .nominal = 21.0, .std = 1.0}};
   calib::IdentificationResult identified;
   identified.rejected = {{.touch = 53, .residual_m = 1.21e-3},
-                         {.touch = 60, .residual_m = -0.08, .reason = calib::RejectionReason::kWrongPlane}};
+                         {.touch = 60, .residual_m = -0.08, .reason = calib::RejectionReason::kWrongFace}};
   identified.artefact_errors = Eigen::Vector3d(1e-6, 2e-5, 0.5);
-  identified.certainty.emplace();
-  identified.certainty->artefact_std = Eigen::Vector3d(4.4e-6, 1e-5, 0.95);
+  identified.uncertainty.emplace();
+  identified.uncertainty->artefact_std = Eigen::Vector3d(4.4e-6, 1e-5, 0.95);
   const json document = document_of(problem, identified);
   EXPECT_EQ(document.at("rejected_touches"),
             json::parse(R"([{"touch":54,"residual_mm":1.21,"reason":"outlier"},

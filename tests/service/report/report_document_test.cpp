@@ -12,9 +12,8 @@
 #include "cs8_protocol/messages.hpp"
 #include "service/base/digest.hpp"
 #include "service/base/json_figures.hpp"
-#include "service/report/figure.hpp"
-#include "service/report/html.hpp"
 #include "service/report/report_html.hpp"
+#include "tests/service/report/markup.hpp"
 #include "tests/service/table3_result.hpp"
 
 namespace cell {
@@ -45,24 +44,6 @@ RunReport report_of(const RunRecord& of) { return read_report(report_document(of
 std::string page_of(const RunRecord& of) { return report_html(report_of(of)); }
 
 Json json_of(const RunRecord& of) { return Json::parse(report_document(of)); }
-
-/// The first tag that is not closed in its turn; empty when all are.
-std::string first_unclosed(const std::string& page) {
-  static const std::regex kTag("<(/?)([a-z0-9]+)[^>]*?(/?)>");
-  std::vector<std::string> open;
-  for (std::sregex_iterator tag(page.begin(), page.end(), kTag), end; tag != end; ++tag) {
-    const std::string name = (*tag)[2];
-    if ((*tag)[3].length() > 0 || name == "meta") continue;
-    if ((*tag)[1].length() == 0) {
-      open.push_back(name);
-    } else if (open.empty() || open.back() != name) {
-      return name;
-    } else {
-      open.pop_back();
-    }
-  }
-  return open.empty() ? "" : open.back();
-}
 
 TEST(Report, TheRawDatasDigestIsThatOfTheTablesFirstNineColumns) {
   const Json report = json_of(record());
@@ -172,32 +153,6 @@ TEST(Report, WhatAnOlderResultLacksIsUnknown) {
     EXPECT_EQ(json_of(stored).at("result"), Json(older))
         << key << ": the stored result is passed on as it is";
   }
-}
-
-TEST(Figures, TicksAreRoundAndWithinTheAxis) {
-  EXPECT_THAT(ticks(0.0, 10.0), ::testing::ElementsAre(0, 2, 4, 6, 8, 10));
-  EXPECT_EQ(ticks(-0.031, 0.042).size(), 8U);
-  for (const auto& [low, high] : {std::pair{-75.3, -70.1}, {1e-6, 3e-6}, {0.0, 7500.0}}) {
-    for (const double tick : ticks(low, high)) {
-      EXPECT_GE(tick, low);
-      EXPECT_LE(tick, high);
-    }
-    EXPECT_GE(ticks(low, high).size(), 3U);
-  }
-}
-
-TEST(Figures, AFigureWithoutAPointIsALineOfText) {
-  EXPECT_THAT(svg({.title = "empty", .series = {}, .level = {}, .level_name = {}}), Not(HasSubstr("<svg")));
-}
-
-TEST(Figures, PointsThatAreNoNumbersAreLeftOut) {
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  const std::string drawn = svg({.title = "t",
-                                 .series = {{.name = "s", .points = {{1, 2}, {2, none}, {3, 2}}}},
-                                 .level = {},
-                                 .level_name = {}});
-  EXPECT_THAT(drawn, Not(HasSubstr("nan")));
-  EXPECT_EQ(first_unclosed(drawn), "");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::vector<RejectReason> all_reasons() {
 }
 
 std::string name_after(RejectReason reason, std::uint32_t flags = kTested) {
-  const Awaited* awaited = awaited_after(reason, flags);
+  const AwaitedAction* awaited = awaited_after_rejection(reason, flags);
   return awaited ? std::string(awaited->name) : "";
 }
 
@@ -34,10 +34,10 @@ TEST(Readiness, WhatAPersonAtTheCellCanMendIsWaitedForByItsName) {
   EXPECT_EQ(name_after(RejectReason::kNotPowered), "power");
   std::set<std::string> names;
   for (const RejectReason reason : all_reasons()) {
-    const Awaited* awaited = awaited_after(reason, kTested);
+    const AwaitedAction* awaited = awaited_after_rejection(reason, kTested);
     if (!awaited) continue;
     EXPECT_TRUE(names.insert(std::string(awaited->name)).second) << awaited->name;
-    EXPECT_EQ(awaited_words(awaited->name), awaited->words);
+    EXPECT_EQ(awaited_instruction(awaited->name), awaited->words);
     EXPECT_NE(awaited->words, awaited->name);
   }
   EXPECT_EQ(names.size(), 10u);
@@ -46,7 +46,7 @@ TEST(Readiness, WhatAPersonAtTheCellCanMendIsWaitedForByItsName) {
 TEST(Readiness, AnErrorOfTheHostOrADeadApplicationIsNotWaitedFor) {
   for (const RejectReason reason : {RejectReason::kTaskFailed, RejectReason::kBusy, RejectReason::kBadField,
                                     RejectReason::kResultUnacknowledged, RejectReason::kStaleSequence})
-    EXPECT_EQ(awaited_after(reason, 0), nullptr) << cs8::name(reason);
+    EXPECT_EQ(awaited_after_rejection(reason, 0), nullptr) << cs8::name(reason);
 }
 
 TEST(Readiness, TheTouchTestComesFirstAsItIsMadeWithoutPowerOrRemoteMode) {
@@ -60,7 +60,7 @@ TEST(Readiness, TheTouchTestComesFirstAsItIsMadeWithoutPowerOrRemoteMode) {
 TEST(Readiness, EachWaitInVainEndsInAFaultThatSaysResumeAndReset) {
   std::set<FaultCode> codes;
   for (const RejectReason reason : all_reasons()) {
-    const Awaited* awaited = awaited_after(reason, kTested);
+    const AwaitedAction* awaited = awaited_after_rejection(reason, kTested);
     if (!awaited) continue;
     const FaultCode code = not_ready_fault(*awaited).code;
     codes.insert(code);

@@ -2,9 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "service/base/version.hpp"
-#include "service/documents/conditions_view.hpp"
-#include "service/documents/configuration_digest.hpp"
 #include "tests/config/copied_config.hpp"
 #include "tests/service/shipped_cell.hpp"
 
@@ -13,7 +10,6 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-using ::testing::MatchesRegex;
 
 class Traceability : public CopiedConfig {
  protected:
@@ -24,34 +20,14 @@ class Traceability : public CopiedConfig {
   }
 };
 
-TEST_F(Traceability, TheDigestHangsOnEveryFigureOfEveryFileAndNotOnTheLayout) {
-  const std::string shipped = digest();
-  EXPECT_THAT(shipped, MatchesRegex("[0-9a-f]{64}"));
-  for (const std::string file : {kCell, kArm, kBlock, kProbe, kRecipe}) {
-    const json before = json_of(path(file));
-    folder_.write(file, before.dump(7));
-    EXPECT_EQ(digest(), shipped) << file;
-    edit(file, [](json& document) { document["name"] = document["name"].get<std::string>() + "2"; });
-    if (file == kRecipe) edit(kCell, [](json& cell) { cell["default_recipe"] = "quick"; });
-    EXPECT_NE(digest(), shipped) << file;
-    folder_.write(file, before.dump());
-    if (file == kRecipe) edit(kCell, [](json& cell) { cell["default_recipe"] = "edf-25"; });
-  }
-  EXPECT_EQ(digest(), shipped);
-}
-
-TEST_F(Traceability, ACellThatWasNotReadFromFilesHasNoDigest) {
-  EXPECT_EQ(configuration_digest(Cell{}), std::nullopt);
-}
-
-TEST_F(Traceability, TheShippedCellsKnowHowWarmTheirBlocksAre) {
+TEST_F(RunConditionsTest, TheShippedCellsKnowHowWarmTheirBlocksAre) {
   for (const char* name : {"edf", "demo"}) {
     const Cell cell = read_cell(path(std::string("cells/") + name + "/cell.json"));
-    EXPECT_EQ(temperature_gap(cell), std::nullopt) << name;
+    EXPECT_EQ(unknown_temperature_reason(cell), std::nullopt) << name;
   }
 }
 
-TEST_F(Traceability, ABlockOfUnknownTemperatureIsToldWithTheRemedy) {
+TEST_F(RunConditionsTest, ABlockOfUnknownTemperatureIsToldWithTheRemedy) {
   edit(kBlock, [](json& block) {
     for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
       block.erase(key);
@@ -105,7 +81,7 @@ TEST_F(Traceability, TheProbeMayHaveACertificateAsTheBlockHas) {
   EXPECT_EQ(read().probe.certificate.at("number"), "P-7");
 }
 
-TEST_F(Traceability, TheCellSaysHowItDecides) {
+TEST_F(RunConditionsTest, TheCellSaysHowItDecides) {
   EXPECT_FALSE(read().acceptance.guarded);
   edit(kCell, [](json& cell) { cell["acceptance"]["decision"] = "guarded"; });
   EXPECT_TRUE(read().acceptance.guarded);

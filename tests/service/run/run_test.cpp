@@ -28,8 +28,14 @@ class RunTest : public ::testing::Test {
     run_.set_plan(plan);
   }
 
+  /// As a touch is kept: stored, then added to the run.
+  void keep(cell::Run& run, const StoredTouch& touch) {
+    store_.append_touch(run.id(), touch);
+    run.add(touch);
+  }
+
   Folder folder_;
-  TouchStore store_{folder_.path() / "touchcal.sqlite"};
+  RunStore store_{folder_.path() / "touchcal.sqlite"};
   TipRegions regions_{edf()};
   cell::Run run_{store_.begin_run({.recipe = "edf-25"}), regions_, edf().recipes.at("edf-25"), "start"};
 };
@@ -40,12 +46,12 @@ TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
     EXPECT_FALSE(run_.complete());
     ASSERT_NE(run_.next(), nullptr);
     EXPECT_EQ(run_.next()->face, touch.face);
-    run_.add(store_, stored(++number, touch));
+    keep(run_, stored(++number, touch));
     EXPECT_EQ(run_.touches_done(), number);
     EXPECT_EQ(run_.latest().fitted_touch_count, number - 1) << "not yet";
     run_.identify();
     EXPECT_EQ(run_.latest().fitted_touch_count, number);
-    EXPECT_EQ(run_.predicted_tip_rms_m().has_value(), run_.latest().certainty.has_value()) << number;
+    EXPECT_EQ(run_.predicted_tip_rms_m().has_value(), run_.latest().uncertainty.has_value()) << number;
   }
   EXPECT_TRUE(run_.complete());
   EXPECT_EQ(run_.next(), nullptr);
@@ -62,15 +68,15 @@ TEST_F(RunTest, WhatIsLeftTakesAsMuchLongerThanPlannedAsWhatIsMadeTook) {
     plan.touches[i].touch_s = std::array{6.0, 4.0, 20.0}[i];
   }
   run_.set_plan(plan);
-  EXPECT_EQ(run_.left_s(0.0), plan.duration_s());
-  run_.add(store_, stored(1, table3_touches()[0]));
-  run_.add(store_, stored(2, table3_touches()[1]));
-  EXPECT_DOUBLE_EQ(run_.left_s(7.0), (2.0 + 20.0 + 5.0) * 7.0 / (2.0 + 6.0 + 2.0 + 4.0));
+  EXPECT_EQ(run_.remaining_s(0.0), plan.duration_s());
+  keep(run_, stored(1, table3_touches()[0]));
+  keep(run_, stored(2, table3_touches()[1]));
+  EXPECT_DOUBLE_EQ(run_.remaining_s(7.0), (2.0 + 20.0 + 5.0) * 7.0 / (2.0 + 6.0 + 2.0 + 4.0));
 }
 
 TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
-  run_.add(store_, stored(1, table3_touches()[0]));
-  EXPECT_THROW(run_.add(store_, stored(1, table3_touches()[1])), std::exception);
+  keep(run_, stored(1, table3_touches()[0]));
+  EXPECT_THROW(keep(run_, stored(1, table3_touches()[1])), std::exception);
   EXPECT_EQ(run_.touches_done(), 1);
   run_.identify();
   EXPECT_EQ(run_.latest().fitted_touch_count, 1);
@@ -81,50 +87,50 @@ TEST_F(RunTest, ATouchThatIsPutOffComesBehindTheOthersOfItsRoleOnce) {
   const std::size_t count = static_cast<std::size_t>(run_.touches_total());
   const calib::JointVector put_off = run_.planned(3)->joints;
   const calib::JointVector behind = run_.planned(4)->joints;
-  EXPECT_TRUE(run_.put_off(3));
+  EXPECT_TRUE(run_.defer(3));
   EXPECT_EQ(run_.planned(3)->joints, behind);
   EXPECT_EQ(run_.planned(count - 1)->joints, put_off);
-  EXPECT_FALSE(run_.put_off(count - 1)) << "it is the last";
-  EXPECT_TRUE(run_.put_off(count - 2));
-  EXPECT_FALSE(run_.put_off(count - 2)) << "it was put off before";
+  EXPECT_FALSE(run_.defer(count - 1)) << "it is the last";
+  EXPECT_TRUE(run_.defer(count - 2));
+  EXPECT_FALSE(run_.defer(count - 2)) << "it was put off before";
   EXPECT_EQ(run_.planned(count), nullptr);
 }
 
 TEST_F(RunTest, TellsWhatMoreTouchesWouldBringOnceAllIsSeen) {
   int number = 0;
   for (const calib::Touch& touch : table3_touches()) {
-    run_.add(store_, stored(++number, touch));
+    keep(run_, stored(++number, touch));
     if (number == 30) {
       run_.identify();
-      EXPECT_FALSE(run_.more_would_bring());
+      EXPECT_FALSE(run_.touch_benefit());
     }
   }
   run_.identify();
-  EXPECT_THAT(run_.more_would_bring().value_or(""),
+  EXPECT_THAT(run_.touch_benefit().value_or(""),
               ::testing::MatchesRegex("8 more on plane [1-4]: .* to .* mm"));
 }
 
 TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
   Recipe asking = edf().recipes.at("edf-25");
   int number = 0;
-  for (const calib::Touch& touch : table3_touches()) run_.add(store_, stored(++number, touch));
+  for (const calib::Touch& touch : table3_touches()) keep(run_, stored(++number, touch));
   run_.identify();
   const double reached_m = run_.predicted_tip_rms_m().value();
-  EXPECT_FALSE(run_.is_good_enough()) << "nothing was asked for";
+  EXPECT_FALSE(run_.meets_accuracy_goal()) << "nothing was asked for";
   for (const double share : {0.9, 1.1}) {
     asking.goal.tip_rms_max_m = share * reached_m;
     cell::Run run(store_.begin_run({.recipe = "edf-25"}), regions_, asking, "start");
-    EXPECT_FALSE(run.is_good_enough());
+    EXPECT_FALSE(run.meets_accuracy_goal());
     number = 0;
-    for (const calib::Touch& touch : table3_touches()) run.add(store_, stored(++number, touch));
+    for (const calib::Touch& touch : table3_touches()) keep(run, stored(++number, touch));
     run.identify();
-    EXPECT_EQ(run.is_good_enough(), share > 1.0);
+    EXPECT_EQ(run.meets_accuracy_goal(), share > 1.0);
   }
 }
 
 TEST_F(RunTest, TouchesLeftOutAreThoseToFitFromThereOn) {
   const int before = run_.touches_total();
-  EXPECT_EQ(run_.drop_fitted(static_cast<std::size_t>(before)), 0);
+  EXPECT_EQ(run_.drop_fit_touches(static_cast<std::size_t>(before)), 0);
   calib::TouchPlan plan;
   for (const calib::TouchRole role :
        {calib::TouchRole::kFit, calib::TouchRole::kFit, calib::TouchRole::kFit, calib::TouchRole::kHeldOut}) {
@@ -132,7 +138,7 @@ TEST_F(RunTest, TouchesLeftOutAreThoseToFitFromThereOn) {
     plan.touches.back().role = role;
   }
   run_.set_plan(plan);
-  EXPECT_EQ(run_.drop_fitted(1), 2);
+  EXPECT_EQ(run_.drop_fit_touches(1), 2);
   EXPECT_EQ(run_.touches_total(), 2);
   EXPECT_EQ(run_.planned(1)->role, calib::TouchRole::kHeldOut);
 }

@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(Cells, SlowZone, ::testing::Values("edf", "demo"),
 
 TEST_P(SlowZone, TravelStaysOutOfItAlsoWithAnArmThatMisses) {
   calib::JointVector at = cell_.park_joints;
-  double miss_m = plan_.touches.front().predicted_miss_m;
+  double miss_m = plan_.touches.front().predicted_position_error_m;
   const auto follow = [&](std::vector<calib::JointVector> way, const calib::JointVector& to,
                           double miss_there_m, const std::string& name) {
     way.push_back(to);
@@ -67,8 +67,9 @@ TEST_P(SlowZone, TravelStaysOutOfItAlsoWithAnArmThatMisses) {
   };
   for (std::size_t i = 0; i < plan_.touches.size(); ++i) {
     const calib::PlannedTouch& touch = plan_.touches[i];
-    EXPECT_GT(touch.predicted_miss_m, 0.0);
-    follow(touch.via, touch.clear_joints, touch.predicted_miss_m, "to touch " + std::to_string(i + 1));
+    EXPECT_GT(touch.predicted_position_error_m, 0.0);
+    follow(touch.via, touch.clear_joints, touch.predicted_position_error_m,
+           "to touch " + std::to_string(i + 1));
   }
   follow(plan_.park_via, cell_.park_joints, miss_m, "to the park posture");
 }
@@ -83,8 +84,9 @@ TEST_P(SlowZone, EveryMoveInItIsSlowAndEverySearchSlowerAndLongEnough) {
       return calib::forward_kinematics(cell_.arm.model, joints).translation();
     };
     const double standoff_m = (tip_m(touch.approach_joints) - tip_m(touch.joints)).norm();
-    const bool is_aimed = touch.predicted_miss_m < cell_.nominal_miss_m;
-    const double least_m = std::max(is_aimed ? kAimedStandoffMin : kStandoffMin, touch.predicted_miss_m);
+    const bool is_aimed = touch.predicted_position_error_m < cell_.nominal_position_error_m;
+    const double least_m =
+        std::max(is_aimed ? kAimedStandoffMin : kStandoffMin, touch.predicted_position_error_m);
     EXPECT_GE(standoff_m, least_m - 1e-6);
     EXPECT_GE(touch.search_length_m, 2 * least_m - 1e-6);
   }

@@ -17,15 +17,15 @@ calib::TipRegion moved_by_the_first(double metres_a_unit) {
   return region;
 }
 
-calib::Certainty certainty_with(const std::vector<calib::ArmVector>& unknown_directions) {
-  calib::Certainty certainty;
-  certainty.identified(0, 0) = 4e-8;
-  certainty.unseen(0, 0) = 5e-8;
-  certainty.unknown_directions.resize(calib::kArmParameterCount,
-                                      static_cast<Eigen::Index>(unknown_directions.size()));
+calib::UncertaintyBudget certainty_with(const std::vector<calib::ArmVector>& unknown_directions) {
+  calib::UncertaintyBudget uncertainty;
+  uncertainty.identified(0, 0) = 4e-8;
+  uncertainty.unseen(0, 0) = 5e-8;
+  uncertainty.unknown_directions.resize(calib::kArmParameterCount,
+                                        static_cast<Eigen::Index>(unknown_directions.size()));
   for (std::size_t i = 0; i < unknown_directions.size(); ++i)
-    certainty.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown_directions[i];
-  return certainty;
+    uncertainty.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown_directions[i];
+  return uncertainty;
 }
 
 TEST(PredictedRms, CountsWhatIsIdentifiedAndWhatIsUnseen) {
@@ -33,9 +33,10 @@ TEST(PredictedRms, CountsWhatIsIdentifiedAndWhatIsUnseen) {
 }
 
 TEST(PredictedRms, IsUnknownWhereAnErrorOfUnknownSizeMovesTheTip) {
-  const calib::Certainty certainty = certainty_with({calib::ArmVector::Unit(1), calib::ArmVector::Unit(0)});
-  EXPECT_EQ(predicted_rms_m(moved_by_the_first(1.01 * kUnknownMattersMetres), certainty), std::nullopt);
-  EXPECT_TRUE(predicted_rms_m(moved_by_the_first(0.99 * kUnknownMattersMetres), certainty).has_value());
+  const calib::UncertaintyBudget uncertainty =
+      certainty_with({calib::ArmVector::Unit(1), calib::ArmVector::Unit(0)});
+  EXPECT_EQ(predicted_rms_m(moved_by_the_first(1.01 * kUnknownMattersMetres), uncertainty), std::nullopt);
+  EXPECT_TRUE(predicted_rms_m(moved_by_the_first(0.99 * kUnknownMattersMetres), uncertainty).has_value());
 }
 
 TEST(PredictedRms, IsUnknownWhereTheArmHasNoPosture) {

@@ -5,50 +5,15 @@
 #include <map>
 #include <random>
 
-#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
-#include "service/acquisition/touch_judgement.hpp"
+#include "tests/service/planned_touch.hpp"
 #include "tests/service/shipped_cell.hpp"
 
 namespace cell {
 namespace {
 
 using ::testing::HasSubstr;
-
-/// Where the nominal tip is `off_m` from where these joints have it.
-calib::JointVector nominal_joints_off(const calib::JointVector& start, const Eigen::Vector3d& off_m) {
-  Eigen::Isometry3d pose = calib::forward_kinematics(edf().arm.model, start);
-  pose.translation() += off_m;
-  return calib::solve_near(edf().arm.model, pose, start).value();
-}
-
-/// A touch in the middle of a search of 30 mm.
-calib::PlannedTouch planned_touch() {
-  const calib::Touch& touch = table3_touches().front();
-  const calib::Plane& plane = edf().block.faces[static_cast<std::size_t>(touch.face)].plane;
-  return {.face = touch.face,
-          .joints = touch.joints,
-          .clear_joints = calib::JointVector::Constant(0.1),
-          .approach_joints = nominal_joints_off(touch.joints, 0.015 * plane.outward),
-          .search_end_joints = nominal_joints_off(touch.joints, -0.015 * plane.outward),
-          .search_direction = -plane.outward,
-          .search_length_m = 0.03};
-}
-
-cs8::JointsMicrodeg joints_off(const Eigen::Vector3d& off_m) {
-  return to_wire(nominal_joints_off(planned_touch().joints, off_m));
-}
-
-/// What a contact is reported as when the nominal tip is `off_m` from the planned touch, both times.
-cs8::TouchResult contact(const Eigen::Vector3d& off_m) {
-  return {.outcome = cs8::Outcome::kContact,
-          .source = cs8::CaptureSource::kLatched,
-          .contact = joints_off(off_m),
-          .monitor_speed_percent = 100,
-          .first_source = cs8::CaptureSource::kLatched,
-          .first_contact = joints_off(off_m)};
-}
 
 TEST(WireJoints, GoThereAndBackWithoutAStep) {
   std::mt19937_64 chance(1);
@@ -170,7 +135,8 @@ TEST(FaultOf, SaysWhereInTheTouchAndWhichRunTimeError) {
 TEST(Implausible, AContactOnTheWayOfTheSearchIsTaken) {
   const calib::PlannedTouch planned = planned_touch();
   for (const double along_m : {-0.0149, -0.005, 0.0, 0.005, 0.0149}) {
-    EXPECT_EQ(implausible(edf(), planned, contact(along_m * planned.search_direction)), std::nullopt)
+    EXPECT_EQ(implausibility_reason(edf(), planned, contact(along_m * planned.search_direction)),
+              std::nullopt)
         << along_m;
   }
 }
@@ -178,20 +144,22 @@ TEST(Implausible, AContactOnTheWayOfTheSearchIsTaken) {
 TEST(Implausible, AContactWithoutCapturedJointsIsNone) {
   cs8::TouchResult result = contact({0, 0, 0});
   result.source = cs8::CaptureSource::kNone;
-  EXPECT_THAT(implausible(edf(), planned_touch(), result).value_or(""), HasSubstr("without captured joints"));
+  EXPECT_THAT(implausibility_reason(edf(), planned_touch(), result).value_or(""),
+              HasSubstr("no captured joints"));
 }
 
 TEST(Implausible, AContactAtAnotherMonitorSpeedIsNone) {
   cs8::TouchResult result = contact({0, 0, 0});
   result.monitor_speed_percent = 50;
-  EXPECT_THAT(implausible(edf(), planned_touch(), result).value_or(""), HasSubstr("monitor speed was 50 %"));
+  EXPECT_THAT(implausibility_reason(edf(), planned_touch(), result).value_or(""),
+              HasSubstr("monitor speed was 50 %"));
 }
 
 TEST(Implausible, AContactBesideTheLineIsTold) {
   const calib::PlannedTouch planned = planned_touch();
   const Eigen::Vector3d aside = planned.search_direction.unitOrthogonal();
-  EXPECT_EQ(implausible(edf(), planned, contact(5e-5 * aside)), std::nullopt);
-  EXPECT_THAT(implausible(edf(), planned, contact(0.001 * aside)).value_or(""),
+  EXPECT_EQ(implausibility_reason(edf(), planned, contact(5e-5 * aside)), std::nullopt);
+  EXPECT_THAT(implausibility_reason(edf(), planned, contact(0.001 * aside)).value_or(""),
               HasSubstr("1.000 mm beside the search line"));
 }
 
@@ -199,100 +167,22 @@ TEST(Implausible, AFirstTouchThatIsMissingOrElsewhereIsTold) {
   const calib::PlannedTouch planned = planned_touch();
   cs8::TouchResult result = contact({0, 0, 0});
   result.first_contact = joints_off(0.001 * planned.search_direction.unitOrthogonal());
-  EXPECT_THAT(implausible(edf(), planned, result).value_or(""), HasSubstr("of its first touch"));
+  EXPECT_THAT(implausibility_reason(edf(), planned, result).value_or(""), HasSubstr("in its first contact"));
   result.first_source = cs8::CaptureSource::kNone;
-  EXPECT_THAT(implausible(edf(), planned, result).value_or(""), HasSubstr("without the first"));
+  EXPECT_THAT(implausibility_reason(edf(), planned, result).value_or(""), HasSubstr("without the first"));
   Cell once = edf();
   once.speeds.second.reset();
-  EXPECT_EQ(implausible(once, planned, result), std::nullopt);
+  EXPECT_EQ(implausibility_reason(once, planned, result), std::nullopt);
 }
 
 TEST(Implausible, AContactBeyondEitherEndOfTheSearchIsTold) {
   const calib::PlannedTouch planned = planned_touch();
   for (const double along_m : {-0.0152, 0.0152}) {
-    EXPECT_THAT(implausible(edf(), planned, contact(along_m * planned.search_direction)).value_or(""),
-                HasSubstr(along_m < 0 ? "-15.200 mm from" : " 15.200 mm from"))
+    EXPECT_THAT(
+        implausibility_reason(edf(), planned, contact(along_m * planned.search_direction)).value_or(""),
+        HasSubstr(along_m < 0 ? "-15.200 mm from" : " 15.200 mm from"))
         << along_m;
   }
-}
-
-using Next = TouchJudgement::Next;
-
-TEST(TouchJudgement, AContactIsKeptAndItsBounceIsTold) {
-  cs8::TouchResult result = contact({0, 0, 0});
-  result.edges = 1;
-  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).next, Next::kKeep);
-  EXPECT_TRUE(judge_touch(edf(), planned_touch(), result, {}).warnings.empty());
-  result.edges = 3;
-  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {});
-  EXPECT_EQ(judged.next, Next::kKeep);
-  ASSERT_EQ(judged.warnings.size(), 1U);
-  EXPECT_EQ(judged.warnings.front().code, FaultCode::kProbeBounced);
-}
-
-TEST(TouchJudgement, TwoContactsTooFarApartAreMadeAgainUntilAPersonIsAsked) {
-  const calib::PlannedTouch planned = planned_touch();
-  cs8::TouchResult result = contact({0, 0, 0});
-  result.first_contact = joints_off(0.9 * kContactSpreadMaxMetres * planned.search_direction);
-  EXPECT_EQ(judge_touch(edf(), planned, result, {}).next, Next::kKeep);
-  result.first_contact = joints_off(1.1 * kContactSpreadMaxMetres * planned.search_direction);
-  for (int attempts = 0; attempts <= kAgainMax; ++attempts) {
-    const TouchJudgement judged = judge_touch(edf(), planned, result, {.attempts = attempts});
-    EXPECT_EQ(judged.fault.code, FaultCode::kTouchSpread);
-    EXPECT_EQ(judged.next, attempts < kAgainMax ? Next::kAgain : Next::kFault);
-  }
-  const TouchJudgement worse =
-      judge_touch(edf(), planned, result, {.attempts = 1, .spread_m = kContactSpreadMaxMetres});
-  EXPECT_EQ(worse.fault.code, FaultCode::kRetriesWorse);
-  EXPECT_EQ(worse.event, Event::kHoldFault);
-}
-
-TEST(TouchJudgement, AContactAtTheBeginningOfItsSearchIsTooEarly) {
-  const calib::PlannedTouch planned = planned_touch();
-  const double half_m = planned.search_length_m / 2;
-  const auto at = [&](double along_m) {
-    return judge_touch(edf(), planned, contact((along_m - half_m) * planned.search_direction), {});
-  };
-  EXPECT_EQ(at(1.5 * kEarlyContactMetres).next, Next::kKeep);
-  EXPECT_EQ(at(0.5 * kEarlyContactMetres).fault.code, FaultCode::kEarlyContact);
-  EXPECT_EQ(at(0.5 * kEarlyContactMetres).event, Event::kHoldFault);
-}
-
-TEST(TouchJudgement, TheSameJointsOnceMoreAreMadeAgainOnceAndThenHold) {
-  const cs8::TouchResult result = contact({0, 0, 0});
-  TouchHistory history{.last_contact = result.contact};
-  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, history).next, Next::kAgain);
-  history.attempts = 1;
-  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, history);
-  EXPECT_EQ(judged.fault.code, FaultCode::kRepeatedTouch);
-  EXPECT_EQ(judged.event, Event::kHoldFault);
-}
-
-TEST(TouchJudgement, NoiseInFreeAirIsToldFromASearchThatMetNothing) {
-  cs8::TouchResult result{.outcome = cs8::Outcome::kNoContact};
-  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).fault.code, FaultCode::kNoContact);
-  result.edges = 2;
-  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).next, Next::kAgain);
-  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {.attempts = 1});
-  EXPECT_EQ(judged.fault.code, FaultCode::kFalseTrigger);
-  EXPECT_EQ(judged.event, Event::kHoldFault);
-}
-
-TEST(TouchJudgement, AnotherMonitorSpeedSuspends) {
-  cs8::TouchResult result = contact({0, 0, 0});
-  result.monitor_speed_percent = 50;
-  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {});
-  EXPECT_EQ(judged.fault.code, FaultCode::kMonitorSpeedChanged);
-  EXPECT_EQ(judged.event, Event::kSuspendFault);
-}
-
-TEST(PlanFault, ATouchWithoutLengthOrNumberIsNamed) {
-  std::vector<calib::PlannedTouch> touches(2, planned_touch());
-  EXPECT_FALSE(plan_fault(touches));
-  touches[1].search_end_joints = touches[1].approach_joints;
-  EXPECT_EQ(plan_fault(touches).value().detail, "touch 2");
-  touches[0].clear_joints[3] = std::nan("");
-  EXPECT_EQ(plan_fault(touches).value().detail, "touch 1");
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ std::vector<std::string> reasons_against(const calib::IdentificationResult& resu
 TEST(Verdict, AResultAtItsLimitsIsAccepted) { EXPECT_THAT(reasons_against(at_the_limits()), IsEmpty()); }
 
 TEST(Verdict, ARunWithTouchesMissingIsNot) {
-  EXPECT_THAT(reasons_against(at_the_limits(), false), ElementsAre(HasSubstr("did not come to its end")));
+  EXPECT_THAT(reasons_against(at_the_limits(), false), ElementsAre(HasSubstr("was not completed")));
 }
 
 TEST(Verdict, AResultThatDidNotConvergeIsRefusedWithItsOwnMessage) {

@@ -18,28 +18,28 @@ using ::testing::IsEmpty;
 class StoreMaintenance : public ::testing::Test {
  protected:
   /// A run of one touch that ended; its id.
-  std::int64_t add_run(const std::string& began, const std::string& verdict) {
+  std::int64_t add_run(const std::string& began, Verdict verdict) {
     const std::int64_t run = store_.begin_run({.recipe = "edf-25", .started_at = began});
     store_.set_plan(run, 1, "plan of " + began, "{}");
     store_.set_open_command(run, {.session = 1, .sequence = 1, .touch_json = "{}"});
     store_.append_touch(run, {.number = 1, .plane = 1, .captured_at = "t"});
-    if (verdict != "none")
-      store_.finish_run(run, {.outcome = "complete", .verdict = verdict, .ended_at = "end"});
+    if (verdict != Verdict::kNone)
+      store_.finish_run(run, {.outcome = RunOutcome::kComplete, .verdict = verdict, .ended_at = "end"});
     return run;
   }
 
   Folder folder_;
   std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
   std::filesystem::path copy_ = folder_.path() / "copy.sqlite";
-  TouchStore store_{file_};
+  RunStore store_{file_};
 };
 
 TEST_F(StoreMaintenance, ABackupOfADatabaseInUseHasAllThatIsStored) {
-  const std::int64_t run = add_run("start", "accepted");
+  const std::int64_t run = add_run("start", Verdict::kAccepted);
   back_up(file_, copy_);
-  add_run("later", "none");
+  add_run("later", Verdict::kNone);
   EXPECT_THAT(find_damage(copy_), IsEmpty());
-  const TouchStore copy(copy_);
+  const RunStore copy(copy_);
   EXPECT_EQ(copy.runs(10).size(), 1u);
   EXPECT_EQ(copy.touches(run).size(), 1u);
 }
@@ -53,7 +53,7 @@ TEST_F(StoreMaintenance, ABackupNeverReplacesAFileAndLeavesNoHalfOne) {
 }
 
 TEST_F(StoreMaintenance, WhatIsNoTouchOrBelongsToNoRunIsTold) {
-  const std::int64_t run = add_run("start", "accepted");
+  const std::int64_t run = add_run("start", Verdict::kAccepted);
   EXPECT_THAT(find_damage(file_), IsEmpty());
   store_.append_touch(run, {.number = 2, .plane = 0, .captured_at = "t"});
   EXPECT_THAT(find_damage(file_), ElementsAre(HasSubstr("touch 2")));
@@ -62,7 +62,7 @@ TEST_F(StoreMaintenance, WhatIsNoTouchOrBelongsToNoRunIsTold) {
 }
 
 TEST_F(StoreMaintenance, ADatabaseWithWrittenOverPagesIsTold) {
-  add_run("start", "accepted");
+  add_run("start", Verdict::kAccepted);
   back_up(file_, copy_);
   std::fstream bytes(copy_, std::ios::in | std::ios::out | std::ios::binary);
   bytes.seekp(2 * 4096);
@@ -73,11 +73,11 @@ TEST_F(StoreMaintenance, ADatabaseWithWrittenOverPagesIsTold) {
 }
 
 TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRunningOneStay) {
-  const std::int64_t old = add_run("2026-01-01", "accepted");
-  const std::int64_t accepted = add_run("2026-01-02", "accepted");
-  const std::int64_t rejected = add_run("2026-01-03", "rejected");
-  const std::int64_t running = add_run("2026-01-04", "none");
-  const std::int64_t young = add_run("2026-03-01", "rejected");
+  const std::int64_t old = add_run("2026-01-01", Verdict::kAccepted);
+  const std::int64_t accepted = add_run("2026-01-02", Verdict::kAccepted);
+  const std::int64_t rejected = add_run("2026-01-03", Verdict::kRejected);
+  const std::int64_t running = add_run("2026-01-04", Verdict::kNone);
+  const std::int64_t young = add_run("2026-03-01", Verdict::kRejected);
   EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 2);
   EXPECT_FALSE(store_.run(old) || store_.run(rejected));
   EXPECT_THAT(store_.touches(old), IsEmpty());

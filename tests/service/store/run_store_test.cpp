@@ -33,14 +33,14 @@ StoredTouch touch(int number) {
           .captured_at = "2026-01-31T08:15:30.250Z"};
 }
 
-class TouchStoreTest : public ::testing::Test {
+class RunStoreTest : public ::testing::Test {
  protected:
   std::int64_t begin(std::optional<std::string> key = std::nullopt) {
     return store_->begin_run(
         {.recipe = "edf-25", .touches_total = 140, .started_at = "start", .idempotency_key = std::move(key)});
   }
-  void finish(std::int64_t run, const std::string& verdict) {
-    store_->finish_run(run, {.outcome = "complete", .verdict = verdict, .ended_at = "end"});
+  void finish(std::int64_t run, Verdict verdict) {
+    store_->finish_run(run, {.outcome = RunOutcome::kComplete, .verdict = verdict, .ended_at = "end"});
   }
   void reopen() {
     store_.reset();
@@ -49,7 +49,7 @@ class TouchStoreTest : public ::testing::Test {
   /// What opening `file` fails with; the test fails when it does not.
   static std::string refusal(const std::filesystem::path& file) {
     try {
-      const TouchStore store(file);
+      const RunStore store(file);
     } catch (const std::exception& error) {
       return error.what();
     }
@@ -64,10 +64,10 @@ class TouchStoreTest : public ::testing::Test {
 
   Folder folder_;
   std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
-  std::optional<TouchStore> store_{std::in_place, file_};
+  std::optional<RunStore> store_{std::in_place, file_};
 };
 
-TEST_F(TouchStoreTest, TouchesComeBackExactlyAndInTheirOrder) {
+TEST_F(RunStoreTest, TouchesComeBackExactlyAndInTheirOrder) {
   const std::int64_t run = begin();
   const StoredTouch extreme{.number = 2,
                             .plane = 5,
@@ -82,14 +82,14 @@ TEST_F(TouchStoreTest, TouchesComeBackExactlyAndInTheirOrder) {
   EXPECT_THAT(store_->touches(run + 1), IsEmpty());
 }
 
-TEST_F(TouchStoreTest, AStoredTouchIsThereForAnotherConnectionAtOnce) {
+TEST_F(RunStoreTest, AStoredTouchIsThereForAnotherConnectionAtOnce) {
   const std::int64_t run = begin();
-  const TouchStore other(file_);
+  const RunStore other(file_);
   store_->append_touch(run, touch(1));
   EXPECT_EQ(other.touches(run).size(), 1u);
 }
 
-TEST_F(TouchStoreTest, ATouchNumberIsTakenOnceAndOnlyForARunThatExists) {
+TEST_F(RunStoreTest, ATouchNumberIsTakenOnceAndOnlyForARunThatExists) {
   const std::int64_t run = begin();
   store_->append_touch(run, touch(1));
   StoredTouch second = touch(1);
@@ -100,7 +100,7 @@ TEST_F(TouchStoreTest, ATouchNumberIsTakenOnceAndOnlyForARunThatExists) {
   EXPECT_NO_THROW(store_->append_touch(begin(), touch(1)));
 }
 
-TEST_F(TouchStoreTest, ARunIsRunningUntilItsEndIsStored) {
+TEST_F(RunStoreTest, ARunIsRunningUntilItsEndIsStored) {
   const std::int64_t id = begin();
   store_->append_touch(id, touch(1));
   store_->set_plan(id, 139, "plan", "{}");
@@ -109,27 +109,27 @@ TEST_F(TouchStoreTest, ARunIsRunningUntilItsEndIsStored) {
   EXPECT_EQ(running.touches_total, 139);
   EXPECT_EQ(running.touches_done, 1);
   EXPECT_EQ(running.started_at, "start");
-  EXPECT_EQ(running.outcome, "running");
-  EXPECT_EQ(running.verdict, "none");
+  EXPECT_EQ(running.outcome, RunOutcome::kRunning);
+  EXPECT_EQ(running.verdict, Verdict::kNone);
   EXPECT_FALSE(running.ended_at || running.fault_code || running.fault_message);
   EXPECT_FALSE(store_->result_json(id));
 
-  store_->finish_run(id, {.outcome = "aborted",
-                          .verdict = "incomplete",
+  store_->finish_run(id, {.outcome = RunOutcome::kAborted,
+                          .verdict = Verdict::kIncomplete,
                           .ended_at = "end",
                           .fault_code = "link_lost",
                           .fault_message = "reset by peer",
                           .result_json = "{\"a\":1}"});
   const StoredRun ended = store_->run(id).value();
-  EXPECT_EQ(ended.outcome, "aborted");
-  EXPECT_EQ(ended.verdict, "incomplete");
+  EXPECT_EQ(ended.outcome, RunOutcome::kAborted);
+  EXPECT_EQ(ended.verdict, Verdict::kIncomplete);
   EXPECT_EQ(ended.ended_at, "end");
   EXPECT_EQ(ended.fault_code, "link_lost");
   EXPECT_EQ(ended.fault_message, "reset by peer");
   EXPECT_EQ(store_->result_json(id), "{\"a\":1}");
 }
 
-TEST_F(TouchStoreTest, PagesGoFromTheNewestRunBack) {
+TEST_F(RunStoreTest, PagesGoFromTheNewestRunBack) {
   std::vector<std::int64_t> all;
   for (int i = 0; i < 5; ++i) all.insert(all.begin(), begin());
   EXPECT_EQ(ids(10), all);
@@ -139,7 +139,7 @@ TEST_F(TouchStoreTest, PagesGoFromTheNewestRunBack) {
   EXPECT_THAT(ids(2, all[4]), IsEmpty());
 }
 
-TEST_F(TouchStoreTest, AnIdempotencyKeyBelongsToOneRun) {
+TEST_F(RunStoreTest, AnIdempotencyKeyBelongsToOneRun) {
   const std::int64_t first = begin("key");
   EXPECT_THROW(begin("key"), std::exception);
   EXPECT_THAT(ids(10), ElementsAre(first));
@@ -149,44 +149,44 @@ TEST_F(TouchStoreTest, AnIdempotencyKeyBelongsToOneRun) {
   EXPECT_NO_THROW(begin()) << "runs without a key do not share one";
 }
 
-TEST_F(TouchStoreTest, RunsLeftOpenAreEndedAsInterruptedAndNoOthers) {
+TEST_F(RunStoreTest, RunsLeftOpenAreEndedAsInterruptedAndNoOthers) {
   const std::int64_t ended = begin();
-  finish(ended, "accepted");
+  finish(ended, Verdict::kAccepted);
   const std::int64_t open = begin();
   store_->append_touch(open, touch(1));
   reopen();
   EXPECT_EQ(store_->finish_interrupted("now"), 1);
-  EXPECT_EQ(store_->run(open)->outcome, "interrupted");
-  EXPECT_EQ(store_->run(open)->verdict, "incomplete");
+  EXPECT_EQ(store_->run(open)->outcome, RunOutcome::kInterrupted);
+  EXPECT_EQ(store_->run(open)->verdict, Verdict::kIncomplete);
   EXPECT_EQ(store_->run(open)->ended_at, "now");
   EXPECT_EQ(store_->run(open)->touches_done, 1);
-  EXPECT_EQ(store_->run(ended)->outcome, "complete");
+  EXPECT_EQ(store_->run(ended)->outcome, RunOutcome::kComplete);
   EXPECT_EQ(store_->run(ended)->ended_at, "end");
   EXPECT_EQ(store_->finish_interrupted("later"), 0);
 }
 
-TEST_F(TouchStoreTest, TheLastAcceptedRunIsNotTheLastRun) {
+TEST_F(RunStoreTest, TheLastAcceptedRunIsNotTheLastRun) {
   EXPECT_FALSE(store_->last_accepted());
-  finish(begin(), "accepted");
+  finish(begin(), Verdict::kAccepted);
   const std::int64_t newer = begin();
-  finish(newer, "accepted");
-  finish(begin(), "rejected");
+  finish(newer, Verdict::kAccepted);
+  finish(begin(), Verdict::kRejected);
   begin();
   EXPECT_EQ(store_->last_accepted()->id, newer);
 }
 
-TEST_F(TouchStoreTest, ReopeningKeepsAllAndNumbersGoOn) {
+TEST_F(RunStoreTest, ReopeningKeepsAllAndNumbersGoOn) {
   const std::int64_t run = begin("key");
   store_->append_touch(run, touch(1));
   store_->append_touch(run, touch(2));
-  finish(run, "rejected");
+  finish(run, Verdict::kRejected);
   reopen();
   EXPECT_THAT(store_->touches(run), ElementsAre(touch(1), touch(2)));
-  EXPECT_EQ(store_->run_with_key("key")->verdict, "rejected");
+  EXPECT_EQ(store_->run_with_key("key")->verdict, Verdict::kRejected);
   EXPECT_GT(begin(), run);
 }
 
-TEST_F(TouchStoreTest, AFileOfANewerSchemaIsRefusedAndLeftAsItIs) {
+TEST_F(RunStoreTest, AFileOfANewerSchemaIsRefusedAndLeftAsItIs) {
   const std::int64_t run = begin();
   store_->append_touch(run, touch(1));
   store_.reset();
@@ -203,19 +203,19 @@ TEST_F(TouchStoreTest, AFileOfANewerSchemaIsRefusedAndLeftAsItIs) {
   EXPECT_EQ(version(), ours + 1);
 }
 
-TEST_F(TouchStoreTest, AFileThatIsNoDatabaseIsRefusedByNameAndLeftAsItIs) {
+TEST_F(RunStoreTest, AFileThatIsNoDatabaseIsRefusedByNameAndLeftAsItIs) {
   const std::string bytes(4096, 'x');
   const auto file = folder_.write("notes.sqlite", bytes);
   EXPECT_THAT(refusal(file), HasSubstr(file.string()));
   EXPECT_EQ(bytes_of(file), bytes);
 }
 
-TEST_F(TouchStoreTest, AFolderThatIsNotThereIsToldByName) {
+TEST_F(RunStoreTest, AFolderThatIsNotThereIsToldByName) {
   const auto file = folder_.path() / "gone" / "touchcal.sqlite";
   EXPECT_THAT(refusal(file), HasSubstr(file.string()));
 }
 
-TEST_F(TouchStoreTest, RunsThatFollowOnePlanKeepItOnce) {
+TEST_F(RunStoreTest, RunsThatFollowOnePlanKeepItOnce) {
   const std::int64_t first = begin(), second = begin(), unplanned = begin();
   store_->set_plan(first, 3, "id", "the plan");
   store_->set_plan(second, 3, "id", "the plan");
@@ -225,22 +225,22 @@ TEST_F(TouchStoreTest, RunsThatFollowOnePlanKeepItOnce) {
   EXPECT_EQ(SQLite::Database(file_.string()).execAndGet("SELECT count(*) FROM plans").getInt(), 1);
 }
 
-TEST_F(TouchStoreTest, ARunTellsWhoStartedItAndWithWhat) {
+TEST_F(RunStoreTest, ARunTellsWhoStartedItAndWithWhat) {
   const std::int64_t id = store_->begin_run({.recipe = "edf-25",
                                              .started_at = "start",
                                              .operator_name = "Ada",
                                              .block_temperature_c = 21.5,
                                              .config_digest = "abc",
-                                             .trace_json = "{}"});
+                                             .conditions_json = "{}"});
   const StoredRun run = store_->run(id).value();
   EXPECT_EQ(run.operator_name, "Ada");
   EXPECT_EQ(run.block_temperature_c, 21.5);
   EXPECT_EQ(run.config_digest, "abc");
-  EXPECT_EQ(run.trace_json, "{}");
+  EXPECT_EQ(run.conditions_json, "{}");
   EXPECT_FALSE(run.plan_id || store_->run(begin())->operator_name);
 }
 
-TEST_F(TouchStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {
+TEST_F(RunStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {
   const std::int64_t run = begin();
   EXPECT_FALSE(store_->open_command(run));
   store_->set_open_command(run, {.session = 7, .sequence = 9, .aimed_with = 2, .touch_json = "{\"a\":1}"});
@@ -267,7 +267,7 @@ TEST_F(TouchStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {
   EXPECT_FALSE(store_->open_command(run)) << "its touch is kept apart, and it was answered";
 }
 
-TEST_F(TouchStoreTest, ATouchMadeAgainTakesThePlaceOfTheFirstWhichIsKept) {
+TEST_F(RunStoreTest, ATouchMadeAgainTakesThePlaceOfTheFirstWhichIsKept) {
   const std::int64_t run = begin();
   store_->append_touch(run, touch(1));
   store_->append_touch(run, touch(2));
@@ -283,7 +283,7 @@ TEST_F(TouchStoreTest, ATouchMadeAgainTakesThePlaceOfTheFirstWhichIsKept) {
   EXPECT_THAT(store_->touches(run), ElementsAre(again, touch(2)));
 }
 
-TEST_F(TouchStoreTest, ReferencesAndPlanChangesComeBackInTheirOrder) {
+TEST_F(RunStoreTest, ReferencesAndPlanChangesComeBackInTheirOrder) {
   const std::int64_t run = begin();
   store_->append_reference(run, {.number = 1, .joints = {1, 2, 3, 4, 5, 6}, .captured_at = "t"});
   store_->append_reference(run, {.number = 2, .touches_done = 10, .drift_mm = 0.012, .captured_at = "u"});
@@ -294,21 +294,21 @@ TEST_F(TouchStoreTest, ReferencesAndPlanChangesComeBackInTheirOrder) {
   EXPECT_EQ(references[1].touches_done, 10);
   EXPECT_EQ(references[1].drift_mm, 0.012);
   using Kind = PlanChange::Kind;
-  for (const PlanChange change : {PlanChange{Kind::kPutOff, 3}, {Kind::kDropFitted, 1}, {Kind::kSkip, 2}})
+  for (const PlanChange change : {PlanChange{Kind::kDefer, 3}, {Kind::kDropFitTouches, 1}, {Kind::kSkip, 2}})
     store_->append_plan_change(run, change);
   const auto changes = store_->plan_changes(run);
   ASSERT_EQ(changes.size(), 3u);
-  EXPECT_TRUE(changes[0].kind == Kind::kPutOff && changes[0].place == 3);
-  EXPECT_TRUE(changes[1].kind == Kind::kDropFitted && changes[2].kind == Kind::kSkip);
+  EXPECT_TRUE(changes[0].kind == Kind::kDefer && changes[0].place == 3);
+  EXPECT_TRUE(changes[1].kind == Kind::kDropFitTouches && changes[2].kind == Kind::kSkip);
 }
 
-TEST_F(TouchStoreTest, TheRunningOneIsTheNewestThatHasNotEndedAndMayBeKept) {
+TEST_F(RunStoreTest, TheRunningOneIsTheNewestThatHasNotEndedAndMayBeKept) {
   EXPECT_FALSE(store_->running());
   const std::int64_t older = begin(), newer = begin();
-  finish(begin(), "rejected");
+  finish(begin(), Verdict::kRejected);
   EXPECT_EQ(store_->running()->id, newer);
   EXPECT_EQ(store_->finish_interrupted("now", newer), 1);
-  EXPECT_EQ(store_->run(older)->outcome, "interrupted");
+  EXPECT_EQ(store_->run(older)->outcome, RunOutcome::kInterrupted);
   EXPECT_EQ(store_->running()->id, newer);
 }
 

@@ -50,7 +50,7 @@ class StoreSchema : public ::testing::TestWithParam<int> {};
 TEST_P(StoreSchema, AFileOfAnEarlierVersionIsTakenOverWithAllThatIsInIt) {
   const Folder folder;
   const auto file = file_of_version(folder, GetParam());
-  TouchStore store(file);
+  RunStore store(file);
   const std::vector<StoredTouch> touches = store.touches(1);
   ASSERT_EQ(touches.size(), 2u);
   EXPECT_EQ(touches[0].plane, 3);

@@ -34,7 +34,7 @@ StoredTouch touch(int number) {
 
 /// A short run as the daemon stores it; `stored` is told how many touches are stored for good, as the
 /// controller is, which forgets them then.
-void store_a_run(TouchStore& store, const std::function<void(int)>& stored) {
+void store_a_run(RunStore& store, const std::function<void(int)>& stored) {
   FaultLog faults(store.database());
   AuditLog audit(store.database());
   audit.append_command({.at = "t", .action = "POST /api/v1/runs"});
@@ -43,7 +43,7 @@ void store_a_run(TouchStore& store, const std::function<void(int)>& stored) {
   store.append_reference(run, {.number = 1, .captured_at = "t"});
   for (int number = 1; number <= kTouches; ++number) {
     const auto sequence = static_cast<std::uint32_t>(number);
-    if (number == 2) store.append_plan_change(run, {PlanChange::Kind::kPutOff, 2});
+    if (number == 2) store.append_plan_change(run, {PlanChange::Kind::kDefer, 2});
     store.set_open_command(run, {.session = 1, .sequence = sequence, .touch_json = "{}"});
     store.make_durable(run);
     store.append_touch(run, touch(number));
@@ -53,7 +53,7 @@ void store_a_run(TouchStore& store, const std::function<void(int)>& stored) {
   StoredTouch again = touch(2);
   again.sequence = kTouches + 1;
   store.replace_touch(run, again, "outlier");
-  store.finish_run(run, {.outcome = "complete", .verdict = "accepted", .ended_at = "end"});
+  store.finish_run(run, {.outcome = RunOutcome::kComplete, .verdict = Verdict::kAccepted, .ended_at = "end"});
 }
 
 /// Counts commits, before and after each, and ends the process at the n-th.
@@ -98,7 +98,7 @@ Ended run_apart(const std::function<void(const std::function<void(int)>&)>& work
 
 void expect_whole(const std::filesystem::path& file, int stored, const std::string& where) {
   EXPECT_THAT(find_damage(file), ::testing::IsEmpty()) << where;
-  const TouchStore store(file);
+  const RunStore store(file);
   const auto runs = store.runs(10);
   ASSERT_LE(runs.size(), 1u) << where;
   if (runs.empty()) {
@@ -113,7 +113,7 @@ void expect_whole(const std::filesystem::path& file, int stored, const std::stri
   for (const StoredTouch& each : touches) EXPECT_EQ(each.joints, touch(each.number).joints) << where;
   const bool replaced = !store.superseded_touches(runs[0].id).empty();
   EXPECT_EQ(replaced, touches.size() > 1 && touches[1].sequence == kTouches + 1) << where;
-  if (runs[0].outcome == "running" && !touches.empty() && !replaced) {
+  if (runs[0].outcome == RunOutcome::kRunning && !touches.empty() && !replaced) {
     const auto open = store.open_command(runs[0].id);
     if (open) {
       EXPECT_EQ(open->sequence, touches.size() + 1) << where;
@@ -128,7 +128,7 @@ TEST(StoreBreaks, KilledAtAnyCommitItComesBackWithEveryTouchThatWasTold) {
     const Folder folder;
     const auto file = folder.path() / "touchcal.sqlite";
     const Ended result = run_apart([&](const auto& stored) {
-      TouchStore store(file);
+      RunStore store(file);
       Killer killer{.at = at};
       sqlite3_commit_hook(
           store.database()->getHandle(),
@@ -161,7 +161,7 @@ TEST(StoreBreaks, OnADiskThatIsFullAtAnyPageNothingIsHalfThere) {
     const Folder folder;
     const auto file = folder.path() / "touchcal.sqlite";
     const Ended result = run_apart([&](const auto& stored) {
-      TouchStore store(file);
+      RunStore store(file);
       store.database()->exec("VACUUM");  // no page is free in it
       const int used = store.database()->execAndGet("PRAGMA page_count").getInt();
       store.database()->exec("PRAGMA max_page_count = " + std::to_string(used + pages));
@@ -179,7 +179,7 @@ TEST(StoreBreaks, AFileThatMayNotGrowFailsTheCallAndNotTheProcess) {
     const Folder folder;
     const auto file = folder.path() / "touchcal.sqlite";
     const Ended result = run_apart([&](const auto& stored) {
-      TouchStore store(file);
+      RunStore store(file);
       store.database()->exec("PRAGMA wal_checkpoint(TRUNCATE)");
       std::signal(SIGXFSZ, SIG_IGN);
       const rlimit limit{log_bytes, log_bytes};

@@ -20,7 +20,10 @@ const kPointFragment = `
 precision mediump float; uniform vec3 color; uniform float hollow;
 void main() { float d = length(gl_PointCoord - 0.5); if (d > 0.5 || d < hollow) discard; gl_FragColor = vec4(color, 1.0); }`;
 
-/** Draws lit bodies and points by WebGL 1, which every browser and software renderer has. */
+/**
+ * Draws lit bodies and points by WebGL 1, which every browser and software renderer has. By hand rather than with
+ * three.js: two shaders are all that the view needs, and the library is larger than the whole page.
+ */
 export class Painter {
   private readonly solid: WebGLProgram;
   private readonly point: WebGLProgram;

@@ -119,7 +119,7 @@ TEST_F(ApiTest, EveryRefusalOfACommandIsWrittenDown) {
   request.authorization = "Bearer " + std::string(64, 'x');
   EXPECT_EQ(send(request).status, 401u);
   EXPECT_EQ(last_audit().who, "wrong token");
-  api_.refuse({.status = 403, .kind = "origin", .detail = "a page elsewhere"}, request);
+  api_.refuse({.status = 403, .kind = ProblemKind::kOrigin, .detail = "a page elsewhere"}, request);
   EXPECT_EQ(last_audit().outcome, "403");
   const std::int64_t before = last_audit().id;
   EXPECT_EQ(send({.method = "GET", .path = "/nothing", .from_loopback = true}).status, 404u);

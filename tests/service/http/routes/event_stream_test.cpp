@@ -1,4 +1,4 @@
-#include "service/http/routes/event_stream.hpp"
+#include "service/http/routes/internal/event_stream.hpp"
 
 #include <gmock/gmock.h>
 
@@ -117,7 +117,8 @@ TEST_F(EventStreams, OfARunEndWithItsDocument) {
   change();
   EXPECT_EQ(stream.due(), "") << "what happens outside of the run is not told";
   EXPECT_FALSE(stream.ended());
-  quiet_.store().finish_run(run, {.outcome = "stopped", .verdict = "incomplete", .ended_at = "end"});
+  quiet_.store().finish_run(
+      run, {.outcome = RunOutcome::kStopped, .verdict = Verdict::kIncomplete, .ended_at = "end"});
   const auto events = parsed(stream.due());
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].name, "run");

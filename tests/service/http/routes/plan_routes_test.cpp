@@ -1,4 +1,4 @@
-#include "service/http/routes/plan_routes.hpp"
+#include "service/http/routes/internal/plan_routes.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "service/http/routes/result_routes.hpp"
+#include "service/http/routes/internal/result_routes.hpp"
 
 #include <gmock/gmock.h>
 

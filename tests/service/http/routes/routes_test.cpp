@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "service/http/routes/route_table.hpp"
-#include "service/http/server/target.hpp"
+#include "service/http/server/internal/target.hpp"
 #include "tests/service/document_schema.hpp"
 #include "tests/service/quiet_cell.hpp"
 
@@ -136,7 +136,8 @@ TEST_F(RoutesTest, ARunItsTouchesAndItsResultAreReadFromTheStore) {
   EXPECT_EQ(json::parse(get(path_of(run)).body).at("touches_done"), 1);
   EXPECT_EQ(json::parse(get(path_of(run) + "/touches").body).at("touches").size(), 1u);
   EXPECT_EQ(problem(get(path_of(run) + "/result")).at("status"), 409);
-  cell_.store().finish_run(run, {.outcome = "complete", .result_json = R"({"schema":"touchcal/result/1"})"});
+  cell_.store().finish_run(
+      run, {.outcome = RunOutcome::kComplete, .result_json = R"({"schema":"touchcal/result/1"})"});
   const HttpRequest request{.method = "GET", .path = path_of(run) + "/result", .from_loopback = true};
   EXPECT_EQ(route(request, cell_.operation(), kTokens).body, R"({"schema":"touchcal/result/1"})")
       << "as it was stored";
@@ -359,16 +360,6 @@ TEST_F(RoutesTest, ARepeatedStartGetsTheRunThatItsKeyBegan) {
   request.idempotency_key = std::string(255, 'k');
   EXPECT_EQ(problem(send(request)).at("errors")[0].at("code"), "controller_not_connected")
       << "taken, then refused";
-}
-
-TEST(ParseTarget, TakesPathAndQueryApart) {
-  const auto parsed = parse_target("/a/b?x=1&y=&z&x=2&&w=a=b");
-  ASSERT_TRUE(parsed);
-  EXPECT_EQ(parsed->first, "/a/b");
-  EXPECT_EQ(parsed->second, (Query{{"", ""}, {"w", "a=b"}, {"x", "1"}, {"x", "2"}, {"y", ""}, {"z", ""}}));
-  EXPECT_EQ(parse_target("/")->second.size(), 0u);
-  for (const char* target : {"", "*", "http://127.0.0.1/api/v1/status", "127.0.0.1:80", "?x=1"})
-    EXPECT_FALSE(parse_target(target)) << target;
 }
 
 TEST_F(RoutesTest, ALongPollThatMakesNoSenseIsRefused) {

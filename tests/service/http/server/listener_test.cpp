@@ -141,6 +141,29 @@ TEST_F(ListenerTest, OnlyAPathIsATarget) {
   }
 }
 
+TEST_F(ListenerTest, APercentEncodedTargetIsServedAndAMalformedOneIs400WithTheReason) {
+  EXPECT_EQ(expect_served(200, get("/api/v1/status?wait_s=%32&after=9%39")).status, 200u);
+  // Taken as the recipe edf-25, and refused for the touches document that is none.
+  const RawAnswer identified =
+      expect_served(400, post("/api/v1/identify?recipe=edf%2D25", "Content-Length: 2\r\n", "{}"));
+  EXPECT_THAT(json::parse(identified.body).at("type"), HasSubstr(":body"));
+  for (const char* target :
+       {"/api/v1/status?wait_s=%zz", "/api/v1/runs/%00", "/api/v1/runs?limit=1%0a", "/%"}) {
+    expect_refused(400, get(target));
+    RawClient client = connect();
+    client.send(get(target));
+    const json problem = json::parse(client.receive().body);
+    EXPECT_EQ(problem.at("type"), "urn:touchcal:problem:target");
+    EXPECT_THAT(problem.at("detail"), HasSubstr("a % takes two hexadecimal digits"));
+  }
+}
+
+TEST_F(ListenerTest, AStopIsTakenWhateverItsQueryIs) {
+  for (const char* query : {"?%zz", "?x=%00", "?[", "?a=1&a=1"})
+    expect_served(202, post(std::string("/api/v1/cell/stop") + query, "Content-Length: 2\r\n", "{}"));
+  expect_refused(400, post("/api/v1/cell/reset?%zz", "Content-Length: 0\r\n", ""));
+}
+
 TEST_F(ListenerTest, WhatIsNoRequestIsToldSo) {
   for (const std::string& bytes :
        {std::string("garbage\r\n\r\n"), std::string("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11),

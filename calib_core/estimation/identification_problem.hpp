@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "calib_core/estimation/artefact.hpp"
+#include "calib_core/geometry/touch.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
+#include "calib_core/observability/identifiability.hpp"
+#include "calib_core/observability/observation_matrix.hpp"
+
+namespace calib {
+
+/// Scaling of the columns of W for the solution of eq. 15. kUnitNorm: the weighted pseudo-inverse of the
+/// paper. kUnits: metres and radians.
+enum class ColumnScaling { kUnitNorm, kUnits };
+
+struct IdentificationOptions {
+  Formulation formulation = Formulation::kSignedDistance;
+  IdentifiabilityOptions identifiability;
+  ColumnScaling weights = ColumnScaling::kUnitNorm;
+  bool robust = true;      // find touches that are inconsistent with the others, and leave them out
+  bool prior = false;      // maximum a posteriori with the maker's tolerances, without a choice of columns
+  bool stiffness = false;  // estimate the compliance of joints 2 and 3 with its prior
+  bool hold_weak = true;   // keep parameters at nominal that the declared noise would make meaningless
+  int iterations_max = 20;
+};
+
+/// How many kinematic parameters well-distributed touches on all faces would determine, with the given tip
+/// and with the tip moved off the axis of the last joint.
+struct Attainable {
+  int count = 0;
+  int off_axis_count = 0;
+};
+
+struct IdentificationProblem {
+  KinematicModel nominal;
+  Artefact artefact;
+  std::vector<Touch> touches;  // those with role kFit are fitted
+  double touch_noise_m = 0.0;  // declared standard deviation along the normal; 0 is unknown
+  ErrorTolerances
+      tolerances{};  // the maker's: the prior, and the size of errors that touches do not determine
+  std::array<std::optional<double>, kComplianceCount> std_compliance_rad_per_nm{};
+  /// Depends on arm, faces and options only. Set it when many identifications share these; else each call
+  /// computes it.
+  std::optional<Attainable> attainable;
+  /// A previous choice of columns, to be kept (validation B.1 and B.2); `start` is the arm it led to.
+  std::optional<std::vector<int>> columns;
+  ArmVector start = ArmVector::Zero();
+};
+
+enum class IdentificationStatus {
+  kConverged,
+  kNotConverged,      // iterations_max steps were not enough, or a step was not finite
+  kTooFewTouches,     // fewer fitted touches than parameters
+  kOneFace,           // all touches are on one face
+  kOnePosture,        // all touches have the same posture
+  kUnobservable,      // enough touches, but they determine fewer parameters than faces and stylus allow
+  kFarTouch,          // a touch far from every face, or from its own face when no touch may be left out
+  kContradictory,     // too many touches are inconsistent with the others
+  kCoincidingPlanes,  // two faces lie in one plane: the touched one is ambiguous
+  kSingularPrior,     // a tolerance of 0, or no tolerance where the touches determine nothing either
+  kBadInput,  // a number that is not finite, a face that does not exist, eq. 6 on a face through the origin
+};
+
+/// One iteration: W and the residuals before its step, the size of the step (metres and radians).
+struct Iteration {
+  double condition_number = 0.0;         // eq. 16, of the identifiable columns of W, metres and radians
+  double scaled_condition_number = 0.0;  // of the same columns scaled to unit norm
+  double residual_rms_m = 0.0;
+  double step_norm = 0.0;
+};
+
+enum class RejectionReason { kOutlier, kWrongFace };
+
+struct RejectedTouch {
+  std::size_t touch = 0;  // index into the touches of the problem
+  double residual_m = 0.0;
+  RejectionReason reason = RejectionReason::kOutlier;
+};
+
+/// A smaller step ends the iteration (metres and radians).
+inline constexpr double kStepNormConverged = 1e-11;
+
+/// A touch that is farther than kFarOffMetres from its plane was made on another face if one is within
+/// kOnOtherPlaneMetres; otherwise it is not a touch of this block.
+inline constexpr double kFarOffMetres = 0.050;
+inline constexpr double kOnOtherPlaneMetres = 0.025;
+
+}  // namespace calib

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+namespace calib {
+
+/// A box with edges along the axes of R_-1.
+struct Box {
+  std::string name;
+  Eigen::Vector3d min_m;
+  Eigen::Vector3d max_m;
+
+  /// Whether the point is inside or at most `margin_m` outside, axis by axis.
+  [[nodiscard]] bool contains(const Eigen::Vector3d& point_m, double margin_m = 0.0) const {
+    return (point_m.array() >= min_m.array() - margin_m).all() &&
+           (point_m.array() <= max_m.array() + margin_m).all();
+  }
+};
+
+}  // namespace calib

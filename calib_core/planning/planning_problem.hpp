@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "calib_core/estimation/identification_problem.hpp"
+#include "calib_core/geometry/box.hpp"
+#include "calib_core/geometry/face.hpp"
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/kinematics/kinematic_model.hpp"
+#include "calib_core/motion/collision.hpp"
+#include "calib_core/motion/motion_time.hpp"
+
+namespace calib {
+
+/// Requested touches on a face.
+struct TouchRequest {
+  int face = 0;
+  int fit_min = 0;
+  int fit_max = 0;
+  int held_out_count = 0;
+};
+
+/// The criterion of the choice of fitted touches.
+enum class PlanCriterion {
+  kTipInBox,          // smallest predicted tip error over the workspace box
+  kTipInJointRanges,  // smallest predicted tip error over the joint ranges
+  kInformation,       // largest determinant of the information (D-optimality)
+  kConditionNumber,   // smallest condition number of the identifiable columns, metres and radians
+};
+
+struct PlanGoal {
+  PlanCriterion criterion = PlanCriterion::kTipInBox;
+  int fit_count = 0;  // fitted touches on all faces; an upper limit when tip_rms_max_m is given
+  /// Wanted accuracy: the fewest touches with a predicted tip error within this limit, root mean square over
+  /// the region of the criterion (over the workspace box for criteria without a region).
+  std::optional<double> tip_rms_max_m;
+};
+
+struct PlanningProblem {
+  KinematicModel nominal;  // the model that postures are computed with
+  JointRanges joint_ranges;
+  std::vector<Face> faces;
+  Stylus stylus;
+  CollisionScene scene;
+  std::vector<TouchRequest> requests;
+  PlanGoal goal;
+  JointVector park_joints;                  // a run begins and ends here; clear of obstacles
+  double nominal_position_error_m = 0.012;  // bound on the tip error of `nominal`: sizes clearance and search
+  /// A search begins at least this far before its face and ends at least this far behind it.
+  double standoff_min_m = 0.015;
+  double tilt_max_rad = 0.0;
+  std::uint64_t seed = 1;        // of the candidates; the same problem gives the same plan
+  int candidate_count = 20'000;  // feasible touches to choose from
+  /// The identification that the touches are for: artefact, noise, tolerances; without touches. Its `nominal`
+  /// is the arm of the configuration.
+  IdentificationProblem knowledge;
+  IdentificationOptions identification;
+  Box workspace_box;
+  MotionLimits motion;
+};
+
+/// Width of the slow zone around everything that may be touched. The probe (all bodies of frame 7 and the
+/// tip) moves at approach speed inside it; travel moves stay outside even with the nominal position error.
+inline constexpr double kSlowZoneMetres = 0.025;
+
+/// The scene of the problem with the additional margins of travel moves.
+CollisionScene travel_scene(const PlanningProblem& problem);
+
+}  // namespace calib

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "service/acquisition/place_check.hpp"
+#include "service/run/run.hpp"
+#include "service/run/verdict.hpp"
+
+namespace cell {
+
+/// How a run ended: its `outcome` in the store and in every document.
+enum class RunOutcome { kComplete, kStopped, kAborted, kInterrupted };
+std::string_view run_outcome_name(RunOutcome outcome);  // "complete"
+
+/// What an earlier daemon left of a run that it did not end.
+struct Interruption {
+  std::optional<std::string> plan_id;
+  std::vector<PlanChange> plan_changes;
+};
+
+/// The run under way or the last one: what belongs to it and to no other. A value; whoever acts on a run is
+/// handed it.
+struct ActiveRun {
+  Run run;
+  std::string conditions;                         // as kept with it
+  bool guided = false;                            // its touches are made by hand
+  bool open = true;                               // begun in the store, not finished there
+  bool finished = false;                          // complete, and stored as such
+  std::size_t stored_changes = 0;                 // of its plan
+  std::chrono::system_clock::time_point began{};  // to touch
+  std::optional<Interruption> interruption;       // until somebody resumes it
+  std::optional<PlaceCheck> place_check;          // once it is planned, where the block was located
+};
+
+/// The result document, as json text; nothing before there is a result.
+std::optional<std::string> result_json(const ActiveRun& active, const TipRegions& regions);
+
+/// What a run that ends by `outcome` is worth: complete with every touch made and a result, it is judged by
+/// the cell's rule; else it is incomplete. Sets `finished`.
+Verdict conclude(ActiveRun& active, RunOutcome outcome, const Cell& cell);
+
+}  // namespace cell

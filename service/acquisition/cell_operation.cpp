@@ -1,0 +1,392 @@
+// The commands of a CellOperation, its preconditions and what it tells; what its states do is in
+// cell_operation_loop.cpp.
+#include "service/acquisition/cell_operation.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <utility>
+
+#include "service/acquisition/cs8_controller.hpp"
+#include "service/acquisition/link_fault.hpp"
+#include "service/acquisition/preconditions.hpp"
+#include "service/base/log_format.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/documents/conditions_view.hpp"
+#include "service/run/run_conditions.hpp"
+#include "service/store/fault_log.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+
+namespace {
+
+/// A confirmation is a key at the cell; the command says whether it is awaited and what to do.
+std::optional<CommandRefusal> refuse_confirm(const Status& status) {
+  if (status.waiting_for == awaited_confirmation().name) return std::nullopt;
+  if (!status.waiting_for) return CommandRefusal{.detail = "nothing waits for a confirmation now"};
+  return CommandRefusal{.detail = fmt::format("before a confirmation comes this: {}",
+                                              awaited_instruction(*status.waiting_for))};
+}
+
+std::optional<CommandRefusal> refuse_touch_test(const Status& status) {
+  if (status.controller.touch_tested.value_or(false)) return std::nullopt;
+  if (status.waiting_for == awaited_touch_test().name) return std::nullopt;
+  if (!status.controller.connected) return CommandRefusal{.detail = "there is no link to the controller"};
+  return CommandRefusal{.detail = fmt::format("the touch test is asked for once a run starts; then {}",
+                                              awaited_touch_test().words)};
+}
+
+/// What the status says of a run.
+void describe_run(Status& status, const ActiveRun& active, std::chrono::system_clock::time_point now) {
+  const Run& run = active.run;
+  status.touches_done = run.touches_done();
+  status.touches_total = run.touches_total();
+  status.run_id = run.id();
+  status.recipe = run.recipe().name;
+  const calib::IdentificationResult& latest = run.latest();
+  if (run.touches_done() > 0)
+    status.identifiable_count = static_cast<int>(latest.identifiable.columns.size());
+  if (latest.status == calib::IdentificationStatus::kConverged)
+    status.condition_number = latest.iterations.back().condition_number;
+  status.predicted_tip_rms_m = run.predicted_tip_rms_m();
+  status.touch_benefit = run.touch_benefit();
+  if (!is_active(status.state)) return;
+  if (const calib::PlannedTouch* next = run.next()) status.plane = next->face + 1;
+  if (run.touches_done() == 0) return;
+  const std::chrono::duration<double> elapsed = now - active.began;
+  status.eta_s = run.remaining_s(elapsed.count());
+}
+
+}  // namespace
+
+CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, RunStore& store,
+                             Endpoint controller, std::string instance_id, Clocks clocks)
+    : CellOperation(executor, cell, store,
+                    std::make_unique<Cs8Controller>(executor, cell.deadlines, std::move(controller)),
+                    std::move(instance_id), std::move(clocks)) {}
+
+CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, RunStore& store,
+                             std::unique_ptr<Controller> controller, std::string instance_id, Clocks clocks)
+    : store_(store),
+      clocks_(std::move(clocks)),
+      wake_(executor),
+      status_(clocks_, wake_, std::move(instance_id),
+              {.describe = [this](Status& status) { describe_to(status); },
+               .on_entered = [this](State state) { session_.on_entered(state); },
+               .store_fault = [this](const std::string& name,
+                                     const std::string& message) { store_fault(name, message); }}),
+      controller_(std::move(controller)),
+      session_(cell, *controller_, status_, wake_, clocks_),
+      location_(cell, session_, status_, wake_, clocks_),
+      plans_(executor, location_.cell()),
+      planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
+      touches_(location_.cell(), location_.regions(), store_, session_, preparation_, status_, wake_,
+               clocks_),
+      manual_(location_.cell(), store_, session_, preparation_, touches_, status_, wake_),
+      recovery_(location_.cell(), location_.regions(), store_, plans_, session_, preparation_, planning_,
+                touches_, status_, clocks_),
+      loop_{.executor = executor, .ended = TimerWake(executor)} {
+  controller_->listen({.on_state = [this](const cs8::State& state) { on_controller_state(state); },
+                       .on_permit = [this](const cs8::Permit& permit) { session_.on_permit(permit); },
+                       .on_loss = [this](const cs8::LinkError& error) { on_link_lost(error); }});
+  if (const auto accepted = store_.last_accepted())
+    status_.set_last_accepted(accepted->id, accepted->ended_at);
+}
+
+std::string CellOperation::now_text() const { return format_utc(clocks_.system()); }
+
+void CellOperation::launch() {
+  if (auto restored = recovery_.restore()) {
+    run_.emplace(*std::move(restored));
+    touches_.begin_run(*run_);
+    set_logged_run(run_->run.id());
+  }
+  status_.enter(run_ ? State::kHeld : State::kResetting);  // finding the controller moves nothing
+  loop_.runs = true;
+  asio::co_spawn(loop_.executor, act_on_states(), [this](const std::exception_ptr& failure) {
+    loop_.runs = false;
+    loop_.ended.wake();
+    if (failure) std::rethrow_exception(failure);
+  });
+}
+
+void CellOperation::store_fault(const std::string& name, const std::string& message) {
+  const auto run_id = run_ && run_->open ? std::optional(run_->run.id()) : std::nullopt;
+  FaultLog(store_.database()).append(run_id, now_text(), name, message);
+}
+
+void CellOperation::describe_to(Status& status) {
+  const bool open = run_ && run_->open;
+  status.controller = session_.view(status.controller.probe);
+  // Each line of the log tells the run, and the touch under way or next.
+  set_logged_run(open ? std::optional(run_->run.id()) : std::nullopt);
+  set_logged_touch(open && run_->run.next() ? std::optional(run_->run.touches_done() + 1) : std::nullopt);
+  status.touches_done = 0;
+  status.touches_total = 0;
+  status.identifiable_count.reset();
+  status.condition_number.reset();
+  status.predicted_tip_rms_m.reset();
+  status.touch_benefit.reset();
+  status.eta_s.reset();
+  status.plane.reset();
+  if (run_) describe_run(status, *run_, clocks_.system());
+  if (open) location_.leave();  // a run that begins ends the dialogue
+  const auto guided = manual_.guide(status.state);
+  const auto locating = location_.guide();
+  status.by_hand = locating ? locating : guided;
+}
+
+void CellOperation::on_controller_state(const cs8::State& state) {
+  session_.on_controller_state(state);
+  location_.on_controller_state(state);
+  manual_.on_controller_state(active(), state);
+  session_.check_task(state);
+}
+
+void CellOperation::on_link_lost(const cs8::LinkError& error) {
+  if (status_.is_ending()) return;
+  session_.forget_standing();
+  const bool is_over = status_.state() == State::kAborted || status_.state() == State::kStopped;
+  if (is_over && status_.fault()) {
+    status_.publish();  // the fault that is there stays until somebody has read it
+  } else {
+    status_.raise(link_fault(error), is_interrupted() ? Event::kNotReadyFault : Event::kLinkDown);
+  }
+  wake_.wake();
+}
+
+std::vector<Unmet> CellOperation::unmet_preconditions() const {
+  return unmet_by_controller(session_.connected(), session_.latest_state(), status_.fault());
+}
+
+std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request) const {
+  const auto outcome = plans_.planned(request.recipe);
+  const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
+  auto unmet = unmet_for_run(unmet_preconditions(), cell(), status_.fault(), no_plan);
+  return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
+}
+
+/// The answer to a start whose Idempotency-Key was there before; nothing when it was not.
+std::optional<std::variant<Started, CommandRefusal>> CellOperation::repeated_start(
+    const StartRequest& request) const {
+  const auto earlier = request.idempotency_key ? store_.run_with_key(*request.idempotency_key) : std::nullopt;
+  if (!earlier) return std::nullopt;
+  if (earlier->recipe == request.recipe) return Started{earlier->id, true};
+  return CommandRefusal{
+      .kind = CommandRefusal::Kind::kOtherKey,
+      .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'", earlier->id,
+                            earlier->recipe)};
+}
+
+std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& request) const {
+  if (!cell().recipes.contains(request.recipe)) {
+    std::string known;
+    for (const auto& [name, unused] : cell().recipes) known += (known.empty() ? "" : ", ") + name;
+    return CommandRefusal{
+        .kind = CommandRefusal::Kind::kUnknownRecipe,
+        .detail = fmt::format("there is no recipe '{}'; this cell has {}", request.recipe, known)};
+  }
+  if (status_.is_ending()) return CommandRefusal{.detail = "the daemon is ending"};
+  const State state = status_.state();
+  if (is_active(state)) {
+    return CommandRefusal{
+        .detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->run.id() : 0),
+        .code = FaultCode::kRunActive};
+  }
+  auto unmet = unmet_for(request);
+  if (!unmet.empty()) {
+    return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
+                          .detail = "the cell is not ready",
+                          .unmet = std::move(unmet)};
+  }
+  const bool waits_for_remote = request.guided && state == State::kResetting;
+  if (!waits_for_remote && !after_command(state, Command::kStart)) {
+    return CommandRefusal{.detail = fmt::format("a run cannot start in the state {}", state_name(state)),
+                          .code = FaultCode::kNotInThisState};
+  }
+  return std::nullopt;
+}
+
+std::variant<Started, CommandRefusal> CellOperation::start(const StartRequest& request) {
+  if (auto repeated = repeated_start(request)) return *std::move(repeated);
+  if (auto refusal = refuse_start(request)) return *std::move(refusal);
+  const std::string conditions =
+      conditions_document(cell(), {.operator_name = request.operator_name,
+                                   .config_digest = recovery_.config_digest(),
+                                   .controller_application = session_.application(),
+                                   .controller_session = session_.number(),
+                                   .touch_mode = request.guided ? TouchMode::kGuided : TouchMode::kAutomatic,
+                                   .place = place()});
+  std::int64_t id = 0;
+  try {
+    id = store_.begin_run({.recipe = request.recipe,
+                           .started_at = now_text(),
+                           .idempotency_key = request.idempotency_key,
+                           .operator_name = request.operator_name,
+                           .block_temperature_c = cell().block.temperature_c,
+                           .config_digest = recovery_.config_digest(),
+                           .conditions_json = conditions});
+  } catch (const std::exception& error) {
+    return CommandRefusal{
+        .kind = CommandRefusal::Kind::kPreconditions,
+        .detail = "the cell is not ready",
+        .unmet = {{"store_not_writable",
+                   fmt::format("free disk space or mend the state directory: {}", error.what())}}};
+  }
+  run_.emplace(ActiveRun{.run = Run(id, tip_regions(), cell().recipes.at(request.recipe), now_text()),
+                         .conditions = conditions,
+                         .guided = request.guided,
+                         .interruption = std::nullopt,
+                         .place_check = std::nullopt});
+  set_logged_run(id);
+  touches_.begin_run(*run_);
+  status_.begin_run(id);
+  status_.enter(State::kStarting);
+  return Started{id, false};
+}
+
+std::optional<CommandRefusal> CellOperation::command(Command command, std::optional<std::int64_t> run_id) {
+  if (run_id && (!run_ || run_->run.id() != *run_id)) {
+    return CommandRefusal{.kind = CommandRefusal::Kind::kNotThisRun,
+                          .detail = fmt::format("run {} is over", *run_id)};
+  }
+  const State state = status_.state();
+  const auto next = after_command(state, command);
+  if (!next) {
+    return CommandRefusal{
+        .detail = fmt::format("{} is not possible in the state {}", command_name(command), state_name(state)),
+        .code = FaultCode::kNotInThisState};
+  }
+  if (auto refusal = refusal_reason(command)) return refusal;
+  if (command == Command::kLocate) return locate();
+  if (command == Command::kTake) return take();
+  if (command == Command::kUndo) return undo();
+  spdlog::info("command {}", command_name(command));
+  apply_command(command);
+  if (status_.state() == state) status_.enter(*next);
+  return std::nullopt;
+}
+
+/// Why a command that the state allows is not taken all the same.
+std::optional<CommandRefusal> CellOperation::refusal_reason(Command command) const {
+  switch (command) {
+    case Command::kRetry:
+    case Command::kSkip:
+      return refuse_answer_to_hold(command);
+    case Command::kConfirm:
+      return refuse_confirm(status_.latest());
+    case Command::kTouchTest:
+      return refuse_touch_test(status_.latest());
+    case Command::kTake:
+      if (location_.awaits_touch() || manual_.awaits_touch()) return std::nullopt;
+      return CommandRefusal{.detail =
+                                "no touch by hand is awaited: touchcal locate or touchcal run --guided asks "
+                                "for some"};
+    case Command::kUndo:
+      return refuse_undo();
+    case Command::kStart:
+    case Command::kPause:
+    case Command::kResume:
+    case Command::kLocate:
+    case Command::kStop:
+    case Command::kAbort:
+    case Command::kClear:
+    case Command::kReset:
+    case Command::kAcknowledge:
+      break;
+  }
+  return std::nullopt;
+}
+
+std::optional<CommandRefusal> CellOperation::refuse_answer_to_hold(Command command) const {
+  const Command answer = touches_.answer_to_hold();
+  if (status_.state() == State::kUnholding && answer != command)
+    return CommandRefusal{.detail = fmt::format("the run goes on by {} already", command_name(answer))};
+  if (status_.state() == State::kHeld && touches_.held_by() == HeldBy::kNothing)
+    return CommandRefusal{.detail = "no touch holds this run; resume goes on with the next one"};
+  return std::nullopt;
+}
+
+std::optional<CommandRefusal> CellOperation::refuse_undo() const {
+  const bool guiding =
+      run_ && run_->guided && status_.state() == State::kExecute && run_->run.touches_done() > 0;
+  if (location_.is_locating() ? location_.can_undo() : guiding) return std::nullopt;
+  return CommandRefusal{.detail = "there is no touch by hand to take back"};
+}
+
+/// What a command changes that was not refused, before the next state is entered.
+void CellOperation::apply_command(Command command) {
+  const bool answers_hold =
+      command == Command::kResume || command == Command::kRetry || command == Command::kSkip;
+  const bool settles_fault = answers_hold || command == Command::kAcknowledge || command == Command::kClear ||
+                             command == Command::kReset;
+  if (settles_fault && status_.fault()) {
+    status_.clear_fault();
+    status_.publish();
+  }
+  if (command == Command::kStop && location_.awaits_touch()) {
+    location_.leave();
+    status_.publish();
+  }
+  if (status_.state() == State::kHeld && answers_hold) {
+    touches_.settle_hold(*run_, command);
+    status_.publish();
+  }
+}
+
+std::optional<CommandRefusal> CellOperation::locate() {
+  if (auto refusal = location_.locate()) return refusal;
+  if (!location_.is_passing()) return std::nullopt;
+  run_.reset();
+  status_.forget_run();
+  status_.enter(State::kStarting);
+  return std::nullopt;
+}
+
+/// Takes where the arm stands as the touch that is awaited of a person.
+std::optional<CommandRefusal> CellOperation::take() {
+  return location_.awaits_touch() ? location_.take() : manual_.take(active());
+}
+
+/// The last touch that a person made is forgotten and asked for again.
+std::optional<CommandRefusal> CellOperation::undo() {
+  spdlog::info("the last touch by hand is taken back");
+  if (location_.is_locating()) {
+    location_.undo();
+  } else {
+    manual_.undo(*run_);
+  }
+  return std::nullopt;
+}
+
+std::vector<Command> CellOperation::exits() const {
+  std::vector<Command> commands = cell::exits(status_.state());
+  std::erase_if(commands, [this](Command command) { return refusal_reason(command).has_value(); });
+  return commands;
+}
+
+void CellOperation::keep_place_in(const std::filesystem::path& file) {
+  if (location_.keep_in(file)) forget_plans();
+}
+
+/// All that was planned or made ready where the block stood before.
+void CellOperation::forget_plans() {
+  run_.reset();
+  plans_.clear();
+  preparation_.forget_all();
+}
+
+Status CellOperation::status() const {
+  Status status = status_.latest();
+  status.data_age_ms = data_age_ms();
+  return status;
+}
+
+std::optional<std::string> CellOperation::result_json() const {
+  return run_ ? cell::result_json(*run_, tip_regions()) : std::nullopt;
+}
+
+}  // namespace cell

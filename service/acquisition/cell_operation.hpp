@@ -1,0 +1,166 @@
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/cell.hpp"
+#include "service/acquisition/active_run.hpp"
+#include "service/acquisition/block_location.hpp"
+#include "service/acquisition/clocks.hpp"
+#include "service/acquisition/command_refusal.hpp"
+#include "service/acquisition/controller_session.hpp"
+#include "service/acquisition/manual_touching.hpp"
+#include "service/acquisition/plan_cache.hpp"
+#include "service/acquisition/published_status.hpp"
+#include "service/acquisition/run_planning.hpp"
+#include "service/acquisition/run_recovery.hpp"
+#include "service/acquisition/touch_executor.hpp"
+#include "service/acquisition/touch_preparation.hpp"
+#include "service/store/run_store.hpp"
+
+namespace cell {
+
+/// What a run is asked for with.
+struct StartRequest {
+  std::string recipe;
+  std::optional<std::string> idempotency_key;
+  std::optional<std::string> operator_name;
+  bool guided = false;  // a person makes the touches with the pendant; nothing is commanded
+};
+
+struct Started {
+  std::int64_t run_id = 0;
+  bool repeated = false;  // the same Idempotency-Key started it before
+};
+
+/// The cell in operation: the state and the run. Commands act at once on the state (state_machine.hpp); one
+/// loop does what the state asks for, a step at a time, by the owners of what the step needs. One thread:
+/// that of the executor.
+class CellOperation {
+ public:
+  /// `cell` and `store` must outlive the operation.
+  CellOperation(boost::asio::any_io_executor executor, const Cell& cell, RunStore& store, Endpoint controller,
+                std::string instance_id, Clocks clocks);
+  /// With a controller of any kind.
+  CellOperation(boost::asio::any_io_executor executor, const Cell& cell, RunStore& store,
+                std::unique_ptr<Controller> controller, std::string instance_id, Clocks clocks);
+  CellOperation(const CellOperation&) = delete;
+  CellOperation& operator=(const CellOperation&) = delete;
+
+  /// Begins to look for the controller and to act on commands. Nothing moves before start().
+  void launch();
+  /// Ends all: a running motion is stopped, the run is closed as stopped. Waits a few seconds for the
+  /// controller's answer; after that the link is cut, on which the controller stops by itself.
+  boost::asio::awaitable<void> shut_down();
+
+  std::variant<Started, CommandRefusal> start(const StartRequest& request);
+  /// `run_id` when the command names a run: it must be the active one.
+  std::optional<CommandRefusal> command(Command command, std::optional<std::int64_t> run_id = {});
+  /// The commands that lead out of the present state and are taken now.
+  [[nodiscard]] std::vector<Command> exits() const;
+
+  /// Where the place of the block is kept; to be told before launch(), see BlockLocation::keep_in.
+  void keep_place_in(const std::filesystem::path& file);
+  /// Where the block was found; nothing as long as it stands where the cell's file says.
+  [[nodiscard]] const std::optional<BlockPose>& place() const { return location_.place(); }
+
+  [[nodiscard]] Status status() const;
+  [[nodiscard]] std::uint64_t sequence() const { return status_.latest().sequence; }
+  [[nodiscard]] std::optional<std::int64_t> data_age_ms() const { return session_.data_age_ms(); }
+  /// As the controller told it last; nothing before it has.
+  [[nodiscard]] std::optional<cs8::State> controller_state() const { return session_.latest_state(); }
+  /// Whoever is told each change of the status, at once; one at a time.
+  void on_change(std::function<void(const Status&)> listener) { status_.on_change(std::move(listener)); }
+  /// All that stands in the way of a start now.
+  [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
+  /// The run under way or the last one of this daemon; null before the first.
+  [[nodiscard]] const Run* run() const { return run_ ? &run_->run : nullptr; }
+  /// The result document of run(), as json text; nothing before there is a result.
+  [[nodiscard]] std::optional<std::string> result_json() const;
+  /// With its block where it was found last.
+  [[nodiscard]] const Cell& cell() const { return location_.cell(); }
+  [[nodiscard]] const TipRegions& tip_regions() const { return location_.regions(); }
+  [[nodiscard]] const RunStore& store() const { return store_; }
+  [[nodiscard]] const Clocks& clocks() const { return clocks_; }
+
+  /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on a thread of its own.
+  boost::asio::awaitable<PlanOutcome> plan_recipe(std::string name) { return plans_.plan(std::move(name)); }
+  /// What plan_recipe() gave; nothing before. A run by this recipe makes these touches.
+  [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe) const {
+    return plans_.planned(recipe);
+  }
+  [[nodiscard]] bool is_planning() const { return plans_.is_planning(); }
+  /// Null when no plan made since the daemon began has this id.
+  [[nodiscard]] std::shared_ptr<const Plan> plan_with_id(const std::string& id) const {
+    return plans_.plan_with_id(id);
+  }
+
+ private:
+  // commands and status (cell_operation.cpp)
+  std::optional<std::variant<Started, CommandRefusal>> repeated_start(const StartRequest& request) const;
+  [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request) const;
+  [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request) const;
+  [[nodiscard]] std::optional<CommandRefusal> refusal_reason(Command command) const;
+  [[nodiscard]] std::optional<CommandRefusal> refuse_answer_to_hold(Command command) const;
+  [[nodiscard]] std::optional<CommandRefusal> refuse_undo() const;
+  void apply_command(Command command);
+  std::optional<CommandRefusal> locate();
+  std::optional<CommandRefusal> take();
+  std::optional<CommandRefusal> undo();
+  void on_controller_state(const cs8::State& state);
+  void on_link_lost(const cs8::LinkError& error);
+  void describe_to(Status& status);
+  void store_fault(const std::string& name, const std::string& message);
+  void forget_plans();
+  [[nodiscard]] ActiveRun* active() { return run_ ? &*run_ : nullptr; }
+  [[nodiscard]] bool is_interrupted() const { return run_ && run_->interruption; }
+  [[nodiscard]] std::string now_text() const;
+
+  // what the states do (cell_operation_loop.cpp)
+  boost::asio::awaitable<void> act_on_states();
+  boost::asio::awaitable<void> act_on(State state);
+  boost::asio::awaitable<void> reset();
+  boost::asio::awaitable<void> connect();
+  boost::asio::awaitable<void> start_run();
+  boost::asio::awaitable<void> resume_run();
+  boost::asio::awaitable<bool> obtain_permit();
+  boost::asio::awaitable<void> wait_out_suspension();
+  boost::asio::awaitable<void> pass_block();
+  boost::asio::awaitable<void> complete_run();
+  boost::asio::awaitable<bool> park();
+  void close_run(RunOutcome outcome);
+  boost::asio::awaitable<void> wait_for_end(std::chrono::milliseconds at_most);
+
+  /// Where the coroutine runs, and its end.
+  struct Loop {
+    boost::asio::any_io_executor executor;
+    TimerWake ended;
+    bool runs = false;
+  };
+
+  RunStore& store_;
+  Clocks clocks_;
+  TimerWake wake_;  // of the loop, when it has something to do
+  PublishedStatus status_;
+  std::unique_ptr<Controller> controller_;
+  ControllerSession session_;
+  BlockLocation location_;
+  PlanCache plans_;
+  TouchPreparation preparation_;
+  RunPlanning planning_;
+  TouchExecutor touches_;
+  ManualTouching manual_;
+  RunRecovery recovery_;
+  std::optional<ActiveRun> run_;
+  Loop loop_;
+};
+
+}  // namespace cell

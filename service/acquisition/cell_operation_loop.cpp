@@ -1,0 +1,246 @@
+// What the states of a CellOperation do: one coroutine, one step at a time. Each co_await stands alone in its
+// statement, see cs8_controller.cpp.
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include "calib_core/planning/aimed_transfer.hpp"
+#include "service/acquisition/cell_operation.hpp"
+#include "service/acquisition/touch_judgement.hpp"
+#include "service/run/touch_command.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// How long the end waits for the controller's last answer, and for what that leaves to be stored.
+constexpr std::chrono::milliseconds kStopPatience{3000};
+constexpr std::chrono::milliseconds kRetractPatience{10'000};  // as long as the arm still moves then
+constexpr std::chrono::milliseconds kClosePatience{1000};
+
+}  // namespace
+
+asio::awaitable<void> CellOperation::act_on_states() {
+  while (!status_.is_ending() || (is_active(status_.state()) && !is_interrupted())) {
+    if (status_.state() != State::kExecute && run_) touches_.identify(*run_);
+    co_await act_on(status_.state());
+  }
+}
+
+asio::awaitable<void> CellOperation::act_on(State state) {
+  switch (state) {
+    case State::kResetting:
+      co_await reset();
+      break;
+    case State::kStarting:
+      if (location_.is_passing()) {
+        co_await pass_block();
+      } else {
+        co_await start_run();
+      }
+      break;
+    case State::kExecute:
+      if (run_->guided) {
+        co_await manual_.await_touch(*run_);
+      } else {
+        co_await touches_.make_next_touch(*run_);
+      }
+      break;
+    case State::kCompleting:
+      co_await complete_run();
+      break;
+    case State::kSuspended:
+      co_await wait_out_suspension();
+      break;
+    case State::kUnsuspending:
+    case State::kUnholding:
+      co_await resume_run();
+      break;
+    case State::kStopping:
+      if (status_.is_ending()) co_await session_.leave_face();
+      session_.give_permit_back();
+      close_run(RunOutcome::kStopped);
+      status_.apply(Event::kDone);
+      break;
+    case State::kAborting:
+      session_.give_permit_back();
+      close_run(RunOutcome::kAborted);
+      status_.apply(Event::kDone);
+      break;
+    case State::kSuspending:
+    case State::kHolding:
+      status_.apply(Event::kDone);
+      break;
+    case State::kClearing:
+      // Whatever stopped the arm, the controller is met anew before the next run.
+      session_.close();
+      status_.apply(Event::kDone);
+      break;
+    case State::kComplete:
+    case State::kStopped:
+    case State::kAborted:
+    case State::kHeld:
+      // A finished or interrupted run stays to be read while the link comes and goes.
+      if (session_.connected() || (state == State::kHeld && !is_interrupted())) {
+        co_await wake_.wait(1h);
+      } else {
+        co_await connect();
+      }
+      break;
+    case State::kIdle:
+      co_await wake_.wait(1h);
+      break;
+  }
+}
+
+asio::awaitable<void> CellOperation::reset() {
+  if (!session_.connected()) {
+    co_await connect();
+    co_return;
+  }
+  if (session_.open_touch() || session_.sequence_to_settle() != 0) {
+    co_await touches_.settle_open_command(active(), session_.sequence_to_settle());
+  } else if (unmet_preconditions().empty()) {
+    status_.apply(Event::kDone);
+  } else {
+    co_await wake_.wait(1h);  // each state of the controller wakes
+  }
+}
+
+asio::awaitable<void> CellOperation::connect() {
+  const std::uint32_t sequence = co_await session_.connect(is_interrupted());
+  if (sequence != 0) co_await touches_.settle_open_command(active(), sequence);
+}
+
+asio::awaitable<void> CellOperation::start_run() {
+  session_.forget_standing();
+  const bool planned = co_await planning_.plan(*run_);
+  if (!planned || status_.state() != State::kStarting) co_return;
+  const bool permitted = co_await obtain_permit();
+  run_->began = clocks_.system();
+  if (permitted) status_.apply(Event::kDone);
+}
+
+asio::awaitable<void> CellOperation::resume_run() {
+  session_.forget_standing();  // on hold the arm may have been moved by hand
+  const bool resumable = co_await recovery_.make_resumable(*run_);
+  const bool goes_on = status_.state() == State::kUnholding || status_.state() == State::kUnsuspending;
+  if (!resumable || !goes_on) co_return;
+  const bool permitted = co_await obtain_permit();
+  if (permitted) status_.apply(Event::kDone);
+}
+
+asio::awaitable<bool> CellOperation::obtain_permit() {
+  if (run_->guided) co_return true;  // nothing is commanded
+  const bool permitted = co_await session_.obtain_permit(static_cast<std::uint32_t>(run_->run.id()));
+  co_return permitted;
+}
+
+/// Until what keeps the arm waiting has passed; nothing moves here.
+asio::awaitable<void> CellOperation::wait_out_suspension() {
+  const auto is_back = [this] {
+    const auto state = session_.latest_state();
+    return state && state->monitor_speed_percent == 100;
+  };
+  while (status_.state() == State::kSuspended && !is_back())
+    co_await wake_.wait(1s);  // each state of the controller wakes
+  if (status_.state() != State::kSuspended) co_return;
+  status_.clear_fault();
+  status_.apply(Event::kDone);
+}
+
+asio::awaitable<void> CellOperation::pass_block() {
+  const bool found = co_await location_.pass();
+  if (!found) co_return;
+  forget_plans();
+  status_.enter(State::kIdle);
+}
+
+asio::awaitable<void> CellOperation::complete_run() {
+  const bool parked = co_await park();
+  if (status_.state() != State::kCompleting) co_return;
+  if (!parked) {
+    co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    co_return;
+  }
+  const Run& run = run_->run;
+  const calib::IdentificationResult& result = run.latest();
+  if (result.status != calib::IdentificationStatus::kConverged)
+    status_.set_fault({FaultCode::kNotIdentifiable, result.message});
+  if (const auto bias = face_warning(result, cell().acceptance.lack_of_fit_p_min)) status_.warn(*bias);
+  if (run.skipped_count() > 0)
+    status_.warn({FaultCode::kTouchesLeftOut, fmt::format("{} by a person", run.skipped_count())});
+  session_.give_permit_back();
+  close_run(RunOutcome::kComplete);
+  status_.apply(Event::kDone);
+}
+
+asio::awaitable<bool> CellOperation::park() {
+  if (run_->guided) co_return true;  // the person does
+  const auto from = co_await session_.standing_joints();
+  if (!from || status_.state() != State::kCompleting) co_return false;
+  const calib::JointVector& to = cell().park_joints;
+  const auto via = calib::find_aimed_transfer(preparation_.problem(), preparation_.aim(),
+                                              preparation_.leaving(*from), {to, std::nullopt, nullptr});
+  if (!via) {
+    status_.raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kAbortFault);
+    co_return false;
+  }
+  const cs8::Travel command = travel_command(cell(), to, *via);
+  const bool arrived = co_await session_.travel(command);
+  co_return arrived;
+}
+
+/// The run is over: its verdict and its latest result are stored with it.
+void CellOperation::close_run(RunOutcome outcome) {
+  session_.forget_standing();
+  if (!run_ || !run_->open) return;
+  const Run& run = run_->run;
+  run_->open = false;
+  const Verdict verdict = conclude(*run_, outcome, cell());
+  status_.set_verdict(verdict);
+  RunEnd end{
+      .outcome = std::string(run_outcome_name(run_->interruption ? RunOutcome::kInterrupted : outcome)),
+      .verdict = std::string(verdict_name(verdict)),
+      .ended_at = now_text(),
+      .result_json = result_json()};
+  if (const auto& fault = status_.fault()) {
+    end.fault_code = std::string(describe(fault->code).name);
+    end.fault_message = fault->message();
+  }
+  run_->interruption.reset();
+  try {
+    store_.finish_run(run.id(), end);
+    if (verdict == Verdict::kAccepted) status_.set_last_accepted(run.id(), end.ended_at);
+  } catch (const std::exception& error) {
+    run_->finished = false;  // what is not on the disk is not accepted
+    status_.set_verdict(Verdict::kIncomplete);
+    status_.set_fault({FaultCode::kStoreFailed, error.what()});
+    spdlog::error("run {}: its end could not be stored: {}", run.id(), error.what());
+  }
+  spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome), end.verdict,
+               run.touches_done(), run.touches_total());
+}
+
+asio::awaitable<void> CellOperation::shut_down() {
+  status_.end();
+  const State state = status_.state();
+  if (is_active(state) && state != State::kAborting && !is_interrupted()) {
+    status_.enter(State::kStopping);
+  } else {
+    wake_.wake();
+  }
+  co_await wait_for_end(kStopPatience);
+  const auto told = session_.latest_state();
+  if (told && told->active_sequence != 0) co_await wait_for_end(kRetractPatience);
+  session_.close();  // what still waits for the controller ends now
+  co_await wait_for_end(kClosePatience);
+}
+
+asio::awaitable<void> CellOperation::wait_for_end(std::chrono::milliseconds at_most) {
+  if (loop_.runs) co_await loop_.ended.wait(at_most);
+}
+
+}  // namespace cell

@@ -1,0 +1,90 @@
+// How a ControllerSession gets a person's word before anything moves. Each co_await stands alone in its
+// statement, see cs8_controller.cpp.
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "service/acquisition/controller_session.hpp"
+#include "service/run/touch_command.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// A refusal whose reason does not show in the controller's state is asked about again after this time.
+constexpr auto kAskAgain = 10s;
+
+}  // namespace
+
+bool ControllerSession::is_permitted(std::uint32_t run_number) const {
+  const auto permit = controller_.latest_permit();  // that of the run before may not be back yet
+  return controller_.connected() && permit && permit->run == run_number &&
+         permit->state == cs8::PermitState::kGranted;
+}
+
+void ControllerSession::wait_for(const AwaitedAction* awaited) {
+  const auto name = awaited ? std::optional(std::string(awaited->name)) : std::nullopt;
+  if (awaited && status_.latest().waiting_for != name) spdlog::info("waiting: {}", awaited->words);
+  status_.wait_for(name);
+}
+
+void ControllerSession::on_permit(const cs8::Permit& permit) {
+  if (asking_ && permit.state == cs8::PermitState::kAwaited) wait_for(&awaited_confirmation());
+}
+
+asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number) {
+  const State state = status_.state();
+  const auto ready_by = clocks_.steady() + cell_.deadlines.ready;
+  while (status_.state() == state && !is_permitted(run_number)) {
+    const auto told = controller_.latest_state();
+    asking_ = true;
+    const cs8::PermitReply reply = co_await controller_.begin(run_number, cell_.deadlines.confirm);
+    asking_ = false;
+    const auto* permit = std::get_if<cs8::Permit>(&reply);
+    if (!permit) co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    if (!permit || status_.state() != state) continue;
+    if (permit->reason == cs8::PermitReason::kNotConfirmed) {
+      status_.raise(not_ready_fault(awaited_confirmation()), Event::kNotReadyFault);
+    } else if (permit->reason == cs8::PermitReason::kRefused) {
+      co_await take_refused_permit(*permit, told, ready_by);
+    }  // else granted, or taken away while it was awaited: asked for again
+  }
+  wait_for(nullptr);
+  co_return status_.state() == state;
+}
+
+/// Waits for what a person at the cell can mend; anything else ends the run.
+asio::awaitable<void> ControllerSession::take_refused_permit(const cs8::Permit& permit,
+                                                             std::optional<cs8::State> told,
+                                                             std::chrono::steady_clock::time_point ready_by) {
+  const State state = status_.state();
+  const cs8::Rejected refused{static_cast<cs8::RejectReason>(permit.detail)};
+  const AwaitedAction* awaited = awaited_after_rejection(refused.reason, told ? told->flags : 0);
+  if (!awaited) {
+    status_.raise(fault_of(refused).fault, Event::kAbortFault);
+    co_return;
+  }
+  wait_for(awaited);
+  co_await wait_until_readier(told, ready_by);
+  if (status_.state() == state && clocks_.steady() >= ready_by)
+    status_.raise(not_ready_fault(*awaited), Event::kNotReadyFault);
+}
+
+/// Until the controller is not as it was told, another state is entered or it is time to ask again.
+asio::awaitable<void> ControllerSession::wait_until_readier(std::optional<cs8::State> told,
+                                                            std::chrono::steady_clock::time_point at_latest) {
+  const State state = status_.state();
+  const auto until = std::min(at_latest, clocks_.steady() + kAskAgain);
+  const auto is_as_told = [&] {
+    const auto latest = controller_.latest_state();
+    return latest.has_value() == told.has_value() && (!told || readiness_of(*latest) == readiness_of(*told));
+  };
+  while (status_.state() == state && controller_.connected() && is_as_told() && clocks_.steady() < until) {
+    co_await wake_.wait(1s);  // each state of the controller wakes
+  }
+}
+
+}  // namespace cell

@@ -1,0 +1,44 @@
+#include "service/acquisition/link_fault.hpp"
+
+namespace cell {
+namespace {
+
+FaultCode fault_code_of(cs8::LinkErrorKind kind) {
+  switch (kind) {
+    case cs8::LinkErrorKind::kIncompatible:
+      return FaultCode::kControllerIncompatible;
+    case cs8::LinkErrorKind::kProtocol:
+    case cs8::LinkErrorKind::kFault:
+      return FaultCode::kProtocolError;
+    case cs8::LinkErrorKind::kUnreachable:
+    case cs8::LinkErrorKind::kHandshakeTimeout:
+    case cs8::LinkErrorKind::kNotConnected:
+      return FaultCode::kControllerUnreachable;
+    case cs8::LinkErrorKind::kUnanswered:
+      return FaultCode::kAnswerMissing;
+    case cs8::LinkErrorKind::kPeerClosed:
+    case cs8::LinkErrorKind::kSilent:
+    case cs8::LinkErrorKind::kClosed:
+      break;
+  }
+  return FaultCode::kLinkLost;
+}
+
+}  // namespace
+
+bool is_link_fault(FaultCode code) {
+  switch (code) {
+    case FaultCode::kControllerUnreachable:
+    case FaultCode::kControllerIncompatible:
+    case FaultCode::kProtocolError:
+    case FaultCode::kLinkLost:
+    case FaultCode::kAnswerMissing:
+      return true;
+    default:
+      return false;
+  }
+}
+
+Fault link_fault(const cs8::LinkError& error) { return {fault_code_of(error.kind), error.text}; }
+
+}  // namespace cell

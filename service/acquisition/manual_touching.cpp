@@ -1,0 +1,176 @@
+// Each co_await stands alone in its statement, see cs8_controller.cpp.
+#include "service/acquisition/manual_touching.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <utility>
+
+#include "calib_core/geometry/face.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// From one state to the next, 20 ms: faster, and the trigger is not known well enough to calibrate with.
+constexpr double kGuidedMovedMaxMetres = 2e-4;
+/// A touch with all joints this near to another one's on the same face tells nothing new.
+constexpr double kSamePostureRad = 0.035;
+
+/// On any face: the probe bounced, it is the same contact once more.
+constexpr double kSameContactRad = 2e-3;
+
+bool is_same_posture(const calib::Touch& touch, int face, const calib::JointVector& joints) {
+  const double apart_rad = (touch.joints - joints).cwiseAbs().maxCoeff();
+  return apart_rad < (touch.face == face ? kSamePostureRad : kSameContactRad);
+}
+
+/// Whether a ball lies over a face's rectangle, as far as the arm is known.
+bool is_over(const calib::Face& face, const Eigen::Vector3d& ball_m, double miss_m) {
+  const Eigen::Vector3d off_m = ball_m - face.center_m;
+  return std::abs(off_m.dot(face.edge_u)) <= face.half_extent_m.x() + miss_m &&
+         std::abs(off_m.dot(face.edge_v())) <= face.half_extent_m.y() + miss_m;
+}
+
+}  // namespace
+
+ManualTouching::ManualTouching(const Cell& cell, RunStore& store, ControllerSession& session,
+                               TouchPreparation& preparation, TouchExecutor& touches, PublishedStatus& status,
+                               Wake& wake)
+    : cell_(cell),
+      store_(store),
+      session_(session),
+      preparation_(preparation),
+      touches_(touches),
+      status_(status),
+      wake_(wake) {}
+
+asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
+  touches_.forget_hold();
+  const Run& run = active.run;
+  if (!run.next()) {
+    status_.apply(Event::kDone);
+    co_return;
+  }
+  touches_.identify(active);
+  const bool contradicts = preparation_.add_contacts(run);
+  HandGuide guide = guide_to(run);
+  if (guide_ && guide_->index == guide.index) guide.problem = guide_->problem;
+  if (contradicts)
+    guide.problem =
+        "the last touch does not fit the others: touchcal undo takes it back, else go on with this one";
+  if (!watch_) watch_.emplace(cell_.arm.model);
+  if (guide_ != guide) {
+    guide_ = std::move(guide);
+    status_.publish();
+  }
+  co_await wake_.wait(1h);
+}
+
+HandGuide ManualTouching::guide_to(const Run& run) const {
+  const calib::PlannedTouch& planned = *run.next();
+  const auto aimed = calib::aim_touch(preparation_.problem(), preparation_.aim(), planned);
+  const auto* made = std::get_if<calib::AimedTouch>(&aimed);
+  return {.activity = HandActivity::kGuided,
+          .plane = planned.face + 1,
+          .index = run.touches_done() + 1,
+          .total = run.touches_total(),
+          .words = fmt::format("touch plane {} in about this posture: jog the ball against it, under 10 "
+                               "mm/s at the end, until the probe trips, then back",
+                               planned.face + 1),
+          .problem = {},
+          .about_joints = made ? made->touch.joints : planned.joints};
+}
+
+std::optional<HandGuide> ManualTouching::guide(State state) {
+  if (state != State::kExecute) guide_.reset();
+  if (!guide_) watch_.reset();
+  return guide_;
+}
+
+std::optional<CommandRefusal> ManualTouching::take(ActiveRun* active) {
+  auto taken = watch_->take();
+  if (auto* why = std::get_if<std::string>(&taken)) return CommandRefusal{.detail = std::move(*why)};
+  if (auto why = take_touch(active, std::get<HandTouch>(taken)))
+    return CommandRefusal{.detail = std::move(*why)};
+  return std::nullopt;
+}
+
+void ManualTouching::on_controller_state(ActiveRun* active, const cs8::State& state) {
+  if (!watch_) return;
+  if (const auto touch = watch_->on_controller_state(state)) take_touch(active, *touch);
+}
+
+/// A touch that can be the one that is awaited is kept; else it is told why not.
+std::optional<std::string> ManualTouching::take_touch(ActiveRun* active, const HandTouch& touch) {
+  const calib::PlannedTouch* planned = active ? active->run.next() : nullptr;
+  if (!guide_ || !planned || status_.state() != State::kExecute) return "no touch is awaited now";
+  if (auto why = why_not(active->run, *planned, touch)) {
+    spdlog::info("touch by hand not taken: {}", *why);
+    guide_->problem = why;
+    status_.publish();
+    return why;
+  }
+  cs8::TouchResult result;
+  result.outcome = cs8::Outcome::kContact;
+  result.source = cs8::CaptureSource::kPolled;
+  result.contact = touch.wire_joints;
+  result.edges = 1;
+  const std::optional<OpenTouch>& open = session_.open_touch();
+  const calib::PlannedTouch wanted = *planned;  // the run goes on to the next one
+  if (!touches_.keep(*active, wanted, result, open ? &*open : nullptr)) return "it could not be stored";
+  if (active->place_check) {
+    if (const auto moved = active->place_check->check(active->run.problem().touches.back()))
+      status_.raise(*moved, Event::kHoldFault);
+  }
+  status_.publish();
+  wake_.wake();
+  return std::nullopt;
+}
+
+/// Why a touch cannot be the planned one; nothing when it can.
+std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::PlannedTouch& planned,
+                                                   const HandTouch& touch) const {
+  if (touch.moved_m && *touch.moved_m > kGuidedMovedMaxMetres) {
+    return fmt::format("the ball went {:.2f} mm in the moment of the touch: come slower, under 10 mm/s",
+                       calib::mm_from_metres(*touch.moved_m));
+  }
+  const calib::PlanningProblem& problem = preparation_.problem();
+  const calib::Face& face = problem.faces[static_cast<std::size_t>(planned.face)];
+  const Eigen::Vector3d ball_m =
+      calib::forward_kinematics(preparation_.aim().model(), touch.joints).translation();
+  const double off_m = calib::signed_distance_m(calib::contact_plane(face, problem.stylus), ball_m);
+  if (std::abs(off_m) > cell_.nominal_position_error_m) {
+    return fmt::format("the ball was {:.0f} mm off plane {}: touch that one", calib::mm_from_metres(off_m),
+                       planned.face + 1);
+  }
+  if (!is_over(face, ball_m, cell_.nominal_position_error_m))
+    return fmt::format("the ball was beside plane {}: touch that one", planned.face + 1);
+  for (const calib::Touch& made : run.problem().touches) {
+    if (is_same_posture(made, planned.face, touch.joints))
+      return "a touch in this posture was made before: turn the wrist or take another place on the plane";
+  }
+  return std::nullopt;
+}
+
+void ManualTouching::undo(ActiveRun& active) {
+  try {
+    store_.withdraw_touch(active.run.id(), active.run.touches().back().number, "a person took it back");
+  } catch (const std::exception& error) {
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    return;
+  }
+  active.run.withdraw_last();
+  preparation_.restart_aim();
+  guide_.reset();
+  status_.publish();
+  wake_.wake();
+}
+
+}  // namespace cell

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/thread_pool.hpp>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "config/cell.hpp"
+#include "service/documents/plan.hpp"
+
+namespace cell {
+
+/// A recipe's plan, or why there is none: the same whenever it is asked for.
+using PlanOutcome = std::variant<std::shared_ptr<const Plan>, PlanRefusal>;
+
+/// The plans that were made of a cell, by recipe. Planning takes seconds: it has a thread of its own, beside
+/// the sockets; everything else happens on the executor's.
+class PlanCache {
+ public:
+  /// `cell` must outlive it; it may stand elsewhere later, then clear() is due.
+  PlanCache(boost::asio::any_io_executor executor, const Cell& cell)
+      : executor_(std::move(executor)), cell_(cell) {}
+  ~PlanCache() { planner_.join(); }
+  PlanCache(const PlanCache&) = delete;
+  PlanCache& operator=(const PlanCache&) = delete;
+
+  /// Plans a recipe of the cell, unless it has been planned; again when clear() was called meanwhile. What
+  /// the planner throws becomes a refusal.
+  boost::asio::awaitable<PlanOutcome> plan(std::string recipe);
+  /// The same for whoever does not wait: `done` is called once planned() has it.
+  void begin(std::string recipe, std::function<void()> done);
+  /// What plan() gave; nothing before.
+  [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe) const;
+  [[nodiscard]] bool is_planning() const { return under_way_count_ > 0; }
+  /// Null when no plan that is kept has this id.
+  [[nodiscard]] std::shared_ptr<const Plan> plan_with_id(const std::string& id) const;
+  /// The block stands elsewhere: none of the plans holds any more, nor one that is being made.
+  void clear();
+
+ private:
+  boost::asio::any_io_executor executor_;
+  const Cell& cell_;
+  boost::asio::thread_pool planner_{1};
+  std::map<std::string, PlanOutcome> plans_;
+  int under_way_count_ = 0;  // on the planner's thread, or waiting for it
+  int clear_count_ = 0;      // a plan that was begun before the last one is none
+};
+
+}  // namespace cell

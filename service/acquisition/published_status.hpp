@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "service/acquisition/clocks.hpp"
+#include "service/acquisition/wake.hpp"
+#include "service/run/status.hpp"
+
+namespace cell {
+
+/// The one owner of the state and of what a supervisor polls. Every part of the acquisition reports here:
+/// faults, warnings, ends of steps. A setter alone tells nobody; the next publish() does. One thread.
+class PublishedStatus {
+ public:
+  /// What the status needs of the others; called from inside the calls below.
+  struct Hooks {
+    std::function<void(Status&)> describe;  // brings everything up to date, before each publication
+    std::function<void(State)> on_entered;  // a new state, before it is published
+    /// A fault is kept, by its name and message. What it throws is logged.
+    std::function<void(const std::string& name, const std::string& message)> store_fault;
+  };
+
+  /// `wake` must outlive it: whoever waits looks at each new state.
+  PublishedStatus(Clocks clocks, Wake& wake, std::string instance_id, Hooks hooks);
+
+  [[nodiscard]] State state() const { return status_.state; }
+  [[nodiscard]] const Status& latest() const { return status_; }
+  [[nodiscard]] const std::optional<Fault>& fault() const { return status_.fault; }
+  /// Whoever is told each change, at once; one at a time.
+  void on_change(std::function<void(const Status&)> listener) { status_listener_ = std::move(listener); }
+
+  /// Nothing when it is the state already.
+  void enter(State state);
+  /// As the state machine has it.
+  void apply(Event event);
+  /// A fault: logged, kept, published; then its event.
+  void raise(Fault fault, Event event);
+  /// Published and logged while the run goes on.
+  void warn(Fault fault);
+  void publish();
+
+  /// The daemon ends: nothing new begins any more.
+  void end() { is_ending_ = true; }
+  [[nodiscard]] bool is_ending() const { return is_ending_; }
+
+  void set_fault(Fault fault) { status_.fault = std::move(fault); }
+  void clear_fault() { status_.fault.reset(); }
+  /// What is awaited of a person at the cell, and what to do; published when it is another one.
+  void wait_for(std::optional<std::string> name);
+  /// A run: without a fault, a warning or a verdict yet.
+  void begin_run(std::int64_t run_id);
+  /// No run: an arm that goes around the block makes none.
+  void forget_run();
+  void set_verdict(Verdict verdict) { status_.verdict = verdict; }
+  void set_last_accepted(std::int64_t run_id, std::optional<std::string> at);
+  void set_reference_drift(double drift_m) { status_.reference_drift_m = drift_m; }
+
+ private:
+  Clocks clocks_;
+  Wake& wake_;
+  Hooks hooks_;
+  Status status_;
+  std::function<void(const Status&)> status_listener_;
+  bool is_ending_ = false;
+};
+
+}  // namespace cell

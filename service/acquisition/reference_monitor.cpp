@@ -1,0 +1,74 @@
+#include "service/acquisition/reference_monitor.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib_core/geometry/units.hpp"
+
+namespace cell {
+
+void ReferenceMonitor::begin_run(int every) {
+  every_ = every;
+  place_.reset();
+}
+
+void ReferenceMonitor::note_fitted(const calib::PlannedTouch& planned, const calib::JointVector& contact) {
+  if (place_ || every_ == 0 || planned.role != calib::TouchRole::kFit) return;
+  place_ = Place{.planned = planned, .first_joints = contact, .aimed = {}, .reference = {}};
+}
+
+void ReferenceMonitor::restore(const calib::PlannedTouch& planned, const calib::JointVector& contact,
+                               const std::optional<calib::JointVector>& reference, int count) {
+  if (every_ == 0) return;
+  place_ = Place{.planned = planned,
+                 .first_joints = contact,
+                 .aimed = {},
+                 .reference = reference,
+                 .count = count,
+                 .due = true};
+}
+
+bool ReferenceMonitor::is_due(int touches_done, bool all_made) const {
+  if (!place_) return false;
+  if (place_->count == 0 || place_->due) return true;
+  return touches_done != place_->made_at && (touches_done % every_ == 0 || all_made);
+}
+
+ReferenceMonitor::Reading ReferenceMonitor::add_contact(const calib::JointVector& contact, int touches_done,
+                                                        const HeightM& height_m) {
+  ++place_->count;
+  place_->made_at = touches_done;
+  place_->due = false;
+  const bool is_first = !place_->reference;
+  if (is_first) place_->reference = contact;
+  place_->drift_m = height_m(contact) - height_m(*place_->reference);
+  return {.number = place_->count,
+          .drift_m = place_->drift_m,
+          .told_m = is_first ? std::nullopt : std::optional(place_->drift_m)};
+}
+
+ReferenceMonitor::Finding ReferenceMonitor::judge(const calib::JointVector& contact, double limit_m,
+                                                  const HeightM& height_m) const {
+  Finding finding;
+  if (place_->count == 1) {
+    const double bias_m = height_m(place_->first_joints) - height_m(contact);
+    if (std::abs(bias_m) > limit_m)
+      finding.warning = {FaultCode::kFirstTouchBiased,
+                         fmt::format("by {:.3f} mm", calib::mm_from_metres(bias_m))};
+  } else if (std::abs(place_->drift_m - place_->allowed_drift_m) > limit_m) {
+    finding.hold = {FaultCode::kReferenceDrift,
+                    fmt::format("by {:.3f} mm, over {:.3f} mm", calib::mm_from_metres(place_->drift_m),
+                                calib::mm_from_metres(limit_m))};
+  }
+  return finding;
+}
+
+void ReferenceMonitor::skip(int touches_done) {
+  place_->made_at = touches_done;
+  place_->count = std::max(place_->count, 1);
+  place_->due = false;
+}
+
+}  // namespace cell

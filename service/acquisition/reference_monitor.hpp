@@ -1,0 +1,77 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "calib_core/geometry/joint_vector.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
+#include "calib_core/planning/online_estimate.hpp"
+#include "service/run/fault_table.hpp"
+
+namespace cell {
+
+/// Whether anything moves during a run: a place that is touched again and again, always in the same way. It
+/// is that of the first touch that is fitted. Its touches are none of the plan: neither counted nor fitted.
+/// Pure steps: it says when the place is due and what a contact there means; the touch executor makes it.
+class ReferenceMonitor {
+ public:
+  /// Where a contact has the ball along the place's outward normal, as the arm is known now, metres.
+  using HeightM = std::function<double(const calib::JointVector&)>;
+
+  /// One contact at the place.
+  struct Reading {
+    int number = 0;                // from 1
+    double drift_m = 0.0;          // against the first one
+    std::optional<double> told_m;  // the same; nothing of the first one, which drift counts from
+  };
+  /// At most one of both.
+  struct Finding {
+    std::optional<Fault> warning;  // the touch of the plan at this place was biased
+    std::optional<Fault> hold;     // the place has drifted
+  };
+
+  /// A run whose recipe wants the place touched behind every so many touches; 0: never.
+  void begin_run(int every);
+  /// A fitted touch of the plan was made: the first one says where the place is.
+  void note_fitted(const calib::PlannedTouch& planned, const calib::JointVector& contact);
+  /// A restarted daemon knows the place again, with the first contact there and the count of them, where
+  /// there was one; it is due before anything else.
+  void restore(const calib::PlannedTouch& planned, const calib::JointVector& contact,
+               const std::optional<calib::JointVector>& reference, int count);
+
+  /// At the start, behind every so many touches, and at the end.
+  [[nodiscard]] bool is_due(int touches_done, bool all_made) const;
+  /// Of the place: it must be known.
+  [[nodiscard]] const calib::PlannedTouch& planned() const { return place_->planned; }
+  [[nodiscard]] const std::optional<calib::AimedTouch>& aimed() const { return place_->aimed; }
+  /// How it is made, from now on.
+  void set_aimed(calib::AimedTouch aimed) { place_->aimed = std::move(aimed); }
+
+  Reading add_contact(const calib::JointVector& contact, int touches_done, const HeightM& height_m);
+  /// What the last contact means, the same that add_contact() was given.
+  [[nodiscard]] Finding judge(const calib::JointVector& contact, double limit_m,
+                              const HeightM& height_m) const;
+
+  // A person's word on a place that holds the run.
+  void look_again() { place_->made_at = -1; }
+  void allow_drift() { place_->allowed_drift_m = place_->drift_m; }
+  void skip(int touches_done);
+
+ private:
+  struct Place {
+    calib::PlannedTouch planned;
+    calib::JointVector first_joints;              // of the plan's own touch there
+    std::optional<calib::AimedTouch> aimed;       // how it is made
+    std::optional<calib::JointVector> reference;  // its first contact, which drift counts from
+    int count = 0;                                // contacts there
+    int made_at = -1;                             // touches done when the last one was made
+    double drift_m = 0.0;                         // of the last one
+    double allowed_drift_m = 0.0;                 // what a person has let pass
+    bool due = false;                             // whatever is done: a restarted daemon looks again
+  };
+
+  int every_ = 0;
+  std::optional<Place> place_;
+};
+
+}  // namespace cell

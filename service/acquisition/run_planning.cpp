@@ -1,0 +1,61 @@
+// Each co_await stands alone in its statement, see cs8_controller.cpp.
+#include "service/acquisition/run_planning.hpp"
+
+#include "service/acquisition/touch_judgement.hpp"
+#include "service/run/planning_problem.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+RunPlanning::RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, RunStore& store,
+                         PlanCache& plans, TouchPreparation& preparation, PublishedStatus& status, Wake& wake)
+    : cell_(cell),
+      place_(place),
+      store_(store),
+      plans_(plans),
+      preparation_(preparation),
+      status_(status),
+      wake_(wake) {}
+
+asio::awaitable<bool> RunPlanning::plan(ActiveRun& active) {
+  const std::string recipe = active.run.recipe().name;
+  const State state = status_.state();
+  // A stop does not wait for the planner: its answer comes, to be used another time.
+  if (!plans_.planned(recipe)) plans_.begin(recipe, [&wake = wake_] { wake.wake(); });
+  while (!plans_.planned(recipe) && status_.state() == state) co_await wake_.wait(1h);
+  if (status_.state() != state) co_return false;
+  const PlanOutcome outcome = *plans_.planned(recipe);
+  if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) {
+    status_.raise({FaultCode::kRecipeUnreachable, refusal->message}, Event::kAbortFault);
+    co_return false;
+  }
+  co_return adopt(active, *std::get<std::shared_ptr<const Plan>>(outcome));
+}
+
+bool RunPlanning::adopt(ActiveRun& active, const Plan& plan) {
+  if (const auto invalid = plan_fault(plan.touches.touches)) {
+    status_.raise(*invalid, Event::kAbortFault);
+    return false;
+  }
+  Run& run = active.run;
+  run.set_plan(plan.touches);
+  try {
+    store_.set_plan(run.id(), run.touches_total(), plan.id, plan.document);
+  } catch (const std::exception& error) {
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    return false;
+  }
+  begin_touches(active);
+  status_.publish();
+  return true;
+}
+
+void RunPlanning::begin_touches(ActiveRun& active) {
+  preparation_.begin(planning_problem(cell_, active.run.recipe()));
+  active.place_check.reset();
+  if (place_) active.place_check.emplace(preparation_.problem(), *place_);
+}
+
+}  // namespace cell

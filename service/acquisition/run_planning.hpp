@@ -1,0 +1,42 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <optional>
+
+#include "config/cell.hpp"
+#include "service/acquisition/active_run.hpp"
+#include "service/acquisition/plan_cache.hpp"
+#include "service/acquisition/published_status.hpp"
+#include "service/acquisition/touch_preparation.hpp"
+#include "service/acquisition/wake.hpp"
+#include "service/run/block_pose.hpp"
+#include "service/store/run_store.hpp"
+
+namespace cell {
+
+/// Gives a run its plan, as it starts: the run, the store and the preparation of its touches all follow the
+/// same one. Called by the cell's loop and by the run recovery.
+class RunPlanning {
+ public:
+  /// All must outlive it. `place`: where the block was located, if it was.
+  RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, RunStore& store, PlanCache& plans,
+              TouchPreparation& preparation, PublishedStatus& status, Wake& wake);
+
+  /// False when there is no plan, which is raised, or when another state was entered meanwhile.
+  boost::asio::awaitable<bool> plan(ActiveRun& active);
+  /// The run has its plan: nothing is known of the arm yet.
+  void begin_touches(ActiveRun& active);
+
+ private:
+  bool adopt(ActiveRun& active, const Plan& plan);
+
+  const Cell& cell_;
+  const std::optional<BlockPose>& place_;
+  RunStore& store_;
+  PlanCache& plans_;
+  TouchPreparation& preparation_;
+  PublishedStatus& status_;
+  Wake& wake_;
+};
+
+}  // namespace cell

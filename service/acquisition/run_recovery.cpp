@@ -1,0 +1,146 @@
+// Each co_await stands alone in its statement, see cs8_controller.cpp.
+#include "service/acquisition/run_recovery.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "service/acquisition/commanded_touch.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/documents/conditions_view.hpp"
+#include "service/documents/configuration_digest.hpp"
+#include "service/run/run_conditions.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+
+std::optional<std::string> why_not_resumable(const Cell& cell, const StoredRun& run,
+                                             const std::optional<std::string>& config_digest) {
+  if (!cell.recipes.contains(run.recipe)) return fmt::format("the cell has no recipe '{}' now", run.recipe);
+  if (run.config_digest != config_digest) return "the cell's files are not those of the run";
+  return std::nullopt;
+}
+
+RunRecovery::RunRecovery(const Cell& cell, const TipRegions& regions, RunStore& store, PlanCache& plans,
+                         ControllerSession& session, TouchPreparation& preparation, RunPlanning& planning,
+                         TouchExecutor& touches, PublishedStatus& status, Clocks clocks)
+    : cell_(cell),
+      regions_(regions),
+      store_(store),
+      plans_(plans),
+      session_(session),
+      preparation_(preparation),
+      planning_(planning),
+      touches_(touches),
+      status_(status),
+      clocks_(std::move(clocks)),
+      config_digest_(configuration_digest(cell)) {}
+
+std::optional<ActiveRun> RunRecovery::restore() {
+  auto stored = store_.running();
+  // An older one was over for everybody; only its end could not be written then.
+  if (stored && stored->id != store_.runs(1).front().id) stored.reset();
+  store_.finish_interrupted(format_utc(clocks_.system()), stored ? std::optional(stored->id) : std::nullopt);
+  if (!stored) return std::nullopt;
+  if (const auto why = why_not_resumable(cell_, *stored, config_digest_)) {
+    end_for_good(*stored, *why);
+    return std::nullopt;
+  }
+  ActiveRun active{.run = Run(stored->id, regions_, cell_.recipes.at(stored->recipe), stored->started_at),
+                   .conditions = stored->conditions_json.value_or(""),
+                   .guided = is_guided(stored->conditions_json),
+                   .interruption = Interruption{stored->plan_id, store_.plan_changes(stored->id)},
+                   .place_check = std::nullopt};
+  active.run.restore(store_.touches(stored->id), stored->touches_total);
+  take_up_open_command(stored->id);
+  status_.begin_run(stored->id);
+  status_.set_fault({FaultCode::kDaemonRestarted, {}});
+  spdlog::warn("run {} was interrupted after {} of {} touches; it waits to be resumed", stored->id,
+               stored->touches_done, stored->touches_total);
+  return active;
+}
+
+void RunRecovery::end_for_good(const StoredRun& run, const std::string& why) {
+  spdlog::warn("run {} was interrupted and cannot be resumed: {}", run.id, why);
+  RunEnd end{.outcome = std::string(run_outcome_name(RunOutcome::kInterrupted)),
+             .verdict = std::string(verdict_name(Verdict::kIncomplete)),
+             .ended_at = format_utc(clocks_.system())};
+  end.fault_code = std::string(describe(FaultCode::kDaemonRestarted).name);
+  end.fault_message = Fault{FaultCode::kDaemonRestarted, "it cannot be resumed: " + why}.message();
+  store_.finish_run(run.id, end);
+}
+
+void RunRecovery::take_up_open_command(std::int64_t run_id) {
+  const auto open = store_.open_command(run_id);
+  auto command = open ? command_from_text(open->touch_json) : std::nullopt;
+  if (!command) return;
+  session_.set_open_touch({open->session, open->sequence, std::move(command->touch), open->aimed_with});
+  preparation_.set_made_path(std::move(command->path));
+}
+
+asio::awaitable<bool> RunRecovery::make_resumable(ActiveRun& active) {
+  const State state = status_.state();
+  const auto goes_on = [&] { return status_.state() == state && session_.connected(); };
+  if (!session_.connected()) {
+    const std::uint32_t sequence = co_await session_.connect(active.interruption.has_value());
+    if (sequence != 0) co_await touches_.settle_open_command(&active, sequence);
+  }
+  if (!goes_on()) co_return false;
+  if (session_.open_touch() && session_.open_touch()->session != session_.number())
+    session_.drop_open_touch();  // lost with its session
+  if (session_.open_touch()) co_await touches_.settle_open_command(&active, session_.open_touch()->sequence);
+  if (!goes_on()) co_return false;
+  if (!active.interruption) co_return true;
+  const bool planned = co_await plan_again(active);
+  if (!planned || status_.state() != state) co_return false;
+  co_return resume(active);
+}
+
+/// The run's plan once more: planning is deterministic, and a plan's id is the digest of its document.
+asio::awaitable<bool> RunRecovery::plan_again(ActiveRun& active) {
+  Run& run = active.run;
+  if (!active.interruption->plan_id) {
+    const bool planned = co_await planning_.plan(active);  // it was interrupted before it had one
+    co_return planned;
+  }
+  const PlanOutcome outcome = co_await plans_.plan(run.recipe().name);
+  const auto* plan = std::get_if<std::shared_ptr<const Plan>>(&outcome);
+  if (!plan || (*plan)->id != *active.interruption->plan_id) {
+    status_.raise(
+        {FaultCode::kDaemonRestarted, "it cannot be resumed: it would be planned in another way now"},
+        Event::kAbortFault);
+    co_return false;
+  }
+  run.set_plan((*plan)->touches);
+  for (const PlanChange& change : active.interruption->plan_changes) run.change_plan(change);
+  active.stored_changes = run.plan_changes().size();
+  planning_.begin_touches(active);
+  if (!active.guided) {
+    preparation_.recall(run);
+    touches_.restore_reference(active);
+  }
+  co_return true;
+}
+
+/// From here on the run is this daemon's; its time so far is what the plan says of the touches made.
+bool RunRecovery::resume(ActiveRun& active) {
+  const Run& run = active.run;
+  try {
+    store_.append_resumption(run.id(), format_utc(clocks_.system()), run.touches_done());
+  } catch (const std::exception& error) {
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kNotReadyFault);
+    return false;
+  }
+  active.interruption.reset();
+  double made_s = 0.0;
+  for (std::size_t i = 0; i < run.touches_made() && run.planned(i); ++i)
+    made_s += run.planned(i)->travel_s + run.planned(i)->touch_s;
+  active.began = clocks_.system() -
+                 std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>(made_s));
+  status_.publish();
+  return true;
+}
+
+}  // namespace cell

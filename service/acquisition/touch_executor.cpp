@@ -1,0 +1,304 @@
+// The touches of the plan, and how any touch is judged; those beside the plan are in touches_beside_plan.cpp.
+// Each co_await stands alone in its statement, see cs8_controller.cpp.
+#include "service/acquisition/touch_executor.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "cs8_protocol/names.hpp"
+#include "cs8_protocol/wire_units.hpp"
+#include "service/acquisition/commanded_touch.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/run/touch_command.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+namespace {
+
+/// So many false triggers in a run are no chance.
+constexpr int kFalseTriggersMany = 3;
+
+}  // namespace
+
+TouchExecutor::TouchExecutor(const Cell& cell, const TipRegions& regions, RunStore& store,
+                             ControllerSession& session, TouchPreparation& preparation,
+                             PublishedStatus& status, Wake& wake, Clocks clocks)
+    : cell_(cell),
+      regions_(regions),
+      store_(store),
+      session_(session),
+      preparation_(preparation),
+      status_(status),
+      wake_(wake),
+      clocks_(std::move(clocks)) {}
+
+void TouchExecutor::begin_run(const ActiveRun& active) {
+  held_by_ = HeldBy::kNothing;
+  history_ = {};
+  outlier_.settle();
+  reference_.begin_run(active.run.recipe().reference_every);
+  false_trigger_count_ = 0;
+}
+
+void TouchExecutor::restore_reference(const ActiveRun& active) {
+  const Run& run = active.run;
+  reference_.begin_run(run.recipe().reference_every);
+  const std::vector<StoredTouch>& made = run.touches();
+  const auto first = std::ranges::find(made, calib::TouchRole::kFit, &StoredTouch::role);
+  if (first == made.end() || run.recipe().reference_every == 0) return;
+  const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(first->number - 1));
+  if (!planned) return;
+  const std::vector<ReferenceTouch> there = store_.references(run.id());
+  const auto reference = there.empty() ? std::nullopt : std::optional(from_wire(there.front().joints));
+  reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
+}
+
+asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
+  held_by_ = HeldBy::kNothing;
+  Run& run = active.run;
+  if (outlier_.is_due()) {
+    co_await retest_outlier(active);
+    co_return;
+  }
+  if (reference_.is_due(run.touches_done(), !run.next())) {
+    co_await touch_reference(active);
+    co_return;
+  }
+  if (!run.next()) {
+    status_.apply(Event::kDone);
+    co_return;
+  }
+  const bool ready = co_await prepare(active);
+  if (!ready) co_return;
+  const OutgoingTouch outgoing = preparation_.send_next();
+  session_.forget_standing();
+  const OpenTouch open{session_.number(), session_.next_sequence(), outgoing.touch, outgoing.aimed_with};
+  if (!keep_open_command(active, open)) co_return;
+  auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
+  work_ahead(active);
+  const cs8::TouchReply reply = co_await std::move(answer);
+  if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
+    session_.drop_open_touch();
+    take_rejection(*rejected, HeldBy::kTouch);
+  } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
+    take_contact(active, open, reply, *result);
+  }  // a lost link has been told by the controller's hook
+}
+
+/// True when the next touch is ready to be commanded; false when there is none or another state was entered.
+asio::awaitable<bool> TouchExecutor::prepare(ActiveRun& active) {
+  if (session_.standing() && preparation_.is_ready_from(*session_.standing())) co_return true;
+  const auto from = co_await session_.standing_joints();
+  if (status_.state() != State::kExecute) co_return false;
+  if (!from) {
+    co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    co_return false;
+  }
+  Run& run = active.run;
+  // One that is aimed stays so, also behind a hold or a restart: only the way to it is another.
+  if (preparation_.reroute_from(*from, *run.next())) co_return true;
+  identify(active);
+  preparation_.add_contacts(run);
+  if (preparation_.prepare_next(run, *from)) co_return true;
+  const int plane = run.next()->face + 1;
+  status_.raise(
+      {FaultCode::kNoSafeWay, fmt::format("to touch {} on plane {}", run.touches_done() + 1, plane)},
+      Event::kAbortFault);
+  co_return false;
+}
+
+/// What is needed to know the answer again after a restart, kept before the command leaves. False when it
+/// cannot be kept: then the command must not leave.
+bool TouchExecutor::keep_open_command(ActiveRun& active, const OpenTouch& open) {
+  const Run& run = active.run;
+  session_.set_open_touch(open);
+  try {
+    const std::vector<PlanChange>& changes = run.plan_changes();
+    for (; active.stored_changes < changes.size(); ++active.stored_changes)
+      store_.append_plan_change(run.id(), changes[active.stored_changes]);
+    store_.set_open_command(run.id(), {.session = open.session,
+                                       .sequence = open.sequence,
+                                       .aimed_with = open.aimed_with,
+                                       .touch_json = command_text(open.planned, preparation_.made_path())});
+    return true;
+  } catch (const std::exception& error) {
+    session_.drop_open_touch();
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
+    return false;
+  }
+}
+
+/// While the arm moves.
+void TouchExecutor::work_ahead(ActiveRun& active) {
+  store_.make_durable(active.run.id());
+  identify(active);
+  preparation_.add_contacts(active.run);
+  const std::size_t behind = active.run.touches_made() + 1;
+  stop_when_good_enough(active, behind);
+  preparation_.look_ahead(active.run, behind);
+}
+
+void TouchExecutor::identify(ActiveRun& active) {
+  if (active.run.identify()) status_.publish();
+}
+
+/// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.
+void TouchExecutor::stop_when_good_enough(ActiveRun& active, std::size_t first) {
+  Run& run = active.run;
+  if (!run.meets_accuracy_goal()) return;
+  const int dropped = run.drop_fit_touches(first);
+  if (dropped == 0) return;
+  spdlog::info("run {} is accurate enough: {} touches are left out", run.id(), dropped);
+  try {
+    store_.set_touches_total(run.id(), run.touches_total());
+  } catch (const std::exception& error) {
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+  }
+  status_.publish();
+}
+
+void TouchExecutor::take_contact(ActiveRun& active, const OpenTouch& open, const cs8::TouchReply& reply,
+                                 const cs8::TouchResult& result) {
+  const calib::PlannedTouch& touch = open.planned;
+  if (!accept(active, touch, reply.sequence, result, HeldBy::kTouch)) return;
+  const calib::JointVector contact = from_wire(result.contact);
+  if (const calib::PlannedTouch* of_plan = active.run.next()) reference_.note_fitted(*of_plan, contact);
+  if (!keep(active, touch, result, &open)) return;
+  session_.acknowledge(reply.sequence);
+  preparation_.set_missed(false);
+  session_.set_standing(touch.clear_joints);
+  if (active.place_check) {
+    if (const auto moved = active.place_check->check(active.run.problem().touches.back()))
+      status_.raise(*moved, Event::kHoldFault);
+  }
+  // What comes next was aimed before this was known; it is aimed again first.
+  if (preparation_.is_surprise(contact)) preparation_.drop_next();
+  watch_fit(active);
+}
+
+/// True when the answer is a measurement, which the caller keeps and acknowledges; else the answer is dealt
+/// with.
+bool TouchExecutor::accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
+                           const cs8::TouchResult& result, HeldBy held_by) {
+  const TouchJudgement judged = judge_touch(cell_, touch, result, history_);
+  for (const Fault& warning : judged.warnings) status_.warn(warning);
+  if (judged.next == TouchJudgement::Next::kKeep) {
+    history_ = {.attempts = 0, .spread_m = {}, .last_contact = result.contact};
+    return true;
+  }
+  session_.acknowledge(sequence);
+  preparation_.drop_next();
+  if (judged.next == TouchJudgement::Next::kStopped) {
+    if (result.phase == cs8::Phase::kSearch) status_.warn({FaultCode::kStoppedInSearch, {}});
+    session_.expect_stop(result.outcome);
+    return false;
+  }
+  if (judged.fault.code == FaultCode::kFalseTrigger && ++false_trigger_count_ == kFalseTriggersMany)
+    status_.warn({FaultCode::kFalseTriggersMany, fmt::format("{} in this run", false_trigger_count_)});
+  if (judged.next == TouchJudgement::Next::kAgain) {
+    ++history_.attempts;
+    history_.spread_m = contact_spread_m(cell_, result);
+    status_.warn(judged.fault);
+    return false;
+  }
+  take_no_measurement(active, touch, judged, held_by);
+  return false;
+}
+
+/// A touch that is not made again by itself.
+void TouchExecutor::take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
+                                        const TouchJudgement& judged, HeldBy held_by) {
+  const FaultCode code = judged.fault.code;
+  history_.attempts = 0;  // a person's word begins anew
+  history_.spread_m.reset();
+  preparation_.set_missed(code == FaultCode::kNoContact || code == FaultCode::kEarlyContact);
+  if (code == FaultCode::kCollision) preparation_.forget_made();  // what was known of the arm may be wrong
+  held_by_ = held_by;
+  const bool of_plan = held_by == HeldBy::kTouch;
+  status_.raise(
+      of_plan && active.place_check ? active.place_check->explain(judged.fault, touch.face) : judged.fault,
+      judged.event);
+}
+
+void TouchExecutor::take_rejection(const cs8::Rejected& rejected, HeldBy held_by) {
+  const OutcomeFault refused = fault_of(rejected);
+  held_by_ = held_by;
+  status_.raise(refused.fault, refused.event());
+}
+
+bool TouchExecutor::keep(ActiveRun& active, const calib::PlannedTouch& planned,
+                         const cs8::TouchResult& result, const OpenTouch* answered) {
+  Run& run = active.run;
+  const StoredTouch touch{.number = run.touches_done() + 1,
+                          .plane = planned.face + 1,
+                          .role = planned.role,
+                          .joints = result.contact,
+                          .source = result.source,
+                          .overtravel_dmm = result.overtravel_dmm,
+                          .captured_at = format_utc(clocks_.system()),
+                          .session = answered ? answered->session : 0,
+                          .sequence = answered ? answered->sequence : 0,
+                          .aimed_with = answered ? answered->aimed_with : 0};
+  try {
+    store_.append_touch(run.id(), touch);
+  } catch (const std::exception& error) {
+    status_.raise({FaultCode::kStoreFailed, error.what()},
+                  active.interruption ? Event::kNotReadyFault : Event::kAbortFault);
+    return false;
+  }
+  run.add(touch);
+  const bool polled = result.source == cs8::CaptureSource::kPolled;
+  spdlog::log(polled ? spdlog::level::warn : spdlog::level::info,
+              "run {} touch {} on plane {}: {}{}, {} edge(s), overtravel {:.3f} mm", run.id(),
+              run.touches_done(), planned.face + 1, cs8::name(result.source),
+              polled ? ", late by up to 4 ms of its speed: check the latch" : "", result.edges,
+              cs8::metres_from_dmm(result.overtravel_dmm) * 1e3);
+  return true;
+}
+
+/// The newest touch is known to the aim at once; one that the others contradict is made again while the arm
+/// is there.
+void TouchExecutor::watch_fit(const ActiveRun& active) {
+  calib::OnlineArmEstimate without = preparation_.aim();
+  if (preparation_.add_contacts(active.run)) outlier_.begin(*preparation_.made(), std::move(without));
+}
+
+asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std::uint32_t sequence) {
+  const cs8::QueryReply reply = co_await session_.query(sequence);
+  if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
+  const auto* result = std::get_if<cs8::TouchResult>(&reply);
+  const std::optional<OpenTouch> open = session_.open_touch();
+  const bool ours = active && open && open->session == session_.number() && open->sequence == sequence;
+  if (result && ours && judge_touch(cell_, open->planned, *result, {}).next == TouchJudgement::Next::kKeep) {
+    spdlog::info("run {}: touch {} had been made when the run ended", active->run.id(),
+                 active->run.touches_done() + 1);
+    if (!keep_late_touch(*active, *open, *result)) {
+      if (!active->open) status_.enter(State::kStopped);  // it waits there until it can be stored
+      co_return;
+    }
+  }
+  session_.acknowledge(sequence);
+}
+
+/// A contact of a run that is over: its stored result follows, its verdict does not change.
+bool TouchExecutor::keep_late_touch(ActiveRun& active, const OpenTouch& open,
+                                    const cs8::TouchResult& result) {
+  if (!keep(active, open.planned, result, &open)) return false;
+  identify(active);
+  try {
+    if (const auto document = result_json(active, regions_))
+      store_.set_result_json(active.run.id(), *document);
+  } catch (const std::exception& error) {
+    spdlog::error("run {}: its result could not be stored: {}", active.run.id(), error.what());
+  }
+  status_.publish();
+  return true;
+}
+
+}  // namespace cell

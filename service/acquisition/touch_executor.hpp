@@ -1,0 +1,105 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <optional>
+
+#include "calib_core/planning/aimed_touch.hpp"
+#include "config/cell.hpp"
+#include "service/acquisition/active_run.hpp"
+#include "service/acquisition/controller_session.hpp"
+#include "service/acquisition/outlier_retest.hpp"
+#include "service/acquisition/reference_monitor.hpp"
+#include "service/acquisition/touch_judgement.hpp"
+#include "service/acquisition/touch_preparation.hpp"
+#include "service/store/run_store.hpp"
+
+namespace cell {
+
+/// What keeps a run on hold: a person's pause (nothing), a touch that was not made, of the plan or at the
+/// reference place, one that the others contradict, the drift of the reference or the wrong stylus.
+enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus };
+
+/// Makes a run's touches, one after the other, each from its command to its place in the store:
+///
+///   prepare -> command -> answer -> judge -> keep (store, then Run::add) -> acknowledge
+///
+/// A contact counts once it is stored; only then may the controller forget it. The arm does not wait for
+/// arithmetic: what the touch before tells and the path to the touch behind are worked out while it moves.
+/// Called by the cell's loop in EXECUTE. Failures are raised at the status and end the step; a lost link ends
+/// it in silence, as the controller's hook tells it.
+class TouchExecutor {
+ public:
+  /// All must outlive it.
+  TouchExecutor(const Cell& cell, const TipRegions& regions, RunStore& store, ControllerSession& session,
+                TouchPreparation& preparation, PublishedStatus& status, Wake& wake, Clocks clocks);
+
+  /// A run begins: nothing holds it, nothing is suspected.
+  void begin_run(const ActiveRun& active);
+  /// A restarted daemon goes on with it: where the reference place is.
+  void restore_reference(const ActiveRun& active);
+
+  /// One touch: the retest of an outlier, the reference place or the next of the plan. The step is done
+  /// (Event::kDone) when there is none left.
+  boost::asio::awaitable<void> make_next_touch(ActiveRun& active);
+  /// The result of all touches so far, unless it is there.
+  void identify(ActiveRun& active);
+  /// Stores a contact and adds it to the run; false when it could not be stored, which ends the run.
+  /// `answered` is the command that it answers; null where none is known.
+  bool keep(ActiveRun& active, const calib::PlannedTouch& planned, const cs8::TouchResult& result,
+            const OpenTouch* answered);
+  /// A result that still waits at the controller belongs to a run that is over or on hold. A contact in it
+  /// was captured all the same: it is kept with that run. Then the controller may forget it. `active`: null
+  /// without a run.
+  boost::asio::awaitable<void> settle_open_command(ActiveRun* active, std::uint32_t sequence);
+
+  [[nodiscard]] HeldBy held_by() const { return held_by_; }
+  void forget_hold() { held_by_ = HeldBy::kNothing; }
+  /// A person's word on what held the run, beside going on.
+  void settle_hold(ActiveRun& active, Command command);
+  /// To the hold, while the run goes on from it.
+  [[nodiscard]] Command answer_to_hold() const { return answer_; }
+
+ private:
+  boost::asio::awaitable<bool> prepare(ActiveRun& active);
+  bool keep_open_command(ActiveRun& active, const OpenTouch& open);
+  void work_ahead(ActiveRun& active);
+  void stop_when_good_enough(ActiveRun& active, std::size_t first);
+  void take_contact(ActiveRun& active, const OpenTouch& open, const cs8::TouchReply& reply,
+                    const cs8::TouchResult& result);
+  bool accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
+              const cs8::TouchResult& result, HeldBy held_by);
+  void take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
+                           const TouchJudgement& judged, HeldBy held_by);
+  void take_rejection(const cs8::Rejected& rejected, HeldBy held_by);
+  void watch_fit(const ActiveRun& active);
+  bool keep_late_touch(ActiveRun& active, const OpenTouch& open, const cs8::TouchResult& result);
+
+  // Beside the plan (touches_beside_plan.cpp).
+  boost::asio::awaitable<std::optional<cs8::TouchResult>> touch_beside_plan(ActiveRun& active,
+                                                                            calib::AimedTouch aimed,
+                                                                            HeldBy held_by);
+  boost::asio::awaitable<void> touch_reference(ActiveRun& active);
+  bool aim_at_reference();
+  void judge_reference(const ActiveRun& active, const calib::JointVector& contact);
+  boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
+  void replace_last(ActiveRun& active, OutlierRetest::Replaced replaced);
+  bool leave_out_outlier(ActiveRun& active);
+
+  const Cell& cell_;
+  const TipRegions& regions_;  // of the cell
+  RunStore& store_;
+  ControllerSession& session_;
+  TouchPreparation& preparation_;
+  PublishedStatus& status_;
+  Wake& wake_;
+  Clocks clocks_;
+  TouchHistory history_;
+  ReferenceMonitor reference_;
+  OutlierRetest outlier_;
+  int false_trigger_count_ = 0;
+  bool stylus_allowed_ = false;  // by a person
+  HeldBy held_by_ = HeldBy::kNothing;
+  Command answer_ = Command::kResume;
+};
+
+}  // namespace cell

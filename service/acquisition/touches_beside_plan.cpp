@@ -1,0 +1,188 @@
+// What a TouchExecutor touches beside the plan: the reference place, and a touch that does not fit the
+// others; and a person's word on them. Each co_await stands alone in its statement, see cs8_controller.cpp.
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <cmath>
+#include <utility>
+
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/aimed_touch.hpp"
+#include "service/acquisition/touch_executor.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/run/touch_command.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+using namespace std::chrono_literals;
+
+/// A touch as it is given; nothing when there is no measurement.
+asio::awaitable<std::optional<cs8::TouchResult>> TouchExecutor::touch_beside_plan(ActiveRun& active,
+                                                                                  calib::AimedTouch aimed,
+                                                                                  HeldBy held_by) {
+  const auto from = co_await session_.standing_joints();
+  if (status_.state() != State::kExecute) co_return std::nullopt;
+  if (!from) {
+    co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    co_return std::nullopt;
+  }
+  auto ready = preparation_.prepare(std::move(aimed), *from);
+  if (!ready) {
+    status_.raise({FaultCode::kNoSafeWay, "to a place that was touched before"}, Event::kAbortFault);
+    co_return std::nullopt;
+  }
+  const OutgoingTouch outgoing = preparation_.send(*std::move(ready));
+  session_.forget_standing();
+  history_.last_contact.reset();  // this is made to be where another was
+  auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
+  identify(active);
+  const cs8::TouchReply reply = co_await std::move(answer);
+  if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
+    take_rejection(*rejected, held_by);
+    co_return std::nullopt;
+  }
+  const auto* result = std::get_if<cs8::TouchResult>(&reply.answer);
+  if (!result) co_return std::nullopt;  // a lost link has been told by the controller's hook
+  if (!accept(active, outgoing.touch, reply.sequence, *result, held_by)) co_return std::nullopt;
+  session_.acknowledge(reply.sequence);
+  preparation_.set_missed(false);
+  session_.set_standing(outgoing.touch.clear_joints);
+  co_return *result;
+}
+
+bool TouchExecutor::aim_at_reference() {
+  if (reference_.aimed()) return true;
+  auto made = preparation_.aim_or_nominal(reference_.planned());
+  if (const auto* why = std::get_if<std::string>(&made)) {
+    status_.raise({FaultCode::kNoSafeWay, "to the reference place: " + *why}, Event::kAbortFault);
+    return false;
+  }
+  reference_.set_aimed(std::get<calib::AimedTouch>(std::move(made)));
+  return true;
+}
+
+asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
+  if (!aim_at_reference()) co_return;
+  const auto result = co_await touch_beside_plan(active, *reference_.aimed(), HeldBy::kReference);
+  if (!result) co_return;
+  const Run& run = active.run;
+  const calib::JointVector contact = from_wire(result->contact);
+  const auto height_m = [this](const calib::JointVector& joints) {
+    return preparation_.height_m(reference_.planned().face, joints);
+  };
+  const ReferenceMonitor::Reading reading = reference_.add_contact(contact, run.touches_done(), height_m);
+  if (reading.told_m) status_.set_reference_drift(*reading.told_m);
+  const double drift_mm = calib::mm_from_metres(reading.drift_m);
+  try {
+    store_.append_reference(run.id(), {.number = reading.number,
+                                       .touches_done = run.touches_done(),
+                                       .joints = result->contact,
+                                       .drift_mm = reading.told_m ? std::optional(drift_mm) : std::nullopt,
+                                       .captured_at = format_utc(clocks_.system())});
+  } catch (const std::exception& error) {
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    co_return;
+  }
+  spdlog::info("run {} reference touch {}: drift {:.3f} mm", run.id(), reading.number, drift_mm);
+  status_.publish();
+  judge_reference(active, contact);
+}
+
+void TouchExecutor::judge_reference(const ActiveRun& active, const calib::JointVector& contact) {
+  const auto height_m = [this](const calib::JointVector& joints) {
+    return preparation_.height_m(reference_.planned().face, joints);
+  };
+  const ReferenceMonitor::Finding found = reference_.judge(contact, reference_drift_max_m(cell_), height_m);
+  if (found.warning) status_.warn(*found.warning);
+  if (found.hold) {
+    held_by_ = HeldBy::kDrift;
+    status_.raise(*found.hold, Event::kHoldFault);
+    return;
+  }
+  if (stylus_allowed_) return;
+  if (const auto other = stylus_fault(active.run.problem(), active.run.latest())) {
+    held_by_ = HeldBy::kStylus;
+    status_.raise(*other, Event::kHoldFault);
+  }
+}
+
+asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
+  const auto result = co_await touch_beside_plan(active, outlier_.aimed(), HeldBy::kOutlier);
+  if (!result) co_return;
+  const int face = outlier_.aimed().touch.face;
+  const StoredTouch& first = active.run.touches().back();
+  StoredTouch again = first;
+  again.joints = result->contact;
+  again.source = result->source;
+  again.overtravel_dmm = result->overtravel_dmm;
+  again.captured_at = format_utc(clocks_.system());
+  again.sequence = 0;  // no command of the plan
+  const double apart_m = std::abs(preparation_.height_m(face, from_wire(again.joints)) -
+                                  preparation_.height_m(face, from_wire(first.joints)));
+  auto finding = outlier_.judge(first, again, apart_m, agreement_max_m(cell_));
+  if (const auto* confirmed = std::get_if<OutlierRetest::Confirmed>(&finding)) {
+    status_.warn(confirmed->warning);
+    outlier_.settle();
+  } else if (const auto* held = std::get_if<OutlierRetest::Held>(&finding)) {
+    held_by_ = HeldBy::kOutlier;
+    status_.raise(held->fault, Event::kHoldFault);
+  } else {
+    replace_last(active, std::get<OutlierRetest::Replaced>(std::move(finding)));
+  }
+}
+
+void TouchExecutor::replace_last(ActiveRun& active, OutlierRetest::Replaced replaced) {
+  const StoredTouch& again = replaced.again;
+  try {
+    store_.replace_touch(active.run.id(), again, "it did not fit the others, its repetition does");
+  } catch (const std::exception& error) {
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    return;
+  }
+  active.run.replace_last(again);
+  spdlog::warn("run {} touch {} is replaced by its repetition, which fits the others", active.run.id(),
+               again.number);
+  preparation_.set_aim(std::move(replaced.aim));
+  outlier_.settle();
+  status_.publish();
+}
+
+void TouchExecutor::settle_hold(ActiveRun& active, Command command) {
+  answer_ = command;
+  const bool retry = command == Command::kRetry, skip = command == Command::kSkip;
+  const HeldBy held_by = std::exchange(held_by_, retry ? held_by_ : HeldBy::kNothing);
+  if (held_by == HeldBy::kDrift && retry) reference_.look_again();
+  if (held_by == HeldBy::kDrift && !retry) {
+    reference_.allow_drift();
+    status_.warn({FaultCode::kReferenceDrift, "a person lets the run go on"});
+  }
+  if (held_by == HeldBy::kReference && skip) reference_.skip(active.run.touches_done());
+  if (held_by == HeldBy::kStylus) stylus_allowed_ = !retry;
+  if (held_by == HeldBy::kOutlier && command == Command::kResume) {
+    status_.warn({FaultCode::kTouchOutlier, fmt::format("touch {}", active.run.touches_done())});
+    outlier_.settle();
+  }
+  if (!skip || (held_by != HeldBy::kTouch && held_by != HeldBy::kOutlier)) return;
+  if (held_by == HeldBy::kOutlier && !leave_out_outlier(active)) return;
+  spdlog::warn("run {}: touch {} of the plan is left out, the run stays incomplete", active.run.id(),
+               active.run.touches_made() + 1);
+  active.run.skip_next();
+}
+
+/// False when that could not be stored.
+bool TouchExecutor::leave_out_outlier(ActiveRun& active) {
+  try {
+    store_.withdraw_touch(active.run.id(), active.run.touches().back().number,
+                          "it did not fit the others, and a person left it out");
+  } catch (const std::exception& error) {
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    return false;
+  }
+  active.run.withdraw_last();
+  preparation_.set_aim(outlier_.without());
+  outlier_.settle();
+  return true;
+}
+
+}  // namespace cell

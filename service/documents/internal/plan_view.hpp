@@ -1,0 +1,24 @@
+#pragma once
+
+#include "service/documents/plan.hpp"
+#include "service/documents/plan_document.hpp"
+
+namespace cell {
+
+/// touchcal/plan/1 without a plan_id.
+PlanDocument plan_of(const TipRegions& regions, const Recipe& recipe, const calib::TouchPlan& plan,
+                     const PlannedIdentification& planned);
+
+/// Sources with a smaller share appear in the figures only, not in words.
+inline constexpr double kShareReportedMin = 0.05;
+
+/// The sources of the predicted tip error in the workspace box, largest first, with their share of its
+/// square.
+struct ErrorShare {
+  std::string source;
+  double rms_m = 0.0;  // from this source alone
+  double share = 0.0;  // 0 to 1
+};
+std::vector<ErrorShare> error_shares(const TipPrediction& tip);
+
+}  // namespace cell

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "service/http/routes/services.hpp"
+#include "service/http/server/request_handler.hpp"
+
+namespace cell {
+
+inline constexpr int kEventStreamsMax = 32;
+inline constexpr std::string_view kRunEventsPath = "/api/v1/runs/{id}/events";
+
+/// Server-sent events for one client: `status` for each change, in order, once each; `reset` with the whole
+/// status if the client's last event is of another instance or too old; `run` with the document of the run at
+/// the end of a run's stream. Ids are INSTANCE-SEQUENCE.
+class EventStream final : public EventSource {
+ public:
+  /// `run_id`: only changes during this run.
+  EventStream(Services& services, std::optional<std::int64_t> run_id,
+              std::optional<std::string> last_event_id);
+  ~EventStream() override;
+
+  [[nodiscard]] static int open_count(const Services& services) { return *services.open_streams; }
+  /// The client has seen the end of its run: the answer 204 ends its reconnecting.
+  [[nodiscard]] static bool is_over(const std::optional<std::string>& last_event_id);
+
+  std::string due() override;
+  [[nodiscard]] bool ended() const override { return ended_; }
+  boost::asio::awaitable<void> wait() override;
+
+ private:
+  [[nodiscard]] std::string id_of(std::uint64_t sequence) const;
+  [[nodiscard]] std::string whole_status(const char* event);
+  [[nodiscard]] std::string end_of_run();
+
+  Services& services_;
+  std::optional<std::int64_t> run_id_;
+  std::shared_ptr<int> open_;
+  std::string first_;  // the first event, if any
+  std::uint64_t seen_ = 0;
+  bool ended_ = false;
+};
+
+}  // namespace cell

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "service/http/routes/routes.hpp"
+#include "service/store/run_store.hpp"
+
+namespace cell {
+
+/// GET runs/{id}/result of a stored run: touchcal/result/1; 409 before there is a result.
+HttpResponse get_result(const CellOperation& operation, std::int64_t id);
+
+/// GET runs/{id}/arm: the calibrated arm as a file of schema touchcal/arm/1; 409 before there is a result, or
+/// if the cell has changed since the run.
+HttpResponse get_arm(const CellOperation& operation, std::int64_t id);
+
+inline constexpr std::string_view kHtml = "text/html; charset=utf-8";
+inline constexpr std::string_view kCsv = "text/csv; charset=utf-8";
+
+/// GET runs/{id}/report: touchcal/report/1 as a page for people ("html"), a table of touches ("csv") or
+/// itself
+/// ("json"); 400 for another format.
+HttpResponse get_report(const CellOperation& operation, const StoredRun& run, const std::string& format);
+
+}  // namespace cell

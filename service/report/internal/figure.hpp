@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// A plot of points in SVG, readable in print without colour: series differ in their marks. No plotting
+/// library: those for C++ on Debian 12 start a program (gnuplot) or need a toolkit (Qt), which a daemon
+/// lacks.
+namespace cell {
+
+enum class Mark { kRing, kDot, kCross };
+
+struct Series {
+  std::string name;
+  Mark mark = Mark::kDot;
+  std::vector<std::pair<double, double>> points;
+  bool joined = false;  // by a line
+};
+
+struct Figure {
+  std::string title;
+  std::string x_label;  // ticks at whole numbers
+  std::string y_label;
+  std::vector<Series> series;
+  std::optional<double> level;  // a horizontal line
+  std::string level_name;
+};
+
+/// Ticks of an axis from `low` to `high` (low < high, both finite): three to eight multiples of 1, 2 or 5
+/// times a power of ten.
+std::vector<double> ticks(double low, double high);
+
+/// The figure as one <svg> element; non-finite points are left out.
+std::string svg(const Figure& figure);
+
+}  // namespace cell

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "service/store/run_store.hpp"
+
+/// How rows name their columns and their states, for those who write and those who read them.
+namespace cell::row {
+
+inline const std::string kJointColumns =
+    "j1_microdeg, j2_microdeg, j3_microdeg, j4_microdeg, j5_microdeg, j6_microdeg";
+
+/// Of touches and superseded_touches, behind run_id.
+inline const std::string kTouchColumns = "number, plane, role, " + kJointColumns +
+                                         ", source, overtravel_dmm, captured_at, session, sequence, "
+                                         "aimed_with";
+
+std::string_view plan_change_name(PlanChange::Kind kind);  // "put_off"
+
+/// Each throws std::runtime_error for a text that no version has written.
+PlanChange::Kind plan_change_named(const std::string& name);
+RunOutcome outcome_named(const std::string& name);
+Verdict verdict_named(const std::string& name);
+
+}  // namespace cell::row

@@ -1,0 +1,68 @@
+#include "service/documents/conditions_view.hpp"
+
+#include <gmock/gmock.h>
+
+#include "service/base/version.hpp"
+#include "service/documents/configuration_digest.hpp"
+#include "tests/config/copied_config.hpp"
+
+namespace cell {
+namespace {
+
+using nlohmann::json;
+
+class ConditionsView : public CopiedConfig {
+ protected:
+  std::string digest() const { return configuration_digest(read()).value(); }
+};
+
+TEST_F(ConditionsView, ConditionsTellAllThatIsKnownAndNullForTheRest) {
+  const json known = conditions_json(read(), {.operator_name = "A. Turing",
+                                              .config_digest = digest(),
+                                              .controller_application = "touchcal 1.2.3",
+                                              .controller_session = 7});
+  EXPECT_EQ(known.at("operator"), "A. Turing");
+  EXPECT_EQ(known.at("config_digest"), digest());
+  EXPECT_EQ(known.at("block_temperature_c"), json_of(path(kBlock)).at("temperature_c"));
+  EXPECT_EQ(known.at("block").at("certificate").at("number"), "demo");
+  EXPECT_TRUE(known.at("probe").at("certificate").is_null());
+  EXPECT_EQ(known.at("versions").at("touchcal"), kVersion);
+  EXPECT_EQ(known.at("versions").at("controller_application"), "touchcal 1.2.3");
+  const json unknown = conditions_json(read(), {});
+  ASSERT_EQ(unknown.size(), known.size());
+  for (const char* key : {"operator", "config_digest", "controller_session"})
+    EXPECT_TRUE(unknown.at(key).is_null()) << key;
+}
+
+TEST_F(ConditionsView, ConditionsTellWhoTouched) {
+  EXPECT_TRUE(is_guided(conditions_document(read(), {.touch_mode = TouchMode::kGuided, .place = {}})));
+  EXPECT_FALSE(is_guided(conditions_document(read(), {.touch_mode = TouchMode::kAutomatic, .place = {}})));
+  for (const char* other : {"", "[]", "{}", "{\"touching\":1}", "{"}) EXPECT_FALSE(is_guided(other)) << other;
+  EXPECT_FALSE(is_guided(std::nullopt));  // of a run before there were any
+}
+
+TEST_F(ConditionsView, ConditionsTellWhereTheBlockStood) {
+  EXPECT_TRUE(conditions_json(read(), {}).at("place").is_null());
+  BlockPose place{.cell_from_block = Eigen::Isometry3d(Eigen::Translation3d(0.03, 0.0, -0.02)),
+                  .touches = std::vector<calib::RegistrationTouch>(6),
+                  .located_at = "2026-11-22T08:00:00.000Z"};
+  place.cell_from_block.rotate(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY()));
+  place.covariance.diagonal().setConstant(1e-6);
+  const json told = conditions_json(read(), {.touch_mode = {}, .place = place}).at("place");
+  EXPECT_EQ(told.at("located_at"), place.located_at);
+  EXPECT_EQ(told.at("shift_mm"), (json{30.0, 0.0, -20.0}));
+  EXPECT_NEAR(told.at("turn_deg")[1].get<double>(), 28.648, 1e-3);
+  EXPECT_NEAR(told.at("std_shift_mm")[2].get<double>(), 1.0, 1e-9);
+  EXPECT_EQ(told.at("touch_count"), 6);
+}
+
+TEST_F(ConditionsView, AnUnknownTemperatureHasNoUncertaintyEither) {
+  edit(kBlock, [](json& block) {
+    for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
+      block.erase(key);
+  });
+  EXPECT_TRUE(conditions_json(read(), {}).at("std_temperature_k").is_null());
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,32 @@
+#include "service/http/auth/access.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cell {
+namespace {
+
+const Tokens kTokens{std::string(64, 'a'), std::string(64, 'b')};
+
+HttpRequest with_token(const std::string& token, bool from_loopback = false) {
+  return {.authorization = "Bearer " + token, .from_loopback = from_loopback};
+}
+
+TEST(Access, ATokenHasOneRole) {
+  EXPECT_EQ(role_of(with_token(kTokens.operate), kTokens), Role::kOperate);
+  EXPECT_EQ(role_of(with_token(kTokens.view), kTokens), Role::kView);
+  EXPECT_EQ(role_of(with_token("other"), kTokens), Role::kWrongToken);
+  EXPECT_EQ(role_of({}, kTokens), Role::kNone);
+}
+
+TEST(Access, ReadingNeedsATokenFromElsewhereOnlyAndOperatingAlways) {
+  EXPECT_FALSE(refuse_access({.from_loopback = true}, Access::kView, kTokens));
+  EXPECT_EQ(refuse_access({}, Access::kView, kTokens).value().status, 401U);
+  EXPECT_FALSE(refuse_access(with_token(kTokens.view), Access::kView, kTokens));
+  EXPECT_EQ(refuse_access(with_token(kTokens.view), Access::kOperate, kTokens).value().status, 403U);
+  EXPECT_EQ(refuse_access({.from_loopback = true}, Access::kOperate, kTokens).value().status, 401U);
+  EXPECT_FALSE(refuse_access(with_token(kTokens.operate), Access::kOperate, kTokens));
+  EXPECT_FALSE(refuse_access({}, Access::kOpen, kTokens));
+}
+
+}  // namespace
+}  // namespace cell
