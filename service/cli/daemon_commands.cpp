@@ -73,7 +73,7 @@ ExitCode give_command(const ApiClient& daemon, const std::string& command, bool 
     target = "/api/v1/runs/" + *status.run_id + "/" + command;
   }
   const ApiReply reply = daemon.post(target, {});
-  if (reply.status != 202) return tell_problem(reply, json_only);
+  if (reply.status != 202) return print_problem(reply, json_only);
   fmt::print("{}", json_only ? reply.body + "\n" : status_text(read_reply(reply, read_status)));
   return kExitDone;
 }

@@ -6,17 +6,17 @@
 
 namespace cell {
 
-void tell_stranger(const ApiReply& reply) {
+void refuse_peer(const ApiReply& reply) {
   throw DaemonUnreachable(
-      fmt::format("what answers is no touchcald (status {}); check --daemon", reply.status));
+      fmt::format("the server is not touchcald (status {}); check --daemon", reply.status));
 }
 
-ExitCode tell_problem(const ApiReply& reply, bool json_only) {
+ExitCode print_problem(const ApiReply& reply, bool json_only) {
   const ProblemDocument problem = read_reply(reply, read_problem);
   if (json_only) fmt::print("{}\n", reply.body);
   std::string line = problem.detail.value_or(reply.body);
   if (reply.status == 401)
-    line = "the daemon wants its token: name its state directory with --state DIR, or set TOUCHCAL_TOKEN";
+    line = "the daemon requires its token: name its state directory with --state DIR, or set TOUCHCAL_TOKEN";
   if (problem.exits) {
     std::string exits;
     for (const std::string& exit : *problem.exits) exits += (exits.empty() ? "" : ", ") + exit;

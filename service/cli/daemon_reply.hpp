@@ -9,17 +9,17 @@
 
 namespace cell {
 
-/// What answers is no touchcald.
-[[noreturn]] void tell_stranger(const ApiReply& reply);
+/// Throws DaemonUnreachable: the peer is not touchcald.
+[[noreturn]] void refuse_peer(const ApiReply& reply);
 
-/// The document that the daemon answered, by the function that reads its text. Throws DaemonUnreachable when
-/// what answers is no touchcald, DocumentError when the document is another one.
+/// The document in a reply, by the function that reads its text. Throws DaemonUnreachable if the peer is not
+/// touchcald, DocumentError if the document is another one.
 template <class Document>
 Document read_reply(const ApiReply& reply, Document (*read)(std::string_view)) {
   try {
     return read(reply.body);
   } catch (const NotJson&) {
-    tell_stranger(reply);
+    refuse_peer(reply);
   }
 }
 

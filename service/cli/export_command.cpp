@@ -16,12 +16,12 @@ ExitCode export_command(const ApiClient& daemon, const ExportArguments& argument
   const ApiReply arm = daemon.get(run + "/arm");
   if (arm.status != 200) return print_problem(arm, json);
   const ApiReply reply = daemon.get(run + "/result");
-  if (reply.status != 200) return tell_problem(reply, json);
+  if (reply.status != 200) return print_problem(reply, json);
   const ResultDocument result = read_result(reply.body);
   write_whole_file(arguments.arm_file, arm.body, arguments.overwrite);
   const std::vector<std::string> warnings =
       export_warnings(result.cell_frames, result.verdict.accepted, result.verdict.reasons);
-  tell_warnings(warnings);
+  print_warnings(warnings);
   if (arguments.arm_file == "-") return kExitDone;
   if (json) {
     fmt::print("{}\n", document_text(ExportDocument{.run_id = arguments.run_id,

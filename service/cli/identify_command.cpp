@@ -43,7 +43,7 @@ void write_files(const IdentifyArguments& arguments, const Cell& cell,
     write_whole_file(arguments.map_file, map_csv(document.tip_uncertainty.map), arguments.overwrite);
   if (arguments.arm_file.empty()) return;
   write_whole_file(arguments.arm_file, calibrated_arm_document(cell, result), arguments.overwrite);
-  tell_warnings(export_warnings(cell.own_frames, document.verdict.accepted, document.verdict.reasons));
+  print_warnings(export_warnings(cell.own_frames, document.verdict.accepted, document.verdict.reasons));
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (json) {
     fmt::print("{}\n", document_text(document));
   } else {
-    tell_warnings(file.warnings);
+    print_warnings(file.warnings);
     fmt::print("{}", result_text(document));
   }
   return document.verdict.accepted ? kExitDone : kExitLimitsMissed;

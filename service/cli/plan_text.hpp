@@ -7,8 +7,7 @@
 
 namespace cell {
 
-/// A plan document (touchcal/plan/1) for people: touches a plane, what they are predicted to give, how long
-/// they take, what limits them.
+/// A plan document (touchcal/plan/1) as text: touches per plane, predicted figures, duration, limits.
 std::string plan_text(const PlanDocument& plan);
 
 /// The places tried (touchcal/places/1) as a table, best first.

@@ -12,7 +12,7 @@ namespace {
 constexpr int kBarWidth = 30;
 
 std::string figures(const StatusDocument& status) {
-  if (status.waiting_for) return fmt::format("waiting: {}", awaited_words(*status.waiting_for));
+  if (status.waiting_for) return fmt::format("waiting: {}", awaited_instruction(*status.waiting_for));
   std::string text = status.touches_total
                          ? fmt::format("touch {} of {}", status.touches_done, *status.touches_total)
                          : "planning";
@@ -36,7 +36,7 @@ std::string guidance(const StatusDocument& status) {
   if (status.by_hand_step == "touch")
     text += fmt::format("{} of {}: ", status.by_hand_index.value(), status.by_hand_total.value());
   text += *status.by_hand_words;
-  if (status.waiting_for) text += fmt::format("\nwaiting: {}", awaited_words(*status.waiting_for));
+  if (status.waiting_for) text += fmt::format("\nwaiting: {}", awaited_instruction(*status.waiting_for));
   return text;
 }
 

@@ -6,7 +6,7 @@
 
 namespace cell {
 
-/// What a person at the pendant is to do; empty when nothing is asked of one.
+/// The instruction to the person at the pendant, if any.
 std::string guidance(const StatusDocument& status);
 
 /// Shows the progress of a run from successive status documents: a bar that is redrawn on a terminal, a line
@@ -16,7 +16,7 @@ class Progress {
   explicit Progress(bool on_terminal) : on_terminal_(on_terminal) {}
 
   void show(const StatusDocument& status);
-  /// Ends the line that is being drawn.
+  /// Ends the line under way.
   void finish();
 
  private:

@@ -85,7 +85,7 @@ std::string artefact_text(const std::vector<ArtefactParameter>& parameters) {
   return lines;
 }
 
-/// What the tip's uncertainty is made of, and where it is how large.
+/// The tip's uncertainty by source and by region.
 std::string tip_text(const TipDocument& tip) {
   std::string lines = "\npredicted uncertainty of the tip, rms\n";
   const auto line = [&lines](const std::string& where, std::optional<double> value) {
@@ -179,7 +179,7 @@ std::string status_text(const StatusDocument& status) {
       yes_no(status.controller_cell_closed, "closed", "OPEN"),
       yes_no(status.controller_touch_tested, "made", "missing"), text_or_unknown(status.probe),
       text_or_unknown(status.controller_permit));
-  if (status.waiting_for) lines += fmt::format("waiting     {}\n", awaited_words(*status.waiting_for));
+  if (status.waiting_for) lines += fmt::format("waiting     {}\n", awaited_instruction(*status.waiting_for));
   if (status.run_id) {
     lines += fmt::format(
         "run         {} ({}), {} of {} touches, {} identifiable, condition number {}, tip +- {} mm, verdict "

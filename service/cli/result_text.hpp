@@ -16,7 +16,7 @@ std::string result_text(const ResultDocument& result);
 /// The status document in a few lines.
 std::string status_text(const StatusDocument& status);
 
-/// What more touches would bring, of a status document: a line, or nothing.
+/// The benefit of further touches in a status document: a line, or nothing.
 std::string more_text(const StatusDocument& status);
 
 /// The history as a table, newest first.

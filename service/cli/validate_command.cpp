@@ -27,13 +27,13 @@ ExitCode validate_command(const ValidateArguments& arguments, bool json) {
   problem.touches = file.touches;
   const calib::Validation validation = calib::validate(problem, recipe.identification, other.touches);
   if (validation.result.status != calib::IdentificationStatus::kConverged)
-    return tell_refusal(arguments.touches_file, validation.result);
+    return print_refusal(arguments.touches_file, validation.result);
   const ValidationDocument document = validation_of(cell, recipe, problem, validation);
   if (json) {
     fmt::print("{}\n", document_text(document));
   } else {
-    tell_warnings(file.warnings);
-    tell_warnings(other.warnings);
+    print_warnings(file.warnings);
+    print_warnings(other.warnings);
     fmt::print("{}", validation_text(document));
   }
   if (!arguments.other_file.empty() && !validation.other_touches.done()) {

@@ -6,7 +6,7 @@
 
 namespace cell {
 
-/// A validation document (touchcal/validation/1) for people, in the form of the paper's Tables IV to VII.
+/// A validation document (touchcal/validation/1) as text, in the form of the paper's Tables IV to VII.
 std::string validation_text(const ValidationDocument& validation);
 
 }  // namespace cell

@@ -16,16 +16,16 @@
 namespace cell {
 namespace {
 
-/// How long a watcher waits for a change before it asks anew.
+/// Longest wait for a change before the next request.
 constexpr int kWaitSeconds = 10;
 
 /// Longest wait of `run` for a cell that is being made ready.
 constexpr int kReadyWaitSeconds = 5;
 
-/// What the daemon last answered of a run that is followed.
+/// The last answer of the daemon about a run.
 struct Answer {
   std::string body;
-  /// The run's own document where another run is under way by now.
+  /// The document of the run if another run is under way by now.
   std::variant<StatusDocument, RunDocument> document;
 };
 
@@ -83,7 +83,7 @@ Answer watch_to_end(const ApiClient& daemon, const std::string& run_id, bool sil
   return answer;
 }
 
-void tell_failure(const Answer& end) {
+void print_failure(const Answer& end) {
   std::string where, message, next;
   if (const auto* status = std::get_if<StatusDocument>(&end.document)) {
     where = "in " + status->state;
@@ -98,7 +98,7 @@ void tell_failure(const Answer& end) {
              next.empty() ? "touchcal status tells more" : next);
 }
 
-ExitCode tell_end(const ApiClient& daemon, const std::string& run_id, const Answer& end, bool json_only) {
+ExitCode print_end(const ApiClient& daemon, const std::string& run_id, const Answer& end, bool json_only) {
   const ApiReply result = daemon.get(run_target(run_id) + "/result");
   const auto* status = std::get_if<StatusDocument>(&end.document);
   const auto* run = std::get_if<RunDocument>(&end.document);
@@ -111,7 +111,7 @@ ExitCode tell_end(const ApiClient& daemon, const std::string& run_id, const Answ
   }
   const ExitCode code = status ? exit_code_of_end(status->verdict, status->fault_code)
                                : exit_code_of_end(run->verdict, run->fault_code);
-  if (code != kExitDone && code != kExitLimitsMissed) tell_failure(end);
+  if (code != kExitDone && code != kExitLimitsMissed) print_failure(end);
   return code;
 }
 
@@ -143,9 +143,9 @@ std::string place_text(const std::optional<PlaceDocument>& place) {
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json_only) {
   wait_until_ready(daemon, arguments.guided);
   const ApiReply reply = daemon.post("/api/v1/runs", document_text(start_request(arguments)));
-  if (reply.status != 201) return tell_problem(reply, json_only);
+  if (reply.status != 201) return print_problem(reply, json_only);
   const std::string run_id = read_reply(reply, read_run).id;
-  return tell_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
+  return print_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
 }
 
 ExitCode watch_command(const ApiClient& daemon, bool json_only) {
@@ -156,13 +156,13 @@ ExitCode watch_command(const ApiClient& daemon, bool json_only) {
     return kExitDone;
   }
   const std::string run_id = *status.run_id;
-  return tell_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
+  return print_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
 }
 
 ExitCode locate_command(const ApiClient& daemon, bool json_only) {
   const auto place_before = read_reply(daemon.get("/api/v1/cell"), read_place_of_cell);
   ApiReply reply = daemon.post("/api/v1/cell/locate", {});
-  if (reply.status != 202) return tell_problem(reply, json_only);
+  if (reply.status != 202) return print_problem(reply, json_only);
   StatusDocument status = read_reply(reply, read_status);
   std::string said;
   const bool passes = status.by_hand_step == "passing";
@@ -177,8 +177,9 @@ ExitCode locate_command(const ApiClient& daemon, bool json_only) {
   const bool failed = status.fault_code.has_value();
   const ApiReply cell = daemon.get("/api/v1/cell");
   if (!failed && !is_found() && read_reply(cell, read_place_of_cell) == place_before) {
-    fmt::print(stderr,
-               "locating was broken off: no new place is kept; touchcal locate goes on or begins anew\n");
+    fmt::print(
+        stderr,
+        "locating was interrupted: no new pose is stored; touchcal locate continues or starts again\n");
     return kExitFailed;
   }
   if (json_only) {

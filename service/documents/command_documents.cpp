@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "service/documents/document_fields.hpp"
+#include "service/documents/internal/document_fields.hpp"
 
 namespace cell {
 namespace {

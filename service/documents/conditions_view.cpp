@@ -3,7 +3,7 @@
 #include "cs8_protocol/messages.hpp"
 #include "service/base/version.hpp"
 #include "service/documents/figures.hpp"
-#include "service/documents/place_view.hpp"
+#include "service/documents/internal/place_view.hpp"
 
 namespace cell {
 namespace {
@@ -13,14 +13,9 @@ std::optional<std::map<std::string, std::string>> told(
   return certificate.empty() ? std::nullopt : std::optional(certificate);
 }
 
-std::optional<std::string> touching_name(std::optional<Touching> touching) {
-  if (!touching) return std::nullopt;
-  return *touching == Touching::kGuided ? "guided" : "automatic";
-}
-
 }  // namespace
 
-ConditionsDocument conditions_of(const Cell& cell, const Conditions& conditions) {
+ConditionsDocument conditions_of(const Cell& cell, const RunConditions& conditions) {
   ConditionsDocument document{
       .operator_name = conditions.operator_name,
       .config_digest = conditions.config_digest,
@@ -28,8 +23,8 @@ ConditionsDocument conditions_of(const Cell& cell, const Conditions& conditions)
       .block = {cell.block.name, told(cell.block.certificate)},
       .probe = {cell.probe.name, told(cell.probe.certificate)},
       .versions = {kVersion, cs8::kProtocolVersion, conditions.controller_application},
-      .touching = touching_name(conditions.touching),
       .place = place_of(conditions.place)};
+  if (conditions.touch_mode) document.touching = touch_mode_name(*conditions.touch_mode);
   if (cell.block.temperature_c) {
     document.std_temperature_k = finite(cell.block.std_temperature_k);
     document.thermal_expansion_per_k = finite(cell.block.thermal_expansion_per_k);
@@ -38,13 +33,13 @@ ConditionsDocument conditions_of(const Cell& cell, const Conditions& conditions)
   return document;
 }
 
-std::string conditions_document(const Cell& cell, const Conditions& conditions) {
+std::string conditions_document(const Cell& cell, const RunConditions& conditions) {
   return document_text(conditions_of(cell, conditions));
 }
 
 bool is_guided(const std::optional<std::string>& conditions) {
   if (!conditions) return false;
-  return touching_of(*conditions) == "guided";
+  return touching_of(*conditions) == touch_mode_name(TouchMode::kGuided);
 }
 
 }  // namespace cell

@@ -9,11 +9,11 @@
 
 namespace cell {
 
-/// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; null where
-/// unknown.
-ConditionsDocument conditions_of(const Cell& cell, const Conditions& conditions);
-/// The same as text: what is kept with a run.
-std::string conditions_document(const Cell& cell, const Conditions& conditions);
+/// `conditions` of a run and of a result: temperatures, certificates, versions, operator, digest; unknown
+/// ones are null.
+ConditionsDocument conditions_of(const Cell& cell, const RunConditions& conditions);
+/// The same as text, as stored with a run.
+std::string conditions_document(const Cell& cell, const RunConditions& conditions);
 
 /// True if these stored conditions say that a person made the touches.
 bool is_guided(const std::optional<std::string>& conditions);

@@ -1,4 +1,4 @@
-#include "service/documents/document_fields.hpp"
+#include "service/documents/internal/document_fields.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -4,9 +4,11 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "calib_core/geometry/units.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/figures.hpp"
+#include "service/documents/internal/geometry_json.hpp"
 #include "service/documents/run_document.hpp"
 #include "service/run/run_conditions.hpp"
 
@@ -17,7 +19,7 @@ std::optional<std::string> id_text(const std::optional<std::int64_t>& id) {
   return id ? std::optional(std::to_string(*id)) : std::nullopt;
 }
 
-/// How many touches a run makes is known once it is planned; until then there are none.
+/// Absent before the run is planned.
 std::optional<int> count_once_planned(int touches_total) {
   return touches_total > 0 ? std::optional(touches_total) : std::nullopt;
 }
@@ -25,9 +27,10 @@ std::optional<int> count_once_planned(int touches_total) {
 RunSummary summary_of(const StoredRun& run) {
   return {.id = std::to_string(run.id),
           .recipe = run.recipe,
-          .touching = is_guided(run.trace_json) ? "guided" : "automatic",
-          .outcome = run.outcome,
-          .verdict = run.verdict,
+          .touching = std::string(
+              touch_mode_name(is_guided(run.conditions_json) ? TouchMode::kGuided : TouchMode::kAutomatic)),
+          .outcome = std::string(run_outcome_name(run.outcome)),
+          .verdict = std::string(verdict_name(run.verdict)),
           .touches_done = run.touches_done,
           .touches_total = count_once_planned(run.touches_total),
           .started_at = run.started_at,
@@ -47,10 +50,10 @@ void set_controller(const ControllerView& controller, StatusDocument& document) 
   document.probe = controller.probe;
 }
 
-/// What a person who touches by hand is told.
+/// Instructions to a person who touches by hand.
 void set_by_hand(const HandGuide& guide, StatusDocument& document) {
-  document.by_hand = guide.activity;
-  document.by_hand_step = guide.step;
+  document.by_hand = hand_activity_name(guide.activity);
+  document.by_hand_step = hand_step_name(guide.step);
   document.by_hand_plane = guide.plane;
   document.by_hand_index = guide.index;
   document.by_hand_total = guide.total;
@@ -99,7 +102,7 @@ StatusDocument status_of(const Status& status) {
                           .identifiable_count = status.identifiable_count,
                           .condition_number = finite(status.condition_number),
                           .predicted_tip_rms_mm = finite_mm(status.predicted_tip_rms_m),
-                          .more_would_bring = status.more_would_bring,
+                          .more_would_bring = status.touch_benefit,
                           .eta_s = finite(status.eta_s),
                           .verdict = std::string(verdict_name(status.verdict))};
   set_controller(status.controller, document);
@@ -119,7 +122,7 @@ std::string status_document(const Status& status) { return document_text(status_
 
 std::string run_document(const StoredRun& run) {
   RunDocument document{summary_of(run), {}};
-  if (run.trace_json) document.conditions = CarriedJson{*run.trace_json};
+  if (run.conditions_json) document.conditions = CarriedJson{*run.conditions_json};
   return document_text(document);
 }
 

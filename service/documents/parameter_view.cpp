@@ -72,13 +72,13 @@ std::optional<double> std_of(const calib::IdentificationResult& result, int inde
 
 std::optional<std::array<std::optional<double>, 2>> interval_of(int index, double error,
                                                                 std::optional<double> std,
-                                                                const calib::Certainty* certainty) {
-  if (!std || !certainty) return std::nullopt;
-  const double half = certainty->coverage_factor * *std;
+                                                                const calib::UncertaintyBudget* uncertainty) {
+  if (!std || !uncertainty) return std::nullopt;
+  const double half = uncertainty->coverage_factor * *std;
   return std::array{finite(shown(index, error - half)), finite(shown(index, error + half))};
 }
 
-/// With what the touches do not change.
+/// A candidate without its estimate.
 Parameter identity_of(const calib::KinematicModel& nominal, int index) {
   const calib::ErrorParameter& parameter = parameter_at(index);
   Parameter identity;
@@ -135,7 +135,7 @@ std::vector<Parameter> parameters_of(const calib::IdentificationProblem& problem
     if (estimated) parameter.error = finite(shown(i, result.errors[i]));
     if (std) parameter.std_uncertainty = finite(shown(i, *std));
     parameter.interval95 =
-        interval_of(i, result.errors[i], std, result.certainty ? &*result.certainty : nullptr);
+        interval_of(i, result.errors[i], std, result.uncertainty ? &*result.uncertainty : nullptr);
     if (!options.prior) parameter.stands_for = stands_for[index];
   }
   return parameters;
@@ -165,8 +165,8 @@ std::vector<ArtefactParameter> artefact_parameters_of(const calib::Identificatio
 
 std::vector<CorrelationOfErrors> correlations_of(const calib::IdentificationResult& result) {
   std::vector<CorrelationOfErrors> list;
-  if (!result.certainty) return list;
-  for (const calib::Correlation& correlation : result.certainty->correlations) {
+  if (!result.uncertainty) return list;
+  for (const calib::Correlation& correlation : result.uncertainty->correlations) {
     list.push_back({.first = arm_parameter_name(correlation.first),
                     .second = arm_parameter_name(correlation.second),
                     .coefficient = finite(correlation.coefficient)});

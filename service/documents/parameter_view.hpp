@@ -11,14 +11,14 @@ namespace cell {
 /// A candidate's value in its document unit: mm or rad.
 double shown(int index, double value);
 
-/// All 37 candidates. With a prior all that are not excluded have an error and are `identified`; the rank of
-/// the touches is `identifiable_count` all the same.
+/// All 37 candidates. With a prior every one that is not excluded has an error and is `identified`;
+/// `identifiable_count` is still the rank of the touches.
 std::vector<Parameter> parameters_of(const calib::IdentificationProblem& problem,
                                      const calib::IdentificationOptions& options,
                                      const calib::IdentificationResult& result);
 
-/// What is not exactly known of block, ball and probe. `identified`: the touches say more of it than was
-/// written down; else `prior`.
+/// The uncertain quantities of block, ball and probe. `identified`: the touches improve on the given value;
+/// else `prior`.
 std::vector<ArtefactParameter> artefact_parameters_of(const calib::IdentificationProblem& problem,
                                                       const calib::IdentificationResult& result);
 

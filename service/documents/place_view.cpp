@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
-#include "service/documents/document_fields.hpp"
+#include "service/documents/internal/document_fields.hpp"
 
 namespace cell {
 namespace {
@@ -14,7 +14,7 @@ std::array<double, 3> list(const Eigen::Vector3d& values, double scale) {
 
 }  // namespace
 
-std::optional<PlaceDocument> place_of(const std::optional<LocatedPlace>& place) {
+std::optional<PlaceDocument> place_of(const std::optional<BlockPose>& place) {
   if (!place) return std::nullopt;
   constexpr double kMillimetres = 1e3, kDegrees = 1.0 / calib::kRadiansPerDegree;
   const Eigen::Matrix<double, 6, 1> std = place->covariance.diagonal().cwiseSqrt();
@@ -27,7 +27,7 @@ std::optional<PlaceDocument> place_of(const std::optional<LocatedPlace>& place) 
                        .touch_count = place->touches.size()};
 }
 
-Json place_view(const std::optional<LocatedPlace>& place) {
+Json block_pose_json(const std::optional<BlockPose>& place) {
   Json json;
   FieldWriter::write(json, place_of(place));
   return json;

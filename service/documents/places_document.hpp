@@ -12,7 +12,7 @@ namespace cell {
 /// touchcal/places/1: the places tried, best first, each with what is predicted there, or why there is no
 /// plan.
 struct PlacesDocument {
-  /// A frame as the arm's file has it, without what stays; frame 1 has more fields than frame 0.
+  /// The changed values of a frame, as in the arm's file; frame 1 has more of them than frame 0.
   struct Frame {
     int j = 0;
     std::optional<double> alpha_rad;

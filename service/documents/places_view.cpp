@@ -18,7 +18,7 @@ TipDocument::Box box_of(const calib::Box& box) {
   return {.name = box.name, .min_mm = millimetres(box.min_m), .max_mm = millimetres(box.max_m)};
 }
 
-/// The two frames as the arm's file has them, without what stays.
+/// The changed values of frames 0 and 1, as in the arm's file.
 std::array<PlacesDocument::Frame, 2> frames_of(const calib::KinematicModel& model) {
   const calib::LinkParameters& base = model.links[0];
   const calib::LinkParameters& first = model.links[1];
@@ -31,33 +31,34 @@ std::array<PlacesDocument::Frame, 2> frames_of(const calib::KinematicModel& mode
                                 .beta_rad = first.beta_rad}};
 }
 
-PlacesDocument::Place place_of(const Cell& cell, const PlaceFinding& finding) {
-  const Cell there = with_block_at(cell, finding.place);
-  PlacesDocument::Place place{.shift_mm = millimetres(finding.place.shift_m),
-                              .yaw_deg = degrees_from_radians(finding.place.yaw_rad),
-                              .present = finding.present,
-                              .feasible = finding.figures.has_value(),
-                              .fully_planned = finding.fully_planned,
+PlacesDocument::Place place_of(const Cell& cell, const PlaceCandidate& candidate) {
+  const Cell there = with_block_displaced(cell, candidate.place);
+  PlacesDocument::Place place{.shift_mm = millimetres(candidate.place.shift_m),
+                              .yaw_deg = degrees_from_radians(candidate.place.yaw_rad),
+                              .present = candidate.present,
+                              .feasible = candidate.figures.has_value(),
+                              .fully_planned = candidate.fully_planned,
                               .frames = frames_of(there.arm.model),
                               .workspace_box = box_of(there.workspace_box)};
   for (const calib::Box& box : there.keep_out_boxes) place.keep_out_boxes.push_back(box_of(box));
-  if (!finding.figures) {
-    place.reason = finding.reason;
+  if (!candidate.figures) {
+    place.reason = candidate.reason;
     return place;
   }
-  place.workspace_box_rms_mm = finite_mm(finding.figures->workspace_box_rms_m);
-  place.joint_ranges_rms_mm = finite_mm(finding.figures->joint_ranges_rms_m);
-  place.condition_number = finite(finding.figures->condition_number);
-  place.duration_s = finite(finding.figures->duration_s);
-  place.touch_count = finding.figures->touch_count;
+  place.workspace_box_rms_mm = finite_mm(candidate.figures->workspace_box_rms_m);
+  place.joint_ranges_rms_mm = finite_mm(candidate.figures->joint_ranges_rms_m);
+  place.condition_number = finite(candidate.figures->condition_number);
+  place.duration_s = finite(candidate.figures->duration_s);
+  place.touch_count = candidate.figures->touch_count;
   return place;
 }
 
 }  // namespace
 
-PlacesDocument places_of(const Cell& cell, const Recipe& recipe, const std::vector<PlaceFinding>& findings) {
+PlacesDocument places_of(const Cell& cell, const Recipe& recipe,
+                         const std::vector<PlaceCandidate>& candidates) {
   PlacesDocument document{.cell = cell.name, .recipe = recipe.name};
-  for (const PlaceFinding& finding : findings) document.places.push_back(place_of(cell, finding));
+  for (const PlaceCandidate& candidate : candidates) document.places.push_back(place_of(cell, candidate));
   return document;
 }
 

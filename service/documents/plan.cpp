@@ -9,7 +9,8 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/numerics/halton.hpp"
 #include "config/identification_problem.hpp"
-#include "service/documents/plan_view.hpp"
+#include "service/base/digest.hpp"
+#include "service/documents/internal/plan_view.hpp"
 #include "service/run/planning_problem.hpp"
 
 namespace cell {
@@ -146,7 +147,7 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
         .efforts = plan.touches.efforts};
   }
   PlanDocument document = plan_of(regions, recipe, plan.touches, planned);
-  plan.id = digest(document_text(document));
+  plan.id = sha256_hex(document_text(document)).substr(0, kIdDigits);
   document.plan_id = plan.id;
   plan.document = document_text(document);
   return plan;

@@ -39,7 +39,7 @@ PlanDocument::Touch touch_of(const Cell& cell, const calib::PlannedTouch& touch)
           .search_length_mm = mm_from_metres(touch.search_length_m),
           .search_end_joints_deg = joints_of(cell, touch.search_end_joints),
           .tilt_deg = calib::degrees_from_radians(touch.tilt_rad),
-          .predicted_miss_mm = mm_from_metres(touch.predicted_miss_m),
+          .predicted_miss_mm = mm_from_metres(touch.predicted_position_error_m),
           .travel_s = finite(touch.travel_s),
           .touch_s = finite(touch.touch_s)};
 }
@@ -61,7 +61,7 @@ PlanDocument::Goal goal_of(const Recipe& recipe) {
   return {.criterion = std::string(name->second), .tip_rms_max_mm = finite_mm(recipe.goal.tip_rms_max_m)};
 }
 
-/// What is predicted of the parameters: all that a result says of them but the errors.
+/// The parameters as in a result, without their errors.
 std::vector<PlannedParameter> predicted_parameters(const Recipe& recipe,
                                                    const PlannedIdentification& planned) {
   const auto parameters = parameters_of(planned.problem, recipe.identification, planned.result);

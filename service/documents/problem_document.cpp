@@ -1,6 +1,6 @@
 #include "service/documents/problem_document.hpp"
 
-#include "service/documents/document_fields.hpp"
+#include "service/documents/internal/document_fields.hpp"
 
 namespace cell {
 

@@ -7,8 +7,8 @@
 #include "calib_core/identification/face_distances.hpp"
 #include "calib_core/identification/validate.hpp"
 #include "service/documents/conditions_view.hpp"
-#include "service/documents/decision_rule_view.hpp"
 #include "service/documents/figures.hpp"
+#include "service/documents/internal/decision_rule_view.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/validation_view.hpp"
@@ -32,7 +32,7 @@ ResultDocument::Iteration iteration_of(const calib::Iteration& iteration) {
 }
 
 ResultDocument::RejectedTouch rejected_of(const calib::RejectedTouch& touch) {
-  const bool wrong_plane = touch.reason == calib::RejectionReason::kWrongPlane;
+  const bool wrong_plane = touch.reason == calib::RejectionReason::kWrongFace;
   return {.touch = static_cast<int>(touch.touch) + 1,
           .residual_mm = finite_mm(touch.residual_m),
           .reason = wrong_plane ? "wrong_plane" : "outlier"};
@@ -91,16 +91,16 @@ std::vector<ResultDocument::PlaneFit> plane_fits_of(const calib::IdentificationR
 ResultDocument::Fit fit_of(const calib::IdentificationProblem& problem,
                            const calib::IdentificationResult& result) {
   const auto& lack_of_fit = result.lack_of_fit;
-  const auto& certainty = result.certainty;
+  const auto& uncertainty = result.uncertainty;
   ResultDocument::Fit document{.noise_estimated_um = micrometres(result.noise_estimated_m),
                                .planes = plane_fits_of(result)};
   if (problem.touch_noise_m > 0.0) document.noise_declared_um = micrometres(problem.touch_noise_m);
-  if (certainty) document.noise_used_um = micrometres(certainty->noise_m);
+  if (uncertainty) document.noise_used_um = micrometres(uncertainty->noise_m);
   if (lack_of_fit) {
     document.lack_of_fit_p = finite(lack_of_fit->p);
     document.degrees_of_freedom = finite(lack_of_fit->degrees_of_freedom);
-  } else if (certainty) {
-    document.degrees_of_freedom = finite(certainty->degrees_of_freedom);
+  } else if (uncertainty) {
+    document.degrees_of_freedom = finite(uncertainty->degrees_of_freedom);
   }
   return document;
 }
@@ -155,7 +155,7 @@ std::vector<ResultDocument::TouchDistances> touches_of(const Cell& cell,
   return list;
 }
 
-/// Known once the touches are complete: the repetitions are of all of them.
+/// Absent before the touches are complete: a repetition needs all of them.
 std::optional<RepetitionsDocument> validation_of(const calib::IdentificationProblem& problem,
                                                  const calib::IdentificationOptions& options,
                                                  const calib::IdentificationResult& result, bool complete,

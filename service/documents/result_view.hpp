@@ -16,9 +16,9 @@ struct ResultContext {
   std::string conditions;             // as stored with the run; empty: those of the cell's files
 };
 
-/// touchcal/result/1 (service/doc/surfaces.md, section 5). `problem` is what was identified: rejected touches
-/// are counted in its touches, from 1. `identifiable_count` is the rank that the touches show, also with a
-/// prior, where all errors that are not excluded are identified.
+/// touchcal/result/1. `problem` is the input of the identification: rejected touches are numbers of its
+/// touches, from 1. `identifiable_count` is the rank of the touches, also with a prior, with which every
+/// error that is not excluded is identified.
 ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
                          const calib::IdentificationProblem& problem,
                          const calib::IdentificationResult& result, const ResultContext& context);
@@ -28,7 +28,7 @@ std::string result_document(const TipRegions& regions, const Recipe& recipe,
                             const calib::IdentificationProblem& problem,
                             const calib::IdentificationResult& result, const ResultContext& context);
 
-/// What is predicted of the tip: `tip_uncertainty` of a result and of a plan.
+/// `tip_uncertainty` of a result and of a plan.
 TipDocument tip_of(const Cell& cell, const TipPrediction& tip);
 
 /// The distances of one role's touches, a plane at a time, along the outward normals.

@@ -43,8 +43,7 @@ struct TipDocument {
       fields("max_mm", self.max_mm);
     }
   };
-  /// Cells are counted with x running fastest, then y, then z; no value where no posture of the arm puts the
-  /// tip.
+  /// Order of cells: x fastest, then y, then z; no value where the arm cannot reach.
   struct Map {
     Box box;
     std::array<int, 3> counts{};

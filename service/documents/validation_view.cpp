@@ -7,7 +7,7 @@
 namespace cell {
 namespace {
 
-/// `parameters`: those of the result document; what is not estimated has no new error either.
+/// `parameters`: those of the result document; a parameter that is not estimated has no new error.
 void add_new_errors(const std::vector<Parameter>& parameters, const calib::Repetition& repetition,
                     std::vector<RepetitionDocument::NewError>& list) {
   for (int i = 0; i < calib::kErrorParameterCount; ++i) {

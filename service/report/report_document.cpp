@@ -13,7 +13,7 @@
 namespace cell {
 namespace {
 
-/// The wire's whole number of 10^-6 degrees, written without a rounding.
+/// An integer of 10^-6 degrees as degrees, without rounding.
 std::string degrees_text(std::int64_t microdegrees) {
   constexpr std::int64_t kPerDegree = 1'000'000;
   const std::int64_t size = std::abs(microdegrees);
@@ -26,8 +26,8 @@ RunReport::OfRun of_run(const StoredRun& run) {
           .operator_name = run.operator_name,
           .started_at = run.started_at,
           .ended_at = run.ended_at,
-          .outcome = run.outcome,
-          .verdict = run.verdict,
+          .outcome = std::string(run_outcome_name(run.outcome)),
+          .verdict = std::string(verdict_name(run.verdict)),
           .touches_done = run.touches_done,
           .touches_total = run.touches_total > 0 ? std::optional(run.touches_total) : std::nullopt,
           .fault_code = run.fault_code,
@@ -37,7 +37,7 @@ RunReport::OfRun of_run(const StoredRun& run) {
           .block_temperature_c = finite(run.block_temperature_c)};
 }
 
-/// With what the result says of the touch at the same place in the run, where it says anything.
+/// Each touch with the entry of the result at the same index, if there is one.
 std::vector<RunReport::Touch> touches_of(const RunRecord& record, const ResultDocument& result) {
   std::vector<RunReport::Touch> list;
   for (std::size_t i = 0; i < record.touches.size(); ++i) {

@@ -27,7 +27,7 @@ std::string report_document(const RunRecord& record);
 /// in degrees with every digit of the wire. `raw_data.sha256` of the report is the digest of this text.
 std::string raw_data_text(const std::vector<StoredTouch>& touches);
 
-/// The report's touches as a table for a spreadsheet; its first nine columns are raw_data_text().
+/// The touches as CSV; the first nine columns are raw_data_text().
 std::string report_csv(const RunReport& report);
 
 }  // namespace cell

@@ -49,7 +49,7 @@ std::string bullets(const std::vector<std::string>& texts) {
   return items.empty() ? items : html::element("ul", items) + "\n";
 }
 
-/// A name of a document as words: "held_out_mean" is "held out mean".
+/// A field name as words: "held_out_mean" becomes "held out mean".
 std::string words_of(const std::string& name) {
   std::string words = text_or_unknown(name);
   std::ranges::replace(words, '_', ' ');
@@ -97,7 +97,7 @@ std::string certificate_text(const std::optional<std::map<std::string, std::stri
   return words.empty() ? "unknown" : words;
 }
 
-/// Where the block stood: as the cell's file has it, or where it was located.
+/// The place of the block: that of the cell's file, or the located one.
 std::string place_text(const ConditionsDocument& conditions) {
   if (!conditions.place) return "unknown";
   const std::optional<PlaceDocument>& place = *conditions.place;

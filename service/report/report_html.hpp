@@ -6,8 +6,8 @@
 
 namespace cell {
 
-/// A report as one self-contained HTML document for people and for print: no script, nothing
-/// from elsewhere. What an older result does not hold is said to be unknown.
+/// A report as one self-contained HTML document for reading and printing: no script, no external resources.
+/// Values that an older result lacks are shown as unknown.
 std::string report_html(const RunReport& report);
 
 }  // namespace cell

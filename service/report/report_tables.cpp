@@ -14,7 +14,7 @@ using html::Row;
 constexpr std::array kKinds{"alpha", "d", "theta", "r", "beta"};
 const Row kKindHeading{"j", "Δα rad", "Δd mm", "Δθ rad", "Δr mm", "Δβ rad"};
 
-/// An entry of a table of errors by frame: the figure, or why there is none.
+/// An entry of a table of errors by frame: the number, or the mark of its absence.
 std::string entry(std::optional<double> figure, const std::string& status, const char* format) {
   if (figure) return figure_text(figure, format);
   if (status == "no_effect") return "×";

@@ -7,7 +7,7 @@
 
 namespace cell {
 
-/// `decision_rule` of a verdict: the standard, which of its ways this cell decides by, and every criterion.
+/// `decision_rule` of a verdict: the standard, the rule that this cell applies, and every criterion.
 DecisionRuleDocument decision_rule_of(const std::vector<Criterion>& criteria, const AcceptanceLimits& limits);
 
 }  // namespace cell

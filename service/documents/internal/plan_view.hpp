@@ -5,7 +5,8 @@
 
 namespace cell {
 
-/// touchcal/plan/1 without a plan_id.
+/// touchcal/plan/1 with plan_id null: the predicted figures, what limits them, and every step of every touch.
+/// In `joints_deg` the ball of the nominal arm touches the nominal face.
 PlanDocument plan_of(const TipRegions& regions, const Recipe& recipe, const calib::TouchPlan& plan,
                      const PlannedIdentification& planned);
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "config/identification_problem.hpp"
-#include "service/acquisition/operation.hpp"
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/result_view.hpp"
 #include "service/http/server/problem.hpp"
@@ -116,7 +116,7 @@ HttpResponse get_report(const CellOperation& operation, const StoredRun& run, co
                         .detail = "format is html, csv or json; touchcal report makes a PDF of the first",
                         .parameter = "format"});
   }
-  // Once as text and back: what came from outside and is no UTF-8 is none in any of the forms.
+  // Once to text and back: replaces bytes from outside that are not UTF-8, for all formats.
   const std::string document = report_document(record_of(operation, run));
   if (format == "json") return {.body = document};
   const RunReport report = read_report(document);

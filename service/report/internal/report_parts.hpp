@@ -8,13 +8,13 @@
 /// Parts of the HTML report. Each takes the report or its result document and returns markup.
 namespace cell {
 
-/// A figure for people, "unknown" when it is none; `format` is fmt's.
+/// A number in fmt's `format`; "unknown" if absent.
 std::string figure_text(std::optional<double> value, const char* format);
 
-/// The same, but nothing for what is no figure.
+/// The same, but empty if absent.
 std::string figure_if_known(std::optional<double> value, const char* format);
 
-/// A text as it stands there, "unknown" when it is none.
+/// A string; "unknown" if it is empty or absent.
 std::string text_or_unknown(const std::string& text);
 std::string text_or_unknown(const std::optional<std::string>& text);
 

@@ -14,13 +14,17 @@ using nlohmann::json;
 class ConditionsView : public CopiedConfig {
  protected:
   std::string digest() const { return configuration_digest(read()).value(); }
+
+  json conditions_json(const RunConditions& conditions) const {
+    return json::parse(conditions_document(read(), conditions));
+  }
 };
 
 TEST_F(ConditionsView, ConditionsTellAllThatIsKnownAndNullForTheRest) {
-  const json known = conditions_json(read(), {.operator_name = "A. Turing",
-                                              .config_digest = digest(),
-                                              .controller_application = "touchcal 1.2.3",
-                                              .controller_session = 7});
+  const json known = conditions_json({.operator_name = "A. Turing",
+                                      .config_digest = digest(),
+                                      .controller_application = "touchcal 1.2.3",
+                                      .controller_session = 7});
   EXPECT_EQ(known.at("operator"), "A. Turing");
   EXPECT_EQ(known.at("config_digest"), digest());
   EXPECT_EQ(known.at("block_temperature_c"), json_of(path(kBlock)).at("temperature_c"));
@@ -28,7 +32,7 @@ TEST_F(ConditionsView, ConditionsTellAllThatIsKnownAndNullForTheRest) {
   EXPECT_TRUE(known.at("probe").at("certificate").is_null());
   EXPECT_EQ(known.at("versions").at("touchcal"), kVersion);
   EXPECT_EQ(known.at("versions").at("controller_application"), "touchcal 1.2.3");
-  const json unknown = conditions_json(read(), {});
+  const json unknown = conditions_json({});
   ASSERT_EQ(unknown.size(), known.size());
   for (const char* key : {"operator", "config_digest", "controller_session"})
     EXPECT_TRUE(unknown.at(key).is_null()) << key;
@@ -42,13 +46,13 @@ TEST_F(ConditionsView, ConditionsTellWhoTouched) {
 }
 
 TEST_F(ConditionsView, ConditionsTellWhereTheBlockStood) {
-  EXPECT_TRUE(conditions_json(read(), {}).at("place").is_null());
+  EXPECT_TRUE(conditions_json({}).at("place").is_null());
   BlockPose place{.cell_from_block = Eigen::Isometry3d(Eigen::Translation3d(0.03, 0.0, -0.02)),
                   .touches = std::vector<calib::RegistrationTouch>(6),
                   .located_at = "2026-11-22T08:00:00.000Z"};
   place.cell_from_block.rotate(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY()));
   place.covariance.diagonal().setConstant(1e-6);
-  const json told = conditions_json(read(), {.touch_mode = {}, .place = place}).at("place");
+  const json told = conditions_json({.touch_mode = {}, .place = place}).at("place");
   EXPECT_EQ(told.at("located_at"), place.located_at);
   EXPECT_EQ(told.at("shift_mm"), (json{30.0, 0.0, -20.0}));
   EXPECT_NEAR(told.at("turn_deg")[1].get<double>(), 28.648, 1e-3);
@@ -61,7 +65,7 @@ TEST_F(ConditionsView, AnUnknownTemperatureHasNoUncertaintyEither) {
     for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
       block.erase(key);
   });
-  EXPECT_TRUE(conditions_json(read(), {}).at("std_temperature_k").is_null());
+  EXPECT_TRUE(conditions_json({}).at("std_temperature_k").is_null());
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "service/documents/document_fields.hpp"
+#include "service/documents/internal/document_fields.hpp"
 
 #include <gmock/gmock.h>
 
@@ -82,13 +82,12 @@ TEST(DocumentFields, TheWayToWhatCannotBeReadIsItsPointer) {
 }
 
 TEST(StatusDocument, IsWrittenAsItWasRead) {
-  for (const Status& status :
-       {Status{}, Status{.run_id = 7,
-                  .touches_total = 140,
-                  .condition_number = 12.5,
-                  .by_hand = HandGuide{.activity = "guided", .about_joints = calib::JointVector::Ones()},
-                  .fault = Fault{FaultCode::kNoContact, "x"},
-                  .data_age_ms = 12}}) {
+  for (const Status& status : {Status{}, Status{.run_id = 7,
+                                         .touches_total = 140,
+                                         .condition_number = 12.5,
+                                         .by_hand = HandGuide{.about_joints = calib::JointVector::Ones()},
+                                         .fault = Fault{FaultCode::kNoContact, "x"},
+                                         .data_age_ms = 12}}) {
     const std::string text = status_document(status);
     EXPECT_EQ(document_text(read_status(text)), text);
   }
@@ -96,7 +95,8 @@ TEST(StatusDocument, IsWrittenAsItWasRead) {
 }
 
 TEST(RunDocument, IsWrittenAsItWasRead) {
-  const StoredRun run{.id = 2, .recipe = "edf-25", .trace_json = R"({"touching":"guided","later":[1.50]})"};
+  const StoredRun run{
+      .id = 2, .recipe = "edf-25", .conditions_json = R"({"touching":"guided","later":[1.50]})"};
   const std::string text = run_document(run), page = runs_document({run, {}}, 2);
   EXPECT_EQ(document_text(read_run(text)), text);
   EXPECT_EQ(read_run(text).touching, "guided");
@@ -111,7 +111,7 @@ TEST(StartRequest, HoldsOnlyWhatIsAskedFor) {
 /// The server writes the document and this reads it: the two hold the same keys.
 TEST(ProblemDocument, IsReadInFull) {
   const ProblemDocument read = read_problem(to_response({.status = 409,
-                                                         .kind = "preconditions",
+                                                         .kind = ProblemKind::kPreconditions,
                                                          .detail = "what",
                                                          .pointer = "/a",
                                                          .errors = {{"code", "why"}},

@@ -7,7 +7,7 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "config/joint_units.hpp"
-#include "service/documents/document_fields.hpp"
+#include "service/documents/internal/document_fields.hpp"
 #include "service/documents/plan_document.hpp"
 #include "service/documents/result_view.hpp"
 #include "tests/service/shipped_cell.hpp"

@@ -4,9 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <sstream>
 
 #include "cs8_protocol/messages.hpp"
