@@ -5,20 +5,6 @@
 
 namespace cell {
 
-std::string_view run_outcome_name(RunOutcome outcome) {
-  switch (outcome) {
-    case RunOutcome::kComplete:
-      return "complete";
-    case RunOutcome::kStopped:
-      return "stopped";
-    case RunOutcome::kAborted:
-      return "aborted";
-    case RunOutcome::kInterrupted:
-      return "interrupted";
-  }
-  return "";
-}
-
 std::optional<std::string> result_json(const ActiveRun& active, const TipRegions& regions) {
   const Run& run = active.run;
   if (run.latest().status != calib::IdentificationStatus::kConverged) return std::nullopt;

@@ -3,18 +3,14 @@
 #include <chrono>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "service/acquisition/place_check.hpp"
 #include "service/run/run.hpp"
 #include "service/run/verdict.hpp"
+#include "service/store/run_outcome.hpp"
 
 namespace cell {
-
-/// How a run ended: its `outcome` in the store and in every document.
-enum class RunOutcome { kComplete, kStopped, kAborted, kInterrupted };
-std::string_view run_outcome_name(RunOutcome outcome);  // "complete"
 
 /// What an earlier daemon left of a run that it did not end.
 struct Interruption {

@@ -202,8 +202,8 @@ void CellOperation::close_run(RunOutcome outcome) {
   const Verdict verdict = conclude(*run_, outcome, cell());
   status_.set_verdict(verdict);
   RunEnd end{
-      .outcome = std::string(run_outcome_name(run_->interruption ? RunOutcome::kInterrupted : outcome)),
-      .verdict = std::string(verdict_name(verdict)),
+      .outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
+      .verdict = verdict,
       .ended_at = now_text(),
       .result_json = result_json()};
   if (const auto& fault = status_.fault()) {
@@ -220,7 +220,7 @@ void CellOperation::close_run(RunOutcome outcome) {
     status_.set_fault({FaultCode::kStoreFailed, error.what()});
     spdlog::error("run {}: its end could not be stored: {}", run.id(), error.what());
   }
-  spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome), end.verdict,
+  spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome), verdict_name(end.verdict),
                run.touches_done(), run.touches_total());
 }
 

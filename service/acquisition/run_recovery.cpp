@@ -64,8 +64,8 @@ std::optional<ActiveRun> RunRecovery::restore() {
 
 void RunRecovery::end_for_good(const StoredRun& run, const std::string& why) {
   spdlog::warn("run {} was interrupted and cannot be resumed: {}", run.id, why);
-  RunEnd end{.outcome = std::string(run_outcome_name(RunOutcome::kInterrupted)),
-             .verdict = std::string(verdict_name(Verdict::kIncomplete)),
+  RunEnd end{.outcome = RunOutcome::kInterrupted,
+             .verdict = Verdict::kIncomplete,
              .ended_at = format_utc(clocks_.system())};
   end.fault_code = std::string(describe(FaultCode::kDaemonRestarted).name);
   end.fault_message = Fault{FaultCode::kDaemonRestarted, "it cannot be resumed: " + why}.message();

@@ -15,7 +15,7 @@
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
-#include "service/http/server/internal/target.hpp"
+#include "service/http/server/target.hpp"
 
 namespace cell {
 

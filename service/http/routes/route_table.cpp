@@ -9,7 +9,7 @@
 #include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/services.hpp"
-#include "service/http/server/internal/target.hpp"
+#include "service/http/server/target.hpp"
 
 namespace cell {
 namespace {

@@ -17,7 +17,7 @@
 #include <variant>
 
 #include "service/http/server/internal/response_text.hpp"
-#include "service/http/server/internal/target.hpp"
+#include "service/http/server/target.hpp"
 #include "service/http/server/request_handler.hpp"
 
 namespace cell {

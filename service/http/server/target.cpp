@@ -1,4 +1,4 @@
-#include "service/http/server/internal/target.hpp"
+#include "service/http/server/target.hpp"
 
 #include <algorithm>
 #include <boost/url/parse.hpp>

@@ -6,7 +6,7 @@
 #include <regex>
 
 #include "service/http/routes/route_table.hpp"
-#include "service/http/server/internal/target.hpp"
+#include "service/http/server/target.hpp"
 #include "tests/service/document_schema.hpp"
 #include "tests/service/quiet_cell.hpp"
 

@@ -1,5 +1,5 @@
 // A request's target, from the request line to the route.
-#include "service/http/server/internal/target.hpp"
+#include "service/http/server/target.hpp"
 
 #include <gmock/gmock.h>
 
