@@ -198,7 +198,7 @@ std::string status_text(const StatusDocument& status) {
 }
 
 std::string more_text(const StatusDocument& status) {
-  return status.more_would_bring ? fmt::format("more        {}\n", *status.more_would_bring) : "";
+  return status.touch_benefit ? fmt::format("more        {}\n", *status.touch_benefit) : "";
 }
 
 std::string runs_text(const std::vector<RunSummary>& runs) {

@@ -123,7 +123,7 @@ StartRequest start_request(const RunArguments& arguments) {
     request.plan_id = arguments.plan_id;
   }
   if (!arguments.operator_name.empty()) request.operator_name = arguments.operator_name;
-  if (arguments.guided) request.touching = "guided";
+  if (arguments.guided) request.touch_mode = "guided";
   return request;
 }
 

@@ -8,7 +8,7 @@ std::string document_text(const ConditionsDocument& document) { return written(d
 
 std::optional<std::string> touching_of(std::string_view conditions) {
   try {
-    return document_from<ConditionsDocument>(conditions, Absent::kKeepsDefault).touching;
+    return document_from<ConditionsDocument>(conditions, Absent::kKeepsDefault).touch_mode;
   } catch (const DocumentError&) {
     return std::nullopt;
   }

@@ -65,7 +65,7 @@ struct ConditionsDocument {
   Certified probe;
   Versions versions;
   std::optional<std::int64_t> controller_session;
-  std::optional<std::string> touching;
+  std::optional<std::string> touch_mode;
   /// Null: the block stood where the cell's file has it. Not there: an older daemon did not say.
   std::optional<std::optional<PlaceDocument>> place;
 
@@ -80,7 +80,7 @@ struct ConditionsDocument {
     fields("probe", self.probe);
     fields("versions", self.versions);
     fields("controller_session", self.controller_session);
-    fields("touching", self.touching);
+    fields("touching", self.touch_mode);
     fields("place", self.place);
   }
 };

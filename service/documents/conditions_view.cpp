@@ -23,8 +23,8 @@ ConditionsDocument conditions_of(const Cell& cell, const RunConditions& conditio
       .block = {cell.block.name, told(cell.block.certificate)},
       .probe = {cell.probe.name, told(cell.probe.certificate)},
       .versions = {kVersion, cs8::kProtocolVersion, conditions.controller_application},
-      .place = place_of(conditions.place)};
-  if (conditions.touch_mode) document.touching = touch_mode_name(*conditions.touch_mode);
+      .place = block_pose_of(conditions.place)};
+  if (conditions.touch_mode) document.touch_mode = touch_mode_name(*conditions.touch_mode);
   if (cell.block.temperature_c) {
     document.std_temperature_k = finite(cell.block.std_temperature_k);
     document.thermal_expansion_per_k = finite(cell.block.thermal_expansion_per_k);

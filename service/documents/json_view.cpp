@@ -27,7 +27,7 @@ std::optional<int> count_once_planned(int touches_total) {
 RunSummary summary_of(const StoredRun& run) {
   return {.id = std::to_string(run.id),
           .recipe = run.recipe,
-          .touching = std::string(
+          .touch_mode = std::string(
               touch_mode_name(is_guided(run.conditions_json) ? TouchMode::kGuided : TouchMode::kAutomatic)),
           .outcome = std::string(run_outcome_name(run.outcome)),
           .verdict = std::string(verdict_name(run.verdict)),
@@ -102,7 +102,7 @@ StatusDocument status_of(const Status& status) {
                           .identifiable_count = status.identifiable_count,
                           .condition_number = finite(status.condition_number),
                           .predicted_tip_rms_mm = finite_mm(status.predicted_tip_rms_m),
-                          .more_would_bring = status.touch_benefit,
+                          .touch_benefit = status.touch_benefit,
                           .eta_s = finite(status.eta_s),
                           .verdict = std::string(verdict_name(status.verdict))};
   set_controller(status.controller, document);

@@ -14,7 +14,7 @@ std::array<double, 3> list(const Eigen::Vector3d& values, double scale) {
 
 }  // namespace
 
-std::optional<PlaceDocument> place_of(const std::optional<BlockPose>& place) {
+std::optional<PlaceDocument> block_pose_of(const std::optional<BlockPose>& place) {
   if (!place) return std::nullopt;
   constexpr double kMillimetres = 1e3, kDegrees = 1.0 / calib::kRadiansPerDegree;
   const Eigen::Matrix<double, 6, 1> std = place->covariance.diagonal().cwiseSqrt();
@@ -29,7 +29,7 @@ std::optional<PlaceDocument> place_of(const std::optional<BlockPose>& place) {
 
 Json block_pose_json(const std::optional<BlockPose>& place) {
   Json json;
-  FieldWriter::write(json, place_of(place));
+  FieldWriter::write(json, block_pose_of(place));
   return json;
 }
 

@@ -31,7 +31,7 @@ std::array<PlacesDocument::Frame, 2> frames_of(const calib::KinematicModel& mode
                                 .beta_rad = first.beta_rad}};
 }
 
-PlacesDocument::Place place_of(const Cell& cell, const PlaceCandidate& candidate) {
+PlacesDocument::Place block_pose_of(const Cell& cell, const PlaceCandidate& candidate) {
   const Cell there = with_block_displaced(cell, candidate.place);
   PlacesDocument::Place place{.shift_mm = millimetres(candidate.place.shift_m),
                               .yaw_deg = degrees_from_radians(candidate.place.yaw_rad),
@@ -58,7 +58,8 @@ PlacesDocument::Place place_of(const Cell& cell, const PlaceCandidate& candidate
 PlacesDocument places_of(const Cell& cell, const Recipe& recipe,
                          const std::vector<PlaceCandidate>& candidates) {
   PlacesDocument document{.cell = cell.name, .recipe = recipe.name};
-  for (const PlaceCandidate& candidate : candidates) document.places.push_back(place_of(cell, candidate));
+  for (const PlaceCandidate& candidate : candidates)
+    document.places.push_back(block_pose_of(cell, candidate));
   return document;
 }
 

@@ -13,7 +13,7 @@ namespace cell {
 struct RunSummary {
   std::string id;
   std::string recipe;
-  std::optional<std::string> touching;  // automatic, guided
+  std::optional<std::string> touch_mode;  // automatic, guided
   std::string outcome;
   std::string verdict;
   int touches_done = 0;
@@ -27,7 +27,7 @@ struct RunSummary {
   static void visit(Self& self, Fields& fields) {
     fields("id", self.id);
     fields("recipe", self.recipe);
-    fields("touching", self.touching);
+    fields("touching", self.touch_mode);
     fields("outcome", self.outcome);
     fields("verdict", self.verdict);
     fields("touches_done", self.touches_done);
@@ -67,14 +67,14 @@ struct StartRequest {
   std::optional<std::string> operator_name;
   std::optional<std::string> plan_id;
   std::optional<std::string> recipe;
-  std::optional<std::string> touching;
+  std::optional<std::string> touch_mode;
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     fields.if_set("operator", self.operator_name);
     fields.if_set("plan_id", self.plan_id);
     fields.if_set("recipe", self.recipe);
-    fields.if_set("touching", self.touching);
+    fields.if_set("touching", self.touch_mode);
   }
 };
 

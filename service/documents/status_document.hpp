@@ -20,7 +20,7 @@ struct StatusDocument {
   std::optional<int> identifiable_count;
   std::optional<double> condition_number;
   std::optional<double> predicted_tip_rms_mm;
-  std::optional<std::string> more_would_bring;
+  std::optional<std::string> touch_benefit;
   std::optional<double> eta_s;
   std::string verdict;
   bool controller_connected = false;
@@ -65,7 +65,7 @@ struct StatusDocument {
     fields("identifiable_count", self.identifiable_count);
     fields("condition_number", self.condition_number);
     fields("predicted_tip_rms_mm", self.predicted_tip_rms_mm);
-    fields("more_would_bring", self.more_would_bring);
+    fields("more_would_bring", self.touch_benefit);
     fields("eta_s", self.eta_s);
     fields("verdict", self.verdict);
     fields("controller_connected", self.controller_connected);

@@ -126,7 +126,7 @@ std::string run_section(const RunReport& report) {
            {"block's temperature", figure_text(run.block_temperature_c, "{:.1f} °C") +
                                        figure_if_known(conditions.std_temperature_k, " ± {:.1f} K (std)")},
            {"place of the block", place_text(conditions)},
-           {"touches made", text_or_unknown(conditions.touching)},
+           {"touches made", text_or_unknown(conditions.touch_mode)},
            {"operator", text_or_unknown(run.operator_name)},
            {"started, ended", text_or_unknown(run.started_at) + ", " + text_or_unknown(run.ended_at)},
            {"touches", std::to_string(run.touches_done) + figure_if_known(run.touches_total, " of {:.0f}")},

@@ -47,7 +47,7 @@ class BlockElsewhere : public ::testing::Test {
       const auto before = loop_.status().by_hand;
       ASSERT_TRUE(before);
       EXPECT_EQ(before->plane, spot.face + 1);
-      EXPECT_EQ(before->step, "touch");
+      EXPECT_EQ(before->step, cell::HandStep::kTouch);
       pendant.touch(spot.face, spot.point_m);
       ASSERT_TRUE(loop_.status().by_hand);
       EXPECT_FALSE(loop_.status().by_hand->problem) << *loop_.status().by_hand->problem;

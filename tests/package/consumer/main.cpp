@@ -4,8 +4,8 @@
 #include <fstream>
 #include <numbers>
 
-#include "calib_core/error_parameters.hpp"
-#include "calib_core/identify.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/kinematics/error_parameters.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

@@ -99,7 +99,7 @@ TEST(RunDocument, IsWrittenAsItWasRead) {
       .id = 2, .recipe = "edf-25", .conditions_json = R"({"touching":"guided","later":[1.50]})"};
   const std::string text = run_document(run), page = runs_document({run, {}}, 2);
   EXPECT_EQ(document_text(read_run(text)), text);
-  EXPECT_EQ(read_run(text).touching, "guided");
+  EXPECT_EQ(read_run(text).touch_mode, "guided");
   EXPECT_EQ(document_text(read_runs(page)), page);
 }
 

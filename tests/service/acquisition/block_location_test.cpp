@@ -1,0 +1,135 @@
+#include "service/acquisition/block_location.hpp"
+
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+
+#include "calib_core/kinematics/inverse_kinematics.hpp"
+#include "calib_core/motion/transfer_path.hpp"
+#include "service/acquisition/block_pass.hpp"
+#include "tests/service/acquisition/owners_bench.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+class BlockLocationTest : public ::testing::Test, public OwnersBench {
+ protected:
+  BlockLocationTest() { status.enter(State::kIdle); }
+
+  /// One touch by hand, at this posture.
+  void touch(const calib::JointVector& joints) {
+    cs8::State state = ScriptedController::ready_state();
+    state.joints = to_wire(joints);
+    location_.on_controller_state(state);
+    state.flags = (state.flags | cs8::kProbeTouched) & ~static_cast<std::uint32_t>(cs8::kProbeLoopClosed);
+    location_.on_controller_state(state);
+  }
+  /// The ball at the spot, in the orientation of a planned touch of that face over which the arm can come
+  /// from its park posture and leave again.
+  static calib::JointVector at(const PlaceSpot& spot) {
+    const Cell& cell = cell_of_owners();
+    static const calib::TransferSpace space(cell.arm.model, cell.collision_scene(), cell.park_joints,
+                                            cell.nominal_position_error_m);
+    const Eigen::Vector3d& outward = cell.block.faces[static_cast<std::size_t>(spot.face)].plane.outward;
+    for (const calib::PlannedTouch& touch : plan_of_owners().touches.touches) {
+      if (touch.face != spot.face) continue;
+      Eigen::Isometry3d pose = calib::forward_kinematics(cell.arm.model, touch.joints);
+      pose.translation() = spot.point_m + cell.probe.stylus.radius_m * outward;
+      const auto joints = calib::solve_near(cell.arm.model, pose, touch.joints);
+      if (!joints) continue;
+      const auto over = pass_postures(cell, {{spot.face, *joints, kHandNoiseMetres}});
+      const auto* postures = std::get_if<std::vector<calib::JointVector>>(&over);
+      if (postures && calib::can_reach_park(space, postures->front())) return *joints;
+    }
+    throw std::runtime_error("nobody can touch there");
+  }
+  /// The whole dialogue, with the block where the cell's file has it.
+  void touch_all_spots() {
+    ASSERT_FALSE(location_.locate());
+    for (const PlaceSpot& spot : place_spots(cell_of_owners())) touch(at(spot));
+  }
+
+  BlockLocation location_{cell_of_owners(), session, status, wake, time.clocks()};
+};
+
+TEST_F(BlockLocationTest, WithoutALinkThereIsNoDialogue) {
+  controller.is_connected = false;
+  const auto refusal = location_.locate();
+  EXPECT_EQ(refusal.value().kind, CommandRefusal::Kind::kPreconditions);
+  EXPECT_FALSE(location_.is_locating());
+}
+
+TEST_F(BlockLocationTest, AsksForOneTouchAfterTheOtherAndTakesTheLastOneBack) {
+  EXPECT_FALSE(location_.guide());
+  ASSERT_FALSE(location_.locate());
+  EXPECT_TRUE(location_.awaits_touch());
+  EXPECT_FALSE(location_.can_undo());
+  const PlaceSpot first = place_spots(cell_of_owners()).front();
+  touch(at(first));
+  EXPECT_EQ(location_.guide().value().index, 2);
+  EXPECT_TRUE(location_.can_undo());
+  location_.undo();
+  EXPECT_EQ(location_.guide().value().index, 1);
+  location_.leave();
+  EXPECT_FALSE(location_.guide());
+}
+
+TEST_F(BlockLocationTest, TakesATouchByWordOnlyWhenTheProbeTouches) {
+  ASSERT_FALSE(location_.locate());
+  location_.on_controller_state(ScriptedController::ready_state());
+  EXPECT_NE(location_.take().value().detail.find("free"), std::string::npos);
+}
+
+TEST_F(BlockLocationTest, APlaceCountsOnceTheArmWentAroundTheBlockAndItIsStored) {
+  const auto file = folder.path() / "place.json";
+  EXPECT_FALSE(location_.keep_in(file)) << "there is none yet";
+  touch_all_spots();
+  ASSERT_EQ(location_.guide().value().step, HandStep::kPass) << location_.guide()->words;
+  EXPECT_FALSE(location_.place());
+  ASSERT_FALSE(location_.locate());
+  ASSERT_TRUE(location_.is_passing());
+  EXPECT_EQ(location_.guide().value().step, HandStep::kPassing);
+  status.enter(State::kStarting);
+  EXPECT_TRUE(run(location_.pass())) << status.fault().value_or(Fault{}).message();
+  EXPECT_THAT(controller.asked, Contains("begin 0"));
+  EXPECT_THAT(controller.asked, Contains(StartsWith("travel")).Times(::testing::Gt(3)));
+  EXPECT_THAT(controller.asked, Contains("finish"));
+  EXPECT_THAT(controller.asked, Not(Contains(StartsWith("touch"))));
+  EXPECT_TRUE(location_.place());
+  EXPECT_FALSE(location_.is_locating());
+  BlockLocation next_daemon(cell_of_owners(), session, status, wake, time.clocks());
+  EXPECT_TRUE(next_daemon.keep_in(file));
+  EXPECT_TRUE(next_daemon.place());
+}
+
+TEST_F(BlockLocationTest, AnArmThatMeetsSomethingOnItsWayForgetsThePlace) {
+  touch_all_spots();
+  ASSERT_FALSE(location_.locate());
+  ASSERT_TRUE(location_.is_passing());
+  controller.on_move = [] {
+    cs8::MoveResult met;
+    met.outcome = cs8::Outcome::kUnexpectedContact;
+    return met;
+  };
+  status.enter(State::kStarting);
+  EXPECT_FALSE(run(location_.pass()));
+  EXPECT_THAT(faults, Contains("unexpected_contact"));
+  EXPECT_FALSE(location_.is_locating() || location_.is_passing() || location_.place());
+}
+
+TEST_F(BlockLocationTest, APassWaitsUntilWhatIsOpenAtTheControllerIsSettled) {
+  touch_all_spots();
+  session.set_open_touch({.session = 1, .sequence = 3, .planned = plan_of_owners().touches.touches[0]});
+  EXPECT_TRUE(location_.locate());
+  EXPECT_FALSE(location_.is_passing());
+  session.drop_open_touch();
+  status.set_fault({FaultCode::kCollision, {}});
+  EXPECT_EQ(location_.locate().value().code, FaultCode::kFaultUnacknowledged);
+}
+
+}  // namespace
+}  // namespace cell

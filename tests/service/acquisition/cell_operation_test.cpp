@@ -1,0 +1,119 @@
+#include "service/acquisition/cell_operation.hpp"
+
+#include <gmock/gmock.h>
+
+#include <boost/asio/co_spawn.hpp>
+
+#include "tests/service/acquisition/owners_bench.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::Contains;
+using ::testing::IsEmpty;
+using ::testing::IsSupersetOf;
+
+/// The whole of an operation over a scripted controller: all it meets is said by the test.
+class CellOperationTest : public ::testing::Test {
+ protected:
+  CellOperationTest() { spdlog::set_level(spdlog::level::off); }
+  ~CellOperationTest() override {
+    controller_->is_connected = false;  // nobody whose answer the end waits for
+    bool down = false;
+    boost::asio::co_spawn(io_, operation_.shut_down(), [&](const std::exception_ptr&) { down = true; });
+    while (!down) io_.run_one();
+  }
+  /// The controller tells its state; what waits looks at it.
+  void tell_state() {
+    controller_->hooks.on_state(controller_->state.value());
+    io_.restart();
+    io_.poll();
+  }
+  void launch() {
+    operation_.launch();
+    io_.poll();
+    tell_state();
+  }
+
+  Folder folder_;
+  RunStore store_{folder_.path() / "touchcal.sqlite"};
+  boost::asio::io_context io_{1};
+  MadeUpTime time_;
+  ScriptedController* controller_ = new ScriptedController;  // the operation's
+  CellOperation operation_{
+      io_.get_executor(), cell_of_owners(), store_, std::unique_ptr<Controller>(controller_),
+      "instance",         time_.clocks()};
+};
+
+TEST_F(CellOperationTest, FindsItsControllerAndIsIdleOnceNothingStandsInTheWay) {
+  controller_->is_connected = false;
+  controller_->state->mode = cs8::WorkingMode::kManual;
+  launch();
+  EXPECT_THAT(controller_->asked, Contains("connect"));
+  EXPECT_EQ(operation_.status().state, State::kResetting);
+  EXPECT_EQ(operation_.unmet_preconditions().size(), 1u);
+  controller_->state->mode = cs8::WorkingMode::kRemote;
+  tell_state();
+  EXPECT_EQ(operation_.status().state, State::kIdle);
+  EXPECT_THAT(operation_.unmet_preconditions(), IsEmpty());
+}
+
+TEST_F(CellOperationTest, AStartThatIsRefusedSaysWhy) {
+  launch();
+  const auto kind = [](const std::variant<Started, CommandRefusal>& answer) {
+    return std::get<CommandRefusal>(answer).kind;
+  };
+  EXPECT_EQ(kind(operation_.start({.recipe = "none"})), CommandRefusal::Kind::kUnknownRecipe);
+  controller_->state->flags &= ~static_cast<std::uint32_t>(cs8::kPowered);
+  EXPECT_EQ(kind(operation_.start({.recipe = "few"})), CommandRefusal::Kind::kPreconditions);
+  EXPECT_THAT(store_.runs(10), IsEmpty());
+}
+
+TEST_F(CellOperationTest, ARunIsStartedOnceForOneKeyAndNoOtherBesideIt) {
+  launch();
+  const auto first = operation_.start({.recipe = "few", .idempotency_key = "key"});
+  const auto again = operation_.start({.recipe = "few", .idempotency_key = "key"});
+  EXPECT_EQ(std::get<Started>(first).run_id, std::get<Started>(again).run_id);
+  EXPECT_TRUE(std::get<Started>(again).repeated);
+  EXPECT_EQ(std::get<CommandRefusal>(operation_.start({.recipe = "few"})).code, FaultCode::kRunActive);
+  EXPECT_EQ(operation_.status().state, State::kStarting);
+}
+
+TEST_F(CellOperationTest, ACommandThatNamesAnotherRunIsRefused) {
+  launch();
+  EXPECT_EQ(operation_.command(Command::kStop, 99).value().kind, CommandRefusal::Kind::kNotThisRun);
+  EXPECT_EQ(operation_.command(Command::kResume).value().code, FaultCode::kNotInThisState);
+}
+
+TEST_F(CellOperationTest, NoStateIsADeadEndAndNoExitIsRefused) {
+  launch();
+  EXPECT_THAT(operation_.exits(), IsSupersetOf({Command::kStart, Command::kStop}));
+  EXPECT_FALSE(operation_.command(Command::kStop));
+  EXPECT_EQ(operation_.status().state, State::kStopped);
+  EXPECT_THAT(operation_.exits(), Contains(Command::kReset));
+}
+
+TEST_F(CellOperationTest, ALostLinkIsAFaultAndLookedForAgain) {
+  launch();
+  controller_->is_connected = false;
+  controller_->asked.clear();
+  controller_->hooks.on_loss({cs8::LinkErrorKind::kSilent, "nothing was heard"});
+  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kLinkLost);
+  EXPECT_EQ(operation_.status().state, State::kResetting);
+  io_.restart();
+  io_.poll();
+  EXPECT_THAT(controller_->asked, Contains("connect"));
+  EXPECT_FALSE(operation_.status().fault) << "it ended with the link";
+}
+
+TEST_F(CellOperationTest, ChangesAreToldAtOnceAndNumbered) {
+  std::vector<std::uint64_t> told;
+  operation_.on_change([&](const Status& status) { told.push_back(status.sequence); });
+  launch();
+  ASSERT_FALSE(told.empty());
+  for (std::size_t i = 1; i < told.size(); ++i) EXPECT_EQ(told[i], told[i - 1] + 1);
+  EXPECT_EQ(told.back(), operation_.sequence());
+}
+
+}  // namespace
+}  // namespace cell

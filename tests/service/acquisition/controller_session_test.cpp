@@ -1,0 +1,173 @@
+#include "service/acquisition/controller_session.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/service/acquisition/owners_bench.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+using namespace std::chrono_literals;
+
+cs8::Permit refused(std::uint32_t run, cs8::RejectReason reason) {
+  cs8::Permit permit;
+  permit.run = run;
+  permit.reason = cs8::PermitReason::kRefused;
+  permit.detail = static_cast<std::int32_t>(reason);
+  return permit;
+}
+
+class ControllerSessionTest : public ::testing::Test, public OwnersBench {};
+
+TEST_F(ControllerSessionTest, LooksForTheControllerWithGrowingPausesUpToTwoSeconds) {
+  controller.is_connected = false;
+  status.enter(State::kResetting);
+  std::vector<std::chrono::milliseconds> at;
+  controller.on_connect = [&]() -> cs8::ConnectReply {
+    at.push_back(time.since_begin());
+    if (at.size() < 7) return cs8::LinkError{cs8::LinkErrorKind::kUnreachable, "nobody"};
+    return cs8::Welcome{};
+  };
+  EXPECT_EQ(run(session.connect(false)), 0u);
+  EXPECT_THAT(at, ElementsAre(0ms, 100ms, 300ms, 700ms, 1500ms, 3100ms, 5100ms));
+  EXPECT_THAT(faults, ElementsAre("controller_unreachable")) << "the same fault again is none";
+  EXPECT_FALSE(status.fault()) << "it ended with the link";
+}
+
+TEST_F(ControllerSessionTest, AnOpenCommandIsToBeSettledAtOnceButForAStateThatWaitsForReset) {
+  cs8::Welcome welcome;
+  welcome.open_sequence = 9;
+  controller.on_connect = [&] { return welcome; };
+  status.enter(State::kResetting);
+  EXPECT_EQ(run(session.connect(false)), 9u);
+  status.enter(State::kAborted);
+  EXPECT_EQ(run(session.connect(false)), 0u);
+  EXPECT_EQ(session.sequence_to_settle(), 9u) << "later";
+  session.acknowledge(9);
+  EXPECT_EQ(session.sequence_to_settle(), 0u);
+}
+
+TEST_F(ControllerSessionTest, AStateThatChangesEndsTheSearch) {
+  controller.is_connected = false;
+  controller.on_connect = [] { return cs8::LinkError{cs8::LinkErrorKind::kUnreachable, "nobody"}; };
+  status.enter(State::kResetting);
+  wake.on_wait = [this] { status.enter(State::kStopped); };
+  EXPECT_EQ(run(session.connect(false)), 0u);
+  EXPECT_EQ(wake.wait_count, 1);
+}
+
+TEST_F(ControllerSessionTest, APermitIsAskedForAgainOnceTheReasonOfItsRefusalHasChanged) {
+  status.enter(State::kStarting);
+  int asked = 0;
+  controller.on_begin = [&](std::uint32_t run) {
+    if (++asked == 1) return refused(run, cs8::RejectReason::kCellOpen);
+    cs8::Permit granted;
+    granted.run = run;
+    granted.state = cs8::PermitState::kGranted;
+    return granted;
+  };
+  std::optional<std::string> awaited;
+  wake.on_wait = [&] {
+    awaited = status.latest().waiting_for;
+    controller.state->flags ^= cs8::kCellClosed;
+  };
+  EXPECT_TRUE(run(session.obtain_permit(7)));
+  EXPECT_EQ(awaited, "cell_closed");
+  EXPECT_EQ(status.latest().waiting_for, std::nullopt);
+  EXPECT_EQ(wake.wait_count, 1);
+  EXPECT_THAT(controller.asked, ElementsAre("begin 7", "begin 7"));
+}
+
+TEST_F(ControllerSessionTest, NobodyWhoMakesTheCellReadyInTimeEndsTheStart) {
+  status.enter(State::kStarting);
+  controller.on_begin = [](std::uint32_t run) { return refused(run, cs8::RejectReason::kCellOpen); };
+  EXPECT_FALSE(run(session.obtain_permit(7)));
+  EXPECT_THAT(faults, ElementsAre("cell_open"));
+  EXPECT_EQ(status.state(), State::kStopping);
+  EXPECT_GE(time.since_begin(), cell_of_owners().deadlines.ready);
+  EXPECT_LT(time.since_begin(), cell_of_owners().deadlines.ready + 2s);
+}
+
+TEST_F(ControllerSessionTest, APermitOfTheRunBeforeIsNone) {
+  status.enter(State::kStarting);
+  controller.permit = cs8::Permit{.run = 6, .state = cs8::PermitState::kGranted};
+  EXPECT_TRUE(run(session.obtain_permit(7)));
+  EXPECT_THAT(controller.asked, ElementsAre("begin 7"));
+}
+
+TEST_F(ControllerSessionTest, WhereTheArmStandsIsWhatItsControllerSaysAfterTheQuestion) {
+  status.enter(State::kExecute);
+  tell_state();  // before: it may have moved since
+  calib::JointVector later = calib::JointVector::Zero();
+  wake.on_wait = [&] {
+    controller.state->joints = to_wire(later);
+    tell_state();
+  };
+  EXPECT_TRUE(run(session.standing_joints()).value().isApprox(later));
+}
+
+TEST_F(ControllerSessionTest, ASearchThatWasBrokenOffIsLeftFirst) {
+  status.enter(State::kExecute);
+  controller.state->flags |= cs8::kRetractDue;
+  EXPECT_TRUE(run(session.standing_joints()));
+  EXPECT_THAT(controller.asked, ElementsAre("retract 1", "acknowledge 1"));
+}
+
+TEST_F(ControllerSessionTest, AnArmThatDoesNotComeToRestAbortsTheRun) {
+  status.enter(State::kExecute);
+  controller.state->flags &= ~static_cast<std::uint32_t>(cs8::kSettled);
+  EXPECT_FALSE(run(session.standing_joints()));
+  EXPECT_THAT(faults, ElementsAre("motion_error"));
+  EXPECT_GT(time.since_begin(), 10s);
+}
+
+TEST_F(ControllerSessionTest, AnArmThatMovesByItselfIsNoLongerWhereItWasLeft) {
+  status.enter(State::kExecute);
+  session.set_standing(cell_of_owners().park_joints);
+  tell_state();
+  EXPECT_TRUE(session.standing());
+  controller.state->joints[2] += 100'000;  // a tenth of a degree
+  tell_state();
+  EXPECT_FALSE(session.standing());
+  EXPECT_EQ(status.latest().warning.value().code, FaultCode::kArmMoved);
+}
+
+TEST_F(ControllerSessionTest, StoppingTheCellStopsTheArm) {
+  session.on_entered(State::kStopping);
+  session.on_entered(State::kAborting);
+  session.on_entered(State::kHolding);
+  EXPECT_THAT(controller.asked, ElementsAre("stop", "stop"));
+}
+
+TEST_F(ControllerSessionTest, TheProbesInputsMayChangeOneAfterTheOther) {
+  tell_state();
+  EXPECT_EQ(session.view("free").probe, "free");
+  controller.state->flags |= cs8::kProbeTouched;  // the loop is closed yet
+  tell_state();
+  EXPECT_EQ(session.view("free").probe, "free");
+  tell_state();
+  EXPECT_EQ(session.view("free").probe, "fault");
+}
+
+TEST_F(ControllerSessionTest, DataIsAsOldAsTheClockThatWasHandedInSays) {
+  EXPECT_EQ(session.data_age_ms(), std::nullopt);
+  controller.heard = time.clocks().steady();
+  time.pass(140ms);
+  EXPECT_EQ(session.data_age_ms(), 140);
+}
+
+TEST_F(ControllerSessionTest, AMoveThatDoesNotArriveIsAFaultUnlessSomebodyAskedForAStop) {
+  cs8::MoveResult stopped;
+  stopped.outcome = cs8::Outcome::kStopped;
+  controller.on_move = [&] { return stopped; };
+  status.enter(State::kStopping);
+  EXPECT_FALSE(run(session.travel({})));
+  EXPECT_TRUE(faults.empty());
+  status.enter(State::kCompleting);
+  EXPECT_FALSE(run(session.travel({})));
+  EXPECT_THAT(faults, ElementsAre("protocol_error"));
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,91 @@
+#include "service/acquisition/manual_touching.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/service/acquisition/owners_bench.hpp"
+
+namespace cell {
+namespace {
+
+class ManualTouchingTest : public ::testing::Test, public OwnersBench {
+ protected:
+  ManualTouchingTest() {
+    active_.guided = true;
+    touches_.begin_run(active_);
+    status.enter(State::kExecute);
+    wake.on_wait = {};
+    run(manual_.await_touch(active_));
+  }
+  /// A person jogs the arm there: first free of it, `before_rad` off, then against it.
+  void touch(const calib::JointVector& joints, double before_rad = 1e-5) {
+    cs8::State state = ScriptedController::ready_state();
+    state.joints = to_wire((joints.array() + before_rad).matrix());
+    manual_.on_controller_state(&active_, state);
+    state.flags = (state.flags | cs8::kProbeTouched) & ~static_cast<std::uint32_t>(cs8::kProbeLoopClosed);
+    state.joints = to_wire(joints);
+    manual_.on_controller_state(&active_, state);
+  }
+  std::string problem() { return manual_.guide(status.state()).value().problem.value_or(""); }
+  /// Where the first touch is asked for.
+  calib::JointVector asked_for() { return manual_.guide(status.state()).value().about_joints.value(); }
+
+  ActiveRun active_ = planned_run();
+  TouchExecutor touches_{cell_of_owners(), regions, store, session, preparation, status, wake, time.clocks()};
+  ManualTouching manual_{cell_of_owners(), store, session, preparation, touches_, status, wake};
+};
+
+TEST_F(ManualTouchingTest, SaysWhichTouchComesNextAndKeepsTheOneThatIsMade) {
+  const HandGuide guide = manual_.guide(status.state()).value();
+  EXPECT_EQ(guide.activity, HandActivity::kGuided);
+  EXPECT_EQ(guide.index, 1);
+  EXPECT_EQ(guide.plane, plan_of_owners().touches.touches[0].face + 1);
+  touch(asked_for());
+  EXPECT_EQ(active_.run.touches_done(), 1) << problem();
+  EXPECT_EQ(store.touches(active_.run.id()).size(), 1u);
+  EXPECT_TRUE(controller.asked.empty()) << "nothing is commanded";
+  run(manual_.await_touch(active_));
+  EXPECT_EQ(manual_.guide(status.state()).value().index, 2);
+}
+
+TEST_F(ManualTouchingTest, ABallThatComesTooFastDoesNotCount) {
+  touch(asked_for(), 0.01);
+  EXPECT_EQ(active_.run.touches_done(), 0);
+  EXPECT_NE(problem().find("come slower"), std::string::npos);
+}
+
+TEST_F(ManualTouchingTest, ATouchOfAnotherFaceDoesNotCount) {
+  for (const calib::PlannedTouch& planned : plan_of_owners().touches.touches) {
+    if (planned.face == active_.run.next()->face) continue;
+    touch(planned.joints);
+    break;
+  }
+  EXPECT_EQ(active_.run.touches_done(), 0);
+  EXPECT_NE(problem().find("touch that one"), std::string::npos) << problem();
+}
+
+TEST_F(ManualTouchingTest, ATouchThatIsTakenBackIsAskedForAgain) {
+  const calib::JointVector first = asked_for();
+  touch(first);
+  run(manual_.await_touch(active_));
+  manual_.undo(active_);
+  EXPECT_EQ(active_.run.touches_done(), 0);
+  EXPECT_TRUE(store.touches(active_.run.id()).empty());
+  EXPECT_EQ(preparation.aim().touch_count(), 0u);
+  run(manual_.await_touch(active_));
+  EXPECT_EQ(asked_for(), first);
+}
+
+TEST_F(ManualTouchingTest, NothingIsWatchedOutsideOfExecute) {
+  EXPECT_TRUE(manual_.awaits_touch());
+  EXPECT_FALSE(manual_.guide(State::kHeld));
+  EXPECT_FALSE(manual_.awaits_touch());
+}
+
+TEST_F(ManualTouchingTest, WithoutATouchLeftTheStepIsDone) {
+  while (active_.run.next()) active_.run.skip_next();
+  run(manual_.await_touch(active_));
+  EXPECT_EQ(status.state(), State::kCompleting);
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,73 @@
+#include "service/acquisition/outlier_retest.hpp"
+
+#include <gtest/gtest.h>
+
+#include "service/run/planning_problem.hpp"
+#include "service/run/touch_command.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+namespace {
+
+constexpr double kAgreementMetres = 1e-4;
+
+StoredTouch stored(int number, const calib::Touch& touch) {
+  return {.number = number, .plane = touch.face + 1, .role = touch.role, .joints = to_wire(touch.joints)};
+}
+
+/// What is known behind the first forty touches of the paper's arm, and the next of them.
+class OutlierRetestTest : public ::testing::Test {
+ protected:
+  static constexpr std::size_t kKnown = 40;
+
+  OutlierRetestTest() {
+    static const calib::PlanningProblem problem = planning_problem(edf(), edf().recipes.at("edf-25"));
+    static const calib::OnlineArmEstimate known = [] {
+      calib::OnlineArmEstimate aim(problem);
+      for (std::size_t i = 0; i < kKnown; ++i) aim.add(table3_touches()[i]);
+      return aim;
+    }();
+    const calib::JointVector& joints = table3_touches()[kKnown].joints;
+    const calib::PlannedTouch touch{
+        table3_touches()[kKnown].face, calib::TouchRole::kFit, joints, joints, joints, joints,
+        Eigen::Vector3d::UnitX()};
+    retest_.begin({touch, problem}, known);
+  }
+  static StoredTouch good() { return stored(kKnown + 1, table3_touches()[kKnown]); }
+  /// Tens of millimetres beside.
+  static StoredTouch wrong() {
+    calib::Touch touch = table3_touches()[kKnown];
+    touch.joints[1] += 0.05;
+    touch.joints[2] -= 0.02;
+    return stored(kKnown + 1, touch);
+  }
+
+  OutlierRetest retest_;
+};
+
+TEST_F(OutlierRetestTest, TwoTouchesThatAgreeStayAsAWarning) {
+  const auto found = retest_.judge(wrong(), wrong(), 0.9 * kAgreementMetres, kAgreementMetres);
+  EXPECT_EQ(std::get<OutlierRetest::Confirmed>(found).warning.code, FaultCode::kTouchOutlier);
+}
+
+TEST_F(OutlierRetestTest, ARepetitionThatFitsTakesTheTouchsPlaceAndAims) {
+  const auto found = retest_.judge(wrong(), good(), 0.02, kAgreementMetres);
+  const auto& replaced = std::get<OutlierRetest::Replaced>(found);
+  EXPECT_EQ(replaced.again.joints, good().joints);
+  EXPECT_EQ(replaced.aim.touch_count(), kKnown + 1);
+  EXPECT_EQ(retest_.without().touch_count(), kKnown) << "what was known without it stays known";
+}
+
+TEST_F(OutlierRetestTest, WhenNeitherFitsAPersonIsAsked) {
+  const auto found = retest_.judge(good(), wrong(), 0.02, kAgreementMetres);
+  EXPECT_EQ(std::get<OutlierRetest::Held>(found).fault.code, FaultCode::kTouchDoesNotFit);
+}
+
+TEST_F(OutlierRetestTest, IsDueUntilItIsSettled) {
+  EXPECT_TRUE(retest_.is_due());
+  retest_.settle();
+  EXPECT_FALSE(retest_.is_due());
+}
+
+}  // namespace
+}  // namespace cell

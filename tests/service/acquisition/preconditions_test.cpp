@@ -1,0 +1,69 @@
+#include "service/acquisition/preconditions.hpp"
+
+#include <gmock/gmock.h>
+
+#include "tests/service/acquisition/scripted_controller.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+std::vector<std::string> codes(const std::vector<Unmet>& unmet) {
+  std::vector<std::string> found;
+  for (const Unmet& one : unmet) found.push_back(one.code);
+  return found;
+}
+
+TEST(Preconditions, WithoutALinkOnlyThatIsSaidWithItsFault) {
+  const auto unmet =
+      unmet_by_controller(false, ScriptedController::ready_state(), Fault{FaultCode::kLinkLost, "why"});
+  EXPECT_THAT(codes(unmet), ElementsAre("controller_not_connected"));
+  EXPECT_NE(unmet.front().detail.find("why"), std::string::npos);
+}
+
+TEST(Preconditions, AllThatIsMissingIsSaidAtOnce) {
+  cs8::State state = ScriptedController::ready_state();
+  EXPECT_THAT(codes(unmet_by_controller(true, state, {})), IsEmpty());
+  state.emergency_stop = 2;
+  state.mode = cs8::WorkingMode::kManual;
+  state.flags &= ~static_cast<std::uint32_t>(cs8::kPowered);
+  state.monitor_speed_percent = 10;
+  EXPECT_THAT(codes(unmet_by_controller(true, state, {})),
+              ElementsAre("emergency_stop", "not_remote", "not_powered", "monitor_speed"));
+}
+
+TEST(Preconditions, AProbeThatTouchesIsFineWhereTheRunsFirstMotionTakesItOff) {
+  cs8::State state = ScriptedController::ready_state();
+  state.flags |= cs8::kProbeTouched;
+  EXPECT_THAT(codes(unmet_by_controller(true, state, {})), ElementsAre("probe_touched"));
+  state.flags |= cs8::kRetractDue;
+  EXPECT_THAT(codes(unmet_by_controller(true, state, {})), IsEmpty());
+}
+
+TEST(Preconditions, AFaultIsToBeReadFirstButForOneOfTheLink) {
+  const auto with = [](FaultCode code) { return codes(unmet_for_run({}, edf(), Fault{code, {}}, nullptr)); };
+  const auto without = codes(unmet_for_run({}, edf(), {}, nullptr));
+  EXPECT_EQ(with(FaultCode::kLinkLost), without);
+  EXPECT_EQ(with(FaultCode::kCollision).size(), without.size() + 1);
+}
+
+TEST(Preconditions, ARecipeWithoutAPlanSaysWhy) {
+  const PlanRefusal refusal{.message = "no room", .efforts = {}};
+  const auto unmet = unmet_for_run({}, edf(), {}, &refusal);
+  ASSERT_FALSE(unmet.empty());
+  EXPECT_EQ(unmet.back().code, "recipe_unreachable");
+}
+
+TEST(Preconditions, ARunByHandNeedsNothingThatOnlyMotionNeeds) {
+  cs8::State state = ScriptedController::ready_state();
+  state.mode = cs8::WorkingMode::kManual;
+  state.flags = cs8::kProbeTouched;
+  EXPECT_THAT(codes(unmet_without_motion(unmet_by_controller(true, state, {}))),
+              ElementsAre("not_calibrated"));
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,111 @@
+#include "service/acquisition/reference_monitor.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cell {
+namespace {
+
+/// Here the height of the ball is the first joint, in metres.
+double first_joint(const calib::JointVector& joints) { return joints[0]; }
+
+calib::JointVector at(double height_m) {
+  calib::JointVector joints = calib::JointVector::Zero();
+  joints[0] = height_m;
+  return joints;
+}
+
+calib::PlannedTouch planned(int face, calib::TouchRole role) {
+  const calib::JointVector joints = calib::JointVector::Zero();
+  return {face, role, joints, joints, joints, joints, Eigen::Vector3d::UnitX()};
+}
+
+constexpr double kLimitMetres = 1e-3;
+constexpr bool kMoreToMake = false, kAllMade = true;
+
+class ReferenceMonitorTest : public ::testing::Test {
+ protected:
+  ReferenceMonitorTest() {
+    monitor_.begin_run(5);
+    monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.0));
+  }
+  ReferenceMonitor::Finding touch(double height_m, int touches_done) {
+    monitor_.add_contact(at(height_m), touches_done, first_joint);
+    return monitor_.judge(at(height_m), kLimitMetres, first_joint);
+  }
+
+  ReferenceMonitor monitor_;
+};
+
+TEST_F(ReferenceMonitorTest, IsDueAtTheStartBehindEverySoManyTouchesAndAtTheEnd) {
+  EXPECT_TRUE(monitor_.is_due(1, kMoreToMake));
+  touch(0.0, 1);
+  for (const int done : {1, 2, 3, 4, 6}) EXPECT_FALSE(monitor_.is_due(done, kMoreToMake)) << done;
+  EXPECT_TRUE(monitor_.is_due(5, kMoreToMake));
+  touch(0.0, 5);
+  EXPECT_FALSE(monitor_.is_due(5, kMoreToMake)) << "once is enough";
+  EXPECT_TRUE(monitor_.is_due(7, kAllMade));
+}
+
+TEST_F(ReferenceMonitorTest, ARecipeWithoutOneNeverWantsIt) {
+  monitor_.begin_run(0);
+  monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.0));
+  EXPECT_FALSE(monitor_.is_due(1, kMoreToMake));
+  EXPECT_FALSE(monitor_.is_due(8, kAllMade));
+}
+
+TEST_F(ReferenceMonitorTest, IsWhereTheFirstFittedTouchIs) {
+  monitor_.begin_run(5);
+  monitor_.note_fitted(planned(1, calib::TouchRole::kHeldOut), at(0.0));
+  EXPECT_FALSE(monitor_.is_due(1, kMoreToMake)) << "a held-out touch is none";
+  monitor_.note_fitted(planned(2, calib::TouchRole::kFit), at(0.0));
+  monitor_.note_fitted(planned(3, calib::TouchRole::kFit), at(0.0));
+  EXPECT_EQ(monitor_.planned().face, 2);
+}
+
+TEST_F(ReferenceMonitorTest, DriftCountsFromTheFirstContactThere) {
+  const auto first = monitor_.add_contact(at(0.0004), 1, first_joint);
+  EXPECT_EQ(first.number, 1);
+  EXPECT_FALSE(first.told_m);
+  const auto second = monitor_.add_contact(at(0.0009), 5, first_joint);
+  EXPECT_EQ(second.number, 2);
+  EXPECT_NEAR(second.told_m.value(), 0.0005, 1e-12);
+}
+
+TEST_F(ReferenceMonitorTest, AFirstContactFarFromThePlansOwnWarnsAndHoldsNothing) {
+  EXPECT_FALSE(touch(0.0009, 1).warning);
+  monitor_.begin_run(5);
+  monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.0));
+  const auto found = touch(0.0011, 1);
+  EXPECT_EQ(found.warning.value().code, FaultCode::kFirstTouchBiased);
+  EXPECT_FALSE(found.hold);
+}
+
+TEST_F(ReferenceMonitorTest, DriftOverTheLimitHoldsUntilAPersonAllowsIt) {
+  touch(0.0, 1);
+  EXPECT_FALSE(touch(0.0009, 5).hold);
+  EXPECT_EQ(touch(0.0012, 10).hold.value().code, FaultCode::kReferenceDrift);
+  monitor_.allow_drift();
+  EXPECT_FALSE(touch(0.0020, 15).hold) << "less than the limit from what was allowed";
+  EXPECT_TRUE(touch(0.0023, 20).hold);
+}
+
+TEST_F(ReferenceMonitorTest, APersonsWordIsToLookAgainOrToGoOnWithout) {
+  touch(0.0, 5);
+  monitor_.look_again();
+  EXPECT_TRUE(monitor_.is_due(5, kMoreToMake));
+  monitor_.skip(5);
+  EXPECT_FALSE(monitor_.is_due(5, kMoreToMake));
+}
+
+TEST_F(ReferenceMonitorTest, ARestartedDaemonLooksAgainBeforeAnythingElse) {
+  monitor_.begin_run(5);
+  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
+  EXPECT_TRUE(monitor_.is_due(7, kMoreToMake));
+  const auto reading = monitor_.add_contact(at(0.0002), 7, first_joint);
+  EXPECT_EQ(reading.number, 4);
+  EXPECT_NEAR(reading.told_m.value(), 0.0002, 1e-12) << "against the contact of the daemon before";
+  EXPECT_FALSE(monitor_.is_due(7, kMoreToMake));
+}
+
+}  // namespace
+}  // namespace cell

@@ -1,0 +1,143 @@
+#include "service/acquisition/run_recovery.hpp"
+
+#include <gmock/gmock.h>
+
+#include "service/acquisition/commanded_touch.hpp"
+#include "service/run/run_conditions.hpp"
+#include "tests/service/acquisition/owners_bench.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+
+class RunRecoveryTest : public ::testing::Test, public OwnersBench {
+ protected:
+  /// As a daemon left it that went away behind so many touches.
+  std::int64_t leave_run(int touches, bool planned = true) {
+    const Plan& plan = plan_of_owners();
+    const std::int64_t id = store.begin_run({.recipe = "few",
+                                             .started_at = "start",
+                                             .config_digest = recovery_.config_digest(),
+                                             .conditions_json = "{}"});
+    if (planned) store.set_plan(id, static_cast<int>(plan.touches.touches.size()), plan.id, plan.document);
+    for (int i = 0; i < touches; ++i) {
+      const calib::PlannedTouch& touch = plan.touches.touches[static_cast<std::size_t>(i)];
+      store.append_touch(id, {.number = i + 1,
+                              .plane = touch.face + 1,
+                              .role = touch.role,
+                              .joints = to_wire(touch.joints),
+                              .aimed_with = std::max(i - 1, 0)});
+    }
+    return id;
+  }
+  void hold(ActiveRun& active) {
+    touches_.begin_run(active);
+    status.enter(State::kHeld);
+    status.enter(State::kUnholding);
+  }
+
+  std::optional<BlockPose> nowhere_;
+  PlanCache plans_{io.get_executor(), cell_of_owners()};
+  RunPlanning planning_{cell_of_owners(), nowhere_, store, plans_, preparation, status, wake};
+  TouchExecutor touches_{cell_of_owners(), regions, store, session, preparation, status, wake, time.clocks()};
+  RunRecovery recovery_{cell_of_owners(), regions,   store,    plans_, session,
+                        preparation,      planning_, touches_, status, time.clocks()};
+};
+
+TEST_F(RunRecoveryTest, WithoutAnOpenRunThereIsNothingToTakeUp) { EXPECT_FALSE(recovery_.restore()); }
+
+TEST_F(RunRecoveryTest, TakesUpTheRunWithItsTouchesAndMovesNothing) {
+  const std::int64_t id = leave_run(3);
+  const auto active = recovery_.restore();
+  ASSERT_TRUE(active);
+  EXPECT_EQ(active->run.id(), id);
+  EXPECT_EQ(active->run.touches_done(), 3);
+  EXPECT_EQ(active->interruption.value().plan_id, plan_of_owners().id);
+  EXPECT_EQ(status.fault().value().code, FaultCode::kDaemonRestarted);
+  EXPECT_TRUE(controller.asked.empty());
+}
+
+TEST_F(RunRecoveryTest, ARunOfOtherFilesIsOverForGood) {
+  const std::int64_t id =
+      store.begin_run({.recipe = "few", .started_at = "start", .config_digest = "another"});
+  EXPECT_FALSE(recovery_.restore());
+  EXPECT_EQ(store.run(id).value().outcome, "interrupted");
+  EXPECT_EQ(store.run(id).value().verdict, "incomplete");
+}
+
+TEST_F(RunRecoveryTest, WhyARunCannotBeResumedIsOneSentence) {
+  StoredRun stored{.recipe = "few", .config_digest = "digest"};
+  EXPECT_FALSE(why_not_resumable(cell_of_owners(), stored, "digest"));
+  EXPECT_TRUE(why_not_resumable(cell_of_owners(), stored, "another"));
+  stored.recipe = "none";
+  EXPECT_TRUE(why_not_resumable(cell_of_owners(), stored, "digest"));
+}
+
+TEST_F(RunRecoveryTest, GoesOnWithTheSamePlanBehindTheSameTouches) {
+  const std::int64_t id = leave_run(5);
+  ActiveRun active = recovery_.restore().value();
+  hold(active);
+  EXPECT_TRUE(run(recovery_.make_resumable(active)));
+  EXPECT_FALSE(active.interruption);
+  EXPECT_EQ(active.run.next()->joints, plan_of_owners().touches.touches[5].joints);
+  EXPECT_EQ(preparation.aim().touch_count(), 4u)
+      << "the next one was aimed before the last contact was known";
+  EXPECT_EQ(store.run(id).value().outcome, "running");
+}
+
+TEST_F(RunRecoveryTest, AnAnswerThatTheControllerStillHasIsKeptFirst) {
+  const std::int64_t id = leave_run(2);
+  const calib::PlannedTouch& third = plan_of_owners().touches.touches[2];
+  store.set_open_command(
+      id, {.session = 0, .sequence = 9, .touch_json = command_text(third, {third.clear_joints})});
+  ActiveRun active = recovery_.restore().value();
+  hold(active);
+  controller.on_query = [&](std::uint32_t) {
+    cs8::TouchResult result;
+    result.outcome = cs8::Outcome::kContact;
+    result.source = result.first_source = cs8::CaptureSource::kLatched;
+    result.contact = result.first_contact = to_wire(third.joints);
+    result.monitor_speed_percent = 100;
+    result.edges = 1;
+    return result;
+  };
+  EXPECT_TRUE(run(recovery_.make_resumable(active)));
+  EXPECT_THAT(controller.asked, ElementsAre("query 9", "acknowledge 9"));
+  EXPECT_EQ(active.run.touches_done(), 3);
+  EXPECT_EQ(store.touches(id).back().sequence, 9u);
+}
+
+TEST_F(RunRecoveryTest, ACommandOfAnotherSessionIsLostWithIt) {
+  const std::int64_t id = leave_run(2);
+  const calib::PlannedTouch& third = plan_of_owners().touches.touches[2];
+  store.set_open_command(
+      id, {.session = 77, .sequence = 9, .touch_json = command_text(third, {third.clear_joints})});
+  ActiveRun active = recovery_.restore().value();
+  hold(active);
+  EXPECT_TRUE(run(recovery_.make_resumable(active)));
+  EXPECT_TRUE(controller.asked.empty());
+  EXPECT_EQ(active.run.touches_done(), 2);
+}
+
+TEST_F(RunRecoveryTest, ARunThatWasPlannedInAnotherWayCannotGoOn) {
+  const std::int64_t id = leave_run(2, false);
+  store.set_plan(id, 32, "another plan", "{}");
+  ActiveRun active = recovery_.restore().value();
+  hold(active);
+  EXPECT_FALSE(run(recovery_.make_resumable(active)));
+  EXPECT_EQ(status.state(), State::kAborting);
+  EXPECT_THAT(faults, ElementsAre("daemon_restarted"));
+}
+
+TEST_F(RunRecoveryTest, ARunWithoutAPlanYetIsPlanned) {
+  leave_run(0, false);
+  ActiveRun active = recovery_.restore().value();
+  hold(active);
+  run(plans_.plan("few"));  // else the made-up hours pass while it is planned
+  EXPECT_TRUE(run(recovery_.make_resumable(active)));
+  EXPECT_EQ(active.run.touches_total(), static_cast<int>(plan_of_owners().touches.touches.size()));
+}
+
+}  // namespace
+}  // namespace cell

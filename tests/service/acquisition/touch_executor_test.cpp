@@ -1,0 +1,208 @@
+#include "service/acquisition/touch_executor.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include <algorithm>
+
+#include "tests/service/acquisition/owners_bench.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+
+class TouchExecutorTest : public ::testing::Test, public OwnersBench {
+ protected:
+  TouchExecutorTest() {
+    controller.on_touch = [this](const cs8::Touch&) { return contact(); };
+    touches_.begin_run(active_);
+    status.enter(State::kExecute);
+  }
+  /// Nothing that was stored is missing from the run, nor the other way about.
+  void expect_run_is_as_stored() {
+    const std::vector<StoredTouch> stored = store.touches(active_.run.id());
+    EXPECT_EQ(static_cast<int>(stored.size()), active_.run.touches_done());
+  }
+  [[nodiscard]] long acknowledged_count() const {
+    return std::ranges::count_if(controller.asked,
+                                 [](const std::string& one) { return one.starts_with("acknowledge"); });
+  }
+
+  ActiveRun active_ = planned_run();
+  TouchExecutor touches_{cell_of_owners(), regions, store, session, preparation, status, wake, time.clocks()};
+};
+
+TEST_F(TouchExecutorTest, AContactIsStoredThenAddedThenAcknowledged) {
+  controller.on_touch = [this](const cs8::Touch&) {
+    EXPECT_TRUE(store.open_command(active_.run.id())) << "kept before it was sent";
+    return contact();
+  };
+  run(touches_.make_next_touch(active_));
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "acknowledge 1"));
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  const StoredTouch stored = store.touches(active_.run.id()).at(0);
+  EXPECT_EQ(stored.sequence, 1u);
+  EXPECT_EQ(stored.plane, plan_of_owners().touches.touches[0].face + 1);
+  EXPECT_FALSE(store.open_command(active_.run.id())) << "its answer is stored";
+  EXPECT_FALSE(session.open_touch());
+}
+
+TEST_F(TouchExecutorTest, TheNextTouchIsReadyWhenTheArmComesBack) {
+  run(touches_.make_next_touch(active_));
+  const int waits = wake.wait_count;
+  for (int i = 0; i < 3; ++i) run(touches_.make_next_touch(active_));
+  EXPECT_EQ(wake.wait_count, waits) << "where the arm stands is known, and the way from there";
+  EXPECT_EQ(active_.run.touches_done(), 4);
+}
+
+TEST_F(TouchExecutorTest, WithoutATouchLeftTheStepIsDone) {
+  while (active_.run.next()) active_.run.skip_next();
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(status.state(), State::kCompleting);
+  EXPECT_TRUE(controller.asked.empty());
+}
+
+/// The n-th commit to the store fails, for n = 1, 2, 3, ... until a sweep of three touches meets no failure.
+TEST_F(TouchExecutorTest, WhereverTheStoreBreaksNoTouchIsAcknowledgedThatIsNotStored) {
+  struct Breaker {
+    int left = 0;
+    bool broke = false;
+  } breaker;
+  sqlite3_commit_hook(
+      store.database()->getHandle(),
+      [](void* data) {
+        auto& its = *static_cast<Breaker*>(data);
+        const bool breaks = --its.left == 0;
+        its.broke = its.broke || breaks;
+        return breaks ? 1 : 0;
+      },
+      &breaker);
+  int sweeps = 0;
+  do {
+    ++sweeps;
+    const int done_before = active_.run.touches_done();
+    const long acknowledged_before = acknowledged_count();
+    breaker = {.left = sweeps};
+    for (int touch = 0; touch < 3 && status.state() == State::kExecute; ++touch)
+      run(touches_.make_next_touch(active_));
+    breaker.left = 0;
+    expect_run_is_as_stored();
+    EXPECT_EQ(acknowledged_count() - acknowledged_before, active_.run.touches_done() - done_before) << sweeps;
+    EXPECT_TRUE(breaker.broke || status.state() == State::kExecute) << sweeps << ": nothing else is a fault";
+    // A touch that the controller has still is settled, as behind a reset.
+    if (session.open_touch()) {
+      controller.on_query = [this](std::uint32_t) { return contact(); };
+      run(touches_.settle_open_command(&active_, session.sequence_to_settle()));
+      expect_run_is_as_stored();
+      EXPECT_FALSE(session.open_touch());
+    }
+    status.enter(State::kExecute);
+    session.forget_standing();
+  } while (breaker.broke && sweeps < 20);
+  EXPECT_GT(sweeps, 3);
+  EXPECT_LT(sweeps, 20);
+  sqlite3_commit_hook(store.database()->getHandle(), nullptr, nullptr);
+}
+
+TEST_F(TouchExecutorTest, ACommandThatCannotBeKeptDoesNotLeave) {
+  sqlite3_commit_hook(
+      store.database()->getHandle(), [](void*) { return 1; }, nullptr);
+  run(touches_.make_next_touch(active_));
+  sqlite3_commit_hook(store.database()->getHandle(), nullptr, nullptr);
+  EXPECT_TRUE(controller.asked.empty());
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_THAT(faults, ElementsAre("store_failed"));
+}
+
+TEST_F(TouchExecutorTest, ATouchThatMeetsNothingHoldsTheRunAndIsForgottenByTheController) {
+  controller.on_touch = [](const cs8::Touch&) {
+    cs8::TouchResult nothing;
+    nothing.outcome = cs8::Outcome::kNoContact;
+    return nothing;
+  };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_EQ(touches_.held_by(), HeldBy::kTouch);
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "acknowledge 1"));
+  EXPECT_EQ(active_.run.touches_done(), 0);
+  const std::size_t place = active_.run.touches_made();
+  const int total = active_.run.touches_total();
+  touches_.settle_hold(active_, Command::kSkip);
+  EXPECT_EQ(active_.run.skipped_count(), 1);
+  EXPECT_EQ(active_.run.touches_made(), place);
+  EXPECT_EQ(active_.run.touches_total(), total);
+  EXPECT_EQ(touches_.held_by(), HeldBy::kNothing);
+}
+
+TEST_F(TouchExecutorTest, ARejectionHoldsOrEndsTheRunByItsReason) {
+  controller.on_touch = [](const cs8::Touch&) {
+    return cs8::Rejected{cs8::RejectReason::kProbeTriggered, 0};
+  };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_FALSE(session.open_touch());
+  status.enter(State::kExecute);
+  controller.on_touch = [](const cs8::Touch&) { return cs8::Rejected{cs8::RejectReason::kBadField, 0}; };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(status.state(), State::kAborting);
+}
+
+TEST_F(TouchExecutorTest, AfterALostLinkTheTouchIsOpenUntilItsAnswerIsKept) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  ASSERT_TRUE(session.open_touch());
+  EXPECT_EQ(active_.run.touches_done(), 0);
+  EXPECT_TRUE(faults.empty()) << "the controller's hook tells it";
+  controller.on_query = [this](std::uint32_t) { return contact(); };
+  run(touches_.settle_open_command(&active_, 1));
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "query 1", "acknowledge 1"));
+}
+
+TEST_F(TouchExecutorTest, AnOpenCommandThatIsNotOursIsForgottenUnread) {
+  controller.on_query = [this](std::uint32_t) { return cs8::TouchResult{}; };
+  run(touches_.settle_open_command(nullptr, 5));
+  EXPECT_THAT(controller.asked, ElementsAre("query 5", "acknowledge 5"));
+  EXPECT_EQ(active_.run.touches_done(), 0);
+}
+
+TEST_F(TouchExecutorTest, ATouchThatTheOthersContradictIsMadeAgainAndReplaced) {
+  constexpr int kBefore = 24;
+  for (int i = 0; i < kBefore; ++i) run(touches_.make_next_touch(active_));
+  ASSERT_EQ(active_.run.touches_done(), kBefore) << (faults.empty() ? "" : faults.back());
+  controller.on_touch = [this](const cs8::Touch& command) {
+    cs8::TouchResult beside = contact();  // a millimetre or so before the face, on the line of its search
+    for (std::size_t i = 0; i < beside.contact.size(); ++i)
+      beside.contact[i] += (command.approach[i] - beside.contact[i]) / 3;
+    beside.first_contact = beside.contact;
+    return beside;
+  };
+  run(touches_.make_next_touch(active_));
+  ASSERT_EQ(active_.run.touches_done(), kBefore + 1) << (faults.empty() ? "" : faults.back());
+  const cs8::JointsMicrodeg beside = active_.run.touches().back().joints;
+  controller.on_touch = [this](const cs8::Touch&) { return contact(); };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), kBefore + 1) << "the repetition counts in its place";
+  EXPECT_NE(active_.run.touches().back().joints, beside);
+  EXPECT_EQ(store.superseded_touches(active_.run.id()).size(), 1u);
+  expect_run_is_as_stored();
+}
+
+TEST_F(TouchExecutorTest, TheReferencePlaceIsTouchedBesideThePlan) {
+  ActiveRun active = begun_run("edf-25");
+  ASSERT_GT(active.run.recipe().reference_every, 0);
+  active.run.set_plan(plan_of_owners().touches);
+  touches_.begin_run(active);
+  while (active.run.touches_done() == 0 || store.references(active.run.id()).empty())
+    run(touches_.make_next_touch(active));
+  const int done = active.run.touches_done();
+  EXPECT_EQ(static_cast<int>(store.touches(active.run.id()).size()), done);
+  EXPECT_EQ(store.references(active.run.id()).at(0).touches_done, done);
+  EXPECT_FALSE(status.latest().reference_drift_m) << "drift counts from the first";
+  EXPECT_EQ(acknowledged_count(), done + 1);
+}
+
+}  // namespace
+}  // namespace cell
