@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "calib_core/identification/identification_result.hpp"
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "cs8_protocol/messages.hpp"

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "config/config_error.hpp"
+#include "config/recipe.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/base/version.hpp"
 #include "service/cli/commands.hpp"

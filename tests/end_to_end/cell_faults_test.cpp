@@ -90,7 +90,7 @@ TEST(CellFaults, SearchesThatMeetNothingHoldTheRunAndCountNothing) {
   EXPECT_EQ(loop.fault_name(), "no_contact") << "tried again";
   loop.command(Command::kStop);
   loop.run_until(State::kStopped);
-  EXPECT_EQ(loop.store().run(id)->outcome, "stopped");
+  EXPECT_EQ(loop.store().run(id)->outcome, cell::RunOutcome::kStopped);
   expect_touches_once(loop, id, 0);
   loop.command(Command::kReset);
   loop.run_until(State::kIdle);
@@ -158,7 +158,7 @@ TEST_F(FailingStore, ATouchThatCannotBeStoredDoesNotCountAndIsKeptOnceThereIsRoo
     expect_fault(State::kAborted);
     EXPECT_EQ(loop_.status().touches_done, number - 1);
     expect_touches_once(loop_, id, number - 1);
-    EXPECT_EQ(loop_.store().run(id)->outcome, "aborted");
+    EXPECT_EQ(loop_.store().run(id)->outcome, cell::RunOutcome::kAborted);
     EXPECT_EQ(loop_.store().run(id)->fault_code, "store_failed");
     disk_.relieve();
     leave_and_run_anew();

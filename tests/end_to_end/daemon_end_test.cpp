@@ -35,7 +35,7 @@ TEST_P(DaemonEnd, LeavesTheArmClearOfTheFaceAndTheRunClosed) {
   loop.run_until([&](const Status&) { return server.report().phase == GetParam(); });
   end_daemon(loop);
   EXPECT_EQ(loop.status().state, State::kStopped);
-  EXPECT_EQ(loop.store().run(id)->outcome, "stopped");
+  EXPECT_EQ(loop.store().run(id)->outcome, cell::RunOutcome::kStopped);
   const cs8::State left = server.report();
   EXPECT_EQ(left.flags & cs8::kRetractDue, 0U) << "a stylus is left at the face";
   EXPECT_TRUE(cs8::probe_inputs(left.flags).free());

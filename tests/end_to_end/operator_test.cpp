@@ -76,7 +76,7 @@ TEST_F(Operator, AnAbortedRunIsLeftByClearAndReset) {
   const std::int64_t id = start_and_make(3);
   loop_.command(Command::kAbort);
   loop_.run_until(State::kAborted);
-  EXPECT_EQ(loop_.store().run(id)->outcome, "aborted");
+  EXPECT_EQ(loop_.store().run(id)->outcome, cell::RunOutcome::kAborted);
   EXPECT_EQ(loop_.status().verdict, cell::Verdict::kIncomplete);
   expect_touches_once(loop_, id, loop_.status().touches_done);
   EXPECT_TRUE(loop_.is_refused(Command::kReset));
@@ -103,7 +103,7 @@ TEST_F(Operator, AStopInASearchTakesTheStylusBackAndTheNextRunBeginsWithTheRestO
   const std::int64_t id = loop_.start();
   loop_.run_until(State::kStopped);
   EXPECT_FALSE(refusal) << refusal->detail;
-  EXPECT_EQ(loop_.store().run(id)->outcome, "stopped");
+  EXPECT_EQ(loop_.store().run(id)->outcome, cell::RunOutcome::kStopped);
   expect_touches_once(loop_, id, loop_.status().touches_done);
 
   asked.clear();
@@ -122,7 +122,7 @@ TEST_F(Operator, AStopWhileTheTouchesArePlannedEndsTheRunWithoutAny) {
   EXPECT_EQ(loop_.status().state, State::kStarting);
   loop_.command(Command::kStop);
   loop_.run_until(State::kStopped);
-  EXPECT_EQ(loop_.store().run(id)->outcome, "stopped");
+  EXPECT_EQ(loop_.store().run(id)->outcome, cell::RunOutcome::kStopped);
   expect_touches_once(loop_, id, 0);
 }
 

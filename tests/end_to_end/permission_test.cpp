@@ -53,7 +53,7 @@ class Permission : public ::testing::Test {
     EXPECT_EQ(loop_.fault_name(), fault);
     EXPECT_FALSE(loop_.status().waiting_for);
     EXPECT_TRUE(std::ranges::none_of(passed_, is_motion));
-    EXPECT_EQ(loop_.store().run(id)->outcome, "stopped");
+    EXPECT_EQ(loop_.store().run(id)->outcome, cell::RunOutcome::kStopped);
     expect_touches_once(loop_, id, 0);
     loop_.command(Command::kReset);
     loop_.run_until(State::kIdle);

@@ -61,7 +61,7 @@ TEST_P(Aborted, ARunSaysWhyAndTheNextOneIsWhole) {
   EXPECT_EQ(loop_.status().state, State::kAborted);
   EXPECT_EQ(loop_.fault_name(), GetParam().expected) << loop_.status().fault->message();
   EXPECT_EQ(loop_.store().run(id)->fault_code, GetParam().expected);
-  EXPECT_EQ(loop_.store().run(id)->verdict, "incomplete");
+  EXPECT_EQ(loop_.store().run(id)->verdict, cell::Verdict::kIncomplete);
   expect_touches_once(loop_, id, kFaulty - 1);
 
   mend(GetParam().mends);

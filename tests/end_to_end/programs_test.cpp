@@ -241,7 +241,7 @@ TEST(Daemon, EndsAtASignalInTheMiddleOfARunAndKeepsItsTouches) {
   cell.controller().signal(SIGTERM);
   EXPECT_EQ(cell.controller().wait().exit_code, 0);
   const cell::RunStore store(cell.store_file());
-  EXPECT_EQ(store.run(1)->outcome, "stopped");
+  EXPECT_EQ(store.run(1)->outcome, cell::RunOutcome::kStopped);
   EXPECT_GE(store.touches(1).size(), 3U);
 }
 

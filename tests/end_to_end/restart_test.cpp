@@ -158,7 +158,7 @@ TEST(Restart, ARunThatWasKilledAgainAndAgainEndsAsTheUnbrokenOne) {
     EXPECT_EQ(held.run_id, 1);
     EXPECT_GE(held.touches_done, touches);
     EXPECT_LE(held.touches_done, touches + 1);
-    EXPECT_EQ(daemon.store().run(1)->outcome, "running");
+    EXPECT_EQ(daemon.store().run(1)->outcome, cell::RunOutcome::kRunning);
     expect_touches_of_the_unbroken_run(daemon.store().touches(1));
     daemon.command(Command::kResume);
     daemon.run_until([](const cell::Status& status) {
@@ -204,7 +204,7 @@ TEST(Restart, AnInterruptedRunThatIsStoppedStaysInterruptedAndTheNextOneCanStart
       std::holds_alternative<cell::CommandRefusal>(daemon.operation().start({.recipe = kFewTouches})));
   daemon.command(Command::kStop);
   daemon.run_until(State::kStopped);
-  EXPECT_EQ(daemon.store().run(1)->outcome, "interrupted");
+  EXPECT_EQ(daemon.store().run(1)->outcome, cell::RunOutcome::kInterrupted);
   EXPECT_EQ(daemon.store().run(1)->fault_code, "daemon_restarted");
   daemon.command(Command::kReset);
   daemon.start();
@@ -220,7 +220,7 @@ TEST(Restart, ARunOfARecipeThatIsGoneIsToldAsInterruptedAndTheCellIsFree) {
   daemon.cell.recipes.erase(kFewTouches);
   daemon.launch();
   daemon.run_until(State::kIdle);
-  EXPECT_EQ(daemon.store().run(1)->outcome, "interrupted");
+  EXPECT_EQ(daemon.store().run(1)->outcome, cell::RunOutcome::kInterrupted);
   EXPECT_THAT(daemon.store().run(1)->fault_message.value_or(""), ::testing::HasSubstr(kFewTouches));
   EXPECT_GE(daemon.store().run(1)->touches_done, 1);
 }

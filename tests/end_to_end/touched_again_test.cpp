@@ -97,7 +97,7 @@ TEST_F(TouchedAgain, ARunWithASkippedTouchIsNeverComplete) {
   EXPECT_EQ(status.touches_total, kShortTouchCount);
   EXPECT_EQ(status.verdict, cell::Verdict::kIncomplete);
   EXPECT_EQ(cell::describe(status.warning.value().code).name, "touches_left_out");
-  EXPECT_EQ(loop_.store().run(id)->verdict, "incomplete");
+  EXPECT_EQ(loop_.store().run(id)->verdict, cell::Verdict::kIncomplete);
   expect_touches_once(loop_, id, kShortTouchCount - 1);
 }
 

@@ -169,7 +169,8 @@ TEST(Implausible, AFirstTouchThatIsMissingOrElsewhereIsTold) {
   result.first_contact = joints_off(0.001 * planned.search_direction.unitOrthogonal());
   EXPECT_THAT(implausibility_reason(edf(), planned, result).value_or(""), HasSubstr("in its first contact"));
   result.first_source = cs8::CaptureSource::kNone;
-  EXPECT_THAT(implausibility_reason(edf(), planned, result).value_or(""), HasSubstr("without the first"));
+  EXPECT_THAT(implausibility_reason(edf(), planned, result).value_or(""),
+              HasSubstr("the first of its two contacts is missing"));
   Cell once = edf();
   once.speeds.second.reset();
   EXPECT_EQ(implausibility_reason(once, planned, result), std::nullopt);

@@ -116,7 +116,7 @@ TEST(Verdict, ATipUncertaintyOverItsLimitOrUnknownIsAReason) {
   limits.tip_box_rms_max_m = kTipBoxRms;
   EXPECT_TRUE(judge(at_the_limits(), {}, limits, kTipBoxRms, true).accepted);
   EXPECT_THAT(judge(at_the_limits(), {}, limits, 1.5 * kTipBoxRms, true).reasons,
-              ElementsAre(HasSubstr("0.090 mm in the workspace box, the limit is 0.060 mm")));
+              ElementsAre(HasSubstr("in the workspace box is 0.090 mm, the limit is 0.060 mm")));
   EXPECT_THAT(judge(at_the_limits(), {}, limits, std::nullopt, true).reasons,
               ElementsAre(HasSubstr("unknown")));
 }

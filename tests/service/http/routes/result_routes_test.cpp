@@ -77,7 +77,7 @@ TEST_F(ResultRoutesTest, TheArmOfARunMadeWithAnotherNominalArmIsRefused) {
   cell_.store().set_result_json(run_, document.dump());
   const HttpResponse refused = get_arm(cell_.operation(), run_);
   EXPECT_EQ(refused.status, 409u);
-  EXPECT_THAT(refused.body, HasSubstr("another one"));
+  EXPECT_THAT(refused.body, HasSubstr("differs from that of this run"));
 }
 
 }  // namespace
