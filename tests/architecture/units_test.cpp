@@ -11,7 +11,7 @@ namespace architecture {
 namespace {
 
 /// The folders in which every unit has a test.
-const std::vector<std::string> kTestedFolders{"calib_core"};
+const std::vector<std::string> kTestedFolders{"calib_core", "service"};
 
 bool has_test(const std::string& unit) {
   return std::filesystem::exists(kRoot / "tests" / (unit + "_test.cpp"));
@@ -28,7 +28,7 @@ TEST(Units, HaveATestOfTheirNameOrAReason) {
           << unit << (has_test(unit) ? " has a test: take it off the list" : " needs a test or a reason");
     }
   }
-  EXPECT_GT(seen, 40) << "the test reads too little to mean anything";
+  EXPECT_GT(seen, 150) << "the test reads too little to mean anything";
 }
 
 TEST(Units, OfTheListExist) {
