@@ -201,11 +201,10 @@ void CellOperation::close_run(RunOutcome outcome) {
   run_->open = false;
   const Verdict verdict = conclude(*run_, outcome, cell());
   status_.set_verdict(verdict);
-  RunEnd end{
-      .outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
-      .verdict = verdict,
-      .ended_at = now_text(),
-      .result_json = result_json()};
+  RunEnd end{.outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
+             .verdict = verdict,
+             .ended_at = now_text(),
+             .result_json = result_json()};
   if (const auto& fault = status_.fault()) {
     end.fault_code = std::string(describe(fault->code).name);
     end.fault_message = fault->message();
@@ -220,8 +219,8 @@ void CellOperation::close_run(RunOutcome outcome) {
     status_.set_fault({FaultCode::kStoreFailed, error.what()});
     spdlog::error("run {}: its end could not be stored: {}", run.id(), error.what());
   }
-  spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome), verdict_name(end.verdict),
-               run.touches_done(), run.touches_total());
+  spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome),
+               verdict_name(end.verdict), run.touches_done(), run.touches_total());
 }
 
 asio::awaitable<void> CellOperation::shut_down() {

@@ -115,8 +115,8 @@ ExitCode print_end(const ApiClient& daemon, const std::string& run_id, const Ans
   return code;
 }
 
-StartRequest start_request(const RunArguments& arguments) {
-  StartRequest request;
+StartDocument start_request(const RunArguments& arguments) {
+  StartDocument request;
   if (arguments.plan_id.empty()) {
     request.recipe = arguments.recipe;
   } else {

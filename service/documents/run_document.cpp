@@ -6,7 +6,7 @@ namespace cell {
 
 std::string document_text(const RunDocument& document) { return written(document); }
 std::string document_text(const RunsDocument& document) { return written(document); }
-std::string document_text(const StartRequest& document) { return written(document); }
+std::string document_text(const StartDocument& document) { return written(document); }
 
 RunDocument read_run(std::string_view text) { return document_from<RunDocument>(text, Absent::kIsRefused); }
 

@@ -63,7 +63,7 @@ struct RunsDocument {
 };
 
 /// What POST /runs takes.
-struct StartRequest {
+struct StartDocument {
   std::optional<std::string> operator_name;
   std::optional<std::string> plan_id;
   std::optional<std::string> recipe;
@@ -80,7 +80,7 @@ struct StartRequest {
 
 std::string document_text(const RunDocument& document);
 std::string document_text(const RunsDocument& document);
-std::string document_text(const StartRequest& document);
+std::string document_text(const StartDocument& document);
 
 /// DocumentError when the text is no such document.
 RunDocument read_run(std::string_view text);

@@ -103,8 +103,8 @@ TEST(RunDocument, IsWrittenAsItWasRead) {
   EXPECT_EQ(document_text(read_runs(page)), page);
 }
 
-TEST(StartRequest, HoldsOnlyWhatIsAskedFor) {
-  EXPECT_EQ(document_text(StartRequest{.operator_name = "A", .recipe = "edf-25"}),
+TEST(StartDocument, HoldsOnlyWhatIsAskedFor) {
+  EXPECT_EQ(document_text(StartDocument{.operator_name = "A", .recipe = "edf-25"}),
             R"({"operator":"A","recipe":"edf-25"})");
 }
 
