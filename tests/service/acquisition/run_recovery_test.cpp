@@ -62,8 +62,8 @@ TEST_F(RunRecoveryTest, ARunOfOtherFilesIsOverForGood) {
   const std::int64_t id =
       store.begin_run({.recipe = "few", .started_at = "start", .config_digest = "another"});
   EXPECT_FALSE(recovery_.restore());
-  EXPECT_EQ(store.run(id).value().outcome, "interrupted");
-  EXPECT_EQ(store.run(id).value().verdict, "incomplete");
+  EXPECT_EQ(store.run(id).value().outcome, RunOutcome::kInterrupted);
+  EXPECT_EQ(store.run(id).value().verdict, Verdict::kIncomplete);
 }
 
 TEST_F(RunRecoveryTest, WhyARunCannotBeResumedIsOneSentence) {
@@ -83,7 +83,7 @@ TEST_F(RunRecoveryTest, GoesOnWithTheSamePlanBehindTheSameTouches) {
   EXPECT_EQ(active.run.next()->joints, plan_of_owners().touches.touches[5].joints);
   EXPECT_EQ(preparation.aim().touch_count(), 4u)
       << "the next one was aimed before the last contact was known";
-  EXPECT_EQ(store.run(id).value().outcome, "running");
+  EXPECT_EQ(store.run(id).value().outcome, RunOutcome::kRunning);
 }
 
 TEST_F(RunRecoveryTest, AnAnswerThatTheControllerStillHasIsKeptFirst) {
