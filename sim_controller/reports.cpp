@@ -8,7 +8,7 @@
 namespace sim {
 namespace {
 
-constexpr std::uint32_t kApplicationVersion = 100;  // 0.1.0
+constexpr std::uint32_t kApplicationVersion = 200;  // 0.2.0
 constexpr std::uint32_t kLanguageVersion = 70702;   // s7.7.2
 
 std::uint32_t clock_ms(TimePoint now) {

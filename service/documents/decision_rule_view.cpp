@@ -1,4 +1,4 @@
-#include "service/documents/internal/decision_rule_view.hpp"
+#include "service/documents/decision_rule_view.hpp"
 
 #include "service/documents/figures.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "service/http/routes/internal/openapi.hpp"
+#include "service/http/routes/openapi.hpp"
 #include "service/http/routes/route_table.hpp"
 
 /// Answers held against the OpenAPI document: the part of JSON Schema that it uses.

@@ -1,4 +1,4 @@
-#include "service/http/routes/internal/openapi.hpp"
+#include "service/http/routes/openapi.hpp"
 
 #include <nlohmann/json.hpp>
 

@@ -2,7 +2,7 @@
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
-#include "service/http/routes/internal/openapi.hpp"
+#include "service/http/routes/openapi.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 

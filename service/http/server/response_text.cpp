@@ -1,4 +1,4 @@
-#include "service/http/server/internal/response_text.hpp"
+#include "service/http/server/response_text.hpp"
 
 #include <algorithm>
 #include <boost/beast/core/buffers_range.hpp>

@@ -16,9 +16,9 @@
 #include <utility>
 #include <variant>
 
-#include "service/http/server/internal/response_text.hpp"
-#include "service/http/server/target.hpp"
 #include "service/http/server/request_handler.hpp"
+#include "service/http/server/response_text.hpp"
+#include "service/http/server/target.hpp"
 
 namespace cell {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "calib_core/geometry/units.hpp"
-#include "service/documents/internal/decision_rule_view.hpp"
+#include "service/documents/decision_rule_view.hpp"
 
 namespace cell {
 namespace {

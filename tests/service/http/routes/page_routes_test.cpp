@@ -5,7 +5,7 @@
 #include <regex>
 
 #include "service/http/routes/route_table.hpp"
-#include "service/http/server/internal/response_text.hpp"
+#include "service/http/server/response_text.hpp"
 #include "service/page/assets.hpp"
 #include "tests/service/quiet_cell.hpp"
 
