@@ -73,16 +73,6 @@ TEST(ServiceLayers, TheTableHasNoCircle) {
   EXPECT_EQ(below.size(), kServiceMayInclude.size());
 }
 
-TEST(ServiceLayers, InternalHeadersStayInTheirFolder) {
-  for (const auto& file : source_files("service")) {
-    for (const std::string& line : read_lines(file)) {
-      const auto header = included_of_service(line);
-      if (!header || header->find("/internal/") == std::string::npos) continue;
-      EXPECT_EQ(service_folder(*header), service_folder(relative_path(file))) << file << ": " << line;
-    }
-  }
-}
-
 // The library of a folder is touchcal_ and its path with underscores.
 TEST(ServiceLayers, LibrariesLinkWhatTheirFolderMayInclude) {
   static const std::regex kLibrary("touchcal_[a-z_]+");
