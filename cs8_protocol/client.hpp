@@ -21,7 +21,7 @@ enum class LinkErrorKind {
   kHandshakeTimeout,  // no connection or no Welcome within the deadline
   kIncompatible,      // another protocol version, application, arm or other joint ranges
   kPeerClosed,        // the controller, its application's end or the network ended the connection
-  kSilent,            // nothing was heard for the heartbeat timeout, or the controller does not read
+  kSilent,            // no bytes for the heartbeat timeout, or the controller does not read
   kProtocol,    // bytes that are no frame, a message of the wrong side, an answer to nothing that was asked
   kFault,       // the controller said why it closes the connection
   kUnanswered,  // the controller lives but did not answer a command, query or Begin within its deadline
@@ -56,13 +56,13 @@ struct ClientOptions {
 /// Called from the io_context, never from inside a call of the client. They may close or destroy the client.
 struct ClientHooks {
   std::function<void(const State&)> on_state;
-  std::function<void(const Permit&)> on_permit;  // each one, also when nobody waits for it any more
+  std::function<void(const Permit&)> on_permit;  // each one, also one that is no longer waited for
   std::function<void(const LinkError&)>
       on_loss;  // once per connection, before a waiting call ends; not after close()
 };
 
 /// What became of a motion command; `sequence` is 0 when it was never sent. After a LinkError the command may
-/// have run all the same: query(sequence) on the next connection tells.
+/// have run all the same: query(sequence) on the next connection answers that.
 template <class Result>
 struct Reply {
   std::uint32_t sequence = 0;
@@ -99,7 +99,7 @@ class Client {
   [[nodiscard]] bool connected() const;
 
   /// Asks for a run. The reply's state is kGranted once a person confirmed at the cell, else kNone with the
-  /// reason; kAwaited in between is told to on_permit. A permit is lost with the connection and may be
+  /// reason; kAwaited in between is passed to on_permit. A permit is lost with the connection and may be
   /// withdrawn at any time: see on_permit and latest_permit().
   boost::asio::awaitable<PermitReply> begin(std::uint32_t run, std::chrono::milliseconds confirm_within);
   /// Gives the permit back; ends a begin() that waits. Nothing when not connected.
@@ -107,7 +107,7 @@ class Client {
   /// The newest Permit of this connection.
   [[nodiscard]] std::optional<Permit> latest_permit() const;
 
-  /// The newest State of this connection, and when the controller was last heard.
+  /// The newest State of this connection, and when the last bytes came from the controller.
   [[nodiscard]] std::optional<State> latest_state() const;
   [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> heard_at() const;
 

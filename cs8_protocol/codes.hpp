@@ -48,7 +48,7 @@ enum class RejectReason : std::int32_t {
   kBadField = 14,        // a speed or deadline that makes no sense; `detail` is the payload word, from 1
   kNothingToRetract = 15,
   kRetractPending = 16,  // StateFlag::kRetractDue is set: only a retract is allowed
-  kNotPermitted = 17,  // nobody at the cell confirmed the run, or the permit is lost; `detail` is the Permit
+  kNotPermitted = 17,  // the run was not confirmed at the cell, or the permit is lost; `detail` is the Permit
   kProbeInputs = 18,   // the two probe inputs disagree; `detail` is contact + 2 * loop
   kCellOpen = 19,
   kTouchTestMissing = 20,  // the stylus was not touched by hand since the start or since the cell was open
@@ -84,14 +84,14 @@ enum class PermitState : std::int32_t {
   kNone = 0,         // nothing moves
   kAwaited = 1,      // Begin was taken, the confirmation input is watched
   kGranted = 2,      // touch, travel and retract are taken
-  kRetractOnly = 3,  // a command was broken off: the way back from a face is all that is left
+  kRetractOnly = 3,  // a command was broken off: only Retract is accepted
 };
 
 /// Why the permit is what it is.
 enum class PermitReason : std::int32_t {
   kNone = 0,            // it was asked for or confirmed
   kRefused = 1,         // Begin was refused; `detail` is the RejectReason
-  kNotConfirmed = 2,    // nobody confirmed in time
+  kNotConfirmed = 2,    // not confirmed in time
   kFinished = 3,        // by Finish
   kBrokenOff = 4,       // a command ended by a stop, an unexpected contact, a deadline or an error
   kPermissionLost = 5,  // mode, power, hold, emergency stop, or the cell was opened

@@ -155,7 +155,7 @@ asio::awaitable<void> Link::silence_loop() {
     silence_timer_.expires_at(*heard_at_ + options_.heartbeat_timeout);
     co_await silence_timer_.async_wait(asio::use_awaitable);
     if (error_ || Clock::now() < *heard_at_ + options_.heartbeat_timeout) continue;
-    if (socket_.available() > 0) {  // it spoke in time, and this thread was too busy to listen
+    if (socket_.available() > 0) {  // bytes arrived in time and are not read yet
       heard_at_ = Clock::now();
     } else {
       fail(LinkErrorKind::kSilent,
@@ -262,7 +262,7 @@ void Link::take_state(const State& state) {
   if (on_state) on_state(state);
 }
 
-/// A permit may be told again and withdrawn at any time; it is granted only to who waits for it.
+/// A permit may be reported again and withdrawn at any time; it is granted only to a host that waits for it.
 bool Link::take_permit(const Permit& permit) {
   if (!runs_begun_.contains(permit.run)) return false;
   const bool to_asking = asking_ != nullptr && !asking_->done && asking_->run == permit.run;

@@ -111,7 +111,7 @@ class Link : public std::enable_shared_from_this<Link> {
 
   void take(const Message& message);
   void take_state(const State& state);
-  bool take_permit(const Permit& permit);                          // false: nobody asked for it
+  bool take_permit(const Permit& permit);                          // false: it was not asked for
   bool take_answer(std::uint32_t sequence, const Answer& answer);  // false: it answers nothing
 
   asio::any_io_executor executor_;

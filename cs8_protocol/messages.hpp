@@ -228,11 +228,12 @@ struct Rejected {
 struct TouchResult {
   static constexpr MessageType kType = MessageType::kTouchResult;
   Outcome outcome{};
-  Phase phase{};                  // reached when it ended early
-  CaptureSource source{};         // kNone unless the probe tripped in the (last) search
-  JointsMicrodeg contact{};       // joints at the trigger: the second touch's, when there was to be one
-  JointsMicrodeg stopped{};       // joints where the arm came to rest behind it
-  std::int32_t overtravel_dmm{};  // tool centre's way between both, 10^-4 mm; the longer one of two touches
+  Phase phase{};             // reached when it ended early
+  CaptureSource source{};    // kNone unless the probe tripped in the (last) search
+  JointsMicrodeg contact{};  // joints at the trigger: the second touch's, when there was to be one
+  JointsMicrodeg stopped{};  // joints where the arm came to rest after it
+  std::int32_t
+      overtravel_dmm{};  // path of the tool centre between both, 10^-4 mm; the longer one of two touches
   std::int32_t search_speed_um_s{};  // at which `contact` was made
   std::int32_t monitor_speed_percent{};
   std::uint32_t contact_clock_ms{};
@@ -253,7 +254,7 @@ struct MoveResult {
   static constexpr MessageType kType = MessageType::kMoveResult;
   Outcome outcome{};
   Phase phase{};
-  JointsMicrodeg joints{};  // where the arm stands now
+  JointsMicrodeg joints{};  // of the arm now
   std::int32_t error_number{};
   template <class Self, class Fields>
   static constexpr void visit(Self& m, Fields& fields) {

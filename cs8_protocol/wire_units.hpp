@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 
@@ -14,6 +16,21 @@ inline std::int32_t microdeg_from_radians(double rad) {
 /// to the bit.
 constexpr double radians_from_microdeg(std::int32_t microdeg) {
   return microdeg / 1e6 * (std::numbers::pi / 180.0);
+}
+
+/// The six joints of a message from radians; `Joints` is a vector of six numbers that takes an int as its
+/// index.
+template <class Joints>
+std::array<std::int32_t, 6> microdeg_from_joints(const Joints& rad) {
+  std::array<std::int32_t, 6> microdeg{};
+  for (int i = 0; i < 6; ++i) microdeg[static_cast<std::size_t>(i)] = microdeg_from_radians(rad[i]);
+  return microdeg;
+}
+template <class Joints>
+Joints joints_from_microdeg(const std::array<std::int32_t, 6>& microdeg) {
+  Joints rad;
+  for (int i = 0; i < 6; ++i) rad[i] = radians_from_microdeg(microdeg[static_cast<std::size_t>(i)]);
+  return rad;
 }
 
 inline std::int32_t dmm_from_metres(double m) { return static_cast<std::int32_t>(std::lround(m * 1e7)); }

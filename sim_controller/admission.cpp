@@ -124,19 +124,11 @@ std::int32_t search_speed_max_um_s(const Plant& plant) {
 }
 
 calib::JointVector joints_from_wire(const cs8::JointsMicrodeg& joints) {
-  calib::JointVector rad;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    rad[static_cast<Eigen::Index>(i)] = cs8::radians_from_microdeg(joints[i]);
-  }
-  return rad;
+  return cs8::joints_from_microdeg<calib::JointVector>(joints);
 }
 
 cs8::JointsMicrodeg wire_from_joints(const calib::JointVector& joints) {
-  cs8::JointsMicrodeg microdeg{};
-  for (std::size_t i = 0; i < microdeg.size(); ++i) {
-    microdeg[i] = cs8::microdeg_from_radians(joints[static_cast<Eigen::Index>(i)]);
-  }
-  return microdeg;
+  return cs8::microdeg_from_joints(joints);
 }
 
 TouchMotion touch_motion(const cs8::Touch& command) {

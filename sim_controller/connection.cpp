@@ -64,7 +64,21 @@ void Connection::send_with(const std::vector<LinkFault>& faults, std::vector<std
         frame.resize(frame.size() / 2);
         enqueue(std::move(frame));
         return begin_close();
-      default:  // done to its contents, or to the connection
+      case Fault::kGoSilent:  // the server applied these to the connection, or to the message
+      case Fault::kStopStates:
+      case Fault::kGarbage:
+      case Fault::kRefuse:
+      case Fault::kWrongSequence:
+      case Fault::kWrongVersion:
+      case Fault::kUnknownType:
+      case Fault::kBadLength:
+      case Fault::kBadValue:
+      case Fault::kWrongSession:
+      case Fault::kWrongArm:
+      case Fault::kWrongApplication:
+      case Fault::kWrongLimits:
+      case Fault::kStaleResult:
+      case Fault::kWrongJoints:
         break;
     }
   }

@@ -29,7 +29,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Waits its turn. A State is left out when others wait, or a fault wants it so.
   void send(std::vector<std::uint8_t> frame, bool is_state);
-  /// The same with the faults that meet this frame; its bytes are as they shall be.
+  /// The same with the link faults that apply to this frame; its bytes are already altered.
   void send_with(const std::vector<LinkFault>& faults, std::vector<std::uint8_t> frame, bool is_state);
 
   void go_silent() { silent_ = true; }

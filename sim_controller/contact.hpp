@@ -11,8 +11,8 @@ namespace sim {
 /// Euclidean distance of a point from a box's surface, negative inside.
 double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m);
 
-/// What is left of the true ball's way to the trip when R_7 stands at `block_from_tool`: distance of its
-/// centre from the nearest obstacle, less (radius - pre-travel + noise); the pre-travel depends on the
+/// The remaining distance of the true ball to its trip point when R_7 is at `block_from_tool`: distance of
+/// its centre from the nearest obstacle, less (radius - pre-travel + noise); the pre-travel depends on the
 /// direction of the push. Positive noise trips early, farther out of the material. Not positive: touched.
 double trip_gap_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool, double noise_m);
 

@@ -19,7 +19,8 @@ using ControlHandler = std::function<std::string(std::string_view)>;
 
 /// A TCP port on which people and tests change what happens at the simulated cell while it runs: lines of
 /// JSON, one answer each (config/FILES.md). A line that is too long is answered and ends its connection, one
-/// connection too many is told so. On the io_context's one thread; lives as long as this object.
+/// connection too many gets an answer that says so. On the io_context's one thread; lives as long as this
+/// object.
 class Control {
  public:
   /// Listens at once; port 0 takes a free one. boost::system::system_error when the address cannot be had.

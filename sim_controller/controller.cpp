@@ -16,7 +16,7 @@ using cs8::PermitReason;
 using cs8::PermitState;
 using cs8::RejectReason;
 
-/// At speed max no event simulates more than this: whatever goes on longer goes on with the next event.
+/// At speed max no event simulates more than this: a longer motion continues with the next event.
 constexpr int kTicksAtOnceMax = static_cast<int>(600.0 / kTickSeconds);
 
 TimePoint::duration tick_period(double speed) {
@@ -103,7 +103,7 @@ class Step {
 
   void take(std::uint32_t sequence, const cs8::Retract& command) {
     if (!admit(sequence, command)) return;
-    start(command, begin_retract(plant_, state_.cabinet, state_.motion.way_out, sequence, command));
+    start(command, begin_retract(plant_, state_.cabinet, state_.motion.retract_path, sequence, command));
   }
 
   void take(std::uint32_t, const cs8::Stop&) {
@@ -156,7 +156,7 @@ class Step {
     if (const auto reason = refusal_of_another()) return reason;
     if (const auto rejected = cabinet_refusal(state_.cabinet)) return rejected->reason;
     // Behind a touch that was broken off the stylus may be bent: the way back is all that moves first.
-    if (state_.motion.way_out.empty()) {
+    if (state_.motion.retract_path.empty()) {
       if (const auto rejected = probe_refusal(state_.cabinet)) return rejected->reason;
     } else if (state_.cabinet.probe_disagrees()) {
       return RejectReason::kProbeInputs;
@@ -176,7 +176,7 @@ class Step {
     if (permit != PermitState::kGranted && !(is_retract && permit == PermitState::kRetractOnly)) {
       return because(RejectReason::kNotPermitted, static_cast<std::int32_t>(permit));
     }
-    const bool near_a_face = !state_.motion.way_out.empty();
+    const bool near_a_face = !state_.motion.retract_path.empty();
     if (near_a_face && !is_retract) return because(RejectReason::kRetractPending);
     if (!near_a_face && is_retract) return because(RejectReason::kNothingToRetract);
     return std::nullopt;
@@ -261,13 +261,13 @@ class Step {
 
   void tick_at(TimePoint at) {
     looked_at_ = true;
-    suffer();
+    apply_due_faults();
     Cabinet& cabinet = state_.cabinet;
     tick(plant_, state_.person, cabinet);
     const CabinetTick seen = tick(plant_, cabinet);
     if (cabinet.jogged) {  // an operator took the way out over
       cabinet.jogged = false;
-      state_.motion.way_out.clear();
+      state_.motion.retract_path.clear();
     }
     // A collision takes the power too: the command ends with the cause before anybody looks at the
     // permission.
@@ -281,11 +281,11 @@ class Step {
   }
 
   /// What goes wrong in this tick.
-  void suffer() {
+  void apply_due_faults() {
     const bool is_touch = running() && std::holds_alternative<cs8::Touch>(running()->order);
-    state_.plan.follow(is_touch ? running()->sequence : 0,
-                       is_touch ? phase_of(running()->stage) : cs8::Phase::kIdle);
-    for (const Misfortune& due : state_.plan.pass(kTickSeconds)) {
+    state_.plan.on_touch_phase(is_touch ? running()->sequence : 0,
+                               is_touch ? phase_of(running()->stage) : cs8::Phase::kIdle);
+    for (const InjectedEvent& due : state_.plan.advance(kTickSeconds)) {
       if (const auto* of_link = std::get_if<LinkFault>(&due)) {
         replies.link_faults.push_back(*of_link);
         if (of_link->kind == Fault::kCloseSocket) lose_link();
@@ -320,7 +320,7 @@ class Step {
   void finish() {
     const RunningCommand ended = *std::move(running());
     running().reset();
-    const bool retract_due = !state_.motion.way_out.empty();
+    const bool retract_due = !state_.motion.retract_path.empty();
     const bool near_something = !retract_due && !state_.cabinet.probe_free();
     if (ended.outcome == Outcome::kCollision) replies.warning = ended.collision;
     state_.operator_called = ended.outcome == Outcome::kCollision ||
@@ -349,8 +349,8 @@ class Step {
     if (changed && state_.greeted) send(0, *changed);
   }
 
-  void send(std::uint32_t sequence, cs8::Payload payload) {
-    replies.messages.push_back({sequence, std::move(payload)});
+  void send(std::uint32_t sequence, const cs8::Payload& payload) {
+    replies.messages.push_back({sequence, payload});
   }
 
   void report_state() {

@@ -80,7 +80,7 @@ ControllerState make_controller(const Plant& plant, const ControllerOptions& opt
 /// `now` never goes back from one step to the next.
 Replies step(const Plant& plant, ControllerState& state, const Event& event, TimePoint now);
 
-/// The application is started anew, in a new session: arm, probe and people stay as they are; what it
+/// The application is restarted, in a new session: arm, probe and people stay as they are; what it
 /// remembered is gone.
 void restart_application(ControllerState& state);
 

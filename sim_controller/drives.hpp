@@ -37,7 +37,7 @@ struct Move {
   [[nodiscard]] double along_path(double progress) const { return from + (to - from) * progress; }
 };
 
-/// The motion side of a CS8: a value; whoever wants to put the arm elsewhere at standstill (freed by hand,
+/// The motion side of a CS8: a value; to put the arm elsewhere at standstill (freed by hand,
 /// held by its brakes after a collision) makes a new one, Drives{.joints = there}.
 struct Drives {
   calib::JointVector joints = calib::JointVector::Zero();  // commanded: what herej() gives

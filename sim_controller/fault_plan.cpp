@@ -14,41 +14,43 @@ void FaultPlan::add(const PlannedFault& fault) {
   }
 }
 
-bool FaultPlan::comes(Counted& fault) { return ++fault.seen == fault.planned.nth || fault.planned.every; }
+bool FaultPlan::count_trigger(Counted& fault) {
+  return ++fault.seen == fault.planned.nth || fault.planned.every;
+}
 
-template <class IsMet>
-std::vector<LinkFault> FaultPlan::meet_those(IsMet is_met) {
-  std::vector<LinkFault> met;
+template <class Matches>
+std::vector<LinkFault> FaultPlan::matching_faults(Matches matches) {
+  std::vector<LinkFault> found;
   for (Counted& fault : faults_) {
-    if (!is_met(fault.planned.on) || !comes(fault)) continue;
+    if (!matches(fault.planned.on) || !count_trigger(fault)) continue;
     const auto* link_fault = std::get_if<LinkFault>(&fault.planned.what);
     if (link_fault != nullptr && fault.planned.after_s == 0.0) {
-      met.push_back(*link_fault);
+      found.push_back(*link_fault);
     } else {
       waiting_.push_back({fault.planned.what, fault.planned.after_s});
     }
   }
-  return met;
+  return found;
 }
 
-std::vector<LinkFault> FaultPlan::meet_connection() {
-  return meet_those([](const Trigger& on) { return std::holds_alternative<AtConnection>(on); });
+std::vector<LinkFault> FaultPlan::faults_at_connection() {
+  return matching_faults([](const Trigger& on) { return std::holds_alternative<AtConnection>(on); });
 }
 
-std::vector<LinkFault> FaultPlan::meet(cs8::MessageType type) {
-  return meet_those([type](const Trigger& on) {
+std::vector<LinkFault> FaultPlan::faults_at(cs8::MessageType type) {
+  return matching_faults([type](const Trigger& on) {
     const auto* wanted = std::get_if<cs8::MessageType>(&on);
     return wanted != nullptr && *wanted == type;
   });
 }
 
-void FaultPlan::take_touch() {
+void FaultPlan::count_touch() {
   for (Counted& fault : faults_) {
-    if (std::holds_alternative<AtTouch>(fault.planned.on)) fault.in_its_touch = comes(fault);
+    if (std::holds_alternative<AtTouch>(fault.planned.on)) fault.in_its_touch = count_trigger(fault);
   }
 }
 
-void FaultPlan::enter(cs8::Phase phase) {
+void FaultPlan::start_faults_of(cs8::Phase phase) {
   for (Counted& fault : faults_) {
     if (!fault.in_its_touch) continue;
     const bool is_its_phase = std::get<AtTouch>(fault.planned.on).phase == phase;
@@ -58,19 +60,19 @@ void FaultPlan::enter(cs8::Phase phase) {
   }
 }
 
-void FaultPlan::follow(std::uint32_t touch_sequence, cs8::Phase phase) {
+void FaultPlan::on_touch_phase(std::uint32_t touch_sequence, cs8::Phase phase) {
   if (touch_sequence != touch_) {
-    if (touch_ != 0) enter(cs8::Phase::kIdle);
-    if (touch_sequence != 0) take_touch();
+    if (touch_ != 0) start_faults_of(cs8::Phase::kIdle);
+    if (touch_sequence != 0) count_touch();
     phase_ = cs8::Phase::kIdle;
   }
-  if (touch_sequence != 0 && phase != phase_) enter(phase);
+  if (touch_sequence != 0 && phase != phase_) start_faults_of(phase);
   touch_ = touch_sequence;
   phase_ = phase;
 }
 
-std::vector<Misfortune> FaultPlan::pass(double seconds) {
-  std::vector<Misfortune> due;
+std::vector<InjectedEvent> FaultPlan::advance(double seconds) {
+  std::vector<InjectedEvent> due;
   for (Waiting& waiting : waiting_) {
     waiting.left_s -= seconds;
     if (waiting.left_s <= 0.0) due.push_back(waiting.what);

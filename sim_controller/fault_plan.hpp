@@ -16,44 +16,43 @@ namespace sim {
 // ---- when a fault comes ----
 
 struct AtOnce {};
-struct AtConnection {};  // somebody connects; not the ones that are turned away
-struct AtTouch {         // a touch comes to this phase
+struct AtConnection {};  // a host connects and is accepted
+struct AtTouch {         // a touch reaches this phase
   cs8::Phase phase = cs8::Phase::kSearch;
 };
 /// A message type: just before the controller takes such a message, or just before it sends one.
 using Trigger = std::variant<AtOnce, AtConnection, AtTouch, cs8::MessageType>;
 
-using Misfortune = std::variant<LinkFault, Trouble, Act>;
+using InjectedEvent = std::variant<LinkFault, Trouble, Act>;
 
 /// One fault, at the nth time its trigger comes since it was planned; counts from 1.
 struct PlannedFault {
-  Misfortune what;
+  InjectedEvent what;
   Trigger on = AtOnce{};
   std::uint32_t nth = 1;
   bool every = false;    // not only the nth time
   double after_s = 0.0;  // simulated time from the trigger
 };
 
-/// Counts messages and touches and tells which faults are due. A value without a clock.
+/// Counts messages and touches and returns the faults that are due. Reads no clock.
 class FaultPlan {
  public:
   explicit FaultPlan(std::vector<PlannedFault> faults = {});
 
   void add(const PlannedFault& fault);
 
-  /// A connection or a message, which counts as one more of its type: what of the link's faults meets it.
-  /// Other faults that come with it are due from now on.
-  std::vector<LinkFault> meet_connection();
-  std::vector<LinkFault> meet(cs8::MessageType type);
+  /// Counts one more connection, or one more message of this type. Returns the link faults that apply to it;
+  /// other events planned for it start to wait.
+  std::vector<LinkFault> faults_at_connection();
+  std::vector<LinkFault> faults_at(cs8::MessageType type);
 
-  /// Where the arm is: the sequence of the touch that runs, 0 for none, and its phase. To be told at each
-  /// tick.
-  void follow(std::uint32_t touch_sequence, cs8::Phase phase);
+  /// Call at each tick with the sequence of the touch that runs, 0 for none, and its phase.
+  void on_touch_phase(std::uint32_t touch_sequence, cs8::Phase phase);
 
-  /// What is due when so much simulated time has passed since the last call, in the order it was planned;
-  /// each once. To be asked at each tick.
-  std::vector<Misfortune> pass(double seconds);
-  /// Something is due after some more time.
+  /// Call at each tick with the simulated time since the last call. Returns the events that are due, each
+  /// once, in the order in which they were planned.
+  std::vector<InjectedEvent> advance(double seconds);
+  /// True while an event waits for its time.
   [[nodiscard]] bool waits() const { return !waiting_.empty(); }
 
  private:
@@ -63,15 +62,15 @@ class FaultPlan {
     bool in_its_touch = false;
   };
   struct Waiting {
-    Misfortune what;
+    InjectedEvent what;
     double left_s = 0.0;
   };
 
-  static bool comes(Counted& fault);
-  void take_touch();
-  void enter(cs8::Phase phase);
-  template <class IsMet>
-  std::vector<LinkFault> meet_those(IsMet is_met);
+  static bool count_trigger(Counted& fault);
+  void count_touch();
+  void start_faults_of(cs8::Phase phase);
+  template <class Matches>
+  std::vector<LinkFault> matching_faults(Matches matches);
 
   std::vector<Counted> faults_;
   std::vector<Waiting> waiting_;

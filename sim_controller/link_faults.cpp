@@ -93,7 +93,7 @@ bool fits(FaultTarget target, cs8::MessageType type) {
   throw std::logic_error("an unlisted target");
 }
 
-void alter(Fault fault, cs8::Message& message, const std::optional<cs8::TouchResult>& before) {
+void alter_message(Fault fault, cs8::Message& message, const std::optional<cs8::TouchResult>& before) {
   if (fault == Fault::kWrongSequence) message.sequence += kSequenceOffset;
   if (auto* welcome = std::get_if<cs8::Welcome>(&message.payload)) alter_welcome(fault, *welcome);
   if (auto* result = std::get_if<cs8::TouchResult>(&message.payload)) alter_result(fault, *result, before);
@@ -101,7 +101,7 @@ void alter(Fault fault, cs8::Message& message, const std::optional<cs8::TouchRes
   if (state != nullptr && fault == Fault::kWrongSession) ++state->session;
 }
 
-void spoil(Fault fault, std::vector<std::uint8_t>& frame) {
+void alter_frame(Fault fault, std::vector<std::uint8_t>& frame) {
   if (fault == Fault::kGarbage) frame = garbage();
   if (fault == Fault::kWrongVersion) ++frame[kVersionByte];
   if (fault == Fault::kUnknownType) frame[kTypeByte] = kUnlistedType;

@@ -16,11 +16,11 @@ enum class Fault {
   kGoSilent,     // the controller works on, but sends nothing more
   kStopStates,   // no State for a time, or for good when none is given: as with a full buffer
   kGarbage,      // bytes that are no frame are sent, in place of the message; a received one is lost
-  kRefuse,       // nobody listens at the port for a time; a connection that is there stays
+  kRefuse,       // the port is closed for a time; an existing connection stays
   // A message, received or about to be sent.
   kDrop,           // lost
   kDuplicate,      // there twice
-  kDelay,          // late by a time; all but States behind it wait with it
+  kDelay,          // late by a time; all later messages but States wait with it
   kWrongSequence,  // its sequence is raised by kSequenceOffset
   // A message about to be sent.
   kCloseMidFrame,     // its first half is sent, then the connection ends
@@ -30,7 +30,7 @@ enum class Fault {
   kUnknownType,       // a type that is not listed
   kBadLength,         // a length that is not its type's
   kBadValue,          // its first payload word is no value of the list, or no text
-  kWrongSession,      // as from a controller that started anew in between; of Welcome and State
+  kWrongSession,      // as from a controller that was restarted in between; of Welcome and State
   kWrongArm,          // of Welcome: another arm's name
   kWrongApplication,  // of Welcome
   kWrongLimits,       // of Welcome: joint 3 goes less far
@@ -49,15 +49,15 @@ struct LinkFault {
 /// What a fault can be put at.
 enum class FaultTarget { kConnection, kMessage, kSentMessage, kWelcome, kSession, kResult, kValue };
 FaultTarget target_of(Fault fault);
-/// True when the fault can meet messages of this type.
+/// True when such a fault can apply to messages of this type.
 bool fits(FaultTarget target, cs8::MessageType type);
 
-/// Puts the fault into the message; nothing for those that are not in its contents. `before` is the touch
-/// result that was sent last.
-void alter(Fault fault, cs8::Message& message, const std::optional<cs8::TouchResult>& before);
+/// Changes the message's contents by the fault; a fault of another kind changes nothing. `before` is the
+/// touch result that was sent last.
+void alter_message(Fault fault, cs8::Message& message, const std::optional<cs8::TouchResult>& before);
 
-/// Puts the fault into the frame; nothing for those that are not in its bytes.
-void spoil(Fault fault, std::vector<std::uint8_t>& frame);
+/// Changes the frame's bytes by the fault; a fault of another kind changes nothing.
+void alter_frame(Fault fault, std::vector<std::uint8_t>& frame);
 
 /// Bytes that are no frame.
 std::vector<std::uint8_t> garbage();

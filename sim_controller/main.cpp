@@ -1,4 +1,4 @@
-/// cs8sim: a CS8 controller, arm, probe and block that are not there. See sim_controller/README.md.
+/// cs8sim simulates a CS8 controller with arm, probe and block. See sim_controller/README.md.
 #include <spdlog/cfg/env.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>

@@ -25,13 +25,13 @@ class Step {
   Step(const Plant& plant, Cabinet& cabinet, MotionTask& task, const CabinetTick& seen, TimePoint at)
       : plant_(plant),
         cabinet_(cabinet),
-        way_out_(task.way_out),
+        retract_path_(task.retract_path),
         running_(*task.running),
         seen_(seen),
         at_(at) {}
 
   bool run() {
-    follow_way_out();
+    follow_retract_path();
     ++running_.ticks_in_stage;
     if (seen_.sensed.collision) return collide();
     if (cabinet_.drives.error != 0 && running_.stage != Stage::kBreakOff && !search_line_ended()) {
@@ -75,9 +75,9 @@ class Step {
   }
 
   /// The way back begins where the arm is now.
-  void follow_way_out() {
-    if (way_out_.empty() || !seen_.motion.path || running_.stage == Stage::kTravel) return;
-    way_out_.front().from = seen_.motion.path_to;
+  void follow_retract_path() {
+    if (retract_path_.empty() || !seen_.motion.path || running_.stage == Stage::kTravel) return;
+    retract_path_.front().from = seen_.motion.path_to;
   }
 
   bool not_free() const { return !cabinet_.world.probe.inputs.free() || seen_.sensed.edges > 0; }
@@ -98,7 +98,7 @@ class Step {
       if (!std::holds_alternative<cs8::Touch>(running_.order)) return true;
       movej(plant_, cabinet_.drives, joints_from_wire(touch().approach),
             metres_per_second(touch().approach_speed_um_s));
-      way_out_ = {begun_path()};
+      retract_path_ = {begun_path()};
       enter(Stage::kApproach);
     }
     return false;
@@ -129,9 +129,9 @@ class Step {
     if (!running_.first) {  // the second touch finds the arm and the face as the first one did
       sim::begin_search(plant_, cabinet_.world, cabinet_.chance);
       movel(plant_, cabinet_.drives, joints_from_wire(touch().search_end), metres_per_second(speed_um_s));
-      way_out_.insert(way_out_.begin(), begun_path());
+      retract_path_.insert(retract_path_.begin(), begun_path());
     } else {
-      Stretch again = way_out_.front();
+      Stretch again = retract_path_.front();
       again.to = 1.0;
       follow(plant_, cabinet_.drives, std::move(again), metres_per_second(speed_um_s));
     }
@@ -204,7 +204,7 @@ class Step {
 
   bool begin_back_off(const Capture& capture) {
     running_.first = capture;
-    Stretch back = way_out_.front();
+    Stretch back = retract_path_.front();
     const double length_m = tip_distance_m(plant_, back.path.front(), back.path.back());
     const double share = cs8::metres_from_dmm(touch().second_backoff_dmm) / length_m;
     back.to = std::max(0.0, back.from - share);
@@ -233,12 +233,12 @@ class Step {
   }
 
   bool next_stretch() {
-    if (way_out_.empty()) {
+    if (retract_path_.empty()) {
       if (std::holds_alternative<cs8::Retract>(running_.order)) return true;
       enter(Stage::kLastReseat);
       return false;
     }
-    follow(plant_, cabinet_.drives, way_out_.front(), metres_per_second(retract_speed_um_s()));
+    follow(plant_, cabinet_.drives, retract_path_.front(), metres_per_second(retract_speed_um_s()));
     return false;
   }
 
@@ -248,7 +248,7 @@ class Step {
       return false;
     }
     if (!cabinet_.arm_rests()) return false;
-    way_out_.erase(way_out_.begin());
+    retract_path_.erase(retract_path_.begin());
     return next_stretch();
   }
 
@@ -284,22 +284,22 @@ class Step {
     if (by_edge && running_.ticks_in_stage < kSteadyTicks) return false;
     if (by_edge && cabinet_.probe_disagrees()) running_.outcome = Outcome::kProbeFault;
     const bool goes_back = running_.outcome == Outcome::kStopped &&
-                           running_.broken_in == cs8::Phase::kSearch && way_out_.size() > 1;
+                           running_.broken_in == cs8::Phase::kSearch && retract_path_.size() > 1;
     if (!goes_back) return true;
-    follow(plant_, cabinet_.drives, way_out_.front(), metres_per_second(retract_speed_um_s()));
+    follow(plant_, cabinet_.drives, retract_path_.front(), metres_per_second(retract_speed_um_s()));
     enter(Stage::kReturn);
     return false;
   }
 
   bool returned() {
     if (!cabinet_.arm_rests()) return false;
-    way_out_.erase(way_out_.begin());
+    retract_path_.erase(retract_path_.begin());
     return true;
   }
 
   const Plant& plant_;
   Cabinet& cabinet_;
-  std::vector<Stretch>& way_out_;
+  std::vector<Stretch>& retract_path_;
   RunningCommand& running_;
   const CabinetTick& seen_;
   TimePoint at_;
@@ -357,9 +357,9 @@ RunningCommand begin_travel(const Plant& plant, Cabinet& cabinet, std::uint32_t 
   return begin(sequence, order, Stage::kTravel, Outcome::kArrived);
 }
 
-RunningCommand begin_retract(const Plant& plant, Cabinet& cabinet, const std::vector<Stretch>& way_out,
+RunningCommand begin_retract(const Plant& plant, Cabinet& cabinet, const std::vector<Stretch>& retract_path,
                              std::uint32_t sequence, const cs8::Retract& order) {
-  follow(plant, cabinet.drives, way_out.front(), metres_per_second(order.approach_speed_um_s));
+  follow(plant, cabinet.drives, retract_path.front(), metres_per_second(order.approach_speed_um_s));
   return begin(sequence, order, Stage::kRetract, Outcome::kArrived);
 }
 

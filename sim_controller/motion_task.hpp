@@ -26,7 +26,7 @@ enum class Stage {
   kApproach,    // joint move to where the search begins
   kReady,       // standing there: is the probe free?
   kSearch,      // the line, until the probe trips
-  kTripped,     // braking behind the trigger
+  kTripped,     // braking after the trigger
   kBackOff,     // back along the line before the second touch
   kReseat,      // is the probe free again, for the second touch
   kRetract,     // back along the line and the approach
@@ -71,7 +71,7 @@ struct MotionTask {
   std::optional<RunningCommand> running;
   /// Back from a face to where the arm is clear of it, along what was travelled; the first stretch begins
   /// where the arm stands. While there is one and nothing runs, only Retract is taken.
-  std::vector<Stretch> way_out;
+  std::vector<Stretch> retract_path;
 };
 
 /// A command begins. Its fields were admitted.
@@ -79,10 +79,10 @@ RunningCommand begin_touch(const Plant& plant, Cabinet& cabinet, std::uint32_t s
                            const cs8::Touch& order);
 RunningCommand begin_travel(const Plant& plant, Cabinet& cabinet, std::uint32_t sequence,
                             const cs8::Travel& order);
-RunningCommand begin_retract(const Plant& plant, Cabinet& cabinet, const std::vector<Stretch>& way_out,
+RunningCommand begin_retract(const Plant& plant, Cabinet& cabinet, const std::vector<Stretch>& retract_path,
                              std::uint32_t sequence, const cs8::Retract& order);
 
-/// Ends the running command early: brakes, and reports `outcome` when the arm stands; the first cause counts.
+/// Ends the running command early: brakes, and reports `outcome` at standstill; the first cause counts.
 /// A search that is stopped (kStopped) goes back to its approach posture.
 void break_off(Cabinet& cabinet, RunningCommand& running, cs8::Outcome outcome,
                std::int32_t error_number = 0);

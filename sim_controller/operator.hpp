@@ -6,8 +6,8 @@
 #include "sim_controller/cabinet.hpp"
 #include "sim_controller/plant.hpp"
 
-/// The person at the simulated cell: a script of acts with simulated time between them. Whoever takes a duty
-/// away from him (a fault file) has a cell in which nobody does that.
+/// The person at the simulated cell: a script of acts with simulated time between them. A fault file can
+/// disable single acts; then nobody performs them.
 namespace sim {
 
 enum class Act {

@@ -24,9 +24,17 @@ bool breaks_off(cs8::Outcome outcome) {
     case cs8::Outcome::kDeadline:
     case cs8::Outcome::kTaskFailed:
       return true;
-    default:
+    case cs8::Outcome::kContact:
+    case cs8::Outcome::kNoContact:
+    case cs8::Outcome::kArrived:
+    case cs8::Outcome::kProbeStuck:
+    case cs8::Outcome::kHeartbeatLost:
+    case cs8::Outcome::kPermissionLost:
+    case cs8::Outcome::kOvertravel:
+    case cs8::Outcome::kProbeFault:
       return false;
   }
+  return false;
 }
 
 }  // namespace

@@ -13,14 +13,14 @@ inline constexpr std::uint32_t kConfirmWithinMinMs = 1'000;
 inline constexpr std::uint32_t kConfirmWithinMaxMs = 30'000;
 
 struct PermitHolder {
-  cs8::Permit permit;  // as it was told last
+  cs8::Permit permit;  // as last reported
   TimePoint confirm_by{};
   int key_off_ticks = kSteadyTicks;  // how long the confirmation key has been so
   int key_on_ticks = 0;
   bool key_ready = false;  // it was off since Begin
 };
 
-/// Begin was found right: the key is watched from now on. It comes back as what is told to the host.
+/// Accepts Begin: the key is watched from now on. Returns the permit to report to the host.
 cs8::Permit await(PermitHolder& holder, const cs8::Begin& begin, TimePoint now);
 cs8::Permit refuse(PermitHolder& holder, const cs8::Begin& begin, cs8::RejectReason reason);
 

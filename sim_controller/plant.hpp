@@ -27,7 +27,7 @@ struct Plant {
   calib::KinematicModel truth;    // where the arm really is; nothing but contact and collision looks at it
   calib::JointRanges joint_ranges;
   calib::JointVector joint_speeds_max;
-  calib::JointVector start_joints;  // where the arm stands at the start, and after the operator freed it
+  calib::JointVector start_joints;  // of the arm at the start, and after the operator freed it
   calib::CollisionScene scene;      // all bodies but the stylus ball: the ball may touch, the others collide
   double trip_distance_m = 0.0;     // of the ball's centre from the nearest obstacle: radius - pre-travel
                                     // along the stylus

@@ -82,7 +82,7 @@ cs8::State state_report(const ControllerState& state, TimePoint now) {
   flag(cs8::kQueueEmpty, is_empty(cabinet.drives));
   flag(cs8::kProbeTouched, cabinet.world.probe.inputs.contact);
   flag(cs8::kProbeLoopClosed, cabinet.world.probe.inputs.loop);
-  flag(cs8::kRetractDue, !state.motion.way_out.empty());
+  flag(cs8::kRetractDue, !state.motion.retract_path.empty());
   flag(cs8::kTouchTested, cabinet.touch_test == TouchTest::kDone);
   flag(cs8::kCellClosed, panel.cell_closed);
   report.mode = panel.mode;

@@ -10,7 +10,7 @@ cs8::Welcome welcome(const Plant& plant, const ControllerState& state, std::uint
                      TimePoint now);
 cs8::State state_report(const ControllerState& state, TimePoint now);
 
-/// The result of a command that has ended, with its sequence; the arm stands.
+/// The result of a command that has ended, with its sequence; the arm is at standstill.
 cs8::Message result(const ControllerState& state, const RunningCommand& ended);
 
 }  // namespace sim

@@ -152,18 +152,18 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     } else {
       host_ = connection;
       handle(ConnectionOpened{});
-      strike(state_.plan.meet_connection());
+      apply_connection_faults(state_.plan.faults_at_connection());
     }
     asio::co_spawn(acceptor_.get_executor(), serve(shared_from_this(), connection), asio::detached);
   }
 
   void receive(const ConnectionPtr& connection, cs8::Message message) {
-    for (const LinkFault& fault : state_.plan.meet(cs8::type_of(message))) {
+    for (const LinkFault& fault : state_.plan.faults_at(cs8::type_of(message))) {
       switch (fault.kind) {
         case Fault::kDrop:
           return;
         case Fault::kWrongSequence:
-          alter(fault.kind, message, last_result_);
+          alter_message(fault.kind, message, last_result_);
           break;
         case Fault::kDuplicate:
           handle(message);
@@ -172,9 +172,29 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
           return connection->later(fault.seconds, [this, connection, message] {
             if (host_ == connection) handle(message);
           });
-        default:
-          strike({fault});
+        case Fault::kCloseSocket:
+        case Fault::kHalfOpen:
+        case Fault::kGoSilent:
+        case Fault::kStopStates:
+        case Fault::kGarbage:
+        case Fault::kRefuse:
+          apply_connection_faults({fault});
           if (connection->closing() || connection->half_open() || fault.kind == Fault::kGarbage) return;
+          break;
+        case Fault::kCloseMidFrame:  // from here on: faults of sent messages only
+        case Fault::kByteByByte:
+        case Fault::kMerge:
+        case Fault::kWrongVersion:
+        case Fault::kUnknownType:
+        case Fault::kBadLength:
+        case Fault::kBadValue:
+        case Fault::kWrongSession:
+        case Fault::kWrongArm:
+        case Fault::kWrongApplication:
+        case Fault::kWrongLimits:
+        case Fault::kStaleResult:
+        case Fault::kWrongJoints:
+          break;
       }
     }
     handle(message);
@@ -182,7 +202,7 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
   }
 
   /// Faults of the connection, as they come.
-  void strike(const std::vector<LinkFault>& faults) {
+  void apply_connection_faults(const std::vector<LinkFault>& faults) {
     for (const LinkFault& fault : faults) {
       if (fault.kind == Fault::kRefuse) stop_listening(fault.seconds);
       if (!host_) continue;
@@ -229,22 +249,23 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
       log_result(message);
       if (host) send_with_faults(host, message);
     }
-    strike(replies.link_faults);
+    apply_connection_faults(replies.link_faults);
     if (host && replies.close) begin_close(host);
   }
 
   void send_with_faults(const ConnectionPtr& connection, cs8::Message message) {
     const bool is_state = std::holds_alternative<cs8::State>(message.payload);
-    const std::vector<LinkFault> faults = state_.plan.meet(cs8::type_of(message));
+    const std::vector<LinkFault> faults = state_.plan.faults_at(cs8::type_of(message));
     for (const LinkFault& fault : faults) {
-      alter(fault.kind, message, last_result_);
+      alter_message(fault.kind, message, last_result_);
       // A result that is wrong is the one the controller has, whoever asks again.
       if (target_of(fault.kind) == FaultTarget::kResult) state_.stored_result = message;
-      if (fault.kind != Fault::kCloseSocket && fault.kind != Fault::kGarbage) strike({fault});
+      if (fault.kind != Fault::kCloseSocket && fault.kind != Fault::kGarbage)
+        apply_connection_faults({fault});
     }
     if (const auto* result = std::get_if<cs8::TouchResult>(&message.payload)) last_result_ = *result;
     std::vector<std::uint8_t> frame = cs8::encode(message);
-    for (const LinkFault& fault : faults) spoil(fault.kind, frame);
+    for (const LinkFault& fault : faults) alter_frame(fault.kind, frame);
     connection->send_with(faults, std::move(frame), is_state);
   }
 

@@ -42,11 +42,11 @@ class Server {
   /// Closes every socket; nothing of the server stays in the io_context.
   void stop();
 
-  /// One fault more; it counts messages and touches from now on.
+  /// Adds a fault; it counts messages and touches from now on.
   void inject(const PlannedFault& fault);
-  /// What the operator does unasked from now on.
+  /// Changes what the operator does by himself from now on.
   void change(const cell::OperatorChange& change);
-  /// A person jogs with the pendant; why he cannot, or nothing.
+  /// Jogs with the pendant; returns why the pendant refuses, or nothing.
   std::optional<std::string> jog(const cell::JogOrder& order);
   /// What the controller would report now.
   [[nodiscard]] cs8::State report() const;

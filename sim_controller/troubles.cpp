@@ -5,7 +5,7 @@
 namespace sim {
 namespace {
 
-/// True when it was one of the probe's.
+/// Returns false when the trouble is not the probe's.
 bool apply_to_probe(const Trouble& trouble, ProbeTroubles& probe) {
   switch (trouble.kind) {
     case TroubleKind::kStylusSticks:
@@ -41,9 +41,21 @@ bool apply_to_probe(const Trouble& trouble, ProbeTroubles& probe) {
     case TroubleKind::kProbeMended:
       probe = {};
       return true;
-    default:
-      return false;
+    case TroubleKind::kTaskDies:
+    case TroubleKind::kOverruns:
+    case TroubleKind::kMonitorSpeed:
+    case TroubleKind::kReferencesLost:
+    case TroubleKind::kReferencesFound:
+    case TroubleKind::kMotionError:
+    case TroubleKind::kCollision:
+    case TroubleKind::kNeverSettles:
+    case TroubleKind::kSettles:
+    case TroubleKind::kRestarts:
+    case TroubleKind::kConfirmsLate:
+    case TroubleKind::kConfirmationKeyStuck:
+      break;
   }
+  return false;
 }
 
 void collide(ControllerState& state) {
@@ -51,7 +63,7 @@ void collide(ControllerState& state) {
   if (!state.motion.running) return;
   break_off(state.cabinet, *state.motion.running, cs8::Outcome::kCollision);
   state.motion.running->collision = "following error";
-  state.motion.way_out.clear();  // the operator frees the arm
+  state.motion.retract_path.clear();  // the operator frees the arm
 }
 
 }  // namespace
@@ -97,8 +109,18 @@ void apply(const Trouble& trouble, ControllerState& state) {
     case TroubleKind::kConfirmationKeyStuck:
       cabinet.panel.confirm_key = cabinet.panel.confirm_key_stuck = true;
       break;
-    default:  // the probe's
-      break;
+    case TroubleKind::kStylusSticks:
+    case TroubleKind::kStylusStaysTouched:
+    case TroubleKind::kStylusNeverTouches:
+    case TroubleKind::kProbeBounces:
+    case TroubleKind::kVibration:
+    case TroubleKind::kLatchLost:
+    case TroubleKind::kContactCut:
+    case TroubleKind::kContactShort:
+    case TroubleKind::kLoopCut:
+    case TroubleKind::kLoopShort:
+    case TroubleKind::kProbeMended:
+      break;  // applied above
   }
 }
 

@@ -28,7 +28,7 @@ enum class TroubleKind {
   kCollision,     // following error: the power is cut
   kNeverSettles,  // the arm is never said to stand
   kSettles,       // that is over
-  kRestarts,      // the application is ended at the pendant and started anew, in a new session
+  kRestarts,      // the application is restarted at the pendant, in a new session
   // The confirmation.
   kConfirmsLate,          // `seconds` from being asked to the pressed key
   kConfirmationKeyStuck,  // pressed, for good

@@ -13,7 +13,7 @@ namespace sim {
 namespace {
 
 constexpr unsigned kAllSteps = (1U << kLatchStepsPerTick) - 1U;
-/// The true model is worked out anew when the arm's temperature has moved by this much: 20 nm at reach.
+/// The true model is recomputed when the arm's temperature has changed by this much: 20 nm at reach.
 constexpr double kPreparedWithinKelvins = 1e-3;
 /// A joint may turn back inside a tick, where a straight line asks it to; the way to its turn is less.
 constexpr double kTurnMarginMetres = 5e-6;

@@ -13,7 +13,7 @@ namespace sim {
 
 struct TickMotion;
 
-/// What changes in the simulated cell beside the commanded joints: how the arm stands on its gears, how warm
+/// What changes in the simulated cell beside the commanded joints: the arm's play in its gears, how warm
 /// it is, what the probe feels. A value; sense() takes it from tick to tick.
 struct World {
   bool powered = true;  // warms the arm up; the controller sets it
@@ -33,13 +33,13 @@ struct World {
   double to_edge_m = -1.0;  // the ball is at least this far from where it trips or lets go; negative: unknown
   double to_hit_m = -1.0;   // bodies may go this far before two can meet; negative: unknown
   bool deflected = false;   // the material holds the stylus off its seat
-  std::optional<std::string> collision;  // "stem hit block", as long as they touch
+  std::optional<std::string> collision;  // "stem hit block", while they touch
 };
 
 /// Cold, at the plant's start posture, the stylus in the air unless something is there.
 World make_world(const Plant& plant);
 
-/// Every true frame at commanded joints, reached from where the world stands now by a straight joint move.
+/// Every true frame at commanded joints, reached from the world's present posture by a straight joint move.
 calib::Chain true_chain(const Plant& plant, const World& world, const calib::JointVector& joints);
 /// Where the ball's centre really is, in R_-1.
 Eigen::Vector3d true_tip_m(const Plant& plant, const World& world, const calib::JointVector& joints);
@@ -52,11 +52,11 @@ struct Sensed {
   ProbeInputs inputs;                // at the tick's end
   std::optional<double> edge_share;  // of the first edge the latch captured: a multiple of 0.05, up to 1
   int edges = 0;                     // rising edges of the latch input, with those too short for the latch
-  std::optional<std::string> collision;  // "BODY hit THING", as long as they touch
+  std::optional<std::string> collision;  // "BODY hit THING", while they touch
 };
 
-/// Takes the world through one tick. A motion that does not begin where the last one ended is an arm that was
-/// put elsewhere at once: allowed, and everything is looked at anew.
+/// Takes the world through one tick. A motion that does not begin where the last one ended means that
+/// the arm was repositioned: allowed; the kept distances are computed again.
 Sensed sense(const Plant& plant, World& world, const TickMotion& motion);
 
 /// Draws what differs from one search to the next: the trip's noise and how exactly the arm came to its stop.

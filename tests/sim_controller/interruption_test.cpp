@@ -101,7 +101,7 @@ TEST_F(Interruption, AHostThatFallsSilentStopsTheArmInEachPhaseAfterItsTimeout) 
     const auto result = std::get<cs8::TouchResult>(bench.state.stored_result->payload);
     EXPECT_EQ(result.outcome, Outcome::kHeartbeatLost);
     EXPECT_EQ(result.phase, phase);
-    EXPECT_EQ(bench.state.motion.way_out.empty(), phase == Phase::kTravel);
+    EXPECT_EQ(bench.state.motion.retract_path.empty(), phase == Phase::kTravel);
   }
 }
 
