@@ -1,12 +1,13 @@
 #include "calib_core/estimation/block_registration.hpp"
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+
+#include "calib_core/numerics/decompositions.hpp"
 
 namespace calib {
 namespace {
@@ -51,7 +52,7 @@ class RegistrationFit {
     bool small = false;
     for (int step = 0; step < kStepsMax && !small; ++step) {
       linearise();
-      const Vector6 twist = rows_.colPivHouseholderQr().solve(residuals_);
+      const Vector6 twist = least_squares_solution(rows_, residuals_);
       if (!twist.allFinite()) break;
       old_from_new_ = old_from_new_ * moved_by(twist);
       small = twist.norm() < kStepSmall;
@@ -141,13 +142,13 @@ class RegistrationFit {
     for (std::size_t i = 0; i < chains_.size(); ++i)
       unit.row(static_cast<Eigen::Index>(i)) *= problem_.touches[i].std_m;
     unit.rightCols<3>() /= kBlockSizeMetres;
-    return unit.jacobiSvd().singularValues().minCoeff();
+    return singular_values(unit).minCoeff();
   }
 
   [[nodiscard]] BlockRegistration result() const {
     BlockRegistration fit{.old_from_new = old_from_new_, .model = problem_.nominal};
     set_block_pose(fit.model, old_from_new_.inverse() * block_pose_of(problem_.nominal));
-    const Eigen::MatrixXd inverse = rows_.completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd inverse = pseudo_inverse(rows_);
     const Eigen::MatrixXd arm = weighted_arm_rows(fit.model);
     fit.covariance = inverse *
                      (Eigen::MatrixXd::Identity(rows_.rows(), rows_.rows()) + arm * arm.transpose()) *
@@ -195,7 +196,7 @@ class RegistrationFit {
       twists.col(static_cast<Eigen::Index>(k)) << move.translation() / kSmall,
           turn.axis() * turn.angle() / kSmall;
     }
-    const Eigen::MatrixXd to_parameters = twists.completeOrthogonalDecomposition().pseudoInverse();
+    const Eigen::MatrixXd to_parameters = pseudo_inverse(twists);
     const Eigen::MatrixXd covariance = to_parameters * fit.covariance * to_parameters.transpose();
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const auto index = static_cast<Eigen::Index>(k);

@@ -54,10 +54,9 @@ bool GaussNewton::run(Estimate& estimate, bool with_conditions) {
                  std::to_string(i + 1) + history_text();
       return false;
     }
-    const auto conditions = with_conditions ? fit_.conditions(positions_) : LeastSquares::Conditions{};
+    const auto conditions = with_conditions ? fit_.condition_numbers(positions_) : ConditionNumbers{};
     const double step = fit_.arm_step_norm();
-    history_.push_back(
-        {conditions.condition_number, conditions.scaled_condition_number, fit_.residual_rms_m(), step});
+    history_.push_back({conditions.as_is, conditions.unit_columns, fit_.residual_rms_m(), step});
     estimate = fit_.stepped(std::move(estimate));
     if (step < kStepNormConverged || (step < kStepNormRounding && step > 0.5 * before)) return true;
     before = step;

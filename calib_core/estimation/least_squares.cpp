@@ -9,10 +9,6 @@
 namespace calib {
 namespace {
 
-/// For a larger condition number the smallest eigenvalue of W^T W is not accurate; the singular values of W
-/// are computed instead.
-constexpr double kGramConditionMax = 1e4;
-
 std::optional<double> tolerance_of(const IdentificationProblem& problem, int arm_column) {
   if (arm_column < kErrorParameterCount) return problem.tolerances[static_cast<std::size_t>(arm_column)];
   return problem.std_compliance_rad_per_nm[static_cast<std::size_t>(arm_column - kErrorParameterCount)];
@@ -235,41 +231,24 @@ const Eigen::VectorXd& LeastSquares::leverages() {
   return normal_.leverages;
 }
 
-double LeastSquares::extreme_ratio(const Eigen::MatrixXd& gram) {
-  spectrum_.eigen.compute(gram, Eigen::EigenvaluesOnly);
-  const auto& values = spectrum_.eigen.eigenvalues();
-  if (values[0] <= 0.0) return std::numeric_limits<double>::infinity();
-  return std::sqrt(values[values.size() - 1] / values[0]);
-}
-
-LeastSquares::Conditions LeastSquares::conditions(const std::vector<Eigen::Index>& positions) {
+ConditionNumbers LeastSquares::condition_numbers(const std::vector<Eigen::Index>& positions) {
   const auto count = static_cast<Eigen::Index>(positions.size());
   if (count == 0) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-  spectrum_.gram.resize(count, count);
+  information_of_positions_.resize(count, count);
   for (Eigen::Index j = 0; j < count; ++j) {
     for (Eigen::Index i = 0; i < count; ++i) {
-      spectrum_.gram(i, j) = normal_.touch_information(positions[static_cast<std::size_t>(i)],
-                                                       positions[static_cast<std::size_t>(j)]);
+      information_of_positions_(i, j) = normal_.touch_information(positions[static_cast<std::size_t>(i)],
+                                                                  positions[static_cast<std::size_t>(j)]);
     }
   }
-  spectrum_.unit_gram = spectrum_.gram;
-  for (Eigen::Index j = 0; j < count; ++j) {
-    for (Eigen::Index i = 0; i < count; ++i)
-      spectrum_.unit_gram(i, j) /= std::sqrt(spectrum_.gram(i, i) * spectrum_.gram(j, j));
-  }
-  Conditions result{extreme_ratio(spectrum_.gram), extreme_ratio(spectrum_.unit_gram)};
-  if (result.condition_number < kGramConditionMax && result.scaled_condition_number < kGramConditionMax) {
-    return result;
-  }
+  if (const auto numbers = information_conditions_.of(information_of_positions_)) return *numbers;
   Eigen::MatrixXd columns(rows_.all.rows(), count);
   for (Eigen::Index j = 0; j < count; ++j)
     columns.col(j) = rows_.all.col(positions[static_cast<std::size_t>(j)]);
   for (Eigen::Index row = 0; row < rows_.all.rows(); ++row) {
     if (!kept_[static_cast<std::size_t>(row)]) columns.row(row).setZero();
   }
-  result.condition_number = condition_number(columns);
-  result.scaled_condition_number = condition_number(columns.colwise().normalized());
-  return result;
+  return calib::condition_numbers(columns);
 }
 
 }  // namespace calib

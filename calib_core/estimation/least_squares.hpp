@@ -2,11 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 #include <vector>
 
 #include "calib_core/estimation/estimate.hpp"
 #include "calib_core/estimation/identification_problem.hpp"
+#include "calib_core/numerics/condition_number.hpp"
 
 namespace calib {
 
@@ -72,13 +72,9 @@ class LeastSquares {
   /// weights of unit noise.
   const Eigen::VectorXd& leverages();
 
-  /// sigma_max / sigma_min (eq. 16) of the rows in these columns of the arm, as they are and scaled to unit
-  /// norm. `positions` are indices into arm_columns().
-  struct Conditions {
-    double condition_number = 0.0;
-    double scaled_condition_number = 0.0;
-  };
-  Conditions conditions(const std::vector<Eigen::Index>& positions);
+  /// Condition numbers of the kept rows in these columns of the arm; `positions` are indices into
+  /// arm_columns().
+  ConditionNumbers condition_numbers(const std::vector<Eigen::Index>& positions);
 
  private:
   struct Rows {
@@ -90,16 +86,10 @@ class LeastSquares {
     Eigen::VectorXd touch_gradient, gradient, column_scale, step, leverages;
     Eigen::LLT<Eigen::MatrixXd> cholesky;
   };
-  struct Spectrum {
-    Eigen::MatrixXd gram, unit_gram;
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-  };
-
   void allocate_buffers();
   void set_weights(Formulation formulation);
   void fill_row(Eigen::Index row, const PreparedModel& model);
   void add_priors(const Estimate& estimate);
-  double extreme_ratio(const Eigen::MatrixXd& gram);
 
   const IdentificationProblem& problem_;
   std::vector<int> arm_columns_;
@@ -115,7 +105,8 @@ class LeastSquares {
   std::vector<Plane> planes_;           // estimated contact planes; normals of unit length to first order
   Rows rows_;
   NormalEquations normal_;
-  Spectrum spectrum_;
+  Eigen::MatrixXd information_of_positions_;
+  InformationConditions information_conditions_;
 };
 
 }  // namespace calib

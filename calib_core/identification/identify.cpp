@@ -9,6 +9,7 @@
 #include "calib_core/estimation/input_check.hpp"
 #include "calib_core/estimation/outlier_rejection.hpp"
 #include "calib_core/identification/face_distances.hpp"
+#include "calib_core/numerics/condition_number.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
 namespace calib {

@@ -1,11 +1,10 @@
 #include "calib_core/observability/identifiability.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "calib_core/numerics/decompositions.hpp"
 
 namespace calib {
 namespace {
@@ -13,9 +12,6 @@ namespace {
 /// The rounding error of a dependent column relative to the longest column. The tolerance of eq. 13 is
 /// smaller when there are few rows; the weakest independent direction is nine orders of magnitude larger.
 constexpr double kRoundingRelative = 1e-13;
-
-/// Eigenvalues of W^T W below this fraction of the largest are not accurate enough for singular values.
-constexpr double kGramRelative = 1e-7;
 
 /// Factors below this fraction of the largest are rounding errors.
 constexpr double kFactorRelative = 1e-9;
@@ -92,8 +88,7 @@ Eigen::MatrixXd with_fewer_rows(const Eigen::Ref<const Eigen::MatrixXd>& observa
   if (leading.cols() > 0) all.leftCols(leading.cols()) = leading;
   all.rightCols(observation_matrix.cols()) = observation_matrix;
   if (all.rows() <= all.cols()) return all;
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(all);
-  return qr.matrixQR().topRows(all.cols()).triangularView<Eigen::Upper>();
+  return upper_triangle(all);
 }
 
 }  // namespace
@@ -157,35 +152,6 @@ Eigen::MatrixXd select_columns(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
   for (Eigen::Index j = 0; j < selected.cols(); ++j)
     selected.col(j) = matrix.col(columns[static_cast<std::size_t>(j)]);
   return selected;
-}
-
-Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
-  if (matrix.rows() == 0 || matrix.cols() == 0) return {};
-  if (matrix.rows() <= matrix.cols()) return Eigen::JacobiSVD<Eigen::MatrixXd>(matrix).singularValues();
-  // R has the singular values of W and fewer rows.
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(matrix);
-  const Eigen::MatrixXd r = qr.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>();
-  return Eigen::BDCSVD<Eigen::MatrixXd>(r).singularValues();
-}
-
-Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int count) {
-  if (count > 0 && count <= std::min(matrix.rows(), matrix.cols())) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix.transpose() * matrix,
-                                                               Eigen::EigenvaluesOnly);
-    const Eigen::VectorXd values = eigen.eigenvalues().tail(count).reverse();
-    // Squaring costs half of the digits.
-    if (values[count - 1] > kGramRelative * values[0]) return values.cwiseSqrt();
-  }
-  const Eigen::VectorXd all = singular_values(matrix);
-  return all.head(std::min<Eigen::Index>(count, all.size()));
-}
-
-double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix) {
-  const Eigen::VectorXd sigma = singular_values(matrix);
-  if (sigma.size() < matrix.cols() || sigma.size() == 0 || sigma[sigma.size() - 1] <= 0.0) {
-    return std::numeric_limits<double>::infinity();
-  }
-  return sigma[0] / sigma[sigma.size() - 1];
 }
 
 }  // namespace calib

@@ -56,14 +56,4 @@ IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& obs
 Eigen::MatrixXd select_columns(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
                                const std::vector<int>& columns);
 
-/// Singular values, descending.
-Eigen::VectorXd singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
-
-/// The `count` largest singular values, descending. Faster than singular_values() unless they differ by
-/// orders of magnitude.
-Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int count);
-
-/// sigma_max / sigma_min (eq. 16); infinite when sigma_min is 0.
-double condition_number(const Eigen::Ref<const Eigen::MatrixXd>& matrix);
-
 }  // namespace calib

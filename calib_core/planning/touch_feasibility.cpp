@@ -160,7 +160,7 @@ class TouchMaker::TouchLine {
     const Eigen::Vector3d straight_m = heights.clear_m * face().plane.outward;
     Eigen::Vector3d off_m = straight_m;
     for (int moves = 0; moves <= kClearMovesMax; ++moves) {
-      const auto clear = maker_.inverse_.follow(moved(off_m), approach);
+      auto clear = maker_.inverse_.follow(moved(off_m), approach);
       if (!clear || !is_in_range(*clear)) break;
       const Eigen::Vector3d away_m = out_of_slow_zone_m(*clear);
       if (away_m.isZero()) {

@@ -9,7 +9,7 @@ std::optional<std::vector<JointVector>> find_transfer(const PlanningProblem& pro
                                                       const JointVector& to) {
   const TransferSpace space(problem.nominal, travel_scene(problem), problem.park_joints,
                             problem.nominal_position_error_m);
-  const auto via = find_path(space, from, to);
+  auto via = find_path(space, from, to);
   if (!via || via->empty()) return via;
   const PreparedModel model = prepare(problem.nominal);
   const MoveCriteria criteria{

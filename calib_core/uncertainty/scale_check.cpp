@@ -1,12 +1,12 @@
 #include "calib_core/uncertainty/scale_check.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/decompositions.hpp"
 #include "calib_core/numerics/scaled_cholesky.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
@@ -167,7 +167,7 @@ bool determine_a_length(const IdentificationProblem& problem, const LeastSquares
     offsets[row] = known[static_cast<std::size_t>(row)].offset_m;
   }
   if (known.empty()) return false;
-  const Eigen::Vector3d point = normals.completeOrthogonalDecomposition().solve(offsets);
+  const Eigen::Vector3d point = least_squares_solution(normals, offsets);
   return (normals * point - offsets).lpNorm<Eigen::Infinity>() > kCommonPointMetres;
 }
 
@@ -232,8 +232,7 @@ double ball_error_for(const ArmVector& own, const LeastSquares& fit, double stre
   const Eigen::Index rows = fit.rows().rows();
   const Eigen::MatrixXd arm_rows = fit.rows().leftCols(fit.arm_count());
   const Eigen::VectorXd all_one = Eigen::VectorXd::Constant(rows, 1.0 / fit.noise_unit_m());
-  const Eigen::MatrixXd gram = (arm_rows.transpose() * arm_rows).eval();
-  const Eigen::VectorXd moved = gram.ldlt().solve(arm_rows.transpose() * all_one);
+  const Eigen::VectorXd moved = least_squares_solution(arm_rows, all_one);
   double along = 0.0;
   for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
     along += own[fit.arm_columns()[i]] * moved[static_cast<Eigen::Index>(i)];

@@ -31,10 +31,10 @@ const std::map<std::string, std::set<std::string>> kCoreLayerMayInclude{
     {"geometry", {}},
     {"numerics", {"geometry"}},
     {"kinematics", {"geometry"}},
-    {"observability", {"geometry", "kinematics"}},
+    {"observability", {"geometry", "numerics", "kinematics"}},
     {"estimation", {"geometry", "numerics", "kinematics", "observability"}},
     {"uncertainty", {"geometry", "numerics", "kinematics", "estimation"}},
-    {"identification", {"estimation", "uncertainty"}},
+    {"identification", {"numerics", "estimation", "uncertainty"}},
     {"motion", {"geometry", "kinematics"}},
     {"planning", {"geometry", "numerics", "kinematics", "estimation", "uncertainty", "motion"}},
 };

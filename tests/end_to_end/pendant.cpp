@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "calib_core/geometry/rotation.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/motion/transfer_path.hpp"
 #include "service/run/touch_command.hpp"
@@ -71,7 +72,7 @@ void Pendant::touch(int face_index, const Eigen::Vector3d& point_m) {
   for (const double lean_rad : {0.6, 0.3, 0.0}) {
     for (const Eigen::Vector3d& side :
          {face.edge_u, Eigen::Vector3d(-face.edge_u), face.edge_v(), Eigen::Vector3d(-face.edge_v())}) {
-      const Eigen::Quaterniond stylus = Eigen::Quaterniond::FromTwoVectors(
+      const Eigen::Quaterniond stylus = calib::shortest_rotation(
           Eigen::Vector3d::UnitZ(), std::sin(lean_rad) * side - std::cos(lean_rad) * face.plane.outward);
       for (double turn = 0.0; turn < 6.3; turn += 0.5) {
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();

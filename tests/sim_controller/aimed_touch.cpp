@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <stdexcept>
 
+#include "calib_core/geometry/rotation.hpp"
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/read_config.hpp"
@@ -40,9 +41,8 @@ AimedTouch aimed_touch(const cell::Cell& cell, const Aim& aim) {
       const Eigen::Vector3d tilt_axis = turn(azimuth, plane.outward) * face.edge_u;
       const Eigen::Vector3d stylus = Eigen::AngleAxisd(aim.tilt_rad, tilt_axis) * -plane.outward;
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-      pose.linear() =
-          (turn(spin, stylus) * Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), stylus))
-              .toRotationMatrix();
+      pose.linear() = (turn(spin, stylus) * calib::shortest_rotation(Eigen::Vector3d::UnitZ(), stylus))
+                          .toRotationMatrix();
       pose.translation() = point;
       const auto at_height = [&](double height_m, const calib::JointVector& near) {
         Eigen::Isometry3d there = pose;

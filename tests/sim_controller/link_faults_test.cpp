@@ -24,7 +24,7 @@ using std::chrono::milliseconds;
 using testing::aimed_touch;
 using testing::touch_command;
 
-constexpr std::chrono::seconds kPatience{20};
+constexpr std::chrono::seconds kRunPatience{20};
 /// What the host waits for, in the order of the times.
 constexpr cs8::ClientOptions kWaits{.connect_deadline = milliseconds(250),
                                     .heartbeat_period = milliseconds(50),
@@ -137,7 +137,7 @@ class LinkFaults : public ::testing::Test {
           client_.close();
           server_->stop();
         });
-    io_.run_for(kPatience);
+    io_.run_for(kRunPatience);
     if (failure) std::rethrow_exception(failure);
     ASSERT_TRUE(done) << "waits for something that does not come";
     ASSERT_EQ(lost_.has_value(), link_case.lost.has_value()) << (lost_ ? lost_->text : "goes on");
@@ -295,7 +295,7 @@ TEST_F(LinkFaults, AHostThatIsNotHeardIsLeft) {
         done = true;
         server_->stop();
       });
-  io_.run_for(kPatience);
+  io_.run_for(kRunPatience);
   ASSERT_TRUE(done);
   EXPECT_EQ(lost_.value().kind, LinkErrorKind::kPeerClosed);
 }
@@ -326,7 +326,7 @@ TEST_F(LinkFaults, APortThatNobodyListensAtIsListenedAtAgain) {
         client_.close();
         server_->stop();
       });
-  io_.run_for(kPatience);
+  io_.run_for(kRunPatience);
   ASSERT_TRUE(done);
   ASSERT_FALSE(kinds.empty());
   EXPECT_EQ(std::set(kinds.begin(), kinds.end()), std::set{LinkErrorKind::kUnreachable});

@@ -20,7 +20,7 @@ TEST(Plant, SearchSpeedLimitIsTheSpeedThatStopsWithinHalfTheOvertravel) {
 }
 
 TEST(Plant, StopsAnEighthOfAMillimetreBehindTheEdgeAtTheProbesSpeed) {
-  // cs8-controller.md, section 8: at 8 mm/s and 500 mm/s^2 about 0.13 mm.
+  // v^2 / (2 a) plus a cycle's delay: at 8 mm/s and 500 mm/s^2 about 0.13 mm.
   EXPECT_NEAR(stopping_distance_m(0.008, 0.008), 0.128e-3, 1e-9);
 }
 

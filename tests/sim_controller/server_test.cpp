@@ -18,7 +18,7 @@ using testing::aimed_touch;
 using testing::touch_command;
 
 /// No test waits longer than this for bytes; on a loaded machine it is far more than they take.
-constexpr std::chrono::seconds kPatience{10};
+constexpr std::chrono::seconds kAnswerPatience{10};
 
 /// A raw connection to the server.
 class Host {
@@ -108,7 +108,7 @@ class ServerTest : public ::testing::Test {
       done = true;
       server_->stop();
     });
-    io_.run_for(kPatience);
+    io_.run_for(kAnswerPatience);
     if (failure) std::rethrow_exception(failure);
     ASSERT_TRUE(done) << "the script waits for bytes that do not come";
   }
@@ -281,7 +281,7 @@ TEST_F(ServerTest, GoesBeforeItsIoContextDoes) {
   serve();
   Host left = host();
   server_.reset();
-  io_.run_for(kPatience);
+  io_.run_for(kAnswerPatience);
   EXPECT_TRUE(io_.stopped()) << "something of the server stayed";
 }
 

@@ -1,8 +1,8 @@
 #include "calib_core/planning/internal/condition_number_exchange.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
-#include <limits>
+
+#include "calib_core/numerics/condition_number.hpp"
 
 namespace calib {
 namespace {
@@ -15,10 +15,11 @@ constexpr std::size_t kShortList = 24;
 
 /// The derivative of trace(C^kPower), normalised: the weight of the linearised criterion.
 Eigen::MatrixXd power_weight(const Eigen::MatrixXd& information) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information);
-  const Eigen::VectorXd variances = eigen.eigenvalues().cwiseInverse();
+  SymmetricEigen eigen;
+  eigen.compute(information);
+  const Eigen::VectorXd variances = eigen.values().cwiseInverse();
   const Eigen::VectorXd weights = (variances / variances.maxCoeff()).array().pow(kPower - 1);
-  return eigen.eigenvectors() * weights.asDiagonal() * eigen.eigenvectors().transpose();
+  return eigen.vectors() * weights.asDiagonal() * eigen.vectors().transpose();
 }
 
 /// One exchange by the condition number itself of the candidate that was chosen first.
@@ -42,13 +43,6 @@ bool exchange_exactly(FedorovExchange& exchange, double& condition_number) {
 }
 
 }  // namespace
-
-double condition_number_of_information(const Eigen::MatrixXd& information) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(information, Eigen::EigenvaluesOnly);
-  const auto& values = eigen.eigenvalues();
-  if (values[0] <= 0.0) return std::numeric_limits<double>::infinity();
-  return std::sqrt(values[values.size() - 1] / values[0]);
-}
 
 void reduce_condition_number(FedorovExchange& exchange) {
   std::vector<std::size_t> best = exchange.chosen();

@@ -10,7 +10,4 @@ namespace calib {
 /// is then chosen by the condition number itself.
 void reduce_condition_number(FedorovExchange& exchange);
 
-/// The square root of the largest over the smallest eigenvalue.
-double condition_number_of_information(const Eigen::MatrixXd& information);
-
 }  // namespace calib

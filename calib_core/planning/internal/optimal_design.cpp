@@ -18,7 +18,7 @@
 namespace calib {
 namespace {
 
-constexpr int kRoundsMax = 20;
+constexpr int kExchangeRoundsMax = 20;
 constexpr double kImprovementMin = 3e-5;
 
 /// Prior information on every unknown as a fraction of the mean information of one touch: makes the matrix
@@ -67,7 +67,7 @@ class ExpectedIdentification {
       throw std::invalid_argument("the touches do not determine all parameters that are to be identified");
     const FullLinearisation whole = linearise_all_parameters(options_, fit, nominal_);
     return {propagate_uncertainty(problem_, options_, identifiable_, fit, whole, nominal_, std::nullopt),
-            fit.conditions(positions()).condition_number};
+            fit.condition_numbers(positions()).as_is};
   }
 
  private:
@@ -108,7 +108,7 @@ class TouchChooser {
     } else {
       exchange_.grow(count);
     }
-    for (int round = 0; round < kRoundsMax && exchange_.improve(kImprovementMin); ++round) {
+    for (int round = 0; round < kExchangeRoundsMax && exchange_.improve(kImprovementMin); ++round) {
     }
     if (problem_.goal.criterion == PlanCriterion::kConditionNumber) reduce_condition_number(exchange_);
   }

@@ -1,6 +1,5 @@
 #include "calib_core/planning/internal/touch_order.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/motion/motion_time.hpp"
 #include "calib_core/motion/transfer_path.hpp"
+#include "calib_core/numerics/decompositions.hpp"
 #include "calib_core/planning/internal/face_interleaving.hpp"
 #include "calib_core/planning/internal/fedorov_exchange.hpp"
 #include "calib_core/planning/internal/route_improvement.hpp"
@@ -25,10 +25,10 @@ constexpr double kInformativeShare = 1.2;
 /// Increase of the logarithm of the information determinant that is worth one second of travel.
 constexpr double kGainPerSecond = 0.1;
 /// Information before the first touch, relative to the scaled columns: small against that of any touch.
-constexpr double kRidge = 1e-6;
+constexpr double kOrderRidge = 1e-6;
 constexpr double kRankTolerance = 1e-9;
 /// Rounds of planning the transfers of the best order and improving the order with their times.
-constexpr int kRoundsMax = 4;
+constexpr int kOrderRoundsMax = 4;
 
 /// d signed distance / d error, one row per touch; columns scaled to a root mean square of 1, zero where no
 /// touch has an effect.
@@ -53,7 +53,7 @@ FedorovExchange empty_design(const Eigen::MatrixXd& rows) {
   return {rows,
           std::vector<int>(count, 0),
           {{.group = 0, .min = 0, .max = static_cast<int>(count)}},
-          kRidge * Eigen::MatrixXd::Identity(rows.cols(), rows.cols())};
+          kOrderRidge * Eigen::MatrixXd::Identity(rows.cols(), rows.cols())};
 }
 
 /// The stops of the route: the touches in the given order, then the park posture.
@@ -131,7 +131,7 @@ class Ordering {
     improve_sections();
     std::vector<std::size_t> best;
     double best_s = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < kRoundsMax; ++round) {
+    for (int round = 0; round < kOrderRoundsMax; ++round) {
       const bool all_known = stops_.plan_transfers(order_);
       const double time_s = route_time_s(stops_.problem(), order_);
       if (time_s < best_s) {
@@ -183,9 +183,8 @@ class Ordering {
     FaceInterleaving faces(faces_of(due));
     const Eigen::MatrixXd rows = observation_rows(problem_, touches_);
     FedorovExchange design = empty_design(rows);
-    const auto rank = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(rows).setThreshold(kRankTolerance).rank();
-    const auto informative =
-        static_cast<std::size_t>(std::ceil(kInformativeShare * static_cast<double>(rank)));
+    const auto informative = static_cast<std::size_t>(
+        std::ceil(kInformativeShare * static_cast<double>(rank(rows, kRankTolerance))));
     informative_end_ = 1 + std::min(due.size(), informative);
     while (order_.size() < informative_end_) {
       design.add(append_best(faces, due, [&](std::size_t from, std::size_t to) {

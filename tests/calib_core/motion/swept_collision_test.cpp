@@ -10,7 +10,7 @@
 namespace calib {
 namespace {
 
-constexpr double kClearanceMetres = 0.012;
+constexpr double kSweepClearanceMetres = 0.012;
 
 /// Clashes at a very fine sampling of the move: no body goes farther than 0.5 mm between two looks.
 bool sampled_clash(const CollisionScene& scene, const JointVector& from, const JointVector& to,
@@ -45,9 +45,10 @@ TEST(SweptCollision, FindsWhatAFineSamplingFindsAndNothingElse) {
   int clear = 0, clashes = 0;
   while (clear < 6 || clashes < 6) {
     const JointVector from = random_joints(), to = random_joints();
-    if (find_clash(scene, forward_chain(paper::nominal(), from), kClearanceMetres)) continue;
-    const bool found = find_clash_on_move(scene, paper::nominal(), from, to, kClearanceMetres).has_value();
-    const double finer_m = kClearanceMetres + (found ? 0.0005 : -kSweptErrorMaxMetres);
+    if (find_clash(scene, forward_chain(paper::nominal(), from), kSweepClearanceMetres)) continue;
+    const bool found =
+        find_clash_on_move(scene, paper::nominal(), from, to, kSweepClearanceMetres).has_value();
+    const double finer_m = kSweepClearanceMetres + (found ? 0.0005 : -kSweptErrorMaxMetres);
     EXPECT_EQ(sampled_clash(scene, from, to, finer_m), found) << from.transpose() << " to " << to.transpose();
     ++(found ? clashes : clear);
   }
@@ -60,7 +61,7 @@ TEST(SweptCollision, LooksAtBothEnds) {
   EXPECT_TRUE(find_clash_on_move(scene, paper::nominal(), park, on_table, 0.0));
   EXPECT_TRUE(find_clash_on_move(scene, paper::nominal(), on_table, park, 0.0));
   EXPECT_TRUE(find_clash_on_move(scene, paper::nominal(), on_table, on_table, 0.0));
-  EXPECT_FALSE(find_clash_on_move(scene, paper::nominal(), park, park, kClearanceMetres));
+  EXPECT_FALSE(find_clash_on_move(scene, paper::nominal(), park, park, kSweepClearanceMetres));
 }
 
 TEST(SweptCollision, APostureThatIsNotANumberIsNotClear) {

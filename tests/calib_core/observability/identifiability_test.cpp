@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
-
 namespace calib {
 namespace {
 
@@ -33,21 +31,6 @@ TEST(Identifiability, TriesTheGivenColumnsLastAndLeavesOutTheExcluded) {
   EXPECT_THAT(set.columns, ElementsAre(1));
   EXPECT_EQ(set.candidates[0].status, ParameterStatus::kGrouped);
   EXPECT_EQ(set.candidates[3].status, ParameterStatus::kExcluded);
-}
-
-TEST(SingularValues, OfRotatedAxesAreTheirLengths) {
-  Eigen::MatrixXd matrix(3, 2);  // orthogonal columns of length 5 and 10
-  matrix << 3.0, -8.0, 4.0, 6.0, 0.0, 0.0;
-  const Eigen::VectorXd sigma = singular_values(matrix);
-  ASSERT_EQ(sigma.size(), 2);
-  EXPECT_NEAR(sigma[0], 10.0, 1e-14);
-  EXPECT_NEAR(sigma[1], 5.0, 1e-14);
-  EXPECT_NEAR(largest_singular_values(matrix, 1)[0], 10.0, 1e-14);
-  EXPECT_NEAR(condition_number(matrix), 2.0, 1e-14);
-}
-
-TEST(ConditionNumber, OfFewerRowsThanColumnsIsInfinite) {
-  EXPECT_EQ(condition_number(Eigen::MatrixXd::Ones(1, 2)), std::numeric_limits<double>::infinity());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace calib {
 namespace {
 
 constexpr double kNominalMissMetres = 0.013;  // Table III's, with what a block is put down to
-constexpr int kPerFace = 12;
+constexpr int kTouchesPerFace = 12;
 
 PlanningProblem paper_problem() {
   PlanningProblem problem{.nominal = paper::nominal(),
@@ -38,7 +38,7 @@ class OnlineEstimate : public ::testing::Test {
   static std::vector<Touch> touches_of(const KinematicModel& arm) {
     UniformChance chance(7);
     std::vector<Touch> touches;
-    for (const study::ExactTouch& exact : study::exact_touches(arm, kPerFace, chance))
+    for (const study::ExactTouch& exact : study::exact_touches(arm, kTouchesPerFace, chance))
       touches.push_back(exact.touch);
     return touches;
   }

@@ -10,6 +10,7 @@
 #include "calib_core/estimation/artefact.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/motion/swept_collision.hpp"
+#include "calib_core/numerics/condition_number.hpp"
 #include "calib_core/observability/identifiability.hpp"
 #include "calib_core/observability/observation_matrix.hpp"
 #include "calib_core/planning/aimed_touch.hpp"
