@@ -97,7 +97,7 @@ void read_joint_ranges(const JsonObject& object, Arm& arm) {
 
 /// Weights turn with joint 1, so that only an arm whose axis 1 is plumb has a fixed "down" in frame 1.
 Eigen::Vector3d down_from_json(const JsonValue& value) {
-  const Eigen::Vector3d down = value.numbers<3>();
+  Eigen::Vector3d down = value.numbers<3>();
   if (down.x() != 0.0 || down.y() != 0.0 || std::abs(down.z()) != 1.0) {
     value.fail("is not along joint 1's axis; give [0,0,-1] (axis 1 points up) or [0,0,1]");
   }

@@ -28,7 +28,7 @@ struct Arm {
   calib::JointVector joint_speeds_max;  // rad/s
   std::vector<calib::Capsule> bodies;
   calib::ErrorTolerances std_errors{};
-  /// One standard deviation of the compliance of joints 2 and 3; nothing where nobody knows one.
+  /// One standard deviation of the compliance of joints 2 and 3; empty where it is unknown.
   std::array<std::optional<double>, calib::kComplianceCount> std_compliance_rad_per_nm{};
 };
 
@@ -68,7 +68,7 @@ struct AcceptanceLimits {
   /// the value is.
   bool guarded = false;
   /// How far the reference place may seem to move during a run; reference_drift_max_m() of
-  /// touch_judgement.hpp when nobody says.
+  /// touch_judgement.hpp when absent.
   std::optional<double> reference_drift_max_m;
 };
 
@@ -137,7 +137,7 @@ calib::ArtefactKnowledge artefact_knowledge(const Cell& cell);
 /// block's place that have none, unknown_place_std.
 calib::ErrorTolerances prior_tolerances(const Cell& cell);
 
-/// What drives or simulates the arm turns its joints. Throws ConfigError when one of them slides.
+/// Prismatic joints are not supported by the daemon and the simulator: throws ConfigError for one.
 void demand_revolute(const Cell& cell);
 
 }  // namespace cell

@@ -44,7 +44,7 @@ struct DeclaredFault {
   std::optional<int> times;
 
   std::string source;   // what the document is called
-  std::string pointer;  // where in it the fault stands
+  std::string pointer;  // of the fault in the file
 
   /// Throws ConfigError at this key of the fault, or at the fault itself for "".
   [[noreturn]] void fail(std::string_view key, const std::string& message) const;

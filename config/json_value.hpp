@@ -17,8 +17,8 @@ class JsonObject;
 /// As short as it can be written without loss: 4, 0.5, 1e-09.
 std::string plain_number(double number);
 
-/// No length in mm, angle, speed, mass or deviation in a file is larger (100 m in mm): beyond it stands a
-/// slip of the pen or an overflow in the making. A figure that may be larger has a range of its own.
+/// No length in mm, angle, speed, mass or deviation in a file is larger (100 m in mm): a larger
+/// one is a typo or would overflow. A figure that may be larger has a range of its own.
 inline constexpr double kNumberMax = 1e5;
 
 /// Ends included.

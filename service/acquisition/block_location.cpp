@@ -78,7 +78,7 @@ bool BlockLocation::keep_in(const std::filesystem::path& file) {
   if (!place) return false;
   if (place->digest != block_pose_digest(configured_)) {
     spdlog::warn(
-        "{}: the cell's files are others than when the block was located; it is taken to stand where "
+        "{}: the cell's files have changed since the block was located; it is taken to stand where "
         "they say. touchcal locate finds it",
         file.string());
     return false;
@@ -160,7 +160,7 @@ std::optional<CommandRefusal> BlockLocation::prepare_pass() {
   if (known_m > kPassMetres)
     return CommandRefusal{
         .detail = fmt::format(
-            "these touches tell the block's place to {:.0f} mm only, and the arm passes it at {:.0f}: "
+            "these touches determine the block's place to {:.0f} mm only, and the arm passes it at {:.0f}: "
             "take touches back (touchcal undo) and make them nearer to where they are asked for",
             calib::mm_from_metres(known_m), calib::mm_from_metres(kPassMetres))};
   auto postures =
@@ -174,7 +174,7 @@ std::optional<CommandRefusal> BlockLocation::prepare_pass() {
 asio::awaitable<bool> BlockLocation::pass() {
   const bool passed = co_await go_around_block();
   if (!passed && status_.state() == State::kStarting) {
-    co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     co_return false;
   }
   passing_ = false;

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "config/cell.hpp"
-#include "service/acquisition/clocks.hpp"
 #include "service/acquisition/command_refusal.hpp"
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/hand_touch.hpp"
 #include "service/acquisition/locating.hpp"
 #include "service/acquisition/published_status.hpp"
+#include "service/base/clocks.hpp"
 #include "service/run/block_pose.hpp"
 #include "service/run/tip_prediction.hpp"
 
@@ -27,14 +27,14 @@ class BlockLocation {
   BlockLocation(const Cell& configured, ControllerSession& session, PublishedStatus& status, Wake& wake,
                 Clocks clocks);
 
-  /// Where the place is kept; to be told before the cell operates. One that is there is used, unless it is of
-  /// another cell. True when it is used. Throws what cannot be read.
+  /// Sets the file of the block's pose; call it before the cell operates. A pose in the file is used, unless
+  /// it is of another cell. Returns whether one is used. Throws when the file cannot be read.
   bool keep_in(const std::filesystem::path& file);
 
-  /// With its block where it was found last. The same object for good.
+  /// The cell with its block at the last found pose. Always the same object.
   [[nodiscard]] const Cell& cell() const { return cell_; }
   [[nodiscard]] const TipRegions& regions() const { return *regions_; }
-  /// Nothing as long as the block stands where the cell's file says.
+  /// Empty while the block is where the cell file says.
   [[nodiscard]] const std::optional<BlockPose>& place() const { return place_; }
 
   /// Begins the dialogue; once the block is found, makes the pass ready: is_passing() is true then. The place
@@ -43,18 +43,18 @@ class BlockLocation {
   [[nodiscard]] bool is_locating() const { return locating_.has_value(); }
   [[nodiscard]] bool awaits_touch() const { return locating_ && !passing_; }
   [[nodiscard]] bool can_undo() const;
-  /// The last touch is forgotten and asked for again.
+  /// Discards the last touch and asks for it again.
   void undo();
-  /// Takes where the arm stands as the touch that is awaited.
+  /// Takes the arm's present position as the expected touch.
   std::optional<CommandRefusal> take();
-  /// A touch of a person who jogs, where one is awaited.
+  /// Watches for a touch by a person who jogs, while one is expected.
   void on_controller_state(const cs8::State& state);
   /// Ends the dialogue without a place.
   void leave();
-  /// What the person is told; nothing without a dialogue.
+  /// The instruction shown to the person; empty without a dialogue.
   [[nodiscard]] std::optional<HandGuide> guide() const;
 
-  /// The arm is to go, or goes, around the block.
+  /// True from the time the pass is ready until it ends.
   [[nodiscard]] bool is_passing() const { return passing_; }
   /// Past every face at 30 mm, where any contact is a fault; then to the park posture. True when the block
   /// was found: its place is kept and used, and all that was planned before holds no more. Else it is still

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 
+#include "calib_core/geometry/rotation.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/motion/collision.hpp"
 
@@ -36,7 +37,7 @@ class Pass {
     Eigen::Isometry3d pose = calib::forward_kinematics(cell_.arm.model, touch.joints);
     const double off_m = calib::signed_distance_m(plane, pose.translation()) - cell_.probe.stylus.radius_m;
     pose.pretranslate((kPassMetres - off_m) * plane.outward);
-    const auto same = calib::solve_near(cell_.arm.model, pose, touch.joints);
+    auto same = calib::solve_near(cell_.arm.model, pose, touch.joints);
     if (same && is_clear(*same)) return same;
     std::optional<calib::JointVector> nearest;
     double least = std::numeric_limits<double>::infinity();
@@ -44,11 +45,12 @@ class Pass {
     if (across.norm() < kAcrossMin) across = plane.outward.unitOrthogonal();
     across.normalize();
     for (int which = 0; which <= kLeans * kSides; ++which) {  // 0: along the normal
-      const double lean_rad = cell_.stylus_tilt_max_rad * ((which + kSides - 1) / kSides) / kLeans;
+      const int step = (which + kSides - 1) / kSides;
+      const double lean_rad = cell_.stylus_tilt_max_rad * step / kLeans;
       const Eigen::AngleAxisd side(2.0 * std::numbers::pi * which / kSides, plane.outward);
       const Eigen::Vector3d stylus =
           std::cos(lean_rad) * -plane.outward + std::sin(lean_rad) * (side * across);
-      const Eigen::Quaterniond lean = Eigen::Quaterniond::FromTwoVectors(pose.linear().col(2), stylus);
+      const Eigen::Quaterniond lean = calib::shortest_rotation(pose.linear().col(2), stylus);
       for (int turn = 0; turn < kTurns; ++turn) {
         Eigen::Isometry3d turned = pose;
         turned.linear() = lean * pose.linear() *

@@ -27,8 +27,8 @@ namespace {
 std::optional<CommandRefusal> refuse_confirm(const Status& status) {
   if (status.waiting_for == awaited_confirmation().name) return std::nullopt;
   if (!status.waiting_for) return CommandRefusal{.detail = "nothing waits for a confirmation now"};
-  return CommandRefusal{.detail = fmt::format("before a confirmation comes this: {}",
-                                              awaited_instruction(*status.waiting_for))};
+  return CommandRefusal{.detail =
+                            fmt::format("not yet; first: {}", awaited_instruction(*status.waiting_for))};
 }
 
 std::optional<CommandRefusal> refuse_touch_test(const Status& status) {
@@ -121,7 +121,7 @@ void CellOperation::store_fault(const std::string& name, const std::string& mess
 void CellOperation::describe_to(Status& status) {
   const bool open = run_ && run_->open;
   status.controller = session_.view(status.controller.probe);
-  // Each line of the log tells the run, and the touch under way or next.
+  // Each line of the log names the run, and the touch under way or next.
   set_logged_run(open ? std::optional(run_->run.id()) : std::nullopt);
   set_logged_touch(open && run_->run.next() ? std::optional(run_->run.touches_done() + 1) : std::nullopt);
   status.touches_done = 0;
@@ -234,7 +234,7 @@ std::variant<Started, CommandRefusal> CellOperation::start(const StartRequest& r
         .kind = CommandRefusal::Kind::kPreconditions,
         .detail = "the cell is not ready",
         .unmet = {{"store_not_writable",
-                   fmt::format("free disk space or mend the state directory: {}", error.what())}}};
+                   fmt::format("free disk space or repair the state directory: {}", error.what())}}};
   }
   run_.emplace(ActiveRun{.run = Run(id, tip_regions(), cell().recipes.at(request.recipe), now_text()),
                          .conditions = conditions,
@@ -304,7 +304,7 @@ std::optional<CommandRefusal> CellOperation::refusal_reason(Command command) con
 std::optional<CommandRefusal> CellOperation::refuse_answer_to_hold(Command command) const {
   const Command answer = touches_.answer_to_hold();
   if (status_.state() == State::kUnholding && answer != command)
-    return CommandRefusal{.detail = fmt::format("the run goes on by {} already", command_name(answer))};
+    return CommandRefusal{.detail = fmt::format("{} was already given", command_name(answer))};
   if (status_.state() == State::kHeld && touches_.held_by() == HeldBy::kNothing)
     return CommandRefusal{.detail = "no touch holds this run; resume goes on with the next one"};
   return std::nullopt;
@@ -346,7 +346,7 @@ std::optional<CommandRefusal> CellOperation::locate() {
   return std::nullopt;
 }
 
-/// Takes where the arm stands as the touch that is awaited of a person.
+/// Takes the arm's present position as the touch expected from a person.
 std::optional<CommandRefusal> CellOperation::take() {
   return location_.awaits_touch() ? location_.take() : manual_.take(active());
 }

@@ -14,7 +14,6 @@
 #include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/block_location.hpp"
-#include "service/acquisition/clocks.hpp"
 #include "service/acquisition/command_refusal.hpp"
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/manual_touching.hpp"
@@ -24,11 +23,12 @@
 #include "service/acquisition/run_recovery.hpp"
 #include "service/acquisition/touch_executor.hpp"
 #include "service/acquisition/touch_preparation.hpp"
+#include "service/base/clocks.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
 
-/// What a run is asked for with.
+/// A request for a run.
 struct StartRequest {
   std::string recipe;
   std::optional<std::string> idempotency_key;
@@ -41,8 +41,8 @@ struct Started {
   bool repeated = false;  // the same Idempotency-Key started it before
 };
 
-/// The cell in operation: the state and the run. Commands act at once on the state (state_machine.hpp); one
-/// loop does what the state asks for, a step at a time, by the owners of what the step needs. One thread:
+/// The cell in operation: the state and the run. Commands act at once on the state (run/packml_state.hpp);
+/// one loop does what the state asks for, a step at a time, by the owners of what the step needs. One thread:
 /// that of the executor.
 class CellOperation {
  public:
@@ -57,8 +57,8 @@ class CellOperation {
 
   /// Begins to look for the controller and to act on commands. Nothing moves before start().
   void launch();
-  /// Ends all: a running motion is stopped, the run is closed as stopped. Waits a few seconds for the
-  /// controller's answer; after that the link is cut, on which the controller stops by itself.
+  /// Stops a running motion and closes the run as stopped. Waits a few seconds for the controller's answer,
+  /// then closes the link, on which the controller stops the arm.
   boost::asio::awaitable<void> shut_down();
 
   std::variant<Started, CommandRefusal> start(const StartRequest& request);
@@ -67,25 +67,25 @@ class CellOperation {
   /// The commands that lead out of the present state and are taken now.
   [[nodiscard]] std::vector<Command> exits() const;
 
-  /// Where the place of the block is kept; to be told before launch(), see BlockLocation::keep_in.
+  /// Sets the file of the block's pose; call it before launch(). See BlockLocation::keep_in.
   void keep_place_in(const std::filesystem::path& file);
-  /// Where the block was found; nothing as long as it stands where the cell's file says.
+  /// The found pose of the block; empty while it is where the cell file says.
   [[nodiscard]] const std::optional<BlockPose>& place() const { return location_.place(); }
 
   [[nodiscard]] Status status() const;
   [[nodiscard]] std::uint64_t sequence() const { return status_.latest().sequence; }
   [[nodiscard]] std::optional<std::int64_t> data_age_ms() const { return session_.data_age_ms(); }
-  /// As the controller told it last; nothing before it has.
+  /// The controller's last reported state; empty before the first.
   [[nodiscard]] std::optional<cs8::State> controller_state() const { return session_.latest_state(); }
-  /// Whoever is told each change of the status, at once; one at a time.
+  /// Sets the one listener that is called at each change of the status.
   void on_change(std::function<void(const Status&)> listener) { status_.on_change(std::move(listener)); }
-  /// All that stands in the way of a start now.
+  /// Every precondition of a start that is not met now.
   [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
   /// The run under way or the last one of this daemon; null before the first.
   [[nodiscard]] const Run* run() const { return run_ ? &run_->run : nullptr; }
   /// The result document of run(), as json text; nothing before there is a result.
   [[nodiscard]] std::optional<std::string> result_json() const;
-  /// With its block where it was found last.
+  /// The cell with its block at the last found pose.
   [[nodiscard]] const Cell& cell() const { return location_.cell(); }
   [[nodiscard]] const TipRegions& tip_regions() const { return location_.regions(); }
   [[nodiscard]] const RunStore& store() const { return store_; }

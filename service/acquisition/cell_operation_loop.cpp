@@ -74,7 +74,7 @@ asio::awaitable<void> CellOperation::act_on(State state) {
       status_.apply(Event::kDone);
       break;
     case State::kClearing:
-      // Whatever stopped the arm, the controller is met anew before the next run.
+      // Whatever stopped the arm, the session starts again before the next run.
       session_.close();
       status_.apply(Event::kDone);
       break;
@@ -162,7 +162,7 @@ asio::awaitable<void> CellOperation::complete_run() {
   const bool parked = co_await park();
   if (status_.state() != State::kCompleting) co_return;
   if (!parked) {
-    co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     co_return;
   }
   const Run& run = run_->run;

@@ -8,13 +8,13 @@
 
 namespace cell {
 
-/// One thing that stands in the way of a start.
+/// A precondition of a start that is not met.
 struct Unmet {
   std::string code;    // "not_powered"
   std::string detail;  // what to do
 };
 
-/// Why a command was not taken.
+/// Why a command was refused.
 struct CommandRefusal {
   enum class Kind { kState, kPreconditions, kUnknownRecipe, kNotThisRun, kOtherKey };
   Kind kind = Kind::kState;

@@ -16,7 +16,7 @@ class Controller {
  public:
   virtual ~Controller() = default;
 
-  /// Called as cs8::ClientHooks says; to be given once, before connect().
+  /// Sets the hooks (cs8::ClientHooks); call it once, before connect().
   virtual void listen(cs8::ClientHooks hooks) = 0;
 
   /// Looks up the host, then connects and shakes hands.

@@ -1,5 +1,5 @@
-// How a ControllerSession gets a person's word before anything moves. Each co_await stands alone in its
-// statement, see cs8_controller.cpp.
+// How a ControllerSession obtains a person's confirmation before anything moves. Each co_await stands alone
+// in its statement, see cs8_controller.cpp.
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -44,7 +44,7 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
     const cs8::PermitReply reply = co_await controller_.begin(run_number, cell_.deadlines.confirm);
     asking_ = false;
     const auto* permit = std::get_if<cs8::Permit>(&reply);
-    if (!permit) co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    if (!permit) co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     if (!permit || status_.state() != state) continue;
     if (permit->reason == cs8::PermitReason::kNotConfirmed) {
       status_.raise(not_ready_fault(awaited_confirmation()), Event::kNotReadyFault);
@@ -56,7 +56,7 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
   co_return status_.state() == state;
 }
 
-/// Waits for what a person at the cell can mend; anything else ends the run.
+/// Waits for what a person at the cell can fix; anything else ends the run.
 asio::awaitable<void> ControllerSession::take_refused_permit(const cs8::Permit& permit,
                                                              std::optional<cs8::State> told,
                                                              std::chrono::steady_clock::time_point ready_by) {
@@ -73,7 +73,7 @@ asio::awaitable<void> ControllerSession::take_refused_permit(const cs8::Permit& 
     status_.raise(not_ready_fault(*awaited), Event::kNotReadyFault);
 }
 
-/// Until the controller is not as it was told, another state is entered or it is time to ask again.
+/// Waits until the controller's state changes, another state is entered or it is time to ask again.
 asio::awaitable<void> ControllerSession::wait_until_readier(std::optional<cs8::State> told,
                                                             std::chrono::steady_clock::time_point at_latest) {
   const State state = status_.state();

@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Pauses between attempts to connect: growing, so that a controller that is off is not hammered.
+/// Pauses between attempts to connect grow, to limit the attempts at a controller that is off.
 constexpr auto kFirstPause = 100ms;
 constexpr auto kLongestPause = 2000ms;
 
@@ -57,7 +57,7 @@ void ControllerSession::on_controller_state(const cs8::State& state) {
     standing_.reset();
     status_.warn({FaultCode::kArmMoved, {}});
   }
-  told_at_ = clocks_.steady();
+  state_at_ = clocks_.steady();
 }
 
 void ControllerSession::check_task(const cs8::State& state) {
@@ -160,7 +160,7 @@ bool ControllerSession::take_move(const cs8::MoveReply& reply) {
     return false;
   }
   const auto* result = std::get_if<cs8::MoveResult>(&reply.answer);
-  if (!result) return false;  // a lost link, which the controller's hook tells
+  if (!result) return false;  // a lost link, which the controller's hook reports
   controller_.acknowledge(reply.sequence);
   if (result->outcome == cs8::Outcome::kArrived) return true;
   if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {
@@ -174,9 +174,9 @@ bool ControllerSession::take_move(const cs8::MoveReply& reply) {
 void ControllerSession::expect_stop(cs8::Outcome outcome) {
   const bool asked = status_.state() == State::kStopping || status_.state() == State::kAborting;
   if (outcome == cs8::Outcome::kStopped && asked) return;
-  status_.raise({FaultCode::kProtocolError,
-                 fmt::format("a command was answered with '{}', which nobody asked for", cs8::name(outcome))},
-                Event::kAbortFault);
+  status_.raise(
+      {FaultCode::kProtocolError, fmt::format("unexpected answer '{}' to a command", cs8::name(outcome))},
+      Event::kAbortFault);
 }
 
 /// The controller's state, told after this call and at rest; nothing when the link is lost, another state was
@@ -186,7 +186,7 @@ asio::awaitable<std::optional<cs8::State>> ControllerSession::settled_state() {
   const auto asked_at = clocks_.steady();
   while (controller_.connected() && status_.state() == state) {
     const auto told = controller_.latest_state();
-    if (told && told_at_ > asked_at && (told->flags & cs8::kSettled) != 0) co_return told;
+    if (told && state_at_ > asked_at && (told->flags & cs8::kSettled) != 0) co_return told;
     if (clocks_.steady() > asked_at + kSettleMax)
       status_.raise({FaultCode::kMotionError, "the arm does not come to rest"}, Event::kAbortFault);
     co_await wake_.wait(20ms);

@@ -9,10 +9,10 @@
 #include "calib_core/geometry/joint_vector.hpp"
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
-#include "service/acquisition/clocks.hpp"
 #include "service/acquisition/controller.hpp"
 #include "service/acquisition/published_status.hpp"
 #include "service/acquisition/wake.hpp"
+#include "service/base/clocks.hpp"
 #include "service/run/readiness.hpp"
 
 namespace cell {
@@ -25,41 +25,41 @@ struct OpenTouch {
   int aimed_with = 0;           // as StoredTouch::aimed_with
 };
 
-/// What is known of the controller from one connection to the next: whether there is a link, the permit, the
-/// command that is still open there, where the arm stands. The one way by which a command reaches it.
-/// A lost link ends a wait with nothing and is reported by the controller's hooks, not from here; every other
-/// failure is raised at the status.
+/// What is known of the controller across connections: the link, the permit, the command still open there,
+/// and where the arm is. Every command goes through here. A lost link ends a wait without a result and is
+/// reported by the controller's hooks, not from here; every other failure is raised at the status.
 class ControllerSession {
  public:
   /// All must outlive it. Of `cell` the arm, the speeds and the deadlines are used.
   ControllerSession(const Cell& cell, Controller& controller, PublishedStatus& status, Wake& wake,
                     Clocks clocks);
 
-  // What the controller tells.
+  // What the controller reports.
   void on_controller_state(const cs8::State& state);
-  /// Behind on_controller_state, once the state was used otherwise: a task of the controller that failed.
+  /// Raises a failed task of the controller. Call it after on_controller_state and the state's other uses.
   void check_task(const cs8::State& state);
   void on_permit(const cs8::Permit& permit);
-  /// Of the cell: an arm that is to stop is stopped, a permit that is waited for is given back.
+  /// A new state of the cell: stops the arm where the state asks for it and returns a requested permit.
   void on_entered(State state);
 
   [[nodiscard]] bool connected() const { return controller_.connected(); }
   [[nodiscard]] std::optional<cs8::State> latest_state() const { return controller_.latest_state(); }
-  /// As it is shown; `probe` stays while its two inputs change one after the other.
+  /// The shown state; `probe` stays while its two inputs change one after the other.
   [[nodiscard]] ControllerView view(const std::optional<std::string>& probe) const;
   [[nodiscard]] std::optional<std::int64_t> data_age_ms() const;
-  /// Of the controller's application: one start of it; and its name and version, as it told them.
+  /// The controller's application: the session, one per start of it; its name and version as it reported
+  /// them.
   [[nodiscard]] std::uint32_t number() const { return number_; }
   [[nodiscard]] const std::optional<std::string>& application() const { return application_; }
 
-  /// Tries until there is a link, the state changes or the daemon ends. Nothing moves by it. The sequence of
-  /// a command that the controller still has and that is to be settled now; 0 when there is none.
-  /// `run_interrupted`: with a run on hold that nobody resumed yet, a missing link changes nothing.
+  /// Tries until there is a link, the state changes or the daemon ends. Moves nothing. Returns the sequence
+  /// of a command that the controller still has and that must be settled now; 0 without one.
+  /// `run_interrupted`: while a run is on hold and not resumed, a missing link changes nothing.
   boost::asio::awaitable<std::uint32_t> connect(bool run_interrupted);
   void close() { controller_.close(); }
 
-  /// A person's word before anything moves (PROTOCOL.md, section 7), for the run of this number. True once it
-  /// is given; else another state was entered, by a fault or by a command.
+  /// Obtains a person's permit before anything moves (PROTOCOL.md, section 7), for the run of this number.
+  /// True when it is given; else a fault or a command has entered another state.
   boost::asio::awaitable<bool> obtain_permit(std::uint32_t run_number);
   void give_permit_back() { controller_.finish(); }
 
@@ -70,27 +70,26 @@ class ControllerSession {
   /// 0 when nothing is open.
   [[nodiscard]] std::uint32_t sequence_to_settle() const;
   boost::asio::awaitable<cs8::QueryReply> query(std::uint32_t sequence);
-  /// Lets the controller forget a touch: only when its answer is stored, or is none to store.
+  /// Lets the controller forget a touch. Only when its answer is stored, or holds nothing to store.
   void acknowledge(std::uint32_t sequence);
 
   [[nodiscard]] std::uint32_t next_sequence() const { return controller_.next_sequence(); }
-  /// Sent before this returns; await the reply at once.
+  /// The command is sent before this returns; await the reply at once.
   boost::asio::awaitable<cs8::TouchReply> touch(cs8::Touch command) { return controller_.touch(command); }
-  /// True when the arm is where it was sent.
+  /// True when the arm has arrived.
   boost::asio::awaitable<bool> travel(cs8::Travel command);
-  /// A command that came neither to its end nor to a fault was stopped, as somebody asked; nobody else may.
+  /// Handles a command that ended stopped: by a person's request, or else it is a fault.
   void expect_stop(cs8::Outcome outcome);
 
   // Where the last command left the arm, when that is certain.
   [[nodiscard]] const std::optional<calib::JointVector>& standing() const { return standing_; }
   void set_standing(const calib::JointVector& joints) { standing_ = joints; }
   void forget_standing() { standing_.reset(); }
-  /// Where the arm stands, clear of the faces: a search that was broken off left the stylus near one, and the
-  /// arm goes back along its line first. Nothing when that failed, the link is lost or another state was
-  /// entered.
+  /// The arm's joints, clear of the faces: after an interrupted search the arm first goes back along the
+  /// search line. Empty when that failed, the link is lost or another state was entered.
   boost::asio::awaitable<std::optional<calib::JointVector>> standing_joints();
-  /// Before the daemon ends: a stop may have left the stylus at a face, where nobody would know of it. What
-  /// goes wrong in it leaves the arm where it is.
+  /// Retracts before the daemon ends: a stop may have left the stylus at a face. A failure leaves the arm
+  /// where it is.
   boost::asio::awaitable<void> leave_face();
 
  private:
@@ -111,14 +110,14 @@ class ControllerSession {
   Clocks clocks_;
   std::uint32_t number_ = 0;
   std::optional<std::string> application_;
-  std::optional<std::uint32_t> overruns_;  // of the controller's tasks, as it told
-  std::uint32_t unsettled_sequence_ = 0;   // an open command met in a state that does not settle it
+  std::optional<std::uint32_t> overruns_;  // of the controller's tasks, as reported
+  std::uint32_t unsettled_sequence_ = 0;   // an open command found in a state that does not settle it
   std::optional<OpenTouch> open_touch_;
   std::optional<calib::JointVector> standing_;
-  std::chrono::steady_clock::time_point told_at_;  // when the controller told its newest state
-  std::int32_t task_error_ = 0;                    // as it told then
-  int inputs_disagree_count_ = 0;                  // newest states of the controller in a row
-  bool asking_ = false;                            // for a permit
+  std::chrono::steady_clock::time_point state_at_;  // when the newest state was received
+  std::int32_t task_error_ = 0;                     // in that state
+  int inputs_disagree_count_ = 0;                   // newest states of the controller in a row
+  bool asking_ = false;                             // for a permit
 };
 
 }  // namespace cell

@@ -30,7 +30,7 @@ struct LookUp {
   asio::ip::tcp::resolver::results_type found;
 };
 
-/// A look-up cannot be broken off: the answer to one that takes too long comes to nobody.
+/// A look-up cannot be cancelled: an answer that comes too late is dropped.
 asio::awaitable<std::shared_ptr<LookUp>> look_up(asio::any_io_executor executor, Endpoint endpoint,
                                                  std::chrono::milliseconds at_most) {
   auto look = std::make_shared<LookUp>(executor);

@@ -24,7 +24,7 @@ std::optional<HandTouch> HandTouchWatch::on_controller_state(const cs8::State& s
 }
 
 std::variant<HandTouch, std::string> HandTouchWatch::take() {
-  if (!last_) return "the controller has not told where the arm is";
+  if (!last_) return "the controller has not reported the arm's position";
   const cs8::ProbeInputs probe = cs8::probe_inputs(last_->flags);
   if (probe.free()) return "the probe reads free: jog until it touches";
   if (!probe.touched()) return "the probe's two inputs contradict each other: look at its cable";

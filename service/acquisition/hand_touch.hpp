@@ -14,29 +14,29 @@ namespace cell {
 struct HandTouch {
   cs8::JointsMicrodeg wire_joints{};  // of the state in which the probe read touched first
   calib::JointVector joints = calib::JointVector::Zero();
-  /// The nominal ball's way since the state before, in which the trigger was; nothing when it was taken by
-  /// word, with nobody knowing where the probe tripped.
+  /// The nominal ball's motion since the previous state, within which the probe tripped; empty for a touch
+  /// taken by command, where that is unknown.
   std::optional<double> moved_m;
 };
 
-/// Watches the controller's states for a probe that trips while a person jogs. A value without a clock.
+/// Watches the controller's states for a probe that trips while a person jogs. Reads no clock.
 class HandTouchWatch {
  public:
   explicit HandTouchWatch(const calib::KinematicModel& nominal) : prepared_(calib::prepare(nominal)) {}
 
-  /// The next state; a touch when the probe was free before and reads touched now, and the joints are
-  /// referenced.
+  /// Takes the next state; returns a touch when the probe was free before and reads touched now, with
+  /// referenced joints.
   std::optional<HandTouch> on_controller_state(const cs8::State& state);
-  /// Where the arm stands now, by a person's word; or why that is no touch: the probe does not read touched,
-  /// the arm moves, nothing was heard, or this contact was given out before. A contact is one touch: the
-  /// probe must be free before the next.
+  /// Takes the present position as a touch, on a person's command; or says why it is not one: the probe does
+  /// not read touched, the arm moves, no state was received, or this contact was returned before. The probe
+  /// must be free between two touches.
   std::variant<HandTouch, std::string> take();
 
  private:
   calib::PreparedModel prepared_;
   std::optional<cs8::State> last_;
   std::optional<Eigen::Vector3d> free_m_;  // the ball when the probe was last free
-  bool given_ = false;                     // the contact under way
+  bool given_ = false;                     // the present contact was returned
 };
 
 }  // namespace cell

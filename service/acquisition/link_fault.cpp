@@ -1,5 +1,8 @@
 #include "service/acquisition/link_fault.hpp"
 
+#include <algorithm>
+#include <array>
+
 namespace cell {
 namespace {
 
@@ -27,16 +30,10 @@ FaultCode fault_code_of(cs8::LinkErrorKind kind) {
 }  // namespace
 
 bool is_link_fault(FaultCode code) {
-  switch (code) {
-    case FaultCode::kControllerUnreachable:
-    case FaultCode::kControllerIncompatible:
-    case FaultCode::kProtocolError:
-    case FaultCode::kLinkLost:
-    case FaultCode::kAnswerMissing:
-      return true;
-    default:
-      return false;
-  }
+  constexpr std::array kLinkFaults{FaultCode::kControllerUnreachable, FaultCode::kControllerIncompatible,
+                                   FaultCode::kProtocolError, FaultCode::kLinkLost,
+                                   FaultCode::kAnswerMissing};
+  return std::ranges::find(kLinkFaults, code) != kLinkFaults.end();
 }
 
 Fault link_fault(const cs8::LinkError& error) { return {fault_code_of(error.kind), error.text}; }

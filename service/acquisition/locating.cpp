@@ -95,7 +95,7 @@ PlaceSpot spot_at(const Cell& cell, int index, double u, double v) {
     const int neighbour = towards(cell, index, direction);
     if (neighbour != index) {
       near += fmt::format("{}plane {}", near.empty() ? "" : " and ", neighbour + 1);
-    } else {  // no face there has a number: told by the axis of R_-1
+    } else {  // no face there has a number: named by the axis of R_-1
       Eigen::Index axis = 0;
       direction.cwiseAbs().maxCoeff(&axis);
       near += fmt::format("{}its {}{} edge", near.empty() ? "" : " and ", direction[axis] > 0.0 ? '+' : '-',
@@ -110,7 +110,7 @@ PlaceSpot spot_at(const Cell& cell, int index, double u, double v) {
 
 std::vector<PlaceSpot> place_spots(const Cell& cell) {
   const auto [top, side, end] = chosen_faces(cell);
-  // On the side the two touches lie beside each other: they tell how the block is turned.
+  // The two touches on the side lie beside each other and give the block's rotation.
   const calib::Face& second = face_of(cell, side);
   const bool u_is_level =
       std::abs(second.edge_u.dot(up_in_block(cell))) < std::abs(second.edge_v().dot(up_in_block(cell)));
@@ -171,7 +171,7 @@ void Locating::take(const HandTouch& touch) {
   if (touches_.size() == spots_.size()) return;
   const int face = spots_[touches_.size()].face;
   if (touch.moved_m && *touch.moved_m > kHandMovedMaxMetres) {
-    problem_ = fmt::format("the ball went {:.1f} mm in the moment of the touch: come slower, under 25 mm/s",
+    problem_ = fmt::format("the ball moved {:.1f} mm during the touch: approach more slowly, under 25 mm/s",
                            calib::mm_from_metres(*touch.moved_m));
     return;
   }

@@ -12,41 +12,41 @@
 
 namespace cell {
 
-/// What is asked of a person to find the block: which faces, roughly where.
+/// A touch that a person is asked for to find the block: on which face, roughly where.
 struct PlaceSpot {
   int face = 0;             // index
   Eigen::Vector3d point_m;  // on the face, in R_-1
   std::string words;        // "plane 3, near planes 1 and 2"
 };
 
-/// Three spots on the top, two on a side, one on an end: faces whose places are known, with the top where
-/// gravity has it and the others as square to it and to each other as there are. Throws std::invalid_argument
-/// when the cell's block has no three such faces.
+/// Three spots on the top, two on a side, one on an end: faces with known poses, the top by the direction of
+/// gravity, the others as square to it and to each other as possible. Throws std::invalid_argument when the
+/// cell's block has no three such faces.
 std::vector<PlaceSpot> place_spots(const Cell& cell);
 
-/// How exactly a touch by hand tells where the face is.
+/// Standard deviation of a touch by hand.
 inline constexpr double kHandNoiseMetres = 1e-4;
-/// A ball that went farther than this from one state to the next came too fast.
+/// The farthest motion of the ball from one state to the next at which a touch counts.
 inline constexpr double kHandMovedMaxMetres = 1e-3;
-/// A touch that was taken by word may have gone on behind the trigger by this share of the overtravel.
+/// Share of the overtravel by which a touch taken by command may have moved on after the trigger.
 inline constexpr double kTakenOvertravelShare = 0.5;
 
-/// The dialogue that finds the block: a step machine without I/O. Touches go in, what to do next comes out;
-/// behind the sixth touch there is a place or a reason why not.
+/// The dialogue that finds the block: a state machine without I/O. Touches go in, instructions come out;
+/// after the sixth touch there is a pose or a reason why not.
 class Locating {
  public:
-  /// The block is sought from where `cell` has it.
+  /// Starts from the pose of the block in `cell`.
   explicit Locating(const Cell& cell);
 
   /// What to do next.
   [[nodiscard]] HandGuide guide() const;
-  /// One touch more; one that cannot count is told by guide().problem.
+  /// Adds a touch; for one that cannot count, guide().problem says why.
   void take(const HandTouch& touch);
-  /// Forgets the last touch; nothing happens when there is none.
+  /// Discards the last touch, if any.
   void undo();
 
   [[nodiscard]] const std::vector<calib::RegistrationTouch>& touches() const { return touches_; }
-  /// Once all touches are made and fit.
+  /// Present when all touches are made and fit.
   [[nodiscard]] const std::optional<calib::BlockRegistration>& fit() const { return fit_; }
 
  private:
@@ -61,8 +61,8 @@ class Locating {
   std::optional<std::string> problem_;
 };
 
-/// One standard deviation of each error of an arm that is known as well as the nominal miss says; the maker's
-/// where they are wider.
+/// Standard deviation of each error of an arm that misses by the nominal miss, or the maker's where it is
+/// wider.
 calib::ErrorTolerances believable_errors(const Cell& cell);
 
 }  // namespace cell

@@ -20,7 +20,7 @@ namespace {
 
 /// From one state to the next, 20 ms: faster, and the trigger is not known well enough to calibrate with.
 constexpr double kGuidedMovedMaxMetres = 2e-4;
-/// A touch with all joints this near to another one's on the same face tells nothing new.
+/// A touch with all joints this near to those of another one on the same face adds nothing.
 constexpr double kSamePostureRad = 0.035;
 
 /// On any face: the probe bounced, it is the same contact once more.
@@ -107,7 +107,7 @@ void ManualTouching::on_controller_state(ActiveRun* active, const cs8::State& st
   if (const auto touch = watch_->on_controller_state(state)) take_touch(active, *touch);
 }
 
-/// A touch that can be the one that is awaited is kept; else it is told why not.
+/// Keeps a touch that can be the expected one; else returns the reason.
 std::optional<std::string> ManualTouching::take_touch(ActiveRun* active, const HandTouch& touch) {
   const calib::PlannedTouch* planned = active ? active->run.next() : nullptr;
   if (!guide_ || !planned || status_.state() != State::kExecute) return "no touch is awaited now";
@@ -138,7 +138,7 @@ std::optional<std::string> ManualTouching::take_touch(ActiveRun* active, const H
 std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::PlannedTouch& planned,
                                                    const HandTouch& touch) const {
   if (touch.moved_m && *touch.moved_m > kGuidedMovedMaxMetres) {
-    return fmt::format("the ball went {:.2f} mm in the moment of the touch: come slower, under 10 mm/s",
+    return fmt::format("the ball moved {:.2f} mm during the touch: approach more slowly, under 10 mm/s",
                        calib::mm_from_metres(*touch.moved_m));
   }
   const calib::PlanningProblem& problem = preparation_.problem();

@@ -13,27 +13,25 @@
 
 namespace cell {
 
-/// A guided run: a person makes its touches with the pendant, for a cell in which nothing is commanded yet.
-/// Says which touch comes next, watches the controller's states for it, and keeps it as the touch executor
-/// keeps one of its own. What cannot be the touch that is awaited is refused in words.
+/// A guided run: a person makes the touches with the pendant, in a cell where the arm is not commanded.
+/// Shows which touch comes next, watches the controller's states for it, and stores it as the touch executor
+/// does. A contact that cannot be the expected touch is refused with the reason.
 class ManualTouching {
  public:
   /// All must outlive it.
   ManualTouching(const Cell& cell, RunStore& store, ControllerSession& session, TouchPreparation& preparation,
                  TouchExecutor& touches, PublishedStatus& status, Wake& wake);
 
-  /// Tells which touch comes next and waits for it; a touch that was taken wakes. The step is done
-  /// (Event::kDone) when there is none left.
+  /// Shows which touch comes next and waits for it. Ends the step (Event::kDone) when no touch is left.
   boost::asio::awaitable<void> await_touch(ActiveRun& active);
   [[nodiscard]] bool awaits_touch() const { return watch_.has_value(); }
-  /// Takes where the arm stands as the touch that is awaited: one must be. `active`: null without a run.
+  /// Takes the arm's present position as the expected touch; there must be one. `active`: null without a run.
   std::optional<CommandRefusal> take(ActiveRun* active);
-  /// A touch of a person who jogs, where one is awaited.
+  /// Watches for a touch by a person who jogs, while one is expected.
   void on_controller_state(ActiveRun* active, const cs8::State& state);
-  /// The run's last touch is withdrawn and asked for again. The aim forgets it as well: it is made anew from
-  /// all others.
+  /// Withdraws the run's last touch and asks for it again. The online estimate is made again from the others.
   void undo(ActiveRun& active);
-  /// What the person is told; nothing in another state than EXECUTE, which ends the watching.
+  /// The instruction shown to the person; empty outside EXECUTE, where the watch ends.
   std::optional<HandGuide> guide(State state);
 
  private:

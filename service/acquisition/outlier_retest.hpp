@@ -11,15 +11,15 @@
 
 namespace cell {
 
-/// The last touch, which the others contradict, is made again in the same way before anything else. Pure
-/// steps: it says what the repetition means; the touch executor makes the touch and acts on the finding.
+/// Repeats the last touch in the same way when the others contradict it. Pure steps: it judges the
+/// repetition; the touch executor makes the touch and acts on the finding.
 class OutlierRetest {
  public:
-  /// Both touches agree: the place is as it was touched, and the touch stays, as a warning tells.
+  /// Both touches agree: the first one stays, with a warning.
   struct Confirmed {
     Fault warning;
   };
-  /// The repetition fits the others: it takes the touch's place.
+  /// The repetition fits the others and replaces the touch.
   struct Replaced {
     StoredTouch again;
     calib::OnlineArmEstimate aim;  // with the repetition instead
@@ -30,7 +30,7 @@ class OutlierRetest {
   };
   using Finding = std::variant<Confirmed, Replaced, Held>;
 
-  /// The touch that was just made contradicts the others: how it was made, and what was known without it.
+  /// The touch just made contradicts the others: how it was aimed, and the estimate without it.
   void begin(calib::AimedTouch aimed, calib::OnlineArmEstimate without) {
     suspect_ = {std::move(aimed), std::move(without)};
   }

@@ -25,8 +25,8 @@ std::optional<Fault> PlaceCheck::check(const calib::Touch& touch) {
   if (std::ranges::includes(faces_met_, faces_)) aim_.reset();
   if (std::abs(contact.position_error_m) <= contact.predicted_position_error_m) return std::nullopt;
   return Fault{FaultCode::kBlockMoved,
-               fmt::format("plane {} was met {:.1f} mm from there, {:.1f} mm could be", touch.face + 1,
-                           calib::mm_from_metres(contact.position_error_m),
+               fmt::format("contact {1:.1f} mm off the located plane {0}; {2:.1f} mm at most were expected",
+                           touch.face + 1, calib::mm_from_metres(contact.position_error_m),
                            calib::mm_from_metres(contact.predicted_position_error_m))};
 }
 

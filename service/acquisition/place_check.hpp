@@ -10,18 +10,17 @@
 
 namespace cell {
 
-/// Whether the block still stands where it was located: a run's first touch on each face is held against what
-/// the touches that found the place say. A value without I/O; one a run. It has no say any more once every
-/// face that found the place was met.
+/// Checks that the block is still where it was located: compares a run's first touch on each face with the
+/// touches that found the pose. One per run, without I/O. It ends when every such face has been touched.
 class PlaceCheck {
  public:
   /// `problem` is that of the run.
   PlaceCheck(calib::PlanningProblem problem, const BlockPose& place);
 
-  /// A contact of the run; the fault to hold on when it is not where the face was located.
+  /// Checks a contact of the run; returns the fault to hold on when it is not on the located face.
   std::optional<Fault> check(const calib::Touch& touch);
-  /// A fault of a touch at a face: that the block was moved, when the face was not met at all where it was
-  /// located; else the fault itself.
+  /// Explains a fault of a touch: that the block was moved, when the located face has not been touched yet;
+  /// else the fault itself.
   [[nodiscard]] Fault explain(Fault fault, int face) const;
 
  private:

@@ -18,11 +18,11 @@ namespace cell {
 /// A recipe's plan, or why there is none: the same whenever it is asked for.
 using PlanOutcome = std::variant<std::shared_ptr<const Plan>, PlanRefusal>;
 
-/// The plans that were made of a cell, by recipe. Planning takes seconds: it has a thread of its own, beside
-/// the sockets; everything else happens on the executor's.
+/// The plans of a cell, by recipe. Planning takes seconds and has its own thread; everything else runs on the
+/// executor's.
 class PlanCache {
  public:
-  /// `cell` must outlive it; it may stand elsewhere later, then clear() is due.
+  /// `cell` must outlive it. Call clear() when its block is found elsewhere.
   PlanCache(boost::asio::any_io_executor executor, const Cell& cell)
       : executor_(std::move(executor)), cell_(cell) {}
   ~PlanCache() { planner_.join(); }
@@ -32,14 +32,14 @@ class PlanCache {
   /// Plans a recipe of the cell, unless it has been planned; again when clear() was called meanwhile. What
   /// the planner throws becomes a refusal.
   boost::asio::awaitable<PlanOutcome> plan(std::string recipe);
-  /// The same for whoever does not wait: `done` is called once planned() has it.
+  /// The same without waiting: `done` is called when planned() has the outcome.
   void begin(std::string recipe, std::function<void()> done);
   /// What plan() gave; nothing before.
   [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe) const;
   [[nodiscard]] bool is_planning() const { return under_way_count_ > 0; }
   /// Null when no plan that is kept has this id.
   [[nodiscard]] std::shared_ptr<const Plan> plan_with_id(const std::string& id) const;
-  /// The block stands elsewhere: none of the plans holds any more, nor one that is being made.
+  /// Discards all plans, also one that is being made: the block was found elsewhere.
   void clear();
 
  private:

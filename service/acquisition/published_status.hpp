@@ -5,14 +5,14 @@
 #include <optional>
 #include <string>
 
-#include "service/acquisition/clocks.hpp"
 #include "service/acquisition/wake.hpp"
+#include "service/base/clocks.hpp"
 #include "service/run/status.hpp"
 
 namespace cell {
 
-/// The one owner of the state and of what a supervisor polls. Every part of the acquisition reports here:
-/// faults, warnings, ends of steps. A setter alone tells nobody; the next publish() does. One thread.
+/// The owner of the state and of the status that supervisors poll. Every part of the acquisition reports
+/// here: faults, warnings, ends of steps. A setter does not publish; the next publish() does. One thread.
 class PublishedStatus {
  public:
   /// What the status needs of the others; called from inside the calls below.
@@ -23,18 +23,18 @@ class PublishedStatus {
     std::function<void(const std::string& name, const std::string& message)> store_fault;
   };
 
-  /// `wake` must outlive it: whoever waits looks at each new state.
+  /// `wake` must outlive it: it is woken at each new state.
   PublishedStatus(Clocks clocks, Wake& wake, std::string instance_id, Hooks hooks);
 
   [[nodiscard]] State state() const { return status_.state; }
   [[nodiscard]] const Status& latest() const { return status_; }
   [[nodiscard]] const std::optional<Fault>& fault() const { return status_.fault; }
-  /// Whoever is told each change, at once; one at a time.
+  /// Sets the one listener that is called at each change.
   void on_change(std::function<void(const Status&)> listener) { status_listener_ = std::move(listener); }
 
-  /// Nothing when it is the state already.
+  /// Does nothing when it is the present state.
   void enter(State state);
-  /// As the state machine has it.
+  /// Enters the state that the state machine gives for the event.
   void apply(Event event);
   /// A fault: logged, kept, published; then its event.
   void raise(Fault fault, Event event);
@@ -42,17 +42,17 @@ class PublishedStatus {
   void warn(Fault fault);
   void publish();
 
-  /// The daemon ends: nothing new begins any more.
+  /// The daemon ends: nothing new begins.
   void end() { is_ending_ = true; }
   [[nodiscard]] bool is_ending() const { return is_ending_; }
 
   void set_fault(Fault fault) { status_.fault = std::move(fault); }
   void clear_fault() { status_.fault.reset(); }
-  /// What is awaited of a person at the cell, and what to do; published when it is another one.
+  /// What the cell waits for from a person, and what to do; published when it changes.
   void wait_for(std::optional<std::string> name);
   /// A run: without a fault, a warning or a verdict yet.
   void begin_run(std::int64_t run_id);
-  /// No run: an arm that goes around the block makes none.
+  /// No run: a pass around the block is not one.
   void forget_run();
   void set_verdict(Verdict verdict) { status_.verdict = verdict; }
   void set_last_accepted(std::int64_t run_id, std::optional<std::string> at);

@@ -10,9 +10,9 @@
 
 namespace cell {
 
-/// Whether anything moves during a run: a place that is touched again and again, always in the same way. It
-/// is that of the first touch that is fitted. Its touches are none of the plan: neither counted nor fitted.
-/// Pure steps: it says when the place is due and what a contact there means; the touch executor makes it.
+/// Shows drift during a run: touches one place again and again in the same way, that of the first fitted
+/// touch. These touches are not part of the plan: neither counted nor fitted. Pure steps: it says when the
+/// place is due and judges the contacts; the touch executor makes them.
 class ReferenceMonitor {
  public:
   /// Where a contact has the ball along the place's outward normal, as the arm is known now, metres.
@@ -30,21 +30,21 @@ class ReferenceMonitor {
     std::optional<Fault> hold;     // the place has drifted
   };
 
-  /// A run whose recipe wants the place touched behind every so many touches; 0: never.
+  /// Begins a run with a reference touch after every `every` touches; 0: never.
   void begin_run(int every);
-  /// A fitted touch of the plan was made: the first one says where the place is.
+  /// Notes a fitted touch of the plan; the first one sets the reference place.
   void note_fitted(const calib::PlannedTouch& planned, const calib::JointVector& contact);
   /// A restarted daemon knows the place again, with the first contact there and the count of them, where
   /// there was one; it is due before anything else.
   void restore(const calib::PlannedTouch& planned, const calib::JointVector& contact,
                const std::optional<calib::JointVector>& reference, int count);
 
-  /// At the start, behind every so many touches, and at the end.
+  /// True at the start, after every `every` touches, and at the end.
   [[nodiscard]] bool is_due(int touches_done, bool all_made) const;
-  /// Of the place: it must be known.
+  /// The touch of the place, which must be known.
   [[nodiscard]] const calib::PlannedTouch& planned() const { return place_->planned; }
   [[nodiscard]] const std::optional<calib::AimedTouch>& aimed() const { return place_->aimed; }
-  /// How it is made, from now on.
+  /// Sets how the place is touched from now on.
   void set_aimed(calib::AimedTouch aimed) { place_->aimed = std::move(aimed); }
 
   Reading add_contact(const calib::JointVector& contact, int touches_done, const HeightM& height_m);
@@ -52,7 +52,7 @@ class ReferenceMonitor {
   [[nodiscard]] Finding judge(const calib::JointVector& contact, double limit_m,
                               const HeightM& height_m) const;
 
-  // A person's word on a place that holds the run.
+  // A person's answer to a hold.
   void look_again() { place_->made_at = -1; }
   void allow_drift() { place_->allowed_drift_m = place_->drift_m; }
   void skip(int touches_done);

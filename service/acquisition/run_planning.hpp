@@ -14,17 +14,17 @@
 
 namespace cell {
 
-/// Gives a run its plan, as it starts: the run, the store and the preparation of its touches all follow the
-/// same one. Called by the cell's loop and by the run recovery.
+/// Gives a run its plan at the start; run, store and touch preparation get the same one. Called by the cell's
+/// loop and by the run recovery.
 class RunPlanning {
  public:
   /// All must outlive it. `place`: where the block was located, if it was.
   RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, RunStore& store, PlanCache& plans,
               TouchPreparation& preparation, PublishedStatus& status, Wake& wake);
 
-  /// False when there is no plan, which is raised, or when another state was entered meanwhile.
+  /// False when there is no plan, which raises a fault, or when another state was entered meanwhile.
   boost::asio::awaitable<bool> plan(ActiveRun& active);
-  /// The run has its plan: nothing is known of the arm yet.
+  /// Hands the plan to the run; there is no estimate of the arm yet.
   void begin_touches(ActiveRun& active);
 
  private:

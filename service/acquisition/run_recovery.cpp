@@ -108,9 +108,8 @@ asio::awaitable<bool> RunRecovery::plan_again(ActiveRun& active) {
   const PlanOutcome outcome = co_await plans_.plan(run.recipe().name);
   const auto* plan = std::get_if<std::shared_ptr<const Plan>>(&outcome);
   if (!plan || (*plan)->id != *active.interruption->plan_id) {
-    status_.raise(
-        {FaultCode::kDaemonRestarted, "it cannot be resumed: it would be planned in another way now"},
-        Event::kAbortFault);
+    status_.raise({FaultCode::kDaemonRestarted, "it cannot be resumed: planning now gives a different plan"},
+                  Event::kAbortFault);
     co_return false;
   }
   run.set_plan((*plan)->touches);

@@ -12,28 +12,27 @@
 
 namespace cell {
 
-/// Why a run that a daemon left open cannot be resumed in this cell, one sentence; nothing when it can.
-/// `config_digest` is that of the cell's files now.
+/// Why a run that a daemon left open cannot be resumed in this cell, in one sentence; empty when it can be.
+/// `config_digest` is the digest of the cell's files now.
 std::optional<std::string> why_not_resumable(const Cell& cell, const StoredRun& run,
                                              const std::optional<std::string>& config_digest);
 
-/// Going on with a run: one that an earlier daemon left open, which is on hold until a person asks for it,
-/// then with the same plan, the same touches and an aim that knows what it knew; and any run on hold, whose
-/// link and open command come first.
+/// Resumes runs. A run that an earlier daemon left open stays on hold until a person resumes it, with the
+/// same plan, touches and estimate. For any run on hold, the link and the open command are settled first.
 class RunRecovery {
  public:
-  /// All must outlive it. The digest of the cell's files is taken here: it is that of the daemon's start.
+  /// All must outlive it. Takes the digest of the cell's files, at the daemon's start.
   RunRecovery(const Cell& cell, const TipRegions& regions, RunStore& store, PlanCache& plans,
               ControllerSession& session, TouchPreparation& preparation, RunPlanning& planning,
               TouchExecutor& touches, PublishedStatus& status, Clocks clocks);
 
   [[nodiscard]] const std::optional<std::string>& config_digest() const { return config_digest_; }
 
-  /// Takes up the run that the daemon before this one left open; one that cannot be resumed is ended in the
-  /// store. Nothing moves by it. What the store throws comes through.
+  /// Takes up the run that the previous daemon left open, or ends it in the store when it cannot be resumed.
+  /// Moves nothing. Passes on what the store throws.
   std::optional<ActiveRun> restore();
-  /// All that a run on hold needs before a person confirms that it goes on: a link, what became of its last
-  /// command, its plan. False when another state was entered.
+  /// Prepares a run on hold for a person's confirmation: the link, the outcome of its last command, its plan.
+  /// False when another state was entered.
   boost::asio::awaitable<bool> make_resumable(ActiveRun& active);
 
  private:

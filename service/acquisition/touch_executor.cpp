@@ -1,5 +1,5 @@
-// The touches of the plan, and how any touch is judged; those beside the plan are in touches_beside_plan.cpp.
-// Each co_await stands alone in its statement, see cs8_controller.cpp.
+// The touches of the plan, and how any touch is judged; those beside the plan are in
+// touch_executor_beside_plan.cpp. Each co_await stands alone in its statement, see cs8_controller.cpp.
 #include "service/acquisition/touch_executor.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -21,7 +21,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// So many false triggers in a run are no chance.
+/// This many false triggers in a run indicate a fault.
 constexpr int kFalseTriggersMany = 3;
 
 }  // namespace
@@ -88,7 +88,7 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
     take_rejection(*rejected, HeldBy::kTouch);
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
     take_contact(active, open, reply, *result);
-  }  // a lost link has been told by the controller's hook
+  }  // a lost link was reported by the controller's hook
 }
 
 /// True when the next touch is ready to be commanded; false when there is none or another state was entered.
@@ -97,11 +97,11 @@ asio::awaitable<bool> TouchExecutor::prepare(ActiveRun& active) {
   const auto from = co_await session_.standing_joints();
   if (status_.state() != State::kExecute) co_return false;
   if (!from) {
-    co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     co_return false;
   }
   Run& run = active.run;
-  // One that is aimed stays so, also behind a hold or a restart: only the way to it is another.
+  // An aimed touch is kept after a hold or a restart; only the path to it is planned again.
   if (preparation_.reroute_from(*from, *run.next())) co_return true;
   identify(active);
   preparation_.add_contacts(run);
@@ -215,7 +215,7 @@ bool TouchExecutor::accept(ActiveRun& active, const calib::PlannedTouch& touch, 
 void TouchExecutor::take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
                                         const TouchJudgement& judged, HeldBy held_by) {
   const FaultCode code = judged.fault.code;
-  history_.attempts = 0;  // a person's word begins anew
+  history_.attempts = 0;  // a person's answer resets the count
   history_.spread_m.reset();
   preparation_.set_missed(code == FaultCode::kNoContact || code == FaultCode::kEarlyContact);
   if (code == FaultCode::kCollision) preparation_.forget_made();  // what was known of the arm may be wrong

@@ -15,48 +15,47 @@
 
 namespace cell {
 
-/// What keeps a run on hold: a person's pause (nothing), a touch that was not made, of the plan or at the
-/// reference place, one that the others contradict, the drift of the reference or the wrong stylus.
+/// What holds a run: a person's pause (kNothing), a touch of the plan or of the reference place that was not
+/// made, a touch that the others contradict, the drift of the reference place, or the wrong stylus.
 enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus };
 
 /// Makes a run's touches, one after the other, each from its command to its place in the store:
 ///
 ///   prepare -> command -> answer -> judge -> keep (store, then Run::add) -> acknowledge
 ///
-/// A contact counts once it is stored; only then may the controller forget it. The arm does not wait for
-/// arithmetic: what the touch before tells and the path to the touch behind are worked out while it moves.
-/// Called by the cell's loop in EXECUTE. Failures are raised at the status and end the step; a lost link ends
-/// it in silence, as the controller's hook tells it.
+/// A contact counts when it is stored; only then may the controller forget it. The arm does not wait for
+/// arithmetic: the estimate from the last touch and the path to the next are computed while it moves. Called
+/// by the cell's loop in EXECUTE. Failures are raised at the status and end the step; a lost link ends the
+/// step without a fault, which the controller's hook raises.
 class TouchExecutor {
  public:
   /// All must outlive it.
   TouchExecutor(const Cell& cell, const TipRegions& regions, RunStore& store, ControllerSession& session,
                 TouchPreparation& preparation, PublishedStatus& status, Wake& wake, Clocks clocks);
 
-  /// A run begins: nothing holds it, nothing is suspected.
+  /// Begins a run, without a hold or a suspect.
   void begin_run(const ActiveRun& active);
-  /// A restarted daemon goes on with it: where the reference place is.
+  /// Continues a run after a restart: restores the reference place.
   void restore_reference(const ActiveRun& active);
 
-  /// One touch: the retest of an outlier, the reference place or the next of the plan. The step is done
-  /// (Event::kDone) when there is none left.
+  /// Makes one touch: the retest of an outlier, the reference place or the next of the plan. Ends the step
+  /// (Event::kDone) when no touch is left.
   boost::asio::awaitable<void> make_next_touch(ActiveRun& active);
-  /// The result of all touches so far, unless it is there.
+  /// Computes the result of all touches so far, unless it exists.
   void identify(ActiveRun& active);
   /// Stores a contact and adds it to the run; false when it could not be stored, which ends the run.
   /// `answered` is the command that it answers; null where none is known.
   bool keep(ActiveRun& active, const calib::PlannedTouch& planned, const cs8::TouchResult& result,
             const OpenTouch* answered);
-  /// A result that still waits at the controller belongs to a run that is over or on hold. A contact in it
-  /// was captured all the same: it is kept with that run. Then the controller may forget it. `active`: null
-  /// without a run.
+  /// Settles a result that the controller still has, of a run that has ended or is on hold: a contact in it
+  /// is stored with that run, then the controller may forget it. `active`: null without a run.
   boost::asio::awaitable<void> settle_open_command(ActiveRun* active, std::uint32_t sequence);
 
   [[nodiscard]] HeldBy held_by() const { return held_by_; }
   void forget_hold() { held_by_ = HeldBy::kNothing; }
-  /// A person's word on what held the run, beside going on.
+  /// A person's answer to the hold, other than to go on.
   void settle_hold(ActiveRun& active, Command command);
-  /// To the hold, while the run goes on from it.
+  /// Goes on from the hold.
   [[nodiscard]] Command answer_to_hold() const { return answer_; }
 
  private:
@@ -74,7 +73,7 @@ class TouchExecutor {
   void watch_fit(const ActiveRun& active);
   bool keep_late_touch(ActiveRun& active, const OpenTouch& open, const cs8::TouchResult& result);
 
-  // Beside the plan (touches_beside_plan.cpp).
+  // Beside the plan (touch_executor_beside_plan.cpp).
   boost::asio::awaitable<std::optional<cs8::TouchResult>> touch_beside_plan(ActiveRun& active,
                                                                             calib::AimedTouch aimed,
                                                                             HeldBy held_by);

@@ -12,20 +12,20 @@
 
 namespace cell {
 
-/// What is known of a touch before its answer comes.
+/// What is known of a touch before its answer.
 struct TouchHistory {
   int attempts = 0;                                 // answers to this touch that did not count
   std::optional<double> spread_m;                   // between the two contacts of the last of them
   std::optional<cs8::JointsMicrodeg> last_contact;  // of the run
 };
 
-/// What a run makes of the answer to a touch.
+/// The judgement of the answer to a touch.
 struct TouchJudgement {
   enum class Next {
     kKeep,     // a measurement
     kAgain,    // none; the touch is made again without a person's word
     kFault,    // none; `fault` says why, `event` what becomes of the run
-    kStopped,  // none: somebody stopped the arm
+    kStopped,  // none: the arm was stopped on request
   };
   Next next = Next::kKeep;
   Fault fault;
@@ -33,10 +33,10 @@ struct TouchJudgement {
   std::vector<Fault> warnings;
 };
 
-/// Touches are made again by themselves at most so often.
+/// Touches are repeated without a person's answer at most this often.
 inline constexpr int kRetriesMax = 2;
 
-/// A search that ends this near to its beginning met something before the face.
+/// A search that ends this near to its start has touched something in front of the face.
 inline constexpr double kEarlyContactMetres = 5e-4;
 
 TouchJudgement judge_touch(const Cell& cell, const calib::PlannedTouch& planned,
@@ -45,21 +45,21 @@ TouchJudgement judge_touch(const Cell& cell, const calib::PlannedTouch& planned,
 /// Between the two contacts of a touch; nothing where one is made only.
 std::optional<double> contact_spread_m(const Cell& cell, const cs8::TouchResult& result);
 
-/// How far the reference place may seem to move: what the cell's file says, else five standard deviations of
-/// the difference of two touches.
+/// The limit of the reference drift: the cell file's, else five standard deviations of the difference of two
+/// touches.
 double reference_drift_max_m(const Cell& cell);
 
 /// Two contacts of one touch that agree: they differ by no more than five standard deviations.
 double agreement_max_m(const Cell& cell);
 
-/// The touches want the stylus' radius to be another one than the probe's file says.
+/// A fault when the touches contradict the stylus radius of the probe file.
 std::optional<Fault> stylus_fault(const calib::IdentificationProblem& problem,
                                   const calib::IdentificationResult& result);
 
 /// Faces whose touches fit worse than chance allows, at the end of a run.
 std::optional<Fault> face_warning(const calib::IdentificationResult& result, double lack_of_fit_p_min);
 
-/// Why a plan cannot be commanded at all: a touch without length or with a joint that is no number.
+/// Why a plan cannot be commanded at all: a touch without length, or with a joint that is not a number.
 std::optional<Fault> plan_fault(const std::vector<calib::PlannedTouch>& touches);
 
 }  // namespace cell

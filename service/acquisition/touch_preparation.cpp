@@ -17,7 +17,7 @@ namespace cell {
 
 namespace {
 
-/// Touches that are put off in a row before there is said to be no way.
+/// Touches put off in a row before the run is held for want of a path.
 constexpr int kPutOffMax = 8;
 
 /// Whether a posture lies on straight joint moves through these; straight lines of the tip leave them a
@@ -61,7 +61,7 @@ bool TouchPreparation::add_contacts(const Run& run) {
                 "run {} touch {} was {:.2f} mm from where it was expected, {:.2f} mm predicted{}", run.id(),
                 aim_->touch_count(), calib::mm_from_metres(contact.position_error_m),
                 calib::mm_from_metres(contact.predicted_position_error_m),
-                contact.contradicts ? ": the other touches contradict it, it does not aim" : "");
+                contact.contradicts ? ": the other touches contradict it, it is not used for aiming" : "");
     contradicted = contact.contradicts;
   }
   return contradicted;
@@ -190,12 +190,12 @@ std::optional<PreparedTouch> TouchPreparation::with_path(std::variant<calib::Aim
                                                          const calib::TransferEnd& from) const {
   auto* aimed = std::get_if<calib::AimedTouch>(&made);
   if (!aimed) {
-    spdlog::info("a touch cannot be made as it is aimed now: {}", std::get<std::string>(made));
+    spdlog::info("a touch cannot be made with the present estimate: {}", std::get<std::string>(made));
     return std::nullopt;
   }
   auto via = calib::find_aimed_transfer(planning_, *aim_, from, calib::transfer_end_of(*aimed));
   if (!via) {
-    spdlog::info("no way to a touch on plane {} as it is aimed now", aimed->touch.face + 1);
+    spdlog::info("no clear path to a touch on plane {} with the present estimate", aimed->touch.face + 1);
     return std::nullopt;
   }
   return PreparedTouch{.aimed = std::move(*aimed), .from = from.joints, .via = std::move(*via)};

@@ -13,7 +13,7 @@
 
 namespace cell {
 
-/// A touch as it is about to be commanded, and the path to it.
+/// A touch ready to be commanded, and the path to it.
 struct PreparedTouch {
   calib::AimedTouch aimed;
   calib::JointVector from;  // where the path begins
@@ -22,56 +22,56 @@ struct PreparedTouch {
   calib::JointVector planned = calib::JointVector::Zero();  // the joints of the planned touch: which it is
 };
 
-/// A touch that leaves for the controller.
+/// A touch to send to the controller.
 struct OutgoingTouch {
   calib::PlannedTouch touch;            // as it is aimed
   std::vector<calib::JointVector> via;  // to its clear posture
   int aimed_with = 0;                   // as StoredTouch::aimed_with
 };
 
-/// Which touch comes next, aimed with what the touches before it told, and the path there. It knows how the
-/// last two touches were made, also those of the run before: from them the arm has a clear path to leave by.
-/// Pure computation, milliseconds; the touch executor and, for a person's touches, the manual touching use
-/// it. What cannot be made is nothing, and the log says why.
+/// Chooses the next touch, aims it with the estimate from the touches before, and finds the path there. It
+/// keeps how the last two touches were made, also those of the run before: the arm leaves along their clear
+/// paths. Pure computation, milliseconds; used by the touch executor and by manual touching. A touch that
+/// cannot be prepared gives an empty result, and the log says why.
 class TouchPreparation {
  public:
-  /// A run: nothing is known of the arm but `problem`.
+  /// Begins a run with no estimate of the arm but `problem`.
   void begin(calib::PlanningProblem problem);
-  /// The block stands elsewhere: nothing of what was made holds.
+  /// Discards everything prepared: the block was found elsewhere.
   void forget_all();
-  /// What is known of the arm is made anew from the touches.
+  /// Makes the estimate again from the touches.
   void restart_aim() { aim_.emplace(planning_); }
 
-  /// The run's touches that the aim does not know yet; true when the others contradict the last of them.
+  /// Adds the run's new touches to the estimate; true when the others contradict the last of them.
   bool add_contacts(const Run& run);
   [[nodiscard]] const calib::PlanningProblem& problem() const { return planning_; }
-  /// Of the run: there must be one.
+  /// The run's estimate; there must be a run.
   [[nodiscard]] const calib::OnlineArmEstimate& aim() const { return *aim_; }
   void set_aim(calib::OnlineArmEstimate aim) { aim_ = std::move(aim); }
-  /// Where a touch of this face has the ball, along the outward normal, as the arm is known now; metres.
+  /// The ball's height along the face's outward normal at a touch, by the present estimate; metres.
   [[nodiscard]] double height_m(int face, const calib::JointVector& joints) const;
-  /// Whether a contact of the touch commanded last was farther off than its search was made for: what is
-  /// known of the arm is wrong there.
+  /// True when the contact of the last commanded touch was farther off than its search allowed for: the
+  /// estimate is wrong there.
   [[nodiscard]] bool is_surprise(const calib::JointVector& contact) const;
 
-  /// The next touch was prepared from here.
+  /// True when the next touch was prepared from here.
   [[nodiscard]] bool is_ready_from(const calib::JointVector& joints) const;
-  /// The touch that was prepared, when it is `next`, with another path: from here. True when there is one.
+  /// Gives the prepared touch a path from here, when it is `next`. True when there is one.
   bool reroute_from(const calib::JointVector& joints, const calib::PlannedTouch& next);
-  /// The run's next touch, from here. One that cannot be made as it is aimed is made with the nominal miss,
-  /// so that the plan's order stays; when there is no path to that either, it comes behind the others, once.
-  /// False when it cannot be made then.
+  /// Prepares the run's next touch from here. A touch that cannot be made as aimed is made with the nominal
+  /// miss, which keeps the plan's order; without a path to that either, it is put off to the end, once. False
+  /// when it cannot be made then.
   bool prepare_next(Run& run, const calib::JointVector& joints);
-  /// While the arm makes a touch: the one behind it, at this place of the plan.
+  /// Prepares the touch after the one under way, at this position in the plan.
   void look_ahead(Run& run, std::size_t place);
-  /// A touch beside the plan, from here.
+  /// Prepares a touch outside the plan, from here.
   [[nodiscard]] std::optional<PreparedTouch> prepare(calib::AimedTouch aimed,
                                                      const calib::JointVector& joints) const;
-  /// A touch of the plan as it is aimed, or as the nominal arm makes it; or in a few words why not.
+  /// A touch of the plan as aimed, or as the nominal arm makes it; or the reason why neither can be made.
   [[nodiscard]] std::variant<calib::AimedTouch, std::string> aim_or_nominal(
       const calib::PlannedTouch& planned) const;
 
-  /// The touch that was prepared leaves: it is the one commanded last from now on.
+  /// Hands out the prepared touch, which becomes the last commanded one.
   OutgoingTouch send_next();
   OutgoingTouch send(PreparedTouch prepared);
   [[nodiscard]] const std::optional<calib::AimedTouch>& made() const { return made_; }
@@ -79,20 +79,19 @@ class TouchPreparation {
   [[nodiscard]] const std::vector<calib::JointVector>& made_path() const { return made_path_; }
   void set_made_path(std::vector<calib::JointVector> path) { made_path_ = std::move(path); }
 
-  /// What was prepared is prepared anew.
+  /// Discards the prepared touch, so that it is prepared again.
   void drop_next() { next_.reset(); }
-  /// The touch commanded last met nothing or something too early: it comes again with the nominal miss.
+  /// The last commanded touch found nothing, or something too early: it is repeated with the nominal miss.
   void set_missed(bool missed) { missed_ = missed; }
-  /// What was known of the arm may be wrong: no clear path to leave by is known.
+  /// The estimate may be wrong: discards the clear paths to leave by.
   void forget_made();
 
-  /// Where the arm leaves from. At the clear posture of one of the last two touches it leaves as that touch
-  /// was made; broken off on the path between them, as the one that was known better, for which the path was
-  /// clear. Anywhere else nothing is known. Valid until the next touch leaves.
+  /// The touch from which the arm leaves: one of the last two, when the arm is at its clear posture; on the
+  /// path between them, the one that was known better, for which the path was clear. Null anywhere else.
+  /// Valid until the next take().
   [[nodiscard]] calib::TransferEnd leaving(const calib::JointVector& joints) const;
 
-  /// As it was when the run's last stored touch was made: the next one was aimed before its contact was
-  /// known.
+  /// The estimate before the run's last stored touch: the next touch was aimed before that contact was known.
   void recall(Run& run);
 
  private:

@@ -10,7 +10,7 @@ class formatter;
 
 namespace cell {
 
-/// The run that every log line names until this is called again, whoever writes the line.
+/// Sets the run that every log line names, until the next call.
 void set_logged_run(std::optional<std::int64_t> run_id);
 /// The touch likewise, from 1 as in the store; nothing between touches.
 void set_logged_touch(std::optional<int> number);

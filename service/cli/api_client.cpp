@@ -6,12 +6,16 @@
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/host_name_verification.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/http.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/beast/http/write.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 #include <cstdlib>
 #include <fstream>
+#include <sstream>
 
 #include "config/endpoint.hpp"
 #include "service/base/state_directory.hpp"
@@ -41,14 +45,49 @@ asio::awaitable<void> connect(beast::tcp_stream& stream, std::string host, std::
   co_await stream.async_connect(addresses, asio::use_awaitable);
 }
 
+std::string text_of(const Request& request) {
+  std::ostringstream text;
+  text << request;
+  return text.str();
+}
+
+/// The answer as its bytes come in.
+class AnswerParser {
+ public:
+  AnswerParser() {
+    parser_.eager(true);
+    parser_.body_limit(kAnswerSizeMax);
+  }
+
+  [[nodiscard]] bool is_done() { return parser_.is_done(); }
+  [[nodiscard]] asio::mutable_buffer prepare() { return buffer_.prepare(kPieceSize); }
+  /// So many bytes were written to prepare().
+  void take(std::size_t size) {
+    buffer_.commit(size);
+    boost::system::error_code error;
+    buffer_.consume(parser_.put(buffer_.data(), error));
+    if (error && error != http::error::need_more) throw boost::system::system_error(error);
+  }
+  [[nodiscard]] ApiReply reply() { return {parser_.get().result_int(), std::move(parser_.get().body())}; }
+
+ private:
+  static constexpr std::size_t kPieceSize = 64 * 1024;
+
+  beast::flat_buffer buffer_;
+  http::response_parser<http::string_body> parser_;
+};
+
+/// Beast's own operations would be compiled for each kind of stream; of these only Asio's are.
 template <class Stream>
 asio::awaitable<ApiReply> answer_over(Stream& stream, const Request& request) {
-  co_await http::async_write(stream, request, asio::use_awaitable);
-  beast::flat_buffer buffer;
-  http::response_parser<http::string_body> parser;
-  parser.body_limit(kAnswerSizeMax);
-  co_await http::async_read(stream, buffer, parser, asio::use_awaitable);
-  co_return ApiReply{parser.get().result_int(), std::move(parser.get().body())};
+  const std::string text = text_of(request);
+  co_await asio::async_write(stream, asio::buffer(text), asio::use_awaitable);
+  AnswerParser answer;
+  while (!answer.is_done()) {
+    const std::size_t size = co_await stream.async_read_some(answer.prepare(), asio::use_awaitable);
+    answer.take(size);
+  }
+  co_return answer.reply();
 }
 
 asio::awaitable<ApiReply> ask(std::string host, std::string port, Request request,

@@ -29,7 +29,8 @@ void set_workspace_box(Cell& cell, const std::vector<double>& box_mm) {
   const bool is_sane = min_m.allFinite() && max_m.allFinite() && (max_m - min_m).maxCoeff() <= kBoxMaxMetres;
   if (!is_sane || !(min_m.array() < max_m.array()).all())
     throw std::invalid_argument(
-        "--workspace-box: each of the first three numbers is below its fellow of the last three, by 100 m at "
+        "--workspace-box: each minimum (the first three numbers) is below its maximum (the last three), by "
+        "100 m at "
         "most");
   cell.workspace_box = {"as given", min_m, max_m};
 }

@@ -20,7 +20,7 @@ tcp::endpoint listen_address(boost::asio::io_context& context, const DaemonOptio
     throw std::runtime_error(
         fmt::format("--listen {}: {}; give an address of this machine", listen.host, failure.message()));
   }
-  const tcp::endpoint address = found.begin()->endpoint();
+  tcp::endpoint address = found.begin()->endpoint();
   if (!address.address().is_loopback() && options.tls_certificate.empty()) {
     throw std::runtime_error(
         fmt::format("--listen {}: only loopback addresses are served without TLS; give --tls-cert and "

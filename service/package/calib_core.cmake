@@ -17,7 +17,7 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/touchcal)
 install(TARGETS ${CALIB_CORE_LIBRARIES} EXPORT touchcal-targets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/calib_core DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/touchcal COMPONENT dev
-  FILES_MATCHING PATTERN "*.hpp")
+  FILES_MATCHING PATTERN "*.hpp" PATTERN internal EXCLUDE)
 install(EXPORT touchcal-targets NAMESPACE touchcal:: DESTINATION ${package_folder} COMPONENT dev)
 configure_package_config_file(touchcal-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/touchcal-config.cmake
   INSTALL_DESTINATION ${package_folder})

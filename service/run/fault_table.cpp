@@ -13,8 +13,8 @@ constexpr std::array kTable{
                "switch the controller on and start its application; the daemon keeps trying",
                FaultKind::kRefused, "P03"},
     FaultEntry{FaultCode::kControllerStateUnknown, "controller_state_unknown",
-               "the controller has not told its state yet", "nothing moved", "wait a second and start again",
-               FaultKind::kRefused},
+               "the controller has not reported its state yet", "nothing moved",
+               "wait a second and start again", FaultKind::kRefused},
     FaultEntry{FaultCode::kEmergencyStop, "emergency_stop",
                "the emergency stop is active or not acknowledged", "nothing moved",
                "release and acknowledge the emergency stop", FaultKind::kRefused, "P03"},
@@ -109,7 +109,7 @@ constexpr std::array kTable{
                "again, touchcal resume to go on all the same, or touchcal stop",
                FaultKind::kHeld, "P32"},
     FaultEntry{FaultCode::kWrongStylus, "wrong_stylus",
-               "the touches say that the stylus has another radius than the probe file",
+               "the touches contradict the stylus radius of the probe file",
                "the arm finished the touch and stands clear of the face",
                "check which stylus is fitted and its file, then touchcal stop, or touchcal resume to go on "
                "all the same",
@@ -130,7 +130,7 @@ constexpr std::array kTable{
                "the first touch of the run lies apart from its repetition", "the arm goes on with the run",
                "warm the probe up by a few touches before the next run", FaultKind::kWarning, "P28"},
     FaultEntry{FaultCode::kArmMoved, "arm_moved", "the arm does not stand where the touch before left it",
-               "the way was looked for anew from where it stands", "keep hands off the pendant during a run",
+               "the path was planned again from where it is", "keep hands off the pendant during a run",
                FaultKind::kWarning, "P30"},
     FaultEntry{FaultCode::kTouchOutlier, "touch_outlier",
                "a touch does not fit the others, also when it is made again",
@@ -212,7 +212,7 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kProbeFault, "probe_fault",
                "the two inputs of the probe disagree: a cable is cut or shorted",
                "the arm did not start, or stopped at once and stands there; nothing was recorded",
-               "mend the probe's cable, connector or interface and touch the stylus by hand, then touchcal "
+               "repair the probe's cable, connector or interface and touch the stylus by hand, then touchcal "
                "resume where a run is on hold, touchcal clear where it was aborted, touchcal reset and start "
                "a new run",
                FaultKind::kHeld, "P26"},
@@ -227,8 +227,8 @@ constexpr std::array kTable{
                "restore power and remote mode, close the cell, then touchcal clear, "
                "touchcal reset and start a new run",
                FaultKind::kAborted, "P20"},
-    FaultEntry{FaultCode::kCollision, "collision", "the arm ran into something",
-               "the drives cut out; the arm stands where it was",
+    FaultEntry{FaultCode::kCollision, "collision", "the arm collided with something",
+               "the drives cut out; the arm is where it was",
                "look at arm, probe and block, free the arm by hand, then touchcal clear, touchcal reset and "
                "start a new run"},
     FaultEntry{FaultCode::kMotionError, "motion_error", "the controller could not carry out a motion",
@@ -251,18 +251,18 @@ constexpr std::array kTable{
                "new run",
                FaultKind::kAborted, "P37"},
     FaultEntry{FaultCode::kNoSafeWay, "no_safe_way",
-               "no way clear of all obstacles leads from the arm's posture to the next one", "nothing moved",
+               "no collision-free path leads from the arm's posture to the next one", "nothing moved",
                "jog the arm to its park posture, then touchcal clear, touchcal reset and start a new run"},
     FaultEntry{FaultCode::kStoreFailed, "store_failed", "a touch could not be stored",
                "the arm finished the touch and stands clear of the face",
-               "free disk space or mend the state directory's "
+               "free disk space or repair the state directory's "
                "rights, then touchcal clear, touchcal reset and start a new run",
                FaultKind::kAborted, "P39"},
     FaultEntry{FaultCode::kNotIdentifiable, "not_identifiable", "the touches do not determine the parameters",
                "the arm finished its touches",
                "look at the result's message; change the recipe and start a new run", FaultKind::kWarning},
     FaultEntry{
-        FaultCode::kDaemonRestarted, "daemon_restarted", "the daemon was started anew during the run",
+        FaultCode::kDaemonRestarted, "daemon_restarted", "the daemon was restarted during the run",
         "the arm stopped by itself when the link was gone and stands where it was",
         "touchcal resume to go on with the touch behind the last one that is stored, or touchcal stop to "
         "end the run as it is; in ABORTED it cannot go on: touchcal clear, then touchcal reset",

@@ -46,7 +46,7 @@ class Run {
   [[nodiscard]] const calib::PlannedTouch* planned(std::size_t index) const;
   /// Index of next() in the plan.
   [[nodiscard]] std::size_t touches_made() const { return touches_.size(); }
-  /// Moves the touch at this index behind all others of its role. False if it was deferred before or is the
+  /// Moves the touch at this index after all others of its role. False if it was deferred before or is the
   /// last.
   bool defer(std::size_t index);
   /// Predicted remaining time up to the park posture: that of the plan, scaled by the ratio of `elapsed_s` to
@@ -93,7 +93,7 @@ class Run {
   std::vector<bool> deferred_;  // one a planned touch
   int skipped_count_ = 0;       // no longer in the plan
   std::vector<PlanChange> plan_changes_;
-  int restored_total_ = 0;  // as long as there is no plan
+  int restored_total_ = 0;  // while there is no plan
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
   std::size_t identified_count_ = 0;  // of the touches

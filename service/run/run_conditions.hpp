@@ -25,7 +25,7 @@ struct RunConditions {
 };
 
 /// Why the block's temperature is unknown, and what to do; nothing if it is known. It prevents a run;
-/// offline, where nobody can measure it, it is a warning.
+/// offline, where it cannot be measured, it is a warning.
 std::optional<std::string> unknown_temperature_reason(const Cell& cell);
 
 }  // namespace cell

@@ -25,18 +25,10 @@ void set_via(Command& command, const std::vector<calib::JointVector>& via) {
 
 }  // namespace
 
-cs8::JointsMicrodeg to_wire(const calib::JointVector& joints) {
-  cs8::JointsMicrodeg wire{};
-  for (int i = 0; i < calib::kJointCount; ++i)
-    wire[static_cast<std::size_t>(i)] = cs8::microdeg_from_radians(joints[i]);
-  return wire;
-}
+cs8::JointsMicrodeg to_wire(const calib::JointVector& joints) { return cs8::microdeg_from_joints(joints); }
 
 calib::JointVector from_wire(const cs8::JointsMicrodeg& wire) {
-  calib::JointVector joints;
-  for (int i = 0; i < calib::kJointCount; ++i)
-    joints[i] = cs8::radians_from_microdeg(wire[static_cast<std::size_t>(i)]);
-  return joints;
+  return cs8::joints_from_microdeg<calib::JointVector>(wire);
 }
 
 cs8::Touch touch_command(const Cell& cell, const calib::PlannedTouch& planned,

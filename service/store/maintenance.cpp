@@ -14,7 +14,7 @@ namespace cell {
 namespace {
 
 /// How long to wait for a daemon that writes.
-constexpr int kBusyMilliseconds = 5000;
+constexpr int kReadBusyMilliseconds = 5000;
 
 /// A row of touches that no run can have made.
 std::string impossible_touches() {
@@ -28,7 +28,7 @@ std::string impossible_touches() {
 
 SQLite::Database open_to_read(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw std::runtime_error(file.string() + ": there is no such file");
-  return {file.string(), SQLite::OPEN_READONLY, kBusyMilliseconds};
+  return {file.string(), SQLite::OPEN_READONLY, kReadBusyMilliseconds};
 }
 
 }  // namespace

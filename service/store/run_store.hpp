@@ -26,7 +26,7 @@ struct StoredTouch {
   /// The command that it answers: session of the controller's application and sequence number; 0 if unknown.
   std::uint32_t session = 0;
   std::uint32_t sequence = 0;
-  int aimed_with = 0;  // touches behind the online estimate that aimed it; kNominalMiss: none was used
+  int aimed_with = 0;  // number of touches in the estimate that aimed it; kNominalMiss: none was used
 };
 inline constexpr int kNominalMiss = -1;
 

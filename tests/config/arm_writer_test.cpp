@@ -17,7 +17,7 @@ namespace {
 /// A length goes through its millimetres: half a bit there and half a bit back, in numbers below 2 m.
 constexpr double kLengthLostMaxMetres = 2.3e-16;
 
-Arm shipped(const std::string& name) { return read_arm(kSourceDir / "config/arms" / (name + ".json")); }
+Arm shipped_arm(const std::string& name) { return read_arm(kSourceDir / "config/arms" / (name + ".json")); }
 
 /// Figures that fit no short decimal number, as a calibration gives them.
 Arm calibrated(Arm arm) {
@@ -34,7 +34,7 @@ Arm calibrated(Arm arm) {
 }
 
 Arm sliding() {
-  Arm arm = calibrated(shipped("tx90"));
+  Arm arm = calibrated(shipped_arm("tx90"));
   arm.model.joint_types[2] = calib::JointType::kPrismatic;
   arm.model.joint_types[4] = calib::JointType::kPrismatic;
   arm.model.gains[2] = -0.5;
@@ -49,7 +49,7 @@ Arm sliding() {
 }
 
 Arm bending() {
-  Arm arm = calibrated(shipped("tx90"));
+  Arm arm = calibrated(shipped_arm("tx90"));
   arm.model.down_in_frame_1 = Eigen::Vector3d::UnitZ();  // hangs from the ceiling
   arm.model.compliance_rad_per_nm[1] = 1.234567890123e-6;
   arm.model.compliance_rad_per_nm[2] = -1e-8;
@@ -57,7 +57,7 @@ Arm bending() {
 }
 
 Arm without_bodies() {
-  Arm arm = shipped("tx60");
+  Arm arm = shipped_arm("tx60");
   arm.bodies.clear();
   return arm;
 }
@@ -75,9 +75,9 @@ class EveryArm : public testing::TestWithParam<Case> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(Arms, EveryArm,
-                         testing::Values(Case{"Tx90", shipped("tx90")}, Case{"Tx60", shipped("tx60")},
-                                         Case{"ThreeParallel", shipped("three-parallel")},
-                                         Case{"Calibrated", calibrated(shipped("tx90"))},
+                         testing::Values(Case{"Tx90", shipped_arm("tx90")}, Case{"Tx60", shipped_arm("tx60")},
+                                         Case{"ThreeParallel", shipped_arm("three-parallel")},
+                                         Case{"Calibrated", calibrated(shipped_arm("tx90"))},
                                          Case{"Sliding", sliding()}, Case{"Bending", bending()},
                                          Case{"WithoutBodies", without_bodies()}),
                          [](const auto& info) { return info.param.name; });
@@ -157,7 +157,7 @@ TEST_P(EveryArm, IsWrittenTheSameAgain) {
 }
 
 TEST(ArmDocument, KeepsTheShortNumbersOfTheFileItCameFrom) {
-  const std::string document = arm_document(shipped("tx90"));
+  const std::string document = arm_document(shipped_arm("tx90"));
   for (const char* text : {R"({"j":0,"theta_rad":0.0,"r_mm":149.6})", R"("r_mm":318.9)", "[-130.0,147.5]",
                            R"("std_compliance_rad_per_nm":[1e-06,3e-06])"}) {
     EXPECT_THAT(document, testing::HasSubstr(text));
@@ -165,10 +165,10 @@ TEST(ArmDocument, KeepsTheShortNumbersOfTheFileItCameFrom) {
 }
 
 TEST(ArmDocument, OfAnArmThatIsNoNumberIsAMistakeOfOurOwn) {
-  Arm arm = shipped("tx90");
+  Arm arm = shipped_arm("tx90");
   arm.model.links[3].d_m = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(arm_document(arm), std::logic_error);
-  arm = shipped("tx90");
+  arm = shipped_arm("tx90");
   arm.model.links[3].alpha_rad = std::numeric_limits<double>::infinity();
   EXPECT_THROW(arm_document(arm), std::logic_error);
 }

@@ -142,7 +142,9 @@ class FieldReader {
   template <class T>
   static void read(const Place& at, std::optional<T>& value) {
     value.reset();
-    if (!is_null(at)) read(at, value.emplace());
+    if (is_null(at)) return;
+    value = T{};
+    read(at, *value);
   }
   /// Absent is no value, null an inner one that has none.
   template <class T>

@@ -38,7 +38,7 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
 
 std::string load_or_make(const std::filesystem::path& file) {
   if (auto token = read_token(file)) return *std::move(token);
-  const std::string token = random_hex(kTokenBytes);
+  std::string token = random_hex(kTokenBytes);
   write_for_owner_only(file, token);
   return token;
 }

@@ -7,7 +7,8 @@ namespace cell {
 namespace {
 
 constexpr std::int64_t kSequenceMax = std::int64_t{1} << 53;  // what a JSON number holds exactly
-constexpr std::int64_t kWaitSecondsMax = 3600;
+/// A longer wait_s up to this is accepted and cut to Api's longest wait.
+constexpr std::int64_t kWaitSecondsAccepted = 3600;
 
 HttpResponse get_status(const Call& call) {
   const std::string& etag = call.services.feed.etag();
@@ -38,7 +39,7 @@ std::vector<Route> status_routes() {
            "answer waits for another sequence, for 60 s at most",
        .handle = get_status,
        .answers = {{.schema = "Status"}, {.status = 304}},
-       .query = {{"wait_s", 0, kWaitSecondsMax, "longest wait, with after"},
+       .query = {{"wait_s", 0, kWaitSecondsAccepted, "longest wait, with after"},
                  {"after", 0, kSequenceMax, "the known sequence"}},
        .dispatch = DispatchMode::kLongPoll},
       {.method = "GET",

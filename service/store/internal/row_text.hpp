@@ -11,7 +11,7 @@ namespace cell::row {
 inline const std::string kJointColumns =
     "j1_microdeg, j2_microdeg, j3_microdeg, j4_microdeg, j5_microdeg, j6_microdeg";
 
-/// Of touches and superseded_touches, behind run_id.
+/// Of touches and superseded_touches, after run_id.
 inline const std::string kTouchColumns = "number, plane, role, " + kJointColumns +
                                          ", source, overtravel_dmm, captured_at, session, sequence, "
                                          "aimed_with";

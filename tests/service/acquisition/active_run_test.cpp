@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
 namespace cell {

@@ -7,6 +7,7 @@
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/motion/transfer_path.hpp"
 #include "service/acquisition/block_pass.hpp"
+#include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
 namespace cell {

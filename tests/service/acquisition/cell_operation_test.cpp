@@ -1,6 +1,7 @@
 #include "service/acquisition/cell_operation.hpp"
 
 #include <gmock/gmock.h>
+#include <spdlog/spdlog.h>
 
 #include <boost/asio/co_spawn.hpp>
 

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
 namespace cell {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "calib_core/geometry/rotation.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/config_error.hpp"
 #include "config/read_config.hpp"
@@ -40,7 +41,7 @@ class Person {
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.translation() = spot.point_m + (ball.radius_m - ball.pretravel_m) * face.plane.outward;
       const Eigen::Vector3d inward = -face.plane.outward;
-      pose.linear() = (Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), inward) *
+      pose.linear() = (calib::shortest_rotation(Eigen::Vector3d::UnitZ(), inward) *
                        Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()) *
                        Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitX()))
                           .toRotationMatrix();

@@ -2,20 +2,16 @@
 
 #include <chrono>
 #include <functional>
-#include <stdexcept>
 
-#include "service/acquisition/clocks.hpp"
 #include "service/acquisition/wake.hpp"
+#include "service/base/clocks.hpp"
 
 namespace cell {
 
 /// A clock that only a test moves.
 class MadeUpTime {
  public:
-  [[nodiscard]] Clocks clocks() {
-    return {[this] { return std::chrono::system_clock::time_point{} + since_begin_; },
-            [this] { return std::chrono::steady_clock::time_point{} + since_begin_; }};
-  }
+  [[nodiscard]] Clocks clocks();
   void pass(std::chrono::milliseconds time) { since_begin_ += time; }
   [[nodiscard]] std::chrono::milliseconds since_begin() const { return since_begin_; }
 
@@ -28,13 +24,7 @@ class MadeUpWake : public Wake {
  public:
   explicit MadeUpWake(MadeUpTime& time) : time_(time) {}
 
-  boost::asio::awaitable<void> wait(std::chrono::milliseconds at_most) override {
-    constexpr int kWaitsMax = 10'000;
-    if (++wait_count > kWaitsMax) throw std::runtime_error("somebody waits for ever");
-    time_.pass(at_most);
-    if (on_wait) on_wait();
-    co_return;
-  }
+  boost::asio::awaitable<void> wait(std::chrono::milliseconds at_most) override;
   void wake() override { ++wake_count; }
 
   std::function<void()> on_wait;

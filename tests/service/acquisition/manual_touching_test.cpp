@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
 namespace cell {
@@ -50,7 +51,7 @@ TEST_F(ManualTouchingTest, SaysWhichTouchComesNextAndKeepsTheOneThatIsMade) {
 TEST_F(ManualTouchingTest, ABallThatComesTooFastDoesNotCount) {
   touch(asked_for(), 0.01);
   EXPECT_EQ(active_.run.touches_done(), 0);
-  EXPECT_NE(problem().find("come slower"), std::string::npos);
+  EXPECT_NE(problem().find("approach more slowly"), std::string::npos);
 }
 
 TEST_F(ManualTouchingTest, ATouchOfAnotherFaceDoesNotCount) {

@@ -1,20 +1,17 @@
 #pragma once
 
-#include <spdlog/spdlog.h>
-
-#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
-#include <exception>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/published_status.hpp"
 #include "service/acquisition/touch_preparation.hpp"
 #include "service/documents/plan.hpp"
-#include "service/run/planning_problem.hpp"
-#include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/made_up_time.hpp"
 #include "tests/service/acquisition/scripted_controller.hpp"
 #include "tests/service/shipped_cell.hpp"
@@ -22,94 +19,39 @@
 namespace cell {
 
 /// The paper's cell with a recipe that is planned in no time: few touches, few postures looked at.
-inline const Cell& cell_of_owners() {
-  static const Cell cell = [] {
-    Cell made = edf();
-    Recipe recipe = made.recipes.at("edf-25");
-    recipe.name = "few";
-    recipe.fit_per_face = 7;
-    recipe.held_out_per_face = 1;
-    recipe.reference_every = 0;
-    recipe.candidate_count = 2'000;
-    made.recipes.emplace(recipe.name, recipe);
-    return made;
-  }();
-  return cell;
-}
+const Cell& cell_of_owners();
 
 /// That recipe's plan, made once.
-inline const Plan& plan_of_owners() {
-  static const Plan plan = [] {
-    const TipRegions regions(cell_of_owners());
-    return std::get<Plan>(make_plan(regions, cell_of_owners().recipes.at("few")));
-  }();
-  return plan;
-}
+const Plan& plan_of_owners();
 
 /// What the owners of an operation stand on: a made-up clock, a scripted controller, the status, a store in a
 /// folder of its own. `faults` is what would go to the fault log.
 class OwnersBench {
  public:
-  OwnersBench() {
-    spdlog::set_level(spdlog::level::off);
-    controller.state->joints = to_wire(cell_of_owners().park_joints);
-    wake.on_wait = [this] { tell_state(); };  // as the real one does, every 20 ms
-  }
+  OwnersBench();
+  ~OwnersBench();
+  OwnersBench(const OwnersBench&) = delete;
+  OwnersBench& operator=(const OwnersBench&) = delete;
 
-  /// The coroutine's result, once it is through: nothing here waits for anything but the made-up clock.
+  /// Runs the coroutine to its end: nothing here waits for anything but the made-up clock.
+  void run(boost::asio::awaitable<void> work);
+  /// The same; returns its result.
   template <class Result>
   Result run(boost::asio::awaitable<Result> work) {
     std::optional<Result> result;
-    std::exception_ptr failure;
-    boost::asio::co_spawn(io, std::move(work), [&](const std::exception_ptr& thrown, Result made) {
-      failure = thrown;
-      result = std::move(made);
-    });
-    io.restart();
-    io.run();
-    if (failure) std::rethrow_exception(failure);
+    run(keep(std::move(work), result));
     return *std::move(result);
-  }
-  void run(boost::asio::awaitable<void> work) {
-    std::exception_ptr failure;
-    boost::asio::co_spawn(io, std::move(work), [&](const std::exception_ptr& thrown) { failure = thrown; });
-    io.restart();
-    io.run();
-    if (failure) std::rethrow_exception(failure);
   }
 
   /// The controller's newest state, as it reaches the session.
-  void tell_state() {
-    if (controller.is_connected) session.on_controller_state(controller.state.value());
-  }
+  void tell_state();
 
   /// A run of the recipe "few" that is begun in the store.
-  ActiveRun begun_run(const std::string& recipe = "few") {
-    const std::int64_t id = store.begin_run({.recipe = recipe, .started_at = "start"});
-    return {.run = Run(id, regions, cell_of_owners().recipes.at(recipe), "start"),
-            .conditions = "{}",
-            .interruption = std::nullopt,
-            .place_check = std::nullopt};
-  }
+  ActiveRun begun_run(const std::string& recipe = "few");
   /// ... that has its plan.
-  ActiveRun planned_run() {
-    ActiveRun active = begun_run();
-    active.run.set_plan(plan_of_owners().touches);
-    preparation.begin(planning_problem(cell_of_owners(), active.run.recipe()));
-    return active;
-  }
+  ActiveRun planned_run();
   /// The contact of an arm without errors: where the touch that was sent last is planned.
-  [[nodiscard]] cs8::TouchResult contact() const {
-    cs8::TouchResult result;
-    result.outcome = cs8::Outcome::kContact;
-    result.source = cs8::CaptureSource::kLatched;
-    result.contact = to_wire(preparation.made()->touch.joints);
-    result.first_source = result.source;
-    result.first_contact = result.contact;
-    result.monitor_speed_percent = 100;
-    result.edges = 1;
-    return result;
-  }
+  [[nodiscard]] cs8::TouchResult contact() const;
 
   boost::asio::io_context io{1};
   MadeUpTime time;
@@ -117,18 +59,20 @@ class OwnersBench {
   std::vector<std::string> faults;
   std::vector<State> entered;
   ScriptedController controller;
-  PublishedStatus status{
-      time.clocks(),
-      wake,
-      "instance",
-      {.describe = [](Status&) {},
-       .on_entered = [this](State state) { entered.push_back(state); },
-       .store_fault = [this](const std::string& name, const std::string&) { faults.push_back(name); }}};
-  ControllerSession session{cell_of_owners(), controller, status, wake, time.clocks()};
+  PublishedStatus status;
+  ControllerSession session;
   Folder folder;
-  RunStore store{folder.path() / "touchcal.sqlite"};
-  TipRegions regions{cell_of_owners()};
+  RunStore store;
+  TipRegions regions;
   TouchPreparation preparation;
+
+ private:
+  template <class Result>
+  static boost::asio::awaitable<void> keep(boost::asio::awaitable<Result> work,
+                                           std::optional<Result>& result) {
+    Result made = co_await std::move(work);
+    result = std::move(made);
+  }
 };
 
 }  // namespace cell

@@ -4,6 +4,7 @@
 
 #include "service/acquisition/commanded_touch.hpp"
 #include "service/run/run_conditions.hpp"
+#include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
 namespace cell {

@@ -23,7 +23,7 @@ constexpr int kTouches = 4;
 /// Each touch takes a page of its own, so that any of them may find the disk full.
 const std::string kLongText(1500, 't');
 
-StoredTouch touch(int number) {
+StoredTouch numbered_touch(int number) {
   return {.number = number,
           .plane = 1,
           .joints = {number, 2, 3, 4, 5, 6},
@@ -46,11 +46,11 @@ void store_a_run(RunStore& store, const std::function<void(int)>& stored) {
     if (number == 2) store.append_plan_change(run, {PlanChange::Kind::kDefer, 2});
     store.set_open_command(run, {.session = 1, .sequence = sequence, .touch_json = "{}"});
     store.make_durable(run);
-    store.append_touch(run, touch(number));
+    store.append_touch(run, numbered_touch(number));
     stored(number);
   }
   faults.append(run, "t", "no_contact", "");
-  StoredTouch again = touch(2);
+  StoredTouch again = numbered_touch(2);
   again.sequence = kTouches + 1;
   store.replace_touch(run, again, "outlier");
   store.finish_run(run, {.outcome = RunOutcome::kComplete, .verdict = Verdict::kAccepted, .ended_at = "end"});
@@ -110,7 +110,7 @@ void expect_whole(const std::filesystem::path& file, int stored, const std::stri
   EXPECT_GE(static_cast<int>(touches.size()), stored) << where;
   EXPECT_LE(static_cast<int>(touches.size()), stored + 1) << where;
   for (std::size_t i = 0; i < touches.size(); ++i) EXPECT_EQ(touches[i].number, static_cast<int>(i) + 1);
-  for (const StoredTouch& each : touches) EXPECT_EQ(each.joints, touch(each.number).joints) << where;
+  for (const StoredTouch& each : touches) EXPECT_EQ(each.joints, numbered_touch(each.number).joints) << where;
   const bool replaced = !store.superseded_touches(runs[0].id).empty();
   EXPECT_EQ(replaced, touches.size() > 1 && touches[1].sequence == kTouches + 1) << where;
   if (runs[0].outcome == RunOutcome::kRunning && !touches.empty() && !replaced) {

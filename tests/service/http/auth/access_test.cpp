@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/service/http/test_tokens.hpp"
+
 namespace cell {
 namespace {
-
-const Tokens kTokens{std::string(64, 'a'), std::string(64, 'b')};
 
 HttpRequest with_token(const std::string& token, bool from_loopback = false) {
   return {.authorization = "Bearer " + token, .from_loopback = from_loopback};

@@ -12,13 +12,13 @@ namespace {
 using nlohmann::json;
 using ::testing::ElementsAre;
 
-struct Event {
+struct SentEvent {
   std::string name, id;
   json data;
 };
 
-std::vector<Event> parsed(const std::string& text) {
-  std::vector<Event> events;
+std::vector<SentEvent> parsed(const std::string& text) {
+  std::vector<SentEvent> events;
   std::size_t at = 0;
   for (std::size_t end; (end = text.find("\n\n", at)) != text.npos; at = end + 2) {
     const std::string block = "\n" + text.substr(at, end - at) + "\n";
@@ -66,7 +66,7 @@ TEST_F(EventStreams, BeginWithTheWholeStatusAndGoOnWithEachChangeOnce) {
       change();
       wanted.push_back(sequence());
     }
-    for (const Event& event : parsed(stream.due())) {
+    for (const SentEvent& event : parsed(stream.due())) {
       EXPECT_EQ(event.name, "status");
       EXPECT_EQ(event.id, id_of(event.data.at("sequence").get<std::uint64_t>()));
       seen.push_back(event.data.at("sequence"));

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/http/routes/api.hpp"
+#include "tests/service/http/test_tokens.hpp"
 #include "tests/service/quiet_cell.hpp"
 
 namespace cell {
@@ -17,7 +18,6 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Pair;
 
-const Tokens kTokens{std::string(64, 'a'), std::string(64, 'b')};
 constexpr const char* kRecipe = "edf-25";
 
 class PlanRoutes : public ::testing::Test {

@@ -8,6 +8,7 @@
 #include "service/http/routes/route_table.hpp"
 #include "service/http/server/target.hpp"
 #include "tests/service/document_schema.hpp"
+#include "tests/service/http/test_tokens.hpp"
 #include "tests/service/quiet_cell.hpp"
 
 namespace cell {
@@ -18,8 +19,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
-
-const Tokens kTokens{std::string(64, 'a'), std::string(64, 'b')};
 
 /// The problem document of a refusal; the test fails when it is none.
 json problem(const HttpResponse& response) {

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/http/routes/route_table.hpp"
+#include "tests/service/http/test_tokens.hpp"
 #include "tests/service/quiet_cell.hpp"
 
 namespace cell {
@@ -13,8 +14,6 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
-
-const Tokens kTokens{std::string(64, 'a'), std::string(64, 'b')};
 
 HttpResponse get(const std::string& target) {
   QuietCell cell;

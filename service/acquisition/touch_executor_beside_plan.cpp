@@ -24,7 +24,7 @@ asio::awaitable<std::optional<cs8::TouchResult>> TouchExecutor::touch_beside_pla
   const auto from = co_await session_.standing_joints();
   if (status_.state() != State::kExecute) co_return std::nullopt;
   if (!from) {
-    co_await wake_.wait(20ms);  // the link is gone, and its loss is about to be told
+    co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     co_return std::nullopt;
   }
   auto ready = preparation_.prepare(std::move(aimed), *from);
@@ -34,7 +34,7 @@ asio::awaitable<std::optional<cs8::TouchResult>> TouchExecutor::touch_beside_pla
   }
   const OutgoingTouch outgoing = preparation_.send(*std::move(ready));
   session_.forget_standing();
-  history_.last_contact.reset();  // this is made to be where another was
+  history_.last_contact.reset();  // this touch repeats an earlier place on purpose
   auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
   identify(active);
   const cs8::TouchReply reply = co_await std::move(answer);
@@ -43,7 +43,7 @@ asio::awaitable<std::optional<cs8::TouchResult>> TouchExecutor::touch_beside_pla
     co_return std::nullopt;
   }
   const auto* result = std::get_if<cs8::TouchResult>(&reply.answer);
-  if (!result) co_return std::nullopt;  // a lost link has been told by the controller's hook
+  if (!result) co_return std::nullopt;  // a lost link was reported by the controller's hook
   if (!accept(active, outgoing.touch, reply.sequence, *result, held_by)) co_return std::nullopt;
   session_.acknowledge(reply.sequence);
   preparation_.set_missed(false);

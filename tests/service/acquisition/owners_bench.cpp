@@ -1,0 +1,91 @@
+#include "tests/service/acquisition/owners_bench.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <boost/asio/co_spawn.hpp>
+#include <exception>
+
+#include "service/run/planning_problem.hpp"
+#include "service/run/touch_command.hpp"
+
+namespace cell {
+
+const Cell& cell_of_owners() {
+  static const Cell cell = [] {
+    Cell made = edf();
+    Recipe recipe = made.recipes.at("edf-25");
+    recipe.name = "few";
+    recipe.fit_per_face = 7;
+    recipe.held_out_per_face = 1;
+    recipe.reference_every = 0;
+    recipe.candidate_count = 2'000;
+    made.recipes.emplace(recipe.name, recipe);
+    return made;
+  }();
+  return cell;
+}
+
+const Plan& plan_of_owners() {
+  static const Plan plan = [] {
+    const TipRegions regions(cell_of_owners());
+    return std::get<Plan>(make_plan(regions, cell_of_owners().recipes.at("few")));
+  }();
+  return plan;
+}
+
+OwnersBench::OwnersBench()
+    : status(
+          time.clocks(), wake, "instance",
+          {.describe = [](Status&) {},
+           .on_entered = [this](State state) { entered.push_back(state); },
+           .store_fault = [this](const std::string& name, const std::string&) { faults.push_back(name); }}),
+      session(cell_of_owners(), controller, status, wake, time.clocks()),
+      store(folder.path() / "touchcal.sqlite"),
+      regions(cell_of_owners()) {
+  spdlog::set_level(spdlog::level::off);
+  controller.state->joints = to_wire(cell_of_owners().park_joints);
+  wake.on_wait = [this] { tell_state(); };  // as the real one does, every 20 ms
+}
+
+OwnersBench::~OwnersBench() = default;
+
+void OwnersBench::run(boost::asio::awaitable<void> work) {
+  std::exception_ptr failure;
+  boost::asio::co_spawn(io, std::move(work), [&](const std::exception_ptr& thrown) { failure = thrown; });
+  io.restart();
+  io.run();
+  if (failure) std::rethrow_exception(failure);
+}
+
+void OwnersBench::tell_state() {
+  if (controller.is_connected) session.on_controller_state(controller.state.value());
+}
+
+ActiveRun OwnersBench::begun_run(const std::string& recipe) {
+  const std::int64_t id = store.begin_run({.recipe = recipe, .started_at = "start"});
+  return {.run = Run(id, regions, cell_of_owners().recipes.at(recipe), "start"),
+          .conditions = "{}",
+          .interruption = std::nullopt,
+          .place_check = std::nullopt};
+}
+
+ActiveRun OwnersBench::planned_run() {
+  ActiveRun active = begun_run();
+  active.run.set_plan(plan_of_owners().touches);
+  preparation.begin(planning_problem(cell_of_owners(), active.run.recipe()));
+  return active;
+}
+
+cs8::TouchResult OwnersBench::contact() const {
+  cs8::TouchResult result;
+  result.outcome = cs8::Outcome::kContact;
+  result.source = cs8::CaptureSource::kLatched;
+  result.contact = to_wire(preparation.made()->touch.joints);
+  result.first_source = result.source;
+  result.first_contact = result.contact;
+  result.monitor_speed_percent = 100;
+  result.edges = 1;
+  return result;
+}
+
+}  // namespace cell
