@@ -19,7 +19,7 @@ std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
-std::set<std::string> all_matches(const std::string& text, const std::regex& pattern) {
+std::set<std::string> names_in(const std::string& text, const std::regex& pattern) {
   std::set<std::string> found;
   for (auto match = std::sregex_iterator(text.begin(), text.end(), pattern); match != std::sregex_iterator();
        ++match) {
@@ -49,7 +49,7 @@ TEST(Surfaces, NameEveryFieldThatASchemaRequires) {
       std::smatch fields;
       const std::string behind = source.substr(schema, source.find(")\";", schema) - schema);
       ASSERT_TRUE(std::regex_search(behind, fields, required)) << wanted;
-      for (const std::string& field : all_matches(fields[1], name)) {
+      for (const std::string& field : names_in(fields[1], name)) {
         ++seen;
         EXPECT_NE(surfaces().find('`' + field), std::string::npos) << wanted << ": " << field;
       }
@@ -63,7 +63,7 @@ TEST(Surfaces, NameEveryPath) {
   int seen = 0;
   for (const auto& file : source_files("service")) {
     if (!file.filename().string().ends_with("_routes.cpp")) continue;
-    for (const std::string& route : all_matches(text_of(file), path)) {
+    for (const std::string& route : names_in(text_of(file), path)) {
       ++seen;
       EXPECT_NE(surfaces().find(route), std::string::npos) << file << ": " << route;
     }

@@ -34,7 +34,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/acquisition/cs8_controller", "passes calls on to cs8::Client: every run of tests/end_to_end"},
     {"service/acquisition/hand_touch", "acquisition/locating_test"},
     {"service/acquisition/link_fault", "acquisition/controller_session_test and end_to_end/link_faults_test"},
-    {"service/acquisition/touches_beside_plan",
+    {"service/acquisition/touch_executor_beside_plan",
      "the second half of touch_executor.cpp: acquisition/touch_executor_test"},
     {"service/acquisition/wake", "acquisition/controller_session_test waits by it"},
     {"service/base/asio_ssl", "compiles Asio's sources"},
