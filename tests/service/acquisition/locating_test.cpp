@@ -99,7 +99,7 @@ TEST_F(LocatingTheBlock, ATouchThatCameTooFastDoesNotCount) {
   locating_.take(touch);
   EXPECT_TRUE(locating_.touches().empty());
   ASSERT_TRUE(locating_.guide().problem);
-  EXPECT_NE(locating_.guide().problem->find("slower"), std::string::npos);
+  EXPECT_NE(locating_.guide().problem->find("more slowly"), std::string::npos);
 }
 
 TEST_F(LocatingTheBlock, TheSameSpotTwiceDoesNotCount) {
