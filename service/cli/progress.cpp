@@ -33,7 +33,7 @@ std::string guidance(const StatusDocument& status) {
   if (!status.by_hand_words) return {};
   std::string text;
   if (status.by_hand_problem) text = fmt::format("not taken: {}\n", *status.by_hand_problem);
-  if (status.by_hand_step == "touch")
+  if (status.by_hand_step == HandStep::kTouch)
     text += fmt::format("{} of {}: ", status.by_hand_index.value(), status.by_hand_total.value());
   text += *status.by_hand_words;
   if (status.waiting_for) text += fmt::format("\nwaiting: {}", awaited_instruction(*status.waiting_for));
@@ -67,7 +67,8 @@ void Progress::show(const StatusDocument& status) {
   const int done = status.touches_done;
   if (on_terminal_) {
     const int filled = total > 0 ? done * kBarWidth / total : 0;
-    fmt::print("\r\033[K{:<11}[{}{}] {}", status.state, std::string(static_cast<std::size_t>(filled), '#'),
+    fmt::print("\r\033[K{:<11}[{}{}] {}", word_of(status.state),
+               std::string(static_cast<std::size_t>(filled), '#'),
                std::string(static_cast<std::size_t>(kBarWidth - filled), '.'), figures(status));
     line_open_ = true;
   } else {
@@ -76,7 +77,7 @@ void Progress::show(const StatusDocument& status) {
     if (status.state == last_state_ && tenth == last_tenth_ && awaited == last_awaited_) return;
     last_tenth_ = tenth;
     last_awaited_ = awaited;
-    fmt::print("{:<11} {}\n", status.state, figures(status));
+    fmt::print("{:<11} {}\n", word_of(status.state), figures(status));
   }
   last_state_ = status.state;
   std::fflush(stdout);

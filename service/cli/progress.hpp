@@ -25,7 +25,7 @@ class Progress {
 
   bool on_terminal_;
   bool line_open_ = false;
-  std::string last_state_;
+  std::optional<State> last_state_;
   std::string last_fault_;
   std::string last_awaited_;
   std::string last_guidance_;

@@ -17,7 +17,9 @@ std::string text(const std::optional<std::string>& value) { return value.value_o
 
 /// "grouped: r3 x 1.000"
 std::string status_of(const Parameter& parameter) {
-  if (parameter.status != "grouped") return parameter.status == "no_effect" ? "no effect" : parameter.status;
+  if (!parameter.status) return "-";
+  if (parameter.status == calib::ParameterStatus::kNoEffect) return "no effect";
+  if (parameter.status != calib::ParameterStatus::kGrouped) return std::string(word_of(*parameter.status));
   std::string into;
   constexpr std::size_t kShown = 3;
   const std::vector<CarriedError>& factors = parameter.grouped_with;
@@ -52,9 +54,10 @@ std::string parameters_text(const std::vector<Parameter>& parameters) {
 std::string rejected_text(const ResultDocument& result) {
   std::string lines;
   for (const ResultDocument::RejectedTouch& touch : result.rejected_touches) {
-    lines += fmt::format("touch {} rejected: {}, {} mm off\n", touch.touch,
-                         touch.reason == "wrong_plane" ? "on another plane" : "does not fit the others",
-                         figure(touch.residual_mm, "{:+.3f}"));
+    lines += fmt::format(
+        "touch {} rejected: {}, {} mm off\n", touch.touch,
+        touch.reason == calib::RejectionReason::kWrongFace ? "on another plane" : "does not fit the others",
+        figure(touch.residual_mm, "{:+.3f}"));
   }
   return lines;
 }
@@ -80,7 +83,8 @@ std::string artefact_text(const std::vector<ArtefactParameter>& parameters) {
   for (const ArtefactParameter& parameter : parameters) {
     const char* format = parameter.unit == "rad" ? "{:.6f}" : "{:.4f}";
     lines += fmt::format("{:<16}{:>12}{:>12}  {:<6}{}\n", parameter.name, figure(parameter.value, format),
-                         figure(parameter.std_uncertainty, format), parameter.unit, parameter.status);
+                         figure(parameter.std_uncertainty, format), parameter.unit,
+                         parameter.status ? word_of(*parameter.status) : "-");
   }
   return lines;
 }
@@ -164,7 +168,7 @@ std::string status_text(const StatusDocument& status) {
   const auto text_or_unknown = [](const std::optional<std::string>& value) {
     return value.value_or("unknown");
   };
-  std::string lines = fmt::format("state       {}\n", status.state);
+  std::string lines = fmt::format("state       {}\n", word_of(status.state));
   const auto yes_no = [](std::optional<bool> value, const char* yes, const char* no) {
     return value ? (*value ? yes : no) : "unknown";
   };
@@ -186,7 +190,7 @@ std::string status_text(const StatusDocument& status) {
         "{}\n",
         *status.run_id, text(status.recipe), status.touches_done, figure(status.touches_total, "{:.0f}"),
         figure(status.identifiable_count, "{:.0f}"), figure(status.condition_number, "{:.0f}"),
-        figure(status.predicted_tip_rms_mm, "{:.3f}"), status.verdict);
+        figure(status.predicted_tip_rms_mm, "{:.3f}"), word_of(status.verdict));
   }
   lines += more_text(status);
   if (status.fault_code) {
@@ -205,10 +209,10 @@ std::string runs_text(const std::vector<RunSummary>& runs) {
   std::string lines = fmt::format("{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", "run", "recipe", "outcome",
                                   "verdict", "touches", "started", "fault");
   for (const RunSummary& run : runs) {
-    lines +=
-        fmt::format("{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", run.id, run.recipe, run.outcome, run.verdict,
-                    fmt::format("{}/{}", run.touches_done, figure(run.touches_total, "{:.0f}")),
-                    run.started_at, run.fault_code.value_or(""));
+    lines += fmt::format("{:<6}{:<10}{:<13}{:<12}{:>11}  {:<26}{}\n", run.id, run.recipe,
+                         word_of(run.outcome), word_of(run.verdict),
+                         fmt::format("{}/{}", run.touches_done, figure(run.touches_total, "{:.0f}")),
+                         run.started_at, run.fault_code.value_or(""));
   }
   return lines;
 }

@@ -15,7 +15,7 @@ std::string entry(const std::vector<RepetitionDocument::NewError>& parameters, i
   for (const RepetitionDocument::NewError& parameter : parameters) {
     if (parameter.frame != frame || parameter.kind != kind) continue;
     if (parameter.new_error) return fmt::format("{:+.1e}", *parameter.new_error);
-    return parameter.status == "no_effect" ? "x" : "/";
+    return parameter.status == calib::ParameterStatus::kNoEffect ? "x" : "/";
   }
   return "-";
 }

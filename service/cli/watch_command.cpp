@@ -2,9 +2,10 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdio>
-#include <set>
 #include <variant>
 
 #include "service/cli/commands.hpp"
@@ -12,6 +13,7 @@
 #include "service/cli/progress.hpp"
 #include "service/cli/result_text.hpp"
 #include "service/documents/command_documents.hpp"
+#include "service/run/fault_table.hpp"
 
 namespace cell {
 namespace {
@@ -32,14 +34,18 @@ struct Answer {
 Answer status_answer(const ApiReply& reply) { return {reply.body, read_reply(reply, read_status)}; }
 
 bool is_over(const StatusDocument& status) {
-  static const std::set<std::string> kOver{"STOPPED", "RESETTING", "IDLE", "COMPLETE", "ABORTED", "CLEARING"};
-  return kOver.contains(status.state);
+  constexpr std::array kOver{State::kStopped,  State::kResetting, State::kIdle,
+                             State::kComplete, State::kAborted,   State::kClearing};
+  return std::ranges::find(kOver, status.state) != kOver.end();
 }
 
-ExitCode exit_code_of_end(const std::string& verdict, const std::optional<std::string>& fault) {
-  if (verdict == "accepted") return kExitDone;
-  if (verdict == "rejected") return kExitLimitsMissed;
-  return fault == "recipe_unreachable" || fault == "not_identifiable" ? kExitRefused : kExitFailed;
+ExitCode exit_code_of_end(Verdict verdict, const std::optional<std::string>& fault) {
+  if (verdict == Verdict::kAccepted) return kExitDone;
+  if (verdict == Verdict::kRejected) return kExitLimitsMissed;
+  return fault == describe(FaultCode::kRecipeUnreachable).name ||
+                 fault == describe(FaultCode::kNotIdentifiable).name
+             ? kExitRefused
+             : kExitFailed;
 }
 
 ApiReply wait_for_change(const ApiClient& daemon, const StatusDocument& status, int wait_s) {
@@ -53,7 +59,7 @@ void wait_until_ready(const ApiClient& daemon, bool guided) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(kReadyWaitSeconds);
   StatusDocument status = read_reply(daemon.get("/api/v1/status"), read_status);
   const auto is_on_its_way = [&] {
-    return status.state == "RESETTING" && !(guided && status.controller_connected);
+    return status.state == State::kResetting && !(guided && status.controller_connected);
   };
   while (is_on_its_way() && std::chrono::steady_clock::now() < deadline) {
     status = read_reply(wait_for_change(daemon, status, 1), read_status);
@@ -76,7 +82,7 @@ Answer watch_to_end(const ApiClient& daemon, const std::string& run_id, bool sil
     if (!silent) progress.show(status);
     // Without a person who could resume, a run that a fault holds is not waited for.
     const bool unattended = silent || isatty(STDOUT_FILENO) == 0;
-    if (is_over(status) || (unattended && status.state == "HELD" && status.fault_code)) break;
+    if (is_over(status) || (unattended && status.state == State::kHeld && status.fault_code)) break;
     answer = status_answer(wait_for_change(daemon, status, kWaitSeconds));
   }
   progress.finish();
@@ -86,12 +92,12 @@ Answer watch_to_end(const ApiClient& daemon, const std::string& run_id, bool sil
 void print_failure(const Answer& end) {
   std::string where, message, next;
   if (const auto* status = std::get_if<StatusDocument>(&end.document)) {
-    where = "in " + status->state;
+    where = fmt::format("in {}", word_of(status->state));
     message = status->fault_message.value_or("");
     next = status->fault_next_step.value_or("");
   } else {
     const RunDocument& run = std::get<RunDocument>(end.document);
-    where = run.outcome;
+    where = word_of(run.outcome);
     message = run.fault_message.value_or("");
   }
   fmt::print(stderr, "the run is {}{}; {}\n", where, message.empty() ? "" : ": " + message,
@@ -165,15 +171,15 @@ ExitCode locate_command(const ApiClient& daemon, bool json_only) {
   if (reply.status != 202) return print_problem(reply, json_only);
   StatusDocument status = read_reply(reply, read_status);
   std::string said;
-  const bool passes = status.by_hand_step == "passing";
-  const auto is_found = [&] { return !passes && status.by_hand_step == "pass"; };
+  const bool passes = status.by_hand_step == HandStep::kPassing;
+  const auto is_found = [&] { return !passes && status.by_hand_step == HandStep::kPass; };
   do {
     if (!json_only && guidance(status) != said) fmt::print("{}\n", said = guidance(status));
     std::fflush(stdout);
-    if (is_found() || (passes && status.by_hand_step == "pass")) break;
+    if (is_found() || (passes && status.by_hand_step == HandStep::kPass)) break;
     reply = wait_for_change(daemon, status, kWaitSeconds);
     status = read_reply(reply, read_status);
-  } while (status.by_hand == "locate");
+  } while (status.by_hand == HandActivity::kLocate);
   const bool failed = status.fault_code.has_value();
   const ApiReply cell = daemon.get("/api/v1/cell");
   if (!failed && !is_found() && read_reply(cell, read_place_of_cell) == place_before) {

@@ -88,6 +88,10 @@ void FieldReader::read(const Place& at, std::map<std::string, std::string>& text
   for (const auto& [key, text] : at.value.items()) read({text, at.absent, &at, key.c_str()}, texts[key]);
 }
 
+void FieldReader::refuse_word(const Place& at, const std::string& word) {
+  throw DocumentError(pointer_to(at), "'" + word + "' is not a word of this version of touchcal");
+}
+
 bool FieldReader::is_null(const Place& at) { return at.value.is_null(); }
 
 std::size_t FieldReader::size_of_list(const Place& at) {

@@ -29,8 +29,8 @@ RunSummary summary_of(const StoredRun& run) {
           .recipe = run.recipe,
           .touch_mode = std::string(
               touch_mode_name(is_guided(run.conditions_json) ? TouchMode::kGuided : TouchMode::kAutomatic)),
-          .outcome = std::string(run_outcome_name(run.outcome)),
-          .verdict = std::string(verdict_name(run.verdict)),
+          .outcome = run.outcome,
+          .verdict = run.verdict,
           .touches_done = run.touches_done,
           .touches_total = count_once_planned(run.touches_total),
           .started_at = run.started_at,
@@ -52,8 +52,8 @@ void set_controller(const ControllerView& controller, StatusDocument& document) 
 
 /// Instructions to a person who touches by hand.
 void set_by_hand(const HandGuide& guide, StatusDocument& document) {
-  document.by_hand = hand_activity_name(guide.activity);
-  document.by_hand_step = hand_step_name(guide.step);
+  document.by_hand = guide.activity;
+  document.by_hand_step = guide.step;
   document.by_hand_plane = guide.plane;
   document.by_hand_index = guide.index;
   document.by_hand_total = guide.total;
@@ -79,20 +79,8 @@ void set_faults(const Status& status, StatusDocument& document) {
 
 }  // namespace
 
-const char* role_name(calib::TouchRole role) {
-  switch (role) {
-    case calib::TouchRole::kFit:
-      return "fit";
-    case calib::TouchRole::kHeldOut:
-      return "held_out";
-    case calib::TouchRole::kProof:
-      return "proof";
-  }
-  return "";
-}
-
 StatusDocument status_of(const Status& status) {
-  StatusDocument document{.state = std::string(state_name(status.state)),
+  StatusDocument document{.state = status.state,
                           .waiting_for = status.waiting_for,
                           .run_id = id_text(status.run_id),
                           .recipe = status.recipe,
@@ -104,7 +92,7 @@ StatusDocument status_of(const Status& status) {
                           .predicted_tip_rms_mm = finite_mm(status.predicted_tip_rms_m),
                           .touch_benefit = status.touch_benefit,
                           .eta_s = finite(status.eta_s),
-                          .verdict = std::string(verdict_name(status.verdict))};
+                          .verdict = status.verdict};
   set_controller(status.controller, document);
   if (status.by_hand) set_by_hand(*status.by_hand, document);
   set_faults(status, document);
@@ -136,7 +124,7 @@ std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& t
   Json list = Json::array();
   for (const StoredTouch& touch : touches) {
     list.push_back({{"plane", touch.plane},
-                    {"role", role_name(touch.role)},
+                    {"role", word_of(touch.role)},
                     {"joints_deg", joints_deg_json(touch.joints)}});
   }
   return text_of({{"schema", "touchcal/touches/1"}, {"arm", cell.arm.name}, {"touches", list}});

@@ -14,8 +14,6 @@
 namespace cell {
 
 /// Name of a touch's role in every document.
-const char* role_name(calib::TouchRole role);
-
 StatusDocument status_of(const Status& status);
 std::string status_document(const Status& status);
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "service/documents/words.hpp"
+
 /// What documents tell of parameters. Lengths are in mm, angles in rad.
 namespace cell {
 
@@ -28,7 +30,7 @@ struct PlannedParameter {
   std::string group;  // place, arm, tool
   std::string unit;
   std::optional<double> nominal;
-  std::string status;  // identified, grouped, no_effect, excluded, weak
+  std::optional<calib::ParameterStatus> status;
   std::optional<double> std_uncertainty;
   std::vector<CarriedError> grouped_with;
   std::vector<CarriedError> stands_for;
@@ -76,7 +78,7 @@ struct PlannedArtefactParameter {
   std::string unit;
   std::optional<double> nominal;
   std::optional<double> std_uncertainty;
-  std::string status;  // identified, prior
+  std::optional<ArtefactStatus> status;
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {

@@ -16,22 +16,6 @@ constexpr double kIdentifiedFall = 0.1;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();  // shown as null
 
-const char* status_name(calib::ParameterStatus status) {
-  switch (status) {
-    case calib::ParameterStatus::kIdentified:
-      return "identified";
-    case calib::ParameterStatus::kGrouped:
-      return "grouped";
-    case calib::ParameterStatus::kNoEffect:
-      return "no_effect";
-    case calib::ParameterStatus::kExcluded:
-      return "excluded";
-    case calib::ParameterStatus::kWeak:
-      return "weak";
-  }
-  return "";
-}
-
 const char* group_name(calib::ParameterGroup group) {
   switch (group) {
     case calib::ParameterGroup::kBlockPose:
@@ -131,7 +115,7 @@ std::vector<Parameter> parameters_of(const calib::IdentificationProblem& problem
     for (const auto& [other, factor] : candidate.grouped_with) {
       if (!estimated) parameter.grouped_with.push_back(carried_error(other, i, other, factor));
     }
-    parameter.status = estimated ? "identified" : status_name(candidate.status);
+    parameter.status = estimated ? calib::ParameterStatus::kIdentified : candidate.status;
     if (estimated) parameter.error = finite(shown(i, result.errors[i]));
     if (std) parameter.std_uncertainty = finite(shown(i, *std));
     parameter.interval95 =
@@ -158,7 +142,7 @@ std::vector<ArtefactParameter> artefact_parameters_of(const calib::Identificatio
     shown_as.nominal = finite(scale * parameter.nominal);
     if (estimated) shown_as.value = finite(scale * (parameter.nominal + result.artefact_errors[index]));
     shown_as.std_uncertainty = finite(scale * std);
-    shown_as.status = identified ? "identified" : "prior";
+    shown_as.status = identified ? ArtefactStatus::kIdentified : ArtefactStatus::kPrior;
   }
   return list;
 }

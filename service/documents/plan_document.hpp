@@ -8,6 +8,7 @@
 
 #include "service/documents/parameter_document.hpp"
 #include "service/documents/tip_document.hpp"
+#include "service/documents/words.hpp"
 
 namespace cell {
 
@@ -106,7 +107,7 @@ struct PlanDocument {
   /// At `joints_deg` the nominal arm's ball touches the nominal face.
   struct Touch {
     int plane = 0;  // from 1
-    std::string role;
+    calib::TouchRole role = calib::TouchRole::kFit;
     Joints joints_deg;
     std::vector<Joints> via_joints_deg;
     Joints clear_joints_deg;

@@ -30,7 +30,7 @@ std::vector<PlanDocument::Joints> way_of(const Cell& cell, const std::vector<cal
 PlanDocument::Touch touch_of(const Cell& cell, const calib::PlannedTouch& touch) {
   const Eigen::Vector3d& direction = touch.search_direction;
   return {.plane = touch.face + 1,
-          .role = role_name(touch.role),
+          .role = touch.role,
           .joints_deg = joints_of(cell, touch.joints),
           .via_joints_deg = way_of(cell, touch.via),
           .clear_joints_deg = joints_of(cell, touch.clear_joints),

@@ -10,6 +10,7 @@
 #include "service/documents/parameter_document.hpp"
 #include "service/documents/tip_document.hpp"
 #include "service/documents/validation_document.hpp"
+#include "service/documents/words.hpp"
 
 namespace cell {
 
@@ -73,7 +74,7 @@ struct ResultDocument {
   struct RejectedTouch {
     int touch = 0;  // from 1
     std::optional<double> residual_mm;
-    std::string reason;  // wrong_plane, outlier
+    calib::RejectionReason reason = calib::RejectionReason::kOutlier;
 
     template <class Self, class Fields>
     static void visit(Self& self, Fields& fields) {
@@ -116,8 +117,8 @@ struct ResultDocument {
   struct TouchDistances {
     int touch = 0;  // from 1
     int plane = 0;  // from 1
-    std::string role;
-    std::optional<std::string> use;  // used, rejected
+    calib::TouchRole role = calib::TouchRole::kFit;
+    std::optional<TouchUse> use;
     std::optional<double> nominal_mm;
     std::optional<double> calibrated_mm;
 

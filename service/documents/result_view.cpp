@@ -32,10 +32,9 @@ ResultDocument::Iteration iteration_of(const calib::Iteration& iteration) {
 }
 
 ResultDocument::RejectedTouch rejected_of(const calib::RejectedTouch& touch) {
-  const bool wrong_plane = touch.reason == calib::RejectionReason::kWrongFace;
   return {.touch = static_cast<int>(touch.touch) + 1,
           .residual_mm = finite_mm(touch.residual_m),
-          .reason = wrong_plane ? "wrong_plane" : "outlier"};
+          .reason = touch.reason};
 }
 
 const char* source_name(calib::ScaleSource source) {
@@ -130,9 +129,9 @@ PlaneDistances plane_of(const Cell& cell, const calib::FaceDistances& face) {
           .calibrated_rms_mm = finite_mm(face.calibrated_rms_m)};
 }
 
-const char* use_name(const calib::IdentificationResult& result, std::size_t touch) {
+TouchUse use_of(const calib::IdentificationResult& result, std::size_t touch) {
   const auto found = std::ranges::find(result.rejected, touch, &calib::RejectedTouch::touch);
-  return found == result.rejected.end() ? "used" : "rejected";
+  return found == result.rejected.end() ? TouchUse::kUsed : TouchUse::kRejected;
 }
 
 /// Distances run along the outward normal from the origin, as those of the planes.
@@ -147,8 +146,8 @@ std::vector<ResultDocument::TouchDistances> touches_of(const Cell& cell,
     const double reference = cell.block.faces[static_cast<std::size_t>(touch.face)].plane.offset_m;
     list.push_back({.touch = static_cast<int>(i) + 1,
                     .plane = touch.face + 1,
-                    .role = role_name(touch.role),
-                    .use = use_name(result, i),
+                    .role = touch.role,
+                    .use = use_of(result, i),
                     .nominal_mm = finite_mm(reference + distances[i].nominal_m),
                     .calibrated_mm = finite_mm(reference + distances[i].calibrated_m)});
   }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "service/documents/carried_json.hpp"
+#include "service/documents/words.hpp"
 
 namespace cell {
 
@@ -14,8 +15,8 @@ struct RunSummary {
   std::string id;
   std::string recipe;
   std::optional<std::string> touch_mode;  // automatic, guided
-  std::string outcome;
-  std::string verdict;
+  RunOutcome outcome = RunOutcome::kRunning;
+  Verdict verdict = Verdict::kNone;
   int touches_done = 0;
   std::optional<int> touches_total;  // once it is planned
   std::string started_at;

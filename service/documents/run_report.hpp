@@ -7,6 +7,7 @@
 
 #include "service/documents/carried_json.hpp"
 #include "service/documents/result_document.hpp"
+#include "service/documents/words.hpp"
 
 namespace cell {
 
@@ -19,8 +20,8 @@ struct RunReport {
     std::optional<std::string> operator_name;
     std::string started_at;
     std::optional<std::string> ended_at;
-    std::string outcome;
-    std::string verdict;
+    RunOutcome outcome = RunOutcome::kRunning;
+    Verdict verdict = Verdict::kNone;
     int touches_done = 0;
     std::optional<int> touches_total;
     std::optional<std::string> fault_code;
@@ -60,11 +61,11 @@ struct RunReport {
   struct Touch {
     int touch = 0;  // from 1
     int plane = 0;  // from 1
-    std::string role;
+    calib::TouchRole role = calib::TouchRole::kFit;
     std::vector<std::string> joints_deg;  // to the last digit that came over the wire
     std::string source;
     std::string captured_at;
-    std::optional<std::string> use;  // used, rejected
+    std::optional<TouchUse> use;
     std::optional<double> nominal_mm;
     std::optional<double> calibrated_mm;
 

@@ -6,11 +6,13 @@
 #include <string_view>
 #include <vector>
 
+#include "service/documents/words.hpp"
+
 namespace cell {
 
 /// What a supervisor polls. Every field is always there; what is not known is null.
 struct StatusDocument {
-  std::string state;
+  State state = State::kStopped;
   std::optional<std::string> waiting_for;
   std::optional<std::string> run_id;
   std::optional<std::string> recipe;
@@ -22,7 +24,7 @@ struct StatusDocument {
   std::optional<double> predicted_tip_rms_mm;
   std::optional<std::string> touch_benefit;
   std::optional<double> eta_s;
-  std::string verdict;
+  Verdict verdict = Verdict::kNone;
   bool controller_connected = false;
   std::optional<bool> controller_powered;
   std::optional<std::string> controller_mode;
@@ -31,8 +33,8 @@ struct StatusDocument {
   std::optional<bool> controller_touch_tested;
   std::optional<std::string> controller_permit;
   std::optional<std::string> probe;
-  std::optional<std::string> by_hand;
-  std::optional<std::string> by_hand_step;
+  std::optional<HandActivity> by_hand;
+  std::optional<HandStep> by_hand_step;
   std::optional<int> by_hand_plane;
   std::optional<int> by_hand_index;
   std::optional<int> by_hand_total;

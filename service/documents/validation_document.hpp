@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "service/documents/words.hpp"
+
 namespace cell {
 
 /// The distances of one role's touches of a plane, along its outward normal from the block's origin.
@@ -40,7 +42,7 @@ struct RepetitionDocument {
     int frame = 0;
     std::string kind;
     std::string unit;
-    std::string status;
+    std::optional<calib::ParameterStatus> status;
     std::optional<double> new_error;
     std::optional<double> std_new_error;
 

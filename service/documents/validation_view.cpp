@@ -12,7 +12,7 @@ void add_new_errors(const std::vector<Parameter>& parameters, const calib::Repet
                     std::vector<RepetitionDocument::NewError>& list) {
   for (int i = 0; i < calib::kErrorParameterCount; ++i) {
     const Parameter& parameter = parameters.at(static_cast<std::size_t>(i));
-    const bool told = repetition.done() && parameter.status == "identified";
+    const bool told = repetition.done() && parameter.status == calib::ParameterStatus::kIdentified;
     RepetitionDocument::NewError& found = list.emplace_back();
     found.name = parameter.name;
     found.frame = parameter.frame;

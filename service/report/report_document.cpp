@@ -26,8 +26,8 @@ RunReport::OfRun of_run(const StoredRun& run) {
           .operator_name = run.operator_name,
           .started_at = run.started_at,
           .ended_at = run.ended_at,
-          .outcome = std::string(run_outcome_name(run.outcome)),
-          .verdict = std::string(verdict_name(run.verdict)),
+          .outcome = run.outcome,
+          .verdict = run.verdict,
           .touches_done = run.touches_done,
           .touches_total = run.touches_total > 0 ? std::optional(run.touches_total) : std::nullopt,
           .fault_code = run.fault_code,
@@ -45,7 +45,7 @@ std::vector<RunReport::Touch> touches_of(const RunRecord& record, const ResultDo
     RunReport::Touch& touch = list.emplace_back();
     touch.touch = static_cast<int>(i) + 1;
     touch.plane = stored.plane;
-    touch.role = role_name(stored.role);
+    touch.role = stored.role;
     for (const auto joint : stored.joints) touch.joints_deg.push_back(degrees_text(joint));
     touch.source = cs8::name(stored.source);
     touch.captured_at = stored.captured_at;
@@ -62,7 +62,7 @@ std::vector<RunReport::Touch> touches_of(const RunRecord& record, const ResultDo
 std::string raw_data_text(const std::vector<StoredTouch>& touches) {
   std::string lines;
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    lines += fmt::format("{},{},{}", i + 1, touches[i].plane, role_name(touches[i].role));
+    lines += fmt::format("{},{},{}", i + 1, touches[i].plane, word_of(touches[i].role));
     for (const auto joint : touches[i].joints) lines += "," + degrees_text(joint);
     lines += "\n";
   }
@@ -99,9 +99,9 @@ std::string report_csv(const RunReport& report) {
       "calibrated_mm,captured_at\n";
   const auto figure = [](std::optional<double> value) { return value ? fmt::format("{:.6f}", *value) : ""; };
   for (const RunReport::Touch& touch : report.touches) {
-    lines += fmt::format("{},{},{}", touch.touch, touch.plane, touch.role);
+    lines += fmt::format("{},{},{}", touch.touch, touch.plane, word_of(touch.role));
     for (const std::string& joint : touch.joints_deg) lines += "," + joint;
-    lines += fmt::format(",{},{},{},{}\n", touch.use.value_or(""), figure(touch.nominal_mm),
+    lines += fmt::format(",{},{},{},{}\n", touch.use ? word_of(*touch.use) : "", figure(touch.nominal_mm),
                          figure(touch.calibrated_mm), touch.captured_at);
   }
   return lines;

@@ -27,7 +27,7 @@ std::optional<double> reference_of(const std::vector<PlaneDistances>& planes, in
 
 void add_touch(const RunReport::Touch& touch, PlaneFigures& figures) {
   if (!touch.nominal_mm || !touch.calibrated_mm) return;
-  const bool is_rejected = touch.use == "rejected";
+  const bool is_rejected = touch.use == TouchUse::kRejected;
   const auto at = static_cast<double>(figures.nominal.points.size() + 1);
   figures.nominal.points.emplace_back(at, *touch.nominal_mm);
   figures.calibrated.points.emplace_back(at, *touch.calibrated_mm);
@@ -77,8 +77,9 @@ std::string distance_figures(const RunReport& report) {
   std::string drawn;
   constexpr int kFirstFigure = 5;  // the paper's
   int number = kFirstFigure;
-  for (const auto& [role, words, planes] : {std::tuple{"fit", "used", &result.planes},
-                                            std::tuple{"held_out", "held-out", &result.planes_held_out}}) {
+  for (const auto& [role, words, planes] :
+       {std::tuple{calib::TouchRole::kFit, "used", &result.planes},
+        std::tuple{calib::TouchRole::kHeldOut, "held-out", &result.planes_held_out}}) {
     std::map<int, PlaneFigures> of_plane;
     for (const RunReport::Touch& touch : report.touches) {
       if (touch.role != role) continue;

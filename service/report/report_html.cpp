@@ -35,11 +35,17 @@ std::string pairs_table(std::string_view caption, const std::vector<Row>& rows) 
   return html::table(caption, {"what", "value"}, rows);
 }
 
-std::string verdict_words(const std::string& verdict) {
-  if (verdict == "accepted") return "The calibrated model meets every limit of the cell.";
-  if (verdict == "rejected")
-    return "The calibrated model does not meet the limits of the cell; do not use it as it is.";
-  if (verdict == "incomplete") return "Not every touch was made; no verdict rests on this run.";
+std::string verdict_words(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kAccepted:
+      return "The calibrated model meets every limit of the cell.";
+    case Verdict::kRejected:
+      return "The calibrated model does not meet the limits of the cell; do not use it as it is.";
+    case Verdict::kIncomplete:
+      return "Not every touch was made; no verdict rests on this run.";
+    case Verdict::kNone:
+      break;
+  }
   return "There is no verdict.";
 }
 
@@ -79,12 +85,12 @@ std::string decision_rule(const std::optional<DecisionRuleDocument>& rule) {
 }
 
 std::string verdict_box(const RunReport& report) {
-  const std::string verdict = text_or_unknown(report.run.verdict);
   const VerdictDocument of_result = report.result ? report.result->value.verdict : VerdictDocument();
-  return html::element("div",
-                       html::element("strong", html::escaped("Verdict: " + verdict)) +
-                           html::paragraph(verdict_words(verdict)) + bullets(of_result.reasons),
-                       R"(class="verdict")") +
+  return html::element(
+             "div",
+             html::element("strong", html::escaped(fmt::format("Verdict: {}", word_of(report.run.verdict)))) +
+                 html::paragraph(verdict_words(report.run.verdict)) + bullets(of_result.reasons),
+             R"(class="verdict")") +
          decision_rule(of_result.decision_rule);
 }
 
@@ -130,7 +136,7 @@ std::string run_section(const RunReport& report) {
            {"operator", text_or_unknown(run.operator_name)},
            {"started, ended", text_or_unknown(run.started_at) + ", " + text_or_unknown(run.ended_at)},
            {"touches", std::to_string(run.touches_done) + figure_if_known(run.touches_total, " of {:.0f}")},
-           {"outcome", text_or_unknown(run.outcome)},
+           {"outcome", std::string(word_of(run.outcome))},
            {"versions",
             fmt::format("touchcal {}, protocol {}, controller's application {}",
                         text_or_unknown(report.touchcal_version), figure_text(versions.protocol, "{:.0f}"),
@@ -199,7 +205,8 @@ std::string touches_section(const RunReport& report) {
   if (report.result) {
     for (const ResultDocument::RejectedTouch& touch : report.result->value.rejected_touches)
       rejected.push_back({std::to_string(touch.touch), figure_text(touch.residual_mm, "{:+.3f}"),
-                          touch.reason == "wrong_plane" ? "on another plane" : "does not fit the others"});
+                          touch.reason == calib::RejectionReason::kWrongFace ? "on another plane"
+                                                                             : "does not fit the others"});
   }
   std::vector<Row> again;
   for (const RunReport::Superseded& touch : report.touched_again)

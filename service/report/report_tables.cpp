@@ -15,10 +15,22 @@ constexpr std::array kKinds{"alpha", "d", "theta", "r", "beta"};
 const Row kKindHeading{"j", "Δα rad", "Δd mm", "Δθ rad", "Δr mm", "Δβ rad"};
 
 /// An entry of a table of errors by frame: the number, or the mark of its absence.
-std::string entry(std::optional<double> figure, const std::string& status, const char* format) {
+std::string entry(std::optional<double> figure, std::optional<calib::ParameterStatus> status,
+                  const char* format) {
   if (figure) return figure_text(figure, format);
-  if (status == "no_effect") return "×";
-  return status == "grouped" ? "/" : status == "weak" ? "○" : "–";
+  if (!status) return "–";
+  switch (*status) {
+    case calib::ParameterStatus::kNoEffect:
+      return "×";
+    case calib::ParameterStatus::kGrouped:
+      return "/";
+    case calib::ParameterStatus::kWeak:
+      return "○";
+    case calib::ParameterStatus::kIdentified:
+    case calib::ParameterStatus::kExcluded:
+      break;
+  }
+  return "–";
 }
 
 /// A row for each frame; `figure` is the member that is shown.
@@ -78,10 +90,19 @@ std::string carriers(const std::vector<CarriedError>& grouped_with) {
 }
 
 std::string status_words(const Parameter& parameter) {
-  if (parameter.status == "grouped") return carriers(parameter.grouped_with);
-  if (parameter.status == "no_effect") return "no effect on the touches";
-  if (parameter.status == "weak") return "too weak to tell from noise, held at nominal";
-  return text_or_unknown(parameter.status);
+  if (!parameter.status) return "unknown";
+  switch (*parameter.status) {
+    case calib::ParameterStatus::kGrouped:
+      return carriers(parameter.grouped_with);
+    case calib::ParameterStatus::kNoEffect:
+      return "no effect on the touches";
+    case calib::ParameterStatus::kWeak:
+      return "too weak to tell from noise, held at nominal";
+    case calib::ParameterStatus::kIdentified:
+    case calib::ParameterStatus::kExcluded:
+      break;
+  }
+  return std::string(word_of(*parameter.status));
 }
 
 std::string interval_words(const decltype(Parameter::interval95)& interval, const char* format) {
@@ -141,7 +162,7 @@ std::string block_and_probe_table(const ResultDocument& result) {
     rows.push_back({text_or_unknown(parameter.name), text_or_unknown(parameter.unit),
                     figure_text(parameter.nominal, format), figure_text(parameter.value, format),
                     figure_text(parameter.std_uncertainty, format),
-                    parameter.status == "prior" ? "as written down" : "found by the touches"});
+                    parameter.status == ArtefactStatus::kPrior ? "as written down" : "found by the touches"});
   }
   return html::table("Block and probe", {"of", "unit", "written", "value", "std. uncertainty", "status"},
                      rows);

@@ -14,6 +14,7 @@
 #include "service/base/json_figures.hpp"
 #include "service/documents/carried_json.hpp"
 #include "service/documents/document_error.hpp"
+#include "service/documents/words.hpp"
 
 /// A document is a struct that declares each field once, by `visit`, with its key and its member. The writer
 /// and the reader walk that declaration, so a key is written in one place. Only the .cpp files of the
@@ -42,6 +43,11 @@ class FieldWriter {
   static void write(Json& to, double value);
   static void write(Json& to, const std::string& value);
   static void write(Json& to, const CarriedJson& value);
+  template <class Enumeration>
+    requires std::is_enum_v<Enumeration>
+  static void write(Json& to, Enumeration value) {
+    write(to, std::string(word_of(value)));
+  }
   template <class T>
   static void write(Json& to, const Carried<T>& value) {
     write(to, CarriedJson{value.text});
@@ -131,6 +137,18 @@ class FieldReader {
   static void read(const Place& at, double& value);
   static void read(const Place& at, std::string& value);
   static void read(const Place& at, CarriedJson& value);
+  template <class Enumeration>
+    requires std::is_enum_v<Enumeration>
+  static void read(const Place& at, Enumeration& value) {
+    std::string word;
+    read(at, word);
+    for (const Enumeration known : kAllOf<Enumeration>) {
+      if (word_of(known) != word) continue;
+      value = known;
+      return;
+    }
+    refuse_word(at, word);
+  }
   static void read(const Place& at, std::map<std::string, std::string>& texts);
   template <class T>
   static void read(const Place& at, Carried<T>& value) {
@@ -172,6 +190,7 @@ class FieldReader {
   [[nodiscard]] const Json* find(const char* key) const;
   void may_be_absent(const char* key) const;
   [[nodiscard]] bool is_default(const Json& found) const;
+  [[noreturn]] static void refuse_word(const Place& at, const std::string& word);
   static bool is_null(const Place& at);
   static std::size_t size_of_list(const Place& at);
   static void demand_size(const Place& at, std::size_t count);

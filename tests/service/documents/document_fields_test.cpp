@@ -94,6 +94,11 @@ TEST(StatusDocument, IsWrittenAsItWasRead) {
   EXPECT_THAT([] { read_status("{}"); }, ThrowsMessage<DocumentError>("/state: is missing"));
 }
 
+TEST(StatusDocument, AWordOfNoStateIsRefused) {
+  EXPECT_THAT([] { read_status(R"({"state":"EXECUTED"})"); },
+              ThrowsMessage<DocumentError>("/state: 'EXECUTED' is not a word of this version of touchcal"));
+}
+
 TEST(RunDocument, IsWrittenAsItWasRead) {
   const StoredRun run{
       .id = 2, .recipe = "edf-25", .conditions_json = R"({"touching":"guided","later":[1.50]})"};
