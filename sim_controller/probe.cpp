@@ -5,7 +5,6 @@
 namespace sim {
 namespace {
 
-constexpr unsigned kAllSteps = (1U << kLatchStepsPerTick) - 1U;
 /// Where in its tick a vibration pulse begins.
 constexpr int kVibrationStep = kLatchStepsPerTick / 2;
 

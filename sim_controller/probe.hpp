@@ -51,6 +51,8 @@ struct ProbeTick {
 
 /// The latch captures a rising edge when the input was low for 0.2 ms before and stays high for 0.2 ms.
 inline constexpr int kLatchStepsPerTick = 20;
+/// Every step of a tick, as bits.
+inline constexpr unsigned kAllSteps = (1U << kLatchStepsPerTick) - 1U;
 
 /// One tick. Bit k of `deflected`: the material holds the stylus off its seat in latch step k, which ends at
 /// share (k + 1) / 20.

@@ -12,7 +12,6 @@
 namespace sim {
 namespace {
 
-constexpr unsigned kAllSteps = (1U << kLatchStepsPerTick) - 1U;
 /// The true model is recomputed when the arm's temperature has changed by this much: 20 nm at reach.
 constexpr double kPreparedWithinKelvins = 1e-3;
 /// A joint may turn back inside a tick, where a straight line asks it to; the way to its turn is less.
