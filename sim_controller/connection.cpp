@@ -42,44 +42,23 @@ void Connection::send_with(const std::vector<LinkFault>& faults, std::vector<std
                            bool is_state) {
   if (is_state && queue_.size() >= kStateQueueMax) return;
   for (const LinkFault& fault : faults) {
-    switch (fault.kind) {
-      case Fault::kCloseSocket:
-        return close_now();
-      case Fault::kHalfOpen:
-        return go_half_open();
-      case Fault::kDrop:
-        return;
-      case Fault::kDelay:
-        return hold(std::move(frame), fault.seconds);
-      case Fault::kMerge:
-        glued_.insert(glued_.end(), frame.begin(), frame.end());
-        return;
-      case Fault::kDuplicate:
-        send(frame, is_state);
-        break;
-      case Fault::kByteByByte:
-        for (const std::uint8_t byte : frame) enqueue({byte});
-        return;
-      case Fault::kCloseMidFrame:
-        frame.resize(frame.size() / 2);
-        enqueue(std::move(frame));
-        return begin_close();
-      case Fault::kGoSilent:  // the server applied these to the connection, or to the message
-      case Fault::kStopStates:
-      case Fault::kGarbage:
-      case Fault::kRefuse:
-      case Fault::kWrongSequence:
-      case Fault::kWrongVersion:
-      case Fault::kUnknownType:
-      case Fault::kBadLength:
-      case Fault::kBadValue:
-      case Fault::kWrongSession:
-      case Fault::kWrongArm:
-      case Fault::kWrongApplication:
-      case Fault::kWrongLimits:
-      case Fault::kStaleResult:
-      case Fault::kWrongJoints:
-        break;
+    if (fault.kind == Fault::kCloseSocket) return close_now();
+    if (fault.kind == Fault::kHalfOpen) return go_half_open();
+    if (fault.kind == Fault::kDrop) return;
+    if (fault.kind == Fault::kDelay) return hold(std::move(frame), fault.seconds);
+    if (fault.kind == Fault::kDuplicate) send(frame, is_state);
+    if (fault.kind == Fault::kMerge) {
+      glued_.insert(glued_.end(), frame.begin(), frame.end());
+      return;
+    }
+    if (fault.kind == Fault::kByteByByte) {
+      for (const std::uint8_t byte : frame) enqueue({byte});
+      return;
+    }
+    if (fault.kind == Fault::kCloseMidFrame) {
+      frame.resize(frame.size() / 2);
+      enqueue(std::move(frame));
+      return begin_close();
     }
   }
   send(std::move(frame), is_state);

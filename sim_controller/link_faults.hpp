@@ -48,6 +48,8 @@ struct LinkFault {
 
 /// What a fault can be put at.
 enum class FaultTarget { kConnection, kMessage, kSentMessage, kWelcome, kSession, kResult, kValue };
+/// Names every fault, so that the compiler finds a new one that is missing here; what a fault does is where
+/// its target is: Server, Connection, alter_message() or alter_frame().
 FaultTarget target_of(Fault fault);
 /// True when such a fault can apply to messages of this type.
 bool fits(FaultTarget target, cs8::MessageType type);

@@ -159,43 +159,17 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
 
   void receive(const ConnectionPtr& connection, cs8::Message message) {
     for (const LinkFault& fault : state_.plan.faults_at(cs8::type_of(message))) {
-      switch (fault.kind) {
-        case Fault::kDrop:
-          return;
-        case Fault::kWrongSequence:
-          alter_message(fault.kind, message, last_result_);
-          break;
-        case Fault::kDuplicate:
-          handle(message);
-          break;
-        case Fault::kDelay:
-          return connection->later(fault.seconds, [this, connection, message] {
-            if (host_ == connection) handle(message);
-          });
-        case Fault::kCloseSocket:
-        case Fault::kHalfOpen:
-        case Fault::kGoSilent:
-        case Fault::kStopStates:
-        case Fault::kGarbage:
-        case Fault::kRefuse:
-          apply_connection_faults({fault});
-          if (connection->closing() || connection->half_open() || fault.kind == Fault::kGarbage) return;
-          break;
-        case Fault::kCloseMidFrame:  // from here on: faults of sent messages only
-        case Fault::kByteByByte:
-        case Fault::kMerge:
-        case Fault::kWrongVersion:
-        case Fault::kUnknownType:
-        case Fault::kBadLength:
-        case Fault::kBadValue:
-        case Fault::kWrongSession:
-        case Fault::kWrongArm:
-        case Fault::kWrongApplication:
-        case Fault::kWrongLimits:
-        case Fault::kStaleResult:
-        case Fault::kWrongJoints:
-          break;
+      if (target_of(fault.kind) == FaultTarget::kConnection) {
+        apply_connection_faults({fault});
+        if (connection->closing() || connection->half_open() || fault.kind == Fault::kGarbage) return;
       }
+      if (fault.kind == Fault::kDrop) return;
+      if (fault.kind == Fault::kDelay)
+        return connection->later(fault.seconds, [this, connection, message] {
+          if (host_ == connection) handle(message);
+        });
+      if (fault.kind == Fault::kDuplicate) handle(message);
+      alter_message(fault.kind, message, last_result_);
     }
     handle(message);
     handle(Tick{});  // a motion that takes no time is over at once

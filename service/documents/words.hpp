@@ -43,12 +43,9 @@ inline constexpr std::array kAllOf<State>{
     State::kSuspending, State::kSuspended, State::kUnsuspending, State::kStopping, State::kAborting,
     State::kAborted,    State::kClearing};
 template <>
-inline constexpr std::array kAllOf<Verdict>{Verdict::kNone, Verdict::kAccepted, Verdict::kRejected,
-                                            Verdict::kIncomplete};
+inline constexpr auto kAllOf<Verdict> = kVerdicts;
 template <>
-inline constexpr std::array kAllOf<RunOutcome>{RunOutcome::kRunning, RunOutcome::kComplete,
-                                               RunOutcome::kStopped, RunOutcome::kAborted,
-                                               RunOutcome::kInterrupted};
+inline constexpr auto kAllOf<RunOutcome> = kRunOutcomes;
 template <>
 inline constexpr std::array kAllOf<HandActivity>{HandActivity::kLocate, HandActivity::kGuided};
 template <>

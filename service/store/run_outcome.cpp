@@ -1,15 +1,6 @@
 #include "service/store/run_outcome.hpp"
 
-#include <array>
-
 namespace cell {
-namespace {
-
-constexpr std::array kOutcomes{RunOutcome::kRunning, RunOutcome::kComplete, RunOutcome::kStopped,
-                               RunOutcome::kAborted, RunOutcome::kInterrupted};
-constexpr std::array kVerdicts{Verdict::kNone, Verdict::kAccepted, Verdict::kRejected, Verdict::kIncomplete};
-
-}  // namespace
 
 std::string_view run_outcome_name(RunOutcome outcome) {
   switch (outcome) {
@@ -28,7 +19,7 @@ std::string_view run_outcome_name(RunOutcome outcome) {
 }
 
 std::optional<RunOutcome> run_outcome_named(std::string_view name) {
-  for (const RunOutcome outcome : kOutcomes)
+  for (const RunOutcome outcome : kRunOutcomes)
     if (run_outcome_name(outcome) == name) return outcome;
   return std::nullopt;
 }

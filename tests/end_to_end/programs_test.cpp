@@ -147,9 +147,8 @@ class RunningCell {
   }
   nlohmann::json status() const { return nlohmann::json::parse(run({"status", "--json"}).out); }
 
-  /// Asks again and again, as a supervisor that polls does.
-  /// Until the run with this id, the daemon's first unless another is meant, has made so many touches. Before
-  /// it starts the status still has those of the run before.
+  /// Polls as a supervisor does, until the run with this id has made so many touches. Before it starts, the
+  /// status still has the touches of the previous run.
   void wait_for_touches(int count, const std::string& run_id = "1") const {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     for (auto now = status(); now.at("run_id") != run_id || now.at("touches_done") < count; now = status()) {
