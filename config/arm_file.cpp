@@ -1,5 +1,6 @@
 #include "config/arm_file.hpp"
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -19,6 +20,15 @@ constexpr NumberRange kGains{.min = -1000.0, .max = 1000.0};
 constexpr double kGainSizeMin = 1e-3;
 /// rad/Nm; at the bounds 100 Nm turn a joint by 0.6 degrees. An identified one may be a little under 0.
 constexpr NumberRange kCompliances{.min = -1e-4, .max = 1e-4};
+
+/// A unit vector in a file may be this much longer or shorter.
+constexpr double kUnitVectorError = 1e-6;
+/// Of a joint's drive, radians.
+constexpr NumberRange kGearAngles{.min = 0.0, .max = 0.01};
+constexpr NumberRange kMassShares{.min = kPositive.min, .max = 1.0};
+
+/// Joints that a list of two compliances is for: those that carry the weight of an arm on the floor.
+constexpr std::array<std::size_t, 2> kPairJoints{1, 2};
 
 bool is_joint(int frame) { return frame >= 1 && frame <= kJointCount; }
 
@@ -95,13 +105,13 @@ void read_joint_ranges(const JsonObject& object, Arm& arm) {
   }
 }
 
-/// Weights turn with joint 1, so that only an arm whose axis 1 is plumb has a fixed "down" in frame 1.
 Eigen::Vector3d down_from_json(const JsonValue& value) {
-  Eigen::Vector3d down = value.numbers<3>();
-  if (down.x() != 0.0 || down.y() != 0.0 || std::abs(down.z()) != 1.0) {
-    value.fail("is not along joint 1's axis; give [0,0,-1] (axis 1 points up) or [0,0,1]");
+  const Eigen::Vector3d down = value.numbers<3>();
+  if (std::abs(down.norm() - 1.0) > kUnitVectorError) {
+    value.fail("has the length " + plain_number(down.norm()) +
+               "; give a unit vector, [0,0,-1] where axis 1 points up");
   }
-  return down;
+  return down.normalized();
 }
 
 void read_masses(const JsonValue& value, calib::KinematicModel& model) {
@@ -118,31 +128,87 @@ void read_masses(const JsonValue& value, calib::KinematicModel& model) {
   }
 }
 
-void demand_compliant_joints_turn(const JsonObject& gravity, const calib::KinematicModel& model) {
-  for (const int joint : calib::kCompliantJoints) {
-    if (model.joint_types[static_cast<std::size_t>(joint)] == calib::JointType::kRevolute) continue;
+void demand_no_prismatic_joint(const JsonObject& gravity, const calib::KinematicModel& model) {
+  for (const std::size_t joint : kPairJoints) {
+    if (model.joint_types[joint] == calib::JointType::kRevolute) continue;
     gravity.fail("joint " + std::to_string(joint + 1) +
                  " is prismatic, a moment does not bend it; leave \"gravity\" out");
   }
 }
 
-void read_gravity(const JsonValue& value, Arm& arm) {
+/// Six values, or two for joints 2 and 3.
+std::vector<std::pair<std::size_t, JsonValue>> of_compliant_joints(const JsonValue& value) {
+  const auto items = value.items(kPairJoints.size(), kJointCount);
+  const bool is_pair = items.size() == kPairJoints.size();
+  if (!is_pair && items.size() != kJointCount) {
+    value.fail("has " + std::to_string(items.size()) + " values; give two (joints 2 and 3) or six");
+  }
+  std::vector<std::pair<std::size_t, JsonValue>> joints;
+  for (std::size_t i = 0; i < items.size(); ++i) joints.emplace_back(is_pair ? kPairJoints[i] : i, items[i]);
+  return joints;
+}
+
+void read_gravity(const JsonValue& value, bool is_first_schema, Arm& arm) {
   const JsonObject object =
-      value.object({"down_in_frame_1", "masses", "compliance_rad_per_nm", "std_compliance_rad_per_nm"});
-  demand_compliant_joints_turn(object, arm.model);
+      is_first_schema
+          ? value.object({"down_in_frame_1", "masses", "compliance_rad_per_nm", "std_compliance_rad_per_nm"})
+          : value.object({"down_in_frame_1", "masses", "compliance_rad_per_nm", "std_compliance_rad_per_nm",
+                          "std_mass_share"});
+  demand_no_prismatic_joint(object, arm.model);
   arm.model.down_in_frame_1 = down_from_json(object.at("down_in_frame_1"));
   read_masses(object.at("masses"), arm.model);
-  const auto compliances = object.find("compliance_rad_per_nm");
-  const auto deviations = object.find("std_compliance_rad_per_nm");
-  for (std::size_t i = 0; i < calib::kComplianceCount; ++i) {
-    const auto joint = static_cast<std::size_t>(calib::kCompliantJoints[i]);
-    if (compliances)
-      arm.model.compliance_rad_per_nm[joint] =
-          compliances->items(calib::kComplianceCount, calib::kComplianceCount)[i].number(kCompliances);
-    if (deviations)
-      arm.std_compliance_rad_per_nm[i] =
-          deviations->items(calib::kComplianceCount, calib::kComplianceCount)[i].number(
-              {.min = kPositive.min, .max = kCompliances.max});
+  if (const auto compliances = object.find("compliance_rad_per_nm")) {
+    for (const auto& [joint, item] : of_compliant_joints(*compliances))
+      arm.model.compliance_rad_per_nm[joint] = item.number(kCompliances);
+  }
+  if (const auto deviations = object.find("std_compliance_rad_per_nm")) {
+    for (const auto& [joint, item] : of_compliant_joints(*deviations)) {
+      const double std = item.number({.min = 0.0, .max = kCompliances.max});
+      if (std > 0.0)
+        arm.nongeometric_std[static_cast<std::size_t>(calib::compliance_position(static_cast<int>(joint)))] =
+            std;
+    }
+  }
+  if (is_first_schema) return;
+  if (const auto share = object.find("std_mass_share")) {
+    for (int frame = 1; frame < kFrameCount; ++frame) {
+      if (arm.model.masses[static_cast<std::size_t>(frame)].mass_kg > 0.0)
+        arm.nongeometric_std[static_cast<std::size_t>(calib::mass_position(frame))] =
+            share->number(kMassShares);
+    }
+  }
+}
+
+calib::JointVector gear_angles(const JsonObject& object, std::string_view key) {
+  calib::JointVector angles = calib::JointVector::Zero();
+  const auto value = object.find(key);
+  if (!value) return angles;
+  const auto items = value->items(kJointCount, kJointCount);
+  for (std::size_t i = 0; i < items.size(); ++i)
+    angles[static_cast<Eigen::Index>(i)] = items[i].number(kGearAngles);
+  return angles;
+}
+
+void read_gears(const JsonValue& value, Arm& arm) {
+  const JsonObject object =
+      value.object({"harmonics_rad", "std_harmonic_rad", "ripple_rad", "backlash_rad", "repeatability_rad"});
+  arm.gears = {.ripple_rad = gear_angles(object, "ripple_rad"),
+               .backlash_rad = gear_angles(object, "backlash_rad"),
+               .repeatability_rad = gear_angles(object, "repeatability_rad")};
+  if (const auto harmonics = object.find("harmonics_rad")) {
+    const auto items = harmonics->items(kJointCount, kJointCount);
+    for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+      const Eigen::Vector2d pair = items[joint].numbers<2>();
+      arm.model.harmonics_rad[joint] = {pair[0], pair[1]};
+    }
+  }
+  if (const auto std = object.find("std_harmonic_rad")) {
+    for (int joint = 0; joint < kJointCount; ++joint) {
+      if (arm.model.joint_types[static_cast<std::size_t>(joint)] == calib::JointType::kPrismatic) continue;
+      const auto cosine = static_cast<std::size_t>(calib::harmonic_position(joint));
+      arm.nongeometric_std[cosine] = arm.nongeometric_std[cosine + 1] =
+          std->number({.min = kPositive.min, .max = kGearAngles.max});
+    }
   }
 }
 
@@ -173,22 +239,29 @@ void read_frame(const JsonValue& value, int frame, Arm& arm) {
 Arm read_arm(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const JsonObject object = JsonValue(source, document)
-                                .document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg",
-                                                       "joint_max_speeds_deg_s", "gravity", "bodies"});
+  const JsonValue value(source, document);
+  const bool is_first_schema = has_schema(document, kFirstArmSchema);
+  const JsonObject object =
+      is_first_schema ? value.document(kFirstArmSchema, {"schema", "name", "frames", "joint_limits_deg",
+                                                         "joint_max_speeds_deg_s", "gravity", "bodies"})
+                      : value.document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg",
+                                                    "joint_max_speeds_deg_s", "gravity", "gears", "bodies"});
   Arm arm;
   arm.name = object.at("name").text();
   const auto frames = object.at("frames").items(kFrameCount, kFrameCount);
   for (int frame = 0; frame < kFrameCount; ++frame) {
-    const JsonValue& value = frames[static_cast<std::size_t>(frame)];
-    if (const int given = frame_number(value); given != frame) {
-      value.fail("is frame " + std::to_string(given) + " where frame " + std::to_string(frame) +
+    const JsonValue& entry = frames[static_cast<std::size_t>(frame)];
+    if (const int given = frame_number(entry); given != frame) {
+      entry.fail("is frame " + std::to_string(given) + " where frame " + std::to_string(frame) +
                  " is expected; put frames 0 to 7 in order");
     }
-    read_frame(value, frame, arm);
+    read_frame(entry, frame, arm);
   }
   read_joint_ranges(object, arm);
-  if (const auto gravity = object.find("gravity")) read_gravity(*gravity, arm);
+  if (const auto gravity = object.find("gravity")) read_gravity(*gravity, is_first_schema, arm);
+  if (!is_first_schema) {
+    if (const auto gears = object.find("gears")) read_gears(*gears, arm);
+  }
   arm.bodies = capsules_from_json(object.at("bodies"));
   return arm;
 }

@@ -8,7 +8,8 @@
 
 namespace cell {
 
-inline constexpr std::string_view kArmSchema = "touchcal/arm/1";
+inline constexpr std::string_view kArmSchema = "touchcal/arm/2";
+inline constexpr std::string_view kFirstArmSchema = "touchcal/arm/1";  // without gears and std_mass_share
 
 /// Joint ranges, speeds, frames, bodies of an arm. ConfigError.
 Arm read_arm(const std::filesystem::path& file);

@@ -95,6 +95,10 @@ Json joint_speeds_json(const Arm& arm) {
   return json;
 }
 
+std::optional<double> std_of(const Arm& arm, int nongeometric_position) {
+  return arm.nongeometric_std[static_cast<std::size_t>(nongeometric_position)];
+}
+
 /// Nothing for an arm without masses: what bends them is then not known either.
 Json gravity_json(const Arm& arm) {
   Json masses = Json::array();
@@ -108,15 +112,36 @@ Json gravity_json(const Arm& arm) {
   if (masses.empty()) return nullptr;
   const Eigen::Vector3d& down = arm.model.down_in_frame_1;
   Json json{{"down_in_frame_1", {down.x(), down.y(), down.z()}}, {"masses", std::move(masses)}};
-  const auto add_pair = [&json](const char* key, double first, double second) {
-    json[key] = {finite(first), finite(second)};
+  Json compliances = Json::array(), deviations = Json::array();
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    compliances.push_back(finite(arm.model.compliance_rad_per_nm[static_cast<std::size_t>(joint)]));
+    deviations.push_back(finite(std_of(arm, calib::compliance_position(joint)).value_or(0.0)));
+  }
+  json["compliance_rad_per_nm"] = std::move(compliances);
+  json["std_compliance_rad_per_nm"] = std::move(deviations);
+  for (int frame = 1; frame < kFrameCount; ++frame) {
+    if (const auto std = std_of(arm, calib::mass_position(frame))) json["std_mass_share"] = finite(*std);
+  }
+  return json;
+}
+
+Json gears_json(const Arm& arm) {
+  const auto six = [](const calib::JointVector& values) {
+    Json json = Json::array();
+    for (const double value : values) json.push_back(finite(value));
+    return json;
   };
-  const auto [second, third] = calib::kCompliantJoints;
-  const auto& compliance = arm.model.compliance_rad_per_nm;
-  add_pair("compliance_rad_per_nm", compliance[static_cast<std::size_t>(second)],
-           compliance[static_cast<std::size_t>(third)]);
-  if (const auto& std = arm.std_compliance_rad_per_nm; std[0] && std[1])
-    add_pair("std_compliance_rad_per_nm", *std[0], *std[1]);
+  Json harmonics = Json::array();
+  for (const calib::CosSin& harmonic : arm.model.harmonics_rad)
+    harmonics.push_back({finite(harmonic.cos), finite(harmonic.sin)});
+  Json json{{"harmonics_rad", std::move(harmonics)},
+            {"ripple_rad", six(arm.gears.ripple_rad)},
+            {"backlash_rad", six(arm.gears.backlash_rad)},
+            {"repeatability_rad", six(arm.gears.repeatability_rad)}};
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    if (const auto std = std_of(arm, calib::harmonic_position(joint)))
+      json["std_harmonic_rad"] = finite(*std);
+  }
   return json;
 }
 
@@ -150,6 +175,7 @@ std::string arm_document(const Arm& arm) {
   text += ",\n  \"joint_limits_deg\": " + joint_limits_json(arm).dump();
   text += ",\n  \"joint_max_speeds_deg_s\": " + joint_speeds_json(arm).dump();
   if (!gravity.is_null()) text += ",\n  \"gravity\": " + gravity.dump();
+  text += ",\n  \"gears\": " + gears_json(arm).dump();
   text += ",\n  \"bodies\": " + lines(bodies) + "\n}\n";
   return text;
 }

@@ -21,6 +21,19 @@
 /// What a robot cell is made of, in SI units. Plain values; read_config.hpp makes them from files.
 namespace cell {
 
+/// The maker's figures for the drives; radians at the joint, 0 where they are not given.
+struct Gears {
+  calib::JointVector ripple_rad = calib::JointVector::Zero();         // amplitude
+  calib::JointVector backlash_rad = calib::JointVector::Zero();       // width of the play
+  calib::JointVector repeatability_rad = calib::JointVector::Zero();  // standard deviation of a stop
+
+  /// One standard deviation of a joint's position in a posture: a sine, an even spread over the play, a stop.
+  [[nodiscard]] calib::JointVector std_rad() const {
+    return (ripple_rad.cwiseAbs2() / 2.0 + backlash_rad.cwiseAbs2() / 12.0 + repeatability_rad.cwiseAbs2())
+        .cwiseSqrt();
+  }
+};
+
 struct Arm {
   std::string name;
   calib::KinematicModel model;
@@ -28,8 +41,9 @@ struct Arm {
   calib::JointVector joint_speeds_max;  // rad/s
   std::vector<calib::Capsule> bodies;
   calib::ErrorTolerances std_errors{};
-  /// One standard deviation of the compliance of joints 2 and 3; empty where it is unknown.
-  std::array<std::optional<double>, calib::kComplianceCount> std_compliance_rad_per_nm{};
+  /// One standard deviation of what the arm does beside rigid kinematics; empty where it is unknown.
+  calib::NongeometricDeviations nongeometric_std{};
+  Gears gears;
 };
 
 struct Block {

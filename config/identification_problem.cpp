@@ -9,7 +9,8 @@ calib::IdentificationProblem identification_problem(const Cell& cell, const Reci
                                        .artefact = calib::make_artefact(artefact_knowledge(cell)),
                                        .touch_noise_m = cell.touch_noise_m,
                                        .tolerances = prior_tolerances(cell),
-                                       .std_compliance_rad_per_nm = cell.arm.std_compliance_rad_per_nm};
+                                       .nongeometric_std = cell.arm.nongeometric_std,
+                                       .gear_std_rad = cell.arm.gears.std_rad()};
   problem.attainable = calib::attainable_parameters(problem, recipe.identification.identifiability);
   return problem;
 }

@@ -220,4 +220,8 @@ std::optional<double> JsonObject::find_radians(std::string_view name, const Numb
   return std::nullopt;
 }
 
+bool has_schema(const nlohmann::json& document, std::string_view schema) {
+  return document.is_object() && document.contains("schema") && document.at("schema") == schema;
+}
+
 }  // namespace cell

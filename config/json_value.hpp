@@ -78,6 +78,9 @@ class JsonValue {
   const nlohmann::json* value_;
 };
 
+/// Whether the document says that it is of this schema; for files that exist in several versions.
+bool has_schema(const nlohmann::json& document, std::string_view schema);
+
 /// An object whose keys are all known. Asking for a key that was not declared is a std::logic_error.
 class JsonObject {
  public:

@@ -8,6 +8,7 @@
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
 #include "config/recipe.hpp"
+#include "config/stiffness_choice.hpp"
 
 namespace cell {
 namespace {
@@ -97,18 +98,40 @@ calib::ColumnScaling weights_from_json(const JsonValue& value) {
   value.fail("is " + in_quotes(name) + R"(; give "columns" or "units")");
 }
 
-bool stiffness_from_json(const JsonValue& value, const Arm& arm) {
-  const bool wanted = value.boolean();
-  if (wanted && !arm.std_compliance_rad_per_nm[0]) {
-    value.fail("the arm " + in_quotes(arm.name) +
-               " has no masses or no std_compliance_rad_per_nm; add \"gravity\" to its file or give false");
+/// Of the first schema true or false (the default), since then "on", "off" or "auto" (the default).
+StiffnessChoice stiffness_from_json(const std::optional<JsonValue>& value, bool is_first_schema,
+                                    const Arm& arm) {
+  if (!value) return is_first_schema ? StiffnessChoice::kOff : StiffnessChoice::kAuto;
+  std::optional<StiffnessChoice> choice;
+  if (is_first_schema) {
+    choice = value->boolean() ? StiffnessChoice::kOn : StiffnessChoice::kOff;
+  } else {
+    choice = stiffness_choice_named(value->text());
   }
-  return wanted;
+  if (!choice) value->fail("is " + in_quotes(value->text()) + R"(; give "on", "off" or "auto")");
+  if (*choice == StiffnessChoice::kOn && !can_estimate_stiffness(arm)) {
+    value->fail("the arm " + in_quotes(arm.name) + " has no masses or no std_compliance_rad_per_nm; add " +
+                "\"gravity\" to its file or give " + (is_first_schema ? "false" : R"("off")"));
+  }
+  return *choice;
 }
 
-calib::IdentificationOptions identification_from_json(const JsonValue& value, const Arm& arm) {
-  const JsonObject object = value.object({"formulation", "qr_tolerance", "tried_last", "excluded", "weights",
-                                          "robust", "prior", "stiffness", "hold_weak", "iterations_max"});
+/// "auto" (the default since the second schema): tried, and kept where the touches ask for it; or "off".
+calib::Harmonics harmonics_from_json(const std::optional<JsonValue>& value, bool is_first_schema) {
+  if (is_first_schema) {
+    if (value) value->fail(R"(unknown key "harmonics" in a recipe of version 1; raise "schema" to 2)");
+    return calib::Harmonics::kLeaveOut;
+  }
+  if (!value || value->text() == "auto") return calib::Harmonics::kWhenShown;
+  if (value->text() == "off") return calib::Harmonics::kLeaveOut;
+  value->fail("is " + in_quotes(value->text()) + R"(; give "auto" or "off")");
+}
+
+calib::IdentificationOptions identification_from_json(const JsonValue& value, bool is_first_schema,
+                                                      const Arm& arm) {
+  const JsonObject object =
+      value.object({"formulation", "qr_tolerance", "tried_last", "excluded", "weights", "robust", "prior",
+                    "stiffness", "harmonics", "hold_weak", "iterations_max"});
   calib::IdentificationOptions options;
   if (const auto formulation = object.find("formulation"))
     options.formulation = formulation_from_json(*formulation);
@@ -122,8 +145,8 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, co
   if (const auto weights = object.find("weights")) options.weights = weights_from_json(*weights);
   if (const auto robust = object.find("robust")) options.robust = robust->boolean();
   if (const auto prior = object.find("prior")) options.prior = prior->boolean();
-  if (const auto stiffness = object.find("stiffness"))
-    options.stiffness = stiffness_from_json(*stiffness, arm);
+  options.stiffness = is_estimated(stiffness_from_json(object.find("stiffness"), is_first_schema, arm), arm);
+  options.harmonics = harmonics_from_json(object.find("harmonics"), is_first_schema);
   if (const auto hold_weak = object.find("hold_weak")) options.hold_weak = hold_weak->boolean();
   if (const auto count = object.find("iterations_max"))
     options.iterations_max = count->integer(1, kIterationsMax);
@@ -135,16 +158,18 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, co
 Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const JsonObject object = JsonValue(source, document)
-                                .document(kRecipeSchema, {"schema", "name", "description", "touches",
-                                                          "reference_every", "identification"});
+  const bool is_first_schema = has_schema(document, kFirstRecipeSchema);
+  const JsonObject object =
+      JsonValue(source, document)
+          .document(is_first_schema ? kFirstRecipeSchema : kRecipeSchema,
+                    {"schema", "name", "description", "touches", "reference_every", "identification"});
   Recipe recipe;
   recipe.name = object.at("name").text();
   recipe.description = object.at("description").text();
   read_touch_counts(object.at("touches"), static_cast<int>(block.faces.size()), recipe);
   if (const auto every = object.find("reference_every"))
     recipe.reference_every = every->integer(0, kTouchesMax);
-  recipe.identification = identification_from_json(object.at("identification"), arm);
+  recipe.identification = identification_from_json(object.at("identification"), is_first_schema, arm);
   return recipe;
 }
 

@@ -13,6 +13,8 @@
 namespace cell {
 namespace {
 
+/// Joints 2 and 3 of a file.
+constexpr std::size_t kDroopingJoints = 2;
 constexpr NumberRange kCompliances{.min = 0.0, .max = 1e-4};
 constexpr NumberRange kSmallAngles{.min = 0.0, .max = 0.01};
 constexpr NumberRange kPeriods{.min = 0.0, .max = 10'000.0};
@@ -64,10 +66,9 @@ calib::JointVector six(const JsonValue& value, const NumberRange& range) {
 
 void read_droop(const JsonObject& object, Truth& truth) {
   Droop& droop = truth.droop.emplace();
-  const auto compliances =
-      object.at("compliance_rad_per_nm").items(calib::kComplianceCount, calib::kComplianceCount);
-  for (std::size_t i = 0; i < calib::kComplianceCount; ++i)
-    droop.compliance_rad_per_nm[i] = compliances[i].number(kCompliances);
+  const auto compliances = object.at("compliance_rad_per_nm").items(kDroopingJoints, kDroopingJoints);
+  for (std::size_t i = 0; i < kDroopingJoints; ++i)
+    droop.compliance_rad_per_nm[i + 1] = compliances[i].number(kCompliances);
 }
 
 void read_ripple(const JsonObject& object, Truth& truth) {
@@ -149,10 +150,6 @@ void read_effects(const JsonObject& object, Truth& truth) {
   read_effect(object, "encoder", {"on", "step_deg", "step_rad"}, read_encoder, truth);
 }
 
-bool is_rigid(const nlohmann::json& document) {
-  return document.is_object() && document.contains("schema") && document.at("schema") == kRigidTruthSchema;
-}
-
 /// Moves the side of a solid that the face lies on; false when there is none.
 bool move_side(const calib::Face& face, double offset_m, std::vector<calib::Box>& solids) {
   int axis = 0;
@@ -174,7 +171,7 @@ Truth read_truth(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json json = read_json_file(file);
   const JsonValue document(source, json);
-  const bool rigid = is_rigid(json);
+  const bool rigid = has_schema(json, kRigidTruthSchema);
   const JsonObject object =
       rigid ? document.document(kRigidTruthSchema, {"schema", "name", "errors"})
             : document.document(kTruthSchema, {"schema", "name", "errors", "droop", "ripple", "backlash",
@@ -213,6 +210,7 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
 
 calib::KinematicModel true_model(const Truth& truth, const Arm& arm) {
   calib::KinematicModel model = calib::apply(arm.model, truth.errors);
+  if (truth.harmonics_rad) model.harmonics_rad = *truth.harmonics_rad;
   if (!truth.droop) return model;
   const auto has_mass = [](const calib::PointMass& mass) { return mass.mass_kg != 0.0; };
   if (std::ranges::none_of(model.masses, has_mass)) {
@@ -220,10 +218,7 @@ calib::KinematicModel true_model(const Truth& truth, const Arm& arm) {
         truth.file.string(), "/droop",
         "the arm " + in_quotes(arm.name) + " has no masses; give its file \"gravity\" or leave this out");
   }
-  for (std::size_t i = 0; i < calib::kComplianceCount; ++i) {
-    model.compliance_rad_per_nm[static_cast<std::size_t>(calib::kCompliantJoints[i])] =
-        truth.droop->compliance_rad_per_nm[i];
-  }
+  model.compliance_rad_per_nm = truth.droop->compliance_rad_per_nm;
   return model;
 }
 

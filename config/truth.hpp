@@ -17,9 +17,9 @@ namespace cell {
 inline constexpr std::string_view kTruthSchema = "touchcal/truth/2";
 inline constexpr std::string_view kRigidTruthSchema = "touchcal/truth/1";  // name and errors only
 
-/// The arm gives way under its own weight: compliance of joints 2 and 3 in place of the arm file's.
+/// The arm gives way under its own weight: compliance of its joints in place of the arm file's.
 struct Droop {
-  std::array<double, calib::kComplianceCount> compliance_rad_per_nm{};
+  std::array<double, calib::kJointCount> compliance_rad_per_nm{};
 };
 
 /// A gear's uneven transmission: the joint stands amplitude * sin(periods * position + phase) too far.
@@ -55,7 +55,8 @@ struct Truth {
   calib::ErrorVector errors = calib::ErrorVector::Zero();  // metres and radians; those not in the file are 0
   std::optional<Droop> droop;
   std::array<Ripple, calib::kJointCount> ripple{};
-  calib::JointVector backlash_rad = calib::JointVector::Zero();  // width of the play
+  std::optional<std::array<calib::CosSin, calib::kJointCount>> harmonics_rad;  // of eccentric gears
+  calib::JointVector backlash_rad = calib::JointVector::Zero();                // width of the play
   Warming warming;
   std::vector<double> face_offsets_m;  // of each plane outwards, against the block's file; empty: none
   TrueProbe probe;

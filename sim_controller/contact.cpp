@@ -35,14 +35,18 @@ double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m) {
   return deepest <= 0.0 ? deepest : outside.cwiseMax(0.0).norm();
 }
 
+double trip_distance_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool,
+                       const Eigen::Vector3d& outward, double noise_m) {
+  const Eigen::Vector3d push = block_from_tool.linear().transpose() * outward;
+  return plant.trip_distance_m + noise_m - sideways_pretravel_m(plant.hidden.probe, push);
+}
+
 double trip_gap_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool, double noise_m) {
   const Eigen::Vector3d ball = block_from_tool.translation();
   double gap_m = std::numeric_limits<double>::infinity();
   for (const calib::Box& box : plant.scene.obstacles) {
-    const Eigen::Vector3d push = block_from_tool.linear().transpose() * outward(box, ball);
-    const double trip_distance_m =
-        plant.trip_distance_m + noise_m - sideways_pretravel_m(plant.hidden.probe, push);
-    gap_m = std::min(gap_m, box_distance_m(box, ball) - trip_distance_m);
+    gap_m = std::min(gap_m, box_distance_m(box, ball) -
+                                trip_distance_m(plant, block_from_tool, outward(box, ball), noise_m));
   }
   return gap_m;
 }

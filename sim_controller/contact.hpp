@@ -11,9 +11,14 @@ namespace sim {
 /// Euclidean distance of a point from a box's surface, negative inside.
 double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m);
 
+/// Distance of the ball's centre from a surface with this outward normal at which the probe trips: radius -
+/// pre-travel + noise; the pre-travel depends on the direction of the push.
+double trip_distance_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool,
+                       const Eigen::Vector3d& outward, double noise_m);
+
 /// The remaining distance of the true ball to its trip point when R_7 is at `block_from_tool`: distance of
-/// its centre from the nearest obstacle, less (radius - pre-travel + noise); the pre-travel depends on the
-/// direction of the push. Positive noise trips early, farther out of the material. Not positive: touched.
+/// its centre from the nearest obstacle, less trip_distance_m(). Positive noise trips early, farther out of
+/// the material. Not positive: touched.
 double trip_gap_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool, double noise_m);
 
 /// How far every body may go before any two can meet; when that is not positive, which two touch.

@@ -144,7 +144,8 @@ IdentifiableSet choose_columns(const IdentificationProblem& problem, const Ident
   return choose_identifiable(matrix.kinematic, options.identifiability, weak, matrix.leading);
 }
 
-std::vector<int> estimated_columns(const IdentificationOptions& options, const IdentifiableSet& chosen) {
+std::vector<int> estimated_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
+                                   const IdentifiableSet& chosen) {
   std::vector<int> columns = chosen.columns;
   if (options.prior) {
     columns.clear();
@@ -154,8 +155,12 @@ std::vector<int> estimated_columns(const IdentificationOptions& options, const I
       }
     }
   }
-  for (int i = 0; options.stiffness && i < kComplianceCount; ++i) {
-    columns.push_back(kErrorParameterCount + i);
+  const NongeometricDeviations& std = problem.nongeometric_std;
+  if (options.stiffness) {
+    for (const int position : estimable_compliances(std)) columns.push_back(nongeometric_index(position));
+  }
+  for (int i = harmonic_position(0); options.harmonics == Harmonics::kEstimate && i < mass_position(1); ++i) {
+    if (std[static_cast<std::size_t>(i)]) columns.push_back(nongeometric_index(i));
   }
   return columns;
 }

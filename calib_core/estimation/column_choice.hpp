@@ -29,8 +29,11 @@ IdentifiableSet choose_columns(const IdentificationProblem& problem, const Ident
                                const std::vector<std::size_t>& touches);
 
 /// Indices into ArmVector of the estimated parameters: the chosen columns, or with the prior all that are not
-/// excluded; with stiffness also the compliances.
-std::vector<int> estimated_columns(const IdentificationOptions& options, const IdentifiableSet& chosen);
+/// excluded; with stiffness also the compliances of joints 1 to 3 that have a prior, with
+/// Harmonics::kEstimate the harmonics that have one. The compliances of the wrist are never estimated:
+/// touches do not show them.
+std::vector<int> estimated_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
+                                   const IdentifiableSet& chosen);
 
 /// Why not more parameters are identifiable: the stylus, or the distribution of the touches. One or two
 /// sentences.

@@ -8,6 +8,9 @@
 namespace calib {
 namespace {
 
+/// Residuals with fewer say nothing of the noise.
+constexpr double kNoiseDegreesMin = 0.5;
+
 double survival(double chi_square, double degrees) {
   const double shrink = std::min(1.0, kChiSquareDegreesMax / degrees);
   return chi_square_survival(chi_square * shrink, degrees * shrink);
@@ -44,6 +47,27 @@ std::optional<double> estimated_noise_m(const LeastSquares& fit, const Estimate&
   const int degrees = fit.degrees_of_freedom();
   if (degrees <= 0) return std::nullopt;
   return fit.noise_unit_m() * std::sqrt(fit.chi_square(estimate) / degrees);
+}
+
+ResidualSum residual_sum(const LeastSquares& fit, const Eigen::MatrixXd& covariance) {
+  const Eigen::MatrixXd hat = covariance * fit.touch_information();
+  const double rms = fit.residual_rms_m() / fit.noise_unit_m();
+  return {fit.kept_count(), rms * rms * fit.kept_count(), hat.trace(),
+          hat.cwiseProduct(hat.transpose()).sum()};
+}
+
+TouchNoise measured_noise(double declared_m, const ResidualSum& residuals, double noise_unit_m) {
+  // 1 - hat is the inverse of V = 1 + rows * prior covariance * rows^T, the covariance of the residuals
+  // before the fit in units of the assumed noise. For a true noise of r units the sum of squares is expected
+  // to be r^2 tr(V^-2) + tr(V^-1) - tr(V^-2); the last two are the share of the priors.
+  const double degrees = residuals.noise_degrees();
+  const double of_priors = residuals.effective_parameters - residuals.effective_parameters_of_square;
+  const double declared_degrees = declared_m > 0.0 ? kDeclaredNoiseDegrees : 0.0;
+  if (degrees < kNoiseDegreesMin) return {declared_m, declared_degrees};
+  const double of_declared = declared_degrees * std::pow(declared_m / noise_unit_m, 2);
+  const double sum_of_squares = std::max(0.0, residuals.sum_of_squares - of_priors);
+  const double variance = (of_declared + sum_of_squares) / (declared_degrees + degrees);
+  return {noise_unit_m * std::sqrt(variance), declared_degrees + degrees};
 }
 
 }  // namespace calib

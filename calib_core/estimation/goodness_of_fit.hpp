@@ -16,8 +16,35 @@ struct LackOfFit {
   std::vector<double> p_of_face;
 };
 
-/// With a smaller p the declared noise is rejected: all uncertainties use the estimated noise instead.
-inline constexpr double kLackOfFitWidens = 0.05;
+/// A smaller p is a doubt: a run does not end early on it.
+inline constexpr double kLackOfFitDoubtful = 0.05;
+
+/// Noise of a touch and how well it is known.
+struct TouchNoise {
+  double std_m = 0.0;
+  double degrees_of_freedom = 0.0;
+};
+
+/// The residuals of a fit in units of the noise that it assumed, and how many parameters the fit had: the
+/// trace of its hat matrix, in which a parameter with a prior counts for the share that the touches
+/// determine.
+struct ResidualSum {
+  int touch_count = 0;
+  double sum_of_squares = 0.0;
+  double effective_parameters = 0.0;
+  double effective_parameters_of_square = 0.0;  // trace of the hat matrix squared
+
+  /// Degrees of freedom of the residuals for the noise: trace of (1 - hat)^2.
+  [[nodiscard]] double noise_degrees() const {
+    return touch_count - 2.0 * effective_parameters + effective_parameters_of_square;
+  }
+};
+
+/// `covariance` is that of the unknowns, the inverse of fit.information().
+ResidualSum residual_sum(const LeastSquares& fit, const Eigen::MatrixXd& covariance);
+
+/// The declared noise counts as an estimate with so many degrees of freedom: within a third or so.
+inline constexpr double kDeclaredNoiseDegrees = 2.0;
 
 /// Nothing without a declared noise or without a degree of freedom. `fit` must have been solved at
 /// `estimate`.
@@ -26,5 +53,12 @@ std::optional<LackOfFit> lack_of_fit(const IdentificationProblem& problem, Least
 
 /// Noise of a touch from the residuals and the degrees of freedom, metres; nothing without any.
 std::optional<double> estimated_noise_m(const LeastSquares& fit, const Estimate& estimate);
+
+/// The declared noise, corrected by what the residuals say: the mean of both variances, weighted by their
+/// degrees of freedom. What is not in the model counts as noise here. Unlike estimated_noise_m() it does not
+/// count the priors as observations: they say nothing of the noise. Only the declared noise when the
+/// residuals have no degree of freedom, and 0 when neither is known. `declared_m`: 0 is unknown.
+/// `noise_unit_m`: that of the fit.
+TouchNoise measured_noise(double declared_m, const ResidualSum& residuals, double noise_unit_m);
 
 }  // namespace calib

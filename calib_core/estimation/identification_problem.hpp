@@ -18,14 +18,20 @@ namespace calib {
 /// paper. kUnits: metres and radians.
 enum class ColumnScaling { kUnitNorm, kUnits };
 
+/// What becomes of the first harmonic of each joint's transmission. kWhenShown: estimated when the touches
+/// show it (identification/model_selection.hpp).
+enum class Harmonics { kLeaveOut, kWhenShown, kEstimate };
+
 struct IdentificationOptions {
   Formulation formulation = Formulation::kSignedDistance;
   IdentifiabilityOptions identifiability;
   ColumnScaling weights = ColumnScaling::kUnitNorm;
   bool robust = true;      // find touches that are inconsistent with the others, and leave them out
   bool prior = false;      // maximum a posteriori with the maker's tolerances, without a choice of columns
-  bool stiffness = false;  // estimate the compliance of joints 2 and 3 with its prior
-  bool hold_weak = true;   // keep parameters at nominal that the declared noise would make meaningless
+  bool stiffness = false;  // estimate the compliance of joints 1 to 3 where it has a prior
+  Harmonics harmonics = Harmonics::kLeaveOut;
+  bool hold_weak = true;      // keep parameters at nominal that the declared noise would make meaningless
+  bool measure_noise = true;  // correct the declared noise by the residuals; else it is taken as it is
   int iterations_max = 20;
 };
 
@@ -43,7 +49,12 @@ struct IdentificationProblem {
   double touch_noise_m = 0.0;  // declared standard deviation along the normal; 0 is unknown
   ErrorTolerances
       tolerances{};  // the maker's: the prior, and the size of errors that touches do not determine
-  std::array<std::optional<double>, kComplianceCount> std_compliance_rad_per_nm{};
+  /// The maker's figures for what the arm does beside rigid kinematics: the prior where it is estimated, a
+  /// source of uncertainty where it is not.
+  NongeometricDeviations nongeometric_std{};
+  /// One standard deviation of each joint's position error that changes from posture to posture (ripple, play
+  /// and stops of the drives); radians.
+  JointVector gear_std_rad = JointVector::Zero();
   /// Depends on arm, faces and options only. Set it when many identifications share these; else each call
   /// computes it.
   std::optional<Attainable> attainable;

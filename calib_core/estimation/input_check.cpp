@@ -21,18 +21,13 @@ constexpr double kSamePostureRadians = 1e-4;
 /// unconstrained.
 constexpr double kUnconstrainedStd = 1.0;
 
-std::string compliance_name(std::size_t index) {
-  return "the compliance of joint " + std::to_string(kCompliantJoints.at(index) + 1);
-}
-
 std::string unknown_name(const IdentificationProblem& problem, const LeastSquares& fit,
                          Eigen::Index unknown) {
   if (unknown >= fit.arm_count()) {
     return problem.artefact.parameters[static_cast<std::size_t>(unknown - fit.arm_count())].name;
   }
   const int column = fit.arm_columns()[static_cast<std::size_t>(unknown)];
-  if (column < kErrorParameterCount) return error_parameters()[static_cast<std::size_t>(column)].name();
-  return compliance_name(static_cast<std::size_t>(column - kErrorParameterCount));
+  return arm_parameter_name(column);
 }
 
 std::string touch_name(std::size_t index) { return "touch " + std::to_string(index + 1); }
@@ -116,9 +111,9 @@ std::optional<InputRefusal> bad_prior(const IdentificationProblem& problem,
     if (!is_prior && problem.tolerances[i] == 0.0) continue;
     if (unfit(problem.tolerances[i])) return singular(error_parameters()[i].name(), *problem.tolerances[i]);
   }
-  for (std::size_t i = 0; i < problem.std_compliance_rad_per_nm.size(); ++i) {
-    const auto& std = problem.std_compliance_rad_per_nm[i];
-    if (unfit(std)) return singular(compliance_name(i), *std);
+  for (std::size_t i = 0; i < problem.nongeometric_std.size(); ++i) {
+    const auto& std = problem.nongeometric_std[i];
+    if (unfit(std)) return singular(nongeometric_parameters()[i].name(), *std);
   }
   for (const auto& parameter : problem.artefact.parameters) {
     if (unfit(parameter.std)) return singular(parameter.name, *parameter.std);
@@ -175,6 +170,12 @@ std::optional<InputRefusal> find_invalid_input(const IdentificationProblem& prob
   if (auto refusal = bad_touch(problem, options.formulation)) return refusal;
   if (!std::isfinite(problem.touch_noise_m) || problem.touch_noise_m < 0.0) {
     return bad("the noise of a touch is not a length; give its standard deviation");
+  }
+  if (options.stiffness && estimable_compliances(problem.nongeometric_std).empty()) {
+    return bad(
+        "the compliance cannot be estimated: none of joints 1 to 3 has a standard deviation of it; give the "
+        "arm's file "
+        "\"gravity\" with masses and std_compliance_rad_per_nm, or identify without stiffness");
   }
   const bool has_priors = options.prior || options.stiffness || !problem.artefact.parameters.empty();
   if (has_priors && problem.touch_noise_m == 0.0) {

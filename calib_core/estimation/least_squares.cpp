@@ -11,7 +11,7 @@ namespace {
 
 std::optional<double> tolerance_of(const IdentificationProblem& problem, int arm_column) {
   if (arm_column < kErrorParameterCount) return problem.tolerances[static_cast<std::size_t>(arm_column)];
-  return problem.std_compliance_rad_per_nm[static_cast<std::size_t>(arm_column - kErrorParameterCount)];
+  return problem.nongeometric_std[static_cast<std::size_t>(arm_column - kErrorParameterCount)];
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std:
   const auto of = [](const std::optional<double>& std) { return std ? 1.0 / (*std * *std) : 0.0; };
   for (Eigen::Index k = 0; k < arm_count; ++k) {
     const int column = arm_columns[static_cast<std::size_t>(k)];
-    // A compliance always has its prior: touches alone determine it poorly.
+    // What is beside rigid kinematics always has its prior: touches alone determine it poorly.
     if (with_tolerances || column >= kErrorParameterCount) precision[k] = of(tolerance_of(problem, column));
   }
   for (std::size_t k = 0; k < parameters.size(); ++k) {
@@ -151,7 +151,9 @@ void LeastSquares::linearise(const Estimate& estimate) {
   }
   const Eigen::MatrixXd& fitted_rows = all ? rows_.all : rows_.kept;
   normal_.touch_information.setZero(rows_.all.cols(), rows_.all.cols());
-  normal_.touch_information.selfadjointView<Eigen::Lower>().rankUpdate(fitted_rows.transpose());
+  // Eigen 3.4 divides by zero for a product of 48 columns and no rows: a plan with all parameters has both.
+  if (fitted_rows.rows() > 0)
+    normal_.touch_information.selfadjointView<Eigen::Lower>().rankUpdate(fitted_rows.transpose());
   normal_.touch_information.triangularView<Eigen::StrictlyUpper>() = normal_.touch_information.transpose();
   normal_.touch_gradient.noalias() = fitted_rows.transpose() * rows_.weighted_residuals;
   normal_.touch_gradient = -normal_.touch_gradient;

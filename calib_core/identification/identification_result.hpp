@@ -35,8 +35,12 @@ struct IdentificationResult {
   std::vector<double> singular_values;   // non-zero ones of W (all columns) at the nominal model, descending
   std::vector<Iteration> iterations;     // [0] is at the nominal model
   ArmVector errors = ArmVector::Zero();  // of the estimated parameters; 0 elsewhere and unless converged
-  KinematicModel calibrated;             // nominal with `errors`
-  Eigen::VectorXd artefact_errors;       // one per artefact parameter, SI units; empty unless converged
+  /// Positions in nongeometric_parameters() of what was estimated beside the candidates.
+  std::vector<int> nongeometric;
+  std::string model_reason;         // why these, in a sentence; empty where there was no choice
+  ResidualSum residual_sum;         // of the fitted touches, when converged
+  KinematicModel calibrated;        // nominal with `errors`
+  Eigen::VectorXd artefact_errors;  // one per artefact parameter, SI units; empty unless converged
   std::vector<RejectedTouch> rejected;
   std::vector<FaceDistances> distances;          // one per role and face with touches
   std::optional<double> noise_estimated_m;       // from the residuals; needs more touches than unknowns

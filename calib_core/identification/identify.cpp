@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "calib_core/estimation/column_choice.hpp"
@@ -9,11 +10,15 @@
 #include "calib_core/estimation/input_check.hpp"
 #include "calib_core/estimation/outlier_rejection.hpp"
 #include "calib_core/identification/face_distances.hpp"
+#include "calib_core/identification/model_selection.hpp"
 #include "calib_core/numerics/condition_number.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
 namespace calib {
 namespace {
+
+/// The fit is repeated when the measured noise differs from the declared one by more than this factor.
+constexpr double kReweighRatio = 1.1;
 
 /// How many parameters the touches determine, however weakly: several may share one weak direction.
 int count_with_weak(const IdentificationProblem& problem, IdentificationOptions options,
@@ -58,20 +63,25 @@ void warn_of_weak(IdentificationResult& result) {
 }
 
 /// Goodness of fit, uncertainty and scale check of a converged identification.
-void evaluate(const IdentificationProblem& problem, const IdentificationOptions& options, LeastSquares& fit,
-              const Estimate& estimate, IdentificationResult& result) {
+void evaluate(const IdentificationProblem& problem, const IdentificationOptions& options,
+              double declared_noise_m, LeastSquares& fit, const Estimate& estimate,
+              IdentificationResult& result) {
   result.noise_estimated_m = estimated_noise_m(fit, estimate);
   result.lack_of_fit = lack_of_fit(problem, fit, estimate);
   if (problem.touch_noise_m <= 0.0 && !result.noise_estimated_m) return;  // no noise to propagate
-  const FullLinearisation whole = linearise_all_parameters(options, fit, estimate);
-  result.uncertainty =
-      propagate_uncertainty(problem, options, result.identifiable, fit, whole, estimate, result.lack_of_fit);
+  const FullLinearisation whole = linearise_all_parameters(problem, options, fit, estimate);
+  result.residual_sum = residual_sum(fit, whole.estimated_covariance);
+  const TouchNoise noise = options.measure_noise
+                               ? measured_noise(declared_noise_m, result.residual_sum, fit.noise_unit_m())
+                               : TouchNoise{declared_noise_m, std::numeric_limits<double>::infinity()};
+  result.uncertainty = propagate_uncertainty(problem, options, result.identifiable, fit, whole, noise);
   result.scale = check_scale(problem, options, fit, whole, *result.uncertainty, estimate);
 }
 
+/// The noise of `problem` weighs the touches; `declared_noise_m` is what is said of it.
 void solve(const IdentificationProblem& problem, const IdentificationOptions& options,
-           const std::vector<std::size_t>& fitted, IdentificationResult& result) {
-  LeastSquares fit(problem, options, estimated_columns(options, result.identifiable), fitted);
+           double declared_noise_m, const std::vector<std::size_t>& fitted, IdentificationResult& result) {
+  LeastSquares fit(problem, options, estimated_columns(problem, options, result.identifiable), fitted);
   GaussNewton iteration(problem, options, fit, result.identifiable.columns);
   Estimate estimate = iteration.start();
   if (auto refusal = find_unconstrained(problem, options, fit, estimate)) {
@@ -105,7 +115,8 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
     return;
   }
   const auto total = static_cast<int>(fitted.size());
-  if (2 * fit.kept_count() < total || (!options.prior && fit.kept_count() < fit.arm_count())) {
+  if (2 * fit.kept_count() < total ||
+      (!options.prior && fit.kept_count() < std::ssize(result.identifiable.columns))) {
     result.status = IdentificationStatus::kContradictory;
     result.message = std::to_string(total - fit.kept_count()) + " of " + std::to_string(total) +
                      " touches do not fit the others; check planes, block and probe, and touch again";
@@ -115,7 +126,10 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
   result.errors = estimate.arm;
   result.artefact_errors = estimate.artefact;
   result.calibrated = apply(problem.nominal, estimate.arm);
-  evaluate(problem, options, fit, estimate, result);
+  for (const int column : fit.arm_columns()) {
+    if (column >= kErrorParameterCount) result.nongeometric.push_back(column - kErrorParameterCount);
+  }
+  evaluate(problem, options, declared_noise_m, fit, estimate, result);
 }
 
 /// The identified parameter with the largest standard deviation relative to weak_std(), when it exceeds that.
@@ -157,7 +171,7 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
                                     const IdentificationResult& before) {
   const bool may_hold = options.hold_weak && !options.prior && !problem.columns;
   IdentificationResult result = before;
-  solve(problem, options, fitted, result);
+  solve(problem, options, problem.touch_noise_m, fitted, result);
   IdentificationOptions settled = options;  // the outliers are known from the first solution
   settled.robust = false;
   while (result.status == IdentificationStatus::kConverged) {
@@ -172,10 +186,69 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
       refuse(next, nothing_identifiable(fitted.size()));
       return next;
     }
-    solve(problem, settled, without(fitted, result.rejected), next);
+    solve(problem, settled, problem.touch_noise_m, without(fitted, result.rejected), next);
     result = std::move(next);
   }
   return result;
+}
+
+/// solve_and_hold(), and where harmonics are to be tried the same touches with them: what the residuals ask
+/// for is taken.
+IdentificationResult solve_and_select(const IdentificationProblem& problem,
+                                      const IdentificationOptions& options,
+                                      const std::vector<std::size_t>& fitted,
+                                      const IdentificationResult& before) {
+  IdentificationResult smaller = solve_and_hold(problem, options, fitted, before);
+  const bool is_tried = options.harmonics == Harmonics::kWhenShown &&
+                        problem.nongeometric_std[static_cast<std::size_t>(harmonic_position(0))] &&
+                        smaller.status == IdentificationStatus::kConverged &&
+                        smaller.fitted_touch_count >= kHarmonicTouchesMin;
+  if (!is_tried) return smaller;
+  IdentificationOptions with_harmonics = options;
+  with_harmonics.harmonics = Harmonics::kEstimate;
+  with_harmonics.robust = false;  // the outliers are known
+  IdentificationResult larger = before;
+  larger.identifiable = smaller.identifiable;
+  larger.rejected = smaller.rejected;
+  solve(problem, with_harmonics, problem.touch_noise_m, without(fitted, smaller.rejected), larger);
+  const ModelChoice choice = choose_harmonics(smaller, larger);
+  IdentificationResult taken = std::move(choice.take_larger ? larger : smaller);
+  taken.model_reason = choice.reason;
+  return taken;
+}
+
+/// Whether the noise weighs touches against something else: given quantities or the maker's figures.
+bool has_priors(const IdentificationProblem& problem, const IdentificationOptions& options) {
+  return options.prior || options.stiffness || !problem.artefact.parameters.empty();
+}
+
+/// solve_and_select(), and where the touches are better or worse than declared once more with the noise that
+/// was measured: a noise that is declared too large gives away what the touches say of block and ball.
+IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
+                                     const IdentificationOptions& options,
+                                     const std::vector<std::size_t>& fitted,
+                                     const IdentificationResult& before) {
+  IdentificationResult declared = solve_and_select(problem, options, fitted, before);
+  if (!declared.uncertainty || !options.measure_noise || !has_priors(problem, options)) return declared;
+  const double ratio = declared.uncertainty->noise_m / problem.touch_noise_m;
+  if (std::max(ratio, 1.0 / ratio) < kReweighRatio) return declared;
+  IdentificationProblem reweighed = problem;
+  reweighed.touch_noise_m = declared.uncertainty->noise_m;
+  IdentificationOptions settled = options;
+  settled.robust = false;
+  const bool has_harmonics = std::ranges::any_of(declared.nongeometric, [](int position) {
+    return position >= harmonic_position(0) && position < mass_position(1);
+  });
+  settled.harmonics = has_harmonics ? Harmonics::kEstimate : Harmonics::kLeaveOut;
+  IdentificationResult measured = before;
+  measured.identifiable = declared.identifiable;
+  measured.rejected = declared.rejected;
+  solve(reweighed, settled, problem.touch_noise_m, without(fitted, declared.rejected), measured);
+  if (measured.status != IdentificationStatus::kConverged) return declared;
+  measured.lack_of_fit = declared.lack_of_fit;  // against the declared noise
+  measured.noise_estimated_m = declared.noise_estimated_m;
+  measured.model_reason = declared.model_reason;
+  return measured;
 }
 
 /// Sets the identifiable columns: the given ones, or a choice.
@@ -255,7 +328,7 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
   const std::size_t chosen_count = result.identifiable.columns.size();
   result.singular_values =
       nominal_singular_values(problem, options, sorted.fitted, static_cast<int>(chosen_count));
-  result = solve_and_hold(problem, options, sorted.fitted, result);
+  result = solve_and_weigh(problem, options, sorted.fitted, result);
   if (!options.prior) warn_of_weak(result);
   if (result.scale && !result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
   if (!problem.columns && result.identifiable.columns.size() < chosen_count) {

@@ -58,15 +58,34 @@ auto& value_of(Model& model, const ErrorParameter& parameter) {
   throw std::logic_error("parameter_value: no such kind");
 }
 
-JointVector torques_nm(const PreparedModel& prepared, const Chain& chain) {
-  return prepared.has_masses ? gravity_torques_nm(prepared.model, chain) : JointVector::Zero();
+/// Derivatives of each joint's deflection by the parameters beside rigid kinematics; the torques are held
+/// constant.
+struct Deflections {
+  JointVector by_compliance = JointVector::Zero();         // of the joint itself, Nm
+  Eigen::Matrix<double, kJointCount, kMassCount> by_mass;  // rad; only of a compliant arm
+  bool is_compliant = false;
+};
+
+Deflections deflections(const PreparedModel& prepared, const Chain& chain) {
+  Deflections result;
+  if (!prepared.has_masses) return result;
+  result.is_compliant = prepared.is_compliant;
+  if (!result.is_compliant) {
+    result.by_compliance = gravity_torques_nm(prepared, chain);
+    return result;
+  }
+  const Eigen::Map<const JointVector> compliance(prepared.model.compliance_rad_per_nm.data());
+  const auto torques_nm = gravity_torques_of_masses_nm(prepared, chain);
+  result.by_compliance = torques_nm.rowwise().sum();
+  result.by_mass = compliance.asDiagonal() * torques_nm;
+  return result;
 }
 
 /// Index of a frame's theta. The five parameters of a frame are contiguous: alpha d theta r beta.
 constexpr Eigen::Index theta_index(Eigen::Index frame) { return frame == 0 ? 0 : 5 * frame - 1; }
 
 /// Derivatives along a unit vector of a point fixed in R_last_frame.
-ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, const JointVector& torques,
+ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, const Deflections& deflections,
                          const Eigen::Vector3d& point_m, int last_frame, const Eigen::Vector3d& direction) {
   ArmRow row = ArmRow::Zero();
   // A rotation about an axis through the frame's origin moves the point along `direction` by axis . lever, a
@@ -87,10 +106,19 @@ ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, cons
     row[alpha + 1] = beta.cos * x.dot(direction) - beta.sin * along_z;
     row[alpha + 4] = y.dot(lever);
   }
-  for (int i = 0; i < kComplianceCount; ++i) {
-    const int joint = kCompliantJoints[static_cast<std::size_t>(i)];
-    row[kErrorParameterCount + i] =
-        prepared.model.gains[static_cast<std::size_t>(joint)] * row[theta_index(joint + 1)] * torques[joint];
+  JointVector by_joint = JointVector::Zero();
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const auto index = static_cast<std::size_t>(joint);
+    if (prepared.model.joint_types[index] == JointType::kPrismatic) continue;
+    by_joint[joint] = prepared.model.gains[index] * row[theta_index(joint + 1)];
+    row[nongeometric_index(harmonic_position(joint))] = by_joint[joint] * chain.turned[index].cos;
+    row[nongeometric_index(harmonic_position(joint)) + 1] = by_joint[joint] * chain.turned[index].sin;
+  }
+  row.segment<kJointCount>(nongeometric_index(compliance_position(0))) =
+      by_joint.cwiseProduct(deflections.by_compliance);
+  if (deflections.is_compliant) {
+    row.segment<kMassCount>(nongeometric_index(mass_position(1))).noalias() =
+        by_joint.transpose() * deflections.by_mass;
   }
   return row;
 }
@@ -108,6 +136,11 @@ std::string ErrorParameter::name() const { return std::string(kind_name(kind)) +
 const std::array<ErrorParameter, kErrorParameterCount>& error_parameters() {
   static const auto parameters = list_parameters();
   return parameters;
+}
+
+std::string arm_parameter_name(int index) {
+  if (index < kErrorParameterCount) return error_parameters()[static_cast<std::size_t>(index)].name();
+  return nongeometric_parameters()[static_cast<std::size_t>(index - kErrorParameterCount)].name();
 }
 
 std::optional<int> error_parameter_index(std::string_view name) {
@@ -132,9 +165,15 @@ KinematicModel apply(const KinematicModel& model, const ErrorVector& errors) {
 
 KinematicModel apply(const KinematicModel& model, const ArmVector& errors) {
   KinematicModel changed = apply(model, errors.head<kErrorParameterCount>());
-  for (int i = 0; i < kComplianceCount; ++i) {
-    const int joint = kCompliantJoints[static_cast<std::size_t>(i)];
-    changed.compliance_rad_per_nm[static_cast<std::size_t>(joint)] += errors[kErrorParameterCount + i];
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    const auto number = static_cast<int>(joint);
+    changed.compliance_rad_per_nm[joint] += errors[nongeometric_index(compliance_position(number))];
+    changed.harmonics_rad[joint].cos += errors[nongeometric_index(harmonic_position(number))];
+    changed.harmonics_rad[joint].sin += errors[nongeometric_index(harmonic_position(number)) + 1];
+  }
+  for (int frame = 1; frame < kFrameCount; ++frame) {
+    changed.masses[static_cast<std::size_t>(frame)].mass_kg *=
+        1.0 + errors[nongeometric_index(mass_position(frame))];
   }
   return changed;
 }
@@ -146,7 +185,7 @@ Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicMo
 
 ArmRow distance_derivatives(const PreparedModel& prepared, const Chain& chain,
                             const Eigen::Vector3d& outward) {
-  return derivatives_along(prepared, chain, torques_nm(prepared, chain), chain.tip_in_block_m(),
+  return derivatives_along(prepared, chain, deflections(prepared, chain), chain.tip_in_block_m(),
                            kFrameCount - 1, outward);
 }
 
@@ -163,11 +202,11 @@ Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const Prepare
                                                                    const Chain& chain,
                                                                    const Eigen::Vector3d& point_in_block_m,
                                                                    int last_frame) {
-  const JointVector torques = torques_nm(prepared, chain);
+  const Deflections deflected = deflections(prepared, chain);
   Eigen::Matrix<double, 3, kArmParameterCount> derivatives;
   for (int i = 0; i < 3; ++i) {
     derivatives.row(i) =
-        derivatives_along(prepared, chain, torques, point_in_block_m, last_frame, Eigen::Vector3d::Unit(i));
+        derivatives_along(prepared, chain, deflected, point_in_block_m, last_frame, Eigen::Vector3d::Unit(i));
   }
   return derivatives;
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "calib_core/kinematics/kinematic_model.hpp"
+#include "calib_core/kinematics/nongeometric_parameters.hpp"
 
 namespace calib {
 
@@ -40,17 +41,19 @@ using ErrorTolerances = std::array<std::optional<double>, kErrorParameterCount>;
 /// from the middle of the block.
 inline constexpr double kBlockPoseLeverMetres = 0.6;
 
-/// All identified parameters of an arm: the candidates, then the compliance (radians per newton metre) of
-/// joints 2 and 3, which carry the weight of the arm.
-inline constexpr int kComplianceCount = 2;
-inline constexpr std::array<int, kComplianceCount> kCompliantJoints{1, 2};  // indices
-inline constexpr int kArmParameterCount = kErrorParameterCount + kComplianceCount;
+/// All errors of an arm: the candidates, then what it does beside rigid kinematics.
+inline constexpr int kArmParameterCount = kErrorParameterCount + kNongeometricCount;
 using ArmVector = Eigen::Matrix<double, kArmParameterCount, 1>;
 using ArmRow = Eigen::Matrix<double, 1, kArmParameterCount>;
 using ArmMatrix = Eigen::Matrix<double, kArmParameterCount, kArmParameterCount>;
 
 /// All candidates by frame, 0 to 7; within a frame alpha d theta r beta.
 const std::array<ErrorParameter, kErrorParameterCount>& error_parameters();
+
+/// Index into ArmVector of a position in nongeometric_parameters().
+constexpr int nongeometric_index(int position) { return kErrorParameterCount + position; }
+/// Name of a parameter by its index in ArmVector: "alpha1", "compliance2".
+std::string arm_parameter_name(int index);
 
 /// Index of the candidate with this name, or nothing.
 std::optional<int> error_parameter_index(std::string_view name);
@@ -77,20 +80,20 @@ Eigen::Matrix<double, 3, kErrorParameterCount> tip_derivatives(const KinematicMo
                                                                const Chain& chain);
 
 /// The following derivatives are with respect to all parameters of the arm, in R_-1: metres per metre, per
-/// radian and per rad/Nm. The gravity torques are held constant: exact for a rigid arm, else a relative error
-/// of the order of the deflection in radians (3e-4 for 0.3 mrad). Root finding with them converges to the
-/// exact root.
+/// radian, per rad/Nm and per share of a mass. The gravity torques are held constant: exact for a rigid arm,
+/// else a relative error of the order of the deflection in radians (3e-4 for 0.3 mrad). Root finding with
+/// them converges to the exact root.
 
 /// Of the tip's coordinate along `outward`: a row of W. The overload with a prepared model is faster.
 ArmRow distance_derivatives(const PreparedModel& prepared, const Chain& chain,
                             const Eigen::Vector3d& outward);
 ArmRow distance_derivatives(const KinematicModel& model, const Chain& chain, const Eigen::Vector3d& outward);
 
-/// Of the tip, 3 x 39.
+/// Of the tip, 3 x kArmParameterCount.
 Eigen::Matrix<double, 3, kArmParameterCount> tip_arm_derivatives(const KinematicModel& model,
                                                                  const Chain& chain);
 
-/// Of a point that is fixed in R_last_frame, 3 x 39; later frames do not move it.
+/// Of a point that is fixed in R_last_frame; later frames do not move it.
 Eigen::Matrix<double, 3, kArmParameterCount> point_arm_derivatives(const PreparedModel& prepared,
                                                                    const Chain& chain,
                                                                    const Eigen::Vector3d& point_in_block_m,

@@ -82,6 +82,9 @@ PreparedModel prepare(const KinematicModel& model) {
   prepared.has_masses =
       std::ranges::any_of(model.masses, [](const PointMass& m) { return m.mass_kg != 0.0; });
   prepared.is_compliant = std::ranges::any_of(model.compliance_rad_per_nm, [](double c) { return c != 0.0; });
+  prepared.has_harmonics =
+      std::ranges::any_of(model.harmonics_rad, [](const CosSin& h) { return h.cos != 0.0 || h.sin != 0.0; });
+  prepared.down_in_frame_0 = frame_transform(model.links[1]).linear() * model.down_in_frame_1;
   return prepared;
 }
 
@@ -96,11 +99,20 @@ PreparedJoints prepare(const std::array<double, kJointCount>& gains, const Joint
 Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints) {
   Chain chain;
   compute_rigid_chain(prepared, joints, chain);
+  chain.turned = joints.turned;
+  if (!prepared.is_compliant && !prepared.has_harmonics) return chain;
+  JointVector moved = JointVector::Zero();
   if (prepared.is_compliant) {
     const Eigen::Map<const JointVector> compliance(prepared.model.compliance_rad_per_nm.data());
-    const JointVector moved = compliance.cwiseProduct(gravity_torques_nm(prepared.model, chain));
-    compute_rigid_chain(prepared, prepare(prepared.model.gains, joints.joints + moved), chain);
+    moved = compliance.cwiseProduct(gravity_torques_nm(prepared, chain));
   }
+  for (std::size_t joint = 0; prepared.has_harmonics && joint < kJointCount; ++joint) {
+    if (prepared.model.joint_types[joint] == JointType::kPrismatic) continue;
+    const CosSin& harmonic = prepared.model.harmonics_rad[joint];
+    moved[static_cast<Eigen::Index>(joint)] +=
+        harmonic.cos * joints.turned[joint].cos + harmonic.sin * joints.turned[joint].sin;
+  }
+  compute_rigid_chain(prepared, prepare(prepared.model.gains, joints.joints + moved), chain);
   return chain;
 }
 

@@ -22,6 +22,11 @@ struct LinkParameters {
   double beta_rad = 0.0;
 };
 
+struct CosSin {
+  double cos = 1.0;
+  double sin = 0.0;
+};
+
 enum class JointType { kRevolute, kPrismatic };
 
 /// The mass that moves with one frame.
@@ -37,14 +42,22 @@ struct KinematicModel {
   /// Gravity deflects a revolute joint by compliance * torque; see gravity_torques_nm(). All 0: a rigid arm.
   std::array<PointMass, kFrameCount> masses{};  // the mass of frame 0 does not move
   std::array<double, kJointCount> compliance_rad_per_nm{};
-  /// The direction of gravity, a unit vector in R_1. R_1 turns with joint 1, so the vector has to be parallel
-  /// to the axis of joint 1: the arm stands on the floor or hangs from the ceiling.
+  /// The direction of gravity, a unit vector in R_1 where joint 1 is at 0: along -z for an arm that stands on
+  /// the floor, along z for one that hangs from the ceiling, across z on a wall.
   Eigen::Vector3d down_in_frame_1{0.0, 0.0, -1.0};
+  /// First harmonic of each joint's transmission: a revolute joint stands cos * cos(gain * position) + sin *
+  /// sin(gain * position) too far (radians).
+  std::array<CosSin, kJointCount> harmonics_rad = [] {
+    std::array<CosSin, kJointCount> none;
+    none.fill({0.0, 0.0});
+    return none;
+  }();
 };
 
 /// The pose of every frame of the arm in the block's frame R_-1.
 struct Chain {
   std::array<Eigen::Isometry3d, kFrameCount> block_from_frame;
+  std::array<CosSin, kJointCount> turned;  // of gain * commanded position
 
   [[nodiscard]] Eigen::Vector3d tip_in_block_m() const { return block_from_frame.back().translation(); }
 };
@@ -52,25 +65,22 @@ struct Chain {
 /// Pose of a frame in the previous frame.
 Eigen::Isometry3d frame_transform(const LinkParameters& link);
 
-struct CosSin {
-  double cos = 1.0;
-  double sin = 0.0;
-};
-
 /// A model with the sines and cosines of its constant angles. Compute it once to evaluate many joint vectors.
 struct PreparedModel {
   KinematicModel model;
   std::array<CosSin, kFrameCount> alpha;
   std::array<CosSin, kFrameCount> beta;
   std::array<CosSin, kFrameCount> theta;  // at a joint, of its offset
+  Eigen::Vector3d down_in_frame_0;        // the direction of gravity in R_0
   bool has_masses = false;
   bool is_compliant = false;
+  bool has_harmonics = false;
 };
 
 PreparedModel prepare(const KinematicModel& model);
 
 /// All frames at a joint vector. A compliant joint is deflected by the torque that gravity exerts on the
-/// undeflected chain.
+/// undeflected chain, a joint with a harmonic by that.
 Chain forward_chain(const PreparedModel& prepared, const JointVector& joints);
 Chain forward_chain(const KinematicModel& model, const JointVector& joints);
 

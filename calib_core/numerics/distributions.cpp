@@ -1,6 +1,7 @@
 #include "calib_core/numerics/distributions.hpp"
 
 #include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -35,6 +36,15 @@ double student_two_sided_factor(double confidence, double degrees) {
   if (std::isinf(degrees)) return normal_two_sided_factor(confidence);
   require(confidence > 0.0 && confidence < 1.0, "the confidence must lie between 0 and 1");
   return -quantile(boost::math::students_t_distribution<double, Policy>(degrees), (1.0 - confidence) / 2.0);
+}
+
+double f_survival(double x, double numerator_degrees, double denominator_degrees) {
+  require(x >= 0.0 && std::isfinite(x), "f_survival: x must be finite and not negative");
+  require(numerator_degrees > 0.0 && denominator_degrees > 0.0 && std::isfinite(numerator_degrees) &&
+              std::isfinite(denominator_degrees),
+          "f_survival: degrees out of range");
+  return cdf(complement(
+      boost::math::fisher_f_distribution<double, Policy>(numerator_degrees, denominator_degrees), x));
 }
 
 }  // namespace calib

@@ -19,4 +19,7 @@ double normal_two_sided_factor(double confidence);
 /// freedom from 1 on, not only whole ones; infinite ones mean the normal distribution.
 double student_two_sided_factor(double confidence, double degrees);
 
+/// P(X > x) of Fisher's F; x >= 0, degrees over 0 and finite.
+double f_survival(double x, double numerator_degrees, double denominator_degrees);
+
 }  // namespace calib

@@ -52,9 +52,10 @@ IdentificationProblem widened(const PlanningProblem& problem) {
 std::vector<int> columns_of(const IdentificationProblem& knowledge) {
   std::vector<int> columns(kErrorParameterCount);
   std::iota(columns.begin(), columns.end(), 0);
-  for (int i = 0; i < kComplianceCount; ++i) {
-    if (knowledge.std_compliance_rad_per_nm[static_cast<std::size_t>(i)])
-      columns.push_back(kErrorParameterCount + i);
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const int position = compliance_position(joint);
+    if (knowledge.nongeometric_std[static_cast<std::size_t>(position)])
+      columns.push_back(nongeometric_index(position));
   }
   return columns;
 }

@@ -30,7 +30,7 @@ struct PredictedContact {
 
 /// Estimate of the arm during a run, updated with every touch. A value type.
 ///
-/// The maximum a posteriori estimate of every error (theta0 to beta7, the compliance of joints 2 and 3 where
+/// The maximum a posteriori estimate of every error (theta0 to beta7, the compliance of each joint where
 /// a prior is given) and every artefact parameter, linearised anew at each touch. The prior of an error is
 /// its tolerance, but at least what the nominal position error allows: a length nominal_position_error / 6,
 /// an angle nominal_position_error / 6 per metre, the block pose nominal_position_error / 2 and

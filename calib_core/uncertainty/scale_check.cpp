@@ -45,17 +45,17 @@ ArmVector own_lengths(const KinematicModel& nominal, const std::vector<int>& col
   return own;
 }
 
-/// The maximum a posteriori problem in all errors, the estimated compliances and the artefact; the block pose
-/// is free.
+/// The maximum a posteriori problem in all errors, with what is beside rigid kinematics, and the artefact;
+/// the block pose is free.
 class ScaleTest {
  public:
-  ScaleTest(const IdentificationProblem& problem, const LeastSquares& fit, const FullLinearisation& whole,
-            double noise_ratio, const Estimate& estimate)
+  ScaleTest(const IdentificationProblem& problem, const FullLinearisation& whole, double noise_ratio,
+            const Estimate& estimate)
       : information_(whole.touch_information / (noise_ratio * noise_ratio)), precision_(information_.rows()) {
     Eigen::VectorXd values(information_.rows());
     values << estimate.arm, estimate.artefact;
     targets_ = information_ * values + whole.touch_gradient / (noise_ratio * noise_ratio);
-    set_precision(problem, fit);
+    set_precision(problem);
     Eigen::MatrixXd posterior = information_;
     posterior.diagonal() += precision_;
     for (const ArtefactEquation& equation : problem.artefact.equations) {
@@ -100,17 +100,14 @@ class ScaleTest {
  private:
   double& targets_with_equations(int artefact) { return right_[kArmParameterCount + artefact]; }
 
-  void set_precision(const IdentificationProblem& problem, const LeastSquares& fit) {
+  void set_precision(const IdentificationProblem& problem) {
     right_ = targets_;
-    const auto& columns = fit.arm_columns();
     for (int i = 0; i < kArmParameterCount; ++i) {
       std::optional<double> std;
       if (i >= kErrorParameterCount) {
-        // A compliance that was not estimated is fixed at its nominal value.
-        const bool estimated = std::ranges::find(columns, i) != columns.end();
-        std = estimated
-                  ? problem.std_compliance_rad_per_nm[static_cast<std::size_t>(i - kErrorParameterCount)]
-                  : kExactStd;
+        // Estimated or not, it is within the maker's figures; without any it is as in the model.
+        std =
+            problem.nongeometric_std[static_cast<std::size_t>(i - kErrorParameterCount)].value_or(kExactStd);
       } else if (error_parameters()[static_cast<std::size_t>(i)].group() != ParameterGroup::kBlockPose) {
         std = problem.tolerances[static_cast<std::size_t>(i)];
       }
@@ -256,7 +253,7 @@ ScaleCheck check_scale(const IdentificationProblem& problem, const Identificatio
         std::sqrt(own.dot((uncertainty.identified + uncertainty.held) * own)) / own.squaredNorm();
   }
   const double ratio = uncertainty.noise_m > 0.0 ? uncertainty.noise_m / fit.noise_unit_m() : 1.0;
-  const ScaleTest test(problem, fit, whole, ratio, estimate);
+  const ScaleTest test(problem, whole, ratio, estimate);
   if (!test.solvable()) return check;
   const auto [stretch, std] = test.stretch(lengths_of(problem.nominal));
   check.stretch_relative = stretch;

@@ -23,8 +23,9 @@ struct Correlation {
 /// Uncertainty of the identified errors. Covariances are those of true minus identified errors, metres and
 /// radians. An identified error is a combination of itself and the parameters grouped with it; `identified`
 /// is the covariance of that combination. A parameter that was excluded or held at nominal still has an error
-/// within the maker's tolerance, which biases the others: `held`. Grouped parameters and those without effect
-/// are also unknown within their tolerances: `unseen`.
+/// within the maker's tolerance, which biases the others; so has what is beside rigid kinematics and was not
+/// estimated: `held`. Grouped parameters and those without effect are also unknown within their tolerances:
+/// `unseen`. `of_posture` are errors of the joints that change from posture to posture.
 struct UncertaintyBudget {
   double noise_m = 0.0;  // of a touch: the declared one, or the estimated one when that is rejected
   double degrees_of_freedom = 0.0;  // of that noise; infinite when declared
@@ -32,16 +33,17 @@ struct UncertaintyBudget {
   ArmMatrix identified = ArmMatrix::Zero();
   ArmMatrix held = ArmMatrix::Zero();
   ArmMatrix unseen = ArmMatrix::Zero();
+  ArmMatrix of_posture = ArmMatrix::Zero();
   std::vector<int> unseen_without_tolerance;  // unseen errors without a tolerance
   Eigen::Matrix<double, kArmParameterCount, Eigen::Dynamic>
       unknown_directions;                  // one per member of that list
-  std::vector<UncertaintySource> sources;  // their sum is that of the three above
+  std::vector<UncertaintySource> sources;  // their sum is that of the four above
   Eigen::VectorXd artefact_std;
   std::vector<Correlation> correlations;  // the strongest ones in descending order
 
   /// The total covariance, for predictions at any pose and with any tool.
-  [[nodiscard]] ArmMatrix covariance() const { return identified + held + unseen; }
-  /// Standard deviation of an identified error (or compliance) by its index in ArmVector.
+  [[nodiscard]] ArmMatrix covariance() const { return identified + held + unseen + of_posture; }
+  /// Standard deviation of an estimated error by its index in ArmVector.
   [[nodiscard]] double std_error(int index) const {
     return std::sqrt(identified(index, index) + held(index, index));
   }

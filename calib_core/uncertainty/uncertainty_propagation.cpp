@@ -14,10 +14,29 @@ namespace {
 constexpr double kConfidence = 0.95;
 constexpr std::size_t kCorrelationsShown = 10;
 
-std::vector<int> all_arm_columns() {
-  std::vector<int> columns(kArmParameterCount);
+/// The candidates, and what is beside rigid kinematics where it is estimated or has a standard deviation.
+std::vector<int> all_known_columns(const IdentificationProblem& problem, const LeastSquares& fit) {
+  std::vector<int> columns(kErrorParameterCount);
   std::iota(columns.begin(), columns.end(), 0);
+  for (int i = kErrorParameterCount; i < kArmParameterCount; ++i) {
+    const bool is_estimated = std::ranges::find(fit.arm_columns(), i) != fit.arm_columns().end();
+    if (is_estimated || problem.nongeometric_std[static_cast<std::size_t>(i - kErrorParameterCount)])
+      columns.push_back(i);
+  }
   return columns;
+}
+
+const char* source_name(NongeometricKind kind) {
+  switch (kind) {
+    case NongeometricKind::kCompliance:
+      return "compliance";
+    case NongeometricKind::kHarmonicCos:
+    case NongeometricKind::kHarmonicSin:
+      return "gear_harmonics";
+    case NongeometricKind::kMass:
+      return "masses";
+  }
+  throw std::logic_error("source_name: no such kind");
 }
 
 const char* source_name(ArtefactKind kind) {
@@ -34,6 +53,13 @@ const char* source_name(ArtefactKind kind) {
       return "block_temperature";
   }
   throw std::logic_error("source_name: no such kind");
+}
+
+/// Of an estimated parameter of the arm that has a prior.
+const char* source_name(int arm_column) {
+  if (arm_column < kErrorParameterCount) return "makers_tolerances";
+  return source_name(
+      nongeometric_parameters()[static_cast<std::size_t>(arm_column - kErrorParameterCount)].kind);
 }
 
 /// Sums covariances by the name of their source.
@@ -63,6 +89,7 @@ class SourceSum {
     if (found != sources_.end()) return *found;
     return sources_.emplace_back(UncertaintySource{name, ArmMatrix::Zero()});
   }
+  [[nodiscard]] const std::vector<UncertaintySource>& sources() const { return sources_; }
   std::vector<UncertaintySource> take() { return std::move(sources_); }
 
  private:
@@ -78,9 +105,9 @@ void add_priors(const IdentificationProblem& problem, const IdentificationOption
   for (Eigen::Index k = 0; k < precision.size(); ++k) {
     if (precision[k] == 0.0) continue;
     const Eigen::Index artefact = k - fit.arm_count();
-    const char* name =
-        artefact < 0 ? "makers_tolerances" : source_name(parameters[static_cast<std::size_t>(artefact)].kind);
-    sum.add_equation(name, Eigen::VectorXd::Unit(precision.size(), k), precision[k]);
+    sum.add_equation(artefact < 0 ? source_name(fit.arm_columns()[static_cast<std::size_t>(k)])
+                                  : source_name(parameters[static_cast<std::size_t>(artefact)].kind),
+                     Eigen::VectorXd::Unit(precision.size(), k), precision[k]);
   }
   for (const ArtefactEquation& equation : problem.artefact.equations) {
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(precision.size());
@@ -89,19 +116,58 @@ void add_priors(const IdentificationProblem& problem, const IdentificationOption
   }
 }
 
+/// An error that was not estimated: by how much one unit of it biases the estimated ones, with itself.
+ArmVector bias_direction(const LeastSquares& fit, const FullLinearisation& whole, int column) {
+  const Eigen::VectorXd moved =
+      whole.estimated_covariance * whole.touch_information(whole.estimated, Eigen::all).col(column);
+  ArmVector direction = ArmVector::Unit(column);
+  for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
+    direction[fit.arm_columns()[i]] -= moved[static_cast<Eigen::Index>(i)];
+  }
+  return direction;
+}
+
+bool is_estimated(const LeastSquares& fit, int column) {
+  return std::ranges::find(fit.arm_columns(), column) != fit.arm_columns().end();
+}
+
+/// Adds what the arm does beside rigid kinematics and was not estimated: within the maker's figures it bends
+/// the estimate and remains.
+void add_nongeometric(const IdentificationProblem& problem, const LeastSquares& fit,
+                      const FullLinearisation& whole, SourceSum& sum, UncertaintyBudget& result) {
+  for (int column = kErrorParameterCount; column < kArmParameterCount; ++column) {
+    const auto index = static_cast<std::size_t>(column - kErrorParameterCount);
+    const auto& std = problem.nongeometric_std[index];
+    if (!std || is_estimated(fit, column)) continue;
+    const NongeometricKind kind = nongeometric_parameters()[index].kind;
+    // A harmonic is a prior of what may be there: one that the touches show is estimated, what is left of the
+    // others is in the noise that is measured.
+    if (kind == NongeometricKind::kHarmonicCos || kind == NongeometricKind::kHarmonicSin) continue;
+    const ArmVector direction = *std * bias_direction(fit, whole, column);
+    const ArmMatrix covariance = direction * direction.transpose();
+    result.held += covariance;
+    sum.source(source_name(kind)).covariance += covariance;
+  }
+}
+
+/// Adds what changes from posture to posture: it is in the noise of the touches, and at the tip once more.
+void add_gears(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
+  if (problem.gear_std_rad.isZero(0.0)) return;
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const int theta = *error_parameter_index("theta" + std::to_string(joint + 1));
+    result.of_posture(theta, theta) = std::pow(problem.gear_std_rad[joint], 2);
+  }
+  sum.source("gears").covariance = result.of_posture;
+}
+
 /// Adds the errors that were not estimated: each is within its tolerance and biases the estimated ones.
 void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
                 const LeastSquares& fit, const FullLinearisation& whole, SourceSum& sum,
                 UncertaintyBudget& result) {
   std::vector<ArmVector> unknown;
   for (int column = 0; column < kErrorParameterCount; ++column) {
-    if (std::ranges::find(fit.arm_columns(), column) != fit.arm_columns().end()) continue;
-    const Eigen::VectorXd moved =
-        whole.estimated_covariance * whole.touch_information(whole.estimated, Eigen::all).col(column);
-    ArmVector direction = ArmVector::Unit(column);
-    for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
-      direction[fit.arm_columns()[i]] -= moved[static_cast<Eigen::Index>(i)];
-    }
+    if (is_estimated(fit, column)) continue;
+    const ArmVector direction = bias_direction(fit, whole, column);
     const ParameterStatus status = identifiable.candidates[static_cast<std::size_t>(column)].status;
     const bool held = status == ParameterStatus::kWeak || status == ParameterStatus::kExcluded;
     if (const auto& tolerance = problem.tolerances[static_cast<std::size_t>(column)]) {
@@ -137,11 +203,26 @@ std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vecto
 
 }  // namespace
 
-FullLinearisation linearise_all_parameters(const IdentificationOptions& options, LeastSquares& fit,
+FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
+                                           const IdentificationOptions& options, LeastSquares& fit,
                                            const Estimate& estimate) {
-  LeastSquares everything(fit, options, all_arm_columns());
+  std::vector<int> columns = all_known_columns(problem, fit);
+  LeastSquares everything(fit, options, columns);
   everything.linearise(estimate);
-  FullLinearisation whole{everything.touch_information(), everything.touch_gradient(), {}, {}};
+  FullLinearisation whole;
+  const Eigen::Index count = kArmParameterCount + estimate.artefact.size();
+  for (Eigen::Index k = 0; k < estimate.artefact.size(); ++k) {
+    columns.push_back(kArmParameterCount + static_cast<int>(k));
+  }
+  whole.touch_information.setZero(count, count);
+  whole.touch_gradient.setZero(count);
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    const auto from = static_cast<Eigen::Index>(j);
+    whole.touch_gradient[columns[j]] = everything.touch_gradient()[from];
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      whole.touch_information(columns[i], columns[j]) =
+          everything.touch_information()(static_cast<Eigen::Index>(i), from);
+  }
   for (const int column : fit.arm_columns()) whole.estimated.push_back(column);
   for (Eigen::Index k = 0; k < estimate.artefact.size(); ++k) {
     whole.estimated.push_back(kArmParameterCount + k);
@@ -153,15 +234,10 @@ FullLinearisation linearise_all_parameters(const IdentificationOptions& options,
 UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
                                         const IdentificationOptions& options,
                                         const IdentifiableSet& identifiable, const LeastSquares& fit,
-                                        const FullLinearisation& whole, const Estimate& estimate,
-                                        const std::optional<LackOfFit>& misfit) {
+                                        const FullLinearisation& whole, const TouchNoise& noise) {
   UncertaintyBudget result;
-  const auto estimated = estimated_noise_m(fit, estimate);
-  const bool is_rejected = misfit && misfit->p < kLackOfFitWidens && estimated > problem.touch_noise_m;
-  const bool use_declared = problem.touch_noise_m > 0.0 && !is_rejected;
-  result.noise_m = use_declared ? problem.touch_noise_m : estimated.value_or(0.0);
-  result.degrees_of_freedom =
-      use_declared ? std::numeric_limits<double>::infinity() : std::max(1, fit.degrees_of_freedom());
+  result.noise_m = noise.std_m;
+  result.degrees_of_freedom = std::max(1.0, noise.degrees_of_freedom);
   result.coverage_factor = student_two_sided_factor(kConfidence, result.degrees_of_freedom);
 
   const Eigen::MatrixXd& covariance = whole.estimated_covariance;
@@ -170,13 +246,17 @@ UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
   SourceSum sum(fit, covariance);
   sum.add("touch_noise", of_noise);
   add_priors(problem, options, fit, sum);
+  const auto of_fit = [&sum] {
+    ArmMatrix total = ArmMatrix::Zero();
+    for (const UncertaintySource& source : sum.sources()) total += source.covariance;
+    return total;
+  };
+  result.identified = of_fit();
   add_unseen(problem, identifiable, fit, whole, sum, result);
+  add_nongeometric(problem, fit, whole, sum, result);
+  add_gears(problem, sum, result);
   result.sources = sum.take();
-  for (const UncertaintySource& source : result.sources) {
-    const bool of_fit = source.name != "unseen" && source.name != "held";
-    if (of_fit) result.identified += source.covariance;
-  }
-  result.artefact_std = (covariance.diagonal().tail(estimate.artefact.size())).cwiseSqrt();
+  result.artefact_std = (covariance.diagonal().tail(fit.unknown_count() - fit.arm_count())).cwiseSqrt();
   result.correlations = strongest(result.identified, fit.arm_columns());
   return result;
 }

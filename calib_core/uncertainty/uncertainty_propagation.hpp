@@ -21,15 +21,15 @@ struct FullLinearisation {
 };
 
 /// `fit` must have been solved at `estimate`.
-FullLinearisation linearise_all_parameters(const IdentificationOptions& options, LeastSquares& fit,
+FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
+                                           const IdentificationOptions& options, LeastSquares& fit,
                                            const Estimate& estimate);
 
-/// Propagates through the gain of the fit: the noise of the touches, the uncertainty of everything that has a
-/// prior, and the errors that the touches do not determine.
+/// Propagates through the gain of the fit: this noise of the touches, the uncertainty of everything that has
+/// a prior, and the errors that the touches do not determine.
 UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
                                         const IdentificationOptions& options,
                                         const IdentifiableSet& identifiable, const LeastSquares& fit,
-                                        const FullLinearisation& whole, const Estimate& estimate,
-                                        const std::optional<LackOfFit>& misfit);
+                                        const FullLinearisation& whole, const TouchNoise& noise);
 
 }  // namespace calib

@@ -16,6 +16,7 @@ struct IdentifyArguments {
   std::filesystem::path cell_file;
   std::filesystem::path touches_file;
   std::string recipe;      // the cell's default when empty
+  std::string stiffness;   // "on", "off" or "auto"; the recipe's choice when empty
   std::string arm_file;    // where the calibrated arm is written, if anywhere
   std::string map_file;    // where the map of the predicted uncertainty is written as CSV, if anywhere
   bool overwrite = false;  // those two

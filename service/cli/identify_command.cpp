@@ -3,8 +3,10 @@
 #include <cstdio>
 #include <stdexcept>
 
+#include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
+#include "config/stiffness_choice.hpp"
 #include "config/touches_file.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
@@ -46,13 +48,28 @@ void write_files(const IdentifyArguments& arguments, const Cell& cell,
   print_warnings(export_warnings(cell.own_frames, document.verdict.accepted, document.verdict.reasons));
 }
 
+/// The recipe with another choice of what is estimated, where one is given.
+Recipe with_stiffness(Recipe recipe, const std::string& name, const Cell& cell) {
+  if (name.empty()) return recipe;
+  const StiffnessChoice choice = stiffness_choice_named(name).value();
+  if (choice == StiffnessChoice::kOn && !can_estimate_stiffness(cell.arm)) {
+    throw ConfigError(
+        cell.file.string(), "/arm",
+        "the arm " + in_quotes(cell.arm.name) +
+            " has no masses or no std_compliance_rad_per_nm; add \"gravity\" to its file or give "
+            "--stiffness off");
+  }
+  recipe.identification.stiffness = is_estimated(choice, cell.arm);
+  return recipe;
+}
+
 }  // namespace
 
 ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (arguments.arm_file == "-" || arguments.map_file == "-")
     throw std::invalid_argument("standard output has the result; name a file");
   const Cell cell = read_cell(arguments.cell_file);
-  const Recipe& recipe = recipe_named(cell, arguments.recipe);
+  const Recipe recipe = with_stiffness(recipe_named(cell, arguments.recipe), arguments.stiffness, cell);
   const TouchesFile file = read_touches(arguments.touches_file, cell);
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
   problem.touches = file.touches;

@@ -145,10 +145,10 @@ std::string result_text(const ResultDocument& result) {
   lines += scale_text(result.scale);
   lines += rejected_text(result);
   lines += artefact_text(result.artefact_parameters);
-  for (const JointCompliance& stiffness : result.stiffness) {
-    lines += fmt::format("compliance of joint {}: {} +- {} rad/Nm\n", stiffness.joint,
-                         figure(stiffness.compliance_rad_per_nm, "{:.3g}"),
-                         figure(stiffness.std_uncertainty, "{:.2g}"));
+  if (result.model_reason) lines += *result.model_reason + '\n';
+  for (const NongeometricParameter& parameter : result.nongeometric_parameters) {
+    lines += fmt::format("{}: {} +- {} {}\n", parameter.name, figure(parameter.value, "{:.3g}"),
+                         figure(parameter.std_uncertainty, "{:.2g}"), parameter.unit);
   }
   lines += tip_text(result.tip_uncertainty);
   lines += planes_text(result.planes, "distances of the fitted touches from the block's origin");

@@ -89,6 +89,11 @@ class CommandLine {
     identify->add_option("--touches", identify_.touches_file, "touches, JSON or CSV")->required();
     identify->add_option("--recipe", identify_.recipe,
                          "recipe whose identification options apply; default: the cell's first");
+    identify
+        ->add_option("--stiffness", identify_.stiffness,
+                     "whether the compliance of the joints is estimated, in place of the recipe's choice; "
+                     "auto: where the arm's file allows it")
+        ->check(CLI::IsMember({"on", "off", "auto"}));
     identify->add_option("--export", identify_.arm_file, "write the calibrated arm to this arm file");
     identify->add_option("--map", identify_.map_file,
                          "write the predicted uncertainty over the workspace box to this CSV file");

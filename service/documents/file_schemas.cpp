@@ -20,7 +20,7 @@ constexpr std::string_view kResult = R"({
 "type":"object",
 "required":["schema","arm","touch_count","complete","warnings","rejected_touches","converged","iterations",
   "identifiable_count","condition_number","scaled_condition_number","singular_values","parameters",
-  "artefact_parameters","planes","planes_held_out","planes_proof","scale","touches","validation","tip_uncertainty","fit","verdict","conditions"],
+  "artefact_parameters","model","model_reason","nongeometric_parameters","planes","planes_held_out","planes_proof","scale","touches","validation","tip_uncertainty","fit","verdict","conditions"],
 "properties":{
   "schema":{"const":"touchcal/result/1"},
   "arm":{"type":"string"},
@@ -52,6 +52,15 @@ constexpr std::string_view kResult = R"({
       "std_uncertainty":{"type":["number","null"]},
       "grouped_with":{"type":"array"}}}},
   "artefact_parameters":{"type":"array","items":{"type":"object","required":["name","unit","value","status"]}},
+  "model":{"type":"array","items":{"type":"string"}},
+  "model_reason":{"type":["string","null"]},
+  "nongeometric_parameters":{"type":"array","items":{"type":"object",
+    "required":["name","unit","value","std_uncertainty","status"],"properties":{
+      "name":{"type":"string"},
+      "unit":{"enum":["rad/Nm","rad","1"]},
+      "value":{"type":["number","null"]},
+      "std_uncertainty":{"type":["number","null"]},
+      "status":{"enum":["identified","prior"]}}}},
   "planes":{"$ref":"#/components/schemas/Distances"},
   "planes_held_out":{"$ref":"#/components/schemas/Distances"},
   "planes_proof":{"$ref":"#/components/schemas/Distances"},
@@ -124,7 +133,7 @@ constexpr std::string_view kArm = R"({
 "description":"An arm's file, with what was identified",
 "required":["schema","name","frames"],
 "properties":{
-  "schema":{"const":"touchcal/arm/1"},
+  "schema":{"const":"touchcal/arm/2"},
   "name":{"type":"string"},
   "frames":{"type":"array","minItems":8,"maxItems":8,"items":{"type":"object"}}}})";
 

@@ -120,6 +120,24 @@ struct CorrelationOfErrors {
   }
 };
 
+/// What was estimated beside the 37 candidates.
+struct NongeometricParameter {
+  std::string name;  // "compliance2"
+  std::string unit;  // "rad/Nm"
+  std::optional<double> value;
+  std::optional<double> std_uncertainty;
+  ArtefactStatus status = ArtefactStatus::kPrior;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("name", self.name);
+    fields("unit", self.unit);
+    fields("value", self.value);
+    fields("std_uncertainty", self.std_uncertainty);
+    fields("status", self.status);
+  }
+};
+
 struct JointCompliance {
   int joint = 0;  // from 1
   std::optional<double> compliance_rad_per_nm;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
 #include "service/documents/figures.hpp"
@@ -89,10 +90,27 @@ const char* unit_name(calib::ArtefactKind kind) {
   return "";
 }
 
-std::string arm_parameter_name(int index) {
-  if (index < calib::kErrorParameterCount) return parameter_at(index).name();
-  const auto compliance = static_cast<std::size_t>(index - calib::kErrorParameterCount);
-  return "compliance" + std::to_string(calib::kCompliantJoints[compliance] + 1);
+/// Whether the touches improved on the standard deviation that was given.
+bool is_improved(double std, const std::optional<double>& given) {
+  return !given || std < (1.0 - kIdentifiedFall) * *given;
+}
+
+/// Value of a parameter beside rigid kinematics in the model; of a mass its change as a share of the nominal.
+double value_of(const calib::IdentificationResult& result, int position) {
+  const calib::NongeometricParameter& parameter =
+      calib::nongeometric_parameters()[static_cast<std::size_t>(position)];
+  const auto joint = static_cast<std::size_t>(parameter.number - 1);
+  switch (parameter.kind) {
+    case calib::NongeometricKind::kCompliance:
+      return result.calibrated.compliance_rad_per_nm[joint];
+    case calib::NongeometricKind::kHarmonicCos:
+      return result.calibrated.harmonics_rad[joint].cos;
+    case calib::NongeometricKind::kHarmonicSin:
+      return result.calibrated.harmonics_rad[joint].sin;
+    case calib::NongeometricKind::kMass:
+      return result.errors[calib::nongeometric_index(position)];
+  }
+  throw std::logic_error("value_of: no such kind");
 }
 
 }  // namespace
@@ -134,7 +152,7 @@ std::vector<ArtefactParameter> artefact_parameters_of(const calib::Identificatio
     const std::string unit = unit_name(parameter.kind);
     const double scale = unit == "mm" ? calib::mm_from_metres(1.0) : 1.0;
     const double std = result.uncertainty ? result.uncertainty->artefact_std[index] : kUnknown;
-    const bool identified = !parameter.std || std < (1.0 - kIdentifiedFall) * *parameter.std;
+    const bool identified = is_improved(std, parameter.std);
     const bool estimated = result.artefact_errors.size() > index;
     ArtefactParameter& shown_as = list.emplace_back();
     shown_as.name = parameter.name;
@@ -151,22 +169,40 @@ std::vector<CorrelationOfErrors> correlations_of(const calib::IdentificationResu
   std::vector<CorrelationOfErrors> list;
   if (!result.uncertainty) return list;
   for (const calib::Correlation& correlation : result.uncertainty->correlations) {
-    list.push_back({.first = arm_parameter_name(correlation.first),
-                    .second = arm_parameter_name(correlation.second),
+    list.push_back({.first = calib::arm_parameter_name(correlation.first),
+                    .second = calib::arm_parameter_name(correlation.second),
                     .coefficient = finite(correlation.coefficient)});
   }
   return list;
 }
 
-std::vector<JointCompliance> stiffness_of(const calib::IdentificationOptions& options,
+std::vector<NongeometricParameter> nongeometric_parameters_of(const calib::IdentificationProblem& problem,
+                                                              const calib::IdentificationResult& result) {
+  std::vector<NongeometricParameter> list;
+  for (const int position : result.nongeometric) {
+    const auto index = static_cast<std::size_t>(position);
+    const calib::NongeometricParameter& parameter = calib::nongeometric_parameters()[index];
+    const double std = std_of(result, calib::nongeometric_index(position)).value_or(kUnknown);
+    list.push_back({.name = parameter.name(),
+                    .unit = parameter.unit(),
+                    .value = finite(value_of(result, position)),
+                    .std_uncertainty = finite(std),
+                    .status = is_improved(std, problem.nongeometric_std[index]) ? ArtefactStatus::kIdentified
+                                                                                : ArtefactStatus::kPrior});
+  }
+  return list;
+}
+
+std::vector<JointCompliance> stiffness_of(const std::vector<NongeometricParameter>& parameters,
                                           const calib::IdentificationResult& result) {
   std::vector<JointCompliance> list;
-  for (int i = 0; options.stiffness && i < calib::kComplianceCount; ++i) {
-    const int joint = calib::kCompliantJoints[static_cast<std::size_t>(i)];
-    const double compliance = result.calibrated.compliance_rad_per_nm[static_cast<std::size_t>(joint)];
-    list.push_back({.joint = joint + 1,
-                    .compliance_rad_per_nm = finite(compliance),
-                    .std_uncertainty = finite(std_of(result, calib::kErrorParameterCount + i))});
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const calib::NongeometricParameter& parameter =
+        calib::nongeometric_parameters()[static_cast<std::size_t>(result.nongeometric[i])];
+    if (parameter.kind != calib::NongeometricKind::kCompliance) continue;
+    list.push_back({.joint = parameter.number,
+                    .compliance_rad_per_nm = parameters[i].value,
+                    .std_uncertainty = parameters[i].std_uncertainty});
   }
   return list;
 }

@@ -25,8 +25,12 @@ std::vector<ArtefactParameter> artefact_parameters_of(const calib::Identificatio
 /// The strongest correlations of identified errors.
 std::vector<CorrelationOfErrors> correlations_of(const calib::IdentificationResult& result);
 
-/// The compliance of joints 2 and 3; empty when it was not estimated.
-std::vector<JointCompliance> stiffness_of(const calib::IdentificationOptions& options,
+/// What was estimated beside the candidates. `identified`: the touches improve on the maker's figure.
+std::vector<NongeometricParameter> nongeometric_parameters_of(const calib::IdentificationProblem& problem,
+                                                              const calib::IdentificationResult& result);
+
+/// The compliances among them, as documents told them before nongeometric_parameters.
+std::vector<JointCompliance> stiffness_of(const std::vector<NongeometricParameter>& parameters,
                                           const calib::IdentificationResult& result);
 
 }  // namespace cell

@@ -197,6 +197,9 @@ struct ResultDocument {
   std::vector<Parameter> parameters;
   std::vector<CorrelationOfErrors> correlations;
   std::vector<ArtefactParameter> artefact_parameters;
+  std::vector<std::string> model;           // names of what was estimated beside the candidates
+  std::optional<std::string> model_reason;  // why these; nothing where there was no choice
+  std::vector<NongeometricParameter> nongeometric_parameters;
   std::vector<JointCompliance> stiffness;
   std::vector<PlaneDistances> planes;
   std::vector<PlaneDistances> planes_held_out;
@@ -229,6 +232,9 @@ struct ResultDocument {
     fields("parameters", self.parameters);
     fields("correlations", self.correlations);
     fields("artefact_parameters", self.artefact_parameters);
+    fields("model", self.model);
+    fields("model_reason", self.model_reason);
+    fields("nongeometric_parameters", self.nongeometric_parameters);
     fields("stiffness", self.stiffness);
     fields("planes", self.planes);
     fields("planes_held_out", self.planes_held_out);

@@ -206,13 +206,17 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
                           .parameters = parameters_of(problem, options, result),
                           .correlations = correlations_of(result),
                           .artefact_parameters = artefact_parameters_of(problem, result),
-                          .stiffness = stiffness_of(options, result),
+                          .nongeometric_parameters = nongeometric_parameters_of(problem, result),
                           .planes = planes_of(cell, result.distances, calib::TouchRole::kFit),
                           .planes_held_out = planes_of(cell, result.distances, calib::TouchRole::kHeldOut),
                           .planes_proof = planes_of(cell, result.distances, calib::TouchRole::kProof),
                           .touches = touches_of(cell, problem, result),
                           .scale = scale_of(result.scale),
                           .fit = fit_of(problem, result)};
+  for (const NongeometricParameter& parameter : document.nongeometric_parameters)
+    document.model.push_back(parameter.name);
+  if (!result.model_reason.empty()) document.model_reason = result.model_reason;
+  document.stiffness = stiffness_of(document.nongeometric_parameters, result);
   std::ranges::copy(context.warnings, std::back_inserter(document.warnings));
   std::ranges::transform(result.rejected, std::back_inserter(document.rejected_touches), rejected_of);
   std::ranges::transform(result.iterations, std::back_inserter(document.iterations), iteration_of);

@@ -268,7 +268,8 @@ std::string report_html(const RunReport& report) {
   if (report.result) {
     const ResultDocument& result = report.result->value;
     body += summary_section(result);
-    body += section("Errors", errors_table(result) + intervals_table(result) + block_and_probe_table(result));
+    body += section("Errors", errors_table(result) + intervals_table(result) + model_table(result) +
+                                  block_and_probe_table(result));
     body += section("Repetitions", repetition_tables(result));
     body += section("Convergence", condition_figure(result));
     body += section("Distances", distance_tables(result) + distance_figures(report));

@@ -155,6 +155,18 @@ std::string distance_tables(const ResultDocument& result) {
               : distance_table(result.planes_proof, "Distances of the proof touches"));
 }
 
+std::string model_table(const ResultDocument& result) {
+  if (result.nongeometric_parameters.empty()) return "";
+  std::vector<Row> rows;
+  for (const NongeometricParameter& parameter : result.nongeometric_parameters) {
+    rows.push_back(
+        {text_or_unknown(parameter.name), text_or_unknown(parameter.unit),
+         figure_text(parameter.value, "{:.3g}"), figure_text(parameter.std_uncertainty, "{:.2g}"),
+         parameter.status == ArtefactStatus::kPrior ? "as the arm's file says" : "found by the touches"});
+  }
+  return html::table("Beside rigid kinematics", {"of", "unit", "value", "std. uncertainty", "status"}, rows);
+}
+
 std::string block_and_probe_table(const ResultDocument& result) {
   std::vector<Row> rows;
   for (const ArtefactParameter& parameter : result.artefact_parameters) {

@@ -139,7 +139,7 @@ bool Run::sees_all_attainable() const {
 
 bool Run::meets_accuracy_goal() const {
   if (!recipe_.goal.tip_rms_max_m || !latest_.uncertainty || !sees_all_attainable()) return false;
-  if (latest_.lack_of_fit && !(latest_.lack_of_fit->p >= calib::kLackOfFitWidens)) return false;
+  if (latest_.lack_of_fit && !(latest_.lack_of_fit->p >= calib::kLackOfFitDoubtful)) return false;
   const bool over_ranges = recipe_.goal.criterion == calib::PlanCriterion::kTipInJointRanges;
   const auto rms_m =
       over_ranges ? predicted_rms_m(regions_.tip().joint_ranges, *latest_.uncertainty) : predicted_tip_rms_m_;

@@ -50,7 +50,7 @@ std::optional<TouchBenefit> most_beneficial_touches(const calib::IdentificationP
       longer.touches.push_back(of_face[i % of_face.size()]);
     }
   }
-  const std::vector<int> columns = calib::estimated_columns(options, result.identifiable);
+  const std::vector<int> columns = calib::estimated_columns(longer, options, result.identifiable);
   calib::LeastSquares fit(longer, options, columns, touches);
   std::vector<bool> kept(touches.size(), false);
   std::fill_n(kept.begin(), made, true);

@@ -9,13 +9,13 @@ namespace architecture {
 /// why.
 inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"calib_core/estimation/gauss_newton", "steps in identification/identify_test: histories and refusals"},
-    {"calib_core/estimation/goodness_of_fit",
-     "levels in tests/figures, figures in identification/identify_test"},
     {"calib_core/estimation/outlier_rejection",
      "needs a whole identification: tests/figures/block_study_test"},
     {"calib_core/identification/face_distances", "reference figures in identification/identify_test"},
     {"calib_core/kinematics/error_parameters",
      "against differences of poses: kinematics/kinematic_model_test"},
+    {"calib_core/kinematics/nongeometric_parameters",
+     "its list and derivatives: kinematics/kinematic_model_test"},
     {"calib_core/planning/aimed_touch", "needs an estimate with touches: planning/online_estimate_test"},
     {"calib_core/planning/aimed_transfer", "needs an estimate with touches: planning/online_estimate_test"},
     {"calib_core/planning/internal/condition_number_exchange", "planning/internal/fedorov_exchange_test"},
@@ -37,6 +37,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"config/json_value", "refusals with file and pointer: every_entry_test, read_config_test"},
     {"config/probe_file", "every key of every shipped probe: read_config_test, every_entry_test"},
     {"config/recipe_file", "every key of every shipped recipe: read_config_test, knowledge_test"},
+    {"config/stiffness_choice", "every choice of a recipe: knowledge_test"},
     {"config/shapes", "tools and solids of the shipped files: read_config_test, every_entry_test"},
     {"cs8_protocol/asio", "compiles Asio's functions, has none of its own"},
     {"cs8_protocol/link", "behind the client: client_test, link_loss_test"},

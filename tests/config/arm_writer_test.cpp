@@ -39,7 +39,7 @@ Arm sliding() {
   arm.model.joint_types[4] = calib::JointType::kPrismatic;
   arm.model.gains[2] = -0.5;
   arm.model.masses = {};
-  arm.std_compliance_rad_per_nm = {};
+  arm.nongeometric_std = {};
   for (const int joint : {2, 4}) {
     arm.joint_ranges.lower[joint] = -0.1237;
     arm.joint_ranges.upper[joint] = 1.0 / 3.0;
@@ -50,7 +50,8 @@ Arm sliding() {
 
 Arm bending() {
   Arm arm = calibrated(shipped_arm("tx90"));
-  arm.model.down_in_frame_1 = Eigen::Vector3d::UnitZ();  // hangs from the ceiling
+  arm.model.down_in_frame_1 = Eigen::Vector3d::UnitX();  // on a wall
+  arm.model.harmonics_rad[3] = {1e-5, -2e-5};
   arm.model.compliance_rad_per_nm[1] = 1.234567890123e-6;
   arm.model.compliance_rad_per_nm[2] = -1e-8;
   return arm;
@@ -119,7 +120,12 @@ TEST_P(EveryArm, IsReadBackWithItsTolerancesRangesAndWeights) {
   }
   EXPECT_EQ(back.model.compliance_rad_per_nm, arm.model.compliance_rad_per_nm);
   EXPECT_EQ(back.model.down_in_frame_1, arm.model.down_in_frame_1);
-  EXPECT_EQ(back.std_compliance_rad_per_nm, arm.std_compliance_rad_per_nm);
+  EXPECT_EQ(back.nongeometric_std, arm.nongeometric_std);
+  for (std::size_t joint = 0; joint < calib::kJointCount; ++joint) {
+    EXPECT_EQ(back.model.harmonics_rad[joint].cos, arm.model.harmonics_rad[joint].cos);
+    EXPECT_EQ(back.model.harmonics_rad[joint].sin, arm.model.harmonics_rad[joint].sin);
+  }
+  EXPECT_EQ(back.gears.std_rad(), arm.gears.std_rad());
 }
 
 TEST_P(EveryArm, IsReadBackWithItsBodies) {
@@ -159,7 +165,7 @@ TEST_P(EveryArm, IsWrittenTheSameAgain) {
 TEST(ArmDocument, KeepsTheShortNumbersOfTheFileItCameFrom) {
   const std::string document = arm_document(shipped_arm("tx90"));
   for (const char* text : {R"({"j":0,"theta_rad":0.0,"r_mm":149.6})", R"("r_mm":318.9)", "[-130.0,147.5]",
-                           R"("std_compliance_rad_per_nm":[1e-06,3e-06])"}) {
+                           R"("std_compliance_rad_per_nm":[0.0,1e-06,3e-06,3e-06,5e-06,8e-06])"}) {
     EXPECT_THAT(document, testing::HasSubstr(text));
   }
 }

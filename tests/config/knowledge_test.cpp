@@ -35,7 +35,7 @@ TEST_F(Knowledge, ARecipeChoosesWeightsRobustnessAndPrior) {
 }
 
 TEST_F(Knowledge, StiffnessIsIdentifiedOnlyOfAnArmThatTellsItsMassesAndHowStiffItIsThoughtToBe) {
-  edit(kRecipe, [](json& recipe) { recipe["identification"]["stiffness"] = true; });
+  edit(kRecipe, [](json& recipe) { recipe["identification"]["stiffness"] = "on"; });
   EXPECT_TRUE(read().recipes.at("edf-25").identification.stiffness);
   for (const char* missing : {"/gravity/std_compliance_rad_per_nm", "/gravity"}) {
     edit(kArm, [&](json& arm) {
@@ -46,6 +46,29 @@ TEST_F(Knowledge, StiffnessIsIdentifiedOnlyOfAnArmThatTellsItsMassesAndHowStiffI
     EXPECT_THAT(error.source(), EndsWith(kRecipe));
     EXPECT_EQ(error.pointer(), "/identification/stiffness");
   }
+}
+
+TEST_F(Knowledge, StiffnessIsIdentifiedByItselfWhereTheArmAllowsIt) {
+  for (const char* given : {"auto", ""}) {
+    edit(kRecipe, [&](json& recipe) {
+      recipe["identification"].erase("stiffness");
+      if (*given != 0) recipe["identification"]["stiffness"] = given;
+    });
+    EXPECT_TRUE(read().recipes.at("edf-25").identification.stiffness);
+  }
+  edit(kArm, [](json& arm) { arm.erase("gravity"); });
+  EXPECT_FALSE(read().recipes.at("edf-25").identification.stiffness);
+}
+
+TEST_F(Knowledge, ARecipeOfTheFirstSchemaSaysTrueOrFalseAndFalseByItself) {
+  edit(kRecipe, [](json& recipe) {
+    recipe["schema"] = "touchcal/recipe/1";
+    recipe["identification"].erase("stiffness");
+    recipe["identification"].erase("harmonics");
+  });
+  EXPECT_FALSE(read().recipes.at("edf-25").identification.stiffness);
+  edit(kRecipe, [](json& recipe) { recipe["identification"]["stiffness"] = true; });
+  EXPECT_TRUE(read().recipes.at("edf-25").identification.stiffness);
 }
 
 double tolerance(const calib::ErrorTolerances& tolerances, const char* name) {

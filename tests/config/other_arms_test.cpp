@@ -122,6 +122,7 @@ TEST(SlidingArm, IsReadButNotDriven) {
   EXPECT_EQ(error.pointer(), "/arm");
   EXPECT_THAT(error.what(), HasSubstr("joint 3 of \"tx60\" is prismatic"));
 
+  arm["schema"] = kArmSchema;
   arm["gravity"] = json_of(kSourceDir / "config/arms/tx90.json")["gravity"];
   EXPECT_EQ(error_of([&] { read_arm(folder.write("arm.json", arm.dump())); }).pointer(), "/gravity");
 }
@@ -137,9 +138,10 @@ TEST(Tx90, IsDeclaredStiffEnoughThatATypicalDroopIsOneToTwoDeviations) {
   stretched[1] = std::acos(0.0);
   const calib::JointVector torques_nm =
       calib::gravity_torques_nm(arm.model, calib::forward_chain(arm.model, stretched));
-  for (std::size_t i = 0; i < calib::kComplianceCount; ++i) {
+  for (const int joint : {1, 2}) {
     const double droop_std_rad =
-        arm.std_compliance_rad_per_nm[i].value() * std::abs(torques_nm[calib::kCompliantJoints[i]]);
+        arm.nongeometric_std[static_cast<std::size_t>(calib::compliance_position(joint))].value() *
+        std::abs(torques_nm[joint]);
     EXPECT_GE(kTypicalDroopRad / droop_std_rad, 1.0);
     EXPECT_LE(kTypicalDroopRad / droop_std_rad, 2.0);
   }

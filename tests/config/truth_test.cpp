@@ -37,7 +37,7 @@ TEST_F(TruthFile, OfVersion1HidesErrorsOnly) {
 TEST_F(TruthFile, CalledRealHasEveryEffect) {
   const Truth truth = read_truth(path(kRealTruth));
   const json file = json_of(path(kRealTruth));
-  EXPECT_EQ(truth.droop.value().compliance_rad_per_nm[1],
+  EXPECT_EQ(truth.droop.value().compliance_rad_per_nm[2],
             file["/droop/compliance_rad_per_nm/1"_json_pointer]);
   for (const Ripple& ripple : truth.ripple) EXPECT_GT(ripple.amplitude_rad * ripple.periods_per_turn, 0.0);
   EXPECT_DOUBLE_EQ(truth.ripple[1].phase_rad,
@@ -63,7 +63,7 @@ std::vector<double> numbers_of(const Truth& truth) {
     numbers.push_back(truth.repeatability_rad[joint]);
   }
   for (const double number :
-       {truth.droop.value_or(Droop{}).compliance_rad_per_nm[0], truth.warming.arm_rise_k, truth.probe.lobes_m,
+       {truth.droop.value_or(Droop{}).compliance_rad_per_nm[1], truth.warming.arm_rise_k, truth.probe.lobes_m,
         truth.probe.noise_m.value_or(0.0), truth.encoder_step_rad})
     numbers.push_back(number);
   return numbers;

@@ -52,6 +52,24 @@ void expect_one_line(const Finished& finished, int exit_code, const std::string&
   EXPECT_THAT(finished.err, HasSubstr(part));
 }
 
+TEST_F(OfflineCommands, IdentifyEstimatesTheComplianceWhenItIsToldToWhateverTheRecipeSays) {
+  for (const char* stiffness : {"on", "auto"}) {
+    const json document = json::parse(identify({"--json", "--stiffness", stiffness}).out);
+    EXPECT_EQ(document.at("model"), json::array({"compliance2", "compliance3"})) << stiffness;
+    for (const json& parameter : document.at("nongeometric_parameters")) {
+      EXPECT_EQ(parameter.at("unit"), "rad/Nm");
+      EXPECT_TRUE(parameter.at("value").is_number() && parameter.at("std_uncertainty").is_number());
+    }
+  }
+  for (const std::vector<std::string>& off :
+       {std::vector<std::string>{"--json", "--stiffness", "off"}, std::vector<std::string>{"--json"}}) {
+    const json document = json::parse(identify(off).out);  // edf-25 says off
+    EXPECT_EQ(document.at("model"), json::array());
+    EXPECT_EQ(document.at("model_reason"), nullptr);
+  }
+  EXPECT_EQ(identify({"--stiffness", "maybe"}).exit_code, cell::kExitUsage);
+}
+
 TEST_F(OfflineCommands, ValidatePassesThePapersTouchesAndSaysWhyThereIsNoOtherSet) {
   const Finished finished = validate({"--json"});
   EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;

@@ -25,7 +25,7 @@ constexpr double kTipErrorMedianMaxMetres = 0.25e-3;
 
 /// The arm with both joints just as soft that their largest droop over the touches is kDroopRad.
 KinematicModel drooping(KinematicModel arm, const std::vector<Touch>& touches) {
-  for (const int joint : kCompliantJoints) {
+  for (const int joint : {1, 2}) {
     double torque_max_nm = 0.0;
     for (const Touch& touch : touches) {
       const Chain chain = forward_chain(arm, touch.joints);

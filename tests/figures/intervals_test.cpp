@@ -175,7 +175,7 @@ TEST(Intervals, TheRegroupedTruthIsTheLinearCombinationsToSecondOrder) {
 }
 
 TEST(Intervals, WithAnUncertainArtefactCoverTheRegroupedTruthAsOftenAsTheySay) {
-  const cell::Cell cell = shipped_cell("demo");
+  const cell::Cell cell = rigid_cell("demo");
   const cell::Recipe& recipe = cell.recipes.at("edf-25");
   IdentificationProblem problem = cell::identification_problem(cell, recipe);
   UniformChance chance(5);

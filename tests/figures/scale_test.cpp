@@ -65,7 +65,7 @@ struct Case {
 
 /// The demo cell without the faces after `face_count`.
 cell::Cell cell_with_faces(int face_count) {
-  cell::Cell cell = shipped_cell("demo");
+  cell::Cell cell = rigid_cell("demo");
   cell.block.faces.resize(static_cast<std::size_t>(face_count));
   cell.block.face_uncertainties.resize(static_cast<std::size_t>(face_count));
   std::erase_if(cell.block.lengths, [&](const KnownLength& length) {
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 TEST(ScaleGuard, FlagsTableIII) {
-  const cell::Cell cell = shipped_cell("edf");
+  const cell::Cell cell = rigid_cell("edf");
   const cell::Recipe& recipe = cell.recipes.at("edf-25");
   IdentificationProblem problem = cell::identification_problem(cell, recipe);
   int alarms = 0;

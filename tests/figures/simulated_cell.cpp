@@ -25,6 +25,17 @@ cell::Cell shipped_cell(const std::string& name) {
   return cell::read_cell(std::string(TOUCHCAL_SOURCE_DIR) + "/config/cells/" + name + "/cell.json");
 }
 
+cell::Cell rigid_cell(const std::string& name) {
+  cell::Cell cell = shipped_cell(name);
+  cell.arm.nongeometric_std = {};
+  cell.arm.gears = {};
+  for (auto& [recipe_name, recipe] : cell.recipes) {
+    recipe.identification.stiffness = false;
+    recipe.identification.harmonics = Harmonics::kLeaveOut;
+  }
+  return cell;
+}
+
 ErrorVector draw_errors(const ErrorTolerances& tolerances, UniformChance& chance) {
   ErrorVector errors;
   for (int i = 0; i < kErrorParameterCount; ++i) {

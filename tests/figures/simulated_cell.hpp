@@ -25,6 +25,9 @@ double root_mean_square(std::span<const double> values);
 
 cell::Cell shipped_cell(const std::string& name);
 
+/// The same with an arm that does not bend and has even gears, as the arms of draw_errors().
+cell::Cell rigid_cell(const std::string& name);
+
 /// The arm and the contact planes as they are.
 struct Truth {
   KinematicModel arm;

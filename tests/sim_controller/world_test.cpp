@@ -78,7 +78,7 @@ TEST(World, OfNothingHiddenTripsOnTheNominalContactPlane) {
 TEST(World, DroopsByComplianceTimesTheMomentOfTheMasses) {
   const AimedTouch touch = aimed_touch(demo(), {});
   cell::Truth truth;
-  truth.droop = cell::Droop{{1e-6, 3e-6}};
+  truth.droop = cell::Droop{{0.0, 1e-6, 3e-6}};
   const Plant plant = quiet_plant(truth);
   const calib::JointVector at = trip(plant, touch);
   const calib::JointVector moments_nm =

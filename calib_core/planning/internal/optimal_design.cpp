@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
@@ -34,7 +35,7 @@ class ExpectedIdentification {
         problem.knowledge.columns
             ? IdentifiableSet{.columns = *problem.knowledge.columns}
             : attainable_set(problem.knowledge.nominal, problem.knowledge.artefact, options_.identifiability);
-    estimated_ = estimated_columns(options_, identifiable_);
+    estimated_ = estimated_columns(problem_, options_, identifiable_);
     problem_.nominal = problem.nominal;
     nominal_.artefact = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem_.artefact.parameters.size()));
   }
@@ -65,8 +66,9 @@ class ExpectedIdentification {
     LeastSquares fit = linearised(std::move(touches));
     if (!fit.solve())
       throw std::invalid_argument("the touches do not determine all parameters that are to be identified");
-    const FullLinearisation whole = linearise_all_parameters(options_, fit, nominal_);
-    return {propagate_uncertainty(problem_, options_, identifiable_, fit, whole, nominal_, std::nullopt),
+    const FullLinearisation whole = linearise_all_parameters(problem_, options_, fit, nominal_);
+    return {propagate_uncertainty(problem_, options_, identifiable_, fit, whole,
+                                  {problem_.touch_noise_m, std::numeric_limits<double>::infinity()}),
             fit.condition_numbers(positions()).as_is};
   }
 

@@ -23,6 +23,8 @@ std::string errors_table(const ResultDocument& result);       // Table III
 std::string intervals_table(const ResultDocument& result);    // each candidate with its uncertainty
 std::string repetition_tables(const ResultDocument& result);  // Tables IV and V
 std::string distance_tables(const ResultDocument& result);    // Tables VI and VII
+/// What was estimated beside the 37 errors; empty without any.
+std::string model_table(const ResultDocument& result);
 std::string block_and_probe_table(const ResultDocument& result);
 
 // report_figures.cpp

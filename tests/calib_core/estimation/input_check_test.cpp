@@ -157,12 +157,13 @@ const std::vector<BadInput>& bad_inputs() {
          problem.tolerances[static_cast<std::size_t>(error_parameter_index("d3").value())] = 0.0;
          options.prior = true;
        }},
-      {"AComplianceKnownWithNoTolerance", Status::kSingularPrior, "the compliance of joint 3 is 0",
+      {"AComplianceKnownWithNoTolerance", Status::kSingularPrior, "compliance3 is 0",
        [](Problem& problem, Options& options) {
-         problem.std_compliance_rad_per_nm = {1e-6, 0.0};
+         problem.nongeometric_std[static_cast<std::size_t>(compliance_position(1))] = 1e-6;
+         problem.nongeometric_std[static_cast<std::size_t>(compliance_position(2))] = 0.0;
          options.stiffness = true;
        }},
-      {"AComplianceThatNothingTells", Status::kUnobservable, "the compliance of joint 2",
+      {"AComplianceThatNobodyDeclared", Status::kBadInput, "std_compliance_rad_per_nm",
        [](Problem&, Options& options) { options.stiffness = true; }},  // an arm without masses
       {"ALengthWithoutTolerance", Status::kSingularPrior, "length 1 is 0",
        [](Problem& problem, Options&) {

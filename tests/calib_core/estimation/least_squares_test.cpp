@@ -21,7 +21,13 @@ IdentificationProblem whole_problem() {
   knowledge.lengths = {{{2, 4}, 0.1501, 10e-6}, {{0, 3}, 0.1499, 10e-6}};
   IdentificationProblem problem = drawn::problem(knowledge, kNoiseMetres);
   problem.nominal.masses[4] = {20.0, {0.0, 0.0, -0.25}};
-  problem.std_compliance_rad_per_nm = {1e-6, 3e-6};
+  for (int position = 0; position < kNongeometricCount; ++position) {
+    const NongeometricKind kind = nongeometric_parameters()[static_cast<std::size_t>(position)].kind;
+    problem.nongeometric_std[static_cast<std::size_t>(position)] = kind == NongeometricKind::kCompliance
+                                                                       ? 1e-6
+                                                                   : kind == NongeometricKind::kMass ? 0.1
+                                                                                                     : 5e-5;
+  }
   UniformChance chance(31);
   problem.touches = drawn::touches(drawn::draw_truth(problem, chance), {.count = 60}, chance);
   return problem;
@@ -60,8 +66,9 @@ Estimate moved(Estimate estimate, Eigen::Index unknown, double by) {
 }
 
 double step_of(Eigen::Index unknown) {
-  const bool compliance = unknown >= kErrorParameterCount && unknown < kArmParameterCount;
-  return compliance ? 1e-8 : 1e-6;
+  const bool is_compliance =
+      unknown >= kErrorParameterCount && unknown < nongeometric_index(harmonic_position(0));
+  return is_compliance ? 1e-8 : 1e-6;
 }
 
 class WholeProblem : public ::testing::TestWithParam<Formulation> {
@@ -90,6 +97,14 @@ TEST_P(WholeProblem, HasRowsThatAreTheSlopesOfTheResiduals) {
               1e-6 * rows.norm() / 60.0 + 2e-3 * rows.col(unknown).norm())
         << unknown;
   }
+}
+
+TEST_P(WholeProblem, IsItsPriorsWithoutATouch) {
+  problem_.touches.clear();
+  LeastSquares fit(problem_, options_, all_columns(), {});
+  fit.linearise(some_estimate(problem_));
+  EXPECT_TRUE(fit.touch_information().isZero(0.0));
+  EXPECT_GT(fit.information().diagonal().head(fit.arm_count()).minCoeff(), 0.0);
 }
 
 TEST_P(WholeProblem, WeighsRowsByTheNoiseAndInEquationSixByThePlanesDistance) {

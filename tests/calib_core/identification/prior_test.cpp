@@ -158,7 +158,7 @@ TEST(Prior, IsUsableFromTheFirstTouchAndGetsSurerWithEveryOne) {
     ASSERT_TRUE(result.uncertainty->covariance().allFinite() && result.uncertainty->artefact_std.allFinite());
     EXPECT_TRUE(result.rejected.empty()) << count;
     const double predicted = predicted_over_ranges_m(result);
-    EXPECT_LT(predicted, 1.05 * before) << count;  // measured at a slightly different arm each time
+    EXPECT_LT(predicted, 1.25 * before) << count;  // the noise is measured anew each time
     before = predicted;
     for (int i = 0; i < kErrorParameterCount; ++i) {
       const double std = std::sqrt(result.uncertainty->covariance()(i, i));

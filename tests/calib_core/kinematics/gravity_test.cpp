@@ -29,7 +29,8 @@ JointVector some_joints() { return {0.4, -0.7, 1.1, 0.3, 0.9, -1.2}; }
 /// Work that gravity has done, up to a constant: its slopes by the joints are the moments.
 double work_of_gravity(const KinematicModel& model, const JointVector& joints) {
   const Chain chain = forward_chain(model, joints);
-  const Eigen::Vector3d down = chain.block_from_frame[1].linear() * model.down_in_frame_1;
+  const Eigen::Vector3d down =
+      chain.block_from_frame[0].linear() * frame_transform(model.links[1]).linear() * model.down_in_frame_1;
   double work = 0.0;
   for (std::size_t frame = 1; frame < kFrameCount; ++frame) {
     const PointMass& here = model.masses[frame];
@@ -69,6 +70,25 @@ TEST(Gravity, MomentsAreTheWorkPerRadianOfEachJoint) {
   }
   EXPECT_GT(torques.cwiseAbs()[1], 10.0);
   EXPECT_NEAR(torques[0], 0.0, 1e-12);  // joint 1 stands upright
+}
+
+TEST(Gravity, OfAnArmOnAWallPullsAtJoint1AndItsMomentsAreTheWorkPerRadian) {
+  KinematicModel model = heavy_arm();
+  model.down_in_frame_1 = Eigen::Vector3d(0.6, -0.8, 0.0);
+  const auto torques = gravity_torques_nm(model, forward_chain(model, some_joints()));
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    EXPECT_NEAR(torques[joint], slope_of_work(model, some_joints(), joint), 1e-8) << "joint " << joint + 1;
+  }
+  EXPECT_GT(std::abs(torques[0]), 10.0);
+}
+
+TEST(Gravity, TorquesOfTheMassesAddUpToTheTorques) {
+  KinematicModel model = heavy_arm();
+  model.gains[4] = -2.0;
+  const PreparedModel prepared = prepare(model);
+  const Chain chain = forward_chain(prepared, some_joints());
+  const JointVector sum_nm = gravity_torques_of_masses_nm(prepared, chain).rowwise().sum();
+  EXPECT_LT((sum_nm - gravity_torques_nm(prepared, chain)).norm(), 1e-12);
 }
 
 TEST(Gravity, HangingArmIsPulledTheOtherWay) {

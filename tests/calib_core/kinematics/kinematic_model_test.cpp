@@ -139,14 +139,10 @@ TEST(ErrorParameters, AreThePapersThirtySevenInOrder) {
 }
 
 /// What one unit of a parameter's step is: one, or what turns a joint by about a radian.
-double step_unit(int parameter) { return parameter < kErrorParameterCount ? 1.0 : 0.01; }
-
-std::string arm_parameter_name(int parameter) {
-  return parameter < kErrorParameterCount
-             ? error_parameters()[static_cast<std::size_t>(parameter)].name()
-             : "compliance " +
-                   std::to_string(
-                       kCompliantJoints[static_cast<std::size_t>(parameter - kErrorParameterCount)] + 1);
+double step_unit(int parameter) {
+  const bool is_compliance =
+      parameter >= kErrorParameterCount && parameter < nongeometric_index(harmonic_position(0));
+  return is_compliance ? 0.01 : 1.0;
 }
 
 /// Differences of a point that is fixed in a frame, by all parameters of the arm.
@@ -176,10 +172,53 @@ TEST(ArmParameters, DerivativesMatchDifferencesForARigidArm) {
       for (int i = 0; i < kArmParameterCount; ++i) {
         EXPECT_LT((derivatives.col(i) - numeric.col(i)).norm() * step_unit(i), 1e-9) << arm_parameter_name(i);
         const bool without_effect = numeric.col(i).norm() * step_unit(i) < 1e-9;
-        EXPECT_EQ(without_effect, arm_parameter_name(i) == "theta7");
+        // Masses turn no joint of a rigid arm; joint 1 of an upright one carries no moment.
+        const bool is_mass = i >= nongeometric_index(mass_position(1));
+        const std::string name = arm_parameter_name(i);
+        if (i < kErrorParameterCount) {
+          EXPECT_EQ(without_effect, name == "theta7") << name;
+        } else if (is_mass) {
+          EXPECT_TRUE(without_effect) << name;
+        }
       }
     }
   }
+}
+
+TEST(ArmParameters, DerivativesOfACompliantArmByItsMassesMatchDifferences) {
+  KinematicModel model = mixed_arm();
+  model.compliance_rad_per_nm = {1e-6, 3e-6, 2e-6, 0.0, 5e-6, 8e-6};
+  const JointVector joints = some_joints(0.2);
+  const auto derivatives = tip_arm_derivatives(model, forward_chain(model, joints));
+  const auto numeric = numeric_derivatives(model, joints, Eigen::Vector3d::Zero(), kFrameCount - 1);
+  for (const int frame : {2, 4, 7}) {
+    const int i = nongeometric_index(mass_position(frame));
+    EXPECT_GT(numeric.col(i).norm(), 1e-6) << frame;
+    EXPECT_LT((derivatives.col(i) - numeric.col(i)).norm(), 0.01 * numeric.col(i).norm()) << frame;
+  }
+}
+
+TEST(KinematicModel, AHarmonicTurnsItsJointByTheSineOfItsPosition) {
+  const KinematicModel even = paper::nominal();
+  KinematicModel eccentric = even;
+  eccentric.harmonics_rad[2] = {3e-4, -2e-4};
+  const JointVector joints = some_joints(0.2);
+  JointVector where_it_stands = joints;
+  where_it_stands[2] += 3e-4 * std::cos(joints[2]) - 2e-4 * std::sin(joints[2]);
+  EXPECT_LT(
+      (forward_kinematics(eccentric, joints).matrix() - forward_kinematics(even, where_it_stands).matrix())
+          .norm(),
+      1e-14);
+}
+
+TEST(NongeometricParameters, HaveTheirPlacesInTheList) {
+  const auto& all = nongeometric_parameters();
+  const auto name_at = [&](int position) { return all[static_cast<std::size_t>(position)].name(); };
+  EXPECT_EQ(name_at(compliance_position(1)), "compliance2");
+  EXPECT_EQ(name_at(harmonic_position(0)), "harmonic_cos1");
+  EXPECT_EQ(name_at(harmonic_position(5) + 1), "harmonic_sin6");
+  EXPECT_EQ(name_at(mass_position(7)), "mass7");
+  EXPECT_EQ(mass_position(7), kNongeometricCount - 1);
 }
 
 TEST(ArmParameters, DerivativesOfACompliantArmAreWrongByNoMoreThanItsDeflection) {
@@ -203,7 +242,8 @@ TEST(ArmParameters, DerivativesOfACompliantArmAreWrongByNoMoreThanItsDeflection)
   const auto derivatives = tip_arm_derivatives(model, chain);
   const auto numeric = numeric_derivatives(model, joints, Eigen::Vector3d::Zero(), kFrameCount - 1);
   for (int i = 0; i < kArmParameterCount; ++i) {
-    const double arm_m = i < kErrorParameterCount ? reach_m : reach_m * mass_kg * kFreeFall * reach_m;
+    const bool is_compliance = step_unit(i) < 1.0;
+    const double arm_m = is_compliance ? reach_m * mass_kg * kFreeFall * reach_m : reach_m;
     EXPECT_LT((derivatives.col(i) - numeric.col(i)).norm(), deflection_rad * arm_m) << arm_parameter_name(i);
   }
   // Where the block stands changes no moment.

@@ -120,6 +120,14 @@ TEST(Normal, FactorIsRightAndTheLimitOfStudents) {
   EXPECT_EQ(student_two_sided_factor(0.95, kInfinity), normal_two_sided_factor(0.95));
 }
 
+// Exact for two degrees of freedom in the numerator: (1 + 2 x / d)^(-d / 2).
+TEST(FisherF, SurvivalIsTheClosedFormForTwoDegreesOfFreedom) {
+  for (const double degrees : {1.0, 4.5, 10.0, 200.0}) {
+    for (const double x : {0.0, 0.3, 3.0, 40.0})
+      expect_relative(f_survival(x, 2.0, degrees), std::pow(1.0 + 2.0 * x / degrees, -0.5 * degrees));
+  }
+}
+
 TEST(Distributions, WhatIsOutsideTheDomainIsAMistakeOfTheProgram) {
   for (const double confidence : {0.0, 1.0, -0.1, 1.1, kNan}) {
     EXPECT_THROW(normal_two_sided_factor(confidence), std::logic_error) << confidence;
@@ -132,6 +140,11 @@ TEST(Distributions, WhatIsOutsideTheDomainIsAMistakeOfTheProgram) {
     EXPECT_THROW(chi_square_survival(1.0, degrees), std::logic_error) << degrees;
   }
   EXPECT_THROW(chi_square_survival(-1.0, 5), std::logic_error);
+  for (const double degrees : {0.0, -1.0, kInfinity, kNan}) {
+    EXPECT_THROW(f_survival(1.0, degrees, 5.0), std::logic_error) << degrees;
+    EXPECT_THROW(f_survival(1.0, 5.0, degrees), std::logic_error) << degrees;
+  }
+  EXPECT_THROW(f_survival(-1.0, 5.0, 5.0), std::logic_error);
   EXPECT_THROW(chi_square_survival(kNan, 5), std::logic_error);
 }
 

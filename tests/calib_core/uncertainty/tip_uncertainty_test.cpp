@@ -113,7 +113,8 @@ TEST(TipUncertainty, OfARegionIsWhatArmsWithDrawnErrorsShowOverIt) {
 TEST(TipUncertainty, OfACompliantJointIsHowFarGravityBendsIt) {
   ArmMatrix covariance = ArmMatrix::Zero();
   constexpr double kStdRadPerNm = 1e-6;
-  covariance(kErrorParameterCount, kErrorParameterCount) = kStdRadPerNm * kStdRadPerNm;
+  const int compliance2 = nongeometric_index(compliance_position(1));
+  covariance(compliance2, compliance2) = kStdRadPerNm * kStdRadPerNm;
   const JointVector joints = some_postures(1).front();
   KinematicModel softer = arm();
   softer.compliance_rad_per_nm[1] = kStdRadPerNm;  // joint 2
@@ -164,8 +165,8 @@ TEST(TipUncertainty, OfAToolOffAxis6SeesTheta6AndTheProbeTipDoesNot) {
 TEST(TipUncertainty, OfAToolInThePlaceOfTheBallIsTheBallsButForTheProbesErrors) {
   const ToolCentre tool = frame_transform(arm().links[7]);
   ArmMatrix covariance = random_covariance(7);
-  covariance.bottomRows(kComplianceCount + 5).topRows(5).setZero();  // frame 7's parameters come last
-  covariance.rightCols(kComplianceCount + 5).leftCols(5).setZero();
+  covariance.bottomRows(kNongeometricCount + 5).topRows(5).setZero();  // frame 7's parameters come last
+  covariance.rightCols(kNongeometricCount + 5).leftCols(5).setZero();
   for (const JointVector& joints : some_postures(5)) {
     EXPECT_NEAR(tip_std_m(arm(), joints, covariance, tool), tip_std_m(arm(), joints, covariance), 1e-15);
   }

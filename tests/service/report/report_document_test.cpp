@@ -80,6 +80,20 @@ TEST(Report, EachTouchIsShownWithItsDistances) {
   }
 }
 
+TEST(Report, ThePageNamesWhatWasEstimatedBesideTheErrors) {
+  EXPECT_THAT(page_of(record()), Not(HasSubstr("Beside rigid kinematics")));
+  json more = result();
+  more["nongeometric_parameters"] = {{{"name", "compliance2"},
+                                      {"unit", "rad/Nm"},
+                                      {"value", 8.5e-7},
+                                      {"std_uncertainty", 3e-7},
+                                      {"status", "identified"}}};
+  RunRecord made = record();
+  made.result_json = more.dump();
+  EXPECT_THAT(page_of(made), HasSubstr("Beside rigid kinematics"));
+  EXPECT_THAT(page_of(made), HasSubstr("<td>8.5e-07</td>"));
+}
+
 TEST(Report, ThePageHasThePapersTablesWithTheResultsFigures) {
   const std::string page = page_of(record());
   for (const char* table : {"Table III", "Table IV", "Table V", "Table VI", "Table VII"})

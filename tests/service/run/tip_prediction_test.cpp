@@ -48,6 +48,7 @@ class TipPredictionTest : public ::testing::Test {
   TipPredictionTest() {
     problem_ = identification_problem(edf(), recipe_);
     problem_.touches = table3_touches();
+    problem_.nongeometric_std = {};  // only kinematic errors
   }
   TipPrediction predict(const Cell& cell) {
     const TipRegions regions(cell);

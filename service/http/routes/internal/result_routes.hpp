@@ -12,7 +12,7 @@ namespace cell {
 /// GET runs/{id}/result of a stored run: touchcal/result/1; 409 before there is a result.
 HttpResponse get_result(const CellOperation& operation, std::int64_t id);
 
-/// GET runs/{id}/arm: the calibrated arm as a file of schema touchcal/arm/1; 409 before there is a result, or
+/// GET runs/{id}/arm: the calibrated arm as a file of schema touchcal/arm/2; 409 before there is a result, or
 /// if the cell has changed since the run.
 HttpResponse get_arm(const CellOperation& operation, std::int64_t id);
 

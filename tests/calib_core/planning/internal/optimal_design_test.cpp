@@ -73,7 +73,9 @@ std::vector<Touch> touches_of(const std::vector<std::size_t>& indices) {
 IdentificationResult identified(const PlanningProblem& problem, const std::vector<std::size_t>& fit) {
   IdentificationProblem knowledge = problem.knowledge;
   knowledge.touches = touches_of(fit);
-  return identify(knowledge, problem.identification);
+  IdentificationOptions options = problem.identification;
+  options.measure_noise = false;  // exact touches have none
+  return identify(knowledge, options);
 }
 
 std::map<int, int> per_face(const std::vector<std::size_t>& indices) {

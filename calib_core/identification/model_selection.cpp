@@ -1,0 +1,33 @@
+#include "calib_core/identification/model_selection.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "calib_core/numerics/distributions.hpp"
+
+namespace calib {
+
+std::optional<NestedTest> test_nested(const ResidualSum& smaller, const ResidualSum& larger) {
+  const double added = larger.effective_parameters - smaller.effective_parameters;
+  const double left = larger.touch_count - larger.effective_parameters;
+  constexpr double kDegreesMin = 0.5;
+  if (added < kDegreesMin || left < kDegreesMin || larger.sum_of_squares <= 0.0) return std::nullopt;
+  const double explained = std::max(0.0, smaller.sum_of_squares - larger.sum_of_squares);
+  const double f = (explained / added) / (larger.sum_of_squares / left);
+  return NestedTest{f, f_survival(f, added, left)};
+}
+
+ModelChoice choose_harmonics(const IdentificationResult& without, const IdentificationResult& with) {
+  if (with.status != IdentificationStatus::kConverged)
+    return {false, "first harmonics of the joints left out: with them the fit did not converge"};
+  const auto test = test_nested(without.residual_sum, with.residual_sum);
+  if (!test) return {false, "first harmonics of the joints left out: the touches cannot tell them"};
+  std::ostringstream figures;
+  figures.precision(2);
+  figures << " (F " << test->f << ", p " << test->p << ")";
+  if (test->p < kLargerModelP)
+    return {true, "first harmonics of the joints taken: the touches ask for them" + figures.str()};
+  return {false, "first harmonics of the joints left out: the touches do not ask for them" + figures.str()};
+}
+
+}  // namespace calib

@@ -1,0 +1,141 @@
+#include "tests/figures/hidden_cell.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "calib_core/kinematics/kinematic_model.hpp"
+#include "sim_controller/contact.hpp"
+#include "tests/calib_core/block_study.hpp"
+
+namespace calib::figures {
+namespace {
+
+constexpr double kTouchSeconds = 7.5;      // of one touch with its way, as in the plans of the demo cell
+constexpr double kStandoffMetres = 0.012;  // the search begins so far from the nominal face
+constexpr double kOnFaceMetres = 1e-10;
+constexpr int kContactStepsMax = 40;
+
+/// The joint displacement that moves the ball by 1 m along `direction` without turning the stylus.
+JointVector joints_per_metre(const KinematicModel& model, const JointVector& joints,
+                             const Eigen::Vector3d& direction) {
+  const Chain chain = forward_chain(model, joints);
+  Eigen::Matrix<double, 6, 6> jacobian;
+  jacobian.topRows<3>() = tip_jacobian(model, chain);
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const auto index = static_cast<std::size_t>(joint);
+    jacobian.bottomRows<3>().col(joint) =
+        model.gains[index] * chain.block_from_frame[index + 1].linear().col(2);
+  }
+  Eigen::Matrix<double, 6, 1> wanted = Eigen::Matrix<double, 6, 1>::Zero();
+  wanted.head<3>() = direction;
+  return jacobian.colPivHouseholderQr().solve(wanted);
+}
+
+cell::Truth drawn(const cell::Cell& cell, cell::Truth truth, UniformChance& chance) {
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    truth.errors[i] += cell.arm.std_errors[static_cast<std::size_t>(i)].value_or(0.0) * study::normal(chance);
+  }
+  truth.face_offsets_m.resize(cell.block.faces.size(), 0.0);
+  for (std::size_t i = 0; i < truth.face_offsets_m.size(); ++i) {
+    truth.face_offsets_m[i] += cell.block.face_uncertainties[i].std_offset_m * study::normal(chance);
+  }
+  cell::TrueProbe& probe = truth.probe;
+  probe.stylus_radius_m = probe.stylus_radius_m.value_or(cell.probe.stylus.radius_m) +
+                          cell.probe.std_stylus_radius_m * study::normal(chance);
+  probe.pretravel_m = probe.pretravel_m.value_or(cell.probe.stylus.pretravel_m) +
+                      cell.probe.std_pretravel_m * study::normal(chance);
+  for (cell::Ripple& ripple : truth.ripple) ripple.phase_rad = 2.0 * std::numbers::pi * chance();
+  return truth;
+}
+
+}  // namespace
+
+HiddenArm shipped_arm(const cell::Cell& cell, const std::string& name) {
+  return {name, cell::read_truth(cell.file.parent_path() / (name + ".json"))};
+}
+
+HiddenCell::HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChance& chance)
+    : plant_(sim::make_plant(cell, drawn(cell, arm.truth, chance))) {
+  const cell::Block& block = cell.block;
+  constexpr double kReferenceCelsius = 20.0;
+  const double growth =
+      1.0 + block.thermal_expansion_per_k * (block.temperature_c.value_or(kReferenceCelsius) -
+                                             kReferenceCelsius + plant_.hidden.warming.block_warmer_k);
+  for (std::size_t i = 0; i < block.faces.size(); ++i) {
+    const Face& face = block.faces[i];
+    const double std_rad = block.face_uncertainties[i].std_tilt_rad;
+    const Eigen::AngleAxisd about_u(std_rad * study::normal(chance), face.edge_u);
+    const Eigen::AngleAxisd about_v(std_rad * study::normal(chance), face.edge_v());
+    const Eigen::Vector3d middle_m =
+        growth * (face.center_m + plant_.hidden.face_offsets_m[i] * face.plane.outward);
+    const Eigen::Vector3d outward = about_u * (about_v * face.plane.outward);
+    planes_.push_back({outward, outward.dot(middle_m)});
+  }
+  for (int frame = 1; frame < kFrameCount; ++frame) {
+    const double std =
+        cell.arm.nongeometric_std[static_cast<std::size_t>(mass_position(frame))].value_or(0.0);
+    plant_.truth.masses[static_cast<std::size_t>(frame)].mass_kg *= 1.0 + std * study::normal(chance);
+  }
+  world_ = sim::make_world(plant_);
+  stops_.seed(static_cast<std::uint64_t>(chance() * 0x1p53));
+}
+
+double HiddenCell::gap_m(int face, const JointVector& joints) const {
+  const Plane& plane = planes_[static_cast<std::size_t>(face)];
+  const Eigen::Isometry3d tool = sim::true_chain(plant_, world_, joints).block_from_frame.back();
+  return signed_distance_m(plane, tool.translation()) -
+         sim::trip_distance_m(plant_, tool, plane.outward, world_.noise_m);
+}
+
+JointVector HiddenCell::contact_joints(const Touch& planned) {
+  const Eigen::Vector3d& outward = planes_[static_cast<std::size_t>(planned.face)].outward;
+  const JointVector per_metre = joints_per_metre(plant_.nominal, planned.joints, outward);
+  const JointVector start = planned.joints + kStandoffMetres * per_metre;
+  const JointVector half_rad = 0.5 * plant_.hidden.backlash_rad;
+  world_.slack_rad = (world_.slack_rad - (start - world_.joints)).cwiseMin(half_rad).cwiseMax(-half_rad);
+  world_.joints = start;
+  sim::begin_search(plant_, world_, stops_);
+  double along_m = kStandoffMetres;
+  for (int step = 0; step < kContactStepsMax; ++step) {
+    const double gap = gap_m(planned.face, planned.joints + along_m * per_metre);
+    along_m -= gap;
+    if (std::abs(gap) < kOnFaceMetres) return planned.joints + along_m * per_metre;
+  }
+  throw std::logic_error("the ball found no contact");
+}
+
+std::vector<Touch> HiddenCell::touch(const std::vector<Touch>& planned) {
+  std::vector<Touch> captured;
+  for (const Touch& touch : planned) {
+    sim::pass(plant_, world_, kTouchSeconds);
+    Touch made = touch;
+    made.joints = contact_joints(touch);
+    world_.slack_rad = (world_.slack_rad - (made.joints - world_.joints))
+                           .cwiseMin(0.5 * plant_.hidden.backlash_rad)
+                           .cwiseMax(-0.5 * plant_.hidden.backlash_rad);
+    world_.joints = made.joints;
+    made.joints = sim::encoder_reading(plant_, made.joints);
+    captured.push_back(made);
+    if (touch.role != TouchRole::kFit) continue;
+    rise_sum_k_ += world_.rise_k;
+    ++fitted_;
+  }
+  return captured;
+}
+
+std::vector<Eigen::Vector3d> HiddenCell::tips_m(const std::vector<JointVector>& postures,
+                                                double rise_k) const {
+  sim::Plant warm = plant_;
+  warm.hidden.warming.arm_rise_k = rise_k;
+  warm.hidden.warming.arm_time_constant_s = 1.0;
+  warm.hidden.backlash_rad.setZero();
+  sim::World world = sim::make_world(warm);
+  constexpr double kLongSeconds = 100.0;
+  sim::pass(warm, world, kLongSeconds);
+  std::vector<Eigen::Vector3d> tips;
+  for (const JointVector& joints : postures) tips.push_back(sim::true_tip_m(warm, world, joints));
+  return tips;
+}
+
+}  // namespace calib::figures

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib_core/geometry/touch.hpp"
+#include "calib_core/numerics/uniform_chance.hpp"
+#include "config/truth.hpp"
+#include "sim_controller/world.hpp"
+
+/// Calibrations of an arm that the identified model cannot represent exactly: the physics of the simulated
+/// controller (droop, uneven gears, play, warming, stop scatter, the probe's tilt and lobes), touched along
+/// the search's line but without its motion in time.
+namespace calib::figures {
+
+/// A hidden arm and what it does beside its nominal model.
+struct HiddenArm {
+  std::string name;
+  cell::Truth truth;  // the centre of what a seed draws
+};
+
+/// The truth file of this name beside the cell's file.
+HiddenArm shipped_arm(const cell::Cell& cell, const std::string& name);
+
+/// One seed's cell: geometry, masses, block, ball, pre-travel and phases of the gears drawn around the truth
+/// from the deviations that the cell's files declare.
+class HiddenCell {
+ public:
+  HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChance& chance);
+
+  /// Makes these touches of the nominal arm in their order, while the arm warms up.
+  std::vector<Touch> touch(const std::vector<Touch>& planned);
+
+  /// The arm's temperature above cold, mean over the fitted touches made so far.
+  [[nodiscard]] double mean_rise_k() const { return rise_sum_k_ / fitted_; }
+
+  /// Where the ball is at commanded joints, with the arm this much warmer than cold and without play.
+  [[nodiscard]] std::vector<Eigen::Vector3d> tips_m(const std::vector<JointVector>& postures,
+                                                    double rise_k) const;
+
+ private:
+  JointVector contact_joints(const Touch& planned);
+  [[nodiscard]] double gap_m(int face, const JointVector& joints) const;
+
+  std::vector<Plane> planes_;  // where the faces really are
+  sim::Plant plant_;
+  sim::World world_;
+  std::mt19937_64 stops_;
+  double rise_sum_k_ = 0.0;
+  int fitted_ = 0;
+};
+
+}  // namespace calib::figures
