@@ -25,6 +25,7 @@ constexpr NumberRange kCompliances{.min = -1e-4, .max = 1e-4};
 constexpr double kUnitVectorError = 1e-6;
 /// Of a joint's drive, radians.
 constexpr NumberRange kGearAngles{.min = 0.0, .max = 0.01};
+constexpr NumberRange kHarmonics{.min = -0.01, .max = 0.01};
 constexpr NumberRange kMassShares{.min = kPositive.min, .max = 1.0};
 
 /// Joints that a list of two compliances is for: those that carry the weight of an arm on the floor.
@@ -198,8 +199,8 @@ void read_gears(const JsonValue& value, Arm& arm) {
   if (const auto harmonics = object.find("harmonics_rad")) {
     const auto items = harmonics->items(kJointCount, kJointCount);
     for (std::size_t joint = 0; joint < kJointCount; ++joint) {
-      const Eigen::Vector2d pair = items[joint].numbers<2>();
-      arm.model.harmonics_rad[joint] = {pair[0], pair[1]};
+      const auto pair = items[joint].items(2, 2);
+      arm.model.harmonics_rad[joint] = {pair[0].number(kHarmonics), pair[1].number(kHarmonics)};
     }
   }
   if (const auto std = object.find("std_harmonic_rad")) {

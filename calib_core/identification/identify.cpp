@@ -62,6 +62,17 @@ void warn_of_weak(IdentificationResult& result) {
                             "; spread the touches over more postures and tilts");
 }
 
+/// Masses without the deviation of a compliance: the droop is neither in the model nor in an uncertainty.
+void warn_of_droop(const IdentificationProblem& problem, IdentificationResult& result) {
+  const auto has_mass = [](const PointMass& mass) { return mass.mass_kg > 0.0; };
+  if (std::ranges::none_of(problem.nominal.masses, has_mass)) return;
+  if (!estimable_compliances(problem.nongeometric_std).empty()) return;
+  result.warnings.emplace_back(
+      "the arm has masses but no standard deviation of a compliance of joints 1 to 3, so that its droop is "
+      "in "
+      "no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
+}
+
 /// Goodness of fit, uncertainty and scale check of a converged identification.
 void evaluate(const IdentificationProblem& problem, const IdentificationOptions& options,
               double declared_noise_m, LeastSquares& fit, const Estimate& estimate,
@@ -192,6 +203,17 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
   return result;
 }
 
+/// Harmonics are tried beside the compliance only: alone they take up the droop of an arm with even gears.
+bool tries_harmonics(const IdentificationProblem& problem, const IdentificationOptions& options,
+                     const IdentificationResult& without) {
+  const auto first = problem.nongeometric_std.begin();
+  const bool is_declared = std::any_of(first + harmonic_position(0), first + mass_position(1),
+                                       [](const std::optional<double>& one) { return one.has_value(); });
+  return options.harmonics == Harmonics::kWhenShown && options.stiffness && is_declared &&
+         without.status == IdentificationStatus::kConverged &&
+         without.fitted_touch_count >= kHarmonicTouchesMin;
+}
+
 /// solve_and_hold(), and where harmonics are to be tried the same touches with them: what the residuals ask
 /// for is taken.
 IdentificationResult solve_and_select(const IdentificationProblem& problem,
@@ -199,11 +221,7 @@ IdentificationResult solve_and_select(const IdentificationProblem& problem,
                                       const std::vector<std::size_t>& fitted,
                                       const IdentificationResult& before) {
   IdentificationResult smaller = solve_and_hold(problem, options, fitted, before);
-  const bool is_tried = options.harmonics == Harmonics::kWhenShown &&
-                        problem.nongeometric_std[static_cast<std::size_t>(harmonic_position(0))] &&
-                        smaller.status == IdentificationStatus::kConverged &&
-                        smaller.fitted_touch_count >= kHarmonicTouchesMin;
-  if (!is_tried) return smaller;
+  if (!tries_harmonics(problem, options, smaller)) return smaller;
   IdentificationOptions with_harmonics = options;
   with_harmonics.harmonics = Harmonics::kEstimate;
   with_harmonics.robust = false;  // the outliers are known
@@ -330,6 +348,7 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
       nominal_singular_values(problem, options, sorted.fitted, static_cast<int>(chosen_count));
   result = solve_and_weigh(problem, options, sorted.fitted, result);
   if (!options.prior) warn_of_weak(result);
+  if (result.status == IdentificationStatus::kConverged) warn_of_droop(problem, result);
   if (result.scale && !result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
   if (!problem.columns && result.identifiable.columns.size() < chosen_count) {
     result.singular_values.resize(result.identifiable.columns.size());

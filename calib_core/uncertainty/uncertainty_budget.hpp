@@ -27,8 +27,8 @@ struct Correlation {
 /// estimated: `held`. Grouped parameters and those without effect are also unknown within their tolerances:
 /// `unseen`. `of_posture` are errors of the joints that change from posture to posture.
 struct UncertaintyBudget {
-  double noise_m = 0.0;  // of a touch: the declared one, or the estimated one when that is rejected
-  double degrees_of_freedom = 0.0;  // of that noise; infinite when declared
+  double noise_m = 0.0;             // of a touch, measured; the declared one is a prior for it
+  double degrees_of_freedom = 0.0;  // of that noise
   double coverage_factor = 0.0;     // 95 %, Student
   ArmMatrix identified = ArmMatrix::Zero();
   ArmMatrix held = ArmMatrix::Zero();

@@ -117,6 +117,8 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kArm, "/gears/backlash_rad", json({1e-5}), "/gears/backlash_rad", "wants 6 entries, has 1"},
         Spoiled{kArm, "/gears/std_harmonic_rad", 0, "/gears/std_harmonic_rad", "over 0"},
         Spoiled{kArm, "/gears/harmonics_rad", json({0}), "/gears/harmonics_rad", "wants 6 entries, has 1"},
+        Spoiled{kArm, "/gears/harmonics_rad", json::array({{3, -3}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}}),
+                "/gears/harmonics_rad/0/0", "give -0.01 to 0.01"},
         Spoiled{kArm, "/gears/lubricant", "oil", "/gears/lubricant", "unknown key"},
         Spoiled{kArm, "/bodies/0/radius_mm", 0, "/bodies/0/radius_mm", "a number over 0"},
         Spoiled{kArm, "/bodies/0/frame", 8, "/bodies/0/frame", "0 to 7"},

@@ -25,8 +25,11 @@ TEST(NestedTest, NeedsAParameterMoreAndADegreeOfFreedom) {
   EXPECT_FALSE(test_nested({20, 16.0, 8.0, 8.0}, {20, 16.0, 20.0, 20.0}));
 }
 
+/// An arm whose joint 2 has a mass to carry, with even gears or eccentric ones.
 IdentificationProblem problem_with_harmonics(double eccentricity_rad, int touch_count) {
   IdentificationProblem problem = drawn::problem(drawn::uncertain_artefact(5));
+  problem.nominal.masses[4] = {20.0, {0.0, 0.0, -0.25}};
+  problem.nongeometric_std[static_cast<std::size_t>(compliance_position(1))] = 1e-6;
   for (int i = harmonic_position(0); i < mass_position(1); ++i)
     problem.nongeometric_std[static_cast<std::size_t>(i)] = kStdHarmonicRad;
   UniformChance chance(5);
@@ -38,13 +41,13 @@ IdentificationProblem problem_with_harmonics(double eccentricity_rad, int touch_
 
 IdentificationResult identified(double eccentricity_rad, int touch_count) {
   return identify(problem_with_harmonics(eccentricity_rad, touch_count),
-                  {.harmonics = Harmonics::kWhenShown});
+                  {.stiffness = true, .harmonics = Harmonics::kWhenShown});
 }
 
 TEST(Harmonics, AreTakenWhereTheTouchesShowThem) {
   const IdentificationResult result = identified(3.0 * kStdHarmonicRad, 100);
   ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
-  EXPECT_EQ(result.nongeometric.size(), 2U * kJointCount);
+  EXPECT_EQ(result.nongeometric.size(), 1U + 2U * kJointCount);
   EXPECT_THAT(result.model_reason, testing::HasSubstr("taken"));
   EXPECT_NEAR(result.calibrated.harmonics_rad[2].cos, 3.0 * kStdHarmonicRad, 2.0 * kStdHarmonicRad);
 }
@@ -52,15 +55,28 @@ TEST(Harmonics, AreTakenWhereTheTouchesShowThem) {
 TEST(Harmonics, AreLeftOutOfEvenGearsAndTheResultSaysSo) {
   const IdentificationResult result = identified(0.0, 100);
   ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
-  EXPECT_TRUE(result.nongeometric.empty());
+  EXPECT_EQ(result.nongeometric, std::vector<int>{compliance_position(1)});
   EXPECT_THAT(result.model_reason, testing::HasSubstr("left out"));
 }
 
 TEST(Harmonics, AreNotTriedWithFewTouches) {
   const IdentificationResult result = identified(3.0 * kStdHarmonicRad, kHarmonicTouchesMin - 1);
   ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
-  EXPECT_TRUE(result.nongeometric.empty());
+  EXPECT_EQ(result.nongeometric, std::vector<int>{compliance_position(1)});
   EXPECT_EQ(result.model_reason, "");
+}
+
+TEST(Harmonics, AreNotTriedWithoutTheComplianceWhoseDroopTheyWouldTakeUp) {
+  const IdentificationProblem problem = problem_with_harmonics(3.0 * kStdHarmonicRad, 100);
+  EXPECT_TRUE(identify(problem, {.harmonics = Harmonics::kWhenShown}).nongeometric.empty());
+}
+
+TEST(Droop, OfMassesWithoutAComplianceIsWarnedOf) {
+  const auto warning = testing::Contains(testing::HasSubstr("std_compliance_rad_per_nm"));
+  IdentificationProblem problem = problem_with_harmonics(0.0, 60);
+  EXPECT_THAT(identify(problem, {}).warnings, testing::Not(warning));
+  problem.nongeometric_std = {};
+  EXPECT_THAT(identify(problem, {}).warnings, warning);
 }
 
 }  // namespace
