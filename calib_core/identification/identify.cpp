@@ -69,8 +69,7 @@ void warn_of_droop(const IdentificationProblem& problem, IdentificationResult& r
   if (!estimable_compliances(problem.nongeometric_std).empty()) return;
   result.warnings.emplace_back(
       "the arm has masses but no standard deviation of a compliance of joints 1 to 3, so that its droop is "
-      "in "
-      "no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
+      "in no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
 }
 
 /// Goodness of fit, uncertainty and scale check of a converged identification.

@@ -14,13 +14,16 @@ namespace {
 constexpr double kConfidence = 0.95;
 constexpr std::size_t kCorrelationsShown = 10;
 
+bool is_estimated(const LeastSquares& fit, int column) {
+  return std::ranges::find(fit.arm_columns(), column) != fit.arm_columns().end();
+}
+
 /// The candidates, and what is beside rigid kinematics where it is estimated or has a standard deviation.
 std::vector<int> all_known_columns(const IdentificationProblem& problem, const LeastSquares& fit) {
   std::vector<int> columns(kErrorParameterCount);
   std::iota(columns.begin(), columns.end(), 0);
   for (int i = kErrorParameterCount; i < kArmParameterCount; ++i) {
-    const bool is_estimated = std::ranges::find(fit.arm_columns(), i) != fit.arm_columns().end();
-    if (is_estimated || problem.nongeometric_std[static_cast<std::size_t>(i - kErrorParameterCount)])
+    if (is_estimated(fit, i) || problem.nongeometric_std[static_cast<std::size_t>(i - kErrorParameterCount)])
       columns.push_back(i);
   }
   return columns;
@@ -125,10 +128,6 @@ ArmVector bias_direction(const LeastSquares& fit, const FullLinearisation& whole
     direction[fit.arm_columns()[i]] -= moved[static_cast<Eigen::Index>(i)];
   }
   return direction;
-}
-
-bool is_estimated(const LeastSquares& fit, int column) {
-  return std::ranges::find(fit.arm_columns(), column) != fit.arm_columns().end();
 }
 
 /// Adds what the arm does beside rigid kinematics and was not estimated: within the maker's figures it bends
@@ -246,12 +245,7 @@ UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
   SourceSum sum(fit, covariance);
   sum.add("touch_noise", of_noise);
   add_priors(problem, options, fit, sum);
-  const auto of_fit = [&sum] {
-    ArmMatrix total = ArmMatrix::Zero();
-    for (const UncertaintySource& source : sum.sources()) total += source.covariance;
-    return total;
-  };
-  result.identified = of_fit();
+  for (const UncertaintySource& source : sum.sources()) result.identified += source.covariance;
   add_unseen(problem, identifiable, fit, whole, sum, result);
   add_nongeometric(problem, fit, whole, sum, result);
   add_gears(problem, sum, result);
