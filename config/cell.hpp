@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -32,6 +33,9 @@ struct Gears {
     return (ripple_rad.cwiseAbs2() / 2.0 + backlash_rad.cwiseAbs2() / 12.0 + repeatability_rad.cwiseAbs2())
         .cwiseSqrt();
   }
+  /// One standard deviation of the lag of each joint behind its drive, half of the play: of at most that
+  /// width and the likelier the nearer to it.
+  [[nodiscard]] calib::JointVector lag_std_rad() const { return backlash_rad / std::sqrt(8.0); }
 };
 
 struct Arm {

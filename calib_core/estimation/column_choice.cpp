@@ -159,7 +159,7 @@ std::vector<int> estimated_columns(const IdentificationProblem& problem, const I
   if (options.stiffness) {
     for (const int position : estimable_compliances(std)) columns.push_back(nongeometric_index(position));
   }
-  for (int i = harmonic_position(0); options.harmonics == Harmonics::kEstimate && i < mass_position(1); ++i) {
+  for (int i = harmonic_position(0); options.harmonics == Harmonics::kEstimate && is_harmonic(i); ++i) {
     if (std[static_cast<std::size_t>(i)]) columns.push_back(nongeometric_index(i));
   }
   return columns;

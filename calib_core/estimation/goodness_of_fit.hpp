@@ -43,8 +43,8 @@ struct ResidualSum {
 /// `covariance` is that of the unknowns, the inverse of fit.information().
 ResidualSum residual_sum(const LeastSquares& fit, const Eigen::MatrixXd& covariance);
 
-/// The declared noise counts as an estimate with so many degrees of freedom: known to half of itself.
-inline constexpr double kDeclaredNoiseDegrees = 2.0;
+/// The declared noise counts as much as one degree of freedom of the residuals.
+inline constexpr double kDeclaredNoiseDegrees = 1.0;
 
 /// Nothing without a declared noise or without a degree of freedom. `fit` must have been solved at
 /// `estimate`.

@@ -55,6 +55,10 @@ struct IdentificationProblem {
   /// One standard deviation of each joint's position error that changes from posture to posture (ripple, play
   /// and stops of the drives); radians.
   JointVector gear_std_rad = JointVector::Zero();
+  /// One standard deviation of how far each joint lags behind its drive in the direction of its motion, the
+  /// same in every touch: half the play of the gears; radians. In gear_std_rad as well, which is for motions
+  /// of any direction.
+  JointVector gear_lag_std_rad = JointVector::Zero();
   /// Depends on arm, faces and options only. Set it when many identifications share these; else each call
   /// computes it.
   std::optional<Attainable> attainable;

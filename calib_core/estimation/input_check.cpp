@@ -177,8 +177,7 @@ std::optional<InputRefusal> find_invalid_input(const IdentificationProblem& prob
         "arm's file "
         "\"gravity\" with masses and std_compliance_rad_per_nm, or identify without stiffness");
   }
-  const bool has_priors = options.prior || options.stiffness || !problem.artefact.parameters.empty();
-  if (has_priors && problem.touch_noise_m == 0.0) {
+  if (has_priors(problem, options) && problem.touch_noise_m == 0.0) {
     return bad(
         "what is known with an uncertainty can only be weighed against a known noise of a touch; "
         "give touch_noise_mm");

@@ -33,6 +33,10 @@ Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std:
   return precision;
 }
 
+bool has_priors(const IdentificationProblem& problem, const IdentificationOptions& options) {
+  return options.prior || options.stiffness || !problem.artefact.parameters.empty();
+}
+
 Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information) {
   return ScaledCholesky(information).inverse();
 }

@@ -14,6 +14,10 @@ namespace calib {
 Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std::vector<int>& arm_columns,
                                 bool with_tolerances);
 
+/// Whether touches are weighed against something else by their noise: given quantities or the maker's
+/// figures.
+bool has_priors(const IdentificationProblem& problem, const IdentificationOptions& options);
+
 /// Inverse of a positive definite information matrix: the covariance. See ScaledCholesky.
 Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information);
 

@@ -33,24 +33,28 @@ std::vector<TouchDistance> touch_distances(const IdentificationProblem& problem,
   return all;
 }
 
+std::vector<std::size_t> touches_of(const IdentificationProblem& problem, const IdentificationResult& result,
+                                    TouchRole role, int face) {
+  std::vector<std::size_t> touches;
+  for (std::size_t i = 0; i < problem.touches.size(); ++i) {
+    if (problem.touches[i].role != role || problem.touches[i].face != face) continue;
+    if (std::ranges::find(result.rejected, i, &RejectedTouch::touch) == result.rejected.end())
+      touches.push_back(i);
+  }
+  return touches;
+}
+
 std::vector<FaceDistances> face_distances(const IdentificationProblem& problem,
                                           const IdentificationResult& result) {
   const auto [nominal, calibrated] = distances_of(problem, result);
-  std::vector<bool> rejected(problem.touches.size(), false);
-  for (const RejectedTouch& touch : result.rejected) rejected[touch.touch] = true;
   std::vector<FaceDistances> all;
   for (const TouchRole role : {TouchRole::kFit, TouchRole::kHeldOut, TouchRole::kProof}) {
     for (std::size_t face = 0; face < problem.artefact.contact_planes.size(); ++face) {
-      std::vector<Eigen::Index> here;
-      for (std::size_t i = 0; i < problem.touches.size(); ++i) {
-        const Touch& touch = problem.touches[i];
-        const bool counts = touch.role == role && static_cast<std::size_t>(touch.face) == face;
-        if (counts && !rejected[i]) here.push_back(static_cast<Eigen::Index>(i));
-      }
+      const std::vector<std::size_t> here = touches_of(problem, result, role, static_cast<int>(face));
       if (here.empty()) continue;
       const Eigen::VectorXd before = nominal(here), after = calibrated(here);
       all.push_back({static_cast<int>(face), role, static_cast<int>(here.size()), before.mean(), rms(before),
-                     after.mean(), rms(after)});
+                     after.mean(), rms(after), std::nullopt});
     }
   }
   return all;

@@ -17,6 +17,10 @@ struct TouchDistance {
 std::vector<TouchDistance> touch_distances(const IdentificationProblem& problem,
                                            const IdentificationResult& result);
 
+/// The touches of this role and face, without rejected ones, as indices into those of the problem.
+std::vector<std::size_t> touches_of(const IdentificationProblem& problem, const IdentificationResult& result,
+                                    TouchRole role, int face);
+
 /// Validations B.3 and B.4 of the paper: one per role and face, in that order, without rejected touches.
 std::vector<FaceDistances> face_distances(const IdentificationProblem& problem,
                                           const IdentificationResult& result);

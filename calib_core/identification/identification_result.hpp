@@ -22,6 +22,8 @@ struct FaceDistances {
   double nominal_rms_m = 0.0;
   double calibrated_mean_m = 0.0;
   double calibrated_rms_m = 0.0;
+  /// One standard deviation of calibrated_mean_m, of touches that were not fitted; nothing without a noise.
+  std::optional<double> calibrated_mean_std_m;
 };
 
 struct IdentificationResult {

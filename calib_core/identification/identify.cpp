@@ -12,6 +12,7 @@
 #include "calib_core/identification/face_distances.hpp"
 #include "calib_core/identification/model_selection.hpp"
 #include "calib_core/numerics/condition_number.hpp"
+#include "calib_core/uncertainty/distance_uncertainty.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
 namespace calib {
@@ -33,19 +34,18 @@ void refuse(IdentificationResult& result, InputRefusal refusal) {
   result.message = std::move(refusal.message);
 }
 
-/// Lists the rejected touches with their residuals at the final arm.
+/// Lists the rejected touches, those of an earlier fit as well, with their residuals at the final arm.
 void list_rejected(const IdentificationProblem& problem, const LeastSquares& fit, const Estimate& estimate,
                    IdentificationResult& result) {
-  const KinematicModel arm = apply(problem.nominal, estimate.arm);
   for (std::size_t i = 0; i < fit.touches().size(); ++i) {
-    if (fit.kept()[i]) continue;
-    result.rejected.push_back(
-        {fit.touches()[i], fit.residuals_m()[static_cast<Eigen::Index>(i)], RejectionReason::kOutlier});
+    if (!fit.kept()[i]) result.rejected.push_back({fit.touches()[i], 0.0, RejectionReason::kOutlier});
   }
+  const KinematicModel arm = apply(problem.nominal, estimate.arm);
+  std::vector<Plane> planes;
+  correct_contact_planes(problem.artefact, estimate.artefact, planes);
   for (RejectedTouch& rejected : result.rejected) {
-    if (rejected.reason != RejectionReason::kWrongFace) continue;
     const Touch& touch = problem.touches[rejected.touch];
-    rejected.residual_m = signed_distances_m(arm, problem.artefact.contact_planes, std::span(&touch, 1))[0];
+    rejected.residual_m = signed_distances_m(arm, planes, std::span(&touch, 1))[0];
   }
   std::ranges::sort(result.rejected, {}, &RejectedTouch::touch);
 }
@@ -72,10 +72,11 @@ void warn_of_droop(const IdentificationProblem& problem, IdentificationResult& r
       "in no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
 }
 
-/// Goodness of fit, uncertainty and scale check of a converged identification.
+/// Goodness of fit, distances, uncertainty and scale check of a converged identification.
 void evaluate(const IdentificationProblem& problem, const IdentificationOptions& options,
               double declared_noise_m, LeastSquares& fit, const Estimate& estimate,
               IdentificationResult& result) {
+  result.distances = face_distances(problem, result);
   result.noise_estimated_m = estimated_noise_m(fit, estimate);
   result.lack_of_fit = lack_of_fit(problem, fit, estimate);
   if (problem.touch_noise_m <= 0.0 && !result.noise_estimated_m) return;  // no noise to propagate
@@ -86,6 +87,12 @@ void evaluate(const IdentificationProblem& problem, const IdentificationOptions&
                                : TouchNoise{declared_noise_m, std::numeric_limits<double>::infinity()};
   result.uncertainty = propagate_uncertainty(problem, options, result.identifiable, fit, whole, noise);
   result.scale = check_scale(problem, options, fit, whole, *result.uncertainty, estimate);
+  for (FaceDistances& distances : result.distances) {
+    if (distances.role == TouchRole::kFit) continue;
+    distances.calibrated_mean_std_m =
+        mean_distance_std_m(problem, fit, whole, *result.uncertainty, estimate,
+                            touches_of(problem, result, distances.role, distances.face));
+  }
 }
 
 /// The noise of `problem` weighs the touches; `declared_noise_m` is what is said of it.
@@ -173,30 +180,37 @@ std::vector<std::size_t> without(std::vector<std::size_t> touches,
   return touches;
 }
 
+/// The result before a solution of the same touches by another model or weight: what the first one chose and
+/// rejected stays.
+IdentificationResult before_another(const IdentificationResult& before, const IdentificationResult& first) {
+  IdentificationResult result = before;
+  result.identifiable = first.identifiable;
+  result.rejected = first.rejected;
+  return result;
+}
+
 /// Solves, then holds the weakest parameter at nominal and solves again until none is too weak. `before` is
 /// the result before the first solution.
 IdentificationResult solve_and_hold(const IdentificationProblem& problem,
-                                    const IdentificationOptions& options,
+                                    const IdentificationOptions& options, double declared_noise_m,
                                     const std::vector<std::size_t>& fitted,
                                     const IdentificationResult& before) {
   const bool may_hold = options.hold_weak && !options.prior && !problem.columns;
   IdentificationResult result = before;
-  solve(problem, options, problem.touch_noise_m, fitted, result);
+  solve(problem, options, declared_noise_m, fitted, result);
   IdentificationOptions settled = options;  // the outliers are known from the first solution
   settled.robust = false;
   while (result.status == IdentificationStatus::kConverged) {
     const auto weak = may_hold ? weakest(result) : std::nullopt;
     if (!weak) break;
-    IdentificationResult next = before;
-    next.identifiable = result.identifiable;
+    IdentificationResult next = before_another(before, result);
     std::erase(next.identifiable.columns, *weak);
     next.identifiable.candidates[static_cast<std::size_t>(*weak)].status = ParameterStatus::kWeak;
-    next.rejected = result.rejected;
     if (next.identifiable.columns.empty()) {
       refuse(next, nothing_identifiable(fitted.size()));
       return next;
     }
-    solve(problem, settled, problem.touch_noise_m, without(fitted, result.rejected), next);
+    solve(problem, settled, declared_noise_m, without(fitted, result.rejected), next);
     result = std::move(next);
   }
   return result;
@@ -205,9 +219,9 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
 /// Harmonics are tried beside the compliance only: alone they take up the droop of an arm with even gears.
 bool tries_harmonics(const IdentificationProblem& problem, const IdentificationOptions& options,
                      const IdentificationResult& without) {
-  const auto first = problem.nongeometric_std.begin();
-  const bool is_declared = std::any_of(first + harmonic_position(0), first + mass_position(1),
-                                       [](const std::optional<double>& one) { return one.has_value(); });
+  bool is_declared = false;
+  for (int position = harmonic_position(0); is_harmonic(position); ++position)
+    is_declared = is_declared || problem.nongeometric_std[static_cast<std::size_t>(position)];
   return options.harmonics == Harmonics::kWhenShown && options.stiffness && is_declared &&
          without.status == IdentificationStatus::kConverged &&
          without.fitted_touch_count >= kHarmonicTouchesMin;
@@ -219,24 +233,18 @@ IdentificationResult solve_and_select(const IdentificationProblem& problem,
                                       const IdentificationOptions& options,
                                       const std::vector<std::size_t>& fitted,
                                       const IdentificationResult& before) {
-  IdentificationResult smaller = solve_and_hold(problem, options, fitted, before);
+  IdentificationResult smaller = solve_and_hold(problem, options, problem.touch_noise_m, fitted, before);
   if (!tries_harmonics(problem, options, smaller)) return smaller;
   IdentificationOptions with_harmonics = options;
   with_harmonics.harmonics = Harmonics::kEstimate;
   with_harmonics.robust = false;  // the outliers are known
-  IdentificationResult larger = before;
-  larger.identifiable = smaller.identifiable;
-  larger.rejected = smaller.rejected;
-  solve(problem, with_harmonics, problem.touch_noise_m, without(fitted, smaller.rejected), larger);
+  IdentificationResult larger =
+      solve_and_hold(problem, with_harmonics, problem.touch_noise_m, without(fitted, smaller.rejected),
+                     before_another(before, smaller));
   const ModelChoice choice = choose_harmonics(smaller, larger);
   IdentificationResult taken = std::move(choice.take_larger ? larger : smaller);
   taken.model_reason = choice.reason;
   return taken;
-}
-
-/// Whether the noise weighs touches against something else: given quantities or the maker's figures.
-bool has_priors(const IdentificationProblem& problem, const IdentificationOptions& options) {
-  return options.prior || options.stiffness || !problem.artefact.parameters.empty();
 }
 
 /// solve_and_select(), and where the touches are better or worse than declared once more with the noise that
@@ -253,15 +261,19 @@ IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
   reweighed.touch_noise_m = declared.uncertainty->noise_m;
   IdentificationOptions settled = options;
   settled.robust = false;
-  const bool has_harmonics = std::ranges::any_of(declared.nongeometric, [](int position) {
-    return position >= harmonic_position(0) && position < mass_position(1);
-  });
+  const bool has_harmonics = std::ranges::any_of(declared.nongeometric, is_harmonic);
   settled.harmonics = has_harmonics ? Harmonics::kEstimate : Harmonics::kLeaveOut;
-  IdentificationResult measured = before;
-  measured.identifiable = declared.identifiable;
-  measured.rejected = declared.rejected;
-  solve(reweighed, settled, problem.touch_noise_m, without(fitted, declared.rejected), measured);
+  IdentificationResult measured =
+      solve_and_hold(reweighed, settled, problem.touch_noise_m, without(fitted, declared.rejected),
+                     before_another(before, declared));
   if (measured.status != IdentificationStatus::kConverged) return declared;
+  if (measured.identifiable.columns.size() < declared.identifiable.columns.size()) {
+    // The noise was measured with a parameter that it makes too weak: once more without it.
+    IdentificationOptions again = options;
+    again.robust = false;
+    return solve_and_weigh(problem, again, without(fitted, declared.rejected),
+                           before_another(before, measured));
+  }
   measured.lack_of_fit = declared.lack_of_fit;  // against the declared noise
   measured.noise_estimated_m = declared.noise_estimated_m;
   measured.model_reason = declared.model_reason;
@@ -353,7 +365,7 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
     result.singular_values.resize(result.identifiable.columns.size());
     result.rank_explanation = explain_rank(problem, sorted.fitted, result.identifiable, result.attainable);
   }
-  result.distances = face_distances(problem, result);
+  if (result.status != IdentificationStatus::kConverged) result.distances = face_distances(problem, result);
   return result;
 }
 

@@ -11,7 +11,7 @@ namespace calib {
 inline constexpr int kHarmonicTouchesMin = 60;
 
 /// The larger model is taken when chance alone would reduce the residuals as much less often than this.
-inline constexpr double kLargerModelP = 0.05;
+inline constexpr double kLargerModelP = 0.01;
 
 /// Nested F-test of the residuals of two converged fits to the same touches, the second with more parameters.
 struct NestedTest {

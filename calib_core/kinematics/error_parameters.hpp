@@ -55,6 +55,10 @@ constexpr int nongeometric_index(int position) { return kErrorParameterCount + p
 /// Name of a parameter by its index in ArmVector: "alpha1", "compliance2".
 std::string arm_parameter_name(int index);
 
+/// Index of theta of the frame that a joint moves; joint: index, 0 to 5. Frame 0 has two candidates, the
+/// others five.
+constexpr int theta_index(int joint) { return 2 + 5 * joint + 2; }
+
 /// Index of the candidate with this name, or nothing.
 std::optional<int> error_parameter_index(std::string_view name);
 

@@ -33,6 +33,9 @@ inline constexpr int kNongeometricCount = 3 * kJointCount + kMassCount;
 constexpr int compliance_position(int joint) { return joint; }                  // joint: index, 0 to 5
 constexpr int harmonic_position(int joint) { return kJointCount + 2 * joint; }  // of the cosine
 constexpr int mass_position(int frame) { return 3 * kJointCount + frame - 1; }
+constexpr bool is_harmonic(int position) {
+  return position >= harmonic_position(0) && position < mass_position(1);
+}
 
 const std::array<NongeometricParameter, kNongeometricCount>& nongeometric_parameters();
 

@@ -27,20 +27,27 @@ struct Correlation {
 /// estimated: `held`. Grouped parameters and those without effect are also unknown within their tolerances:
 /// `unseen`. `of_posture` are errors of the joints that change from posture to posture.
 struct UncertaintyBudget {
-  double noise_m = 0.0;             // of a touch, measured; the declared one is a prior for it
-  double degrees_of_freedom = 0.0;  // of that noise
-  double coverage_factor = 0.0;     // 95 %, Student
+  double noise_m = 0.0;                    // of a touch, measured; the declared one is a prior for it
+  double degrees_of_freedom = 0.0;         // of that noise
+  ArmMatrix of_noise = ArmMatrix::Zero();  // the share of `identified` that the noise of the touches has
   ArmMatrix identified = ArmMatrix::Zero();
   ArmMatrix held = ArmMatrix::Zero();
   ArmMatrix unseen = ArmMatrix::Zero();
   ArmMatrix of_posture = ArmMatrix::Zero();
   std::vector<int> unseen_without_tolerance;  // unseen errors without a tolerance
   Eigen::Matrix<double, kArmParameterCount, Eigen::Dynamic>
-      unknown_directions;                  // one per member of that list
+      unknown_directions;  // one per member of that list
+  /// What was not estimated and has a standard deviation: by one of them each displaces true minus estimated
+  /// arm and artefact (rows: ArmVector, then the artefact parameters). `held` and `unseen` are made of them.
+  Eigen::MatrixXd left_out;
   std::vector<UncertaintySource> sources;  // their sum is that of the four above
   Eigen::VectorXd artefact_std;
   std::vector<Correlation> correlations;  // the strongest ones in descending order
 
+  /// 95 % coverage factor of a quantity with this variance, of which `noise_variance` is of the noise of the
+  /// touches: Student with the effective degrees of freedom of Welch and Satterthwaite (GUM, equation G.2b),
+  /// all other sources being known exactly.
+  [[nodiscard]] double coverage_factor_of(double variance, double noise_variance) const;
   /// The total covariance, for predictions at any pose and with any tool.
   [[nodiscard]] ArmMatrix covariance() const { return identified + held + unseen + of_posture; }
   /// Standard deviation of an estimated error by its index in ArmVector.

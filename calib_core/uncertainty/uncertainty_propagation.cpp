@@ -7,11 +7,13 @@
 #include <stdexcept>
 
 #include "calib_core/numerics/distributions.hpp"
+#include "calib_core/uncertainty/left_out_effects.hpp"
 
 namespace calib {
 namespace {
 
 constexpr double kConfidence = 0.95;
+constexpr double kShareMin = 1e-6;  // of the noise: a smaller one leaves a normal distribution
 constexpr std::size_t kCorrelationsShown = 10;
 
 bool is_estimated(const LeastSquares& fit, int column) {
@@ -119,33 +121,86 @@ void add_priors(const IdentificationProblem& problem, const IdentificationOption
   }
 }
 
-/// An error that was not estimated: by how much one unit of it biases the estimated ones, with itself.
-ArmVector bias_direction(const LeastSquares& fit, const FullLinearisation& whole, int column) {
-  const Eigen::VectorXd moved =
-      whole.estimated_covariance * whole.touch_information(whole.estimated, Eigen::all).col(column);
-  ArmVector direction = ArmVector::Unit(column);
-  for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
-    direction[fit.arm_columns()[i]] -= moved[static_cast<Eigen::Index>(i)];
-  }
+/// True minus estimated errors of arm and artefact when the touches are displaced by something that was not
+/// estimated: `gradient` is the sum of their rows times their displacements.
+Eigen::VectorXd bias(const FullLinearisation& whole, const Eigen::Ref<const Eigen::VectorXd>& gradient) {
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(whole.touch_information.rows());
+  direction(whole.estimated) = -whole.estimated_covariance * gradient(whole.estimated);
   return direction;
+}
+
+/// An error that was not estimated: by how much one unit of it biases the estimated ones, with itself.
+Eigen::VectorXd bias_direction(const FullLinearisation& whole, int column) {
+  Eigen::VectorXd direction = bias(whole, whole.touch_information.col(column));
+  direction[column] += 1.0;
+  return direction;
+}
+
+/// The harmonics that have a standard deviation, as columns.
+std::vector<Eigen::Index> known_harmonics(const IdentificationProblem& problem) {
+  std::vector<Eigen::Index> columns;
+  for (int position = harmonic_position(0); is_harmonic(position); ++position) {
+    if (problem.nongeometric_std[static_cast<std::size_t>(position)])
+      columns.push_back(nongeometric_index(position));
+  }
+  return columns;
+}
+
+/// The variance that harmonics which were left out may still have, as a share of the maker's: what the
+/// residuals leave of it.
+double harmonic_share(const IdentificationProblem& problem, const LeastSquares& fit,
+                      const FullLinearisation& whole, double noise_variance) {
+  const std::vector<Eigen::Index> columns = known_harmonics(problem);
+  if (columns.empty() || is_estimated(fit, static_cast<int>(columns.front()))) return 0.0;
+  Eigen::VectorXd std(static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    std[static_cast<Eigen::Index>(i)] =
+        *problem.nongeometric_std[static_cast<std::size_t>(columns[i] - kErrorParameterCount)];
+  }
+  const Eigen::MatrixXd shared = whole.touch_information(whole.estimated, columns) * std.asDiagonal();
+  Eigen::MatrixXd information =
+      std.asDiagonal() * whole.touch_information(columns, columns) * std.asDiagonal();
+  information.noalias() -= shared.transpose() * whole.estimated_covariance * shared;
+  return mean_variance_share(information, std.cwiseProduct(whole.touch_gradient(columns)), noise_variance);
+}
+
+/// Adds what was not estimated: `displacement` is that by one standard deviation.
+void add_left_out(const Eigen::VectorXd& displacement, ArmMatrix& covariance, UncertaintyBudget& result) {
+  const ArmVector of_arm = displacement.head<kArmParameterCount>();
+  covariance.noalias() += of_arm * of_arm.transpose();
+  result.left_out.conservativeResize(displacement.size(), result.left_out.cols() + 1);
+  result.left_out.rightCols<1>() = displacement;
+}
+
+void add_held(const std::string& name, const Eigen::VectorXd& displacement, SourceSum& sum,
+              UncertaintyBudget& result) {
+  const ArmVector of_arm = displacement.head<kArmParameterCount>();
+  sum.source(name).covariance.noalias() += of_arm * of_arm.transpose();
+  add_left_out(displacement, result.held, result);
 }
 
 /// Adds what the arm does beside rigid kinematics and was not estimated: within the maker's figures it bends
 /// the estimate and remains.
 void add_nongeometric(const IdentificationProblem& problem, const LeastSquares& fit,
-                      const FullLinearisation& whole, SourceSum& sum, UncertaintyBudget& result) {
+                      const FullLinearisation& whole, double noise_variance, SourceSum& sum,
+                      UncertaintyBudget& result) {
+  const double share = harmonic_share(problem, fit, whole, noise_variance);
   for (int column = kErrorParameterCount; column < kArmParameterCount; ++column) {
     const auto index = static_cast<std::size_t>(column - kErrorParameterCount);
     const auto& std = problem.nongeometric_std[index];
     if (!std || is_estimated(fit, column)) continue;
-    const NongeometricKind kind = nongeometric_parameters()[index].kind;
-    // A harmonic is a prior of what may be there: one that the touches show is estimated, what is left of the
-    // others is in the noise that is measured.
-    if (kind == NongeometricKind::kHarmonicCos || kind == NongeometricKind::kHarmonicSin) continue;
-    const ArmVector direction = *std * bias_direction(fit, whole, column);
-    const ArmMatrix covariance = direction * direction.transpose();
-    result.held += covariance;
-    sum.source(source_name(kind)).covariance += covariance;
+    const double variance = *std * *std * (is_harmonic(static_cast<int>(index)) ? share : 1.0);
+    add_held(source_name(nongeometric_parameters()[index].kind),
+             std::sqrt(variance) * bias_direction(whole, column), sum, result);
+  }
+}
+
+/// Adds the lag of the joints: every touch ends a search, so that it displaces them by a pattern.
+void add_lag(const IdentificationProblem& problem, const FullLinearisation& whole, SourceSum& sum,
+             UncertaintyBudget& result) {
+  for (Eigen::Index joint = 0; joint < whole.lag_gradient.cols(); ++joint) {
+    add_held("backlash", problem.gear_lag_std_rad[joint] * bias(whole, whole.lag_gradient.col(joint)), sum,
+             result);
   }
 }
 
@@ -153,8 +208,7 @@ void add_nongeometric(const IdentificationProblem& problem, const LeastSquares& 
 void add_gears(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
   if (problem.gear_std_rad.isZero(0.0)) return;
   for (int joint = 0; joint < kJointCount; ++joint) {
-    const int theta = *error_parameter_index("theta" + std::to_string(joint + 1));
-    result.of_posture(theta, theta) = std::pow(problem.gear_std_rad[joint], 2);
+    result.of_posture(theta_index(joint), theta_index(joint)) = std::pow(problem.gear_std_rad[joint], 2);
   }
   sum.source("gears").covariance = result.of_posture;
 }
@@ -163,15 +217,15 @@ void add_gears(const IdentificationProblem& problem, SourceSum& sum, Uncertainty
 void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
                 const LeastSquares& fit, const FullLinearisation& whole, SourceSum& sum,
                 UncertaintyBudget& result) {
-  std::vector<ArmVector> unknown;
+  std::vector<Eigen::VectorXd> unknown;
+  ArmMatrix held = ArmMatrix::Zero();
   for (int column = 0; column < kErrorParameterCount; ++column) {
     if (is_estimated(fit, column)) continue;
-    const ArmVector direction = bias_direction(fit, whole, column);
+    const Eigen::VectorXd direction = bias_direction(whole, column);
     const ParameterStatus status = identifiable.candidates[static_cast<std::size_t>(column)].status;
-    const bool held = status == ParameterStatus::kWeak || status == ParameterStatus::kExcluded;
+    const bool is_held = status == ParameterStatus::kWeak || status == ParameterStatus::kExcluded;
     if (const auto& tolerance = problem.tolerances[static_cast<std::size_t>(column)]) {
-      (held ? result.held : result.unseen).noalias() +=
-          *tolerance * *tolerance * direction * direction.transpose();
+      add_left_out(*tolerance * direction, is_held ? held : result.unseen, result);
     } else {
       result.unseen_without_tolerance.push_back(column);
       unknown.push_back(direction);
@@ -179,10 +233,30 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
   }
   result.unknown_directions.resize(kArmParameterCount, static_cast<Eigen::Index>(unknown.size()));
   for (std::size_t i = 0; i < unknown.size(); ++i) {
-    result.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown[i];
+    result.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown[i].head<kArmParameterCount>();
   }
-  if (!result.held.isZero(0.0)) sum.source("held").covariance = result.held;
+  if (!held.isZero(0.0)) sum.source("held").covariance = held;
+  result.held += held;
   sum.source("unseen").covariance = result.unseen;
+}
+
+/// FullLinearisation::lag_gradient in the columns of `everything`, of which the first are the candidates.
+Eigen::MatrixXd lag_gradient(const IdentificationProblem& problem, const LeastSquares& everything,
+                             const Estimate& estimate) {
+  const KinematicModel arm = apply(problem.nominal, estimate.arm);
+  const PreparedModel prepared = prepare(arm);
+  Eigen::MatrixXd displaced = Eigen::MatrixXd::Zero(everything.rows().rows(), kJointCount);
+  for (std::size_t i = 0; i < everything.touches().size(); ++i) {
+    if (!everything.kept()[i]) continue;
+    const Touch& touch = problem.touches[everything.touches()[i]];
+    const Plane& plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
+    const JointVector directions =
+        search_directions(arm, forward_chain(prepared, touch.joints), plane.outward);
+    const auto row = static_cast<Eigen::Index>(i);
+    for (int joint = 0; joint < kJointCount; ++joint)
+      displaced(row, joint) = directions[joint] * everything.rows()(row, theta_index(joint));
+  }
+  return everything.rows().transpose() * displaced;
 }
 
 std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vector<int>& columns) {
@@ -202,25 +276,34 @@ std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vecto
 
 }  // namespace
 
+double UncertaintyBudget::coverage_factor_of(double variance, double noise_variance) const {
+  const double share = noise_variance / variance;
+  const double effective = share <= 1.0 ? degrees_of_freedom / std::max(share * share, kShareMin)
+                                        : degrees_of_freedom;  // also where nothing is known
+  return student_two_sided_factor(kConfidence, effective);
+}
+
 FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
                                            const IdentificationOptions& options, LeastSquares& fit,
                                            const Estimate& estimate) {
-  std::vector<int> columns = all_known_columns(problem, fit);
-  LeastSquares everything(fit, options, columns);
-  everything.linearise(estimate);
   FullLinearisation whole;
+  whole.columns = all_known_columns(problem, fit);
+  LeastSquares everything(fit, options, whole.columns);
+  everything.linearise(estimate);
   const Eigen::Index count = kArmParameterCount + estimate.artefact.size();
-  for (Eigen::Index k = 0; k < estimate.artefact.size(); ++k) {
-    columns.push_back(kArmParameterCount + static_cast<int>(k));
-  }
   whole.touch_information.setZero(count, count);
   whole.touch_gradient.setZero(count);
-  for (std::size_t j = 0; j < columns.size(); ++j) {
-    const auto from = static_cast<Eigen::Index>(j);
-    whole.touch_gradient[columns[j]] = everything.touch_gradient()[from];
-    for (std::size_t i = 0; i < columns.size(); ++i)
-      whole.touch_information(columns[i], columns[j]) =
-          everything.touch_information()(static_cast<Eigen::Index>(i), from);
+  for (Eigen::Index j = 0; j < everything.unknown_count(); ++j) {
+    whole.touch_gradient[whole.position_of(j)] = everything.touch_gradient()[j];
+    for (Eigen::Index i = 0; i < everything.unknown_count(); ++i)
+      whole.touch_information(whole.position_of(i), whole.position_of(j)) =
+          everything.touch_information()(i, j);
+  }
+  if (!problem.gear_lag_std_rad.isZero(0.0)) {
+    const Eigen::MatrixXd of_columns = lag_gradient(problem, everything, estimate);
+    whole.lag_gradient.setZero(count, kJointCount);
+    for (Eigen::Index j = 0; j < of_columns.rows(); ++j)
+      whole.lag_gradient.row(whole.position_of(j)) = of_columns.row(j);
   }
   for (const int column : fit.arm_columns()) whole.estimated.push_back(column);
   for (Eigen::Index k = 0; k < estimate.artefact.size(); ++k) {
@@ -237,7 +320,6 @@ UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
   UncertaintyBudget result;
   result.noise_m = noise.std_m;
   result.degrees_of_freedom = std::max(1.0, noise.degrees_of_freedom);
-  result.coverage_factor = student_two_sided_factor(kConfidence, result.degrees_of_freedom);
 
   const Eigen::MatrixXd& covariance = whole.estimated_covariance;
   const double ratio = result.noise_m / fit.noise_unit_m();
@@ -245,9 +327,12 @@ UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
   SourceSum sum(fit, covariance);
   sum.add("touch_noise", of_noise);
   add_priors(problem, options, fit, sum);
+  result.of_noise = sum.sources().front().covariance;
   for (const UncertaintySource& source : sum.sources()) result.identified += source.covariance;
+  result.left_out.resize(whole.touch_information.rows(), 0);
   add_unseen(problem, identifiable, fit, whole, sum, result);
-  add_nongeometric(problem, fit, whole, sum, result);
+  add_nongeometric(problem, fit, whole, ratio * ratio, sum, result);
+  add_lag(problem, whole, sum, result);
   add_gears(problem, sum, result);
   result.sources = sum.take();
   result.artefact_std = (covariance.diagonal().tail(fit.unknown_count() - fit.arm_count())).cwiseSqrt();

@@ -13,11 +13,21 @@ namespace calib {
 /// The linearisation of the converged problem in all parameters, estimated or not: information of the touches
 /// on arm and artefact (rows and columns: ArmVector, then the artefact parameters) at the final estimate.
 struct FullLinearisation {
+  std::vector<int> columns;  // of the arm, those that were linearised
   Eigen::MatrixXd touch_information;
   Eigen::VectorXd touch_gradient;
+  /// Sum over the touches of their row times the change of their distance per radian of lag of each joint:
+  /// one column per joint, empty where no lag is known.
+  Eigen::MatrixXd lag_gradient;
   std::vector<Eigen::Index> estimated;  // the estimated columns, ascending
   Eigen::MatrixXd
       estimated_covariance;  // of these columns, for the declared noise: inverse of the information
+
+  /// Where column k of a linearisation in `columns` and all artefact parameters stands in these matrices.
+  [[nodiscard]] Eigen::Index position_of(Eigen::Index k) const {
+    const auto count = static_cast<Eigen::Index>(columns.size());
+    return k < count ? columns[static_cast<std::size_t>(k)] : kArmParameterCount + k - count;
+  }
 };
 
 /// `fit` must have been solved at `estimate`.

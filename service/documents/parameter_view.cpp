@@ -59,7 +59,8 @@ std::optional<std::array<std::optional<double>, 2>> interval_of(int index, doubl
                                                                 std::optional<double> std,
                                                                 const calib::UncertaintyBudget* uncertainty) {
   if (!std || !uncertainty) return std::nullopt;
-  const double half = uncertainty->coverage_factor * *std;
+  const double variance = std::pow(uncertainty->std_error(index), 2);
+  const double half = *std * uncertainty->coverage_factor_of(variance, uncertainty->of_noise(index, index));
   return std::array{finite(shown(index, error - half)), finite(shown(index, error + half))};
 }
 

@@ -39,7 +39,9 @@ class Tally {
     columns_ = result.identifiable.columns;
     for (const int column : columns_) {
       const double half_width =
-          result.uncertainty->coverage_factor * std::sqrt(result.uncertainty->identified(column, column));
+          result.uncertainty->coverage_factor_of(result.uncertainty->identified(column, column),
+                                                 result.uncertainty->of_noise(column, column)) *
+          std::sqrt(result.uncertainty->identified(column, column));
       if (std::abs(result.errors[column] - regrouped[column]) <= half_width) ++covered_[column];
     }
     block_.add(result, truth_, at_block_);

@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "calib_core/geometry/units.hpp"
-#include "calib_core/planning/touch_planning.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "tests/figures/hidden_cell.hpp"
 #include "tests/figures/simulated_cell.hpp"
@@ -16,12 +15,12 @@ namespace calib::figures {
 namespace {
 
 constexpr int kPostureCount = 200;
-/// Achieved over predicted, median. Wanted are 0.75 to 1.25: missed by the worn gears with `best` and by the
-/// cold start with `quick` over the joint ranges.
-constexpr double kRatioMin = 0.70, kRatioMax = 1.35;
+/// Achieved over predicted, median. Wanted are 0.75 to 1.25: missed by the worn gears with `best` over the
+/// joint ranges (their play is wider than the file allows) and by `quick` over the joint ranges on two arms.
+constexpr double kRatioMin = 0.70, kRatioMax = 1.28;
 /// Coordinates of the tip within their 95 % uncertainty, over the box. Wanted are 93 to 97 %: the worn gears
-/// have 90, arms that bend less than the file allows up to 98.5.
-constexpr double kCoverageMin = 0.89, kCoverageMax = 0.99;
+/// have 91 with `best`, arms that bend less than the file allows up to 98.3.
+constexpr double kCoverageMin = 0.90, kCoverageMax = 0.985;
 
 HiddenArm with_twice_the_droop(const cell::Cell& cell) {
   HiddenArm arm = shipped_arm(cell, "truth-real");
@@ -52,14 +51,6 @@ HiddenArm with_worn_gears(const cell::Cell& cell) {
   return arm;
 }
 
-std::vector<Touch> all_planned_touches(const cell::Cell& cell, const cell::Recipe& recipe) {
-  const auto plan = plan_touches(cell::planning_problem(cell, recipe));
-  std::vector<Touch> touches;
-  for (const PlannedTouch& planned : std::get<TouchPlan>(plan).touches)
-    touches.push_back({.face = planned.face, .joints = planned.joints, .role = planned.role});
-  return touches;
-}
-
 /// Tip errors over some postures: achieved, predicted, and how many coordinates are within their 95 %
 /// uncertainty.
 struct TipTally {
@@ -76,8 +67,11 @@ struct TipTally {
       const Eigen::Vector3d error_m = chain.tip_in_block_m() - true_tips_m[i];
       const auto slopes = point_arm_derivatives(model, chain, chain.tip_in_block_m(), kFrameCount - 1);
       const Eigen::Vector3d variance = (slopes * covariance * slopes.transpose()).diagonal();
+      const Eigen::Vector3d of_noise =
+          (slopes * result.uncertainty->of_noise * slopes.transpose()).diagonal();
       for (int axis = 0; axis < 3; ++axis) {
-        const double half_m = result.uncertainty->coverage_factor * std::sqrt(variance[axis]);
+        const double half_m = result.uncertainty->coverage_factor_of(variance[axis], of_noise[axis]) *
+                              std::sqrt(variance[axis]);
         covered += std::abs(error_m[axis]) <= half_m ? 1.0 : 0.0;
       }
       coordinates += 3.0;

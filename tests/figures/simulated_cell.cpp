@@ -91,12 +91,17 @@ std::vector<Touch> even_touches(const cell::Cell& cell, int face_count, int per_
   return touches;
 }
 
-std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& recipe) {
+std::vector<Touch> all_planned_touches(const cell::Cell& cell, const cell::Recipe& recipe) {
   const auto plan = plan_touches(cell::planning_problem(cell, recipe));
   std::vector<Touch> touches;
-  for (const PlannedTouch& planned : std::get<TouchPlan>(plan).touches) {
-    if (planned.role == TouchRole::kFit) touches.push_back({.face = planned.face, .joints = planned.joints});
-  }
+  for (const PlannedTouch& planned : std::get<TouchPlan>(plan).touches)
+    touches.push_back({.face = planned.face, .joints = planned.joints, .role = planned.role});
+  return touches;
+}
+
+std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& recipe) {
+  std::vector<Touch> touches = all_planned_touches(cell, recipe);
+  std::erase_if(touches, [](const Touch& touch) { return touch.role != TouchRole::kFit; });
   return touches;
 }
 

@@ -51,6 +51,9 @@ DrawnArtefact draw_artefact(const ArtefactKnowledge& known, UniformChance& chanc
 /// and turns are even. Collisions are not looked at.
 std::vector<Touch> even_touches(const cell::Cell& cell, int face_count, int per_face, UniformChance& chance);
 
+/// All touches of a recipe's plan in their order.
+std::vector<Touch> all_planned_touches(const cell::Cell& cell, const cell::Recipe& recipe);
+
 /// The touches that a recipe's plan fits: postures of the nominal arm on the nominal faces.
 std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& recipe);
 

@@ -1,0 +1,26 @@
+#include "calib_core/uncertainty/distance_uncertainty.hpp"
+
+#include <cmath>
+
+namespace calib {
+
+double mean_distance_std_m(const IdentificationProblem& problem, const LeastSquares& fit,
+                           const FullLinearisation& whole, const UncertaintyBudget& budget,
+                           const Estimate& estimate, const std::vector<std::size_t>& touches) {
+  // Metres, whatever the formulation of the fit.
+  LeastSquares distances(problem, {.formulation = Formulation::kSignedDistance}, whole.columns, touches);
+  distances.linearise(estimate);
+  const Eigen::VectorXd of_columns = distances.noise_unit_m() * distances.rows().colwise().mean().transpose();
+  Eigen::VectorXd mean_row = Eigen::VectorXd::Zero(budget.left_out.rows());
+  for (Eigen::Index k = 0; k < of_columns.size(); ++k) mean_row[whole.position_of(k)] = of_columns[k];
+
+  const Eigen::VectorXd carried = whole.estimated_covariance * mean_row(whole.estimated);
+  const double ratio = budget.noise_m / fit.noise_unit_m();
+  const double of_touches = ratio * ratio * carried.dot(fit.gradient_covariance() * carried);
+  const double of_priors = carried.dot((fit.information() - fit.touch_information()) * carried);
+  const double of_left_out = (budget.left_out.transpose() * mean_row).squaredNorm();
+  const double of_noise = budget.noise_m * budget.noise_m / static_cast<double>(touches.size());
+  return std::sqrt(of_noise + of_touches + of_priors + of_left_out);
+}
+
+}  // namespace calib
