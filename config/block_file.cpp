@@ -8,6 +8,7 @@
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
 #include "config/shapes.hpp"
+#include "config/utc_text.hpp"
 
 namespace cell {
 namespace {
@@ -115,19 +116,29 @@ calib::KnownLength length_from_json(const JsonValue& value, const Block& block) 
   return length;
 }
 
-void read_temperature(const JsonObject& object, Block& block) {
+/// The time of its measurement came with the second schema, and so did an expansion for the temperatures that
+/// are told with each run.
+void read_temperature(const JsonObject& object, bool is_first_schema, Block& block) {
   constexpr NumberRange kRoomTemperatures{kBlockTemperatureMinC, kBlockTemperatureMaxC};
-  constexpr NumberRange kKelvins{0.0, 100.0};
+  constexpr NumberRange kKelvins{0.0, kBlockTemperatureStdMaxK};
   constexpr NumberRange kExpansions{0.0, 1e-3};  // zinc's is 4e-5
+  const auto at = object.find("temperature_at");
+  if (at && is_first_schema)
+    at->fail(R"(unknown key "temperature_at" in a block of version 1; raise "schema" to 2)");
   if (const auto temperature = object.find("temperature_c")) {
     block.temperature_c = temperature->number(kRoomTemperatures);
     block.std_temperature_k = object.at("std_temperature_k").number(kKelvins);
     block.thermal_expansion_per_k = object.at("thermal_expansion_per_k").number(kExpansions);
+    if (at) block.temperature_at = time_from_utc(at->text());
+    if (at && !block.temperature_at)
+      at->fail("is " + in_quotes(at->text()) + R"(; give a time in UTC as "2026-01-31T08:15:30Z")");
     return;
   }
-  for (const char* key : {"std_temperature_k", "thermal_expansion_per_k"}) {
-    if (const auto value = object.find(key))
-      value->fail("without \"temperature_c\"; add the block's temperature");
+  const auto expansion = object.find("thermal_expansion_per_k");
+  if (expansion && !is_first_schema) block.thermal_expansion_per_k = expansion->number(kExpansions);
+  for (const auto& orphan :
+       {object.find("std_temperature_k"), at, is_first_schema ? expansion : std::nullopt}) {
+    if (orphan) orphan->fail("without \"temperature_c\"; add the block's temperature");
   }
 }
 
@@ -136,13 +147,16 @@ void read_temperature(const JsonObject& object, Block& block) {
 Block read_block(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
+  const bool is_first_schema = has_schema(document, kFirstBlockSchema);
   const JsonObject object =
       JsonValue(source, document)
-          .document(kBlockSchema, {"schema", "name", "temperature_c", "std_temperature_k",
-                                   "thermal_expansion_per_k", "certificate", "faces", "lengths", "solids"});
+          .document(is_first_schema ? kFirstBlockSchema : kBlockSchema,
+                    {"schema", "name", "temperature_c", "std_temperature_k", "temperature_at",
+                     "thermal_expansion_per_k", "certificate", "faces", "lengths", "solids"});
   Block block;
+  block.file = file;
   block.name = object.at("name").text();
-  read_temperature(object, block);
+  read_temperature(object, is_first_schema, block);
   if (const auto certificate = object.find("certificate")) {
     for (const auto& [key, value] : certificate->members()) block.certificate.emplace(key, value.text());
   }

@@ -7,11 +7,14 @@
 
 namespace cell {
 
-inline constexpr std::string_view kBlockSchema = "touchcal/block/1";
+inline constexpr std::string_view kBlockSchema = "touchcal/block/2";
+inline constexpr std::string_view kFirstBlockSchema = "touchcal/block/1";  // without temperature_at
 
 /// What a block's temperature may be, degrees C.
 inline constexpr double kBlockTemperatureMinC = -50.0;
 inline constexpr double kBlockTemperatureMaxC = 100.0;
+/// Largest standard deviation of it, K.
+inline constexpr double kBlockTemperatureStdMaxK = 100.0;
 
 /// How far a unit vector may be from unit length, and two directions from being perpendicular or parallel.
 inline constexpr double kDirectionErrorMax = 1e-6;

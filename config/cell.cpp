@@ -11,6 +11,15 @@ calib::CollisionScene Cell::collision_scene() const {
   return scene;
 }
 
+Cell with_block_temperature(const Cell& cell, const std::optional<BlockTemperature>& given) {
+  Cell there = cell;
+  if (!given) return there;
+  there.block.temperature_c = given->celsius;
+  there.block.std_temperature_k = given->std_k;
+  there.block.temperature_at = given->measured_at;
+  return there;
+}
+
 calib::ArtefactKnowledge artefact_knowledge(const Cell& cell) {
   constexpr double kReferenceCelsius = 20.0;
   const Block& block = cell.block;
@@ -22,7 +31,7 @@ calib::ArtefactKnowledge artefact_knowledge(const Cell& cell) {
           .std_pretravel_m = cell.probe.std_pretravel_m,
           .warmer_than_20_c_k = block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius,
           .std_temperature_k = block.std_temperature_k,
-          .thermal_expansion_per_k = block.thermal_expansion_per_k};
+          .thermal_expansion_per_k = block.thermal_expansion_per_k.value_or(0.0)};
 }
 
 calib::ErrorTolerances prior_tolerances(const Cell& cell) {

@@ -50,14 +50,25 @@ struct Arm {
   Gears gears;
 };
 
+/// The temperature of the block as somebody measured it.
+struct BlockTemperature {
+  double celsius = 0.0;
+  double std_k = 0.0;
+  std::optional<std::chrono::system_clock::time_point> measured_at;  // nothing: nobody says when
+
+  bool operator==(const BlockTemperature&) const = default;
+};
+
 struct Block {
   std::string name;
+  std::filesystem::path file;                      // where it was read from
   std::map<std::string, std::string> certificate;  // texts for people
   std::optional<double> temperature_c;             // as measured; unknown is not 20
   double std_temperature_k = 0.0;
-  double thermal_expansion_per_k = 0.0;
-  std::vector<calib::Face> faces;                          // at 20 degrees C
-  std::vector<calib::FaceUncertainty> face_uncertainties;  // one a face
+  std::optional<std::chrono::system_clock::time_point> temperature_at;  // when; nothing: it always holds
+  std::optional<double> thermal_expansion_per_k;                        // unknown is not 0
+  std::vector<calib::Face> faces;                                       // at 20 degrees C
+  std::vector<calib::FaceUncertainty> face_uncertainties;               // one a face
   std::vector<calib::KnownLength> lengths;
   std::vector<calib::Box> solids;
 };
@@ -134,6 +145,7 @@ struct Cell {
   double nominal_position_error_m = 0.0;
   PlaceTolerance unknown_place_std;
   double stylus_tilt_max_rad = 0.0;
+  std::chrono::minutes block_temperature_age_max = std::chrono::hours(8);  // older ones say nothing of today
   double touch_noise_m = 0.0;  // one standard deviation of a touch along the normal, all in all
   calib::Box workspace_box;
   std::vector<calib::Box> keep_out_boxes;
@@ -147,8 +159,12 @@ struct Cell {
   [[nodiscard]] calib::CollisionScene collision_scene() const;
 };
 
+/// The cell with its block at this temperature, which outranks that of the block's file; as it is without
+/// one.
+Cell with_block_temperature(const Cell& cell, const std::optional<BlockTemperature>& given);
+
 /// All that the touches of this cell are measured against. A block of unknown temperature is taken for one of
-/// 20 degrees C, exactly.
+/// 20 degrees C, exactly; one of unknown expansion for one that does not expand.
 calib::ArtefactKnowledge artefact_knowledge(const Cell& cell);
 
 /// What is known of each error before the first touch: the maker's tolerances, and for the six errors of the

@@ -105,6 +105,17 @@ void read_touch_conditions(const JsonObject& object, Cell& cell) {
   }
 }
 
+/// How old a temperature of the block may be; came with the second schema.
+void read_temperature_age(const JsonObject& object, bool is_first_schema, Cell& cell) {
+  constexpr NumberRange kHours{.min = 0.1, .max = 8760.0};  // six minutes to a year
+  const auto age = object.find("block_temperature_age_max_h");
+  if (!age) return;
+  if (is_first_schema)
+    age->fail(R"(unknown key "block_temperature_age_max_h" in a cell of version 1; raise "schema" to 2)");
+  cell.block_temperature_age_max = std::chrono::round<std::chrono::minutes>(
+      std::chrono::duration<double, std::chrono::hours::period>(age->number(kHours)));
+}
+
 AcceptanceLimits acceptance_from_json(const JsonValue& value) {
   const JsonObject object =
       value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max",
@@ -204,27 +215,30 @@ Endpoint endpoint_from_json(const JsonValue& value) {
 Cell read_cell(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const JsonObject object = JsonValue(source, document)
-                                .document(kCellSchema, {"schema",
-                                                        "name",
-                                                        "arm",
-                                                        "frames",
-                                                        "block",
-                                                        "probe",
-                                                        "recipes",
-                                                        "default_recipe",
-                                                        "tools",
-                                                        "workspace_box",
-                                                        "keep_out_boxes",
-                                                        "park_joints_deg",
-                                                        "nominal_miss_mm",
-                                                        "stylus_tilt_max_deg",
-                                                        "touch_noise_mm",
-                                                        "unknown_place_std",
-                                                        "acceptance",
-                                                        "speeds",
-                                                        "deadlines",
-                                                        "controller"});
+  const bool is_first_schema = has_schema(document, kFirstCellSchema);
+  const JsonObject object =
+      JsonValue(source, document)
+          .document(is_first_schema ? kFirstCellSchema : kCellSchema, {"schema",
+                                                                       "name",
+                                                                       "arm",
+                                                                       "frames",
+                                                                       "block",
+                                                                       "probe",
+                                                                       "recipes",
+                                                                       "default_recipe",
+                                                                       "tools",
+                                                                       "workspace_box",
+                                                                       "keep_out_boxes",
+                                                                       "park_joints_deg",
+                                                                       "nominal_miss_mm",
+                                                                       "stylus_tilt_max_deg",
+                                                                       "touch_noise_mm",
+                                                                       "unknown_place_std",
+                                                                       "block_temperature_age_max_h",
+                                                                       "acceptance",
+                                                                       "speeds",
+                                                                       "deadlines",
+                                                                       "controller"});
   Cell cell;
   cell.name = object.at("name").text();
   cell.file = file;
@@ -236,6 +250,7 @@ Cell read_cell(const std::filesystem::path& file) {
   read_recipes(object, cell);
   read_space(object, cell);
   read_touch_conditions(object, cell);
+  read_temperature_age(object, is_first_schema, cell);
   cell.acceptance = acceptance_from_json(object.at("acceptance"));
   cell.speeds = speeds_from_json(object.at("speeds"), cell.probe);
   cell.deadlines = deadlines_from_json(object.at("deadlines"));

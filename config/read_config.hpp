@@ -8,7 +8,9 @@
 
 namespace cell {
 
-inline constexpr std::string_view kCellSchema = "touchcal/cell/1";
+inline constexpr std::string_view kCellSchema = "touchcal/cell/2";
+inline constexpr std::string_view kFirstCellSchema =
+    "touchcal/cell/1";  // without block_temperature_age_max_h
 
 /// The cell and the arm, block, probe and recipes that it names (paths are relative to the cell file). Throws
 /// ConfigError with file, JSON pointer and remedy. The shapes of the files: config/FILES.md.

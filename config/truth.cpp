@@ -200,7 +200,7 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
   constexpr double kReferenceCelsius = 20.0;
   const double rise_k =
       block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius + truth.warming.block_warmer_k;
-  const double growth = 1.0 + block.thermal_expansion_per_k * rise_k;
+  const double growth = 1.0 + block.thermal_expansion_per_k.value_or(0.0) * rise_k;
   for (calib::Box& solid : solids) {
     solid.min_m *= growth;
     solid.max_m *= growth;

@@ -2,7 +2,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "config/block_file.hpp"
 #include "config/cell.hpp"
+#include "config/utc_text.hpp"
 #include "copied_config.hpp"
 
 namespace cell {
@@ -145,6 +147,56 @@ TEST_F(Knowledge, AnUnknownTemperatureStaysUnknown) {
   EXPECT_FALSE(cell.block.temperature_c.has_value());
   EXPECT_EQ(artefact_knowledge(cell).warmer_than_20_c_k, 0.0);
   EXPECT_EQ(artefact_knowledge(cell).std_temperature_k, 0.0);
+}
+
+TEST_F(Knowledge, ATemperatureMayHaveTheTimeOfItsMeasurementFromTheSecondSchemaOn) {
+  const auto give_time = [](json& block) { block["temperature_at"] = "2026-01-31T08:15:30Z"; };
+  EXPECT_EQ(json_of(path(kBlock)).at("schema"), kFirstBlockSchema) << "files of the first are read";
+  EXPECT_FALSE(read().block.temperature_at);
+  edit(kBlock, give_time);
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/temperature_at");
+  edit(kBlock, [](json& block) { block["schema"] = kBlockSchema; });
+  const Block block = read().block;
+  EXPECT_EQ(block.temperature_at, time_from_utc("2026-01-31T08:15:30Z"));
+  EXPECT_EQ(block.file, path(kBlock));
+  edit(kBlock, [](json& changed) { changed["temperature_at"] = "yesterday"; });
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/temperature_at");
+}
+
+TEST_F(Knowledge, AnExpansionAloneIsForTemperaturesThatComeWithTheRun) {
+  edit(kBlock, [](json& block) {
+    block.erase("temperature_c");
+    block.erase("std_temperature_k");
+  });
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/thermal_expansion_per_k");
+  edit(kBlock, [](json& block) { block["schema"] = kBlockSchema; });
+  const Cell cell = read();
+  EXPECT_EQ(cell.block.thermal_expansion_per_k, 2.36e-5);
+  const calib::ArtefactKnowledge known =
+      artefact_knowledge(with_block_temperature(cell, BlockTemperature{.celsius = 25.0, .std_k = 0.5}));
+  EXPECT_DOUBLE_EQ(known.warmer_than_20_c_k, 5.0);
+  EXPECT_EQ(known.std_temperature_k, 0.5);
+  for (const char* key : {"std_temperature_k", "temperature_at"}) {
+    edit(kBlock, [&](json& block) {
+      block.erase("std_temperature_k");
+      block[key] = key == std::string("temperature_at") ? json("2026-01-31T08:15:30Z") : json(1);
+    });
+    EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), std::string("/") + key);
+  }
+}
+
+TEST_F(Knowledge, ACellSaysHowOldATemperatureMayBeFromItsSecondSchemaOn) {
+  EXPECT_EQ(json_of(path(kCell)).at("schema"), kFirstCellSchema) << "files of the first are read";
+  EXPECT_EQ(read().block_temperature_age_max, std::chrono::hours(8));
+  edit(kCell, [](json& cell) { cell["block_temperature_age_max_h"] = 1.5; });
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/block_temperature_age_max_h");
+  edit(kCell, [](json& cell) { cell["schema"] = kCellSchema; });
+  EXPECT_EQ(read().block_temperature_age_max, std::chrono::minutes(90));
+  for (const double wrong : {0.0, -1.0, 9000.0}) {
+    edit(kCell, [&](json& cell) { cell["block_temperature_age_max_h"] = wrong; });
+    EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/block_temperature_age_max_h")
+        << wrong;
+  }
 }
 
 }  // namespace

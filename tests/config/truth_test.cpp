@@ -108,7 +108,7 @@ TEST_F(TruthFile, ABlockStandsAsWarmAsItsFileSaysAndTheTruthAdds) {
   Truth truth;
   truth.warming.block_warmer_k = 2.0;
   const auto solids = true_solids(truth, block);
-  EXPECT_NEAR(solids[0].min_m.y(), -0.15 * (1.0 + 5.0 * block.thermal_expansion_per_k), 1e-12);
+  EXPECT_NEAR(solids[0].min_m.y(), -0.15 * (1.0 + 5.0 * block.thermal_expansion_per_k.value()), 1e-12);
 }
 
 TEST_F(TruthFile, ThatDoesNotFitTheCellIsRefusedWithItsPlace) {

@@ -59,9 +59,9 @@ HiddenCell::HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChan
     : plant_(sim::make_plant(cell, drawn(cell, arm.truth, chance))) {
   const cell::Block& block = cell.block;
   constexpr double kReferenceCelsius = 20.0;
-  const double growth =
-      1.0 + block.thermal_expansion_per_k * (block.temperature_c.value_or(kReferenceCelsius) -
-                                             kReferenceCelsius + plant_.hidden.warming.block_warmer_k);
+  const double growth = 1.0 + block.thermal_expansion_per_k.value_or(0.0) *
+                                  (block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius +
+                                   plant_.hidden.warming.block_warmer_k);
   for (std::size_t i = 0; i < block.faces.size(); ++i) {
     const Face& face = block.faces[i];
     const double std_rad = block.face_uncertainties[i].std_tilt_rad;

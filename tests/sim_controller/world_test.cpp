@@ -178,7 +178,7 @@ TEST(World, AWarmBlocksTopIsHigherByItsExpansion) {
   truth.warming.block_warmer_k = 5.0;
   const double top_m = demo().block.faces[2].plane.offset_m;
   EXPECT_NEAR(early_m(truth, aimed_touch(demo(), {.face = 2})),
-              5.0 * demo().block.thermal_expansion_per_k * top_m, 1.05 * kStepMetres);
+              5.0 * demo().block.thermal_expansion_per_k.value() * top_m, 1.05 * kStepMetres);
 }
 
 TEST(World, EachFaceTripsEarlierByItsOwnOffset) {
