@@ -14,6 +14,7 @@
 #include "service/base/log_format.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/conditions_view.hpp"
+#include "service/run/block_temperature.hpp"
 #include "service/run/run_conditions.hpp"
 #include "service/store/fault_log.hpp"
 
@@ -163,9 +164,10 @@ std::vector<Unmet> CellOperation::unmet_preconditions() const {
 }
 
 std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request) const {
-  const auto outcome = plans_.planned(request.recipe);
+  const auto outcome = plans_.planned(request.recipe, request.block_temperature);
   const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
-  auto unmet = unmet_for_run(unmet_preconditions(), cell(), status_.fault(), no_plan);
+  auto unmet = unmet_for_run(unmet_preconditions(), cell(), {request.block_temperature, clocks_.system()},
+                             status_.fault(), no_plan);
   return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
 }
 
@@ -213,20 +215,22 @@ std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& re
 std::variant<Started, CommandRefusal> CellOperation::start(const StartRequest& request) {
   if (auto repeated = repeated_start(request)) return *std::move(repeated);
   if (auto refusal = refuse_start(request)) return *std::move(refusal);
-  const std::string conditions =
-      conditions_document(cell(), {.operator_name = request.operator_name,
-                                   .config_digest = recovery_.config_digest(),
-                                   .controller_application = session_.application(),
-                                   .controller_session = session_.number(),
-                                   .touch_mode = request.guided ? TouchMode::kGuided : TouchMode::kAutomatic,
-                                   .place = place()});
+  const std::string conditions = conditions_document(
+      with_block_temperature(cell(), request.block_temperature),
+      {.operator_name = request.operator_name,
+       .config_digest = recovery_.config_digest(),
+       .controller_application = session_.application(),
+       .controller_session = session_.number(),
+       .touch_mode = request.guided ? TouchMode::kGuided : TouchMode::kAutomatic,
+       .temperature_source = request.block_temperature ? TemperatureSource::kRun : TemperatureSource::kFile,
+       .place = place()});
   std::int64_t id = 0;
   try {
     id = store_.begin_run({.recipe = request.recipe,
                            .started_at = now_text(),
                            .idempotency_key = request.idempotency_key,
                            .operator_name = request.operator_name,
-                           .block_temperature_c = cell().block.temperature_c,
+                           .block_temperature = temperature_to_store(cell(), request.block_temperature),
                            .config_digest = recovery_.config_digest(),
                            .conditions_json = conditions});
   } catch (const std::exception& error) {
@@ -236,11 +240,12 @@ std::variant<Started, CommandRefusal> CellOperation::start(const StartRequest& r
         .unmet = {{"store_not_writable",
                    fmt::format("free disk space or repair the state directory: {}", error.what())}}};
   }
-  run_.emplace(ActiveRun{.run = Run(id, tip_regions(), cell().recipes.at(request.recipe), now_text()),
-                         .conditions = conditions,
-                         .guided = request.guided,
-                         .interruption = std::nullopt,
-                         .place_check = std::nullopt});
+  run_.emplace(ActiveRun{
+      .run = Run(id, tip_regions(), cell().recipes.at(request.recipe), now_text(), request.block_temperature),
+      .conditions = conditions,
+      .guided = request.guided,
+      .interruption = std::nullopt,
+      .place_check = std::nullopt});
   set_logged_run(id);
   touches_.begin_run(*run_);
   status_.begin_run(id);

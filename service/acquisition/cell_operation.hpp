@@ -33,6 +33,7 @@ struct StartRequest {
   std::string recipe;
   std::optional<std::string> idempotency_key;
   std::optional<std::string> operator_name;
+  std::optional<BlockTemperature> block_temperature;  // of this run, in place of that of the block's file
   bool guided = false;  // a person makes the touches with the pendant; nothing is commanded
 };
 

@@ -26,31 +26,53 @@ PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe) {
 
 }  // namespace
 
-asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe) {
+PlanCache::Key PlanCache::key_of(const std::string& recipe,
+                                 const std::optional<BlockTemperature>& given) const {
+  const Block& block = cell_.block;
+  const bool is_own =
+      !given || (block.temperature_c == given->celsius && block.std_temperature_k == given->std_k);
+  if (is_own) return {recipe, std::nullopt, std::nullopt};
+  return {recipe, given->celsius, given->std_k};
+}
+
+/// Nobody starts a run at an earlier temperature again.
+void PlanCache::keep(const Key& key, const PlanOutcome& made) {
+  if (std::get<1>(key)) {
+    std::erase_if(plans_, [&key](const auto& plan) {
+      return std::get<0>(plan.first) == std::get<0>(key) && std::get<1>(plan.first).has_value();
+    });
+  }
+  plans_.emplace(key, made);
+}
+
+asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe, std::optional<BlockTemperature> given) {
+  const Key key = key_of(recipe, given);
   for (;;) {
-    if (const auto made = plans_.find(recipe); made != plans_.end()) co_return made->second;
-    const auto cell = std::make_shared<const Cell>(cell_);  // as it stands now
+    if (const auto made = plans_.find(key); made != plans_.end()) co_return made->second;
+    const auto cell = std::make_shared<const Cell>(with_block_temperature(cell_, given));  // as it stands now
     const int clear_count = clear_count_;
     ++under_way_count_;
     co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
     const PlanOutcome made = make_outcome(*cell, cell->recipes.at(recipe));
     co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
     --under_way_count_;
-    if (clear_count == clear_count_) plans_.emplace(recipe, made);
+    if (clear_count == clear_count_) keep(key, made);
   }
 }
 
-void PlanCache::begin(std::string recipe, std::function<void()> done) {
-  asio::co_spawn(executor_, plan(std::move(recipe)), [done = std::move(done)](auto&&...) { done(); });
+void PlanCache::begin(std::string recipe, std::optional<BlockTemperature> given, std::function<void()> done) {
+  asio::co_spawn(executor_, plan(std::move(recipe), given), [done = std::move(done)](auto&&...) { done(); });
 }
 
-std::optional<PlanOutcome> PlanCache::planned(const std::string& recipe) const {
-  const auto found = plans_.find(recipe);
+std::optional<PlanOutcome> PlanCache::planned(const std::string& recipe,
+                                              const std::optional<BlockTemperature>& given) const {
+  const auto found = plans_.find(key_of(recipe, given));
   return found == plans_.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::shared_ptr<const Plan> PlanCache::plan_with_id(const std::string& id) const {
-  for (const auto& [recipe, outcome] : plans_) {
+  for (const auto& [key, outcome] : plans_) {
+    if (std::get<1>(key)) continue;
     const auto* plan = std::get_if<std::shared_ptr<const Plan>>(&outcome);
     if (plan && (*plan)->id == id) return *plan;
   }

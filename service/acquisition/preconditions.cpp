@@ -6,7 +6,7 @@
 #include <array>
 
 #include "service/acquisition/link_fault.hpp"
-#include "service/run/run_conditions.hpp"
+#include "service/run/block_temperature.hpp"
 
 namespace cell {
 namespace {
@@ -48,14 +48,16 @@ std::vector<Unmet> unmet_by_controller(bool connected, const std::optional<cs8::
 }
 
 std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& cell,
-                                 const std::optional<Fault>& fault, const PlanRefusal* no_plan) {
+                                 const StartConditions& start, const std::optional<Fault>& fault,
+                                 const PlanRefusal* no_plan) {
   std::vector<Unmet> found = std::move(by_controller);
   // Reset and clear acknowledge too; a fault with which a run came to its end is still there to be read.
   if (fault && !is_link_fault(fault->code))
     found.push_back(unmet(FaultCode::kFaultUnacknowledged, fault->message()));
   if (!cell.probe.tip_is_contact_point && cell.speeds.contact_m_s() != cell.probe.calibration_speed_m_s)
     found.push_back(unmet(FaultCode::kProbeNotCalibrated));
-  if (const auto gap = unknown_temperature_reason(cell)) found.push_back({"temperature_missing", *gap});
+  if (const auto refusal = refuse_temperature(cell, start.block_temperature, start.now))
+    found.push_back({refusal->code, refusal->words});
   if (no_plan) found.push_back(unmet(FaultCode::kRecipeUnreachable, no_plan->message));
   return found;
 }

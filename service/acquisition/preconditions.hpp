@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,10 +18,17 @@ namespace cell {
 std::vector<Unmet> unmet_by_controller(bool connected, const std::optional<cs8::State>& state,
                                        const std::optional<Fault>& fault);
 
-/// Those of a run: `by_controller`, the unacknowledged fault, the cell's files, and why its recipe has no
-/// plan (null: it has one, or was not planned).
+/// What of a request counts: the temperature of the block that it gives, if it gives one, and its time.
+struct StartConditions {
+  std::optional<BlockTemperature> block_temperature;
+  std::chrono::system_clock::time_point now;
+};
+
+/// Those of a run: `by_controller`, the unacknowledged fault, the cell's files with what the request gives,
+/// and why its recipe has no plan (null: it has one, or was not planned).
 std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& cell,
-                                 const std::optional<Fault>& fault, const PlanRefusal* no_plan);
+                                 const StartConditions& start, const std::optional<Fault>& fault,
+                                 const PlanRefusal* no_plan);
 
 /// Those of a guided run: without the preconditions that only commanded motion needs.
 std::vector<Unmet> unmet_without_motion(std::vector<Unmet> of_run);

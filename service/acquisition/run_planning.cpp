@@ -21,12 +21,14 @@ RunPlanning::RunPlanning(const Cell& cell, const std::optional<BlockPose>& place
 
 asio::awaitable<bool> RunPlanning::plan(ActiveRun& active) {
   const std::string recipe = active.run.recipe().name;
+  const std::optional<BlockTemperature> temperature = active.run.block_temperature();
   const State state = status_.state();
   // A stop does not wait for the planner: its answer comes, to be used another time.
-  if (!plans_.planned(recipe)) plans_.begin(recipe, [&wake = wake_] { wake.wake(); });
-  while (!plans_.planned(recipe) && status_.state() == state) co_await wake_.wait(1h);
+  if (!plans_.planned(recipe, temperature))
+    plans_.begin(recipe, temperature, [&wake = wake_] { wake.wake(); });
+  while (!plans_.planned(recipe, temperature) && status_.state() == state) co_await wake_.wait(1h);
   if (status_.state() != state) co_return false;
-  const PlanOutcome outcome = *plans_.planned(recipe);
+  const PlanOutcome outcome = *plans_.planned(recipe, temperature);
   if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) {
     status_.raise({FaultCode::kRecipeUnreachable, refusal->message}, Event::kAbortFault);
     co_return false;
@@ -53,7 +55,8 @@ bool RunPlanning::adopt(ActiveRun& active, const Plan& plan) {
 }
 
 void RunPlanning::begin_touches(ActiveRun& active) {
-  preparation_.begin(planning_problem(cell_, active.run.recipe()));
+  const Cell cell = with_block_temperature(cell_, active.run.block_temperature());
+  preparation_.begin(planning_problem(cell, active.run.recipe()));
   active.place_check.reset();
   if (place_) active.place_check.emplace(preparation_.problem(), *place_);
 }

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
+#include "service/base/utc_time.hpp"
 #include "service/documents/internal/geometry_json.hpp"
 #include "service/documents/internal/place_view.hpp"
 #include "service/documents/scene_view.hpp"
@@ -58,26 +59,30 @@ std::string recipes_document(const Cell& cell) {
 std::string cell_document(const Cell& cell, const std::optional<BlockPose>& place) {
   Json keep_out = Json::array();
   for (const calib::Box& box : cell.keep_out_boxes) keep_out.push_back(box_json(box));
-  return text_of({{"name", cell.name},
-                  {"arm", cell.arm.name},
-                  {"block",
-                   {{"name", cell.block.name},
-                    {"temperature_c", number(cell.block.temperature_c)},
-                    {"faces", faces_json(cell.block)}}},
-                  {"place", block_pose_json(place)},
-                  {"probe",
-                   {{"name", cell.probe.name},
-                    {"tip_is_contact_point", cell.probe.tip_is_contact_point},
-                    {"stylus_radius_mm", mm_from_metres(cell.probe.stylus.radius_m)},
-                    {"pretravel_mm", mm_from_metres(cell.probe.stylus.pretravel_m)}}},
-                  {"default_recipe", cell.default_recipe},
-                  {"workspace_box", box_json(cell.workspace_box)},
-                  {"keep_out_boxes", keep_out},
-                  {"nominal_miss_mm", mm_from_metres(cell.nominal_position_error_m)},
-                  {"touch_noise_mm", mm_from_metres(cell.touch_noise_m)},
-                  {"acceptance", limits_json(cell.acceptance)},
-                  {"scene", scene_json(cell)},
-                  {"controller", cell.controller.host + ":" + std::to_string(cell.controller.port)}});
+  return text_of(
+      {{"name", cell.name},
+       {"arm", cell.arm.name},
+       {"block",
+        {{"name", cell.block.name},
+         {"temperature_c", number(cell.block.temperature_c)},
+         {"std_temperature_k", cell.block.temperature_c ? Json(cell.block.std_temperature_k) : Json()},
+         {"temperature_at",
+          cell.block.temperature_at ? Json(format_utc(*cell.block.temperature_at)) : Json()},
+         {"faces", faces_json(cell.block)}}},
+       {"place", block_pose_json(place)},
+       {"probe",
+        {{"name", cell.probe.name},
+         {"tip_is_contact_point", cell.probe.tip_is_contact_point},
+         {"stylus_radius_mm", mm_from_metres(cell.probe.stylus.radius_m)},
+         {"pretravel_mm", mm_from_metres(cell.probe.stylus.pretravel_m)}}},
+       {"default_recipe", cell.default_recipe},
+       {"workspace_box", box_json(cell.workspace_box)},
+       {"keep_out_boxes", keep_out},
+       {"nominal_miss_mm", mm_from_metres(cell.nominal_position_error_m)},
+       {"touch_noise_mm", mm_from_metres(cell.touch_noise_m)},
+       {"acceptance", limits_json(cell.acceptance)},
+       {"scene", scene_json(cell)},
+       {"controller", cell.controller.host + ":" + std::to_string(cell.controller.port)}});
 }
 
 std::string faults_document() {

@@ -61,6 +61,8 @@ struct ConditionsDocument {
   std::optional<double> block_temperature_c;
   std::optional<double> std_temperature_k;
   std::optional<double> thermal_expansion_per_k;
+  std::optional<std::string> block_temperature_source;  // file, run
+  std::optional<std::string> block_temperature_at;      // when it was measured
   Certified block;
   Certified probe;
   Versions versions;
@@ -76,6 +78,8 @@ struct ConditionsDocument {
     fields("block_temperature_c", self.block_temperature_c);
     fields("std_temperature_k", self.std_temperature_k);
     fields("thermal_expansion_per_k", self.thermal_expansion_per_k);
+    fields("block_temperature_source", self.block_temperature_source);
+    fields("block_temperature_at", self.block_temperature_at);
     fields("block", self.block);
     fields("probe", self.probe);
     fields("versions", self.versions);

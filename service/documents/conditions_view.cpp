@@ -1,6 +1,7 @@
 #include "service/documents/conditions_view.hpp"
 
 #include "cs8_protocol/messages.hpp"
+#include "service/base/utc_time.hpp"
 #include "service/base/version.hpp"
 #include "service/documents/figures.hpp"
 #include "service/documents/internal/place_view.hpp"
@@ -28,6 +29,8 @@ ConditionsDocument conditions_of(const Cell& cell, const RunConditions& conditio
   if (cell.block.temperature_c) {
     document.std_temperature_k = finite(cell.block.std_temperature_k);
     document.thermal_expansion_per_k = finite(cell.block.thermal_expansion_per_k);
+    document.block_temperature_source = temperature_source_name(conditions.temperature_source);
+    if (cell.block.temperature_at) document.block_temperature_at = format_utc(*cell.block.temperature_at);
   }
   if (conditions.controller_session) document.controller_session = *conditions.controller_session;
   return document;

@@ -89,7 +89,13 @@ constexpr std::string_view kResult = R"({
       "criteria":{"type":"array","items":{"type":"object",
         "required":["name","plane","unit","value","limit","expanded_uncertainty","within_limit","proved"]}}}}}},
   "conditions":{"type":"object",
-    "required":["operator","config_digest","block_temperature_c","block","probe","versions","controller_session"]}}})";
+    "required":["operator","config_digest","block_temperature_c","block","probe","versions","controller_session"],
+    "properties":{
+      "block_temperature_c":{"type":["number","null"]},
+      "std_temperature_k":{"type":["number","null"]},
+      "thermal_expansion_per_k":{"type":["number","null"]},
+      "block_temperature_source":{"enum":["file","run",null],"description":"run: given with its start"},
+      "block_temperature_at":{"type":["string","null"],"description":"when it was measured"}}}}})";
 
 constexpr std::string_view kDistances = R"({
 "type":"array",

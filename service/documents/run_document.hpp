@@ -65,16 +65,20 @@ struct RunsDocument {
 
 /// What POST /runs takes.
 struct StartDocument {
+  std::optional<double> block_temperature_c;
   std::optional<std::string> operator_name;
   std::optional<std::string> plan_id;
   std::optional<std::string> recipe;
+  std::optional<double> std_block_temperature_k;
   std::optional<std::string> touch_mode;
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
+    fields.if_set("block_temperature_c", self.block_temperature_c);
     fields.if_set("operator", self.operator_name);
     fields.if_set("plan_id", self.plan_id);
     fields.if_set("recipe", self.recipe);
+    fields.if_set("std_block_temperature_k", self.std_block_temperature_k);
     fields.if_set("touching", self.touch_mode);
   }
 };

@@ -94,8 +94,15 @@ constexpr std::string_view kStartRequest = R"({
 "properties":{
   "recipe":{"type":"string"},
   "plan_id":{"type":"string"},
+  "kind":{"enum":["calibration"]},
   "operator":{"type":"string","minLength":1,"maxLength":100},
+  "block_temperature_c":{"type":"number","minimum":-50,"maximum":100,
+    "description":"outranks that of the block's file; with its deviation, and with a recipe only"},
+  "std_block_temperature_k":{"type":"number","exclusiveMinimum":0,"maximum":100},
+  "block_temperature_at":{"type":"string","description":"when it was measured, RFC 3339 in UTC; now if absent"},
   "touching":{"enum":["automatic","guided"],"description":"guided: a person makes the touches; automatic if absent"}},
+"dependentRequired":{"block_temperature_c":["std_block_temperature_k"],
+  "std_block_temperature_k":["block_temperature_c"],"block_temperature_at":["block_temperature_c"]},
 "oneOf":[{"required":["recipe"]},{"required":["plan_id"]}]})";
 
 constexpr std::string_view kPlanRequest = R"({
@@ -141,9 +148,11 @@ constexpr std::string_view kCell = R"({
 "properties":{
   "name":{"type":"string"},
   "arm":{"type":"string"},
-  "block":{"type":"object","required":["name","temperature_c","faces"],"properties":{
+  "block":{"type":"object","required":["name","temperature_c","std_temperature_k","temperature_at","faces"],"properties":{
     "name":{"type":"string"},
-    "temperature_c":{"type":["number","null"]},
+    "temperature_c":{"type":["number","null"],"description":"as the block's file has it"},
+    "std_temperature_k":{"type":["number","null"]},
+    "temperature_at":{"type":["string","null"],"description":"when it was measured; null: it always holds"},
     "faces":{"type":"array","items":{"type":"object","required":["plane","outward","offset_mm","center_mm","edge_u",
       "half_extent_mm"]}}}},
   "place":{"type":["object","null"],

@@ -21,20 +21,21 @@ std::string degrees_text(std::int64_t microdegrees) {
 }
 
 RunReport::OfRun of_run(const StoredRun& run) {
-  return {.id = std::to_string(run.id),
-          .recipe = run.recipe,
-          .operator_name = run.operator_name,
-          .started_at = run.started_at,
-          .ended_at = run.ended_at,
-          .outcome = run.outcome,
-          .verdict = run.verdict,
-          .touches_done = run.touches_done,
-          .touches_total = run.touches_total > 0 ? std::optional(run.touches_total) : std::nullopt,
-          .fault_code = run.fault_code,
-          .fault_message = run.fault_message,
-          .plan_id = run.plan_id,
-          .config_digest = run.config_digest,
-          .block_temperature_c = finite(run.block_temperature_c)};
+  return {
+      .id = std::to_string(run.id),
+      .recipe = run.recipe,
+      .operator_name = run.operator_name,
+      .started_at = run.started_at,
+      .ended_at = run.ended_at,
+      .outcome = run.outcome,
+      .verdict = run.verdict,
+      .touches_done = run.touches_done,
+      .touches_total = run.touches_total > 0 ? std::optional(run.touches_total) : std::nullopt,
+      .fault_code = run.fault_code,
+      .fault_message = run.fault_message,
+      .plan_id = run.plan_id,
+      .config_digest = run.config_digest,
+      .block_temperature_c = run.block_temperature ? finite(run.block_temperature->celsius) : std::nullopt};
 }
 
 /// Each touch with the entry of the result at the same index, if there is one.

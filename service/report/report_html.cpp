@@ -113,6 +113,17 @@ std::string place_text(const ConditionsDocument& conditions) {
   return words + " mm from where the cell's file has it";
 }
 
+/// The block's temperature with who told it, and when it was measured.
+std::string temperature_text(const std::optional<double>& celsius, const ConditionsDocument& conditions) {
+  std::string words =
+      figure_text(celsius, "{:.1f} °C") + figure_if_known(conditions.std_temperature_k, " ± {:.1f} K (std)");
+  if (conditions.block_temperature_source == "run") words += ", given with the run";
+  if (conditions.block_temperature_source == "file") words += ", from the block's file";
+  if (conditions.block_temperature_at)
+    words += ", measured " + text_or_unknown(conditions.block_temperature_at);
+  return words;
+}
+
 std::string run_section(const RunReport& report) {
   const RunReport::OfRun& run = report.run;
   const ResultDocument result = report.result ? report.result->value : ResultDocument();
@@ -129,8 +140,7 @@ std::string run_section(const RunReport& report) {
             text_or_unknown(conditions.block.name) + "; " + certificate_text(conditions.block.certificate)},
            {"probe, certificate",
             text_or_unknown(conditions.probe.name) + "; " + certificate_text(conditions.probe.certificate)},
-           {"block's temperature", figure_text(run.block_temperature_c, "{:.1f} °C") +
-                                       figure_if_known(conditions.std_temperature_k, " ± {:.1f} K (std)")},
+           {"block's temperature", temperature_text(run.block_temperature_c, conditions)},
            {"place of the block", place_text(conditions)},
            {"touches made", text_or_unknown(conditions.touch_mode)},
            {"operator", text_or_unknown(run.operator_name)},

@@ -13,12 +13,14 @@ calib::Touch to_touch(const StoredTouch& stored) {
   return {.face = stored.plane - 1, .joints = from_wire(stored.joints), .role = stored.role};
 }
 
-Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at)
+Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
+         std::optional<BlockTemperature> block_temperature)
     : id_(id),
       regions_(regions),
       recipe_(std::move(recipe)),
       started_at_(std::move(started_at)),
-      problem_(identification_problem(regions.cell(), recipe_)) {}
+      block_temperature_(block_temperature),
+      problem_(identification_problem(with_block_temperature(regions.cell(), block_temperature_), recipe_)) {}
 
 void Run::restore(const std::vector<StoredTouch>& touches, int touches_total) {
   touches_ = touches;

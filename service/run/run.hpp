@@ -19,12 +19,17 @@ calib::Touch to_touch(const StoredTouch& stored);
 /// One execution of a recipe: its plan, the touches so far and the latest result.
 class Run {
  public:
-  /// `regions`, those of the cell, must outlive the run.
-  Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at);
+  /// `regions`, those of the cell, must outlive the run. `block_temperature`: given for this run, in place of
+  /// that of the cell.
+  Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
+      std::optional<BlockTemperature> block_temperature = {});
 
   [[nodiscard]] std::int64_t id() const { return id_; }
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
   [[nodiscard]] const std::string& started_at() const { return started_at_; }
+  [[nodiscard]] const std::optional<BlockTemperature>& block_temperature() const {
+    return block_temperature_;
+  }
 
   /// Restores the touches made before a restart of the daemon. `touches_total`: of the plan, which is set
   /// later.
@@ -89,6 +94,7 @@ class Run {
   const TipRegions& regions_;
   Recipe recipe_;
   std::string started_at_;
+  std::optional<BlockTemperature> block_temperature_;
   calib::TouchPlan plan_;
   std::vector<bool> deferred_;  // one a planned touch
   int skipped_count_ = 0;       // no longer in the plan

@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "config/cell.hpp"
 #include "service/run/block_pose.hpp"
+#include "service/run/block_temperature.hpp"
 
 namespace cell {
 
@@ -21,11 +21,8 @@ struct RunConditions {
   std::optional<std::string> controller_application;  // name and version, as reported
   std::optional<std::uint32_t> controller_session;    // distinguishes starts of the controller
   std::optional<TouchMode> touch_mode;
+  TemperatureSource temperature_source = TemperatureSource::kFile;
   std::optional<BlockPose> place;  // as located; absent if the block stands where its file says
 };
-
-/// Why the block's temperature is unknown, and what to do; nothing if it is known. It prevents a run;
-/// offline, where it cannot be measured, it is a warning.
-std::optional<std::string> unknown_temperature_reason(const Cell& cell);
 
 }  // namespace cell

@@ -78,16 +78,22 @@ RunStore::~RunStore() = default;
 std::int64_t RunStore::begin_run(const NewRun& run) {
   SQLite::Statement insert(*database_,
                            "INSERT INTO runs(recipe, touches_total, started_at, idempotency_key, "
-                           "operator_name, block_temperature_c, config_digest, trace_json) "
-                           "VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+                           "operator_name, config_digest, trace_json, block_temperature_c, "
+                           "std_block_temperature_k, block_temperature_at, block_temperature_source) "
+                           "VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, run.recipe);
   insert.bind(2, run.touches_total);
   insert.bind(3, run.started_at);
   bind_or_null(insert, 4, run.idempotency_key);
   bind_or_null(insert, 5, run.operator_name);
-  bind_or_null(insert, 6, run.block_temperature_c);
-  bind_or_null(insert, 7, run.config_digest);
-  bind_or_null(insert, 8, run.conditions_json);
+  bind_or_null(insert, 6, run.config_digest);
+  bind_or_null(insert, 7, run.conditions_json);
+  if (const auto& temperature = run.block_temperature) {
+    insert.bind(8, temperature->celsius);
+    bind_or_null(insert, 9, temperature->std_k);
+    bind_or_null(insert, 10, temperature->measured_at);
+    bind_or_null(insert, 11, temperature->source);
+  }
   insert.exec();
   const std::int64_t id = database_->getLastInsertRowid();
   restart_log(*database_);

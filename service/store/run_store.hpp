@@ -60,13 +60,23 @@ struct PlanChange {
   int place = 0;  // index in the plan at that time, from 0
 };
 
+/// The temperature of the block that a run was started with.
+struct StoredTemperature {
+  double celsius = 0.0;
+  std::optional<double> std_k;             // these three: nothing where an older daemon kept none
+  std::optional<std::string> measured_at;  // RFC 3339; also nothing where nobody said when
+  std::optional<std::string> source;       // "file" or "run"
+
+  bool operator==(const StoredTemperature&) const = default;
+};
+
 struct NewRun {
   std::string recipe;
   int touches_total = 0;
   std::string started_at;
   std::optional<std::string> idempotency_key;
   std::optional<std::string> operator_name;
-  std::optional<double> block_temperature_c;
+  std::optional<StoredTemperature> block_temperature;
   std::optional<std::string> config_digest;  // of the cell's files
   std::optional<std::string>
       conditions_json;  // versions, temperatures, controller: an object, free in its keys
@@ -95,7 +105,7 @@ struct StoredRun {
   std::optional<std::string> fault_message;
   std::optional<std::string> plan_id;
   std::optional<std::string> operator_name;
-  std::optional<double> block_temperature_c;
+  std::optional<StoredTemperature> block_temperature;
   std::optional<std::string> config_digest;
   std::optional<std::string> conditions_json;
 };

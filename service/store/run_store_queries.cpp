@@ -10,7 +10,8 @@ namespace {
 constexpr const char* kRunColumns =
     "SELECT id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, fault_message, "
     "(SELECT count(*) FROM touches WHERE run_id = runs.id), plan_id, operator_name, block_temperature_c, "
-    "config_digest, trace_json FROM runs ";
+    "config_digest, trace_json, std_block_temperature_k, block_temperature_at, block_temperature_source FROM "
+    "runs ";
 
 std::optional<std::string> text_or_nothing(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getString());
@@ -18,6 +19,15 @@ std::optional<std::string> text_or_nothing(const SQLite::Column& column) {
 
 std::optional<double> number_or_nothing(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getDouble());
+}
+
+std::optional<StoredTemperature> read_temperature(SQLite::Statement& query) {
+  const auto celsius = number_or_nothing(query.getColumn(12));
+  if (!celsius) return std::nullopt;
+  return StoredTemperature{.celsius = *celsius,
+                           .std_k = number_or_nothing(query.getColumn(15)),
+                           .measured_at = text_or_nothing(query.getColumn(16)),
+                           .source = text_or_nothing(query.getColumn(17))};
 }
 
 StoredRun read_run(SQLite::Statement& query) {
@@ -33,7 +43,7 @@ StoredRun read_run(SQLite::Statement& query) {
           .fault_message = text_or_nothing(query.getColumn(8)),
           .plan_id = text_or_nothing(query.getColumn(10)),
           .operator_name = text_or_nothing(query.getColumn(11)),
-          .block_temperature_c = number_or_nothing(query.getColumn(12)),
+          .block_temperature = read_temperature(query),
           .config_digest = text_or_nothing(query.getColumn(13)),
           .conditions_json = text_or_nothing(query.getColumn(14))};
 }

@@ -130,7 +130,14 @@ CREATE TABLE answers(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
-constexpr std::array kMigrations{kRunsAndTouches, kPlans, kDiary};
+/// What else is known of the temperature that a run was started with.
+constexpr const char* kTemperatures = R"sql(
+ALTER TABLE runs ADD COLUMN std_block_temperature_k REAL;
+ALTER TABLE runs ADD COLUMN block_temperature_at TEXT;
+ALTER TABLE runs ADD COLUMN block_temperature_source TEXT;
+)sql";
+
+constexpr std::array kMigrations{kRunsAndTouches, kPlans, kDiary, kTemperatures};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

@@ -5,6 +5,7 @@
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
+#include <nlohmann/json.hpp>
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
@@ -77,9 +78,12 @@ class MortalDaemon {
   void command(Command command) {
     if (const auto refusal = operation_->command(command)) throw std::runtime_error(refusal->detail);
   }
-  void start() {
+  void start(const std::optional<cell::BlockTemperature>& temperature = {}) {
     run_until(State::kIdle);
-    if (const auto answer = operation_->start({.recipe = kFewTouches});
+    if (const auto answer = operation_->start({.recipe = kFewTouches,
+                                               .idempotency_key = {},
+                                               .operator_name = {},
+                                               .block_temperature = temperature});
         const auto* refusal = std::get_if<cell::CommandRefusal>(&answer)) {
       throw std::runtime_error(refusal->detail);
     }
@@ -192,6 +196,27 @@ TEST(Restart, WhateverItDidWhenItWasKilledNoAnsweredTouchIsLostOrCountedTwice) {
     EXPECT_FALSE(daemon.status().fault) << daemon.status().fault->message();
     expect_touches_of_the_unbroken_run(daemon.store().touches(1));
   }
+}
+
+TEST(Restart, ARunKeepsTheTemperatureThatItWasStartedWith) {
+  MortalDaemon daemon;
+  daemon.launch();
+  daemon.start(cell::BlockTemperature{25.0, 0.5, std::chrono::system_clock::now()});
+  daemon.run_until([](const cell::Status& status) { return status.touches_done >= 9; });
+  const auto planes = [&] { return daemon.operation().run()->problem().artefact.contact_planes; };
+  const double warm_m = planes().front().offset_m;
+  EXPECT_GT(warm_m, daemon.cell.block.faces.front().plane.offset_m);
+  ASSERT_EQ(daemon.restart().state, State::kHeld);
+  EXPECT_EQ(planes().front().offset_m, warm_m);
+  daemon.command(Command::kResume);
+  daemon.run_until([](const cell::Status& status) {
+    return status.state != State::kHeld && status.state != State::kUnholding;
+  });
+  daemon.finish();
+  EXPECT_EQ(daemon.status().state, State::kComplete);
+  const auto result = nlohmann::json::parse(daemon.store().result_json(1).value());
+  EXPECT_EQ(result.at("conditions").at("block_temperature_c"), 25.0);
+  EXPECT_NE(daemon.store().result_json(1), unbroken().result);
 }
 
 TEST(Restart, AnInterruptedRunThatIsStoppedStaysInterruptedAndTheNextOneCanStart) {

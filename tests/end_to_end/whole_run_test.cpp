@@ -140,6 +140,45 @@ TEST(Conditions, AreKeptWithTheRunWhenItStarts) {
   EXPECT_EQ(nlohmann::json::parse(cell::run_document(stored)).at("conditions"), kept);
 }
 
+TEST(Conditions, ATemperatureThatComesWithTheRunIsUsedInAllOfItAndForNoOther) {
+  LoopbackCell loop("demo");
+  loop.serve();
+  loop.launch();
+  loop.run_until(State::kIdle);
+  const auto now = std::chrono::system_clock::now();
+  const auto started = std::get<cell::Started>(
+      loop.operation().start({.recipe = kShortRecipe,
+                              .idempotency_key = {},
+                              .operator_name = {},
+                              .block_temperature = cell::BlockTemperature{25.0, 0.5, now}}));
+  loop.run_until_over();
+  EXPECT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
+  const auto result = nlohmann::json::parse(loop.operation().result_json().value());
+  EXPECT_EQ(result.at("conditions").at("block_temperature_c"), 25.0);
+  EXPECT_EQ(result.at("conditions").at("std_temperature_k"), 0.5);
+  EXPECT_EQ(result.at("conditions").at("block_temperature_source"), "run");
+
+  const cell::Recipe& recipe = loop.cell.recipes.at(kShortRecipe);
+  const auto planes_of = [&](const cell::Cell& cell) {
+    return cell::identification_problem(cell, recipe).artefact.contact_planes;
+  };
+  const auto cool = planes_of(loop.cell), warm = loop.operation().run()->problem().artefact.contact_planes;
+  const cell::Probe& probe = loop.cell.probe;
+  const double ball_m = probe.stylus.radius_m - probe.stylus.pretravel_m;
+  for (std::size_t i = 0; i < warm.size(); ++i)
+    EXPECT_NEAR(warm[i].offset_m - ball_m, (cool[i].offset_m - ball_m) * (1.0 + 5.0 * 2.36e-5), 1e-9) << i;
+
+  const cell::StoredRun stored = loop.store().run(started.run_id).value();
+  EXPECT_EQ(stored.block_temperature.value().celsius, 25.0);
+  EXPECT_EQ(stored.block_temperature->std_k, 0.5);
+  EXPECT_EQ(stored.block_temperature->source, "run");
+  EXPECT_TRUE(stored.block_temperature->measured_at);
+  const std::int64_t next = loop.start();
+  EXPECT_EQ(loop.store().run(next)->block_temperature->source, "file");
+  EXPECT_EQ(loop.operation().run()->problem().artefact.contact_planes.front().offset_m,
+            cool.front().offset_m);
+}
+
 INSTANTIATE_TEST_SUITE_P(Cells, WholeRun, ::testing::Values("edf", "demo"),
                          [](const auto& info) { return std::string(info.param); });
 

@@ -12,6 +12,7 @@
 #include "service/http/server/problem.hpp"
 #include "service/report/report_document.hpp"
 #include "service/report/report_html.hpp"
+#include "service/run/block_temperature.hpp"
 #include "service/run/calibrated_arm.hpp"
 #include "service/store/fault_log.hpp"
 
@@ -33,9 +34,10 @@ HttpResponse conflict(const std::string& detail) {
 
 /// Identifies the stored touches of a run again: the same result, bit by bit, while the cell is the same.
 std::variant<Identified, HttpResponse> identify_stored(const CellOperation& operation, std::int64_t id) {
-  const Cell& cell = operation.cell();
-  const auto recipe = cell.recipes.find(operation.store().run(id)->recipe);
-  if (recipe == cell.recipes.end())
+  const StoredRun run = operation.store().run(id).value();
+  const Cell cell = with_block_temperature(operation.cell(), temperature_of(run, operation.cell()));
+  const auto recipe = operation.cell().recipes.find(run.recipe);
+  if (recipe == operation.cell().recipes.end())
     return conflict("there is no result: this cell no longer has the run's recipe");
   const std::vector<StoredTouch> touches = operation.store().touches(id);
   if (touches.empty()) return conflict("there is no result: no touch has been made yet");

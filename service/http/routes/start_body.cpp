@@ -2,10 +2,15 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
+#include "config/block_file.hpp"
 #include "config/config_error.hpp"
+#include "config/json_value.hpp"
 #include "config/strict_json.hpp"
+#include "config/utc_text.hpp"
 #include "service/run/run_conditions.hpp"
 
 namespace cell {
@@ -14,6 +19,15 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kOperatorBytesMax = 100;
+
+constexpr std::array<std::string_view, 8> kStartKeys{"recipe",
+                                                     "plan_id",
+                                                     "kind",
+                                                     "operator",
+                                                     "touching",
+                                                     "block_temperature_c",
+                                                     "std_block_temperature_k",
+                                                     "block_temperature_at"};
 
 Problem wrong(std::string pointer, std::string detail) {
   return {.kind = ProblemKind::kBody, .detail = std::move(detail), .pointer = std::move(pointer)};
@@ -62,17 +76,69 @@ std::optional<Problem> read_touching(const json& body, StartRequest& start) {
   return std::nullopt;
 }
 
+/// Runs of other kinds come later; whoever asks for one must not get a calibration.
+std::optional<Problem> read_kind(const json& body) {
+  const auto found = body.find("kind");
+  if (found == body.end() || *found == "calibration") return std::nullopt;
+  return wrong("/kind",
+               "must be 'calibration', the only kind of run that this daemon makes; or leave it out");
+}
+
+bool is_number_within(const json& value, double min, double max) {
+  return value.is_number() && value.get<double>() >= min && value.get<double>() <= max;
+}
+
+/// All of them or none; a plan was made for the temperature of the block's file.
+std::optional<Problem> refuse_temperature_keys(const json& body) {
+  const bool has_value = body.contains("block_temperature_c");
+  const bool has_std = body.contains("std_block_temperature_k");
+  if (has_value && !has_std)
+    return wrong("/std_block_temperature_k",
+                 "is missing beside block_temperature_c; give the standard deviation of the temperature");
+  if (!has_value && (has_std || body.contains("block_temperature_at")))
+    return wrong("/block_temperature_c",
+                 "is missing; give the temperature that the standard deviation or the time is of");
+  if (has_value && body.contains("plan_id"))
+    return wrong("/block_temperature_c",
+                 "cannot be given with a plan, which was made for the temperature of the block's file; give "
+                 "the recipe in place of the plan");
+  return std::nullopt;
+}
+
+std::optional<Problem> read_temperature(const json& body, std::chrono::system_clock::time_point now,
+                                        StartRequest& start) {
+  if (auto problem = refuse_temperature_keys(body)) return problem;
+  const auto value = body.find("block_temperature_c");
+  if (value == body.end()) return std::nullopt;
+  if (!is_number_within(*value, kBlockTemperatureMinC, kBlockTemperatureMaxC))
+    return wrong("/block_temperature_c", fmt::format("a number from {} to {} degrees C is required",
+                                                     kBlockTemperatureMinC, kBlockTemperatureMaxC));
+  const json& deviation = body.at("std_block_temperature_k");
+  if (!is_number_within(deviation, kPositive.min, kBlockTemperatureStdMaxK))
+    return wrong("/std_block_temperature_k",
+                 fmt::format("a number over 0 and up to {} K is required", kBlockTemperatureStdMaxK));
+  start.block_temperature =
+      BlockTemperature{.celsius = value->get<double>(), .std_k = deviation.get<double>(), .measured_at = now};
+  const auto at = body.find("block_temperature_at");
+  if (at == body.end()) return std::nullopt;
+  start.block_temperature->measured_at =
+      at->is_string() ? time_from_utc(at->get_ref<const std::string&>()) : std::nullopt;
+  if (start.block_temperature->measured_at) return std::nullopt;
+  return wrong("/block_temperature_at", "a time in UTC such as '2026-01-31T08:15:30Z' is required");
+}
+
 std::variant<StartRequest, Problem> read_body(const json& body, const CellOperation& operation) {
   if (!body.is_object()) return wrong("", "an object is required");
   for (const auto& [key, value] : body.items()) {
-    if (key != "recipe" && key != "plan_id" && key != "operator" && key != "touching")
-      return wrong(pointer_step(key),
-                   "unknown key; 'recipe' or 'plan_id', 'operator' and 'touching' are known");
+    if (std::ranges::find(kStartKeys, key) == kStartKeys.end())
+      return wrong(pointer_step(key), fmt::format("unknown key; known are {}", fmt::join(kStartKeys, ", ")));
   }
   StartRequest start;
   if (auto problem = read_recipe(body, operation, start)) return *std::move(problem);
   if (auto problem = read_operator(body, start)) return *std::move(problem);
   if (auto problem = read_touching(body, start)) return *std::move(problem);
+  if (auto problem = read_kind(body)) return *std::move(problem);
+  if (auto problem = read_temperature(body, operation.clocks().system(), start)) return *std::move(problem);
   return start;
 }
 

@@ -25,7 +25,7 @@ TEST_F(PlanCacheTest, PlansARecipeOnceAndGivesItAgain) {
 
 TEST_F(PlanCacheTest, APlanThatWasBegunBeforeTheBlockStoodElsewhereIsMadeAgain) {
   bool done = false;
-  plans_.begin("few", [&done] { done = true; });
+  plans_.begin("few", {}, [&done] { done = true; });
   io.poll();  // up to the planner's thread
   EXPECT_TRUE(plans_.is_planning());
   plans_.clear();
@@ -35,6 +35,23 @@ TEST_F(PlanCacheTest, APlanThatWasBegunBeforeTheBlockStoodElsewhereIsMadeAgain) 
   EXPECT_TRUE(plans_.planned("few"));
   plans_.clear();
   EXPECT_FALSE(plans_.planned("few"));
+}
+
+TEST_F(PlanCacheTest, ATemperatureThatIsGivenHasItsOwnPlanAndTheLatestOneIsKept) {
+  const auto id_at = [this](const BlockTemperature& given) {
+    return std::get<std::shared_ptr<const Plan>>(run(plans_.plan("few", given)))->id;
+  };
+  const BlockTemperature warm{.celsius = 25.0, .std_k = 2.0}, warmer{.celsius = 30.0, .std_k = 2.0};
+  EXPECT_EQ(id_at({*edf().block.temperature_c, edf().block.std_temperature_k, {}}), plan_of_owners().id)
+      << "the cell's own is not planned again";
+  const std::string id = id_at(warm);
+  EXPECT_NE(id, plan_of_owners().id);
+  EXPECT_EQ(plans_.plan_with_id(id), nullptr) << "it is for that run alone";
+  EXPECT_TRUE(plans_.planned("few", warm));
+  EXPECT_TRUE(plans_.planned("few", BlockTemperature{25.0, 2.0, std::chrono::system_clock::time_point{}}));
+  EXPECT_NE(id_at(warmer), id);
+  EXPECT_FALSE(plans_.planned("few", warm));
+  EXPECT_TRUE(plans_.planned("few"));
 }
 
 }  // namespace

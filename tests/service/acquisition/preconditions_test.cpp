@@ -44,17 +44,30 @@ TEST(Preconditions, AProbeThatTouchesIsFineWhereTheRunsFirstMotionTakesItOff) {
 }
 
 TEST(Preconditions, AFaultIsToBeReadFirstButForOneOfTheLink) {
-  const auto with = [](FaultCode code) { return codes(unmet_for_run({}, edf(), Fault{code, {}}, nullptr)); };
-  const auto without = codes(unmet_for_run({}, edf(), {}, nullptr));
+  const auto with = [](FaultCode code) {
+    return codes(unmet_for_run({}, edf(), {}, Fault{code, {}}, nullptr));
+  };
+  const auto without = codes(unmet_for_run({}, edf(), {}, {}, nullptr));
   EXPECT_EQ(with(FaultCode::kLinkLost), without);
   EXPECT_EQ(with(FaultCode::kCollision).size(), without.size() + 1);
 }
 
 TEST(Preconditions, ARecipeWithoutAPlanSaysWhy) {
   const PlanRefusal refusal{.message = "no room", .efforts = {}};
-  const auto unmet = unmet_for_run({}, edf(), {}, &refusal);
+  const auto unmet = unmet_for_run({}, edf(), {}, {}, &refusal);
   ASSERT_FALSE(unmet.empty());
   EXPECT_EQ(unmet.back().code, "recipe_unreachable");
+}
+
+TEST(Preconditions, ATemperatureThatIsTooOldIsOneOfThem) {
+  const auto now = std::chrono::system_clock::time_point{} + std::chrono::hours(100);
+  const auto measured = [&](int hours_ago) {
+    return codes(unmet_for_run(
+        {}, edf(), {BlockTemperature{25.0, 0.5, now - std::chrono::hours(hours_ago)}, now}, {}, nullptr));
+  };
+  EXPECT_THAT(measured(8), IsEmpty());
+  EXPECT_THAT(measured(9), ElementsAre("temperature_old"));
+  EXPECT_THAT(measured(-1), ElementsAre("temperature_in_future"));
 }
 
 TEST(Preconditions, ARunByHandNeedsNothingThatOnlyMotionNeeds) {

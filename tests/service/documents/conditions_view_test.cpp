@@ -60,12 +60,26 @@ TEST_F(ConditionsView, ConditionsTellWhereTheBlockStood) {
   EXPECT_EQ(told.at("touch_count"), 6);
 }
 
+TEST_F(ConditionsView, ConditionsTellWhoToldTheTemperatureAndWhen) {
+  const json of_file = conditions_json({});
+  EXPECT_EQ(of_file.at("block_temperature_source"), "file");
+  EXPECT_TRUE(of_file.at("block_temperature_at").is_null());
+  const BlockTemperature given{.celsius = 25.0, .std_k = 0.5, .measured_at = std::chrono::sys_days{}};
+  const json of_run = json::parse(conditions_document(with_block_temperature(read(), given),
+                                                      {.temperature_source = TemperatureSource::kRun}));
+  EXPECT_EQ(of_run.at("block_temperature_c"), 25.0);
+  EXPECT_EQ(of_run.at("std_temperature_k"), 0.5);
+  EXPECT_EQ(of_run.at("block_temperature_source"), "run");
+  EXPECT_EQ(of_run.at("block_temperature_at"), "1970-01-01T00:00:00.000Z");
+}
+
 TEST_F(ConditionsView, AnUnknownTemperatureHasNoUncertaintyEither) {
   edit(kBlock, [](json& block) {
     for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
       block.erase(key);
   });
-  EXPECT_TRUE(conditions_json({}).at("std_temperature_k").is_null());
+  for (const char* key : {"std_temperature_k", "thermal_expansion_per_k", "block_temperature_source"})
+    EXPECT_TRUE(conditions_json({}).at(key).is_null()) << key;
 }
 
 }  // namespace

@@ -9,24 +9,8 @@ namespace cell {
 namespace {
 
 using nlohmann::json;
-using ::testing::HasSubstr;
 
 using RunConditionsTest = CopiedConfig;
-
-TEST_F(RunConditionsTest, TheShippedCellsKnowHowWarmTheirBlocksAre) {
-  for (const char* name : {"edf", "demo"}) {
-    const Cell cell = read_cell(path(std::string("cells/") + name + "/cell.json"));
-    EXPECT_EQ(unknown_temperature_reason(cell), std::nullopt) << name;
-  }
-}
-
-TEST_F(RunConditionsTest, ABlockOfUnknownTemperatureIsToldWithTheRemedy) {
-  edit(kBlock, [](json& block) {
-    for (const char* key : {"temperature_c", "std_temperature_k", "thermal_expansion_per_k"})
-      block.erase(key);
-  });
-  EXPECT_THAT(unknown_temperature_reason(read()).value(), HasSubstr("temperature_c"));
-}
 
 TEST_F(RunConditionsTest, TheProbeMayHaveACertificateAsTheBlockHas) {
   edit(kProbe, [](json& probe) { probe["certificate"] = {{"number", "P-7"}}; });

@@ -226,18 +226,20 @@ TEST_F(RunStoreTest, RunsThatFollowOnePlanKeepItOnce) {
 }
 
 TEST_F(RunStoreTest, ARunTellsWhoStartedItAndWithWhat) {
+  const StoredTemperature measured{.celsius = 21.5, .std_k = 0.5, .measured_at = "then", .source = "run"};
   const std::int64_t id = store_->begin_run({.recipe = "edf-25",
                                              .started_at = "start",
                                              .operator_name = "Ada",
-                                             .block_temperature_c = 21.5,
+                                             .block_temperature = measured,
                                              .config_digest = "abc",
                                              .conditions_json = "{}"});
   const StoredRun run = store_->run(id).value();
   EXPECT_EQ(run.operator_name, "Ada");
-  EXPECT_EQ(run.block_temperature_c, 21.5);
+  EXPECT_EQ(run.block_temperature, measured);
   EXPECT_EQ(run.config_digest, "abc");
   EXPECT_EQ(run.conditions_json, "{}");
-  EXPECT_FALSE(run.plan_id || store_->run(begin())->operator_name);
+  const StoredRun other = store_->run(begin()).value();
+  EXPECT_FALSE(run.plan_id || other.operator_name || other.block_temperature);
 }
 
 TEST_F(RunStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {

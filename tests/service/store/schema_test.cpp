@@ -26,6 +26,7 @@ std::filesystem::path file_of_version(const Folder& folder, int version) {
     database.exec(
         "INSERT INTO plans VALUES('plan', '{}'); UPDATE runs SET plan_id = 'plan' WHERE recipe = 'quick'");
   }
+  if (version >= 3) database.exec("UPDATE runs SET block_temperature_c = 21.5 WHERE id = 1");
   database.exec("PRAGMA user_version = " + std::to_string(version));
   return file;
 }
@@ -63,6 +64,8 @@ TEST_P(StoreSchema, AFileOfAnEarlierVersionIsTakenOverWithAllThatIsInIt) {
   EXPECT_EQ(store.run_with_key("key")->id, 2);
   EXPECT_EQ(store.running()->id, 2);
   EXPECT_EQ(store.plan_json(2).has_value(), GetParam() >= 2);
+  EXPECT_EQ(store.run(1)->block_temperature,
+            GetParam() >= 3 ? std::optional(StoredTemperature{.celsius = 21.5}) : std::nullopt);
   EXPECT_FALSE(store.open_command(2) || store.run(2)->operator_name);
   store.append_touch(2, {.number = 1, .plane = 1, .captured_at = "now", .session = 4, .sequence = 5});
   EXPECT_EQ(store.touches(2).at(0).session, 4u);

@@ -59,6 +59,23 @@ TEST_F(ResultRoutesTest, ARunThatWasCutOffHasAResultThatSaysSo) {
   EXPECT_EQ(document.at("identifiable_count"), 25);
 }
 
+TEST_F(ResultRoutesTest, ARunIsIdentifiedAtItsOwnTemperature) {
+  const std::int64_t warm = cell_.store().begin_run(
+      {.recipe = "edf-25",
+       .started_at = "start",
+       .block_temperature = StoredTemperature{.celsius = 40.0, .std_k = 0.5, .source = "run"}});
+  for (const StoredTouch& touch : cell_.store().touches(run_)) cell_.store().append_touch(warm, touch);
+  const auto lengths = [&](std::int64_t run) {
+    const json document = json::parse(get_result(cell_.operation(), run).body);
+    for (const json& parameter : document.at("parameters"))
+      if (parameter.at("name") == "d3")
+        return parameter.at("nominal").get<double>() + parameter.at("error").get<double>();
+    return 0.0;
+  };
+  // A block that is 20 K warmer makes every length of the arm 20 K x 23.6 ppm/K longer.
+  EXPECT_NEAR(lengths(warm) / lengths(run_) - 1.0, 20.0 * 2.36e-5, 5e-5);
+}
+
 TEST_F(ResultRoutesTest, WithoutATouchThereIsNeitherResultNorArm) {
   const std::int64_t empty = cell_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
   for (const HttpResponse& response :

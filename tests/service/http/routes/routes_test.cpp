@@ -293,6 +293,47 @@ TEST_F(RoutesTest, AStartsBodyIsTakenToTheLetter) {
   }
 }
 
+TEST_F(RoutesTest, AStartsTemperatureComesWithItsDeviationAndWithinBounds) {
+  const std::string c = "/block_temperature_c", std = "/std_block_temperature_k",
+                    at = "/block_temperature_at";
+  const auto with = [](const std::string& rest) { return R"({"recipe":"edf-25",)" + rest + "}"; };
+  const auto value = [&](const std::string& text) {
+    return with(R"("std_block_temperature_k":0.5,"block_temperature_c":)" + text);
+  };
+  const auto deviation = [&](const std::string& text) {
+    return with(R"("block_temperature_c":25,"std_block_temperature_k":)" + text);
+  };
+  const std::vector<BadBody> bodies{
+      {"no deviation", with(R"("block_temperature_c":25)"), 400, std},
+      {"a deviation alone", with(R"("std_block_temperature_k":0.5)"), 400, c},
+      {"a time alone", with(R"("block_temperature_at":"1970-01-01T00:00:00Z")"), 400, c},
+      {"a text", value(R"("25")"), 400, c},
+      {"a null", value("null"), 400, c},
+      {"kelvins", value("298.15"), 400, c},
+      {"colder than a room", value("-50.1"), 400, c},
+      {"certainty", deviation("0"), 400, std},
+      {"a negative deviation", deviation("-1"), 400, std},
+      {"no knowledge", deviation("101"), 400, std},
+      {"a deviation as text", deviation(R"("1")"), 400, std},
+      {"a time that is none", deviation(R"(1,"block_temperature_at":"today")"), 400, at},
+      {"a time as number", deviation(R"(1,"block_temperature_at":0)"), 400, at},
+      {"another kind", with(R"("kind":"proof")"), 400, "/kind"},
+      {"no kind", with(R"("kind":null)"), 400, "/kind"}};
+  for (const BadBody& bad : bodies) {
+    const json document = problem(post("/api/v1/runs", bad.body));
+    EXPECT_EQ(document.at("status"), bad.status) << bad.what << ": " << document;
+    EXPECT_EQ(document.value("pointer", ""), bad.pointer) << bad.what << ": " << document;
+  }
+  // The clock of this cell stands at the beginning of 1970: one that is taken meets the missing link only.
+  const json taken = problem(post("/api/v1/runs", deviation(R"(0.5,"kind":"calibration")")));
+  ASSERT_EQ(taken.at("status"), 409);
+  EXPECT_EQ(taken.at("errors").size(), 1u);
+  const json future =
+      problem(post("/api/v1/runs", deviation(R"(0.5,"block_temperature_at":"1970-01-01T00:10:00Z")")));
+  ASSERT_EQ(future.at("status"), 409);
+  EXPECT_EQ(future.at("errors").at(1).at("code"), "temperature_in_future");
+}
+
 TEST_F(RoutesTest, CommandsTakeNoBodyButAnEmptyObject) {
   EXPECT_EQ(post("/api/v1/cell/acknowledge", "{}").status, 202u);
   EXPECT_EQ(problem(post("/api/v1/cell/acknowledge", R"({"now":true})")).at("status"), 400);

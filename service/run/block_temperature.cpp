@@ -1,0 +1,115 @@
+#include "service/run/block_temperature.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "config/utc_text.hpp"
+#include "service/base/utc_time.hpp"
+
+namespace cell {
+namespace {
+
+constexpr const char* kMeasureAgain =
+    "measure the block's temperature and give it with the run (touchcal run --block-temperature C "
+    "--std-block-temperature K)";
+
+/// The file or the request, and the pointer of the time in it.
+std::string time_place(const Cell& cell, TemperatureSource source) {
+  return source == TemperatureSource::kRun ? "the request: /block_temperature_at"
+                                           : cell.block.file.string() + ": /temperature_at";
+}
+
+std::string remedy(TemperatureSource source) {
+  return source == TemperatureSource::kRun
+             ? std::string(kMeasureAgain)
+             : fmt::format("{}, or enter it there with its time", kMeasureAgain);
+}
+
+std::string hours_text(std::chrono::system_clock::duration time) {
+  return fmt::format("{:.1f} h", std::chrono::duration<double, std::chrono::hours::period>(time).count());
+}
+
+std::optional<TemperatureRefusal> refuse_time(const Cell& cell, TemperatureSource source,
+                                              std::chrono::system_clock::time_point measured_at,
+                                              std::chrono::system_clock::time_point now) {
+  if (measured_at - now > kClockDifferenceMax) {
+    return TemperatureRefusal{
+        "temperature_in_future",
+        fmt::format("{}: the block's temperature is of {}, which is still to come, it is {} now; correct the "
+                    "time or set this computer's clock",
+                    time_place(cell, source), format_utc(measured_at), format_utc(now))};
+  }
+  if (now - measured_at <= cell.block_temperature_age_max) return std::nullopt;
+  return TemperatureRefusal{
+      "temperature_old",
+      fmt::format("{}: the block's temperature of {:.1f} degrees C is {} old, more than {} "
+                  "(block_temperature_age_max_h of the cell's file); {}",
+                  time_place(cell, source), *cell.block.temperature_c, hours_text(now - measured_at),
+                  hours_text(cell.block_temperature_age_max), remedy(source))};
+}
+
+}  // namespace
+
+std::string_view temperature_source_name(TemperatureSource source) {
+  switch (source) {
+    case TemperatureSource::kFile:
+      return "file";
+    case TemperatureSource::kRun:
+      return "run";
+  }
+  return "";
+}
+
+std::optional<std::string> unknown_expansion_reason(const Cell& cell) {
+  if (cell.block.thermal_expansion_per_k) return std::nullopt;
+  return fmt::format(
+      "{}: /thermal_expansion_per_k is missing, without which a temperature says nothing of the block's "
+      "size; "
+      "add it, in a file of schema touchcal/block/2",
+      cell.block.file.string());
+}
+
+std::optional<TemperatureRefusal> refuse_temperature(const Cell& cell,
+                                                     const std::optional<BlockTemperature>& given,
+                                                     std::chrono::system_clock::time_point now) {
+  const Cell there = with_block_temperature(cell, given);
+  if (!there.block.temperature_c) {
+    return TemperatureRefusal{
+        "temperature_missing",
+        fmt::format("{}: the temperature of the block {} is unknown; {}, or enter it there (temperature_c)",
+                    cell.block.file.string(), cell.block.name, kMeasureAgain)};
+  }
+  if (const auto gap = unknown_expansion_reason(there)) return TemperatureRefusal{"expansion_missing", *gap};
+  if (!there.block.temperature_at) return std::nullopt;
+  return refuse_time(there, given ? TemperatureSource::kRun : TemperatureSource::kFile,
+                     *there.block.temperature_at, now);
+}
+
+std::optional<StoredTemperature> temperature_to_store(const Cell& cell,
+                                                      const std::optional<BlockTemperature>& given) {
+  const Block block = with_block_temperature(cell, given).block;
+  if (!block.temperature_c) return std::nullopt;
+  const TemperatureSource source = given ? TemperatureSource::kRun : TemperatureSource::kFile;
+  StoredTemperature stored{.celsius = *block.temperature_c,
+                           .std_k = block.std_temperature_k,
+                           .measured_at = std::nullopt,
+                           .source = std::string(temperature_source_name(source))};
+  if (block.temperature_at) stored.measured_at = format_utc(*block.temperature_at);
+  return stored;
+}
+
+std::optional<BlockTemperature> temperature_given_to(const StoredRun& run, const Cell& cell) {
+  const bool was_given = run.block_temperature &&
+                         run.block_temperature->source == temperature_source_name(TemperatureSource::kRun);
+  return was_given ? temperature_of(run, cell) : std::nullopt;
+}
+
+std::optional<BlockTemperature> temperature_of(const StoredRun& run, const Cell& cell) {
+  const auto& stored = run.block_temperature;
+  if (!stored) return std::nullopt;
+  return BlockTemperature{
+      .celsius = stored->celsius,
+      .std_k = stored->std_k.value_or(cell.block.std_temperature_k),
+      .measured_at = stored->measured_at ? time_from_utc(*stored->measured_at) : std::nullopt};
+}
+
+}  // namespace cell
