@@ -12,11 +12,18 @@
 /// reports errors on standard error and returns the exit code.
 namespace cell {
 
+/// The block's temperature in place of that of its file; both or neither.
+struct TemperatureArguments {
+  std::optional<double> celsius;
+  std::optional<double> std_k;
+};
+
 struct IdentifyArguments {
   std::filesystem::path cell_file;
   std::filesystem::path touches_file;
-  std::string recipe;      // the cell's default when empty
-  std::string stiffness;   // "on", "off" or "auto"; the recipe's choice when empty
+  std::string recipe;     // the cell's default when empty
+  std::string stiffness;  // "on", "off" or "auto"; the recipe's choice when empty
+  TemperatureArguments block_temperature;
   std::string arm_file;    // where the calibrated arm is written, if anywhere
   std::string map_file;    // where the map of the predicted uncertainty is written as CSV, if anywhere
   bool overwrite = false;  // those two
@@ -60,6 +67,7 @@ struct RunArguments {
   std::string plan_id;        // of a plan of the daemon; empty for none
   std::string operator_name;  // may be empty
   bool guided = false;        // a person makes the touches with the pendant
+  TemperatureArguments block_temperature;
 };
 /// Starts a run and watches it to its end.
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);

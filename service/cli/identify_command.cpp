@@ -63,12 +63,24 @@ Recipe with_stiffness(Recipe recipe, const std::string& name, const Cell& cell) 
   return recipe;
 }
 
+/// The cell with its block at the temperature of the command line, if there is one.
+Cell at_temperature(const Cell& cell, const TemperatureArguments& given) {
+  if (!given.celsius || !given.std_k) return cell;
+  if (!cell.block.thermal_expansion_per_k) {
+    throw ConfigError(cell.block.file.string(), "/thermal_expansion_per_k",
+                      "is missing, without which a temperature says nothing of the block's size; add it, in "
+                      "a file of schema touchcal/block/2");
+  }
+  // When the touches were made nobody says, so the temperature has no time and no age either.
+  return with_block_temperature(cell, BlockTemperature{*given.celsius, *given.std_k, std::nullopt});
+}
+
 }  // namespace
 
 ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (arguments.arm_file == "-" || arguments.map_file == "-")
     throw std::invalid_argument("standard output has the result; name a file");
-  const Cell cell = read_cell(arguments.cell_file);
+  const Cell cell = at_temperature(read_cell(arguments.cell_file), arguments.block_temperature);
   const Recipe recipe = with_stiffness(recipe_named(cell, arguments.recipe), arguments.stiffness, cell);
   const TouchesFile file = read_touches(arguments.touches_file, cell);
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
@@ -80,7 +92,10 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   const ResultContext context{
       .complete = true,
       .warnings = file.warnings,
-      .conditions = conditions_document(cell, {.config_digest = configuration_digest(cell)})};
+      .conditions = conditions_document(
+          cell, {.config_digest = configuration_digest(cell),
+                 .temperature_source = arguments.block_temperature.celsius ? TemperatureSource::kRun
+                                                                           : TemperatureSource::kFile})};
   const ResultDocument document = result_of(regions, recipe, problem, result, context);
   write_files(arguments, cell, result, document);
   if (json) {

@@ -5,7 +5,9 @@
 #include <iostream>
 #include <map>
 
+#include "config/block_file.hpp"
 #include "config/config_error.hpp"
+#include "config/json_value.hpp"
 #include "config/recipe.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/base/version.hpp"
@@ -94,6 +96,7 @@ class CommandLine {
                      "whether the compliance of the joints is estimated, in place of the recipe's choice; "
                      "auto: where the arm's file allows it")
         ->check(CLI::IsMember({"on", "off", "auto"}));
+    add_block_temperature(*identify, identify_.block_temperature);
     identify->add_option("--export", identify_.arm_file, "write the calibrated arm to this arm file");
     identify->add_option("--map", identify_.map_file,
                          "write the predicted uncertainty over the workspace box to this CSV file");
@@ -169,6 +172,19 @@ class CommandLine {
     run->add_flag("--guided", run_.guided, "a person makes the touches with the pendant");
     run->add_option("--operator", run_.operator_name,
                     "the person responsible for the run; stored with its result");
+    add_block_temperature(*run, run_.block_temperature);
+  }
+
+  static void add_block_temperature(CLI::App& command, cell::TemperatureArguments& temperature) {
+    auto* celsius = command
+                        .add_option("--block-temperature", temperature.celsius,
+                                    "temperature of the block, degrees C, in place of that of its file")
+                        ->check(CLI::Range(cell::kBlockTemperatureMinC, cell::kBlockTemperatureMaxC));
+    auto* deviation =
+        command.add_option("--std-block-temperature", temperature.std_k, "its standard deviation, K")
+            ->check(CLI::Range(cell::kPositive.min, cell::kBlockTemperatureStdMaxK))
+            ->needs(celsius);
+    celsius->needs(deviation);
   }
 
   void add_report() {

@@ -52,6 +52,23 @@ void expect_one_line(const Finished& finished, int exit_code, const std::string&
   EXPECT_THAT(finished.err, HasSubstr(part));
 }
 
+TEST_F(OfflineCommands, IdentifyTakesATemperatureOfTheBlockWithItsDeviation) {
+  const json file = json::parse(identify({"--json"}).out);
+  const json warm =
+      json::parse(identify({"--json", "--block-temperature", "25", "--std-block-temperature", "0.5"}).out);
+  EXPECT_EQ(file.at("conditions").at("block_temperature_source"), "file");
+  EXPECT_EQ(warm.at("conditions").at("block_temperature_source"), "run");
+  EXPECT_EQ(warm.at("conditions").at("block_temperature_c"), 25.0);
+  EXPECT_EQ(warm.at("conditions").at("std_temperature_k"), 0.5);
+  EXPECT_TRUE(warm.at("conditions").at("block_temperature_at").is_null());
+  EXPECT_NE(warm.at("parameters"), file.at("parameters"));
+  for (const std::vector<std::string>& half : {std::vector<std::string>{"--block-temperature", "25"},
+                                               {"--std-block-temperature", "0.5"},
+                                               {"--block-temperature", "298", "--std-block-temperature", "1"},
+                                               {"--block-temperature", "25", "--std-block-temperature", "0"}})
+    EXPECT_EQ(identify(half).exit_code, cell::kExitUsage) << half.front();
+}
+
 TEST_F(OfflineCommands, IdentifyEstimatesTheComplianceWhenItIsToldToWhateverTheRecipeSays) {
   for (const char* stiffness : {"on", "auto"}) {
     const json document = json::parse(identify({"--json", "--stiffness", stiffness}).out);
