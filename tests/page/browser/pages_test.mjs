@@ -54,6 +54,9 @@ step('TwoPagesShowTheSameAndBothMayAct', async () => {
   const one = await openPage(browser, cell.link);
   const other = await openPage(browser, cell.link);
   await one.getByText('quick', {exact: true}).click();
+  const celsius = one.getByLabel('Block, °C');
+  assert.equal(await celsius.inputValue(), '20', 'as the block\u2019s file has it');
+  await celsius.fill('25.5');
   await start(one);
   await waitForState(other, ['Starting', 'Touching']);
   await waitForState(other, 'Touching');
@@ -62,9 +65,13 @@ step('TwoPagesShowTheSameAndBothMayAct', async () => {
   const total = async (page) => (await page.locator('header .count').textContent()).split(' · ')[0];
   await waitForState(other, 'On hold');
   assert.equal(await total(one), await total(other));
+  const {conditions} = await cell.get(`/api/v1/runs/${(await cell.get('/api/v1/status')).run_id}`);
+  assert.deepEqual([conditions.block_temperature_c, conditions.std_temperature_k, conditions.block_temperature_source], [25.5, 1, 'run']);
   await stopButton(one).click();
   await waitForState(other, 'Stopped');
   await waitForState(one, 'Stopped');
+  await one.keyboard.press('Alt+Digit1');
+  assert.equal(await celsius.inputValue(), '20', 'it was for that run');
 });
 
 step('APageThatIsLoadedInTheMiddleOfARunHasTheCurvesFromItsBeginning', async () => {

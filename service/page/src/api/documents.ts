@@ -74,7 +74,8 @@ export interface Place { located_at: string; shift_mm: number[]; turn_deg: numbe
 export interface Cell {
   name: string;
   arm: string;
-  block: {name: string; temperature_c: number | null; faces: Face[]};
+  // A daemon that takes no temperature with a run does not tell the deviation.
+  block: {name: string; temperature_c: number | null; std_temperature_k?: number | null; faces: Face[]};
   place?: Place | null;  // a daemon that cannot locate the block does not tell it
   probe: {name: string; stylus_radius_mm: number};
   default_recipe: string;

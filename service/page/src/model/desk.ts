@@ -5,6 +5,7 @@ import {Live, type Link} from '../api/live.ts';
 import {kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
 import {commandPath, isActive, type Command} from './states.ts';
 import {slimResult} from './slim_result.ts';
+import {startBody, type Conditions} from './start_body.ts';
 import {toldFault} from './sticky_faults.ts';
 import {Store} from './store.ts';
 
@@ -13,9 +14,6 @@ const kReadiness_ms = 2000;
 const kTrendRuns = 20;
 const kPlanPatience_ms = 120000;
 const kStopPatience_ms = 1500;  // then it is asked again
-
-/** What a start is made with beside the recipe. */
-export interface Conditions { operator?: string; touching?: 'guided' }
 
 /** The page's hands: asks the daemon, sends commands, keeps the store. Views call nothing else. */
 export class Desk {
@@ -234,8 +232,8 @@ export class Desk {
 
   /** Whether the daemon took it. */
   async startRun(conditions: Conditions): Promise<boolean> {
-    const {recipe} = this.store.state;
-    return recipe !== null && this.send('start', '/api/v1/runs', {recipe, ...conditions});
+    const {recipe, cell} = this.store.state;
+    return recipe !== null && this.send('start', '/api/v1/runs', startBody(recipe, conditions, cell?.block ?? null));
   }
 
   async command(command: Command): Promise<void> {

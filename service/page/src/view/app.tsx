@@ -1,8 +1,9 @@
 import {useEffect, useRef, useState} from 'preact/hooks';
-import type {Conditions, Desk} from '../model/desk.ts';
+import type {Desk} from '../model/desk.ts';
 import {age, fill, type Language} from '../model/format.ts';
 import {dataAge_ms, kViews, type PageState, type View} from '../model/page_state.ts';
 import {mayPause} from '../model/states.ts';
+import type {Conditions} from '../model/start_body.ts';
 import {useStore} from '../model/store.ts';
 import {sayIn, type WordKey} from '../words/words.ts';
 import {CellView} from './cell_view.tsx';
@@ -63,7 +64,9 @@ export function App({desk}: {desk: Desk}) {
     keepTheme(theme);
   }, [theme]);
   const startRun = async (): Promise<void> => {
-    if (await desk.startRun(conditions)) document.querySelector<HTMLElement>('header h1')?.focus();
+    if (!await desk.startRun(conditions)) return;
+    setConditions(({temperature: _, ...others}) => others);  // it was measured for this run
+    document.querySelector<HTMLElement>('header h1')?.focus();
   };
   const place = useRef<HTMLElement>(null);
   useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun, state.isStopLost]);

@@ -1,9 +1,10 @@
 import {useEffect} from 'preact/hooks';
 import type {Place, Recipe} from '../api/documents.ts';
-import type {Conditions, Desk} from '../model/desk.ts';
+import type {Desk} from '../model/desk.ts';
 import {cut, duration, number, time} from '../model/format.ts';
 import type {PageState, PlanState} from '../model/page_state.ts';
 import {conditions, type Condition} from '../model/readiness.ts';
+import {shownTemperature, type Conditions, type WrittenTemperature} from '../model/start_body.ts';
 import {isActive, isLocating, mayStart} from '../model/states.ts';
 import {faultWords, withButtons} from '../words/fault_words.ts';
 import {Symbol, type Shape} from './symbol.tsx';
@@ -120,7 +121,6 @@ function RecipeFigures({recipe, plan, state, desk}: {recipe: Recipe; plan: PlanS
 /** Who answers for the run, and whose hand makes its touches: kept with the result, needed by no start. */
 function StartFields({state, given, onConditions}: {state: PageState; given: Conditions; onConditions: (conditions: Conditions) => void}) {
   const say = useSay();
-  const language = useLanguage();
   const takeOperator = (text: string): void => {
     const {operator: _, ...others} = given;
     onConditions(text.trim() ? {...others, operator: text.trim()} : others);
@@ -129,7 +129,10 @@ function StartFields({state, given, onConditions}: {state: PageState; given: Con
     const {touching: _, ...others} = given;
     onConditions(isGuided ? {...others, touching: 'guided'} : others);
   };
-  const temperature_c = state.cell?.block.temperature_c ?? null;
+  const takeTemperature = (written: WrittenTemperature): void => {
+    onConditions({...given, temperature: {...given.temperature, ...written}});
+  };
+  const {celsius, std} = shownTemperature(given.temperature, state.cell?.block ?? null);
   return (
     <div class="fields">
       <label>
@@ -137,17 +140,22 @@ function StartFields({state, given, onConditions}: {state: PageState; given: Con
         <input type="text" maxLength={50} autocomplete="off" placeholder={say('optional')} value={given.operator ?? ''}
                onInput={(event) => takeOperator(event.currentTarget.value)} />
       </label>
-      <div>
-        <p class={state.cell && temperature_c === null ? 'abnormal' : ''}>
-          {say('temperature')}: {temperature_c === null ? say('unknown') : `${number(temperature_c, 1, language)} °C`}
-        </p>
-        {state.cell?.place !== undefined && (
-          <label class="check">
-            <input type="checkbox" checked={given.touching === 'guided'} onChange={(event) => takeGuided(event.currentTarget.checked)} />
-            <span>{say('guided')}</span>
-          </label>
-        )}
-      </div>
+      <label>
+        <span class={state.cell && !celsius.trim() ? 'abnormal' : ''}>{say('temperature')}</span>
+        <input type="text" inputMode="decimal" maxLength={12} autocomplete="off" placeholder={say('unknown')} value={celsius}
+               onInput={(event) => takeTemperature({celsius: event.currentTarget.value})} />
+      </label>
+      <label>
+        <span>{say('temperatureStd')}</span>
+        <input type="text" inputMode="decimal" maxLength={12} autocomplete="off" placeholder={say('unknown')} value={std}
+               onInput={(event) => takeTemperature({std: event.currentTarget.value})} />
+      </label>
+      {state.cell?.place !== undefined && (
+        <label class="check">
+          <input type="checkbox" checked={given.touching === 'guided'} onChange={(event) => takeGuided(event.currentTarget.checked)} />
+          <span>{say('guided')}</span>
+        </label>
+      )}
     </div>
   );
 }

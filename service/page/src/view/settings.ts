@@ -1,6 +1,6 @@
 // What a person chose on this browser. A browser that keeps nothing begins anew each time.
-import type {Conditions} from '../model/desk.ts';
 import type {Language} from '../model/format.ts';
+import type {Conditions} from '../model/start_body.ts';
 
 export type Theme = 'light' | 'dark';
 

@@ -105,7 +105,8 @@ export const en = {
   plan: 'Plan it',
   planRefused: 'No plan: {why}',
   operator: 'Operator',
-  temperature: 'Block',
+  temperature: 'Block, °C',
+  temperatureStd: '± std, K',
   guided: 'Touch by hand',
   optional: 'optional',
 

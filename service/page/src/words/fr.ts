@@ -107,7 +107,8 @@ export const fr: Words = {
   plan: 'Calculer le plan',
   planRefused: 'Pas de plan : {why}',
   operator: 'Opérateur',
-  temperature: 'Bloc',
+  temperature: 'Bloc, °C',
+  temperatureStd: '± écart, K',
   guided: 'Palper à la main',
   optional: 'facultatif',
 

@@ -1,0 +1,30 @@
+import assert from 'node:assert/strict';
+import {test} from 'node:test';
+import {shownTemperature, startBody} from 'page/model/start_body.ts';
+
+const kBlock = {name: 'block', temperature_c: 20, std_temperature_k: 1, faces: []};
+const kUnknown = {name: 'block', temperature_c: null, std_temperature_k: null, faces: []};
+
+test('TheFieldsShowTheFiguresOfTheBlocksFileUntilSomebodyWritesOthers', () => {
+  assert.deepEqual(shownTemperature(undefined, kBlock), {celsius: '20', std: '1'});
+  assert.deepEqual(shownTemperature({celsius: '25.3'}, kBlock), {celsius: '25.3', std: '1'});
+  assert.deepEqual(shownTemperature({celsius: ''}, kBlock), {celsius: '', std: '1'}, 'an emptied field stays empty');
+  assert.deepEqual(shownTemperature(undefined, kUnknown), {celsius: '', std: ''});
+  assert.deepEqual(shownTemperature(undefined, null), {celsius: '', std: ''});
+});
+
+test('ATemperatureIsSentWithItsDeviationWhenItIsNotTheFiles', () => {
+  assert.deepEqual(startBody('quick', {operator: 'Ada'}, kBlock), {recipe: 'quick', operator: 'Ada'});
+  assert.deepEqual(startBody('quick', {temperature: {celsius: '20 '}}, kBlock), {recipe: 'quick'});
+  assert.deepEqual(startBody('quick', {temperature: {celsius: '25,3'}}, kBlock),
+                   {recipe: 'quick', block_temperature_c: 25.3, std_block_temperature_k: 1});
+  assert.deepEqual(startBody('quick', {touching: 'guided', temperature: {std: '0.5'}}, kBlock),
+                   {recipe: 'quick', touching: 'guided', block_temperature_c: 20, std_block_temperature_k: 0.5});
+});
+
+test('WhatIsMissingOrNoNumberIsLeftToTheDaemonToRefuse', () => {
+  assert.deepEqual(startBody('quick', {temperature: {celsius: '25'}}, kUnknown), {recipe: 'quick', block_temperature_c: 25});
+  assert.deepEqual(startBody('quick', {temperature: {celsius: 'warm'}}, kBlock),
+                   {recipe: 'quick', block_temperature_c: 'warm', std_block_temperature_k: 1});
+  assert.deepEqual(startBody('quick', {temperature: {celsius: ''}}, kBlock), {recipe: 'quick', std_block_temperature_k: 1});
+});
