@@ -124,6 +124,20 @@ TEST(Report, ThePageNeedsNothingFromElsewhereAndRunsNothing) {
     EXPECT_THAT(page, Not(HasSubstr(foreign)));
 }
 
+TEST(Report, TheBlocksTemperatureIsToldWithItsSourceAndTime) {
+  RunRecord warm = record();
+  warm.run.block_temperature = StoredTemperature{.celsius = 25.5, .std_k = 0.5, .source = "run"};
+  Json document = Json::parse(warm.result_json.value());
+  document.at("conditions")
+      .update({{"std_temperature_k", 0.5},
+               {"block_temperature_source", "run"},
+               {"block_temperature_at", "2026-01-31T08:15:30.000Z"}});
+  warm.result_json = document.dump();
+  EXPECT_THAT(page_of(warm),
+              HasSubstr("25.5 °C ± 0.5 K (std), given with the run, measured 2026-01-31T08:15"));
+  EXPECT_THAT(page_of(record()), HasSubstr(", from the block&#39;s file"));
+}
+
 TEST(Report, TextFromOutsideStaysText) {
   RunRecord hostile = record();
   const std::string markup = "<script>alert('x')</script>\x01&\"";
