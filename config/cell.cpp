@@ -48,10 +48,11 @@ calib::ErrorTolerances prior_tolerances(const Cell& cell) {
 void demand_revolute(const Cell& cell) {
   for (std::size_t joint = 0; joint < calib::kJointCount; ++joint) {
     if (cell.arm.model.joint_types[joint] == calib::JointType::kRevolute) continue;
-    throw ConfigError(cell.file.string(), "/arm",
-                      "joint " + std::to_string(joint + 1) + " of " + in_quotes(cell.arm.name) +
-                          " is prismatic; only arms with six revolute joints are driven or simulated, use " +
-                          "touches of this one with touchcal identify");
+    throw ConfigError(
+        cell.file.string(), "/arm",
+        "joint " + std::to_string(joint + 1) + " of " + in_quotes(cell.arm.name) +
+            " is prismatic; only arms with six revolute joints are planned, driven or simulated, use " +
+            "touches of this one with touchcal identify");
   }
 }
 

@@ -171,7 +171,7 @@ calib::ArtefactKnowledge artefact_knowledge(const Cell& cell);
 /// block's place that have none, unknown_place_std.
 calib::ErrorTolerances prior_tolerances(const Cell& cell);
 
-/// Prismatic joints are not supported by the daemon and the simulator: throws ConfigError for one.
+/// Prismatic joints are not supported by planner, daemon and simulator: throws ConfigError for one.
 void demand_revolute(const Cell& cell);
 
 }  // namespace cell

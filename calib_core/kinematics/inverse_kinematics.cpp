@@ -1,6 +1,5 @@
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +8,6 @@
 
 namespace calib {
 namespace {
-
-using Vector6 = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 /// Sine of joint 5 below which the wrist is straight.
@@ -33,11 +30,16 @@ double side(double alpha_rad) { return quarter_turns(alpha_rad) == 1 ? 1.0 : -1.
 
 constexpr std::array kSideways{2, 4, 5, 6};  // frames
 
+/// A spherical wrist, but for small errors, on an upper arm and a forearm that the closed form can divide by.
 bool has_spherical_wrist(const KinematicModel& model) {
   constexpr double kSmallErrorRad = 0.1;
-  const bool revolute =
-      std::ranges::all_of(model.joint_types, [](JointType type) { return type == JointType::kRevolute; });
-  if (!revolute || quarter_turns(link(model, 3).alpha_rad) != 0) return false;
+  constexpr double kSmallErrorMetres = 0.020;
+  if (quarter_turns(link(model, 3).alpha_rad) != 0) return false;
+  if (std::abs(link(model, 3).d_m) < kSmallErrorMetres) return false;
+  if (std::hypot(link(model, 4).d_m, link(model, 4).r_m) < kSmallErrorMetres) return false;
+  for (const int frame : {5, 6}) {
+    if (std::hypot(link(model, frame).d_m, link(model, frame).r_m) > kSmallErrorMetres) return false;
+  }
   for (const int frame : kSideways) {
     if (!is_sideways(link(model, frame).alpha_rad)) return false;
   }
@@ -96,42 +98,6 @@ void add_turns(const JointVector& joints, const JointVector& turns, const JointR
                        [&](const JointVector& candidate) { return ranges.contains(candidate); });
 }
 
-Vector6 pose_error(const Eigen::Isometry3d& wanted, const Eigen::Isometry3d& reached) {
-  const Eigen::AngleAxisd turn(wanted.linear() * reached.linear().transpose());
-  return (Vector6() << wanted.translation() - reached.translation(), turn.angle() * turn.axis()).finished();
-}
-
-bool reaches(const PreparedModel& prepared, const JointVector& joints,
-             const Eigen::Isometry3d& block_from_tip) {
-  const Eigen::Isometry3d reached = forward_chain(prepared, joints).block_from_frame.back();
-  return (reached.translation() - block_from_tip.translation()).norm() < kPoseErrorMax &&
-         (reached.linear() - block_from_tip.linear()).norm() < kPoseErrorMax;
-}
-
-std::optional<JointVector> solve_near(const PreparedModel& prepared, const Eigen::Isometry3d& block_from_tip,
-                                      const JointVector& start) {
-  constexpr int kStepsMax = 40;
-  constexpr double kStepMaxRad = 0.3;  // of any joint: a longer one may land on another branch
-  constexpr double kErrorSmall = 1e-13;
-  JointVector joints = start;
-  for (int step = 0; step < kStepsMax; ++step) {
-    const Chain chain = forward_chain(prepared, joints);
-    const Vector6 error = pose_error(block_from_tip, chain.block_from_frame.back());
-    if (!error.allFinite()) return std::nullopt;
-    if (error.norm() < kErrorSmall) return joints;
-    // The damping vanishes with the error: Newton's method near the solution, bounded steps far from it.
-    const auto jacobian = pose_jacobian(prepared.model, chain);
-    const double damping = 1e-2 * error.squaredNorm();
-    const Eigen::Matrix<double, 6, 6> normal =
-        jacobian.transpose() * jacobian + damping * Eigen::Matrix<double, 6, 6>::Identity();
-    JointVector move = normal.ldlt().solve(jacobian.transpose() * error);
-    move *= std::min(1.0, kStepMaxRad / std::max(move.cwiseAbs().maxCoeff(), 1e-300));
-    joints += move;
-    if (move.norm() < kErrorSmall) break;
-  }
-  return reaches(prepared, joints, block_from_tip) ? std::optional(joints) : std::nullopt;
-}
-
 }  // namespace
 
 struct InverseKinematics::Branch {
@@ -149,7 +115,14 @@ InverseKinematics::InverseKinematics(const KinematicModel& model) : prepared_(pr
     offsets_rad_[joint] = std::remainder(link(model, joint + 1).theta_rad, kTurn);
     turns_[joint] = kTurn / std::abs(model.gains[static_cast<std::size_t>(joint)]);
   }
-  if (!has_spherical_wrist(model)) return;
+  const bool slides =
+      std::ranges::any_of(model.joint_types, [](JointType type) { return type == JointType::kPrismatic; });
+  if (slides) return;
+  if (!has_spherical_wrist(model)) {
+    structure_ = Structure::kGeneral;
+    numerical_.emplace(model);
+    return;
+  }
   structure_ = closed_form_is_exact(prepared_) ? Structure::kSphericalWrist : Structure::kNearSphericalWrist;
   // Constant transforms before the rotation of joint 1 and after the rotation of joint 6.
   LinkParameters until_joint1 = link(model, 1);
@@ -235,7 +208,8 @@ JointVector InverseKinematics::solve_wrist(const Eigen::Matrix3d& frame1_from_fr
 
 Postures InverseKinematics::solve(const Eigen::Isometry3d& block_from_tip) const {
   Postures found;
-  if (structure_ == Structure::kUnsupported) return found;
+  if (structure_ == Structure::kWithPrismaticJoint) return found;
+  if (numerical_) return numerical_->solve(block_from_tip);
   const Eigen::Isometry3d wanted = frame1_from_wrist(block_from_tip);
   for (const double shoulder : {1.0, -1.0}) {
     bool shoulders_meet = false;
@@ -291,23 +265,6 @@ std::optional<JointVector> InverseKinematics::follow(const Eigen::Isometry3d& bl
     joints[joint] += turns_[joint] * std::nearbyint((start[joint] - joints[joint]) / turns_[joint]);
   }
   return joints;
-}
-
-Eigen::Matrix<double, 6, kJointCount> pose_jacobian(const KinematicModel& model, const Chain& chain) {
-  Eigen::Matrix<double, 6, kJointCount> jacobian;
-  jacobian.topRows<3>() = tip_jacobian(model, chain);
-  for (int joint = 0; joint < kJointCount; ++joint) {
-    const auto index = static_cast<std::size_t>(joint);
-    const bool turns = model.joint_types[index] == JointType::kRevolute;
-    jacobian.col(joint).tail<3>() =
-        (turns ? model.gains[index] : 0.0) * chain.block_from_frame[index + 1].linear().col(2);
-  }
-  return jacobian;
-}
-
-std::optional<JointVector> solve_near(const KinematicModel& model, const Eigen::Isometry3d& block_from_tip,
-                                      const JointVector& start) {
-  return solve_near(prepare(model), block_from_tip, start);
 }
 
 std::vector<JointVector> inverse_kinematics(const KinematicModel& model, const JointRanges& ranges,

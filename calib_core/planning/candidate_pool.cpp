@@ -35,6 +35,14 @@ std::optional<JointVector> wrap_into(const JointRanges& ranges, const JointVecto
   return ranges.contains(joints) ? std::optional(joints) : std::nullopt;
 }
 
+/// Why a pose has no posture at all.
+std::string no_posture(const KinematicModel& arm) {
+  const auto slides = std::ranges::find(arm.joint_types, JointType::kPrismatic);
+  if (slides == arm.joint_types.end()) return "out of reach";
+  return "joint " + std::to_string(slides - arm.joint_types.begin() + 1) +
+         " is prismatic, postures are found for six revolute joints only";
+}
+
 /// Tries random poses of one face.
 class FaceSearch {
  public:
@@ -75,7 +83,7 @@ class FaceSearch {
     std::map<std::string, int> counts;  // causes with the same text are counted together
     for (const auto& [infeasibility, count] : infeasibilities_)
       counts[describe(problem_, infeasibility)] += count;
-    if (out_of_reach_ > 0) counts["out of reach"] += out_of_reach_;
+    if (out_of_reach_ > 0) counts[no_posture(problem_.nominal)] += out_of_reach_;
     if (out_of_ranges_ > 0) counts["joint ranges"] += out_of_ranges_;
     FaceEffort effort = effort_;
     for (const auto& [reason, count] : counts) effort.obstructions.push_back({reason, count});

@@ -31,18 +31,29 @@ bool is_above_plane(const Capsule& body, const Segment& axis, const Plane& plane
   return end_is_above(axis.from_m, body.from_m.norm()) && end_is_above(axis.to_m, body.to_m.norm());
 }
 
-/// Whether a straight motion of the tip needs joints faster than kJointRateMax: the largest singular value of
-/// the 6 x 3 matrix R in q = R v, from v = A q1 + B q2 and 0 = C q1 + D q2 (joints 1 to 3 and 4 to 6).
-bool is_singular(const KinematicModel& model, const Chain& chain) {
-  const auto jacobian = pose_jacobian(model, chain);
-  const Eigen::Matrix3d wrist_from_arm =
-      -jacobian.bottomRightCorner<3, 3>().inverse() * jacobian.bottomLeftCorner<3, 3>();
-  const Eigen::Matrix3d arm_rates =
+using TipJointRates = Eigen::Matrix<double, kJointCount, 3>;
+
+/// R in q = R v, the joint rates of a tip that moves with v and does not turn: from v = A q1 + B q2 and 0 =
+/// C q1 + D q2 (joints 1 to 3 and 4 to 6). Not finite in a singular posture.
+TipJointRates tip_joint_rates(const Eigen::Matrix<double, 6, kJointCount>& jacobian) {
+  constexpr double kFlat = 1e-6;  // the last three axes of some arms never span the space of turns
+  const Eigen::Matrix3d wrist = jacobian.bottomRightCorner<3, 3>();
+  if (std::abs(wrist.determinant()) < kFlat) return jacobian.partialPivLu().inverse().leftCols<3>();
+  const Eigen::Matrix3d wrist_from_arm = -wrist.inverse() * jacobian.bottomLeftCorner<3, 3>();
+  TipJointRates rates;
+  rates.topRows<3>() =
       (jacobian.topLeftCorner<3, 3>() + jacobian.topRightCorner<3, 3>() * wrist_from_arm).inverse();
-  const Eigen::Matrix3d wrist_rates = wrist_from_arm * arm_rates;
+  rates.bottomRows<3>() = wrist_from_arm * rates.topRows<3>();
+  return rates;
+}
+
+/// Whether a straight motion of the tip needs joints faster than kJointRateMax: the largest singular value of
+/// tip_joint_rates().
+bool is_singular(const KinematicModel& model, const Chain& chain) {
+  const TipJointRates rates = tip_joint_rates(pose_jacobian(model, chain));
   // Below the limit when limit^2 - R^T R is positive definite: tested by its leading minors.
-  const Eigen::Matrix3d spare = kJointRateMax * kJointRateMax * Eigen::Matrix3d::Identity() -
-                                arm_rates.transpose() * arm_rates - wrist_rates.transpose() * wrist_rates;
+  const Eigen::Matrix3d spare =
+      kJointRateMax * kJointRateMax * Eigen::Matrix3d::Identity() - rates.transpose() * rates;
   return !(spare(0, 0) > 0.0 && spare.topLeftCorner<2, 2>().determinant() > 0.0 && spare.determinant() > 0.0);
 }
 

@@ -30,7 +30,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
 const std::map<std::string, std::set<std::string>> kCoreLayerMayInclude{
     {"geometry", {}},
     {"numerics", {"geometry"}},
-    {"kinematics", {"geometry"}},
+    {"kinematics", {"geometry", "numerics"}},
     {"observability", {"geometry", "numerics", "kinematics"}},
     {"estimation", {"geometry", "numerics", "kinematics", "observability"}},
     {"uncertainty", {"geometry", "numerics", "kinematics", "estimation"}},

@@ -7,6 +7,7 @@
 #include <new>
 
 #include "calib_core/identification/identify.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "tests/calib_core/block_study.hpp"
 
 namespace {
@@ -79,6 +80,19 @@ TEST(Allocations, IterationsAfterTheFirstTakeNone) {
   EXPECT_EQ(from_nominal.status, IdentificationStatus::kConverged) << from_nominal.message;
   EXPECT_EQ(from_its_end.status, IdentificationStatus::kConverged) << from_its_end.message;
   EXPECT_GE(from_nominal.iterations.size(), from_its_end.iterations.size() + 3);
+}
+
+TEST(Allocations, FindingPosturesWithoutASphericalWristTakesNone) {
+  KinematicModel model = paper::nominal();
+  model.links[5].r_m = 0.1;
+  const Eigen::Isometry3d pose = forward_kinematics(model, JointVector::Constant(0.7));
+  int before = allocations;
+  const InverseKinematics inverse(model);
+  EXPECT_GT(allocations, before);  // the table
+  before = allocations;
+  const Postures found = inverse.solve(pose);
+  EXPECT_EQ(allocations, before);
+  EXPECT_FALSE(found.empty());
 }
 
 }  // namespace

@@ -114,6 +114,16 @@ TEST_F(PlanCommand, ABlockOutOfReachIsRefused) {
   expect_refused(plan(), cell::kExitRefused, {"plane 1", "0 of", "out of reach", "--place"});
 }
 
+TEST_F(PlanCommand, AnArmThatSlidesIsRefusedByItsJoint) {
+  change("arms/tx90.json", [](json& arm) {
+    arm["frames"][3]["joint_type"] = "prismatic";
+    arm.erase("gravity");
+    arm.erase("gears");
+  });
+  expect_refused(plan(), cell::kExitBadInput,
+                 {"/arm", "joint 3 of \"tx90\" is prismatic", "planned", "touchcal identify"});
+}
+
 TEST_F(PlanCommand, AFaceThatNoPostureReachesIsRefused) {
   change("cells/edf/cell.json", [](json& cell) {
     cell["keep_out_boxes"].push_back(

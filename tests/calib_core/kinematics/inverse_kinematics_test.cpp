@@ -190,52 +190,42 @@ TEST(InverseKinematics, HasNothingForAPoseOutOfReach) {
   EXPECT_TRUE(inverse_kinematics(model, tx90::joint_ranges(), in_the_column).empty());
 }
 
-TEST(InverseKinematics, HasNothingForAnArmOfAnotherKind) {
-  const Eigen::Isometry3d pose = forward_kinematics(paper::nominal(), tx90::park_joints());
+/// The postures of 200 poses that are not among those found.
+int postures_missed(const KinematicModel& model) {
+  std::mt19937_64 chance(4);
+  const JointRanges everywhere{JointVector::Constant(-kTurn / 2), JointVector::Constant(kTurn / 2)};
+  int missed = 0;
+  for (int tried = 0; tried < 200;) {
+    const JointVector joints = random_joints(chance, everywhere);
+    if (!is_regular(model, joints, 1e-3)) continue;
+    ++tried;
+    missed += nearest(inverse_kinematics(model, everywhere, forward_kinematics(model, joints)), joints) < 1e-6
+                  ? 0
+                  : 1;
+  }
+  return missed;
+}
+
+TEST(InverseKinematics, FindsPosturesOfAnArmWithoutASphericalWrist) {
   KinematicModel parallel_wrist = paper::nominal();
   parallel_wrist.links[5].alpha_rad = 0.0;
-  EXPECT_TRUE(inverse_kinematics(parallel_wrist, tx90::joint_ranges(), pose).empty());
+  parallel_wrist.links[5].d_m = 0.1;
+  EXPECT_LE(postures_missed(parallel_wrist), 2);
+  KinematicModel offset_wrist = paper::nominal();
+  offset_wrist.links[5].r_m = 0.1;
+  offset_wrist.links[6].d_m = 0.06;
+  EXPECT_LE(postures_missed(offset_wrist), 2);
+  KinematicModel short_forearm = paper::nominal();
+  short_forearm.links[4] = {.alpha_rad = short_forearm.links[4].alpha_rad};
+  short_forearm.links[5].r_m = 0.3;
+  EXPECT_LE(postures_missed(short_forearm), 2);
+}
+
+TEST(InverseKinematics, HasNothingForAnArmThatSlides) {
   KinematicModel prismatic = paper::nominal();
   prismatic.joint_types[2] = JointType::kPrismatic;
+  const Eigen::Isometry3d pose = forward_kinematics(prismatic, tx90::park_joints());
   EXPECT_TRUE(inverse_kinematics(prismatic, tx90::joint_ranges(), pose).empty());
-}
-
-TEST(SolveNear, FollowsAStraightLineOnTheSameBranch) {
-  const KinematicModel model = apply(paper::nominal(), paper::table3());
-  const JointVector start = tx90::degrees(20, 10, 70, 30, 40, 50);
-  Eigen::Isometry3d pose = forward_kinematics(model, start);
-  JointVector joints = start;
-  for (int millimetre = 0; millimetre < 40; ++millimetre) {
-    pose.translation().z() += 1e-3;
-    const auto next = solve_near(model, pose, joints);
-    ASSERT_TRUE(next);
-    EXPECT_LT(pose_error(model, *next, pose), 2 * kPoseErrorMax);
-    EXPECT_LT((*next - joints).norm(), 0.02);
-    joints = *next;
-  }
-}
-
-TEST(SolveNear, HasNothingForAPoseOutOfReach) {
-  const KinematicModel model = paper::nominal();
-  Eigen::Isometry3d far = forward_kinematics(model, tx90::park_joints());
-  far.translation().x() += 2.0;
-  EXPECT_FALSE(solve_near(model, far, tx90::park_joints()));
-}
-
-TEST(PoseJacobian, MatchesDifferences) {
-  const KinematicModel model = apply(paper::nominal(), paper::table3());
-  const JointVector joints = tx90::degrees(20, 10, 70, 30, 40, 50);
-  const Chain chain = forward_chain(model, joints);
-  const auto jacobian = pose_jacobian(model, chain);
-  constexpr double kStep = 1e-5;
-  for (int joint = 0; joint < kJointCount; ++joint) {
-    const auto ahead = forward_kinematics(model, joints + kStep * JointVector::Unit(joint));
-    const auto behind = forward_kinematics(model, joints - kStep * JointVector::Unit(joint));
-    const Eigen::AngleAxisd turn(ahead.linear() * behind.linear().transpose());
-    Eigen::Matrix<double, 6, 1> numeric;
-    numeric << ahead.translation() - behind.translation(), turn.angle() * turn.axis();
-    EXPECT_LT((jacobian.col(joint) - numeric / (2 * kStep)).norm(), 1e-8) << joint;
-  }
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "calib_core/numerics/halton.hpp"
 #include "tests/calib_core/tx90.hpp"
 
 namespace calib {
@@ -110,6 +111,56 @@ TEST(CandidatePool, GivesTheOthersWhatAFaceCannotHave) {
   EXPECT_EQ(pool.efforts[0].feasible, 0);
   ASSERT_FALSE(pool.efforts[0].obstructions.empty());
   EXPECT_EQ(pool.efforts[0].obstructions[0].reason, "out of reach");
+}
+
+TEST(CandidatePool, NamesTheJointThatSlidesAndNotTheReach) {
+  PlanningProblem problem = demo_problem();
+  problem.requests = {{2, 5, 5, 0}};
+  problem.candidate_count = 10;
+  problem.nominal.joint_types[2] = JointType::kPrismatic;
+  const CandidatePool pool = find_candidates(problem);
+  ASSERT_EQ(pool.efforts[0].obstructions.size(), 1U);
+  EXPECT_EQ(pool.efforts[0].obstructions[0].reason,
+            "joint 3 is prismatic, postures are found for six revolute joints only");
+}
+
+/// The first posture that is clear of everything, to park in.
+JointVector clear_posture(const PlanningProblem& problem) {
+  for (int i = 1;; ++i) {
+    const JointVector joints = halton_posture(i, problem.joint_ranges);
+    const Chain chain = forward_chain(problem.nominal, joints);
+    if (!find_clash(travel_scene(problem), chain, problem.nominal_position_error_m)) return joints;
+  }
+}
+
+void expect_touches_of(const KinematicModel& arm) {
+  PlanningProblem problem = demo_problem();
+  problem.candidate_count = 100;
+  problem.nominal = arm;
+  problem.park_joints = clear_posture(problem);
+  const CandidatePool pool = find_candidates(problem);
+  EXPECT_GE(std::ssize(pool.candidates), problem.candidate_count);
+  for (const TouchCandidate& candidate : pool.candidates) {
+    const Eigen::Isometry3d reached = forward_kinematics(problem.nominal, candidate.joints);
+    EXPECT_LT((reached.matrix() - candidate.pose.block_from_tip.matrix()).norm(), 2 * kPoseErrorMax);
+  }
+}
+
+TEST(CandidatePool, HasTouchesOfAnArmWithoutASphericalWrist) {
+  KinematicModel offset_wrist = paper::nominal();
+  offset_wrist.links[5].r_m = 0.05;
+  offset_wrist.links[6].d_m = 0.03;
+  expect_touches_of(offset_wrist);
+}
+
+// Two of the last three axes are parallel: those three alone are never able to turn the tip any way.
+TEST(CandidatePool, HasTouchesOfAnArmWhoseLastAxesDoNotSpanAllTurns) {
+  constexpr double kQuarterTurn = std::numbers::pi / 2.0;
+  KinematicModel parallel = paper::nominal();
+  parallel.links[3] = {.alpha_rad = kQuarterTurn, .d_m = 0.1};
+  parallel.links[4] = {.d_m = 0.4};
+  parallel.links[5] = {.d_m = 0.4};
+  expect_touches_of(parallel);
 }
 
 TEST(CandidatePool, IsTheSameForTheSameSeedAndAnotherForAnother) {
