@@ -1,34 +1,26 @@
 // Arms that come as JSON only, and are identified like the TX90.
+#include "other_arms.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/identification/identify.hpp"
 #include "calib_core/kinematics/gravity.hpp"
+#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/arm_file.hpp"
 #include "config/read_config.hpp"
 #include "config/touches_file.hpp"
-#include "folder.hpp"
 
 namespace cell {
 namespace {
 
 using testing::HasSubstr;
-
-/// The demo cell with another arm in it.
-Cell demo_with(const std::string& arm) {
-  const Folder folder;
-  nlohmann::json cell = json_of(kSourceDir / "config/cells/demo/cell.json");
-  for (const char* key : {"block", "probe"})
-    cell[key] = (kSourceDir / "config/cells/demo" / cell[key].get<std::string>()).string();
-  for (auto& recipe : cell["recipes"])
-    recipe = (kSourceDir / "config/cells/demo" / recipe.get<std::string>()).string();
-  cell["arm"] = (kSourceDir / "config/arms" / (arm + ".json")).string();
-  return read_cell(folder.write("cell.json", cell.dump()));
-}
 
 calib::JointVector joints_in_range(const Arm& arm, std::mt19937_64& chance) {
   std::uniform_real_distribution<double> share(0.1, 0.9);
@@ -69,7 +61,8 @@ INSTANTIATE_TEST_SUITE_P(Arms, OtherArm, testing::Values("tx60", "three-parallel
 });
 
 TEST_P(OtherArm, TakesThePlaceOfTheTx90InACell) {
-  const Cell cell = demo_with(GetParam());
+  const Folder folder;
+  const Cell cell = demo_with(GetParam(), folder);
   EXPECT_EQ(cell.arm.name, GetParam());
   EXPECT_NO_THROW(demand_revolute(cell));
   const std::string document =
@@ -78,7 +71,8 @@ TEST_P(OtherArm, TakesThePlaceOfTheTx90InACell) {
 }
 
 TEST_P(OtherArm, ShowsTheErrorsThatWerePutInAtItsTip) {
-  const Cell cell = demo_with(GetParam());
+  const Folder folder;
+  const Cell cell = demo_with(GetParam(), folder);
   std::mt19937_64 chance(17);
   std::uniform_real_distribution<double> within(-1.0, 1.0);
   calib::ErrorVector errors = calib::ErrorVector::Zero();
@@ -106,13 +100,47 @@ TEST_P(OtherArm, ShowsTheErrorsThatWerePutInAtItsTip) {
   EXPECT_LT(calibrated_miss_m, 1e-9);
 }
 
-TEST(SlidingArm, IsReadButNotDriven) {
+/// Whether two postures differ by whole turns only.
+bool is_same_posture(const calib::JointVector& a, const calib::JointVector& b) {
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  return (a - b).unaryExpr([](double angle) { return std::remainder(angle, kTurn); }).norm() < 1e-6;
+}
+
+TEST_P(OtherArm, HasEveryPostureOfAPoseAmongThoseThatAreFound) {
+  constexpr int kPoseCount = 500;
+  constexpr double kRegularDeterminant = 1e-3;
+  const Arm arm = read_arm(kSourceDir / "config/arms" / (GetParam() + ".json"));
+  const calib::InverseKinematics inverse(arm.model);
+  std::mt19937_64 chance(3);
+  int tried = 0;
+  std::size_t found_count = 0;
+  while (tried < kPoseCount) {
+    const calib::JointVector joints = joints_in_range(arm, chance);
+    const calib::Chain chain = calib::forward_chain(arm.model, joints);
+    if (std::abs(calib::pose_jacobian(arm.model, chain).determinant()) < kRegularDeterminant) continue;
+    ++tried;
+    const calib::Postures found = inverse.solve(chain.block_from_frame.back());
+    found_count += found.size();
+    EXPECT_TRUE(std::ranges::any_of(found, [&](const auto& other) { return is_same_posture(other, joints); }))
+        << joints.transpose();
+    for (const calib::JointVector& other : found) {
+      const Eigen::Matrix4d miss =
+          calib::forward_kinematics(arm.model, other).matrix() - chain.block_from_frame.back().matrix();
+      ASSERT_LT(miss.norm(), 2.0 * calib::kPoseErrorMax) << other.transpose();
+    }
+  }
+  // Two shoulders, two elbows and two wrists, but for poses near the end of the reach.
+  EXPECT_GT(found_count, std::size_t{6 * kPoseCount});
+  EXPECT_LE(found_count, std::size_t{8 * kPoseCount});
+}
+
+TEST(SlidingArm, IsReadButNeitherPlannedNorDriven) {
   const Folder folder;
   nlohmann::json arm = json_of(kSourceDir / "config/arms/tx60.json");
   arm["frames"][3]["joint_type"] = "prismatic";
   arm["joint_limits_deg"][2] = {-50, 250};
   arm["joint_max_speeds_deg_s"][2] = 500;
-  Cell cell = demo_with("tx60");
+  Cell cell = demo_with("tx60", folder);
   cell.arm = read_arm(folder.write("arm.json", arm.dump()));
   EXPECT_EQ(cell.arm.model.joint_types[2], calib::JointType::kPrismatic);
   EXPECT_DOUBLE_EQ(cell.arm.joint_ranges.lower[2], -0.05);

@@ -1,0 +1,72 @@
+// Whole runs over loopback with other arms than the TX90.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib_core/kinematics/error_parameters.hpp"
+#include "calib_core/numerics/halton.hpp"
+#include "service/run/run.hpp"
+#include "tests/config/other_arms.hpp"
+#include "tests/end_to_end/held_out.hpp"
+#include "tests/end_to_end/loopback_cell.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using cell::State;
+
+/// The tip's deviation between two models, root mean square over postures in the joint ranges.
+double tip_rms_m(const calib::JointRanges& ranges, const calib::KinematicModel& a,
+                 const calib::KinematicModel& b) {
+  constexpr int kPostureCount = 200;
+  double sum = 0.0;
+  for (int i = 1; i <= kPostureCount; ++i) {
+    const calib::JointVector joints = calib::halton_posture(i, ranges);
+    sum += (calib::forward_kinematics(a, joints).translation() -
+            calib::forward_kinematics(b, joints).translation())
+               .squaredNorm();
+  }
+  return std::sqrt(sum / kPostureCount);
+}
+
+class WholeRunOfAnotherArm : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(WholeRunOfAnotherArm, EndsCompleteWithTheTipCalibrated) {
+  const cell::Folder files;
+  LoopbackCell loop("demo");
+  const auto heartbeat_timeout = loop.cell.deadlines.heartbeat_timeout;
+  loop.cell = cell::demo_with(GetParam(), files);
+  loop.cell.deadlines.heartbeat_timeout = heartbeat_timeout;
+  cell::Recipe recipe = loop.cell.recipes.at("quick");
+  recipe.name = "few candidates";
+  recipe.candidate_count = 2'000;
+  loop.cell.recipes.emplace(recipe.name, recipe);
+  const calib::ErrorVector errors = shipped_truth("demo");
+  loop.serve(sim::make_plant(loop.cell, errors), {.controller = {.speed = sim::kSpeedMax}});
+  loop.launch();
+  loop.run_until(State::kIdle);
+  loop.start(recipe.name);
+  loop.run_until_over();
+
+  ASSERT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
+  EXPECT_EQ(loop.status().verdict, cell::Verdict::kAccepted);
+  const calib::IdentificationResult& result = loop.operation().run()->latest();
+  EXPECT_LE(held_out(result).mean_max_m, kHeldOutMeanMaxMetres);
+  EXPECT_LE(held_out(result).rms_m, kHeldOutRmsMaxPart * loop.cell.touch_noise_m);
+  const calib::KinematicModel truth = calib::apply(loop.cell.arm.model, errors);
+  const double achieved_m = tip_rms_m(loop.cell.arm.joint_ranges, result.calibrated, truth);
+  EXPECT_LE(achieved_m, 0.25e-3);
+  EXPECT_LE(10.0 * achieved_m, tip_rms_m(loop.cell.arm.joint_ranges, loop.cell.arm.model, truth));
+}
+
+INSTANTIATE_TEST_SUITE_P(Arms, WholeRunOfAnotherArm, ::testing::Values("tx60", "three-parallel"),
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace touchcal::testing
