@@ -124,7 +124,8 @@ PlannedIdentification identify_planned(const Cell& cell, const Recipe& recipe, c
         calib::moved_onto_plane(nominal, contact, {planned.face, planned.joints, planned.role}));
   }
   calib::IdentificationOptions options = recipe.identification;
-  options.robust = false;  // there is nothing to leave out
+  options.robust = false;         // there is nothing to leave out
+  options.measure_noise = false;  // touches of the nominal arm have none: the declared one is promised
   planned_run.result = calib::identify(problem, options);
   return planned_run;
 }

@@ -4,12 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/joint_units.hpp"
+#include "config/read_config.hpp"
 #include "service/documents/internal/document_fields.hpp"
 #include "service/documents/plan_document.hpp"
 #include "service/documents/result_view.hpp"
+#include "service/run/tip_prediction.hpp"
 #include "tests/service/shipped_cell.hpp"
 
 namespace cell {
@@ -72,6 +75,31 @@ TEST(Plan, ItPredictsTheTipInTheShapeOfAResult) {
   for (const auto& [key, unused] : of_result.items()) EXPECT_TRUE(tip.contains(key)) << key;
   EXPECT_EQ(tip.size(), of_result.size());
   EXPECT_GT(tip.at("workspace_box_rms_mm").get<double>(), 0.0);
+}
+
+TEST(Plan, ItPromisesOfTheTipWhatRunsWithTheDeclaredNoisePromise) {
+  constexpr int kRunCount = 20;
+  const Cell demo = read_cell(std::string(TOUCHCAL_SOURCE_DIR) + "/config/cells/demo/cell.json");
+  const Recipe& recipe = demo.recipes.at("quick");
+  const TipRegions regions(demo);
+  const Plan plan = std::get<Plan>(make_plan(regions, recipe));
+  const PlannedIdentification planned = identify_planned(demo, recipe, plan.touches);
+  const auto promised_m = [&](const calib::IdentificationResult& result) {
+    return predicted_rms_m(regions.tip().workspace_box, result.uncertainty.value()).value();
+  };
+  std::mt19937_64 chance(1);
+  std::normal_distribution<double> noise_m(0.0, demo.touch_noise_m);
+  double sum = 0.0;
+  for (int run = 0; run < kRunCount; ++run) {
+    calib::IdentificationProblem problem = planned.problem;
+    for (calib::Touch& touch : problem.touches) {
+      calib::Plane plane = problem.artefact.contact_planes.at(static_cast<std::size_t>(touch.face));
+      plane.offset_m += noise_m(chance);
+      touch = calib::moved_onto_plane(problem.nominal, plane, touch);
+    }
+    sum += promised_m(calib::identify(problem, recipe.identification));
+  }
+  EXPECT_NEAR(promised_m(planned.result) / (sum / kRunCount), 1.0, 0.1) << promised_m(planned.result);
 }
 
 TEST(Plan, EachIdentifiedParameterHasAPredictedUncertaintyAndNoError) {
