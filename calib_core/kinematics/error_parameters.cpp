@@ -143,6 +143,10 @@ std::string arm_parameter_name(int index) {
   return nongeometric_parameters()[static_cast<std::size_t>(index - kErrorParameterCount)].name();
 }
 
+bool is_place_error(int index) {
+  return index < kErrorParameterCount && error_parameters()[static_cast<std::size_t>(index)].frame <= 1;
+}
+
 std::optional<int> error_parameter_index(std::string_view name) {
   const auto& all = error_parameters();
   const auto found =

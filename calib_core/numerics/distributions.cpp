@@ -1,5 +1,6 @@
 #include "calib_core/numerics/distributions.hpp"
 
+#include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -45,6 +46,16 @@ double f_survival(double x, double numerator_degrees, double denominator_degrees
           "f_survival: degrees out of range");
   return cdf(complement(
       boost::math::fisher_f_distribution<double, Policy>(numerator_degrees, denominator_degrees), x));
+}
+
+double sample_quantile(std::vector<double> values, double share) {
+  require(!values.empty() && share > 0.0 && share <= 1.0, "sample_quantile: no values or share out of range");
+  const auto no_number = std::ranges::find_if(values, [](double value) { return std::isnan(value); });
+  if (no_number != values.end()) return *no_number;
+  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  const auto wanted = values.begin() + static_cast<std::ptrdiff_t>(rank) - 1;
+  std::ranges::nth_element(values, wanted);
+  return *wanted;
 }
 
 }  // namespace calib

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 namespace calib {
 
 /// Bound on the relative error of the functions below, wherever they answer; confidences from 1e-3 on.
@@ -21,5 +23,9 @@ double student_two_sided_factor(double confidence, double degrees);
 
 /// P(X > x) of Fisher's F; x >= 0, degrees over 0 and finite.
 double f_survival(double x, double numerator_degrees, double denominator_degrees);
+
+/// The smallest of the values that at least this share of them does not exceed; the share in (0, 1], at least
+/// one value. NaN when one of the values is.
+double sample_quantile(std::vector<double> values, double share);
 
 }  // namespace calib

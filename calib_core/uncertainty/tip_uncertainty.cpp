@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "calib_core/numerics/distributions.hpp"
 #include "calib_core/numerics/halton.hpp"
 
 namespace calib {
@@ -13,7 +14,7 @@ constexpr int kToolFrame = 6;
 
 using PointDerivatives = Eigen::Matrix<double, 3, kArmParameterCount>;
 
-PointDerivatives derivatives_of(const KinematicModel& model, const Chain& chain, const ToolCentre& tool) {
+PointDerivatives derivatives_of(const PreparedModel& model, const Chain& chain, const ToolCentre& tool) {
   return point_arm_derivatives(model, chain, tool_centre_in_block_m(chain, tool),
                                tool ? kToolFrame : kFrameCount - 1);
 }
@@ -53,7 +54,8 @@ Eigen::Vector3d tool_centre_in_block_m(const Chain& chain, const ToolCentre& too
 
 double tip_std_m(const KinematicModel& model, const JointVector& joints, const ArmMatrix& covariance,
                  const ToolCentre& tool) {
-  const PointDerivatives derivatives = derivatives_of(model, forward_chain(model, joints), tool);
+  const PreparedModel prepared = prepare(model);
+  const PointDerivatives derivatives = derivatives_of(prepared, forward_chain(prepared, joints), tool);
   const PointDerivatives carried = derivatives * covariance;
   return root_of_sum_of_squares(carried.cwiseProduct(derivatives).sum());
 }
@@ -63,20 +65,60 @@ std::optional<double> TipRegion::rms_m(const ArmMatrix& covariance) const {
   return root_of_sum_of_squares(mean_square.cwiseProduct(covariance).sum());
 }
 
+Eigen::VectorXd TipPostures::std_m(const ArmMatrix& covariance) const {
+  const Eigen::VectorXd squares = (derivatives * covariance).cwiseProduct(derivatives).rowwise().sum();
+  Eigen::VectorXd std_m(count());
+  for (Eigen::Index i = 0; i < std_m.size(); ++i)
+    std_m[i] = root_of_sum_of_squares(squares.segment<3>(3 * i).sum());
+  return std_m;
+}
+
+std::optional<TipSpread> TipPostures::spread(const ArmMatrix& covariance) const {
+  if (count() == 0) return std::nullopt;
+  constexpr double kShare = 0.95;
+  const Eigen::VectorXd each_m = std_m(covariance);
+  return TipSpread{.rms_m = std::sqrt(each_m.squaredNorm() / count()),
+                   .p95_m = sample_quantile({each_m.begin(), each_m.end()}, kShare),
+                   .max_m = each_m.maxCoeff<Eigen::PropagateNaN>()};
+}
+
+TipRegion TipPostures::region() const {
+  JacobianMean sum;
+  for (int i = 0; i < count(); ++i) sum.add(derivatives.middleRows<3>(3 * i));
+  return sum.region();
+}
+
+TipPostures derive_at_postures(const KinematicModel& model, std::span<const JointVector> postures,
+                               const ToolCentre& tool) {
+  TipPostures result;
+  result.derivatives.resize(3 * std::ssize(postures), kArmParameterCount);
+  const PreparedModel prepared = prepare(model);
+  for (Eigen::Index i = 0; i < std::ssize(postures); ++i) {
+    const Chain chain = forward_chain(prepared, postures[static_cast<std::size_t>(i)]);
+    result.derivatives.middleRows<3>(3 * i) = derivatives_of(prepared, chain, tool);
+  }
+  return result;
+}
+
 TipRegion region_over_postures(const KinematicModel& model, std::span<const JointVector> postures,
                                const ToolCentre& tool) {
   JacobianMean sum;
+  const PreparedModel prepared = prepare(model);
   for (const JointVector& joints : postures) {
-    sum.add(derivatives_of(model, forward_chain(model, joints), tool));
+    sum.add(derivatives_of(prepared, forward_chain(prepared, joints), tool));
   }
   return sum.region();
 }
 
-TipRegion region_over_joint_ranges(const KinematicModel& model, const JointRanges& ranges,
-                                   const ToolCentre& tool, int count) {
+std::vector<JointVector> postures_over_joint_ranges(const JointRanges& ranges, int count) {
   std::vector<JointVector> postures;
   for (int i = 1; i <= count; ++i) postures.push_back(halton_posture(i, ranges));
-  return region_over_postures(model, postures, tool);
+  return postures;
+}
+
+TipRegion region_over_joint_ranges(const KinematicModel& model, const JointRanges& ranges,
+                                   const ToolCentre& tool, int count) {
+  return region_over_postures(model, postures_over_joint_ranges(ranges, count), tool);
 }
 
 std::vector<JointVector> postures_in_box(const KinematicModel& model, const JointRanges& ranges,
@@ -125,10 +167,11 @@ BoxGrid divide_box(const Box& box, double edge_m) {
 TipMap make_tip_map(const KinematicModel& model, std::span<const JointVector> postures, const BoxGrid& grid,
                     const ToolCentre& tool) {
   std::vector<JacobianMean> sums(static_cast<std::size_t>(grid.cell_count()));
+  const PreparedModel prepared = prepare(model);
   for (const JointVector& joints : postures) {
-    const Chain chain = forward_chain(model, joints);
+    const Chain chain = forward_chain(prepared, joints);
     const auto cell = grid.cell_of(tool_centre_in_block_m(chain, tool));
-    if (cell) sums[static_cast<std::size_t>(*cell)].add(derivatives_of(model, chain, tool));
+    if (cell) sums[static_cast<std::size_t>(*cell)].add(derivatives_of(prepared, chain, tool));
   }
   TipMap map{.grid = grid, .cells = {}};
   for (const JacobianMean& sum : sums) map.cells.push_back(sum.region());

@@ -28,6 +28,9 @@ Eigen::Vector3d tool_centre_in_block_m(const Chain& chain, const ToolCentre& too
 double tip_std_m(const KinematicModel& model, const JointVector& joints, const ArmMatrix& covariance,
                  const ToolCentre& tool = std::nullopt);
 
+/// Coverage factor of the expanded uncertainty of the tip.
+inline constexpr double kTipCoverageFactor = 2.0;
+
 /// A set of postures of the nominal arm, reduced to what the predicted error over them depends on. Compute it
 /// once; each prediction is then one product.
 struct TipRegion {
@@ -38,11 +41,37 @@ struct TipRegion {
   [[nodiscard]] std::optional<double> rms_m(const ArmMatrix& covariance) const;
 };
 
+/// How the predicted error is spread over postures, metres.
+struct TipSpread {
+  double rms_m = 0.0;
+  double p95_m = 0.0;  // not exceeded in 95 % of the postures
+  double max_m = 0.0;
+};
+
+/// A set of postures with the derivatives of the point at each, for predictions a posture at a time: 1.5 kB a
+/// posture. Each prediction is one product of matrices.
+struct TipPostures {
+  Eigen::Matrix<double, Eigen::Dynamic, kArmParameterCount> derivatives;  // three rows a posture
+
+  [[nodiscard]] int count() const { return static_cast<int>(derivatives.rows() / 3); }
+  /// tip_std_m() of each posture.
+  [[nodiscard]] Eigen::VectorXd std_m(const ArmMatrix& covariance) const;
+  /// Nothing without any posture.
+  [[nodiscard]] std::optional<TipSpread> spread(const ArmMatrix& covariance) const;
+  [[nodiscard]] TipRegion region() const;
+};
+
+TipPostures derive_at_postures(const KinematicModel& model, std::span<const JointVector> postures,
+                               const ToolCentre& tool = std::nullopt);
+
 /// The region of given postures, such as those of the touches for the prediction at the block.
 TipRegion region_over_postures(const KinematicModel& model, std::span<const JointVector> postures,
                                const ToolCentre& tool = std::nullopt);
 
-/// The region of `count` postures that fill the joint ranges evenly.
+/// `count` postures that fill the joint ranges evenly.
+std::vector<JointVector> postures_over_joint_ranges(const JointRanges& ranges, int count = 500);
+
+/// The region of these postures.
 TipRegion region_over_joint_ranges(const KinematicModel& model, const JointRanges& ranges,
                                    const ToolCentre& tool = std::nullopt, int count = 500);
 

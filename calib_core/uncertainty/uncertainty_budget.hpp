@@ -56,4 +56,12 @@ struct UncertaintyBudget {
   }
 };
 
+/// The budget of the arm in its own frame, for whoever works in the controller's world: the block's place
+/// (is_place_error()) is nominal in the true and in the calibrated arm, so its errors have no effect. Their
+/// rows and columns are zero in the first three covariances and in `unknown_directions`; how they correlate
+/// with the arm's errors does not matter any more, the other rows and columns stay as they are. The joints'
+/// own errors of posture remain, those of joint 1 included. Without the sources, the artefact and the
+/// correlations.
+UncertaintyBudget in_arm_frame(const UncertaintyBudget& budget);
+
 }  // namespace calib

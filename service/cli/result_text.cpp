@@ -89,9 +89,25 @@ std::string artefact_text(const std::vector<ArtefactParameter>& parameters) {
   return lines;
 }
 
+/// The tip's expanded uncertainty over the workspace box: what an integrator asks for first.
+std::string expanded_text(const TipDocument& tip) {
+  std::string lines =
+      fmt::format("\n{:<54}{:>9}{:>9}{:>9}\n",
+                  fmt::format("uncertainty of the tip in the workspace box, k = {:g}", tip.expanded.k), "rms",
+                  "95 %", "worst");
+  const auto line = [&lines](const char* frame, const TipDocument::Expanded& expanded) {
+    lines += fmt::format(
+        "  {:<52}{:>9}{:>9}{:>9} mm\n", frame, figure(expanded.box_rms_mm, "{:.3f}", "unknown"),
+        figure(expanded.box_p95_mm, "{:.3f}", "unknown"), figure(expanded.box_max_mm, "{:.3f}", "unknown"));
+  };
+  line("in the block's frame", tip.expanded);
+  line("in the arm's own frame, without the block's place", tip.arm_frame.expanded);
+  return lines;
+}
+
 /// The tip's uncertainty by source and by region.
 std::string tip_text(const TipDocument& tip) {
-  std::string lines = "\npredicted uncertainty of the tip, rms\n";
+  std::string lines = expanded_text(tip) + "\nstandard uncertainty of the tip, rms\n";
   const auto line = [&lines](const std::string& where, std::optional<double> value) {
     lines += fmt::format("  {:<34}{:>10} mm\n", where, figure(value, "{:.3f}", "unknown"));
   };
@@ -100,6 +116,8 @@ std::string tip_text(const TipDocument& tip) {
   for (const TipDocument::Source& source : tip.sources)
     line("  from " + source.name, source.workspace_box_rms_mm);
   line("over the joint ranges", tip.joint_ranges_rms_mm);
+  line("arm's frame, in the workspace box", tip.arm_frame.workspace_box_rms_mm);
+  line("arm's frame, over the joint ranges", tip.arm_frame.joint_ranges_rms_mm);
   for (const TipDocument::Tool& tool : tip.tools) {
     line(tool.name + ", in the workspace box", tool.workspace_box_rms_mm);
     line(tool.name + ", over the joint ranges", tool.joint_ranges_rms_mm);

@@ -106,11 +106,27 @@ constexpr std::string_view kDistances = R"({
 
 constexpr std::string_view kTipUncertainty = R"({
 "type":"object",
-"required":["at_block_rms_mm","workspace_box_rms_mm","joint_ranges_rms_mm"],
+"required":["at_block_rms_mm","workspace_box_rms_mm","joint_ranges_rms_mm","expanded","arm_frame"],
 "properties":{
   "at_block_rms_mm":{"type":["number","null"]},
   "workspace_box_rms_mm":{"type":["number","null"]},
-  "joint_ranges_rms_mm":{"type":["number","null"]}}})";
+  "joint_ranges_rms_mm":{"type":["number","null"]},
+  "expanded":{"$ref":"#/components/schemas/ExpandedTipUncertainty"},
+  "arm_frame":{"type":"object",
+    "required":["at_block_rms_mm","workspace_box_rms_mm","joint_ranges_rms_mm","expanded"],"properties":{
+      "at_block_rms_mm":{"type":["number","null"]},
+      "workspace_box_rms_mm":{"type":["number","null"]},
+      "joint_ranges_rms_mm":{"type":["number","null"]},
+      "expanded":{"$ref":"#/components/schemas/ExpandedTipUncertainty"}}}}})";
+
+constexpr std::string_view kExpandedTipUncertainty = R"({
+"type":"object",
+"required":["k","box_rms_mm","box_p95_mm","box_max_mm"],
+"properties":{
+  "k":{"const":2},
+  "box_rms_mm":{"type":["number","null"],"minimum":0},
+  "box_p95_mm":{"type":["number","null"],"minimum":0},
+  "box_max_mm":{"type":["number","null"],"minimum":0}}})";
 
 constexpr std::string_view kPlan = R"({
 "type":"object",
@@ -153,11 +169,14 @@ constexpr std::string_view kReport = R"({
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","use"]}},
   "result":{"type":["object","null"]}}})";
 
-constexpr std::array kSchemas{
-    DocumentSchema{"Touches", kTouches},     DocumentSchema{"Result", kResult},
-    DocumentSchema{"Distances", kDistances}, DocumentSchema{"TipUncertainty", kTipUncertainty},
-    DocumentSchema{"Plan", kPlan},           DocumentSchema{"Arm", kArm},
-    DocumentSchema{"Report", kReport}};
+constexpr std::array kSchemas{DocumentSchema{"Touches", kTouches},
+                              DocumentSchema{"Result", kResult},
+                              DocumentSchema{"Distances", kDistances},
+                              DocumentSchema{"TipUncertainty", kTipUncertainty},
+                              DocumentSchema{"ExpandedTipUncertainty", kExpandedTipUncertainty},
+                              DocumentSchema{"Plan", kPlan},
+                              DocumentSchema{"Arm", kArm},
+                              DocumentSchema{"Report", kReport}};
 
 }  // namespace
 

@@ -76,6 +76,19 @@ TipDocument::Map map_of(const Cell& cell, const calib::UncertaintyMap& map) {
   return document;
 }
 
+TipDocument::Expanded expanded_of(const TipPrediction::Expanded& expanded) {
+  return {.box_rms_mm = finite_mm(expanded.box_rms_m),
+          .box_p95_mm = finite_mm(expanded.box_p95_m),
+          .box_max_mm = finite_mm(expanded.box_max_m)};
+}
+
+TipDocument::ArmFrame arm_frame_of(const TipPrediction::InArmFrame& tip) {
+  return {.at_block_rms_mm = finite_mm(tip.at_block_rms_m),
+          .workspace_box_rms_mm = finite_mm(tip.workspace_box_rms_m),
+          .joint_ranges_rms_mm = finite_mm(tip.joint_ranges_rms_m),
+          .expanded = expanded_of(tip.expanded)};
+}
+
 /// A plane without fitted touches has no p.
 std::vector<ResultDocument::PlaneFit> plane_fits_of(const calib::IdentificationResult& result) {
   std::vector<ResultDocument::PlaneFit> planes;
@@ -168,7 +181,9 @@ std::optional<RepetitionsDocument> validation_of(const calib::IdentificationProb
 TipDocument tip_of(const Cell& cell, const TipPrediction& tip) {
   TipDocument document{.at_block_rms_mm = finite_mm(tip.at_block_rms_m),
                        .workspace_box_rms_mm = finite_mm(tip.workspace_box_rms_m),
-                       .joint_ranges_rms_mm = finite_mm(tip.joint_ranges_rms_m)};
+                       .joint_ranges_rms_mm = finite_mm(tip.joint_ranges_rms_m),
+                       .expanded = expanded_of(tip.expanded),
+                       .arm_frame = arm_frame_of(tip.arm_frame)};
   for (const TipPrediction::OfSource& source : tip.sources)
     document.sources.push_back({source.name, finite_mm(source.workspace_box_rms_m)});
   for (const TipPrediction::OfTool& tool : tip.tools) {

@@ -5,9 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
+
 namespace cell {
 
-/// `tip_uncertainty` of a result and of a plan: the predicted uncertainty of the tip, root mean square.
+/// `tip_uncertainty` of a result and of a plan: the predicted uncertainty of the tip, root mean square and
+/// standard uncertainty but for `expanded`.
 struct TipDocument {
   struct Source {
     std::string name;
@@ -59,9 +62,42 @@ struct TipDocument {
     }
   };
 
+  /// k times the standard uncertainty over the workspace box.
+  struct Expanded {
+    double k = calib::kTipCoverageFactor;
+    std::optional<double> box_rms_mm;
+    std::optional<double> box_p95_mm;  // not exceeded in 95 % of the postures
+    std::optional<double> box_max_mm;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("k", self.k);
+      fields("box_rms_mm", self.box_rms_mm);
+      fields("box_p95_mm", self.box_p95_mm);
+      fields("box_max_mm", self.box_max_mm);
+    }
+  };
+  /// The same with the block's place nominal.
+  struct ArmFrame {
+    std::optional<double> at_block_rms_mm;
+    std::optional<double> workspace_box_rms_mm;
+    std::optional<double> joint_ranges_rms_mm;
+    Expanded expanded;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("at_block_rms_mm", self.at_block_rms_mm);
+      fields("workspace_box_rms_mm", self.workspace_box_rms_mm);
+      fields("joint_ranges_rms_mm", self.joint_ranges_rms_mm);
+      fields("expanded", self.expanded);
+    }
+  };
+
   std::optional<double> at_block_rms_mm;
   std::optional<double> workspace_box_rms_mm;
   std::optional<double> joint_ranges_rms_mm;
+  Expanded expanded;
+  ArmFrame arm_frame;
   std::vector<Source> sources;
   std::vector<Tool> tools;
   std::optional<Map> map;
@@ -71,6 +107,8 @@ struct TipDocument {
     fields("at_block_rms_mm", self.at_block_rms_mm);
     fields("workspace_box_rms_mm", self.workspace_box_rms_mm);
     fields("joint_ranges_rms_mm", self.joint_ranges_rms_mm);
+    fields("expanded", self.expanded);
+    fields("arm_frame", self.arm_frame);
     fields("sources", self.sources);
     fields("tools", self.tools);
     fields("map", self.map);

@@ -157,6 +157,12 @@ std::string run_section(const RunReport& report) {
                                           text_or_unknown(report.raw_data.of) + ")"}}));
 }
 
+std::string expanded_words(const TipDocument::Expanded& expanded) {
+  return figure_text(expanded.box_rms_mm, "{:.3f} mm rms") + ", " +
+         figure_text(expanded.box_p95_mm, "{:.3f} mm at 95 % of the postures") + ", " +
+         figure_text(expanded.box_max_mm, "{:.3f} mm at the worst");
+}
+
 std::string summary_section(const ResultDocument& result) {
   const TipDocument& tip = result.tip_uncertainty;
   const ResultDocument::Scale& scale = result.scale;
@@ -168,7 +174,11 @@ std::string summary_section(const ResultDocument& result) {
                                      std::to_string(result.parameters.size())},
            {"condition number", figure_text(result.condition_number, "{:.0f}") + " (columns of unit norm: " +
                                     figure_text(result.scaled_condition_number, "{:.0f}") + ")"},
-           {"predicted uncertainty of the tip in the workspace box, rms",
+           {fmt::format("predicted uncertainty of the tip in the workspace box, k = {:g}", tip.expanded.k),
+            expanded_words(tip.expanded)},
+           {"the same in the arm's own frame, without the block's place",
+            expanded_words(tip.arm_frame.expanded)},
+           {"standard uncertainty in the workspace box, rms",
             figure_text(tip.workspace_box_rms_mm, "{:.3f} mm")},
            {"the same at the block", figure_text(tip.at_block_rms_mm, "{:.3f} mm")},
            {"common scale of all lengths",
@@ -184,7 +194,13 @@ std::string budget_section(const ResultDocument& result) {
     sources.push_back({words_of(source.name), figure_text(source.workspace_box_rms_mm, "{:.4f}")});
   sources.push_back(
       {"together (root of the sum of squares)", figure_text(tip.workspace_box_rms_mm, "{:.4f}")});
-  std::vector<Row> elsewhere{{"over the joint ranges", figure_text(tip.joint_ranges_rms_mm, "{:.3f}")}};
+  std::vector<Row> elsewhere{
+      {"over the joint ranges", figure_text(tip.joint_ranges_rms_mm, "{:.3f}")},
+      {"in the arm's own frame, at the block", figure_text(tip.arm_frame.at_block_rms_mm, "{:.3f}")},
+      {"in the arm's own frame, in the workspace box",
+       figure_text(tip.arm_frame.workspace_box_rms_mm, "{:.3f}")},
+      {"in the arm's own frame, over the joint ranges",
+       figure_text(tip.arm_frame.joint_ranges_rms_mm, "{:.3f}")}};
   for (const TipDocument::Tool& tool : tip.tools) {
     const std::string name = text_or_unknown(tool.name);
     elsewhere.push_back({name + ", in the workspace box", figure_text(tool.workspace_box_rms_mm, "{:.3f}")});
@@ -204,8 +220,7 @@ std::string budget_section(const ResultDocument& result) {
   return section("Uncertainty", html::table("Budget of the tip's predicted uncertainty in the workspace box",
                                             {"source", "rms mm"}, sources) +
                                     html::table("Predicted uncertainty of the tip elsewhere",
-                                                {"where", "rms mm"}, elsewhere) +
-                                    pairs_table("Lack of fit", lack) +
+                                                {"where", "rms mm"}, elsewhere) + pairs_table("Lack of fit", lack) +
                                     html::table("Strongest correlations of identified errors",
                                                 {"error of", "and of", "coefficient"}, correlations));
 }
@@ -251,6 +266,8 @@ std::string words_section() {
               "Predicted uncertainty: what the touches, the block and the makers' tolerances let expect of "
               "the "
               "tip, one standard deviation unless another coverage is said; it is computed, not measured. "
+              "The arm's own frame: the block's place counts as exact, as for whoever works in the "
+              "controller's world. "
               "Held-out touches took no part in the calibration. Distances run along the faces' outward "
               "normals."));
 }

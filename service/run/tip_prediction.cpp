@@ -15,6 +15,16 @@ TipRegions::Regions regions_of(const Cell& cell, const calib::ToolCentre& tool) 
           .joint_ranges = calib::region_over_joint_ranges(cell.arm.model, ranges, tool)};
 }
 
+TipPrediction::Expanded expanded_over(const calib::TipPostures& postures, const calib::TipRegion& region,
+                                      const calib::UncertaintyBudget& uncertainty) {
+  if (!predicted_rms_m(region, uncertainty)) return {};
+  const auto spread = postures.spread(uncertainty.covariance());
+  if (!spread) return {};
+  return {.box_rms_m = calib::kTipCoverageFactor * spread->rms_m,
+          .box_p95_m = calib::kTipCoverageFactor * spread->p95_m,
+          .box_max_m = calib::kTipCoverageFactor * spread->max_m};
+}
+
 calib::TipRegion over_fitted_touches(const calib::IdentificationProblem& problem,
                                      const calib::IdentificationResult& result) {
   std::vector<calib::JointVector> postures;
@@ -53,8 +63,20 @@ std::optional<double> predicted_rms_m(const calib::TipRegion& region,
 }
 
 const TipRegions::Regions& TipRegions::tip() const {
-  if (!tip_) tip_ = regions_of(cell_, std::nullopt);
+  if (!tip_) {
+    tip_ = {.workspace_box = box_postures().region(),
+            .joint_ranges = calib::region_over_joint_ranges(cell_.arm.model, cell_.arm.joint_ranges)};
+  }
   return *tip_;
+}
+
+const calib::TipPostures& TipRegions::box_postures() const {
+  if (!box_postures_) {
+    box_postures_ = calib::derive_at_postures(
+        cell_.arm.model,
+        calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box));
+  }
+  return *box_postures_;
 }
 
 const std::map<std::string, TipRegions::Regions>& TipRegions::tools() const {
@@ -82,9 +104,16 @@ TipPrediction predict_tip(const TipRegions& regions, const calib::Identification
   if (!result.uncertainty) return prediction;
   const calib::UncertaintyBudget& uncertainty = *result.uncertainty;
   const TipRegions::Regions& tip = regions.tip();
-  prediction.at_block_rms_m = predicted_rms_m(over_fitted_touches(problem, result), uncertainty);
+  const calib::TipRegion at_block = over_fitted_touches(problem, result);
+  prediction.at_block_rms_m = predicted_rms_m(at_block, uncertainty);
   prediction.workspace_box_rms_m = predicted_rms_m(tip.workspace_box, uncertainty);
   prediction.joint_ranges_rms_m = predicted_rms_m(tip.joint_ranges, uncertainty);
+  prediction.expanded = expanded_over(regions.box_postures(), tip.workspace_box, uncertainty);
+  const calib::UncertaintyBudget of_arm = calib::in_arm_frame(uncertainty);
+  prediction.arm_frame = {.at_block_rms_m = predicted_rms_m(at_block, of_arm),
+                          .workspace_box_rms_m = predicted_rms_m(tip.workspace_box, of_arm),
+                          .joint_ranges_rms_m = predicted_rms_m(tip.joint_ranges, of_arm),
+                          .expanded = expanded_over(regions.box_postures(), tip.workspace_box, of_arm)};
   for (const calib::UncertaintySource& source : uncertainty.sources)
     prediction.sources.push_back({source.name, tip.workspace_box.rms_m(source.covariance)});
   for (const auto& [name, tool] : regions.tools()) {

@@ -39,6 +39,8 @@ class TipRegions {
 
   [[nodiscard]] const Cell& cell() const { return cell_; }
   [[nodiscard]] const Regions& tip() const;
+  /// The postures of tip().workspace_box.
+  [[nodiscard]] const calib::TipPostures& box_postures() const;
   [[nodiscard]] const std::map<std::string, Regions>& tools() const;
   /// The workspace box, divided into cells of about 100 mm.
   [[nodiscard]] const calib::TipMap& map() const;
@@ -46,6 +48,7 @@ class TipRegions {
  private:
   const Cell& cell_;
   mutable std::optional<Regions> tip_;
+  mutable std::optional<calib::TipPostures> box_postures_;
   mutable std::optional<std::map<std::string, Regions>> tools_;
   mutable std::optional<calib::TipMap> map_;
 };
@@ -62,9 +65,24 @@ struct TipPrediction {
     std::optional<double> joint_ranges_rms_m;
   };
 
+  /// calib::kTipCoverageFactor times the predicted error over the postures of the workspace box.
+  struct Expanded {
+    std::optional<double> box_rms_m;
+    std::optional<double> box_p95_m;  // not exceeded in 95 % of the postures
+    std::optional<double> box_max_m;
+  };
+  struct InArmFrame {
+    std::optional<double> at_block_rms_m;
+    std::optional<double> workspace_box_rms_m;
+    std::optional<double> joint_ranges_rms_m;
+    Expanded expanded;
+  };
+
   std::optional<double> at_block_rms_m;  // over the postures of the fitted touches
   std::optional<double> workspace_box_rms_m;
   std::optional<double> joint_ranges_rms_m;
+  Expanded expanded;
+  InArmFrame arm_frame;  // the same with the block's place nominal: calib::in_arm_frame()
   std::vector<OfSource> sources;
   std::vector<OfTool> tools;
   std::optional<calib::UncertaintyMap> map;

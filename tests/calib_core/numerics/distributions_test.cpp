@@ -148,5 +148,22 @@ TEST(Distributions, WhatIsOutsideTheDomainIsAMistakeOfTheProgram) {
   EXPECT_THROW(chi_square_survival(kNan, 5), std::logic_error);
 }
 
+TEST(SampleQuantile, IsTheSmallestValueThatTheShareDoesNotExceed) {
+  const std::vector<double> values{5.0, 1.0, 4.0, 2.0, 3.0};
+  EXPECT_EQ(sample_quantile(values, 1.0), 5.0);
+  EXPECT_EQ(sample_quantile(values, 0.95), 5.0);
+  EXPECT_EQ(sample_quantile(values, 0.8), 4.0);
+  EXPECT_EQ(sample_quantile(values, 0.79), 4.0);
+  EXPECT_EQ(sample_quantile(values, 1e-3), 1.0);
+  EXPECT_EQ(sample_quantile({7.0}, 0.5), 7.0);
+}
+
+TEST(SampleQuantile, OfWhatIsNotANumberIsNotANumberAndOfNothingIsRefused) {
+  EXPECT_TRUE(std::isnan(sample_quantile({1.0, kNan, 2.0}, 0.5)));
+  EXPECT_THROW(sample_quantile({}, 0.5), std::logic_error);
+  EXPECT_THROW(sample_quantile({1.0}, 0.0), std::logic_error);
+  EXPECT_THROW(sample_quantile({1.0}, 1.1), std::logic_error);
+}
+
 }  // namespace
 }  // namespace calib

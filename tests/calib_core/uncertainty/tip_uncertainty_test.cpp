@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -182,6 +183,47 @@ TEST(TipRegion, MeanSquareIsThatOfItsPostures) {
   const TipRegion ranges = region_over_joint_ranges(arm(), tx90::joint_ranges(), {}, 50);
   EXPECT_EQ(ranges.posture_count, 50);
   EXPECT_NEAR(ranges.rms_m(covariance).value(), wanted, 1e-12 * wanted);
+}
+
+TEST(TipPostures, GiveTheErrorOfEachPosture) {
+  const ArmMatrix covariance = random_covariance(11);
+  const std::vector<JointVector> postures = some_postures(40);
+  for (const ToolCentre& tool : {ToolCentre{}, gripper()}) {
+    const TipPostures derived = derive_at_postures(arm(), postures, tool);
+    const Eigen::VectorXd std_m = derived.std_m(covariance);
+    ASSERT_EQ(std_m.size(), 40);
+    for (std::size_t i = 0; i < postures.size(); ++i) {
+      const double wanted = tip_std_m(arm(), postures[i], covariance, tool);
+      EXPECT_NEAR(std_m[static_cast<Eigen::Index>(i)], wanted, 1e-12 * wanted);
+    }
+    EXPECT_EQ(derived.region().mean_square, region_over_postures(arm(), postures, tool).mean_square);
+  }
+}
+
+TEST(TipPostures, SpreadFromTheRmsToTheWorst) {
+  const ArmMatrix covariance = random_covariance(12);
+  const TipPostures postures = derive_at_postures(arm(), some_postures(40));
+  const TipSpread spread = postures.spread(covariance).value();
+  Eigen::VectorXd std_m = postures.std_m(covariance);
+  std::ranges::sort(std_m);
+  EXPECT_EQ(spread.max_m, std_m[39]);
+  EXPECT_EQ(spread.p95_m, std_m[37]) << "38 of 40 are 95 %";
+  EXPECT_NEAR(spread.rms_m, postures.region().rms_m(covariance).value(), 1e-12 * spread.rms_m);
+  EXPECT_FALSE(derive_at_postures(arm(), {}).spread(covariance));
+}
+
+TEST(TipPostures, AreAllTheSameForAnErrorThatIsTheSameEverywhere) {
+  constexpr double kStdM = 1e-4;
+  const TipSpread spread =
+      derive_at_postures(arm(), some_postures(30)).spread(covariance_of("d3", kStdM)).value();
+  for (const double figure : {spread.rms_m, spread.p95_m, spread.max_m}) EXPECT_NEAR(figure, kStdM, 1e-15);
+}
+
+TEST(TipPostures, WhatIsNotANumberIsNotZero) {
+  ArmMatrix covariance = random_covariance(1);
+  covariance(3, 4) = std::numeric_limits<double>::quiet_NaN();
+  const TipSpread spread = derive_at_postures(arm(), some_postures(3)).spread(covariance).value();
+  for (const double figure : {spread.rms_m, spread.p95_m, spread.max_m}) EXPECT_TRUE(std::isnan(figure));
 }
 
 TEST(TipRegion, TheUsualCountOfPosturesIsEnoughForTheJointRanges) {

@@ -106,9 +106,19 @@ TEST(ResultDocument, ItsPartsHaveTheirFieldsWithTheirTypes) {
   EXPECT_EQ(shape_of(tip), (Shape{{"at_block_rms_mm", "number"},
                                   {"workspace_box_rms_mm", "number"},
                                   {"joint_ranges_rms_mm", "number"},
+                                  {"expanded", "object"},
+                                  {"arm_frame", "object"},
                                   {"sources", "array"},
                                   {"tools", "array"},
                                   {"map", "object"}}));
+  const Shape expanded{
+      {"k", "number"}, {"box_rms_mm", "number"}, {"box_p95_mm", "number"}, {"box_max_mm", "number"}};
+  EXPECT_EQ(shape_of(tip.at("expanded")), expanded);
+  EXPECT_EQ(shape_of(tip.at("arm_frame")), (Shape{{"at_block_rms_mm", "number"},
+                                                  {"workspace_box_rms_mm", "number"},
+                                                  {"joint_ranges_rms_mm", "number"},
+                                                  {"expanded", "object"}}));
+  EXPECT_EQ(shape_of(tip.at("arm_frame").at("expanded")), expanded);
   EXPECT_FALSE(tip.at("sources").empty());
   for (const json& source : tip.at("sources"))
     EXPECT_EQ(shape_of(source), (Shape{{"name", "string"}, {"workspace_box_rms_mm", "number"}}));
@@ -188,6 +198,18 @@ TEST(ResultDocument, TheBudgetAddsUpToTheWorkspaceBoxsFigure) {
   EXPECT_NEAR(std::sqrt(squares), whole, 1e-6 * whole);
 }
 
+TEST(ResultDocument, TheExpandedUncertaintyIsTwiceTheStandardOne) {
+  const json& tip = result().at("tip_uncertainty");
+  for (const json& frame : {tip, tip.at("arm_frame")}) {
+    const json& expanded = frame.at("expanded");
+    EXPECT_EQ(expanded.at("k"), 2.0);
+    const double rms = expanded.at("box_rms_mm").get<double>();
+    EXPECT_NEAR(rms, 2.0 * frame.at("workspace_box_rms_mm").get<double>(), 1e-9 * rms);
+    EXPECT_GE(expanded.at("box_p95_mm").get<double>(), rms);
+    EXPECT_GE(expanded.at("box_max_mm"), expanded.at("box_p95_mm"));
+  }
+}
+
 TEST(ResultDocument, ThePapersArmIsFlagged) {
   const json& warning = result().at("scale").at("warning");
   EXPECT_EQ(result().at("verdict").at("accepted"), false);
@@ -226,8 +248,15 @@ TEST(ResultDocument, NamesTheTouchesThatWereRejectedAndWhatWasEstimatedOfTheBloc
 
 TEST(ResultDocument, BeforeItHasConvergedNoUncertaintyIsToldOf) {
   const json document = document_of(problem_of(edf().recipes.at("edf-25")), {});
-  for (const auto& [name, value] : document.at("tip_uncertainty").items())
+  const json unknown = json::parse(R"({"k":2.0,"box_rms_mm":null,"box_p95_mm":null,"box_max_mm":null})");
+  const json& tip = document.at("tip_uncertainty");
+  for (const auto& [name, value] : tip.items()) {
+    if (name == "expanded" || name == "arm_frame") continue;
     EXPECT_TRUE(value.is_null() || value == json::array()) << name;
+  }
+  EXPECT_EQ(tip.at("expanded"), unknown);
+  for (const auto& [name, value] : tip.at("arm_frame").items())
+    EXPECT_TRUE(name == "expanded" ? value == unknown : value.is_null()) << name;
   EXPECT_TRUE(document.at("scale").at("std_uncertainty_ppm").is_null());
   EXPECT_TRUE(document.at("fit").at("lack_of_fit_p").is_null());
   EXPECT_TRUE(document.at("fit").at("noise_used_um").is_null());

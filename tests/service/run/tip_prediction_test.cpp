@@ -95,6 +95,54 @@ TEST_F(TipPredictionTest, AtTheBlockTheTipIsBetterKnownThanElsewhere) {
   EXPECT_LT(prediction.at_block_rms_m.value(), prediction.joint_ranges_rms_m.value());
 }
 
+TEST_F(TipPredictionTest, InTheArmsOwnFrameTheBlocksPlaceDoesNotCount) {
+  calib::IdentificationResult result = calib::identify(problem_, recipe_.identification);
+  const TipRegions regions(edf());
+  const auto only = [&](bool is_place) {
+    calib::ArmMatrix& identified = result.uncertainty->identified;
+    identified.setZero();
+    result.uncertainty->held.setZero();
+    result.uncertainty->unseen.setZero();
+    result.uncertainty->of_posture.setZero();
+    for (int i = 0; i < calib::kErrorParameterCount; ++i)
+      identified(i, i) = calib::is_place_error(i) == is_place ? 1e-8 : 0.0;
+    return predict_tip(regions, problem_, result);
+  };
+  const TipPrediction of_place = only(true);
+  EXPECT_GT(of_place.expanded.box_max_m.value(), 1e-4);
+  EXPECT_EQ(of_place.arm_frame.at_block_rms_m, 0.0);
+  EXPECT_EQ(of_place.arm_frame.workspace_box_rms_m, 0.0);
+  EXPECT_EQ(of_place.arm_frame.joint_ranges_rms_m, 0.0);
+  EXPECT_EQ(of_place.arm_frame.expanded.box_rms_m, 0.0);
+  EXPECT_EQ(of_place.arm_frame.expanded.box_p95_m, 0.0);
+  EXPECT_EQ(of_place.arm_frame.expanded.box_max_m, 0.0);
+
+  const TipPrediction of_arm = only(false);
+  EXPECT_EQ(of_arm.arm_frame.at_block_rms_m, of_arm.at_block_rms_m);
+  EXPECT_EQ(of_arm.arm_frame.workspace_box_rms_m, of_arm.workspace_box_rms_m);
+  EXPECT_EQ(of_arm.arm_frame.joint_ranges_rms_m, of_arm.joint_ranges_rms_m);
+  EXPECT_EQ(of_arm.arm_frame.expanded.box_rms_m, of_arm.expanded.box_rms_m);
+  EXPECT_EQ(of_arm.arm_frame.expanded.box_p95_m, of_arm.expanded.box_p95_m);
+  EXPECT_EQ(of_arm.arm_frame.expanded.box_max_m, of_arm.expanded.box_max_m);
+}
+
+TEST_F(TipPredictionTest, TheExpandedUncertaintyIsKTimesTheStandardOneOverTheBox) {
+  const TipPrediction tip = predict(edf());
+  const double rms_m = tip.expanded.box_rms_m.value();
+  EXPECT_NEAR(rms_m / tip.workspace_box_rms_m.value(), calib::kTipCoverageFactor, 1e-9);
+  EXPECT_LE(rms_m, tip.expanded.box_p95_m.value());
+  EXPECT_LE(tip.expanded.box_p95_m.value(), tip.expanded.box_max_m.value());
+}
+
+TEST_F(TipPredictionTest, AnErrorOfUnknownSizeThatMattersLeavesNoExpandedFigure) {
+  calib::IdentificationResult result = calib::identify(problem_, recipe_.identification);
+  result.uncertainty->unknown_directions = calib::ArmVector::Unit(*calib::error_parameter_index("r1"));
+  const TipPrediction tip = predict_tip(TipRegions(edf()), problem_, result);
+  EXPECT_EQ(tip.expanded.box_rms_m, std::nullopt);
+  EXPECT_EQ(tip.expanded.box_max_m, std::nullopt);
+  EXPECT_TRUE(tip.arm_frame.expanded.box_p95_m.has_value()) << "r1 is of the block's place";
+}
+
 TEST_F(TipPredictionTest, NothingIsPredictedOfWhatDidNotConverge) {
   problem_.touches.resize(3);
   const TipPrediction prediction = predict(edf());

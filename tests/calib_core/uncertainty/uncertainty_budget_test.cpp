@@ -1,0 +1,68 @@
+#include "calib_core/uncertainty/uncertainty_budget.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
+#include "tests/calib_core/paper.hpp"
+#include "tests/calib_core/tx90.hpp"
+
+namespace calib {
+namespace {
+
+TEST(ArmFrame, LeavesOutTheBlocksPlaceAndNothingElse) {
+  for (int i = 0; i < kArmParameterCount; ++i) {
+    UncertaintyBudget budget;
+    budget.identified(i, i) = 1.0;
+    budget.held(i, i) = 2.0;
+    budget.unseen(i, i) = 4.0;
+    budget.unknown_directions = ArmVector::Unit(i);
+    const UncertaintyBudget of_arm = in_arm_frame(budget);
+    const std::string name = arm_parameter_name(i);
+    const bool is_place = name == "theta0" || name == "r0" || name == "alpha1" || name == "d1" ||
+                          name == "theta1" || name == "r1" || name == "beta1";
+    EXPECT_EQ(of_arm.covariance()(i, i), is_place ? 0.0 : 7.0) << name;
+    EXPECT_EQ(of_arm.unknown_directions(i, 0), is_place ? 0.0 : 1.0) << name;
+  }
+}
+
+TEST(ArmFrame, KeepsTheArmsPartOfWhatIsCorrelatedWithThePlace) {
+  UncertaintyBudget budget;
+  const int place = error_parameter_index("theta1").value();
+  const int joint2 = error_parameter_index("theta2").value();
+  budget.identified(place, place) = 1.0;
+  budget.identified(joint2, joint2) = 4.0;
+  budget.identified(place, joint2) = budget.identified(joint2, place) = 1.9;
+  ArmMatrix wanted = ArmMatrix::Zero();
+  wanted(joint2, joint2) = 4.0;
+  EXPECT_EQ(in_arm_frame(budget).covariance(), wanted);
+}
+
+TEST(ArmFrame, KeepsWhatTheGearOfJoint1DoesFromPostureToPosture) {
+  UncertaintyBudget budget;
+  const int joint1 = error_parameter_index("theta1").value();
+  budget.of_posture(joint1, joint1) = 1e-10;
+  EXPECT_EQ(in_arm_frame(budget).covariance(), budget.covariance());
+}
+
+// Errors of the place move the whole arm as one body: from posture to posture the tip is off by the same
+// rigid motion, whichever way joint 1's axis stands against the block.
+TEST(ArmFrame, ErrorsOfThePlaceMoveTheArmAsARigidBody) {
+  for (const double alpha_rad : {0.0, 0.4, 1.5707963}) {
+    KinematicModel nominal = paper::nominal();
+    nominal.links[1].alpha_rad = alpha_rad;
+    for (int i = 0; i < kErrorParameterCount; ++i) {
+      const KinematicModel moved = apply(nominal, ErrorVector(1e-3 * ErrorVector::Unit(i)));
+      const auto motion = [&](const JointVector& joints) {
+        return forward_kinematics(moved, joints) * forward_kinematics(nominal, joints).inverse();
+      };
+      const Eigen::Matrix4d here = motion(tx90::degrees(10, 20, 30, 40, 50, 60)).matrix();
+      const Eigen::Matrix4d there = motion(tx90::degrees(-70, -20, 90, -40, 80, 10)).matrix();
+      EXPECT_EQ((here - there).cwiseAbs().maxCoeff() < 1e-12, is_place_error(i)) << arm_parameter_name(i);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace calib
