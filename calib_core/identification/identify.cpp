@@ -140,6 +140,7 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
     return;
   }
   result.status = IdentificationStatus::kConverged;
+  result.weight_noise_m = problem.touch_noise_m;
   result.errors = estimate.arm;
   result.artefact_errors = estimate.artefact;
   result.calibrated = apply(problem.nominal, estimate.arm);
@@ -259,10 +260,7 @@ IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
   if (std::max(ratio, 1.0 / ratio) < kReweighRatio) return declared;
   IdentificationProblem reweighed = problem;
   reweighed.touch_noise_m = declared.uncertainty->noise_m;
-  IdentificationOptions settled = options;
-  settled.robust = false;
-  const bool has_harmonics = std::ranges::any_of(declared.nongeometric, is_harmonic);
-  settled.harmonics = has_harmonics ? Harmonics::kEstimate : Harmonics::kLeaveOut;
+  const IdentificationOptions settled = settled_options(options, declared);
   IdentificationResult measured =
       solve_and_hold(reweighed, settled, problem.touch_noise_m, without(fitted, declared.rejected),
                      before_another(before, declared));

@@ -30,4 +30,13 @@ ModelChoice choose_harmonics(const IdentificationResult& without, const Identifi
   return {false, "first harmonics of the joints left out: the touches do not ask for them" + figures.str()};
 }
 
+IdentificationOptions settled_options(IdentificationOptions options, const IdentificationResult& result) {
+  const bool has_harmonics = std::ranges::any_of(result.nongeometric, [](int position) {
+    return is_harmonic(position);
+  });
+  options.robust = false;
+  options.harmonics = has_harmonics ? Harmonics::kEstimate : Harmonics::kLeaveOut;
+  return options;
+}
+
 }  // namespace calib

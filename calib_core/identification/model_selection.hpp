@@ -30,4 +30,8 @@ struct ModelChoice {
 };
 ModelChoice choose_harmonics(const IdentificationResult& without, const IdentificationResult& with);
 
+/// The options that solve for the model of a converged result once more: without a search for outliers and
+/// without a choice of harmonics.
+IdentificationOptions settled_options(IdentificationOptions options, const IdentificationResult& result);
+
 }  // namespace calib

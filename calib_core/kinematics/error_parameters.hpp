@@ -58,6 +58,7 @@ std::string arm_parameter_name(int index);
 /// Index of theta of the frame that a joint moves; joint: index, 0 to 5. Frame 0 has two candidates, the
 /// others five.
 constexpr int theta_index(int joint) { return 2 + 5 * joint + 2; }
+
 /// Whether an error of this parameter, by its index in ArmVector, moves the whole arm against the block as
 /// one rigid body: it is then no error of the arm in the arm's own frame. These are all parameters before the
 /// motion of joint 1: the group kBlockPose and beta1. Where the z axes of block and joint 1 are parallel,

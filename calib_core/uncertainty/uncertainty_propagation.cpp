@@ -184,14 +184,13 @@ void add_held(const std::string& name, const Eigen::VectorXd& displacement, Sour
 void add_nongeometric(const IdentificationProblem& problem, const LeastSquares& fit,
                       const FullLinearisation& whole, double noise_variance, SourceSum& sum,
                       UncertaintyBudget& result) {
-  const double share = harmonic_share(problem, fit, whole, noise_variance);
+  result.harmonic_share = harmonic_share(problem, fit, whole, noise_variance);
   for (int column = kErrorParameterCount; column < kArmParameterCount; ++column) {
     const auto index = static_cast<std::size_t>(column - kErrorParameterCount);
-    const auto& std = problem.nongeometric_std[index];
+    const auto std = std_unless_estimated(problem, column, result.harmonic_share);
     if (!std || is_estimated(fit, column)) continue;
-    const double variance = *std * *std * (is_harmonic(static_cast<int>(index)) ? share : 1.0);
-    add_held(source_name(nongeometric_parameters()[index].kind),
-             std::sqrt(variance) * bias_direction(whole, column), sum, result);
+    add_held(source_name(nongeometric_parameters()[index].kind), *std * bias_direction(whole, column), sum,
+             result);
   }
 }
 
@@ -224,7 +223,7 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
     const Eigen::VectorXd direction = bias_direction(whole, column);
     const ParameterStatus status = identifiable.candidates[static_cast<std::size_t>(column)].status;
     const bool is_held = status == ParameterStatus::kWeak || status == ParameterStatus::kExcluded;
-    if (const auto& tolerance = problem.tolerances[static_cast<std::size_t>(column)]) {
+    if (const auto tolerance = std_unless_estimated(problem, column, result.harmonic_share)) {
       add_left_out(*tolerance * direction, is_held ? held : result.unseen, result);
     } else {
       result.unseen_without_tolerance.push_back(column);
@@ -281,6 +280,15 @@ double UncertaintyBudget::coverage_factor_of(double variance, double noise_varia
   const double effective = share <= 1.0 ? degrees_of_freedom / std::max(share * share, kShareMin)
                                         : degrees_of_freedom;  // also where nothing is known
   return student_two_sided_factor(kConfidence, effective);
+}
+
+std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
+                                           double harmonic_share) {
+  if (column < kErrorParameterCount) return problem.tolerances[static_cast<std::size_t>(column)];
+  const int position = column - kErrorParameterCount;
+  const auto& std = problem.nongeometric_std[static_cast<std::size_t>(position)];
+  if (!std || !is_harmonic(position)) return std;
+  return std::sqrt(harmonic_share) * *std;
 }
 
 FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,

@@ -30,6 +30,11 @@ struct FullLinearisation {
   }
 };
 
+/// Standard deviation with which the budget counts a parameter of the arm (index into ArmVector) that is not
+/// estimated; nothing where it is unknown. `harmonic_share`: UncertaintyBudget.
+std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
+                                           double harmonic_share);
+
 /// `fit` must have been solved at `estimate`.
 FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
                                            const IdentificationOptions& options, LeastSquares& fit,

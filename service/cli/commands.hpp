@@ -17,6 +17,9 @@ struct TemperatureArguments {
   std::optional<double> celsius;
   std::optional<double> std_k;
 };
+/// Bounds of --monte-carlo.
+inline constexpr int kMonteCarloMin = 100;
+inline constexpr int kMonteCarloMax = 1'000'000;
 
 struct IdentifyArguments {
   std::filesystem::path cell_file;
@@ -24,7 +27,8 @@ struct IdentifyArguments {
   std::string recipe;     // the cell's default when empty
   std::string stiffness;  // "on", "off" or "auto"; the recipe's choice when empty
   TemperatureArguments block_temperature;
-  std::string arm_file;    // where the calibrated arm is written, if anywhere
+  std::optional<int> monte_carlo_count;  // simulated calibrations, if any are wanted
+  std::string arm_file;                  // where the calibrated arm is written, if anywhere
   std::string map_file;    // where the map of the predicted uncertainty is written as CSV, if anywhere
   bool overwrite = false;  // those two
 };

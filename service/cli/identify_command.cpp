@@ -1,7 +1,10 @@
 #include <spdlog/fmt/fmt.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
+#include <thread>
 
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
@@ -10,12 +13,14 @@
 #include "config/touches_file.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
+#include "service/cli/planning_bar.hpp"
 #include "service/cli/result_text.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/configuration_digest.hpp"
 #include "service/documents/result_view.hpp"
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/run_conditions.hpp"
+#include "service/run/simulated_calibrations.hpp"
 
 namespace cell {
 namespace {
@@ -75,6 +80,21 @@ Cell at_temperature(const Cell& cell, const TemperatureArguments& given) {
   return with_block_temperature(cell, BlockTemperature{*given.celsius, *given.std_k, std::nullopt});
 }
 
+/// Sets what simulated calibrations tell, or the warning that there is nothing to draw from.
+void simulate(const TipRegions& regions, const Recipe& recipe, const calib::IdentificationProblem& problem,
+              const calib::IdentificationResult& result, int count, ResultContext& context) {
+  const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  PlanningBar bar(isatty(STDERR_FILENO) != 0);
+  context.monte_carlo = simulate_calibrations(
+      regions, problem, recipe.identification, result, count, threads,
+      [&bar, count](int done) { bar.show("simulated calibrations", static_cast<double>(done) / count); });
+  bar.finish();
+  if (!context.monte_carlo) {
+    context.warnings.emplace_back(
+        "no Monte Carlo: the noise of a touch is neither declared nor measured by these touches");
+  }
+}
+
 }  // namespace
 
 ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
@@ -89,13 +109,15 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (result.status != calib::IdentificationStatus::kConverged)
     return print_refusal(arguments.touches_file, result);
   const TipRegions regions(cell);
-  const ResultContext context{
+  ResultContext context{
       .complete = true,
       .warnings = file.warnings,
       .conditions = conditions_document(
           cell, {.config_digest = configuration_digest(cell),
                  .temperature_source = arguments.block_temperature.celsius ? TemperatureSource::kRun
                                                                            : TemperatureSource::kFile})};
+  if (arguments.monte_carlo_count)
+    simulate(regions, recipe, problem, result, *arguments.monte_carlo_count, context);
   const ResultDocument document = result_of(regions, recipe, problem, result, context);
   write_files(arguments, cell, result, document);
   if (json) {

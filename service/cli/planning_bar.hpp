@@ -6,7 +6,8 @@
 
 namespace cell {
 
-/// Shows the progress of planning on standard error: a line that is redrawn on a terminal, nothing elsewhere.
+/// Shows the progress of planning, or of another computation that takes seconds, on standard error: a line
+/// that is redrawn on a terminal, nothing elsewhere.
 class PlanningBar {
  public:
   explicit PlanningBar(bool on_terminal) : on_terminal_(on_terminal) {}

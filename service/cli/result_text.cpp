@@ -125,6 +125,17 @@ std::string tip_text(const TipDocument& tip) {
   return lines;
 }
 
+std::string monte_carlo_text(const ResultDocument::MonteCarlo& simulated) {
+  return fmt::format(
+      "\nMonte Carlo: {} of {} simulated calibrations converged; linear uncertainty over theirs {}\n"
+      "standard uncertainty of the tip by them {} mm in the workspace box, {} mm over the joint ranges\n"
+      "95 % of the tip errors in the box within {} mm\n",
+      simulated.converged, simulated.count, figure(simulated.linear_over_monte_carlo, "{:.3f}", "unknown"),
+      figure(simulated.box_rms_mm, "{:.3f}", "unknown"),
+      figure(simulated.joint_ranges_rms_mm, "{:.3f}", "unknown"),
+      figure(simulated.box_p95_mm, "{:.3f}", "unknown"));
+}
+
 std::string scale_text(const ResultDocument::Scale& scale) {
   return fmt::format("common scale of all lengths: from {}, +- {} ppm (std); they moved by {} ppm\n",
                      text(scale.source), figure(scale.std_uncertainty_ppm, "{:.0f}"),
@@ -169,6 +180,7 @@ std::string result_text(const ResultDocument& result) {
                          figure(parameter.std_uncertainty, "{:.2g}"), parameter.unit);
   }
   lines += tip_text(result.tip_uncertainty);
+  if (result.monte_carlo) lines += monte_carlo_text(*result.monte_carlo);
   lines += planes_text(result.planes, "distances of the fitted touches from the block's origin");
   lines += planes_text(result.planes_held_out, "distances of the held-out touches");
   lines += planes_text(result.planes_proof, "distances of the proof touches");

@@ -97,6 +97,10 @@ class CommandLine {
                      "auto: where the arm's file allows it")
         ->check(CLI::IsMember({"on", "off", "auto"}));
     add_block_temperature(*identify, identify_.block_temperature);
+    identify
+        ->add_option("--monte-carlo", identify_.monte_carlo_count,
+                     "check the uncertainty by this many simulated calibrations (GUM, Supplement 1)")
+        ->check(CLI::Range(cell::kMonteCarloMin, cell::kMonteCarloMax));
     identify->add_option("--export", identify_.arm_file, "write the calibrated arm to this arm file");
     identify->add_option("--map", identify_.map_file,
                          "write the predicted uncertainty over the workspace box to this CSV file");

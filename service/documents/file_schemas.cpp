@@ -20,7 +20,7 @@ constexpr std::string_view kResult = R"({
 "type":"object",
 "required":["schema","arm","touch_count","complete","warnings","rejected_touches","converged","iterations",
   "identifiable_count","condition_number","scaled_condition_number","singular_values","parameters",
-  "artefact_parameters","model","model_reason","nongeometric_parameters","planes","planes_held_out","planes_proof","scale","touches","validation","tip_uncertainty","fit","verdict","conditions"],
+  "artefact_parameters","model","model_reason","nongeometric_parameters","planes","planes_held_out","planes_proof","scale","touches","validation","tip_uncertainty","monte_carlo","fit","verdict","conditions"],
 "properties":{
   "schema":{"const":"touchcal/result/1"},
   "arm":{"type":"string"},
@@ -79,6 +79,15 @@ constexpr std::string_view kResult = R"({
     "std_uncertainty_ppm":{"type":["number","null"]},
     "warning":{"type":["string","null"]}}},
   "tip_uncertainty":{"$ref":"#/components/schemas/TipUncertainty"},
+  "monte_carlo":{"type":["object","null"],
+    "required":["count","converged","box_rms_mm","box_p95_mm","joint_ranges_rms_mm","linear_over_monte_carlo"],
+    "properties":{
+      "count":{"type":"integer","minimum":100,"maximum":1000000},
+      "converged":{"type":"integer","minimum":0},
+      "box_rms_mm":{"type":["number","null"],"minimum":0},
+      "box_p95_mm":{"type":["number","null"],"minimum":0},
+      "joint_ranges_rms_mm":{"type":["number","null"],"minimum":0},
+      "linear_over_monte_carlo":{"type":["number","null"],"minimum":0}}},
   "fit":{"type":"object","required":["noise_declared_um","noise_estimated_um","lack_of_fit_p"]},
   "verdict":{"type":"object","required":["accepted","reasons"],"properties":{
     "accepted":{"type":"boolean"},

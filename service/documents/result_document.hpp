@@ -148,6 +148,25 @@ struct ResultDocument {
       fields("warning", self.warning);
     }
   };
+  /// Simulated calibrations; standard uncertainties as in `tip_uncertainty`.
+  struct MonteCarlo {
+    int count = 0;
+    int converged = 0;
+    std::optional<double> box_rms_mm;
+    std::optional<double> box_p95_mm;  // of the tip errors
+    std::optional<double> joint_ranges_rms_mm;
+    std::optional<double> linear_over_monte_carlo;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("count", self.count);
+      fields("converged", self.converged);
+      fields("box_rms_mm", self.box_rms_mm);
+      fields("box_p95_mm", self.box_p95_mm);
+      fields("joint_ranges_rms_mm", self.joint_ranges_rms_mm);
+      fields("linear_over_monte_carlo", self.linear_over_monte_carlo);
+    }
+  };
   struct PlaneFit {
     int plane = 0;  // from 1
     std::optional<double> p;
@@ -208,6 +227,7 @@ struct ResultDocument {
   std::optional<RepetitionsDocument> validation;
   Scale scale;
   TipDocument tip_uncertainty;
+  std::optional<MonteCarlo> monte_carlo;  // nothing where none was asked for
   Fit fit;
   VerdictDocument verdict;
   Carried<ConditionsDocument> conditions;
@@ -243,6 +263,7 @@ struct ResultDocument {
     fields("validation", self.validation);
     fields("scale", self.scale);
     fields("tip_uncertainty", self.tip_uncertainty);
+    fields("monte_carlo", self.monte_carlo);
     fields("fit", self.fit);
     fields(kVerdictKey, self.verdict);
     fields("conditions", self.conditions);

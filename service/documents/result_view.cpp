@@ -89,6 +89,15 @@ TipDocument::ArmFrame arm_frame_of(const TipPrediction::InArmFrame& tip) {
           .expanded = expanded_of(tip.expanded)};
 }
 
+ResultDocument::MonteCarlo monte_carlo_of(const calib::MonteCarloFigures& figures) {
+  return {.count = figures.count,
+          .converged = figures.converged,
+          .box_rms_mm = finite_mm(figures.box_rms_m),
+          .box_p95_mm = finite_mm(figures.box_p95_m),
+          .joint_ranges_rms_mm = finite_mm(figures.joint_ranges_rms_m),
+          .linear_over_monte_carlo = finite(figures.linear_over_monte_carlo)};
+}
+
 /// A plane without fitted touches has no p.
 std::vector<ResultDocument::PlaneFit> plane_fits_of(const calib::IdentificationResult& result) {
   std::vector<ResultDocument::PlaneFit> planes;
@@ -242,6 +251,10 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
   document.validation = validation_of(problem, options, result, context.complete, document.parameters);
   const TipPrediction tip = predict_tip(regions, problem, result);
   document.tip_uncertainty = tip_of(cell, tip);
+  if (context.monte_carlo) {
+    document.monte_carlo = monte_carlo_of(*context.monte_carlo);
+    if (!context.monte_carlo->warning.empty()) document.warnings.push_back(context.monte_carlo->warning);
+  }
   Judgement judgement = judge_by_rule(result, options, cell, tip.workspace_box_rms_m, context.complete);
   document.verdict = {
       .accepted = judgement.accepted,

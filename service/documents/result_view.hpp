@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "calib_core/identification/identify.hpp"
+#include "calib_core/identification/monte_carlo.hpp"
 #include "config/cell.hpp"
 #include "service/documents/result_document.hpp"
 #include "service/run/tip_prediction.hpp"
@@ -14,6 +16,7 @@ struct ResultContext {
   bool complete = true;               // every touch was made
   std::vector<std::string> warnings;  // of the touches file; those of identify() are in the result
   std::string conditions;             // as stored with the run; empty: those of the cell's files
+  std::optional<calib::MonteCarloFigures> monte_carlo;  // where it was asked for
 };
 
 /// touchcal/result/1. `problem` is the input of the identification: rejected touches are numbers of its

@@ -187,6 +187,21 @@ std::string summary_section(const ResultDocument& result) {
           bullets(result.warnings));
 }
 
+/// Nothing where none were asked for.
+std::string monte_carlo_table(const std::optional<ResultDocument::MonteCarlo>& simulated) {
+  if (!simulated) return {};
+  return pairs_table(
+      "Simulated calibrations (Monte Carlo by the GUM, Supplement 1)",
+      {{"drawn, converged", std::to_string(simulated->count) + ", " + std::to_string(simulated->converged)},
+       {"standard uncertainty of the tip in the workspace box, rms",
+        figure_text(simulated->box_rms_mm, "{:.3f} mm")},
+       {"over the joint ranges, rms", figure_text(simulated->joint_ranges_rms_mm, "{:.3f} mm")},
+       {"95 % of the tip errors in the workspace box within",
+        figure_text(simulated->box_p95_mm, "{:.3f} mm")},
+       {"linear uncertainty over that of the simulation",
+        figure_text(simulated->linear_over_monte_carlo, "{:.3f}")}});
+}
+
 std::string budget_section(const ResultDocument& result) {
   const TipDocument& tip = result.tip_uncertainty;
   std::vector<Row> sources;
@@ -220,7 +235,8 @@ std::string budget_section(const ResultDocument& result) {
   return section("Uncertainty", html::table("Budget of the tip's predicted uncertainty in the workspace box",
                                             {"source", "rms mm"}, sources) +
                                     html::table("Predicted uncertainty of the tip elsewhere",
-                                                {"where", "rms mm"}, elsewhere) + pairs_table("Lack of fit", lack) +
+                                                {"where", "rms mm"}, elsewhere) +
+                                    monte_carlo_table(result.monte_carlo) + pairs_table("Lack of fit", lack) +
                                     html::table("Strongest correlations of identified errors",
                                                 {"error of", "and of", "coefficient"}, correlations));
 }

@@ -87,6 +87,30 @@ TEST_F(OfflineCommands, IdentifyEstimatesTheComplianceWhenItIsToldToWhateverTheR
   EXPECT_EQ(identify({"--stiffness", "maybe"}).exit_code, cell::kExitUsage);
 }
 
+TEST_F(OfflineCommands, IdentifySimulatesAsManyCalibrationsAsItIsToldTo) {
+  const json document = json::parse(identify({"--json", "--monte-carlo", "100"}).out);
+  const json& simulated = document.at("monte_carlo");
+  EXPECT_EQ(simulated.at("count"), 100);
+  EXPECT_EQ(simulated.at("converged"), 100);
+  EXPECT_GT(simulated.at("box_p95_mm"), simulated.at("box_rms_mm"));
+  EXPECT_TRUE(simulated.at("joint_ranges_rms_mm").is_number());
+  EXPECT_TRUE(simulated.at("linear_over_monte_carlo").is_number());
+  EXPECT_EQ(json::parse(identify({"--json"}).out).at("monte_carlo"), nullptr);
+  const Finished text = identify({"--monte-carlo", "100"});
+  EXPECT_THAT(text.out, HasSubstr("100 of 100 simulated calibrations converged"));
+  EXPECT_THAT(text.out, HasSubstr("in the arm's own frame"));
+  EXPECT_EQ(text.err, "");
+}
+
+TEST_F(OfflineCommands, IdentifyRefusesCountsOfSimulatedCalibrationsThatMakeNoSense) {
+  for (const char* count : {"99", "1000001", "0", "-5", "many", "1e3", ""}) {
+    const Finished finished = identify({"--monte-carlo", count});
+    EXPECT_EQ(finished.exit_code, cell::kExitUsage) << count;
+    EXPECT_EQ(finished.out, "");
+    EXPECT_THAT(finished.err, HasSubstr("--monte-carlo"));
+  }
+}
+
 TEST_F(OfflineCommands, ValidatePassesThePapersTouchesAndSaysWhyThereIsNoOtherSet) {
   const Finished finished = validate({"--json"});
   EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;

@@ -45,6 +45,7 @@ TEST(ResultDocument, HasTheContractsFieldsWithTheirTypes) {
                                        {"validation", "object"},
                                        {"scale", "object"},
                                        {"tip_uncertainty", "object"},
+                                       {"monte_carlo", "null"},
                                        {"fit", "object"},
                                        {"verdict", "object"},
                                        {"conditions", "object"}}));
@@ -210,6 +211,21 @@ TEST(ResultDocument, TheExpandedUncertaintyIsTwiceTheStandardOne) {
   }
 }
 
+TEST(ResultDocument, SaysWhatSimulatedCalibrationsTold) {
+  const calib::MonteCarloFigures figures{.count = 400,
+                                         .converged = 399,
+                                         .box_rms_m = 5e-5,
+                                         .box_p95_m = 1.25e-4,
+                                         .linear_over_monte_carlo = 1.02,
+                                         .warning = "one did not"};
+  const calib::IdentificationProblem problem = problem_of(edf().recipes.at("edf-25"));
+  const json document = json::parse(
+      result_document(regions(), edf().recipes.at("edf-25"), problem, {}, {.monte_carlo = figures}));
+  EXPECT_EQ(document.at("monte_carlo"), json::parse(R"({"count":400,"converged":399,"box_rms_mm":0.05,
+      "box_p95_mm":0.125,"joint_ranges_rms_mm":null,"linear_over_monte_carlo":1.02})"));
+  EXPECT_EQ(document.at("warnings").back(), "one did not");
+}
+
 TEST(ResultDocument, ThePapersArmIsFlagged) {
   const json& warning = result().at("scale").at("warning");
   EXPECT_EQ(result().at("verdict").at("accepted"), false);
@@ -257,6 +273,7 @@ TEST(ResultDocument, BeforeItHasConvergedNoUncertaintyIsToldOf) {
   EXPECT_EQ(tip.at("expanded"), unknown);
   for (const auto& [name, value] : tip.at("arm_frame").items())
     EXPECT_TRUE(name == "expanded" ? value == unknown : value.is_null()) << name;
+  EXPECT_TRUE(document.at("monte_carlo").is_null());
   EXPECT_TRUE(document.at("scale").at("std_uncertainty_ppm").is_null());
   EXPECT_TRUE(document.at("fit").at("lack_of_fit_p").is_null());
   EXPECT_TRUE(document.at("fit").at("noise_used_um").is_null());
