@@ -93,6 +93,8 @@ struct AcceptanceLimits {
   double condition_number_max = 0.0;
   double lack_of_fit_p_min = 0.001;         // residuals less likely than this are not touch noise
   std::optional<double> tip_box_rms_max_m;  // predicted tip uncertainty over the workspace box
+  std::optional<double> tip_box_max_m;      // expanded tip uncertainty, k = 2, where it is worst in the box
+  std::map<std::string, double> tool_box_rms_max_m;  // as tip_box_rms_max_m, by the name of a tool
   /// A limit is kept only when the value and its expanded uncertainty are within it (ISO 14253-1); else when
   /// the value is.
   bool guarded = false;

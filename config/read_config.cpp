@@ -65,9 +65,16 @@ void read_recipes(const JsonObject& object, Cell& cell) {
   }
 }
 
+/// A key that came with the second schema of a cell.
+std::optional<JsonValue> find_in_second(const JsonObject& object, const char* key, bool is_first_schema) {
+  auto value = object.find(key);
+  if (value && is_first_schema)
+    value->fail("unknown key " + in_quotes(key) + R"( in a cell of version 1; raise "schema" to 2)");
+  return value;
+}
+
 /// Rotation as in VAL3's trsf: Rot(x) Rot(y) Rot(z), degrees.
-Eigen::Isometry3d tool_from_json(const JsonValue& value) {
-  const JsonObject object = value.object({"position_mm", "rotation_deg"});
+Eigen::Isometry3d tool_from_json(const JsonObject& object) {
   const Eigen::Vector3d position_m = object.at("position_mm").numbers<3>() * calib::kMetresPerMillimetre;
   const Eigen::Vector3d angles = object.at("rotation_deg").numbers<3>() * calib::kRadiansPerDegree;
   Eigen::Isometry3d wrist_from_tool = Eigen::Isometry3d::Identity();
@@ -78,12 +85,18 @@ Eigen::Isometry3d tool_from_json(const JsonValue& value) {
   return wrist_from_tool;
 }
 
+void read_tools(const JsonValue& tools, bool is_first_schema, Cell& cell) {
+  for (const auto& [name, value] : tools.members()) {
+    const JsonObject object = value.object({"position_mm", "rotation_deg", "tip_box_rms_max_mm"});
+    cell.tools.emplace(name, tool_from_json(object));
+    if (const auto limit = find_in_second(object, "tip_box_rms_max_mm", is_first_schema))
+      cell.acceptance.tool_box_rms_max_m[name] = calib::kMetresPerMillimetre * limit->number(kPositive);
+  }
+}
+
 void read_space(const JsonObject& object, Cell& cell) {
   cell.workspace_box = box_from_json(object.at("workspace_box"));
   if (const auto boxes = object.find("keep_out_boxes")) cell.keep_out_boxes = boxes_from_json(*boxes);
-  if (const auto tools = object.find("tools")) {
-    for (const auto& [name, value] : tools->members()) cell.tools.emplace(name, tool_from_json(value));
-  }
   const JsonValue park = object.at("park_joints_deg");
   cell.park_joints = park.numbers<calib::kJointCount>().cwiseProduct(joint_units(cell.arm.model));
   if (!cell.arm.joint_ranges.contains(cell.park_joints))
@@ -108,18 +121,16 @@ void read_touch_conditions(const JsonObject& object, Cell& cell) {
 /// How old a temperature of the block may be; came with the second schema.
 void read_temperature_age(const JsonObject& object, bool is_first_schema, Cell& cell) {
   constexpr NumberRange kHours{.min = 0.1, .max = 8760.0};  // six minutes to a year
-  const auto age = object.find("block_temperature_age_max_h");
+  const auto age = find_in_second(object, "block_temperature_age_max_h", is_first_schema);
   if (!age) return;
-  if (is_first_schema)
-    age->fail(R"(unknown key "block_temperature_age_max_h" in a cell of version 1; raise "schema" to 2)");
   cell.block_temperature_age_max = std::chrono::round<std::chrono::minutes>(
       std::chrono::duration<double, std::chrono::hours::period>(age->number(kHours)));
 }
 
-AcceptanceLimits acceptance_from_json(const JsonValue& value) {
-  const JsonObject object =
-      value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max",
-                    "lack_of_fit_p_min", "tip_box_rms_max_mm", "reference_drift_max_mm", "decision"});
+AcceptanceLimits acceptance_from_json(const JsonValue& value, bool is_first_schema) {
+  const JsonObject object = value.object({"held_out_mean_max_mm", "held_out_rms_max_mm",
+                                          "condition_number_max", "lack_of_fit_p_min", "tip_box_rms_max_mm",
+                                          "tip_box_max_mm", "reference_drift_max_mm", "decision"});
   constexpr NumberRange kConditionNumbers{.min = 1.0, .max = 1e16};
   constexpr NumberRange kProbabilities{.min = 0.0, .max = 0.5};
   AcceptanceLimits limits{
@@ -129,6 +140,8 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value) {
   if (const auto least = object.find("lack_of_fit_p_min"))
     limits.lack_of_fit_p_min = least->number(kProbabilities);
   limits.tip_box_rms_max_m = object.find_metres("tip_box_rms_max", kPositive);
+  if (const auto limit = find_in_second(object, "tip_box_max_mm", is_first_schema))
+    limits.tip_box_max_m = calib::kMetresPerMillimetre * limit->number(kPositive);
   if (const auto decision = object.find("decision")) {
     const std::string rule = decision->text();
     if (rule != "simple" && rule != "guarded")
@@ -251,7 +264,8 @@ Cell read_cell(const std::filesystem::path& file) {
   read_space(object, cell);
   read_touch_conditions(object, cell);
   read_temperature_age(object, is_first_schema, cell);
-  cell.acceptance = acceptance_from_json(object.at("acceptance"));
+  cell.acceptance = acceptance_from_json(object.at("acceptance"), is_first_schema);
+  if (const auto tools = object.find("tools")) read_tools(*tools, is_first_schema, cell);
   cell.speeds = speeds_from_json(object.at("speeds"), cell.probe);
   cell.deadlines = deadlines_from_json(object.at("deadlines"));
   cell.controller = endpoint_from_json(object.at("controller"));

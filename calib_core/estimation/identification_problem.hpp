@@ -59,6 +59,9 @@ struct IdentificationProblem {
   /// same in every touch: half the play of the gears; radians. In gear_std_rad as well, which is for motions
   /// of any direction.
   JointVector gear_lag_std_rad = JointVector::Zero();
+  /// How far one place seemed to move against the arm while the touches were made (warming, a block that
+  /// moves): the result is of the middle of that, and afterwards the tip is off by up to half of it.
+  double drift_m = 0.0;
   /// Depends on arm, faces and options only. Set it when many identifications share these; else each call
   /// computes it.
   std::optional<Attainable> attainable;

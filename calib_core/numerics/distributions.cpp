@@ -27,6 +27,17 @@ double chi_square_survival(double x, double degrees) {
   return cdf(complement(boost::math::chi_squared_distribution<double, Policy>(degrees), x));
 }
 
+double chi_square_quantile(double probability, double degrees) {
+  require(probability > 0.0 && probability < 1.0, "chi_square_quantile: probability out of range");
+  require(degrees > 0.0 && degrees <= kChiSquareDegreesMax, "chi_square_quantile: degrees out of range");
+  return quantile(boost::math::chi_squared_distribution<double, Policy>(degrees), probability);
+}
+
+double normal_two_sided_confidence(double factor) {
+  require(factor >= 0.0, "normal_two_sided_confidence: the factor must not be negative");
+  return 1.0 - 2.0 * cdf(complement(boost::math::normal_distribution<double, Policy>(), factor));
+}
+
 double normal_two_sided_factor(double confidence) {
   require(confidence > 0.0 && confidence < 1.0, "the confidence must lie between 0 and 1");
   return -quantile(boost::math::normal_distribution<double, Policy>(), (1.0 - confidence) / 2.0);

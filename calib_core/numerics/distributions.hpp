@@ -14,6 +14,12 @@ inline constexpr double kChiSquareDegreesMax = 1e5;
 /// far tail too (1e-100). Outside the domain: std::logic_error, as in all functions here.
 double chi_square_survival(double x, double degrees);
 
+/// x with P(X <= x) = probability of a chi-square variable; probability in (0, 1), degrees as above.
+double chi_square_quantile(double probability, double degrees);
+
+/// P(|z| <= k) for a standard normal variable; k >= 0.
+double normal_two_sided_confidence(double factor);
+
 /// k with P(|z| <= k) = confidence for a standard normal variable; confidence in (0, 1).
 double normal_two_sided_factor(double confidence);
 

@@ -238,6 +238,25 @@ double ball_error_for(const ArmVector& own, const LeastSquares& fit, double stre
   return std::abs(stretch_per_metre) < 1e-9 ? 0.0 : stretch / stretch_per_metre;
 }
 
+/// A given quantity and how it seems to be wrong: the true one is larger or smaller.
+std::string written(const std::string& name, bool is_larger) {
+  return name + " (written too " + (is_larger ? "small" : "large") + ")";
+}
+
+/// `ball_m`: how much the written ball radius less pre-travel would exceed the true one.
+std::string words_of_stretch(const ScaleCheck& check, double ball_m) {
+  const bool too_large = ball_m > 0.0;
+  return "all lengths moved together by " + percent(check.stretch_relative) + ", " +
+         figure(*check.significance, 1) +
+         " standard deviations of what the maker's tolerances allow: a stylus radius less pre-travel that is "
+         "written too " +
+         (too_large ? "large" : "small") + " by " + figure(mm_from_metres(std::abs(ball_m)), 3) +
+         " mm, a block whose size is written too " + (check.stretch_relative > 0.0 ? "large" : "small") +
+         " (by the same share) or a temperature that is written too " +
+         (check.stretch_relative > 0.0 ? "high" : "low") +
+         " look just like this; check these before the result is used";
+}
+
 }  // namespace
 
 ScaleCheck check_scale(const IdentificationProblem& problem, const IdentificationOptions& options,
@@ -259,25 +278,21 @@ ScaleCheck check_scale(const IdentificationProblem& problem, const Identificatio
   check.stretch_relative = stretch;
   if (std < 0.1) check.significance = std::abs(stretch) / std;
   if (check.significance && *check.significance > kScaleSignificanceMax) {
-    const double ball = ball_error_for(own, fit, stretch);
-    check.warning =
-        "all lengths moved together by " + percent(stretch) + ", " + figure(*check.significance, 1) +
-        " standard deviations of what the maker's tolerances allow: a stylus radius less pre-travel "
-        "that is wrong by " +
-        figure(mm_from_metres(ball), 3) +
-        " mm, a block of another size (by the same share) or of another temperature looks just like "
-        "this; check these before the result is used";
+    check.warning = words_of_stretch(check, ball_error_for(own, fit, stretch));
     return check;
   }
+  std::string contradicted;
   for (std::size_t k = 0; k < problem.artefact.parameters.size(); ++k) {
-    const ArtefactParameter& parameter = problem.artefact.parameters[k];
     const auto correction = test.correction(problem, k);
-    if (!correction || std::abs(*correction) <= kArtefactSignificanceMax) continue;
-    check.warning = "the touches contradict the given " + parameter.name + " by " +
-                    figure(std::abs(*correction), 1) +
+    if (!correction || std::abs(*correction) <= check.contradicted.value_or(-1.0)) continue;
+    check.contradicted = std::abs(*correction);
+    contradicted = written(problem.artefact.parameters[k].name, *correction > 0.0);
+  }
+  if (check.contradicted && *check.contradicted > kArtefactSignificanceMax) {
+    check.warning = "the touches contradict the given " + contradicted + " by " +
+                    figure(*check.contradicted, 1) +
                     " standard deviations: check stylus radius, pre-travel, block size and block temperature "
                     "before the result is used";
-    return check;
   }
   return check;
 }

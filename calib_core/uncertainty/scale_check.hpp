@@ -16,7 +16,10 @@ struct ScaleCheck {
   double std_relative = 0.0;           // of the scale, from all sources of uncertainty
   double stretch_relative = 0.0;       // common change of all lengths, judged by the tolerances
   std::optional<double> significance;  // in standard deviations; nothing when no tolerance is known
-  std::string warning;                 // with the likely causes; empty when there is none
+  /// Deviation of the artefact parameter that the touches contradict most from its given value, in standard
+  /// deviations; nothing where they show none, or where it follows from a scale that is warned of.
+  std::optional<double> contradicted;
+  std::string warning;  // with the likely causes; empty when there is none
 };
 
 /// Significance of a warning: one correct calibration in 196 exceeds it. With the tolerances of a TX90 a ball

@@ -1,12 +1,29 @@
 #include "calib_core/uncertainty/uncertainty_budget.hpp"
 
+#include <algorithm>
+
+#include "calib_core/numerics/distributions.hpp"
+
 namespace calib {
+namespace {
+
+constexpr double kConfidence = 0.95;
+constexpr double kShareMin = 1e-6;  // of the noise: a smaller one leaves a normal distribution
+
+}  // namespace
+
+double UncertaintyBudget::coverage_factor_of(double variance, double noise_variance) const {
+  const double share = noise_variance / variance;
+  const double effective = share <= 1.0 ? degrees_of_freedom / std::max(share * share, kShareMin)
+                                        : degrees_of_freedom;  // also where nothing is known
+  return student_two_sided_factor(kConfidence, effective);
+}
 
 UncertaintyBudget in_arm_frame(const UncertaintyBudget& budget) {
   UncertaintyBudget result;
   result.noise_m = budget.noise_m;
   result.degrees_of_freedom = budget.degrees_of_freedom;
-  result.coverage_factor = budget.coverage_factor;
+  result.of_noise = budget.of_noise;
   result.identified = budget.identified;
   result.held = budget.held;
   result.unseen = budget.unseen;
@@ -15,7 +32,7 @@ UncertaintyBudget in_arm_frame(const UncertaintyBudget& budget) {
   result.unknown_directions = budget.unknown_directions;
   for (int i = 0; i < kArmParameterCount; ++i) {
     if (!is_place_error(i)) continue;
-    for (ArmMatrix* part : {&result.identified, &result.held, &result.unseen}) {
+    for (ArmMatrix* part : {&result.of_noise, &result.identified, &result.held, &result.unseen}) {
       part->row(i).setZero();
       part->col(i).setZero();
     }

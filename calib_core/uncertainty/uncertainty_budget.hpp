@@ -25,7 +25,7 @@ struct Correlation {
 /// is the covariance of that combination. A parameter that was excluded or held at nominal still has an error
 /// within the maker's tolerance, which biases the others; so has what is beside rigid kinematics and was not
 /// estimated: `held`. Grouped parameters and those without effect are also unknown within their tolerances:
-/// `unseen`. `of_posture` are errors of the joints that change from posture to posture.
+/// `unseen`. `of_posture` are errors of the joints that change from posture to posture, and the drift.
 struct UncertaintyBudget {
   double noise_m = 0.0;                    // of a touch, measured; the declared one is a prior for it
   double degrees_of_freedom = 0.0;         // of that noise

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
-#include "calib_core/numerics/distributions.hpp"
 #include "calib_core/uncertainty/left_out_effects.hpp"
 
 namespace calib {
 namespace {
 
-constexpr double kConfidence = 0.95;
-constexpr double kShareMin = 1e-6;  // of the noise: a smaller one leaves a normal distribution
 constexpr std::size_t kCorrelationsShown = 10;
 
 bool is_estimated(const LeastSquares& fit, int column) {
@@ -212,6 +208,18 @@ void add_gears(const IdentificationProblem& problem, SourceSum& sum, Uncertainty
   sum.source("gears").covariance = result.of_posture;
 }
 
+/// Adds the drift, as a displacement along the lengths before joint 1: they are at right angles where axis 1
+/// stands on the block's base. No touch says in which direction, so that it is the same in each.
+void add_drift(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
+  if (problem.drift_m == 0.0) return;
+  ArmMatrix& covariance = sum.source("drift").covariance;
+  for (const char* name : {"r0", "d1", "r1"}) {
+    const int length = *error_parameter_index(name);
+    covariance(length, length) = std::pow(problem.drift_m / 2.0, 2);
+  }
+  result.of_posture += covariance;
+}
+
 /// Adds the errors that were not estimated: each is within its tolerance and biases the estimated ones.
 void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
                 const LeastSquares& fit, const FullLinearisation& whole, SourceSum& sum,
@@ -275,13 +283,6 @@ std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vecto
 
 }  // namespace
 
-double UncertaintyBudget::coverage_factor_of(double variance, double noise_variance) const {
-  const double share = noise_variance / variance;
-  const double effective = share <= 1.0 ? degrees_of_freedom / std::max(share * share, kShareMin)
-                                        : degrees_of_freedom;  // also where nothing is known
-  return student_two_sided_factor(kConfidence, effective);
-}
-
 std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
                                            double harmonic_share) {
   if (column < kErrorParameterCount) return problem.tolerances[static_cast<std::size_t>(column)];
@@ -342,6 +343,7 @@ UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
   add_nongeometric(problem, fit, whole, ratio * ratio, sum, result);
   add_lag(problem, whole, sum, result);
   add_gears(problem, sum, result);
+  add_drift(problem, sum, result);
   result.sources = sum.take();
   result.artefact_std = (covariance.diagonal().tail(fit.unknown_count() - fit.arm_count())).cwiseSqrt();
   result.correlations = strongest(result.identified, fit.arm_columns());

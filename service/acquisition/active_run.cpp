@@ -1,7 +1,7 @@
 #include "service/acquisition/active_run.hpp"
 
 #include "service/documents/result_view.hpp"
-#include "service/run/decision_rule.hpp"
+#include "service/run/verdict.hpp"
 
 namespace cell {
 
@@ -12,13 +12,15 @@ std::optional<std::string> result_json(const ActiveRun& active, const TipRegions
                          {.complete = active.finished, .warnings = {}, .conditions = active.conditions});
 }
 
-Verdict conclude(ActiveRun& active, RunOutcome outcome, const Cell& cell) {
+Verdict conclude(ActiveRun& active, RunOutcome outcome, const TipRegions& regions) {
   const Run& run = active.run;
   active.finished = outcome == RunOutcome::kComplete && run.skipped_count() == 0 &&
                     run.latest().status == calib::IdentificationStatus::kConverged;
   if (!active.finished) return Verdict::kIncomplete;
-  const Judgement judgement =
-      judge_by_rule(run.latest(), run.recipe().identification, cell, run.predicted_tip_rms_m(), true);
+  const TipPrediction tip = predict_tip(regions, run.problem(), run.latest());
+  const std::vector<Criterion> judged =
+      criteria(run.latest(), run.recipe().identification, regions.cell(), judged_tip(tip));
+  const Judgement judgement = judge(run.latest(), judged, regions.cell().acceptance, true);
   return judgement.accepted ? Verdict::kAccepted : Verdict::kRejected;
 }
 

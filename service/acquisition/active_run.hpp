@@ -36,7 +36,7 @@ struct ActiveRun {
 std::optional<std::string> result_json(const ActiveRun& active, const TipRegions& regions);
 
 /// What a run that ends by `outcome` is worth: complete with every touch made and a result, it is judged by
-/// the cell's rule; else it is incomplete. Sets `finished`.
-Verdict conclude(ActiveRun& active, RunOutcome outcome, const Cell& cell);
+/// the rule of the regions' cell; else it is incomplete. Sets `finished`.
+Verdict conclude(ActiveRun& active, RunOutcome outcome, const TipRegions& regions);
 
 }  // namespace cell

@@ -199,7 +199,7 @@ void CellOperation::close_run(RunOutcome outcome) {
   if (!run_ || !run_->open) return;
   const Run& run = run_->run;
   run_->open = false;
-  const Verdict verdict = conclude(*run_, outcome, cell());
+  const Verdict verdict = conclude(*run_, outcome, tip_regions());
   status_.set_verdict(verdict);
   RunEnd end{.outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
              .verdict = verdict,

@@ -46,8 +46,8 @@ void TouchExecutor::begin_run(const ActiveRun& active) {
   false_trigger_count_ = 0;
 }
 
-void TouchExecutor::restore_reference(const ActiveRun& active) {
-  const Run& run = active.run;
+void TouchExecutor::restore_reference(ActiveRun& active) {
+  Run& run = active.run;
   reference_.begin_run(run.recipe().reference_every);
   const std::vector<StoredTouch>& made = run.touches();
   const auto first = std::ranges::find(made, calib::TouchRole::kFit, &StoredTouch::role);
@@ -55,6 +55,7 @@ void TouchExecutor::restore_reference(const ActiveRun& active) {
   const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(first->number - 1));
   if (!planned) return;
   const std::vector<ReferenceTouch> there = store_.references(run.id());
+  run.note_drift(largest_drift_m(there));
   const auto reference = there.empty() ? std::nullopt : std::optional(from_wire(there.front().joints));
   reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
 }

@@ -36,7 +36,7 @@ class TouchExecutor {
   /// Begins a run, without a hold or a suspect.
   void begin_run(const ActiveRun& active);
   /// Continues a run after a restart: restores the reference place.
-  void restore_reference(const ActiveRun& active);
+  void restore_reference(ActiveRun& active);
 
   /// Makes one touch: the retest of an outlier, the reference place or the next of the plan. Ends the step
   /// (Event::kDone) when no touch is left.

@@ -85,6 +85,8 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
     co_return;
   }
   spdlog::info("run {} reference touch {}: drift {:.3f} mm", run.id(), reading.number, drift_mm);
+  active.run.note_drift(reading.drift_m);
+  active.run.identify();
   status_.publish();
   judge_reference(active, contact);
 }

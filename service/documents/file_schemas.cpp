@@ -96,7 +96,7 @@ constexpr std::string_view kResult = R"({
       "standard":{"type":"string"},
       "rule":{"enum":["simple","guarded"]},
       "criteria":{"type":"array","items":{"type":"object",
-        "required":["name","plane","unit","value","limit","expanded_uncertainty","within_limit","proved"]}}}}}},
+        "required":["name","plane","tool","unit","value","side","limit","expanded_uncertainty","within_limit","proved"]}}}}}},
   "conditions":{"type":"object",
     "required":["operator","config_digest","block_temperature_c","block","probe","versions","controller_session"],
     "properties":{

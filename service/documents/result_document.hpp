@@ -19,8 +19,10 @@ struct DecisionRuleDocument {
   struct CriterionFigures {
     std::string name;
     std::optional<int> plane;  // from 1
+    std::optional<std::string> tool;
     std::string unit;
     std::optional<double> value;
+    std::string side = "upper";  // of the limit: upper, lower
     std::optional<double> limit;
     std::optional<double> expanded_uncertainty;
     std::optional<bool> within_limit;
@@ -30,8 +32,10 @@ struct DecisionRuleDocument {
     static void visit(Self& self, Fields& fields) {
       fields("name", self.name);
       fields("plane", self.plane);
+      fields("tool", self.tool);
       fields("unit", self.unit);
       fields("value", self.value);
+      fields("side", self.side);
       fields("limit", self.limit);
       fields("expanded_uncertainty", self.expanded_uncertainty);
       fields("within_limit", self.within_limit);

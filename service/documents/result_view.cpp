@@ -12,6 +12,7 @@
 #include "service/documents/json_view.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/validation_view.hpp"
+#include "service/run/verdict.hpp"
 
 namespace cell {
 namespace {
@@ -255,11 +256,11 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
     document.monte_carlo = monte_carlo_of(*context.monte_carlo);
     if (!context.monte_carlo->warning.empty()) document.warnings.push_back(context.monte_carlo->warning);
   }
-  Judgement judgement = judge_by_rule(result, options, cell, tip.workspace_box_rms_m, context.complete);
-  document.verdict = {
-      .accepted = judgement.accepted,
-      .reasons = std::move(judgement.reasons),
-      .decision_rule = decision_rule_of(criteria(result, cell, tip.workspace_box_rms_m), cell.acceptance)};
+  const std::vector<Criterion> judged = criteria(result, options, cell, judged_tip(tip));
+  Judgement judgement = judge(result, judged, cell.acceptance, context.complete);
+  document.verdict = {.accepted = judgement.accepted,
+                      .reasons = std::move(judgement.reasons),
+                      .decision_rule = decision_rule_of(judged, cell.acceptance)};
   document.conditions.text = context.conditions.empty() ? conditions_document(cell, {}) : context.conditions;
   return document;
 }

@@ -72,11 +72,12 @@ std::string decision_rule(const std::optional<DecisionRuleDocument>& rule) {
     return html::paragraph("Decision rule: a figure within its limit is accepted (simple acceptance).");
   std::vector<Row> rows;
   for (const DecisionRuleDocument::CriterionFigures& criterion : rule->criteria) {
-    rows.push_back({words_of(criterion.name) + figure_if_known(criterion.plane, ", plane {:.0f}"),
+    rows.push_back({words_of(criterion.name) + figure_if_known(criterion.plane, ", plane {:.0f}") +
+                        (criterion.tool ? ", " + *criterion.tool : ""),
                     text_or_unknown(criterion.unit), figure_text(criterion.value, "{:.4g}"),
-                    figure_text(criterion.limit, "{:.4g}"),
+                    (criterion.side == "lower" ? "at least " : "") + figure_text(criterion.limit, "{:.4g}"),
                     figure_if_known(criterion.expanded_uncertainty, "{:.2g}"), yes_no(criterion.within_limit),
-                    yes_no(criterion.proved)});
+                    criterion.proved ? yes_no(criterion.proved) : ""});
   }
   return html::paragraph(fmt::format("Decision rule ({}, {}): {}.", text_or_unknown(rule->standard),
                                      text_or_unknown(rule->rule), text_or_unknown(rule->text))) +

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/distributions.hpp"
 
 namespace cell {
 
@@ -12,73 +13,217 @@ using calib::mm_from_metres;
 
 namespace {
 
-/// Standard deviation of one touch, as in the uncertainties of the result.
-double noise_m(const calib::IdentificationResult& result, const Cell& cell) {
-  return result.uncertainty ? result.uncertainty->noise_m : cell.touch_noise_m;
+using Criteria = std::vector<Criterion>;
+
+std::optional<double> in_mm(std::optional<double> metres) {
+  return metres ? std::optional(mm_from_metres(*metres)) : std::nullopt;
 }
 
-void add_held_out(const calib::FaceDistances& face, double noise, const Cell& cell,
-                  std::vector<Criterion>& list) {
-  const double n = face.touch_count;
-  const double std_face_m =
-      cell.block.face_uncertainties.at(static_cast<std::size_t>(face.face)).std_offset_m;
+void add_tip(const JudgedTip& tip, const Cell& cell, Criteria& list) {
+  const auto add = [&](const char* name, const char* what, std::optional<double> value_m, double limit_m,
+                       std::optional<std::string> tool = std::nullopt) {
+    const std::string of = tool ? fmt::format(" of the tool {}", *tool) : "";
+    list.push_back(
+        {.name = name,
+         .tool = tool,
+         .unit = "mm",
+         .value = in_mm(value_m),
+         .limit = mm_from_metres(limit_m),
+         .miss = value_m ? fmt::format("the predicted {}{} in the workspace box is {:.3f} mm, the limit is "
+                                       "{:.3f} mm",
+                                       what, of, mm_from_metres(*value_m), mm_from_metres(limit_m))
+                         : fmt::format("the {}{} in the workspace box is unknown, the limit is {:.3f} mm",
+                                       what, of, mm_from_metres(limit_m))});
+  };
+  if (const auto limit_m = cell.acceptance.tip_box_rms_max_m)
+    add("tip_box_rms", "tip uncertainty", tip.box_rms_m, *limit_m);
+  if (const auto limit_m = cell.acceptance.tip_box_max_m)
+    add("tip_box_max", "largest expanded tip uncertainty (k = 2)", tip.box_max_m, *limit_m);
+  for (const JudgedTip::OfTool& tool : tip.tools) {
+    const auto limit = cell.acceptance.tool_box_rms_max_m.find(tool.name);
+    if (limit != cell.acceptance.tool_box_rms_max_m.end())
+      add("tool_box_rms", "tip uncertainty", tool.box_rms_m, limit->second, tool.name);
+  }
+}
+
+void add_scale(const calib::IdentificationResult& result, Criteria& list) {
+  if (!result.scale) return;
+  const calib::ScaleCheck& scale = *result.scale;
+  const bool of_artefact = scale.contradicted.has_value();
+  if (scale.significance || (!scale.warning.empty() && !of_artefact)) {
+    list.push_back({.name = "scale",
+                    .unit = "1",
+                    .value = scale.significance,
+                    .limit = calib::kScaleSignificanceMax,
+                    .miss = scale.warning});
+  }
+  if (of_artefact) {
+    list.push_back({.name = "artefact",
+                    .unit = "1",
+                    .value = scale.contradicted,
+                    .limit = calib::kArtefactSignificanceMax,
+                    .miss = scale.warning});
+  }
+}
+
+void add_condition_number(const calib::IdentificationResult& result, const Cell& cell, Criteria& list) {
+  const double limit = cell.acceptance.condition_number_max;
+  if (result.iterations.empty()) return;  // it did not converge, which is a reason of its own
+  const double value = result.iterations.back().condition_number;
+  list.push_back({.name = "condition_number",
+                  .unit = "1",
+                  .value = value,
+                  .limit = limit,
+                  .miss = fmt::format("the condition number is {:.0f}, the limit {:.0f}", value, limit)});
+}
+
+void add_lack_of_fit(const calib::IdentificationResult& result, const Cell& cell, Criteria& list) {
+  if (!result.lack_of_fit) return;
+  const double limit = cell.acceptance.lack_of_fit_p_min;
+  const auto faces = static_cast<double>(result.lack_of_fit->p_of_face.size());
+  for (std::size_t face = 0; face < result.lack_of_fit->p_of_face.size(); ++face) {
+    const double p = result.lack_of_fit->p_of_face[face];
+    list.push_back(
+        {.name = "lack_of_fit",
+         .plane = static_cast<int>(face) + 1,
+         .unit = "1",
+         .value = p,
+         .limit = limit / faces,  // one plane of several is unlikely by chance that much more often
+         .at_least = true,
+         .miss = fmt::format("lack of fit on plane {}: its residuals exceed the declared touch noise (p = "
+                             "{:.1g}); check this face",
+                             face + 1, p)});
+  }
+  list.push_back(
+      {.name = "lack_of_fit",
+       .unit = "1",
+       .value = result.lack_of_fit->p,
+       .limit = limit,
+       .at_least = true,
+       .miss = fmt::format(
+           "lack of fit: the residuals exceed the declared touch noise (they show {:.1f} um; p = {:.1g}, the "
+           "limit is {:g}): an effect is missing in the model",
+           1e3 * mm_from_metres(result.noise_estimated_m.value_or(0.0)), result.lack_of_fit->p, limit)});
+}
+
+void add_rejected(const calib::IdentificationResult& result, Criteria& list) {
+  const auto rejected = static_cast<int>(result.rejected.size());
+  const int touches = result.fitted_touch_count + rejected;
+  if (touches == 0) return;
+  list.push_back({.name = "rejected_touches",
+                  .unit = "1",
+                  .value = static_cast<double>(rejected) / touches,
+                  .limit = kRejectedShareMax,
+                  .miss = fmt::format("{} of {} touches were rejected, more than {:.0f} %", rejected, touches,
+                                      100.0 * kRejectedShareMax)});
+}
+
+std::vector<std::string> held_parameters(const calib::IdentificationResult& result,
+                                         const calib::IdentificationOptions& options) {
+  std::vector<std::string> held;
+  for (int i = 0; i < calib::kErrorParameterCount; ++i) {
+    const auto index = static_cast<std::size_t>(i);
+    if (result.identifiable.candidates[index].status == calib::ParameterStatus::kWeak &&
+        !is_estimated(options, result.identifiable, i))
+      held.push_back(calib::error_parameters()[index].name());
+  }
+  return held;
+}
+
+void add_set(const calib::IdentificationResult& result, const calib::IdentificationOptions& options,
+             Criteria& list) {
+  if (options.prior) {
+    const auto shown = static_cast<int>(result.identifiable.columns.size());
+    list.push_back(
+        {.name = "shown_parameters",
+         .unit = "1",
+         .value = shown,
+         .limit = static_cast<double>(result.attainable.count),
+         .at_least = true,
+         .miss = fmt::format("incomplete set: the touches show {} of {} parameters, the prior gives the rest",
+                             shown, result.attainable.count)});
+    return;
+  }
+  const std::vector<std::string> held = held_parameters(result, options);
+  list.push_back(
+      {.name = "held_parameters",
+       .unit = "1",
+       .value = static_cast<double>(held.size()),
+       .limit = 0.0,
+       .miss = fmt::format("incomplete set: these touches barely determine {}", fmt::join(held, ", "))});
+}
+
+void add_held_out(const calib::FaceDistances& face, const Cell& cell, Criteria& list) {
+  const int plane = face.face + 1;
+  const double mean_max = mm_from_metres(cell.acceptance.held_out_mean_max_m);
+  const double rms_max = mm_from_metres(cell.acceptance.held_out_rms_max_m);
+  const double rms = mm_from_metres(face.calibrated_rms_m);
   list.push_back({.name = "held_out_mean",
-                  .plane = face.face + 1,
+                  .plane = plane,
                   .unit = "mm",
                   .value = mm_from_metres(std::abs(face.calibrated_mean_m)),
-                  .limit = mm_from_metres(cell.acceptance.held_out_mean_max_m),
-                  .expanded_uncertainty =
-                      kCoverageFactor * mm_from_metres(std::hypot(noise / std::sqrt(n), std_face_m))});
-  list.push_back({.name = "held_out_rms",
-                  .plane = face.face + 1,
-                  .unit = "mm",
-                  .value = mm_from_metres(face.calibrated_rms_m),
-                  .limit = mm_from_metres(cell.acceptance.held_out_rms_max_m),
-                  .expanded_uncertainty = kCoverageFactor * mm_from_metres(noise / std::sqrt(2.0 * n))});
+                  .limit = mean_max,
+                  .expanded_uncertainty = face.calibrated_mean_std_m
+                                              ? in_mm(kCoverageFactor * *face.calibrated_mean_std_m)
+                                              : std::nullopt,
+                  .miss = fmt::format("held-out touches on plane {} are off by {:.3f} mm in the mean, the "
+                                      "limit is {:.3f} mm",
+                                      plane, mm_from_metres(face.calibrated_mean_m), mean_max)});
+  // The true rms is at most this, as often as a normal figure is under its value and k standard deviations.
+  const double n = face.touch_count;
+  const double outside = (1.0 - calib::normal_two_sided_confidence(kCoverageFactor)) / 2.0;
+  const double bound = rms * std::sqrt(n / calib::chi_square_quantile(outside, n));
+  list.push_back(
+      {.name = "held_out_rms",
+       .plane = plane,
+       .unit = "mm",
+       .value = rms,
+       .limit = rms_max,
+       .expanded_uncertainty = bound - rms,
+       .miss = fmt::format("held-out touches on plane {} scatter by {:.3f} mm rms, the limit is {:.3f} mm",
+                           plane, rms, rms_max)});
 }
 
 }  // namespace
 
-bool Criterion::within_limit() const { return value && *value <= limit; }
+// Every comparison is written so that NaN misses its limit.
 
-bool Criterion::proved() const { return value && *value + expanded_uncertainty.value_or(0.0) <= limit; }
+bool Criterion::within_limit() const { return value && (at_least ? *value >= limit : *value <= limit); }
 
-std::vector<Criterion> criteria(const calib::IdentificationResult& result, const Cell& cell,
-                                std::optional<double> tip_box_rms_m) {
-  std::vector<Criterion> list;
-  for (const calib::FaceDistances& face : result.distances) {
-    if (face.role == calib::TouchRole::kHeldOut) add_held_out(face, noise_m(result, cell), cell, list);
-  }
-  std::optional<double> condition_number;
-  if (!result.iterations.empty()) condition_number = result.iterations.back().condition_number;
-  list.push_back({.name = "condition_number",
-                  .unit = "1",
-                  .value = condition_number,
-                  .limit = cell.acceptance.condition_number_max});
-  if (cell.acceptance.tip_box_rms_max_m) {
-    list.push_back({.name = "tip_box_rms",
-                    .unit = "mm",
-                    .value = tip_box_rms_m ? std::optional(mm_from_metres(*tip_box_rms_m)) : std::nullopt,
-                    .limit = mm_from_metres(*cell.acceptance.tip_box_rms_max_m)});
-  }
-  return list;
+std::optional<bool> Criterion::proved() const {
+  if (!expanded_uncertainty) return std::nullopt;
+  if (!value) return false;
+  return at_least ? *value - *expanded_uncertainty >= limit : *value + *expanded_uncertainty <= limit;
 }
 
-Judgement judge_by_rule(const calib::IdentificationResult& result,
-                        const calib::IdentificationOptions& options, const Cell& cell,
-                        std::optional<double> tip_box_rms_m, bool complete) {
-  Judgement judgement = judge(result, options, cell.acceptance, tip_box_rms_m, complete);
-  if (!cell.acceptance.guarded) return judgement;
-  for (const Criterion& criterion : criteria(result, cell, tip_box_rms_m)) {
-    if (!criterion.within_limit() || criterion.proved()) continue;  // outside: judge() has reported it
-    judgement.reasons.push_back(fmt::format(
-        "{}{} is {:.3f} {} with an expanded uncertainty of {:.3f} (k = 2): conformance with the limit of "
-        "{:.3f} is not proved",
-        criterion.name, criterion.plane ? fmt::format(" of plane {}", *criterion.plane) : "",
-        *criterion.value, criterion.unit, criterion.expanded_uncertainty.value_or(0.0), criterion.limit));
+JudgedTip judged_tip(const TipPrediction& tip) {
+  JudgedTip judged{.box_rms_m = tip.workspace_box_rms_m, .box_max_m = tip.expanded.box_max_m};
+  for (const TipPrediction::OfTool& tool : tip.tools)
+    judged.tools.push_back({tool.name, tool.workspace_box_rms_m});
+  return judged;
+}
+
+bool is_estimated(const calib::IdentificationOptions& options, const calib::IdentifiableSet& identifiable,
+                  int index) {
+  const calib::ParameterStatus status = identifiable.candidates[static_cast<std::size_t>(index)].status;
+  return options.prior ? status != calib::ParameterStatus::kExcluded
+                       : status == calib::ParameterStatus::kIdentified;
+}
+
+std::vector<Criterion> criteria(const calib::IdentificationResult& result,
+                                const calib::IdentificationOptions& options, const Cell& cell,
+                                const JudgedTip& tip) {
+  Criteria list;
+  if (result.status == calib::IdentificationStatus::kConverged) add_tip(tip, cell, list);
+  add_scale(result, list);
+  add_condition_number(result, cell, list);
+  add_lack_of_fit(result, cell, list);
+  add_rejected(result, list);
+  add_set(result, options, list);
+  for (const calib::FaceDistances& face : result.distances) {
+    if (face.role == calib::TouchRole::kHeldOut) add_held_out(face, cell, list);
   }
-  judgement.accepted = judgement.reasons.empty();
-  return judgement;
+  return list;
 }
 
 }  // namespace cell

@@ -1,8 +1,10 @@
 #include "service/run/run.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "calib_core/geometry/units.hpp"
 #include "config/identification_problem.hpp"
 #include "service/run/internal/touch_benefit.hpp"
 #include "service/run/touch_command.hpp"
@@ -11,6 +13,13 @@ namespace cell {
 
 calib::Touch to_touch(const StoredTouch& stored) {
   return {.face = stored.plane - 1, .joints = from_wire(stored.joints), .role = stored.role};
+}
+
+double largest_drift_m(const std::vector<ReferenceTouch>& references) {
+  double largest_m = 0.0;
+  for (const ReferenceTouch& touch : references)
+    largest_m = std::max(largest_m, calib::kMetresPerMillimetre * std::abs(touch.drift_mm.value_or(0.0)));
+  return largest_m;
 }
 
 Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
@@ -121,9 +130,12 @@ void Run::withdraw_last() {
   identified_count_ = 0;
 }
 
+void Run::note_drift(double drift_m) { problem_.drift_m = std::max(problem_.drift_m, std::abs(drift_m)); }
+
 bool Run::identify() {
-  if (identified_count_ == touches_.size()) return false;
+  if (identified_count_ == touches_.size() && identified_drift_m_ == problem_.drift_m) return false;
   identified_count_ = touches_.size();
+  identified_drift_m_ = problem_.drift_m;
   latest_ = calib::identify(problem_, recipe_.identification);
   predicted_tip_rms_m_.reset();
   touch_benefit_.reset();

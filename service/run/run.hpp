@@ -16,6 +16,9 @@ namespace cell {
 /// A stored touch in SI units: the only conversion between the wire and calib_core.
 calib::Touch to_touch(const StoredTouch& stored);
 
+/// The largest drift of these touches of the reference place, metres.
+double largest_drift_m(const std::vector<ReferenceTouch>& references);
+
 /// One execution of a recipe: its plan, the touches so far and the latest result.
 class Run {
  public:
@@ -69,6 +72,9 @@ class Run {
   void replace_last(const StoredTouch& again);
   /// Removes the last touch, which becomes next(); the store has withdrawn it before.
   void withdraw_last();
+  /// How far the reference place has moved since the run began, metres: the largest drift counts in latest()
+  /// from the next identify() on.
+  void note_drift(double drift_m);
   /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
 
@@ -103,6 +109,7 @@ class Run {
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
   std::size_t identified_count_ = 0;  // of the touches
+  double identified_drift_m_ = 0.0;
   calib::IdentificationResult latest_;
   std::optional<double> predicted_tip_rms_m_;
   std::optional<std::string> touch_benefit_;

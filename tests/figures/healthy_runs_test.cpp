@@ -6,7 +6,7 @@
 #include <cstdio>
 
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
-#include "service/run/decision_rule.hpp"
+#include "service/run/verdict.hpp"
 #include "tests/figures/hidden_cell.hpp"
 #include "tests/figures/simulated_cell.hpp"
 
@@ -75,9 +75,10 @@ Runs run(const cell::Cell& shipped, const cell::Recipe& recipe, HiddenArm arm) {
   const std::vector<Touch> planned = all_planned_touches(shipped, recipe);
   const TipRegion box = region_over_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box);
   const auto is_accepted = [&](const IdentificationResult& result) {
-    std::optional<double> tip_m;
-    if (result.uncertainty) tip_m = box.rms_m(result.uncertainty->covariance());
-    return cell::judge_by_rule(result, recipe.identification, shipped, tip_m, true).accepted;
+    cell::JudgedTip tip;
+    if (result.uncertainty) tip.box_rms_m = box.rms_m(result.uncertainty->covariance());
+    const auto criteria = cell::criteria(result, recipe.identification, shipped, tip);
+    return cell::judge(result, criteria, shipped.acceptance, true).accepted;
   };
   const cell::AcceptanceLimits& limits = shipped.acceptance;
   IdentificationProblem problem = cell::identification_problem(shipped, recipe);

@@ -108,6 +108,16 @@ TEST_P(ScaleGuard, WarnsWhenItShouldAndOnlyThen) {
     for (const char* suspect : {"stylus radius", "pre-travel", "size", "temperature"}) {
       EXPECT_NE(result.scale->warning.find(suspect), std::string::npos) << result.scale->warning;
     }
+    // Every mishap makes something larger than it was written down; the pre-travel counts the other way.
+    if (one.alarm_wanted) {
+      const bool of_pretravel = result.scale->warning.find("the given pretravel") != std::string::npos;
+      EXPECT_NE(result.scale->warning.find(of_pretravel ? "written too large" : "written too small"),
+                std::string::npos)
+          << result.scale->warning;
+      EXPECT_EQ(result.scale->warning.find(of_pretravel ? "written too small" : "written too large"),
+                std::string::npos)
+          << result.scale->warning;
+    }
   }
   const int wrong = one.alarm_wanted ? kSeedCount - alarms : alarms;
   EXPECT_LE(wrong, one.wrong_max);

@@ -34,7 +34,7 @@ JointVector any_joints(std::mt19937_64& chance, double half_range_rad = kWholeTu
 /// Joints of a posture that is no singular one.
 JointVector regular_joints(const KinematicModel& model, std::mt19937_64& chance) {
   for (;;) {
-    const JointVector joints = any_joints(chance);
+    JointVector joints = any_joints(chance);
     const double determinant = pose_jacobian(model, forward_chain(model, joints)).determinant();
     if (std::abs(determinant) > kRegularDeterminant) return joints;
   }

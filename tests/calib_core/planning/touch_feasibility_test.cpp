@@ -12,7 +12,7 @@
 namespace calib {
 namespace {
 
-PlanningProblem demo_problem() {
+PlanningProblem top_problem() {
   return {.nominal = paper::nominal(),
           .joint_ranges = tx90::joint_ranges(),
           .faces = tx90::faces(),
@@ -24,7 +24,7 @@ PlanningProblem demo_problem() {
 
 /// A touch in the middle of the top, tilted towards the column, in the posture nearest to park.
 struct TopTouch {
-  PlanningProblem problem = demo_problem();
+  PlanningProblem problem = top_problem();
   TouchPose pose;
   JointVector joints;
 
@@ -58,7 +58,7 @@ TEST(TouchCandidate, ChanceIsTheStandardsGenerator) {
 }
 
 TEST(TouchCandidate, PosesFillTheFaceAndTheTiltsAndKeepTheirLimits) {
-  const PlanningProblem problem = demo_problem();
+  const PlanningProblem problem = top_problem();
   for (const Face& face : problem.faces) {
     UniformChance chance(3);
     std::array<int, 4> quadrants{}, tilts{};
@@ -82,7 +82,7 @@ TEST(TouchCandidate, PosesFillTheFaceAndTheTiltsAndKeepTheirLimits) {
 }
 
 TEST(TouchCandidate, KnowsTheSolidThatIsTouchedAndWhatIsBehindIt) {
-  const PlanningProblem problem = demo_problem();  // obstacles: block, plate, table
+  const PlanningProblem problem = top_problem();  // obstacles: block, plate, table
   for (const int side : {0, 1, 3}) {
     const TouchTarget around = find_target(problem, side);
     EXPECT_EQ(around.solid, 0);
@@ -95,7 +95,7 @@ TEST(TouchCandidate, KnowsTheSolidThatIsTouchedAndWhatIsBehindIt) {
 }
 
 TEST(TouchCandidate, AFaceInTheAirTouchesNothingAndHidesNothing) {
-  PlanningProblem problem = demo_problem();
+  PlanningProblem problem = top_problem();
   problem.faces[2].plane.offset_m += 0.1;
   problem.faces[2].center_m.y() -= 0.1;
   EXPECT_EQ(find_target(problem, 2).solid, -1);

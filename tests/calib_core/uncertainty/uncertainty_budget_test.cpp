@@ -11,6 +11,16 @@
 namespace calib {
 namespace {
 
+// Student's factors of the GUM, table G.2.
+TEST(Coverage, TakesTheEffectiveDegreesOfFreedom) {
+  UncertaintyBudget budget;
+  budget.degrees_of_freedom = 4.0;
+  EXPECT_NEAR(budget.coverage_factor_of(1.0, 1.0), 2.776, 1e-3) << "noise alone: 4";
+  EXPECT_NEAR(budget.coverage_factor_of(1.0, 0.5), 2.120, 1e-3) << "half of the variance: 16";
+  EXPECT_NEAR(budget.coverage_factor_of(1.0, 0.0), 1.960, 1e-3) << "no noise: infinite";
+  EXPECT_NEAR(budget.coverage_factor_of(0.0, 0.0), 2.776, 1e-3) << "nothing known";
+}
+
 TEST(ArmFrame, LeavesOutTheBlocksPlaceAndNothingElse) {
   for (int i = 0; i < kArmParameterCount; ++i) {
     UncertaintyBudget budget;

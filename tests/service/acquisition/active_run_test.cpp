@@ -32,22 +32,22 @@ TEST_F(ActiveRunTest, OutcomesHaveTheWordsOfTheStore) {
 TEST_F(ActiveRunTest, OnlyACompleteRunIsJudged) {
   ActiveRun active = touched_run();
   for (const RunOutcome outcome : {RunOutcome::kStopped, RunOutcome::kAborted, RunOutcome::kInterrupted}) {
-    EXPECT_EQ(conclude(active, outcome, cell_of_owners()), Verdict::kIncomplete);
+    EXPECT_EQ(conclude(active, outcome, regions), Verdict::kIncomplete);
     EXPECT_FALSE(active.finished);
   }
-  EXPECT_NE(conclude(active, RunOutcome::kComplete, cell_of_owners()), Verdict::kIncomplete);
+  EXPECT_NE(conclude(active, RunOutcome::kComplete, regions), Verdict::kIncomplete);
   EXPECT_TRUE(active.finished);
 }
 
 TEST_F(ActiveRunTest, ARunWithATouchLeftOutOrWithoutAResultIsIncomplete) {
   ActiveRun untouched = planned_run();
-  EXPECT_EQ(conclude(untouched, RunOutcome::kComplete, cell_of_owners()), Verdict::kIncomplete);
+  EXPECT_EQ(conclude(untouched, RunOutcome::kComplete, regions), Verdict::kIncomplete);
   EXPECT_FALSE(result_json(untouched, regions));
   ActiveRun active = touched_run();
   active.run.set_plan(plan_of_owners().touches);
   active.run.skip_next();
   EXPECT_TRUE(active.run.skipped_count() == 0 ||
-              conclude(active, RunOutcome::kComplete, cell_of_owners()) == Verdict::kIncomplete);
+              conclude(active, RunOutcome::kComplete, regions) == Verdict::kIncomplete);
   EXPECT_TRUE(result_json(active, regions)) << "what was identified is there to be read";
 }
 

@@ -15,11 +15,14 @@ namespace {
 TEST(ResultDocument, AnIntervalIsTheErrorAndTheCoverageFactorTimesItsDeviation) {
   const calib::IdentificationProblem problem = problem_of(edf().recipes.at("edf-25"));
   const auto identified = calib::identify(problem, edf().recipes.at("edf-25").identification);
-  const double factor = identified.uncertainty.value().coverage_factor;
+  const calib::UncertaintyBudget& uncertainty = identified.uncertainty.value();
   int seen = 0;
   for (const json& found : result().at("parameters")) {
     if (found.at("status") != "identified") continue;
     const double error = found.at("error").get<double>();
+    const int index = calib::error_parameter_index(found.at("name").get<std::string>()).value();
+    const double factor = uncertainty.coverage_factor_of(std::pow(uncertainty.std_error(index), 2),
+                                                         uncertainty.of_noise(index, index));
     const double half = factor * found.at("std_uncertainty").get<double>();
     EXPECT_NEAR(found.at("interval95")[0].get<double>(), error - half, 1e-12 + 1e-9 * std::abs(error));
     EXPECT_NEAR(found.at("interval95")[1].get<double>(), error + half, 1e-12 + 1e-9 * std::abs(error));

@@ -94,6 +94,32 @@ TEST(Report, ThePageNamesWhatWasEstimatedBesideTheErrors) {
   EXPECT_THAT(page_of(made), HasSubstr("<td>8.5e-07</td>"));
 }
 
+TEST(Report, ThePageGivesTheTipsUncertaintyWithItsFactorInBothFrames) {
+  const std::string page = page_of(record());
+  for (const json& frame : {result().at("tip_uncertainty"), result().at("tip_uncertainty").at("arm_frame")}) {
+    for (const char* figure : {"box_rms_mm", "box_p95_mm", "box_max_mm"}) {
+      EXPECT_THAT(page, HasSubstr(fmt::format("{:.3f} mm", frame.at("expanded").at(figure).get<double>())));
+    }
+  }
+  EXPECT_THAT(page, HasSubstr("k = 2"));
+}
+
+TEST(Report, ThePageShowsSimulatedCalibrationsWhereTheResultHasThem) {
+  EXPECT_THAT(page_of(record()), Not(HasSubstr("Simulated calibrations")));
+  json more = result();
+  more["monte_carlo"] = {{"count", 400},
+                         {"converged", 399},
+                         {"box_rms_mm", 0.0515},
+                         {"box_p95_mm", 0.125},
+                         {"joint_ranges_rms_mm", nullptr},
+                         {"linear_over_monte_carlo", 1.02}};
+  RunRecord made = record();
+  made.result_json = more.dump();
+  const std::string page = page_of(made);
+  for (const char* text : {"Simulated calibrations", "400, 399", "0.125 mm", "1.020"})
+    EXPECT_THAT(page, HasSubstr(text));
+}
+
 TEST(Report, ThePageHasThePapersTablesWithTheResultsFigures) {
   const std::string page = page_of(record());
   for (const char* table : {"Table III", "Table IV", "Table V", "Table VI", "Table VII"})

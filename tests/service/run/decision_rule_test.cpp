@@ -2,90 +2,155 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/distributions.hpp"
 #include "service/documents/decision_rule_view.hpp"
 
 namespace cell {
 namespace {
 
-constexpr double kNoiseM = 2e-5;
-constexpr int kHeldOut = 10;
-constexpr double kTipBoxRms = 6e-5;
+using ::testing::Each;
+using ::testing::Field;
+using ::testing::Not;
 
-/// Two faces, exactly where they are written.
-Cell cell_with(bool guarded) {
+constexpr int kHeldOut = 10;
+constexpr double kMeanStdM = 8e-6;
+
+Cell cell_with_limits() {
   Cell cell;
   cell.acceptance = {.held_out_mean_max_m = 3e-5, .held_out_rms_max_m = 5e-5, .condition_number_max = 300};
-  cell.acceptance.guarded = guarded;
-  cell.touch_noise_m = kNoiseM;
-  cell.block.face_uncertainties.resize(2);
   return cell;
 }
 
-/// Below the limits of the held-out touches by these.
-calib::IdentificationResult below_the_limits(double mean_m, double rms_m) {
-  const AcceptanceLimits limits = cell_with(false).acceptance;
+calib::IdentificationResult good_result() {
   calib::IdentificationResult result;
   result.status = calib::IdentificationStatus::kConverged;
-  result.iterations = {{.condition_number = limits.condition_number_max}};
+  result.fitted_touch_count = 100;
+  result.iterations = {{.condition_number = 200}};
+  result.lack_of_fit.emplace().p_of_face = {0.4, 0.6};
+  result.scale.emplace().significance = 0.5;
+  result.scale->contradicted = 1.5;
   for (const int face : {0, 1}) {
     result.distances.push_back({.face = face,
                                 .role = calib::TouchRole::kHeldOut,
                                 .touch_count = kHeldOut,
-                                .calibrated_mean_m = mean_m - limits.held_out_mean_max_m,
-                                .calibrated_rms_m = limits.held_out_rms_max_m - rms_m});
+                                .calibrated_mean_m = -1e-5,
+                                .calibrated_rms_m = 2e-5,
+                                .calibrated_mean_std_m = kMeanStdM});
   }
   return result;
 }
 
-TEST(DecisionRule, AGuardedCellWantsValueAndUncertaintyWithinTheLimit) {
-  const double mean_guard_m = kCoverageFactor * kNoiseM / std::sqrt(kHeldOut);
-  const double rms_guard_m = kCoverageFactor * kNoiseM / std::sqrt(2.0 * kHeldOut);
-  for (const double part : {0.0, 0.999, 1.001}) {
-    const calib::IdentificationResult result = below_the_limits(part * mean_guard_m, part * rms_guard_m);
-    EXPECT_TRUE(judge_by_rule(result, {}, cell_with(false), kTipBoxRms, true).accepted) << part;
-    const Judgement guarded = judge_by_rule(result, {}, cell_with(true), kTipBoxRms, true);
-    EXPECT_EQ(guarded.accepted, part > 1.0) << part;
-    EXPECT_EQ(guarded.reasons.size(), part > 1.0 ? 0U : 4U) << "mean and rms of two planes";
+std::vector<Criterion> list_of(const calib::IdentificationResult& result,
+                               const Cell& cell = cell_with_limits(), const JudgedTip& tip = {}) {
+  return criteria(result, {}, cell, tip);
+}
+
+const Criterion& named(const std::vector<Criterion>& list, const std::string& name,
+                       std::optional<int> plane = std::nullopt) {
+  const auto found = std::ranges::find_if(
+      list, [&](const Criterion& one) { return one.name == name && one.plane == plane; });
+  if (found == list.end()) throw std::logic_error("no criterion " + name);
+  return *found;
+}
+
+TEST(Criteria, AreAllThatCanRejectAResult) {
+  const auto list = list_of(good_result());
+  for (const char* name :
+       {"scale", "artefact", "condition_number", "lack_of_fit", "rejected_touches", "held_parameters"})
+    EXPECT_TRUE(named(list, name).within_limit()) << name;
+  for (const int plane : {1, 2}) {
+    for (const char* name : {"lack_of_fit", "held_out_mean", "held_out_rms"})
+      EXPECT_TRUE(named(list, name, plane).within_limit()) << name;
   }
+  EXPECT_EQ(list.size(), 12U);
 }
 
-TEST(DecisionRule, WhatIsOutOfItsLimitIsToldOnce) {
-  const calib::IdentificationResult result = below_the_limits(-1e-6, -1e-6);
-  EXPECT_EQ(judge_by_rule(result, {}, cell_with(true), kTipBoxRms, true).reasons,
-            judge_by_rule(result, {}, cell_with(false), kTipBoxRms, true).reasons);
+TEST(Criteria, ScaleAndArtefactAreLimitedByTheirSignificance) {
+  calib::IdentificationResult result = good_result();
+  result.scale->significance = 1.1 * calib::kScaleSignificanceMax;
+  result.scale->warning = "all lengths moved together";
+  EXPECT_FALSE(named(list_of(result), "scale").within_limit());
+  EXPECT_EQ(named(list_of(result), "scale").miss, "all lengths moved together");
+  EXPECT_TRUE(named(list_of(result), "artefact").within_limit());
+  result.scale->significance = 0.1;
+  result.scale->contradicted = 1.1 * calib::kArtefactSignificanceMax;
+  EXPECT_TRUE(named(list_of(result), "scale").within_limit());
+  EXPECT_FALSE(named(list_of(result), "artefact").within_limit());
 }
 
-TEST(DecisionRule, TellsEveryCriterionWithItsUncertainty) {
-  Cell cell = cell_with(false);
-  constexpr double kStdFaceM = 5e-6;
-  cell.block.face_uncertainties[1].std_offset_m = kStdFaceM;
-  const auto list = criteria(below_the_limits(0.0, 0.0), cell, kTipBoxRms);
-  ASSERT_EQ(list.size(), 5U) << "mean and rms of two planes, condition number";
-  const double noise_part_m = kNoiseM / std::sqrt(kHeldOut);
-  EXPECT_NEAR(list[0].expanded_uncertainty.value(), 2 * calib::mm_from_metres(noise_part_m), 1e-12);
-  EXPECT_NEAR(list[2].expanded_uncertainty.value(),
-              2 * calib::mm_from_metres(std::hypot(noise_part_m, kStdFaceM)), 1e-12);
-  EXPECT_FALSE(list[4].expanded_uncertainty.has_value());
+TEST(Criteria, AScaleThatNoTouchShowsIsMissed) {
+  calib::IdentificationResult result = good_result();
+  result.scale = calib::ScaleCheck{.warning = "no length was touched"};
+  EXPECT_FALSE(named(list_of(result), "scale").within_limit());
+  result.scale->warning.clear();
+  EXPECT_THAT(list_of(result), Each(Field(&Criterion::name, Not("scale"))))
+      << "no tolerance: nothing to judge";
+}
+
+TEST(Criteria, TheMeanHasTheUncertaintyOfEverythingInIt) {
+  const Criterion mean = named(list_of(good_result()), "held_out_mean", 1);
+  EXPECT_NEAR(mean.value.value(), 0.010, 1e-12);
+  EXPECT_NEAR(mean.expanded_uncertainty.value(), 2e3 * kMeanStdM, 1e-12);
+  calib::IdentificationResult unknown = good_result();
+  unknown.distances[0].calibrated_mean_std_m.reset();
+  EXPECT_EQ(named(list_of(unknown), "held_out_mean", 1).proved(), std::nullopt);
+}
+
+TEST(Criteria, TheTrueRmsIsWithinItsUncertaintyAsOftenAsKSays) {
+  const Criterion rms = named(list_of(good_result()), "held_out_rms", 1);
+  const double bound = *rms.value + rms.expanded_uncertainty.value();
+  // A true rms at the bound gives one as small as the value so seldom.
+  const double chance =
+      1.0 - calib::chi_square_survival(kHeldOut * std::pow(*rms.value / bound, 2), kHeldOut);
+  EXPECT_NEAR(chance, (1.0 - calib::normal_two_sided_confidence(kCoverageFactor)) / 2.0, 1e-9);
+}
+
+TEST(Criteria, ProvedIsSaidOnlyWhereValueAndUncertaintyAreWithinTheLimit) {
+  const auto list = list_of(good_result());
+  EXPECT_EQ(named(list, "condition_number").proved(), std::nullopt) << "no uncertainty: nothing to prove";
+  EXPECT_EQ(named(list, "held_out_mean", 1).proved(), true);
+  calib::IdentificationResult near = good_result();
+  near.distances[0].calibrated_mean_m = 3e-5 - 1.9 * kMeanStdM;
+  EXPECT_TRUE(named(list_of(near), "held_out_mean", 1).within_limit());
+  EXPECT_EQ(named(list_of(near), "held_out_mean", 1).proved(), false);
+}
+
+TEST(Criteria, TheTipIsLimitedByItsRmsItsWorstPostureAndForEachTool) {
+  Cell cell = cell_with_limits();
+  EXPECT_EQ(list_of(good_result(), cell, {.box_rms_m = 1.0}).size(), 12U) << "no limit";
+  cell.acceptance.tip_box_rms_max_m = 6e-5;
+  cell.acceptance.tip_box_max_m = 2e-4;
+  cell.acceptance.tool_box_rms_max_m = {{"gripper", 1e-4}};
+  const JudgedTip good{.box_rms_m = 5e-5, .box_max_m = 1.9e-4, .tools = {{"gripper", 9e-5}, {"pen", 1.0}}};
+  for (const char* name : {"tip_box_rms", "tip_box_max", "tool_box_rms"})
+    EXPECT_TRUE(named(list_of(good_result(), cell, good), name).within_limit()) << name;
+  const JudgedTip bad{.box_rms_m = 7e-5, .box_max_m = 2.1e-4, .tools = {{"gripper", 1.1e-4}}};
+  for (const JudgedTip& tip : {bad, JudgedTip{.tools = {{"gripper", std::nullopt}}}}) {
+    for (const char* name : {"tip_box_rms", "tip_box_max", "tool_box_rms"})
+      EXPECT_FALSE(named(list_of(good_result(), cell, tip), name).within_limit()) << name;
+  }
+  EXPECT_EQ(named(list_of(good_result(), cell, bad), "tool_box_rms").tool, "gripper");
+}
+
+TEST(DecisionRule, TheDocumentTellsEveryCriterion) {
+  const Cell cell = cell_with_limits();
+  const auto list = list_of(good_result());
   const DecisionRuleDocument rule = decision_rule_of(list, cell.acceptance);
-  EXPECT_EQ(rule.standard, "ISO 14253-1");
+  EXPECT_EQ(rule.standard, "ISO 14253-1:2017");
   EXPECT_EQ(rule.rule, "simple");
-  EXPECT_EQ(rule.criteria.at(0).within_limit, true);
-  EXPECT_EQ(rule.criteria.at(0).proved, false);
-  EXPECT_EQ(rule.criteria.at(4).proved, true);
-  EXPECT_EQ(rule.criteria.at(4).expanded_uncertainty, std::nullopt);
-  EXPECT_EQ(decision_rule_of(list, cell_with(true).acceptance).rule, "guarded");
-}
-
-TEST(DecisionRule, AFigureThatIsNotThereIsNotWithinItsLimit) {
-  Cell cell = cell_with(false);
-  cell.acceptance.tip_box_rms_max_m = kTipBoxRms;
-  const auto list = criteria(below_the_limits(0.0, 0.0), cell, std::nullopt);
-  EXPECT_EQ(list.back().name, "tip_box_rms");
-  EXPECT_FALSE(list.back().within_limit());
-  EXPECT_EQ(decision_rule_of(list, cell.acceptance).criteria.back().value, std::nullopt);
+  ASSERT_EQ(rule.criteria.size(), list.size());
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    EXPECT_EQ(rule.criteria[i].name, list[i].name);
+    EXPECT_EQ(rule.criteria[i].side, list[i].at_least ? "lower" : "upper");
+    EXPECT_EQ(rule.criteria[i].proved, list[i].proved());
+  }
+  Cell guarded = cell;
+  guarded.acceptance.guarded = true;
+  EXPECT_EQ(decision_rule_of(list, guarded.acceptance).rule, "guarded");
 }
 
 }  // namespace

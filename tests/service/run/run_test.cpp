@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <array>
+#include <cmath>
 #include <numbers>
 
 #include "config/identification_problem.hpp"
@@ -126,6 +127,20 @@ TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
     run.identify();
     EXPECT_EQ(run.meets_accuracy_goal(), share > 1.0);
   }
+}
+
+TEST_F(RunTest, TheLargestDriftOfTheReferencePlaceIsInTheTipsUncertainty) {
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches()) keep(run_, stored(++number, touch));
+  run_.identify();
+  const double still_m = run_.predicted_tip_rms_m().value();
+  constexpr double kDriftM = 1e-4;
+  for (const double drift_m : {0.5 * kDriftM, -kDriftM, 0.1 * kDriftM}) run_.note_drift(drift_m);
+  EXPECT_TRUE(run_.identify()) << "no touch more, but a drift";
+  EXPECT_FALSE(run_.identify());
+  // Half of it, in each of three directions.
+  EXPECT_NEAR(run_.predicted_tip_rms_m().value(), std::hypot(still_m, std::sqrt(3.0) * kDriftM / 2.0), 1e-9);
+  EXPECT_EQ(run_.latest().uncertainty->sources.back().name, "drift");
 }
 
 TEST_F(RunTest, TouchesLeftOutAreThoseToFitFromThereOn) {

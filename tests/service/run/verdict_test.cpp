@@ -11,7 +11,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr AcceptanceLimits kLimits{
+const AcceptanceLimits kLimits{
     .held_out_mean_max_m = 3e-5, .held_out_rms_max_m = 5e-5, .condition_number_max = 300};
 
 constexpr double kTipBoxRms = 6e-5;
@@ -34,8 +34,16 @@ calib::IdentificationResult at_the_limits() {
   return result;
 }
 
+Judgement judged(const calib::IdentificationResult& result, const AcceptanceLimits& limits = kLimits,
+                 std::optional<double> tip_box_rms_m = kTipBoxRms, bool complete = true,
+                 const calib::IdentificationOptions& options = {}) {
+  Cell cell;
+  cell.acceptance = limits;
+  return judge(result, criteria(result, options, cell, {.box_rms_m = tip_box_rms_m}), limits, complete);
+}
+
 std::vector<std::string> reasons_against(const calib::IdentificationResult& result, bool complete = true) {
-  const Judgement judgement = judge(result, {}, kLimits, kTipBoxRms, complete);
+  const Judgement judgement = judged(result, kLimits, kTipBoxRms, complete);
   EXPECT_EQ(judgement.accepted, judgement.reasons.empty());
   return judgement.reasons;
 }
@@ -108,17 +116,16 @@ TEST(Verdict, ASetWithHeldErrorsIsIncompleteButNotWithAPrior) {
   result.identifiable.candidates[d3].status = calib::ParameterStatus::kWeak;
   EXPECT_THAT(reasons_against(result),
               ElementsAre(::testing::AllOf(HasSubstr("incomplete set"), HasSubstr("d3"))));
-  EXPECT_TRUE(judge(result, {.prior = true}, kLimits, kTipBoxRms, true).accepted);
+  EXPECT_TRUE(judged(result, kLimits, kTipBoxRms, true, {.prior = true}).accepted);
 }
 
 TEST(Verdict, ATipUncertaintyOverItsLimitOrUnknownIsAReason) {
   AcceptanceLimits limits = kLimits;
   limits.tip_box_rms_max_m = kTipBoxRms;
-  EXPECT_TRUE(judge(at_the_limits(), {}, limits, kTipBoxRms, true).accepted);
-  EXPECT_THAT(judge(at_the_limits(), {}, limits, 1.5 * kTipBoxRms, true).reasons,
+  EXPECT_TRUE(judged(at_the_limits(), limits).accepted);
+  EXPECT_THAT(judged(at_the_limits(), limits, 1.5 * kTipBoxRms).reasons,
               ElementsAre(HasSubstr("in the workspace box is 0.090 mm, the limit is 0.060 mm")));
-  EXPECT_THAT(judge(at_the_limits(), {}, limits, std::nullopt, true).reasons,
-              ElementsAre(HasSubstr("unknown")));
+  EXPECT_THAT(judged(at_the_limits(), limits, std::nullopt).reasons, ElementsAre(HasSubstr("unknown")));
 }
 
 TEST(Verdict, MoreThanATenthOfTheTouchesRejectedIsAReason) {
@@ -128,6 +135,32 @@ TEST(Verdict, MoreThanATenthOfTheTouchesRejectedIsAReason) {
   EXPECT_THAT(reasons_against(result), IsEmpty());
   result.fitted_touch_count = 89;
   EXPECT_EQ(reasons_against(result).size(), 1u) << "10 of 99";
+}
+
+TEST(Verdict, AGuardedCellWantsValueAndUncertaintyWithinTheLimit) {
+  AcceptanceLimits guarded = kLimits;
+  guarded.guarded = true;
+  for (const double part : {0.0, 0.999, 1.001}) {
+    calib::IdentificationResult result = at_the_limits();
+    for (calib::FaceDistances& face : result.distances) {
+      face.calibrated_mean_std_m = 8e-6;
+      face.calibrated_mean_m = kLimits.held_out_mean_max_m - part * kCoverageFactor * 8e-6;
+      face.calibrated_rms_m = 1e-5;
+    }
+    EXPECT_TRUE(judged(result).accepted) << part;
+    const Judgement judgement = judged(result, guarded);
+    EXPECT_EQ(judgement.accepted, part > 1.0) << part;
+    EXPECT_THAT(judgement.reasons, ::testing::AllOf(::testing::SizeIs(part > 1.0 ? 0U : 2U),
+                                                    ::testing::Each(HasSubstr("not proved"))));
+  }
+}
+
+TEST(Verdict, WhatIsOutOfItsLimitIsToldOnce) {
+  AcceptanceLimits guarded = kLimits;
+  guarded.guarded = true;
+  calib::IdentificationResult result = at_the_limits();
+  result.distances = {held_out(0, -4e-5, 6e-5)};
+  EXPECT_EQ(judged(result, guarded).reasons, judged(result).reasons);
 }
 
 TEST(Verdict, NamesAreTheContracts) {

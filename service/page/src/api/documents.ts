@@ -170,12 +170,14 @@ export interface PlaneDistances {
 export interface Criterion {
   name: string;
   plane: number | null;
+  tool?: string | null;
   unit: string;
   value: number | null;
+  side?: 'upper' | 'lower';
   limit: number;
   expanded_uncertainty: number | null;
   within_limit: boolean;
-  proved: boolean;
+  proved: boolean | null;
 }
 export interface DecisionRule { standard: string; rule: 'simple' | 'guarded'; text: string; coverage_factor: number; criteria: Criterion[] }
 export interface Result {

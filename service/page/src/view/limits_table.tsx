@@ -19,7 +19,7 @@ export function LimitsTable({rule}: {rule: DecisionRule}) {
               {(['criterion', 'value', 'limit', 'expanded', 'decision'] as const).map((key) => <th key={key} scope="col">{say(key)}</th>)}
             </tr>
           </thead>
-          <tbody>{rule.criteria.map((criterion) => <Row key={`${criterion.name}${criterion.plane}`} criterion={criterion} />)}</tbody>
+          <tbody>{rule.criteria.map((criterion) => <Row key={`${criterion.name}${criterion.plane}${criterion.tool}`} criterion={criterion} />)}</tbody>
         </table>
       </Scroll>
       <p class="hint">{rule.standard}: {say(rule.rule === 'guarded' ? 'ruleGuarded' : 'ruleSimple')}</p>
@@ -30,14 +30,15 @@ export function LimitsTable({rule}: {rule: DecisionRule}) {
 function Row({criterion}: {criterion: Criterion}) {
   const say = useSay();
   const language = useLanguage();
-  const {name, plane, unit, value, limit, expanded_uncertainty, within_limit, proved} = criterion;
-  const digits = unit === 'mm' ? 3 : 1;
+  const {name, plane, tool, unit, value, side, limit, expanded_uncertainty, within_limit, proved} = criterion;
+  // A probability or a share needs more digits than a condition number.
+  const digits = unit === 'mm' ? 3 : limit > 0 && limit < 1 ? 4 : 1;
   const shownUnit = unit === '1' ? '' : ` ${unit}`;
   return (
     <tr>
-      <th scope="row">{sayName(language, 'criterion_', name)}{plane ? `, ${say('plane', {plane})}` : ''}</th>
+      <th scope="row">{sayName(language, 'criterion_', name)}{plane ? `, ${say('plane', {plane})}` : ''}{tool ? `, ${tool}` : ''}</th>
       <td class="figure">{number(value, digits, language)}{shownUnit}</td>
-      <td class="figure">{number(limit, digits, language)}{shownUnit}</td>
+      <td class="figure">{side === 'lower' ? '≥ ' : ''}{number(limit, digits, language)}{shownUnit}</td>
       <td class="figure">{number(expanded_uncertainty, digits, language)}</td>
       <td class={within_limit ? '' : 'abnormal'}>
         {within_limit ? null : <Symbol shape="warning" />}
