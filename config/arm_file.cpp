@@ -158,11 +158,18 @@ void read_gravity(const JsonValue& value, bool is_first_schema, Arm& arm) {
   demand_no_prismatic_joint(object, arm.model);
   arm.model.down_in_frame_1 = down_from_json(object.at("down_in_frame_1"));
   read_masses(object.at("masses"), arm.model);
-  if (const auto compliances = object.find("compliance_rad_per_nm")) {
+  const auto compliances = object.find("compliance_rad_per_nm");
+  const auto deviations = object.find("std_compliance_rad_per_nm");
+  if (!compliances && !deviations) {
+    object.at("masses").fail(
+        "masses without a compliance: the droop would be neither in the model nor in an uncertainty; add "
+        "\"std_compliance_rad_per_nm\" beside them (0 for a joint that does not yield)");
+  }
+  if (compliances) {
     for (const auto& [joint, item] : of_compliant_joints(*compliances))
       arm.model.compliance_rad_per_nm[joint] = item.number(kCompliances);
   }
-  if (const auto deviations = object.find("std_compliance_rad_per_nm")) {
+  if (deviations) {
     for (const auto& [joint, item] : of_compliant_joints(*deviations)) {
       const double std = item.number({.min = 0.0, .max = kCompliances.max});
       if (std > 0.0)

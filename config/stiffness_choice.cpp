@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "config/config_error.hpp"
+
 namespace cell {
 namespace {
 
@@ -25,6 +27,18 @@ bool can_estimate_stiffness(const Arm& arm) {
 
 bool is_estimated(StiffnessChoice choice, const Arm& arm) {
   return choice == StiffnessChoice::kOn || (choice == StiffnessChoice::kAuto && can_estimate_stiffness(arm));
+}
+
+Recipe with_stiffness(Recipe recipe, StiffnessChoice choice, const Cell& cell) {
+  if (choice == StiffnessChoice::kOn && !can_estimate_stiffness(cell.arm)) {
+    throw ConfigError(
+        cell.file.string(), "/arm",
+        "the arm " + in_quotes(cell.arm.name) +
+            " has no masses or no std_compliance_rad_per_nm; add \"gravity\" to its file or leave the "
+            "stiffness \"off\"");
+  }
+  recipe.identification.stiffness = is_estimated(choice, cell.arm);
+  return recipe;
 }
 
 }  // namespace cell

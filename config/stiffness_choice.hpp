@@ -18,4 +18,8 @@ bool can_estimate_stiffness(const Arm& arm);
 
 bool is_estimated(StiffnessChoice choice, const Arm& arm);
 
+/// The recipe with this choice in place of its own. ConfigError at /arm of the cell's file when kOn asks for
+/// what the arm's file does not allow.
+Recipe with_stiffness(Recipe recipe, StiffnessChoice choice, const Cell& cell);
+
 }  // namespace cell

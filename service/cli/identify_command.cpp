@@ -53,19 +53,11 @@ void write_files(const IdentifyArguments& arguments, const Cell& cell,
   print_warnings(export_warnings(cell.own_frames, document.verdict.accepted, document.verdict.reasons));
 }
 
-/// The recipe with another choice of what is estimated, where one is given.
-Recipe with_stiffness(Recipe recipe, const std::string& name, const Cell& cell) {
-  if (name.empty()) return recipe;
-  const StiffnessChoice choice = stiffness_choice_named(name).value();
-  if (choice == StiffnessChoice::kOn && !can_estimate_stiffness(cell.arm)) {
-    throw ConfigError(
-        cell.file.string(), "/arm",
-        "the arm " + in_quotes(cell.arm.name) +
-            " has no masses or no std_compliance_rad_per_nm; add \"gravity\" to its file or give "
-            "--stiffness off");
-  }
-  recipe.identification.stiffness = is_estimated(choice, cell.arm);
-  return recipe;
+/// The recipe with the choice of the command line, where there is one.
+Recipe chosen_recipe(const Cell& cell, const IdentifyArguments& arguments) {
+  const Recipe& recipe = recipe_named(cell, arguments.recipe);
+  if (arguments.stiffness.empty()) return recipe;
+  return with_stiffness(recipe, stiffness_choice_named(arguments.stiffness).value(), cell);
 }
 
 /// The cell with its block at the temperature of the command line, if there is one.
@@ -101,7 +93,7 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (arguments.arm_file == "-" || arguments.map_file == "-")
     throw std::invalid_argument("standard output has the result; name a file");
   const Cell cell = at_temperature(read_cell(arguments.cell_file), arguments.block_temperature);
-  const Recipe recipe = with_stiffness(recipe_named(cell, arguments.recipe), arguments.stiffness, cell);
+  const Recipe recipe = chosen_recipe(cell, arguments);
   const TouchesFile file = read_touches(arguments.touches_file, cell);
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
   problem.touches = file.touches;

@@ -39,15 +39,24 @@ TEST_F(Knowledge, ARecipeChoosesWeightsRobustnessAndPrior) {
 TEST_F(Knowledge, StiffnessIsIdentifiedOnlyOfAnArmThatTellsItsMassesAndHowStiffItIsThoughtToBe) {
   edit(kRecipe, [](json& recipe) { recipe["identification"]["stiffness"] = "on"; });
   EXPECT_TRUE(read().recipes.at("edf-25").identification.stiffness);
-  for (const char* missing : {"/gravity/std_compliance_rad_per_nm", "/gravity"}) {
-    edit(kArm, [&](json& arm) {
-      const json::json_pointer place(missing);
-      arm.at(place.parent_pointer()).erase(place.back());
-    });
+  const auto makes_it_rigid = [](json& arm) { arm["gravity"]["std_compliance_rad_per_nm"] = {0, 0}; };
+  const auto forgets_masses = [](json& arm) { arm.erase("gravity"); };
+  for (const std::function<void(json&)>& change :
+       {std::function<void(json&)>(makes_it_rigid), std::function<void(json&)>(forgets_masses)}) {
+    edit(kArm, change);
     const ConfigError error = error_of([&] { static_cast<void>(read()); });
     EXPECT_THAT(error.source(), EndsWith(kRecipe));
     EXPECT_EQ(error.pointer(), "/identification/stiffness");
   }
+}
+
+TEST_F(Knowledge, MassesWithoutAComplianceAreRefused) {
+  edit(kArm, [](json& arm) { arm["gravity"].erase("std_compliance_rad_per_nm"); });
+  const ConfigError error = error_of([&] { static_cast<void>(read()); });
+  EXPECT_EQ(error.pointer(), "/gravity/masses");
+  EXPECT_THAT(error.what(), testing::HasSubstr("std_compliance_rad_per_nm"));
+  edit(kArm, [](json& arm) { arm["gravity"]["compliance_rad_per_nm"] = {1e-6, 2e-6}; });
+  EXPECT_NO_THROW(static_cast<void>(read())) << "a droop that is in the model";
 }
 
 TEST_F(Knowledge, StiffnessIsIdentifiedByItselfWhereTheArmAllowsIt) {

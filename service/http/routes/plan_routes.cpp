@@ -6,6 +6,7 @@
 
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
+#include "config/stiffness_choice.hpp"
 #include "config/touches_file.hpp"
 #include "service/acquisition/cell_operation.hpp"
 #include "service/documents/result_view.hpp"
@@ -38,8 +39,15 @@ HttpResponse post_identify(const Call& call) {
                         .detail = "this cell has no such recipe; GET /api/v1/recipes lists them",
                         .parameter = "recipe"});
   }
-  const Recipe& recipe = named->second;
+  const auto choice = stiffness_choice_named(call.text("stiffness").value_or("auto"));
+  if (!choice) {
+    return to_response({.kind = ProblemKind::kQuery,
+                        .detail = "stiffness is neither on, off nor auto",
+                        .parameter = "stiffness"});
+  }
   try {
+    const Recipe recipe =
+        call.text("stiffness") ? with_stiffness(named->second, *choice, cell) : named->second;
     TouchesFile file = touches_from_json("request body", call.request.body, kTouchesBytesMax, cell);
     calib::IdentificationProblem problem = identification_problem(cell, recipe);
     problem.touches = std::move(file.touches);
@@ -114,6 +122,10 @@ std::vector<Route> plan_routes() {
        .answers = {{.schema = "Result"}},
        .query = {{.name = "recipe",
                   .words = "recipe whose options apply; the cell's default",
+                  .is_text = true},
+                 {.name = "stiffness",
+                  .words = "on, off or auto: whether the compliance of the joints is estimated, in place of "
+                           "the recipe's choice",
                   .is_text = true}},
        .body_schema = "Touches",
        .body_bytes_max = kTouchesBytesMax,

@@ -6,6 +6,8 @@
 #include <boost/asio/detached.hpp>
 #include <nlohmann/json.hpp>
 
+#include "config/file_bytes.hpp"
+#include "config/touches_file.hpp"
 #include "service/http/routes/api.hpp"
 #include "tests/service/http/test_tokens.hpp"
 #include "tests/service/quiet_cell.hpp"
@@ -100,6 +102,19 @@ TEST_F(PlanRoutes, ABadBodyIsToldWithThePlaceThatIsWrong) {
   EXPECT_EQ(pointer(R"({"recipe":7})", 400), "/recipe");
   EXPECT_EQ(pointer(R"({"recipe":"edf-25","fit":7})", 400), "/fit");
   EXPECT_EQ(pointer(R"({"recipe":"edf-99"})", 422), "/recipe");
+}
+
+TEST_F(PlanRoutes, TheStiffnessOfARequestOutranksTheRecipes) {
+  HttpRequest request =
+      post("/api/v1/identify",
+           read_file_bytes(kSourceDir / "tests/data/table3-exact.touches.json", kTouchesBytesMax));
+  const auto model = [&] { return json::parse(send(request).body).at("model"); };
+  EXPECT_EQ(model(), json::array()) << "the recipes of the paper say off";
+  request.query = {{"stiffness", "on"}};
+  EXPECT_EQ(model(), json::array({"compliance2", "compliance3"}));
+  request.query = {{"stiffness", "stiff"}};
+  EXPECT_EQ(send(request).status, 400u);
+  EXPECT_THAT(json::parse(send(request).body).at("detail").get<std::string>(), HasSubstr("on, off nor auto"));
 }
 
 TEST_F(PlanRoutes, AStartByAPlanThatIsNotKnownSaysHowToGetOne) {
