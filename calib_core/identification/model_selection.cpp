@@ -31,9 +31,8 @@ ModelChoice choose_harmonics(const IdentificationResult& without, const Identifi
 }
 
 IdentificationOptions settled_options(IdentificationOptions options, const IdentificationResult& result) {
-  const bool has_harmonics = std::ranges::any_of(result.nongeometric, [](int position) {
-    return is_harmonic(position);
-  });
+  const bool has_harmonics =
+      std::ranges::any_of(result.nongeometric, [](int position) { return is_harmonic(position); });
   options.robust = false;
   options.harmonics = has_harmonics ? Harmonics::kEstimate : Harmonics::kLeaveOut;
   return options;

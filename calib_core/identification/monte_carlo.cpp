@@ -121,14 +121,15 @@ MonteCarlo::MonteCarlo(const IdentificationProblem& problem, const Identificatio
   for (const Touch& touch : problem_.touches) {
     const Plane& plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
     joints_per_metre_.push_back(joints_per_metre(result.calibrated, plane, touch.joints));
-    search_directions_.push_back(search_directions(
-        result.calibrated, forward_chain(result.calibrated, touch.joints), plane.outward));
+    search_directions_.push_back(
+        search_directions(result.calibrated, forward_chain(result.calibrated, touch.joints), plane.outward));
   }
   const Eigen::VectorXd precision = prior_precision(problem, columns_, options_.prior);
   prior_std_ = (precision.array() > 0.0).select(precision.cwiseSqrt().cwiseInverse(), 0.0);
   for (int column = 0; column < kArmParameterCount; ++column) {
     if (std::ranges::find(columns_, column) != columns_.end()) continue;
-    if (const auto std = std_unless_estimated(problem, column, result.uncertainty->harmonic_share)) not_estimated_.emplace_back(column, *std);
+    if (const auto std = std_unless_estimated(problem, column, result.uncertainty->harmonic_share))
+      not_estimated_.emplace_back(column, *std);
   }
   const TipPostures box = derive_at_postures(problem.nominal, postures.box);
   box_ = {prepare_all(problem.nominal, postures.box), derive_by_joints(box)};

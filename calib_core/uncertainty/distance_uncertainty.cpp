@@ -19,8 +19,16 @@ double mean_distance_std_m(const IdentificationProblem& problem, const LeastSqua
   const double of_touches = ratio * ratio * carried.dot(fit.gradient_covariance() * carried);
   const double of_priors = carried.dot((fit.information() - fit.touch_information()) * carried);
   const double of_left_out = (budget.left_out.transpose() * mean_row).squaredNorm();
+  double of_lag = 0.0;  // displaces these touches, and bends the estimate in the same run the other way
+  if (budget.lagged.cols() > 0) {
+    const Eigen::VectorXd mean_displacement =
+        distances.noise_unit_m() *
+        lag_displacements(problem, distances, estimate).colwise().mean().transpose();
+    of_lag = (mean_displacement.cwiseProduct(problem.gear_lag_std_rad) - budget.lagged.transpose() * mean_row)
+                 .squaredNorm();
+  }
   const double of_noise = budget.noise_m * budget.noise_m / static_cast<double>(touches.size());
-  return std::sqrt(of_noise + of_touches + of_priors + of_left_out);
+  return std::sqrt(of_noise + of_touches + of_priors + of_left_out + of_lag);
 }
 
 }  // namespace calib

@@ -42,6 +42,8 @@ struct UncertaintyBudget {
   /// What was not estimated and has a standard deviation: by one of them each displaces true minus estimated
   /// arm and artefact (rows: ArmVector, then the artefact parameters). `held` and `unseen` are made of them.
   Eigen::MatrixXd left_out;
+  /// The same by one standard deviation of the lag of each joint, one column each or none; in `held` as well.
+  Eigen::MatrixXd lagged;
   std::vector<UncertaintySource> sources;  // their sum is that of the four above
   Eigen::VectorXd artefact_std;
   std::vector<Correlation> correlations;  // the strongest ones in descending order
@@ -62,8 +64,8 @@ struct UncertaintyBudget {
 /// (is_place_error()) is nominal in the true and in the calibrated arm, so its errors have no effect. Their
 /// rows and columns are zero in the first three covariances and in `unknown_directions`; how they correlate
 /// with the arm's errors does not matter any more, the other rows and columns stay as they are. The joints'
-/// own errors of posture remain, those of joint 1 included. Without the sources, the artefact and the
-/// correlations.
+/// own errors of posture remain, those of joint 1 included, and so does the drift, which may be the arm's.
+/// Without the sources, the artefact and the correlations.
 UncertaintyBudget in_arm_frame(const UncertaintyBudget& budget);
 
 }  // namespace calib

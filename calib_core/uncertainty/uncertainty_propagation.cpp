@@ -193,9 +193,14 @@ void add_nongeometric(const IdentificationProblem& problem, const LeastSquares& 
 /// Adds the lag of the joints: every touch ends a search, so that it displaces them by a pattern.
 void add_lag(const IdentificationProblem& problem, const FullLinearisation& whole, SourceSum& sum,
              UncertaintyBudget& result) {
+  result.lagged.resize(whole.touch_information.rows(), whole.lag_gradient.cols());
   for (Eigen::Index joint = 0; joint < whole.lag_gradient.cols(); ++joint) {
-    add_held("backlash", problem.gear_lag_std_rad[joint] * bias(whole, whole.lag_gradient.col(joint)), sum,
-             result);
+    // The recorded joints are ahead of the true ones: the model sees the touches displaced, not the arm.
+    result.lagged.col(joint) = -problem.gear_lag_std_rad[joint] * bias(whole, whole.lag_gradient.col(joint));
+    const ArmVector of_arm = result.lagged.col(joint).head<kArmParameterCount>();
+    const ArmMatrix covariance = of_arm * of_arm.transpose();
+    sum.source("backlash").covariance += covariance;
+    result.held += covariance;
   }
 }
 
@@ -247,25 +252,6 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
   sum.source("unseen").covariance = result.unseen;
 }
 
-/// FullLinearisation::lag_gradient in the columns of `everything`, of which the first are the candidates.
-Eigen::MatrixXd lag_gradient(const IdentificationProblem& problem, const LeastSquares& everything,
-                             const Estimate& estimate) {
-  const KinematicModel arm = apply(problem.nominal, estimate.arm);
-  const PreparedModel prepared = prepare(arm);
-  Eigen::MatrixXd displaced = Eigen::MatrixXd::Zero(everything.rows().rows(), kJointCount);
-  for (std::size_t i = 0; i < everything.touches().size(); ++i) {
-    if (!everything.kept()[i]) continue;
-    const Touch& touch = problem.touches[everything.touches()[i]];
-    const Plane& plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
-    const JointVector directions =
-        search_directions(arm, forward_chain(prepared, touch.joints), plane.outward);
-    const auto row = static_cast<Eigen::Index>(i);
-    for (int joint = 0; joint < kJointCount; ++joint)
-      displaced(row, joint) = directions[joint] * everything.rows()(row, theta_index(joint));
-  }
-  return everything.rows().transpose() * displaced;
-}
-
 std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vector<int>& columns) {
   std::vector<Correlation> all;
   for (std::size_t j = 0; j < columns.size(); ++j) {
@@ -282,6 +268,24 @@ std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vecto
 }
 
 }  // namespace
+
+Eigen::MatrixXd lag_displacements(const IdentificationProblem& problem, const LeastSquares& fit,
+                                  const Estimate& estimate) {
+  const KinematicModel arm = apply(problem.nominal, estimate.arm);
+  const PreparedModel prepared = prepare(arm);
+  Eigen::MatrixXd displaced = Eigen::MatrixXd::Zero(fit.rows().rows(), kJointCount);
+  for (std::size_t i = 0; i < fit.touches().size(); ++i) {
+    if (!fit.kept()[i]) continue;
+    const Touch& touch = problem.touches[fit.touches()[i]];
+    const Plane& plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
+    const JointVector directions =
+        search_directions(arm, forward_chain(prepared, touch.joints), plane.outward);
+    const auto row = static_cast<Eigen::Index>(i);
+    for (int joint = 0; joint < kJointCount; ++joint)
+      displaced(row, joint) = directions[joint] * fit.rows()(row, theta_index(joint));
+  }
+  return displaced;
+}
 
 std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
                                            double harmonic_share) {
@@ -309,7 +313,8 @@ FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
           everything.touch_information()(i, j);
   }
   if (!problem.gear_lag_std_rad.isZero(0.0)) {
-    const Eigen::MatrixXd of_columns = lag_gradient(problem, everything, estimate);
+    const Eigen::MatrixXd of_columns =
+        everything.rows().transpose() * lag_displacements(problem, everything, estimate);
     whole.lag_gradient.setZero(count, kJointCount);
     for (Eigen::Index j = 0; j < of_columns.rows(); ++j)
       whole.lag_gradient.row(whole.position_of(j)) = of_columns.row(j);

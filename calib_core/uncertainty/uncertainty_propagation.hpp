@@ -30,6 +30,12 @@ struct FullLinearisation {
   }
 };
 
+/// The change of each touch's weighted distance (rows of `fit`) per radian by which each joint lags behind
+/// its drive, n x 6; 0 for touches that are not kept. The columns of `fit` must begin with the candidates,
+/// and it must be linearised.
+Eigen::MatrixXd lag_displacements(const IdentificationProblem& problem, const LeastSquares& fit,
+                                  const Estimate& estimate);
+
 /// Standard deviation with which the budget counts a parameter of the arm (index into ArmVector) that is not
 /// estimated; nothing where it is unknown. `harmonic_share`: UncertaintyBudget.
 std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,

@@ -84,6 +84,10 @@ void simulate(const TipRegions& regions, const Recipe& recipe, const calib::Iden
   if (!context.monte_carlo) {
     context.warnings.emplace_back(
         "no Monte Carlo: the noise of a touch is neither declared nor measured by these touches");
+  } else if (!context.monte_carlo->box_rms_m) {
+    context.warnings.emplace_back(
+        "no Monte Carlo figure for the workspace box: the arm has no posture in it, or the draws did not "
+        "converge");
   }
 }
 

@@ -1,5 +1,6 @@
 // touchcal: the command line, for a daemon or offline.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -179,13 +180,21 @@ class CommandLine {
     add_block_temperature(*run, run_.block_temperature);
   }
 
+  /// CLI::Range lets NaN pass.
+  static std::string refuse_nan(const std::string& text) {
+    double value = 0.0;
+    return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? "wants a number, not " + text : "";
+  }
+
   static void add_block_temperature(CLI::App& command, cell::TemperatureArguments& temperature) {
     auto* celsius = command
                         .add_option("--block-temperature", temperature.celsius,
                                     "temperature of the block, degrees C, in place of that of its file")
+                        ->check(refuse_nan)
                         ->check(CLI::Range(cell::kBlockTemperatureMinC, cell::kBlockTemperatureMaxC));
     auto* deviation =
         command.add_option("--std-block-temperature", temperature.std_k, "its standard deviation, K")
+            ->check(refuse_nan)
             ->check(CLI::Range(cell::kPositive.min, cell::kBlockTemperatureStdMaxK))
             ->needs(celsius);
     celsius->needs(deviation);

@@ -166,6 +166,7 @@ void add_held_out(const calib::FaceDistances& face, const Cell& cell, Criteria& 
                   .expanded_uncertainty = face.calibrated_mean_std_m
                                               ? in_mm(kCoverageFactor * *face.calibrated_mean_std_m)
                                               : std::nullopt,
+                  .is_measured = true,
                   .miss = fmt::format("held-out touches on plane {} are off by {:.3f} mm in the mean, the "
                                       "limit is {:.3f} mm",
                                       plane, mm_from_metres(face.calibrated_mean_m), mean_max)});
@@ -180,6 +181,7 @@ void add_held_out(const calib::FaceDistances& face, const Cell& cell, Criteria& 
        .value = rms,
        .limit = rms_max,
        .expanded_uncertainty = bound - rms,
+       .is_measured = true,
        .miss = fmt::format("held-out touches on plane {} scatter by {:.3f} mm rms, the limit is {:.3f} mm",
                            plane, rms, rms_max)});
 }

@@ -27,7 +27,8 @@ struct Criterion {
   bool at_least = false;  // the value must not be under the limit; else not over it
   /// k = 2, in the direction of the limit. Absent for a figure that is exact or is itself an uncertainty.
   std::optional<double> expanded_uncertainty = {};
-  std::string miss;  // what is said of a result that is not within the limit
+  bool is_measured = false;  // a guarded rule wants it proved
+  std::string miss;          // what is said of a result that is not within the limit
 
   /// The value itself is within the limit: simple acceptance.
   [[nodiscard]] bool within_limit() const;

@@ -1,12 +1,12 @@
 #include "service/run/run.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/identification_problem.hpp"
 #include "service/run/internal/touch_benefit.hpp"
+#include "service/run/reference_drift.hpp"
 #include "service/run/touch_command.hpp"
 
 namespace cell {
@@ -15,11 +15,11 @@ calib::Touch to_touch(const StoredTouch& stored) {
   return {.face = stored.plane - 1, .joints = from_wire(stored.joints), .role = stored.role};
 }
 
-double largest_drift_m(const std::vector<ReferenceTouch>& references) {
-  double largest_m = 0.0;
+double drift_of(const std::vector<ReferenceTouch>& references) {
+  std::vector<double> readings_m;
   for (const ReferenceTouch& touch : references)
-    largest_m = std::max(largest_m, calib::kMetresPerMillimetre * std::abs(touch.drift_mm.value_or(0.0)));
-  return largest_m;
+    readings_m.push_back(calib::kMetresPerMillimetre * touch.drift_mm.value_or(0.0));
+  return trend_m(readings_m);
 }
 
 Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
@@ -129,8 +129,6 @@ void Run::withdraw_last() {
   problem_.touches.pop_back();
   identified_count_ = 0;
 }
-
-void Run::note_drift(double drift_m) { problem_.drift_m = std::max(problem_.drift_m, std::abs(drift_m)); }
 
 bool Run::identify() {
   if (identified_count_ == touches_.size() && identified_drift_m_ == problem_.drift_m) return false;

@@ -16,8 +16,8 @@ namespace cell {
 /// A stored touch in SI units: the only conversion between the wire and calib_core.
 calib::Touch to_touch(const StoredTouch& stored);
 
-/// The largest drift of these touches of the reference place, metres.
-double largest_drift_m(const std::vector<ReferenceTouch>& references);
+/// trend_m() of stored touches of the reference place.
+double drift_of(const std::vector<ReferenceTouch>& references);
 
 /// One execution of a recipe: its plan, the touches so far and the latest result.
 class Run {
@@ -72,9 +72,9 @@ class Run {
   void replace_last(const StoredTouch& again);
   /// Removes the last touch, which becomes next(); the store has withdrawn it before.
   void withdraw_last();
-  /// How far the reference place has moved since the run began, metres: the largest drift counts in latest()
-  /// from the next identify() on.
-  void note_drift(double drift_m);
+  /// How far the reference place has moved so far (drift_of()), metres: it counts in latest() from the next
+  /// identify() on.
+  void note_drift(double drift_m) { problem_.drift_m = drift_m; }
   /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
 

@@ -43,7 +43,7 @@ std::variant<Identified, HttpResponse> identify_stored(const CellOperation& oper
   if (touches.empty()) return conflict("there is no result: no touch has been made yet");
   Identified identified{&recipe->second, identification_problem(cell, recipe->second), {}};
   std::ranges::transform(touches, std::back_inserter(identified.problem.touches), to_touch);
-  identified.problem.drift_m = largest_drift_m(operation.store().references(id));
+  identified.problem.drift_m = drift_of(operation.store().references(id));
   identified.result = calib::identify(identified.problem, recipe->second.identification);
   if (identified.result.status == calib::IdentificationStatus::kConverged) return identified;
   return conflict("there is no result: " + identified.result.message);

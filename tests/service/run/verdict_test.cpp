@@ -155,6 +155,17 @@ TEST(Verdict, AGuardedCellWantsValueAndUncertaintyWithinTheLimit) {
   }
 }
 
+TEST(Verdict, AGuardedCellWantsHeldOutTouchesAndTheirUncertainty) {
+  AcceptanceLimits guarded = kLimits;
+  guarded.guarded = true;
+  calib::IdentificationResult result = at_the_limits();
+  result.distances.clear();
+  EXPECT_TRUE(judged(result).accepted);
+  EXPECT_THAT(judged(result, guarded).reasons, ElementsAre(HasSubstr("no touch was held out")));
+  result.distances = {held_out(0, 0.0, 1e-5)};
+  EXPECT_THAT(judged(result, guarded).reasons, ElementsAre(HasSubstr("unknown size")));
+}
+
 TEST(Verdict, WhatIsOutOfItsLimitIsToldOnce) {
   AcceptanceLimits guarded = kLimits;
   guarded.guarded = true;

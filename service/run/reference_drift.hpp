@@ -1,0 +1,12 @@
+#pragma once
+
+#include <vector>
+
+namespace cell {
+
+/// How far the reference place moved during a run, metres, of its readings in the order in which they were
+/// made (each against the first, which is 0): the line through them from the first to the last, less what the
+/// noise of the readings alone would make of it. 0 when there are fewer than three, or no more than noise.
+double trend_m(const std::vector<double>& readings_m);
+
+}  // namespace cell
