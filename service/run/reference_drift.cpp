@@ -1,10 +1,16 @@
 #include "service/run/reference_drift.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <numeric>
 
+#include "calib_core/numerics/distributions.hpp"
+
 namespace cell {
+namespace {
+
+constexpr double kConfidence = 0.997;
+
+}  // namespace
 
 double trend_m(const std::vector<double>& readings_m) {
   const auto count = static_cast<double>(readings_m.size());
@@ -22,7 +28,9 @@ double trend_m(const std::vector<double>& readings_m) {
   for (std::size_t i = 0; i < readings_m.size(); ++i)
     scatter += std::pow(readings_m[i] - mean_m - slope_m * (static_cast<double>(i) - middle), 2);
   const double variance_of_slope = scatter / (count - 2.0) / spread;
-  return (count - 1.0) * std::sqrt(std::max(0.0, slope_m * slope_m - variance_of_slope));
+  const double significant = calib::student_two_sided_factor(kConfidence, count - 2.0);
+  if (!(slope_m * slope_m > significant * significant * variance_of_slope)) return 0.0;
+  return (count - 1.0) * std::sqrt(slope_m * slope_m - variance_of_slope);
 }
 
 }  // namespace cell

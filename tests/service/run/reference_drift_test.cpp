@@ -36,7 +36,7 @@ double mean_square(double drift_m, double noise_m) {
 
 TEST(ReferenceDrift, DoesNotTakeTheNoiseOfTheReadingsForDrift) {
   constexpr double kNoiseM = 20e-6;
-  EXPECT_LT(std::sqrt(mean_square(0.0, kNoiseM)), 0.7 * kNoiseM) << "its line alone would have 0.8";
+  EXPECT_LT(std::sqrt(mean_square(0.0, kNoiseM)), 0.2 * kNoiseM) << "its line alone would have 0.8";
   EXPECT_NEAR(std::sqrt(mean_square(100e-6, kNoiseM)), 100e-6, 5e-6);
 }
 
