@@ -220,6 +220,12 @@ void read_gears(const JsonValue& value, Arm& arm) {
   }
 }
 
+Growth growth_from_json(const JsonValue& value) {
+  const JsonObject object = value.object({"expansion_per_k", "rise_k"});
+  return {.expansion_per_k = object.at("expansion_per_k").number({.min = kPositive.min, .max = 1e-3}),
+          .rise_k = object.at("rise_k").number({.min = kPositive.min, .max = 100.0})};
+}
+
 }  // namespace
 
 int frame_number(const JsonValue& value) {
@@ -250,10 +256,11 @@ Arm read_arm(const std::filesystem::path& file) {
   const JsonValue value(source, document);
   const bool is_first_schema = has_schema(document, kFirstArmSchema);
   const JsonObject object =
-      is_first_schema ? value.document(kFirstArmSchema, {"schema", "name", "frames", "joint_limits_deg",
-                                                         "joint_max_speeds_deg_s", "gravity", "bodies"})
-                      : value.document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg",
-                                                    "joint_max_speeds_deg_s", "gravity", "gears", "bodies"});
+      is_first_schema
+          ? value.document(kFirstArmSchema, {"schema", "name", "frames", "joint_limits_deg",
+                                             "joint_max_speeds_deg_s", "gravity", "bodies"})
+          : value.document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg",
+                                        "joint_max_speeds_deg_s", "gravity", "gears", "warming", "bodies"});
   Arm arm;
   arm.name = object.at("name").text();
   const auto frames = object.at("frames").items(kFrameCount, kFrameCount);
@@ -269,6 +276,7 @@ Arm read_arm(const std::filesystem::path& file) {
   if (const auto gravity = object.find("gravity")) read_gravity(*gravity, is_first_schema, arm);
   if (!is_first_schema) {
     if (const auto gears = object.find("gears")) read_gears(*gears, arm);
+    if (const auto warming = object.find("warming")) arm.growth = growth_from_json(*warming);
   }
   arm.bodies = capsules_from_json(object.at("bodies"));
   return arm;

@@ -176,6 +176,11 @@ std::string arm_document(const Arm& arm) {
   text += ",\n  \"joint_max_speeds_deg_s\": " + joint_speeds_json(arm).dump();
   if (!gravity.is_null()) text += ",\n  \"gravity\": " + gravity.dump();
   text += ",\n  \"gears\": " + gears_json(arm).dump();
+  if (arm.growth) {
+    const Json warming{{"expansion_per_k", finite(arm.growth->expansion_per_k)},
+                       {"rise_k", finite(arm.growth->rise_k)}};
+    text += ",\n  \"warming\": " + warming.dump();
+  }
   text += ",\n  \"bodies\": " + lines(bodies) + "\n}\n";
   return text;
 }

@@ -38,6 +38,12 @@ struct Gears {
   [[nodiscard]] calib::JointVector lag_std_rad() const { return backlash_rad / std::sqrt(8.0); }
 };
 
+/// How an arm warms up: the maker's figures.
+struct Growth {
+  double expansion_per_k = 0.0;
+  double rise_k = 0.0;  // from cold to warm
+};
+
 struct Arm {
   std::string name;
   calib::KinematicModel model;
@@ -48,6 +54,7 @@ struct Arm {
   /// One standard deviation of what the arm does beside rigid kinematics; empty where it is unknown.
   calib::NongeometricDeviations nongeometric_std{};
   Gears gears;
+  std::optional<Growth> growth;
 };
 
 /// The temperature of the block as somebody measured it.

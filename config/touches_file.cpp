@@ -74,6 +74,24 @@ calib::Touch touch_from_json(const JsonValue& value, int face_count, const calib
   return touch;
 }
 
+/// All on one plane.
+std::vector<calib::Touch> references_from_json(const JsonValue& value, int face_count,
+                                               const calib::JointVector& units) {
+  std::vector<calib::Touch> references;
+  for (const JsonValue& item : value.items(0, kTouchCountMax)) {
+    const JsonObject object = item.object({"plane", "joints_deg"});
+    const JsonValue plane = object.at("plane");
+    const int face = plane.integer(1, face_count) - 1;
+    if (!references.empty() && face != references.front().face) {
+      plane.fail("is " + std::to_string(face + 1) + " but the first reference touch is on plane " +
+                 std::to_string(references.front().face + 1) + "; give the touches of one place");
+    }
+    references.push_back(
+        {.face = face, .joints = object.at("joints_deg").numbers<kJointCount>().cwiseProduct(units)});
+  }
+  return references;
+}
+
 std::string_view trimmed(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r");
   if (first == std::string_view::npos) return {};
@@ -154,7 +172,7 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
                               const Cell& cell) {
   const nlohmann::json document = parse_strict_json(source, bytes, size_max_bytes);
   const JsonObject object =
-      JsonValue(source, document).document(kTouchesSchema, {"schema", "arm", "touches"});
+      JsonValue(source, document).document(kTouchesSchema, {"schema", "arm", "touches", "reference_touches"});
   const JsonValue arm = object.at("arm");
   if (const std::string name = arm.text(); name != cell.arm.name) {
     arm.fail("is " + in_quotes(name) + " but the cell's arm is " + in_quotes(cell.arm.name) +
@@ -166,6 +184,8 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
   for (const JsonValue& item : object.at("touches").items(0, kTouchCountMax)) {
     result.touches.push_back(touch_from_json(item, face_count, units));
   }
+  if (const auto references = object.find("reference_touches"))
+    result.references = references_from_json(*references, face_count, units);
   result.warnings = range_warnings(result.touches, cell.arm);
   return result;
 }

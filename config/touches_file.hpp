@@ -19,6 +19,7 @@ inline constexpr std::size_t kTouchesSizeMax = 64U << 20U;
 
 struct TouchesFile {
   std::vector<calib::Touch> touches;
+  std::vector<calib::Touch> references;  // of one place, in the order of their making
   std::vector<std::string>
       warnings;  // a sentence a touch with joints outside their ranges; touches count from 1
 };

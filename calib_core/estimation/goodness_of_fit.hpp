@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -7,23 +9,28 @@
 
 namespace calib {
 
-/// Chi-square test of the residuals against the declared noise, in total and per face (a face without touches
-/// has p = 1). A small p: the model does not describe the touched artefact.
+/// Test of the residuals in total and per face (a face without touches has p = 1), against the noise that
+/// they should have: where touches were repeated, an F test against what these say of it, with the maker's
+/// figures of the gears; else a chi-square test against the declared noise. A small p: the model does not
+/// describe the touched artefact.
 struct LackOfFit {
-  double chi_square = 0.0;
+  double statistic = 0.0;  // F, or chi-square over its degrees of freedom
   double degrees_of_freedom = 0.0;
+  double noise_degrees = std::numeric_limits<double>::infinity();  // of the noise that is tested against
+  double noise_m = 0.0;                                            // that noise
   double p = 1.0;
   std::vector<double> p_of_face;
+  /// How far the droop that is not in the model would move the statistic if each joint's compliance were off
+  /// by one standard deviation: noncentrality. Nothing where it is in the model or has no deviation.
+  std::optional<double> droop_noncentrality;
+
+  [[nodiscard]] bool is_f_test() const { return std::isfinite(noise_degrees); }
+  /// The probability that this test gives less than `p_min` when something adds this noncentrality.
+  [[nodiscard]] double power(double noncentrality, double p_min) const;
 };
 
 /// A smaller p is a doubt: a run does not end early on it.
 inline constexpr double kLackOfFitDoubtful = 0.05;
-
-/// Noise of a touch and how well it is known.
-struct TouchNoise {
-  double std_m = 0.0;
-  double degrees_of_freedom = 0.0;
-};
 
 /// The residuals of a fit in units of the noise that it assumed, and how many parameters the fit had: the
 /// trace of its hat matrix, in which a parameter with a prior counts for the share that the touches
@@ -38,6 +45,8 @@ struct ResidualSum {
   [[nodiscard]] double noise_degrees() const {
     return touch_count - 2.0 * effective_parameters + effective_parameters_of_square;
   }
+  /// What the uncertainty of everything with a prior is expected to add to the sum of squares.
+  [[nodiscard]] double of_priors() const { return effective_parameters - effective_parameters_of_square; }
 };
 
 /// `covariance` is that of the unknowns, the inverse of fit.information().
@@ -46,10 +55,24 @@ ResidualSum residual_sum(const LeastSquares& fit, const Eigen::MatrixXd& covaria
 /// The declared noise counts as much as one degree of freedom of the residuals.
 inline constexpr double kDeclaredNoiseDegrees = 1.0;
 
+/// What repeated touches say of the noise of a touch, with the declared noise as its prior (0: unknown).
+TouchNoise repeat_noise(double declared_m, const std::optional<TouchNoise>& pure_error);
+
+/// Whether the residuals are so small that the declared noise is too large (1 in 1,000).
+bool is_declared_too_large(const IdentificationProblem& problem, const LeastSquares& fit,
+                           const Estimate& estimate);
+
+/// What the residuals are expected to be made of.
+struct ExpectedNoise {
+  TouchNoise repeats;
+  double gear_variance_m2 = 0.0;  // of a touch by the maker's figures
+};
+
 /// Nothing without a declared noise or without a degree of freedom. `fit` must have been solved at
 /// `estimate`.
 std::optional<LackOfFit> lack_of_fit(const IdentificationProblem& problem, LeastSquares& fit,
-                                     const Estimate& estimate);
+                                     const Estimate& estimate, const ResidualSum& residuals,
+                                     const ExpectedNoise& expected);
 
 /// Noise of a touch from the residuals and the degrees of freedom, metres; nothing without any.
 std::optional<double> estimated_noise_m(const LeastSquares& fit, const Estimate& estimate);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib_core/estimation/artefact.hpp"
+#include "calib_core/estimation/pure_error.hpp"
 #include "calib_core/geometry/touch.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
@@ -47,6 +48,8 @@ struct IdentificationProblem {
   Artefact artefact;
   std::vector<Touch> touches;  // those with role kFit are fitted
   double touch_noise_m = 0.0;  // declared standard deviation along the normal; 0 is unknown
+  /// From what was touched more than once; the declared noise is a prior for it.
+  std::optional<TouchNoise> pure_error;
   ErrorTolerances
       tolerances{};  // the maker's: the prior, and the size of errors that touches do not determine
   /// The maker's figures for what the arm does beside rigid kinematics: the prior where it is estimated, a

@@ -47,7 +47,8 @@ struct IdentificationResult {
   std::vector<RejectedTouch> rejected;
   std::vector<FaceDistances> distances;          // one per role and face with touches
   std::optional<double> noise_estimated_m;       // from the residuals; needs more touches than unknowns
-  std::optional<LackOfFit> lack_of_fit;          // against the declared noise
+  std::optional<LackOfFit> lack_of_fit;          // needs a declared noise
+  bool is_declared_noise_too_large = false;      // is_declared_too_large()
   std::optional<UncertaintyBudget> uncertainty;  // when converged
   std::optional<ScaleCheck> scale;               // when converged
 };

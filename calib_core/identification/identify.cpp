@@ -13,6 +13,7 @@
 #include "calib_core/identification/model_selection.hpp"
 #include "calib_core/numerics/condition_number.hpp"
 #include "calib_core/uncertainty/distance_uncertainty.hpp"
+#include "calib_core/uncertainty/residual_evidence.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
 namespace calib {
@@ -72,20 +73,51 @@ void warn_of_droop(const IdentificationProblem& problem, IdentificationResult& r
       "in no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
 }
 
+void warn_of_drift(const IdentificationProblem& problem, IdentificationResult& result) {
+  if (problem.drift_m == 0.0) return;
+  result.warnings.push_back(
+      "the reference place moved by " + std::to_string(std::lround(1e6 * problem.drift_m)) +
+      " um while the touches were made: the arm was still warming up, or block or probe moved. The result is "
+      "of "
+      "the middle of that, and half of it is in the uncertainty; warm the arm up longer and calibrate again");
+}
+
+void warn_of_declared_noise(const IdentificationProblem& problem, IdentificationResult& result) {
+  if (!result.is_declared_noise_too_large || !result.uncertainty) return;
+  const auto micrometres = [](double metres) { return std::to_string(std::lround(1e6 * metres)) + " um"; };
+  result.warnings.push_back(
+      "the declared noise of a touch, " + micrometres(problem.touch_noise_m) +
+      ", is too large: the residuals show " + micrometres(*result.noise_estimated_m) +
+      ", which chance makes of it in less than 1 of 1,000 runs; " + micrometres(result.uncertainty->noise_m) +
+      " were used. Write \"touch_noise_mm\" in the cell's file as small as the touches are");
+}
+
 /// Goodness of fit, distances, uncertainty and scale check of a converged identification.
 void evaluate(const IdentificationProblem& problem, const IdentificationOptions& options,
               double declared_noise_m, LeastSquares& fit, const Estimate& estimate,
               IdentificationResult& result) {
   result.distances = face_distances(problem, result);
   result.noise_estimated_m = estimated_noise_m(fit, estimate);
-  result.lack_of_fit = lack_of_fit(problem, fit, estimate);
+  result.is_declared_noise_too_large = is_declared_too_large(problem, fit, estimate);
   if (problem.touch_noise_m <= 0.0 && !result.noise_estimated_m) return;  // no noise to propagate
   const FullLinearisation whole = linearise_all_parameters(problem, options, fit, estimate);
   result.residual_sum = residual_sum(fit, whole.estimated_covariance);
+  const ExpectedNoise expected{repeat_noise(declared_noise_m, problem.pure_error),
+                               gear_variance_m2(problem, fit, whole)};
+  result.lack_of_fit = lack_of_fit(problem, fit, estimate, result.residual_sum, expected);
+  if (result.lack_of_fit)
+    result.lack_of_fit->droop_noncentrality = droop_noncentrality(problem, fit, whole, *result.lack_of_fit);
+  const TouchNoise of_residuals = measured_noise(0.0, result.residual_sum, fit.noise_unit_m());
+  const double gear_share = mean_gear_share({of_residuals, expected.repeats, expected.gear_variance_m2});
+  // What repeats and gears make of a touch is known better than what was declared.
+  const double prior_m = problem.pure_error ? std::hypot(expected.repeats.std_m,
+                                                         std::sqrt(gear_share * expected.gear_variance_m2))
+                                            : declared_noise_m;
   const TouchNoise noise = options.measure_noise
-                               ? measured_noise(declared_noise_m, result.residual_sum, fit.noise_unit_m())
+                               ? measured_noise(prior_m, result.residual_sum, fit.noise_unit_m())
                                : TouchNoise{declared_noise_m, std::numeric_limits<double>::infinity()};
-  result.uncertainty = propagate_uncertainty(problem, options, result.identifiable, fit, whole, noise);
+  result.uncertainty =
+      propagate_uncertainty(problem, options, result.identifiable, fit, whole, noise, gear_share);
   result.scale = check_scale(problem, options, fit, whole, *result.uncertainty, estimate);
   for (FaceDistances& distances : result.distances) {
     if (distances.role == TouchRole::kFit) continue;
@@ -272,7 +304,8 @@ IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
     return solve_and_weigh(problem, again, without(fitted, declared.rejected),
                            before_another(before, measured));
   }
-  measured.lack_of_fit = declared.lack_of_fit;  // against the declared noise
+  measured.lack_of_fit = declared.lack_of_fit;  // of the weights that were declared
+  measured.is_declared_noise_too_large = declared.is_declared_noise_too_large;
   measured.noise_estimated_m = declared.noise_estimated_m;
   measured.model_reason = declared.model_reason;
   return measured;
@@ -358,6 +391,8 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
   result = solve_and_weigh(problem, options, sorted.fitted, result);
   if (!options.prior) warn_of_weak(result);
   if (result.status == IdentificationStatus::kConverged) warn_of_droop(problem, result);
+  warn_of_declared_noise(problem, result);
+  if (result.status == IdentificationStatus::kConverged) warn_of_drift(problem, result);
   if (result.scale && !result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
   if (!problem.columns && result.identifiable.columns.size() < chosen_count) {
     result.singular_values.resize(result.identifiable.columns.size());

@@ -116,6 +116,7 @@ MonteCarlo::MonteCarlo(const IdentificationProblem& problem, const Identificatio
       fitted_artefact_(result.artefact_errors),
       noise_m_(result.uncertainty.value().noise_m) {
   problem_.touch_noise_m = result.weight_noise_m;
+  problem_.gear_std_rad *= std::sqrt(result.uncertainty->gear_share);
   problem_.touches.clear();
   for (const std::size_t touch : fitted) problem_.touches.push_back(problem.touches[touch]);
   for (const Touch& touch : problem_.touches) {

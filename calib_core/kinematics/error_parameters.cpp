@@ -147,6 +147,18 @@ bool is_place_error(int index) {
   return index < kErrorParameterCount && error_parameters()[static_cast<std::size_t>(index)].frame <= 1;
 }
 
+ArmVector errors_by_growth(const KinematicModel& model, double share) {
+  ArmVector errors = ArmVector::Zero();
+  const auto& all = error_parameters();
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    const ErrorParameter& parameter = all[static_cast<std::size_t>(i)];
+    const bool is_length = parameter.kind == ParameterKind::kD || parameter.kind == ParameterKind::kR;
+    if (is_length && parameter.frame > 1 && parameter.frame < kFrameCount - 1)
+      errors[i] = share * parameter_value(model, i);
+  }
+  return errors;
+}
+
 std::optional<int> error_parameter_index(std::string_view name) {
   const auto& all = error_parameters();
   const auto found =

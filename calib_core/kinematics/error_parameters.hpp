@@ -66,6 +66,10 @@ constexpr int theta_index(int joint) { return 2 + 5 * joint + 2; }
 /// do together, which is why it does not count as one of them there.
 bool is_place_error(int index);
 
+/// The errors of an arm that has grown by this share since its model held: all lengths after joint 1 and
+/// before the tool.
+ArmVector errors_by_growth(const KinematicModel& model, double share);
+
 /// Index of the candidate with this name, or nothing.
 std::optional<int> error_parameter_index(std::string_view name);
 

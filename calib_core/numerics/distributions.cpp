@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/non_central_chi_squared.hpp>
+#include <boost/math/distributions/non_central_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
@@ -57,6 +59,26 @@ double f_survival(double x, double numerator_degrees, double denominator_degrees
           "f_survival: degrees out of range");
   return cdf(complement(
       boost::math::fisher_f_distribution<double, Policy>(numerator_degrees, denominator_degrees), x));
+}
+
+double chi_square_power(double p_min, double degrees, double noncentrality) {
+  require(noncentrality >= 0.0 && std::isfinite(noncentrality),
+          "chi_square_power: noncentrality out of range");
+  const double limit = chi_square_quantile(1.0 - p_min, degrees);
+  if (noncentrality == 0.0) return p_min;
+  return cdf(complement(
+      boost::math::non_central_chi_squared_distribution<double, Policy>(degrees, noncentrality), limit));
+}
+
+double f_power(double p_min, double numerator_degrees, double denominator_degrees, double noncentrality) {
+  require(noncentrality >= 0.0 && std::isfinite(noncentrality), "f_power: noncentrality out of range");
+  require(p_min > 0.0 && p_min < 1.0, "f_power: level out of range");
+  if (noncentrality == 0.0) return p_min;
+  const double limit = quantile(complement(
+      boost::math::fisher_f_distribution<double, Policy>(numerator_degrees, denominator_degrees), p_min));
+  return cdf(complement(boost::math::non_central_f_distribution<double, Policy>(
+                            numerator_degrees, denominator_degrees, noncentrality),
+                        limit));
 }
 
 double sample_quantile(std::vector<double> values, double share) {

@@ -30,6 +30,13 @@ double student_two_sided_factor(double confidence, double degrees);
 /// P(X > x) of Fisher's F; x >= 0, degrees over 0 and finite.
 double f_survival(double x, double numerator_degrees, double denominator_degrees);
 
+/// The probability that a chi-square test at level `p_min` (in (0, 1)) alarms when the sum has this
+/// noncentrality; 0 and more, finite.
+double chi_square_power(double p_min, double degrees, double noncentrality);
+
+/// The same of an F test whose numerator has the noncentrality.
+double f_power(double p_min, double numerator_degrees, double denominator_degrees, double noncentrality);
+
 /// The smallest of the values that at least this share of them does not exceed; the share in (0, 1], at least
 /// one value. NaN when one of the values is.
 double sample_quantile(std::vector<double> values, double share);

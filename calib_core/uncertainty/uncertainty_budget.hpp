@@ -36,6 +36,8 @@ struct UncertaintyBudget {
   ArmMatrix of_posture = ArmMatrix::Zero();
   /// Of the maker's variance of harmonics that were left out: what the residuals leave of it.
   double harmonic_share = 0.0;
+  /// Of the maker's variance of what changes from posture to posture: what the touches say of it.
+  double gear_share = 1.0;
   std::vector<int> unseen_without_tolerance;  // unseen errors without a tolerance
   Eigen::Matrix<double, kArmParameterCount, Eigen::Dynamic>
       unknown_directions;  // one per member of that list

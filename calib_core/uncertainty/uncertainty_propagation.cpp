@@ -208,7 +208,8 @@ void add_lag(const IdentificationProblem& problem, const FullLinearisation& whol
 void add_gears(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
   if (problem.gear_std_rad.isZero(0.0)) return;
   for (int joint = 0; joint < kJointCount; ++joint) {
-    result.of_posture(theta_index(joint), theta_index(joint)) = std::pow(problem.gear_std_rad[joint], 2);
+    result.of_posture(theta_index(joint), theta_index(joint)) =
+        result.gear_share * std::pow(problem.gear_std_rad[joint], 2);
   }
   sum.source("gears").covariance = result.of_posture;
 }
@@ -330,7 +331,8 @@ FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
 UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
                                         const IdentificationOptions& options,
                                         const IdentifiableSet& identifiable, const LeastSquares& fit,
-                                        const FullLinearisation& whole, const TouchNoise& noise) {
+                                        const FullLinearisation& whole, const TouchNoise& noise,
+                                        double gear_share) {
   UncertaintyBudget result;
   result.noise_m = noise.std_m;
   result.degrees_of_freedom = std::max(1.0, noise.degrees_of_freedom);
@@ -347,6 +349,7 @@ UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
   add_unseen(problem, identifiable, fit, whole, sum, result);
   add_nongeometric(problem, fit, whole, ratio * ratio, sum, result);
   add_lag(problem, whole, sum, result);
+  result.gear_share = gear_share;
   add_gears(problem, sum, result);
   add_drift(problem, sum, result);
   result.sources = sum.take();

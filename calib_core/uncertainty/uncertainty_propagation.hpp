@@ -47,10 +47,11 @@ FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
                                            const Estimate& estimate);
 
 /// Propagates through the gain of the fit: this noise of the touches, the uncertainty of everything that has
-/// a prior, and the errors that the touches do not determine.
+/// a prior, and the errors that the touches do not determine. `gear_share`: mean_gear_share().
 UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
                                         const IdentificationOptions& options,
                                         const IdentifiableSet& identifiable, const LeastSquares& fit,
-                                        const FullLinearisation& whole, const TouchNoise& noise);
+                                        const FullLinearisation& whole, const TouchNoise& noise,
+                                        double gear_share = 1.0);
 
 }  // namespace calib

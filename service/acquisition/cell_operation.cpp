@@ -223,6 +223,7 @@ std::variant<Started, CommandRefusal> CellOperation::start(const StartRequest& r
        .controller_session = session_.number(),
        .touch_mode = request.guided ? TouchMode::kGuided : TouchMode::kAutomatic,
        .temperature_source = request.block_temperature ? TemperatureSource::kRun : TemperatureSource::kFile,
+       .arm_moving_min = request.arm_moving_min,
        .place = place()});
   std::int64_t id = 0;
   try {

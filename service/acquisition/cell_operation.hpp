@@ -34,6 +34,7 @@ struct StartRequest {
   std::optional<std::string> idempotency_key;
   std::optional<std::string> operator_name;
   std::optional<BlockTemperature> block_temperature;  // of this run, in place of that of the block's file
+  std::optional<double> arm_moving_min;               // how long the arm has moved before, as a person says
   bool guided = false;  // a person makes the touches with the pendant; nothing is commanded
 };
 

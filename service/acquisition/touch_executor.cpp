@@ -55,7 +55,7 @@ void TouchExecutor::restore_reference(ActiveRun& active) {
   const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(first->number - 1));
   if (!planned) return;
   const std::vector<ReferenceTouch> there = store_.references(run.id());
-  run.note_drift(drift_of(there));
+  run.note_references(there);
   const auto reference = there.empty() ? std::nullopt : std::optional(from_wire(there.front().joints));
   reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
 }

@@ -85,7 +85,7 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
     co_return;
   }
   spdlog::info("run {} reference touch {}: drift {:.3f} mm", run.id(), reading.number, drift_mm);
-  active.run.note_drift(drift_of(store_.references(run.id())));
+  active.run.note_references(store_.references(run.id()));
   active.run.identify();
   status_.publish();
   judge_reference(active, contact);

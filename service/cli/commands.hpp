@@ -72,6 +72,7 @@ struct RunArguments {
   std::string operator_name;  // may be empty
   bool guided = false;        // a person makes the touches with the pendant
   TemperatureArguments block_temperature;
+  std::optional<double> arm_moving_min;
 };
 /// Starts a run and watches it to its end.
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);

@@ -19,6 +19,7 @@
 #include "service/documents/configuration_digest.hpp"
 #include "service/documents/result_view.hpp"
 #include "service/run/calibrated_arm.hpp"
+#include "service/run/reference_drift.hpp"
 #include "service/run/run_conditions.hpp"
 #include "service/run/simulated_calibrations.hpp"
 
@@ -101,6 +102,7 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   const TouchesFile file = read_touches(arguments.touches_file, cell);
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
   problem.touches = file.touches;
+  note_references(file.references, problem);
   const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
   if (result.status != calib::IdentificationStatus::kConverged)
     return print_refusal(arguments.touches_file, result);

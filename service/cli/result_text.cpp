@@ -66,14 +66,27 @@ std::string fit_text(const ResultDocument::Fit& fit) {
   std::string lines =
       fmt::format("noise of a touch: declared {} um, from the residuals {} um\n",
                   figure(fit.noise_declared_um, "{:.1f}"), figure(fit.noise_estimated_um, "{:.1f}"));
+  if (fit.noise_repeats_um) {
+    lines +=
+        fmt::format("one place touched again and again: noise {} um ({} degrees of freedom)\n",
+                    figure(fit.noise_repeats_um, "{:.1f}"), figure(fit.repeats_degrees_of_freedom, "{:.0f}"));
+  }
   if (!fit.lack_of_fit_p) return lines;
-  lines += fmt::format("lack of fit: p = {}", figure(fit.lack_of_fit_p, "{:.2g}"));
+  lines += fmt::format("lack of fit: p = {} ({} test against {} um)", figure(fit.lack_of_fit_p, "{:.2g}"),
+                       fit.lack_of_fit_test == "F" ? "F" : "chi-square",
+                       figure(fit.lack_of_fit_noise_um, "{:.1f}"));
   const char* separator = "; plane";
   for (const ResultDocument::PlaneFit& plane : fit.planes) {
     lines += fmt::format("{} {} {}", separator, plane.plane, figure(plane.p, "{:.2g}"));
     separator = ",";
   }
-  return lines + "\n";
+  lines += "\n";
+  if (fit.droop_power) {
+    lines +=
+        fmt::format("a droop of one standard deviation is not in the model; this test finds {:.0f} of 100\n",
+                    100.0 * *fit.droop_power);
+  }
+  return lines;
 }
 
 std::string artefact_text(const std::vector<ArtefactParameter>& parameters) {
@@ -118,6 +131,11 @@ std::string tip_text(const TipDocument& tip) {
   line("over the joint ranges", tip.joint_ranges_rms_mm);
   line("arm's frame, in the workspace box", tip.arm_frame.workspace_box_rms_mm);
   line("arm's frame, over the joint ranges", tip.arm_frame.joint_ranges_rms_mm);
+  if (tip.warmer) {
+    const std::string warmer = fmt::format("arm {:g} K warmer, ", tip.warmer->rise_k);
+    line(warmer + "in the box", tip.warmer->workspace_box_rms_mm);
+    line(warmer + "over the ranges", tip.warmer->joint_ranges_rms_mm);
+  }
   for (const TipDocument::Tool& tool : tip.tools) {
     line(tool.name + ", in the workspace box", tool.workspace_box_rms_mm);
     line(tool.name + ", over the joint ranges", tool.joint_ranges_rms_mm);

@@ -178,6 +178,10 @@ class CommandLine {
     run->add_option("--operator", run_.operator_name,
                     "the person responsible for the run; stored with its result");
     add_block_temperature(*run, run_.block_temperature);
+    run->add_option("--arm-moving", run_.arm_moving_min,
+                    "minutes that the arm has moved at working speed before: how warm it is")
+        ->check(refuse_nan)
+        ->check(CLI::Range(0.0, cell::kArmMovingMaxMin));
   }
 
   /// CLI::Range lets NaN pass.

@@ -130,6 +130,7 @@ StartDocument start_request(const RunArguments& arguments) {
   }
   if (!arguments.operator_name.empty()) request.operator_name = arguments.operator_name;
   if (arguments.guided) request.touch_mode = "guided";
+  request.arm_moving_min = arguments.arm_moving_min;
   request.block_temperature_c = arguments.block_temperature.celsius;
   request.std_block_temperature_k = arguments.block_temperature.std_k;
   return request;

@@ -63,6 +63,7 @@ struct ConditionsDocument {
   std::optional<double> thermal_expansion_per_k;
   std::optional<std::string> block_temperature_source;  // file, run
   std::optional<std::string> block_temperature_at;      // when it was measured
+  std::optional<double> arm_moving_min;                 // before the run
   Certified block;
   Certified probe;
   Versions versions;
@@ -80,6 +81,7 @@ struct ConditionsDocument {
     fields("thermal_expansion_per_k", self.thermal_expansion_per_k);
     fields("block_temperature_source", self.block_temperature_source);
     fields("block_temperature_at", self.block_temperature_at);
+    fields("arm_moving_min", self.arm_moving_min);
     fields("block", self.block);
     fields("probe", self.probe);
     fields("versions", self.versions);

@@ -21,6 +21,7 @@ ConditionsDocument conditions_of(const Cell& cell, const RunConditions& conditio
       .operator_name = conditions.operator_name,
       .config_digest = conditions.config_digest,
       .block_temperature_c = finite(cell.block.temperature_c),
+      .arm_moving_min = conditions.arm_moving_min,
       .block = {cell.block.name, told(cell.block.certificate)},
       .probe = {cell.probe.name, told(cell.probe.certificate)},
       .versions = {kVersion, cs8::kProtocolVersion, conditions.controller_application},

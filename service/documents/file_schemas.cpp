@@ -14,6 +14,9 @@ constexpr std::string_view kTouches = R"({
   "touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},
     "role":{"enum":["fit","held_out","proof"]},
+    "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}},
+  "reference_touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
+    "plane":{"type":"integer","minimum":1},
     "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}}}})";
 
 constexpr std::string_view kResult = R"({
@@ -104,7 +107,8 @@ constexpr std::string_view kResult = R"({
       "std_temperature_k":{"type":["number","null"]},
       "thermal_expansion_per_k":{"type":["number","null"]},
       "block_temperature_source":{"enum":["file","run",null],"description":"run: given with its start"},
-      "block_temperature_at":{"type":["string","null"],"description":"when it was measured"}}}}})";
+      "block_temperature_at":{"type":["string","null"],"description":"when it was measured"},
+      "arm_moving_min":{"type":["number","null"],"minimum":0,"description":"how long the arm had moved before the run"}}}}})";
 
 constexpr std::string_view kDistances = R"({
 "type":"array",
@@ -115,8 +119,12 @@ constexpr std::string_view kDistances = R"({
 
 constexpr std::string_view kTipUncertainty = R"({
 "type":"object",
-"required":["at_block_rms_mm","workspace_box_rms_mm","joint_ranges_rms_mm","expanded","arm_frame"],
+"required":["at_block_rms_mm","workspace_box_rms_mm","joint_ranges_rms_mm","expanded","arm_frame","warmer"],
 "properties":{
+  "warmer":{"type":["object","null"],"required":["rise_k","workspace_box_rms_mm","joint_ranges_rms_mm"],"properties":{
+    "rise_k":{"type":"number","exclusiveMinimum":0},
+    "workspace_box_rms_mm":{"type":["number","null"]},
+    "joint_ranges_rms_mm":{"type":["number","null"]}}},
   "at_block_rms_mm":{"type":["number","null"]},
   "workspace_box_rms_mm":{"type":["number","null"]},
   "joint_ranges_rms_mm":{"type":["number","null"]},

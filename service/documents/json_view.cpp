@@ -120,14 +120,21 @@ std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std:
   return document_text(document);
 }
 
-std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches) {
+std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
+                             const std::vector<ReferenceTouch>& references) {
   Json list = Json::array();
   for (const StoredTouch& touch : touches) {
     list.push_back({{"plane", touch.plane},
                     {"role", word_of(touch.role)},
                     {"joints_deg", joints_deg_json(touch.joints)}});
   }
-  return text_of({{"schema", "touchcal/touches/1"}, {"arm", cell.arm.name}, {"touches", list}});
+  Json document{{"schema", "touchcal/touches/1"}, {"arm", cell.arm.name}, {"touches", list}};
+  const auto place = std::ranges::find(touches, calib::TouchRole::kFit, &StoredTouch::role);
+  if (references.empty() || place == touches.end()) return text_of(document);
+  Json& again = document["reference_touches"] = Json::array();
+  for (const ReferenceTouch& touch : references)
+    again.push_back({{"plane", place->plane}, {"joints_deg", joints_deg_json(touch.joints)}});
+  return text_of(document);
 }
 
 }  // namespace cell

@@ -22,7 +22,8 @@ std::string run_document(const StoredRun& run);
 /// A page of the history; `next_before` is the id to request the next page with, absent on the last.
 std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std::int64_t> next_before);
 
-/// touchcal/touches/1: what `touchcal identify` reads back.
-std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches);
+/// touchcal/touches/1: what `touchcal identify` reads back. `references`: of the same run.
+std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
+                             const std::vector<ReferenceTouch>& references);
 
 }  // namespace cell

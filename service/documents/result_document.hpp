@@ -185,6 +185,12 @@ struct ResultDocument {
     std::optional<double> noise_declared_um;
     std::optional<double> noise_estimated_um;
     std::optional<double> noise_used_um;
+    std::optional<double> noise_repeats_um;  // nothing where no place was touched often enough
+    std::optional<double> repeats_degrees_of_freedom;
+    std::optional<double> gear_share;             // of the maker's variance of the gears
+    std::optional<std::string> lack_of_fit_test;  // against the repeats: F, against the declared: chi-square
+    std::optional<double> lack_of_fit_noise_um;   // what the residuals are tested against
+    std::optional<double> droop_power;            // of the test, at the cell's limit
     std::optional<double> lack_of_fit_p;
     std::optional<double> degrees_of_freedom;
     std::vector<PlaneFit> planes;
@@ -194,6 +200,12 @@ struct ResultDocument {
       fields("noise_declared_um", self.noise_declared_um);
       fields("noise_estimated_um", self.noise_estimated_um);
       fields("noise_used_um", self.noise_used_um);
+      fields("noise_repeats_um", self.noise_repeats_um);
+      fields("repeats_degrees_of_freedom", self.repeats_degrees_of_freedom);
+      fields("gear_share", self.gear_share);
+      fields("lack_of_fit_test", self.lack_of_fit_test);
+      fields("lack_of_fit_noise_um", self.lack_of_fit_noise_um);
+      fields("droop_power", self.droop_power);
       fields("lack_of_fit_p", self.lack_of_fit_p);
       fields("degrees_of_freedom", self.degrees_of_freedom);
       fields("planes", self.planes);

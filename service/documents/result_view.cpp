@@ -110,15 +110,28 @@ std::vector<ResultDocument::PlaneFit> plane_fits_of(const calib::IdentificationR
   return planes;
 }
 
-ResultDocument::Fit fit_of(const calib::IdentificationProblem& problem,
+ResultDocument::Fit fit_of(const Cell& cell, const calib::IdentificationProblem& problem,
                            const calib::IdentificationResult& result) {
   const auto& lack_of_fit = result.lack_of_fit;
   const auto& uncertainty = result.uncertainty;
   ResultDocument::Fit document{.noise_estimated_um = micrometres(result.noise_estimated_m),
                                .planes = plane_fits_of(result)};
   if (problem.touch_noise_m > 0.0) document.noise_declared_um = micrometres(problem.touch_noise_m);
-  if (uncertainty) document.noise_used_um = micrometres(uncertainty->noise_m);
+  if (problem.pure_error) {
+    document.noise_repeats_um = micrometres(problem.pure_error->std_m);
+    document.repeats_degrees_of_freedom = problem.pure_error->degrees_of_freedom;
+  }
+  if (uncertainty) {
+    document.noise_used_um = micrometres(uncertainty->noise_m);
+    if (!problem.gear_std_rad.isZero(0.0)) document.gear_share = finite(uncertainty->gear_share);
+  }
   if (lack_of_fit) {
+    document.lack_of_fit_test = lack_of_fit->is_f_test() ? "F" : "chi_square";
+    document.lack_of_fit_noise_um = micrometres(lack_of_fit->noise_m);
+    if (lack_of_fit->droop_noncentrality) {
+      document.droop_power =
+          finite(lack_of_fit->power(*lack_of_fit->droop_noncentrality, cell.acceptance.lack_of_fit_p_min));
+    }
     document.lack_of_fit_p = finite(lack_of_fit->p);
     document.degrees_of_freedom = finite(lack_of_fit->degrees_of_freedom);
   } else if (uncertainty) {
@@ -194,6 +207,11 @@ TipDocument tip_of(const Cell& cell, const TipPrediction& tip) {
                        .joint_ranges_rms_mm = finite_mm(tip.joint_ranges_rms_m),
                        .expanded = expanded_of(tip.expanded),
                        .arm_frame = arm_frame_of(tip.arm_frame)};
+  if (tip.warmer) {
+    document.warmer = TipDocument::Warmer{.rise_k = tip.warmer->rise_k,
+                                          .workspace_box_rms_mm = finite_mm(tip.warmer->workspace_box_rms_m),
+                                          .joint_ranges_rms_mm = finite_mm(tip.warmer->joint_ranges_rms_m)};
+  }
   for (const TipPrediction::OfSource& source : tip.sources)
     document.sources.push_back({source.name, finite_mm(source.workspace_box_rms_m)});
   for (const TipPrediction::OfTool& tool : tip.tools) {
@@ -237,7 +255,7 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
                           .planes_proof = planes_of(cell, result.distances, calib::TouchRole::kProof),
                           .touches = touches_of(cell, problem, result),
                           .scale = scale_of(result.scale),
-                          .fit = fit_of(problem, result)};
+                          .fit = fit_of(cell, problem, result)};
   for (const NongeometricParameter& parameter : document.nongeometric_parameters)
     document.model.push_back(parameter.name);
   if (!result.model_reason.empty()) document.model_reason = result.model_reason;

@@ -65,6 +65,7 @@ struct RunsDocument {
 
 /// What POST /runs takes.
 struct StartDocument {
+  std::optional<double> arm_moving_min;
   std::optional<double> block_temperature_c;
   std::optional<std::string> operator_name;
   std::optional<std::string> plan_id;
@@ -74,6 +75,7 @@ struct StartDocument {
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
+    fields.if_set("arm_moving_min", self.arm_moving_min);
     fields.if_set("block_temperature_c", self.block_temperature_c);
     fields.if_set("operator", self.operator_name);
     fields.if_set("plan_id", self.plan_id);

@@ -69,6 +69,8 @@ constexpr std::string_view kRun = R"({
 "properties":{
   "id":{"type":"string"},
   "recipe":{"type":"string"},
+  "arm_moving_min":{"type":"number","minimum":0,"maximum":1440,
+    "description":"minutes that the arm has moved at working speed before the run: kept with the result"},
   "touching":{"enum":["automatic","guided"],"description":"guided: a person made the touches"},
   "outcome":{"enum":["running","complete","stopped","aborted","interrupted"]},
   "verdict":{"enum":["none","accepted","rejected","incomplete"]},

@@ -93,11 +93,26 @@ struct TipDocument {
     }
   };
 
+  /// Standard uncertainty of the tip of an arm that is warmer than at the touches.
+  struct Warmer {
+    double rise_k = 0.0;
+    std::optional<double> workspace_box_rms_mm;
+    std::optional<double> joint_ranges_rms_mm;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("rise_k", self.rise_k);
+      fields("workspace_box_rms_mm", self.workspace_box_rms_mm);
+      fields("joint_ranges_rms_mm", self.joint_ranges_rms_mm);
+    }
+  };
+
   std::optional<double> at_block_rms_mm;
   std::optional<double> workspace_box_rms_mm;
   std::optional<double> joint_ranges_rms_mm;
   Expanded expanded;
   ArmFrame arm_frame;
+  std::optional<Warmer> warmer;  // nothing where the arm's file does not say how it warms up
   std::vector<Source> sources;
   std::vector<Tool> tools;
   std::optional<Map> map;
@@ -109,6 +124,7 @@ struct TipDocument {
     fields("joint_ranges_rms_mm", self.joint_ranges_rms_mm);
     fields("expanded", self.expanded);
     fields("arm_frame", self.arm_frame);
+    fields("warmer", self.warmer);
     fields("sources", self.sources);
     fields("tools", self.tools);
     fields("map", self.map);

@@ -217,6 +217,13 @@ std::string budget_section(const ResultDocument& result) {
        figure_text(tip.arm_frame.workspace_box_rms_mm, "{:.3f}")},
       {"in the arm's own frame, over the joint ranges",
        figure_text(tip.arm_frame.joint_ranges_rms_mm, "{:.3f}")}};
+  if (tip.warmer) {
+    const std::string warmer = fmt::format("arm {:g} K warmer than at the touches, ", tip.warmer->rise_k);
+    elsewhere.push_back(
+        {warmer + "in the workspace box", figure_text(tip.warmer->workspace_box_rms_mm, "{:.3f}")});
+    elsewhere.push_back(
+        {warmer + "over the joint ranges", figure_text(tip.warmer->joint_ranges_rms_mm, "{:.3f}")});
+  }
   for (const TipDocument::Tool& tool : tip.tools) {
     const std::string name = text_or_unknown(tool.name);
     elsewhere.push_back({name + ", in the workspace box", figure_text(tool.workspace_box_rms_mm, "{:.3f}")});
@@ -227,10 +234,14 @@ std::string budget_section(const ResultDocument& result) {
     correlations.push_back({text_or_unknown(pair.first), text_or_unknown(pair.second),
                             figure_text(pair.coefficient, "{:+.3f}")});
   const ResultDocument::Fit& fit = result.fit;
-  std::vector<Row> lack{{"declared noise of a touch", figure_text(fit.noise_declared_um, "{:.1f} µm")},
-                        {"noise by the residuals", figure_text(fit.noise_estimated_um, "{:.1f} µm")},
-                        {"lack of fit, p", figure_text(fit.lack_of_fit_p, "{:.3g}")},
-                        {"degrees of freedom", figure_text(fit.degrees_of_freedom, "{:.1f}")}};
+  std::vector<Row> lack{
+      {"declared noise of a touch", figure_text(fit.noise_declared_um, "{:.1f} µm")},
+      {"noise by the residuals", figure_text(fit.noise_estimated_um, "{:.1f} µm")},
+      {"noise by repeated touches of one place", figure_text(fit.noise_repeats_um, "{:.1f} µm")},
+      {"tested against (repeats and gears, or declared)", figure_text(fit.lack_of_fit_noise_um, "{:.1f} µm")},
+      {"lack of fit, p", figure_text(fit.lack_of_fit_p, "{:.3g}")},
+      {"a droop of one standard deviation found in", figure_text(fit.droop_power, "{:.2f} of 1")},
+      {"degrees of freedom", figure_text(fit.degrees_of_freedom, "{:.1f}")}};
   for (const ResultDocument::PlaneFit& plane : fit.planes)
     lack.push_back({fmt::format("lack of fit of plane {}, p", plane.plane), figure_text(plane.p, "{:.3g}")});
   return section("Uncertainty", html::table("Budget of the tip's predicted uncertainty in the workspace box",

@@ -90,7 +90,7 @@ void add_lack_of_fit(const calib::IdentificationResult& result, const Cell& cell
          .value = p,
          .limit = limit / faces,  // one plane of several is unlikely by chance that much more often
          .at_least = true,
-         .miss = fmt::format("lack of fit on plane {}: its residuals exceed the declared touch noise (p = "
+         .miss = fmt::format("lack of fit on plane {}: its residuals exceed the noise of a touch (p = "
                              "{:.1g}); check this face",
                              face + 1, p)});
   }
@@ -100,10 +100,13 @@ void add_lack_of_fit(const calib::IdentificationResult& result, const Cell& cell
        .value = result.lack_of_fit->p,
        .limit = limit,
        .at_least = true,
-       .miss = fmt::format(
-           "lack of fit: the residuals exceed the declared touch noise (they show {:.1f} um; p = {:.1g}, the "
-           "limit is {:g}): an effect is missing in the model",
-           1e3 * mm_from_metres(result.noise_estimated_m.value_or(0.0)), result.lack_of_fit->p, limit)});
+       .miss = fmt::format("lack of fit: the residuals exceed {} (they show {:.1f} um instead of {:.1f}; p = "
+                           "{:.1g}, the limit is "
+                           "{:g}): an effect is missing in the model",
+                           result.lack_of_fit->is_f_test() ? "what repeated touches and the gears explain"
+                                                           : "the declared touch noise",
+                           1e3 * mm_from_metres(result.noise_estimated_m.value_or(0.0)),
+                           1e3 * mm_from_metres(result.lack_of_fit->noise_m), result.lack_of_fit->p, limit)});
 }
 
 void add_rejected(const calib::IdentificationResult& result, Criteria& list) {

@@ -1,7 +1,6 @@
 #include "service/run/reference_drift.hpp"
 
 #include <cmath>
-#include <numeric>
 
 #include "calib_core/numerics/distributions.hpp"
 
@@ -12,25 +11,29 @@ constexpr double kConfidence = 0.997;
 
 }  // namespace
 
-double trend_m(const std::vector<double>& readings_m) {
-  const auto count = static_cast<double>(readings_m.size());
-  if (readings_m.size() < 3) return 0.0;
-  const double middle = (count - 1.0) / 2.0;
-  const double mean_m = std::accumulate(readings_m.begin(), readings_m.end(), 0.0) / count;
-  double along = 0.0, spread = 0.0;
-  for (std::size_t i = 0; i < readings_m.size(); ++i) {
-    const double place = static_cast<double>(i) - middle;
-    along += place * (readings_m[i] - mean_m);
-    spread += place * place;
+ReferencePlace reference_place(const std::vector<double>& readings_m) {
+  const auto line = calib::line_through(readings_m);
+  if (!line) return {};
+  ReferencePlace place{.scatter = line->scatter};
+  const double significant = calib::student_two_sided_factor(kConfidence, line->scatter.degrees_of_freedom);
+  const double squared = line->slope * line->slope;
+  if (squared > significant * significant * line->variance_of_slope) {
+    const auto steps = static_cast<double>(readings_m.size() - 1);
+    place.trend_m = steps * std::sqrt(squared - line->variance_of_slope);
   }
-  const double slope_m = along / spread;
-  double scatter = 0.0;
-  for (std::size_t i = 0; i < readings_m.size(); ++i)
-    scatter += std::pow(readings_m[i] - mean_m - slope_m * (static_cast<double>(i) - middle), 2);
-  const double variance_of_slope = scatter / (count - 2.0) / spread;
-  const double significant = calib::student_two_sided_factor(kConfidence, count - 2.0);
-  if (!(slope_m * slope_m > significant * significant * variance_of_slope)) return 0.0;
-  return (count - 1.0) * std::sqrt(slope_m * slope_m - variance_of_slope);
+  return place;
+}
+
+void note_references(const std::vector<calib::Touch>& at_place, calib::IdentificationProblem& problem) {
+  const calib::PreparedModel nominal = prepare(problem.nominal);
+  std::vector<double> readings_m;
+  for (const calib::Touch& touch : at_place) {
+    const calib::Plane& plane = problem.artefact.contact_planes.at(static_cast<std::size_t>(touch.face));
+    readings_m.push_back(signed_distance_m(plane, forward_chain(nominal, touch.joints).tip_in_block_m()));
+  }
+  const ReferencePlace place = reference_place(readings_m);
+  problem.drift_m = place.trend_m;
+  problem.pure_error = place.scatter;
 }
 
 }  // namespace cell

@@ -15,11 +15,14 @@ calib::Touch to_touch(const StoredTouch& stored) {
   return {.face = stored.plane - 1, .joints = from_wire(stored.joints), .role = stored.role};
 }
 
-double drift_of(const std::vector<ReferenceTouch>& references) {
-  std::vector<double> readings_m;
+std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& references,
+                                     const std::vector<StoredTouch>& touches) {
+  const auto place = std::ranges::find(touches, calib::TouchRole::kFit, &StoredTouch::role);
+  std::vector<calib::Touch> made;
+  if (place == touches.end()) return made;
   for (const ReferenceTouch& touch : references)
-    readings_m.push_back(calib::kMetresPerMillimetre * touch.drift_mm.value_or(0.0));
-  return trend_m(readings_m);
+    made.push_back({.face = place->plane - 1, .joints = from_wire(touch.joints), .role = place->role});
+  return made;
 }
 
 Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
@@ -130,10 +133,14 @@ void Run::withdraw_last() {
   identified_count_ = 0;
 }
 
+void Run::note_references(const std::vector<ReferenceTouch>& references) {
+  cell::note_references(to_touches(references, touches_), problem_);
+  identified_count_ = 0;
+}
+
 bool Run::identify() {
-  if (identified_count_ == touches_.size() && identified_drift_m_ == problem_.drift_m) return false;
+  if (identified_count_ == touches_.size()) return false;
   identified_count_ = touches_.size();
-  identified_drift_m_ = problem_.drift_m;
   latest_ = calib::identify(problem_, recipe_.identification);
   predicted_tip_rms_m_.reset();
   touch_benefit_.reset();

@@ -16,8 +16,9 @@ namespace cell {
 /// A stored touch in SI units: the only conversion between the wire and calib_core.
 calib::Touch to_touch(const StoredTouch& stored);
 
-/// trend_m() of stored touches of the reference place.
-double drift_of(const std::vector<ReferenceTouch>& references);
+/// The stored touches of the reference place, which is that of the first fitted one of `touches`.
+std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& references,
+                                     const std::vector<StoredTouch>& touches);
 
 /// One execution of a recipe: its plan, the touches so far and the latest result.
 class Run {
@@ -72,9 +73,8 @@ class Run {
   void replace_last(const StoredTouch& again);
   /// Removes the last touch, which becomes next(); the store has withdrawn it before.
   void withdraw_last();
-  /// How far the reference place has moved so far (drift_of()), metres: it counts in latest() from the next
-  /// identify() on.
-  void note_drift(double drift_m) { problem_.drift_m = drift_m; }
+  /// What the reference place says so far: it counts in latest() from the next identify() on.
+  void note_references(const std::vector<ReferenceTouch>& references);
   /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
 
@@ -109,7 +109,6 @@ class Run {
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
   std::size_t identified_count_ = 0;  // of the touches
-  double identified_drift_m_ = 0.0;
   calib::IdentificationResult latest_;
   std::optional<double> predicted_tip_rms_m_;
   std::optional<std::string> touch_benefit_;

@@ -14,6 +14,9 @@ namespace cell {
 enum class TouchMode { kAutomatic, kGuided };
 std::string_view touch_mode_name(TouchMode touching);  // "automatic", "guided"
 
+/// A longer time of moving than this says no more of how warm the arm is.
+inline constexpr double kArmMovingMaxMin = 1440.0;
+
 /// What a result depends on besides its touches; stored with every run. Absent means unknown.
 struct RunConditions {
   std::optional<std::string> operator_name;
@@ -22,7 +25,8 @@ struct RunConditions {
   std::optional<std::uint32_t> controller_session;    // distinguishes starts of the controller
   std::optional<TouchMode> touch_mode;
   TemperatureSource temperature_source = TemperatureSource::kFile;
-  std::optional<BlockPose> place;  // as located; absent if the block stands where its file says
+  std::optional<double> arm_moving_min;  // minutes at working speed before the run: how warm the arm was
+  std::optional<BlockPose> place;        // as located; absent if the block stands where its file says
 };
 
 }  // namespace cell

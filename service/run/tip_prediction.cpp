@@ -39,6 +39,21 @@ calib::UncertaintyMap predicted_map(const calib::TipMap& map, const calib::Uncer
   return predicted;
 }
 
+TipPrediction::Warmer warmer_by(const Growth& growth, const calib::KinematicModel& model,
+                                const TipRegions::Regions& tip, const calib::UncertaintyBudget& uncertainty) {
+  const calib::ArmVector grown = errors_by_growth(model, growth.expansion_per_k * growth.rise_k);
+  const calib::ArmMatrix square = grown * grown.transpose();
+  const auto with_growth = [&](const calib::TipRegion& region) -> std::optional<double> {
+    const auto cold_m = predicted_rms_m(region, uncertainty);
+    const auto by_growth_m = region.rms_m(square);
+    if (!cold_m || !by_growth_m) return std::nullopt;
+    return std::hypot(*cold_m, *by_growth_m);
+  };
+  return {.rise_k = growth.rise_k,
+          .workspace_box_rms_m = with_growth(tip.workspace_box),
+          .joint_ranges_rms_m = with_growth(tip.joint_ranges)};
+}
+
 }  // namespace
 
 std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& problem,
@@ -109,6 +124,8 @@ TipPrediction predict_tip(const TipRegions& regions, const calib::Identification
   prediction.workspace_box_rms_m = predicted_rms_m(tip.workspace_box, uncertainty);
   prediction.joint_ranges_rms_m = predicted_rms_m(tip.joint_ranges, uncertainty);
   prediction.expanded = expanded_over(regions.box_postures(), tip.workspace_box, uncertainty);
+  if (const auto& growth = regions.cell().arm.growth)
+    prediction.warmer = warmer_by(*growth, problem.nominal, tip, uncertainty);
   const calib::UncertaintyBudget of_arm = calib::in_arm_frame(uncertainty);
   prediction.arm_frame = {.at_block_rms_m = predicted_rms_m(at_block, of_arm),
                           .workspace_box_rms_m = predicted_rms_m(tip.workspace_box, of_arm),

@@ -78,11 +78,19 @@ struct TipPrediction {
     Expanded expanded;
   };
 
+  /// The result is of the arm as warm as it was at the touches: the same with an arm that is warmer by this.
+  struct Warmer {
+    double rise_k = 0.0;
+    std::optional<double> workspace_box_rms_m;
+    std::optional<double> joint_ranges_rms_m;
+  };
+
   std::optional<double> at_block_rms_m;  // over the postures of the fitted touches
   std::optional<double> workspace_box_rms_m;
   std::optional<double> joint_ranges_rms_m;
   Expanded expanded;
-  InArmFrame arm_frame;  // the same with the block's place nominal: calib::in_arm_frame()
+  std::optional<Warmer> warmer;  // nothing where the arm's file has no figures for its warming
+  InArmFrame arm_frame;          // the same with the block's place nominal: calib::in_arm_frame()
   std::vector<OfSource> sources;
   std::vector<OfTool> tools;
   std::optional<calib::UncertaintyMap> map;

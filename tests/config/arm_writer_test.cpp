@@ -126,6 +126,10 @@ TEST_P(EveryArm, IsReadBackWithItsTolerancesRangesAndWeights) {
     EXPECT_EQ(back.model.harmonics_rad[joint].sin, arm.model.harmonics_rad[joint].sin);
   }
   EXPECT_EQ(back.gears.std_rad(), arm.gears.std_rad());
+  ASSERT_EQ(back.growth.has_value(), arm.growth.has_value());
+  if (!arm.growth) return;
+  EXPECT_EQ(back.growth->expansion_per_k, arm.growth->expansion_per_k);
+  EXPECT_EQ(back.growth->rise_k, arm.growth->rise_k);
 }
 
 TEST_P(EveryArm, IsReadBackWithItsBodies) {

@@ -48,6 +48,20 @@ TEST(TouchesJson, IsReadAsTheContractShowsIt) {
   EXPECT_EQ(file.touches[3].role, calib::TouchRole::kFit);
 }
 
+std::string with_references(const std::string& references) {
+  return R"({"schema":"touchcal/touches/1","arm":"tx90","touches":[],"reference_touches":)" + references +
+         "}";
+}
+
+TEST(TouchesJson, HasTheTouchesOfTheReferencePlaceInTheirOrder) {
+  EXPECT_THAT(from_json(document("")).references, IsEmpty());
+  const TouchesFile file = from_json(with_references(R"([{"plane":2,"joints_deg":[1,2,3,4,5,6]},
+                                    {"plane":2,"joints_deg":[1.001,2,3,4,5,6]}])"));
+  ASSERT_EQ(file.references.size(), 2U);
+  EXPECT_EQ(file.references[1].face, 1);
+  EXPECT_DOUBLE_EQ(file.references[1].joints[0], calib::radians_from_degrees(1.001));
+}
+
 struct RefusedTouches {
   std::string bytes;
   std::string what;
@@ -66,6 +80,11 @@ TEST(TouchesJson, WhatIsWrongIsSaidWithItsPlace) {
       {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6],"role":"fitted"})"),
        "/touches/0/role: is \"fitted\""},
       {document(R"({"plane":1,"joints_rad":[1,2,3,4,5,6]})"), "/touches/0/joints_rad: unknown key"},
+      {with_references("7"), "body: /reference_touches: is a number"},
+      {with_references(R"([{"plane":1,"joints_deg":[1,2,3,4,5,6]},{"plane":2,"joints_deg":[1,2,3,4,5,6]}])"),
+       "body: /reference_touches/1/plane: is 2 but the first reference touch is on plane 1"},
+      {with_references(R"([{"plane":1,"joints_deg":[1,2,3,4,5,6],"role":"fit"}])"),
+       "/reference_touches/0/role: unknown key"},
       {document("7"), "body: /touches/0: is a number; give an object"},
       {R"({"schema":"touchcal/touches/1","arm":"tx60","touches":[]})",
        "body: /arm: is \"tx60\" but the cell's arm is \"tx90\""},

@@ -105,7 +105,8 @@ TEST_P(WholeRun, AnotherStartsStraightFromItsEnd) {
 }
 
 TEST_P(WholeRun, ItsTouchesReadBackFromAFileGiveTheSameResultToTheBit) {
-  const std::string document = cell::touches_document(loop_.cell, loop_.store().touches(run_id_));
+  const std::string document =
+      cell::touches_document(loop_.cell, loop_.store().touches(run_id_), loop_.store().references(run_id_));
   const cell::TouchesFile file =
       cell::touches_from_json("the run's touches", document, cell::kTouchesSizeMax, loop_.cell);
   const cell::Recipe& recipe = loop_.cell.recipes.at(kRecipe);

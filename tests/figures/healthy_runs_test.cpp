@@ -86,7 +86,7 @@ Runs run(const cell::Cell& shipped, const cell::Recipe& recipe, HiddenArm arm) {
   for (int seed = 1; seed <= kRunCount; ++seed) {
     UniformChance chance(static_cast<std::uint64_t>(seed));
     HiddenCell hidden(cell, arm, chance);
-    problem.touches = hidden.touch(planned);
+    make_run(hidden, planned, recipe, problem);
     const IdentificationResult result = identify(problem, recipe.identification);
     ++runs.count;
     runs.accepted += is_accepted(result) ? 1 : 0;

@@ -1,10 +1,12 @@
 #include "tests/figures/hidden_cell.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "calib_core/kinematics/kinematic_model.hpp"
+#include "service/run/reference_drift.hpp"
 #include "sim_controller/contact.hpp"
 #include "tests/calib_core/block_study.hpp"
 
@@ -105,22 +107,39 @@ JointVector HiddenCell::contact_joints(const Touch& planned) {
   throw std::logic_error("the ball found no contact");
 }
 
-std::vector<Touch> HiddenCell::touch(const std::vector<Touch>& planned) {
+void HiddenCell::creep(const Eigen::Vector3d& by_m, std::size_t touches) {
+  creep_per_touch_m_ = by_m / static_cast<double>(touches);
+}
+
+Touch HiddenCell::touch_once(const Touch& planned) {
+  crept_m_ += creep_per_touch_m_;
+  for (Plane& plane : planes_) plane.offset_m += plane.outward.dot(creep_per_touch_m_);
+  sim::pass(plant_, world_, kTouchSeconds);
+  Touch made = planned;
+  made.joints = contact_joints(planned);
+  world_.slack_rad = (world_.slack_rad - (made.joints - world_.joints))
+                         .cwiseMin(0.5 * plant_.hidden.backlash_rad)
+                         .cwiseMax(-0.5 * plant_.hidden.backlash_rad);
+  world_.joints = made.joints;
+  made.joints = sim::encoder_reading(plant_, made.joints);
+  return made;
+}
+
+std::vector<Touch> HiddenCell::touch(const std::vector<Touch>& planned, int reference_every) {
   std::vector<Touch> captured;
+  const auto place = std::ranges::find(planned, TouchRole::kFit, &Touch::role);
+  const auto look_again = [&] {
+    if (reference_every > 0 && place != planned.end()) references_.push_back(touch_once(*place));
+  };
   for (const Touch& touch : planned) {
-    sim::pass(plant_, world_, kTouchSeconds);
-    Touch made = touch;
-    made.joints = contact_joints(touch);
-    world_.slack_rad = (world_.slack_rad - (made.joints - world_.joints))
-                           .cwiseMin(0.5 * plant_.hidden.backlash_rad)
-                           .cwiseMax(-0.5 * plant_.hidden.backlash_rad);
-    world_.joints = made.joints;
-    made.joints = sim::encoder_reading(plant_, made.joints);
-    captured.push_back(made);
+    captured.push_back(touch_once(touch));
+    const auto done = static_cast<int>(captured.size());
+    if (reference_every > 0 && (done == 1 || done % reference_every == 0)) look_again();
     if (touch.role != TouchRole::kFit) continue;
     rise_sum_k_ += world_.rise_k;
     ++fitted_;
   }
+  look_again();
   return captured;
 }
 
@@ -136,6 +155,12 @@ std::vector<Eigen::Vector3d> HiddenCell::tips_m(const std::vector<JointVector>& 
   std::vector<Eigen::Vector3d> tips;
   for (const JointVector& joints : postures) tips.push_back(sim::true_tip_m(warm, world, joints));
   return tips;
+}
+
+void make_run(HiddenCell& hidden, const std::vector<Touch>& planned, const cell::Recipe& recipe,
+              IdentificationProblem& problem) {
+  problem.touches = hidden.touch(planned, recipe.reference_every);
+  cell::note_references(hidden.references(), problem);
 }
 
 }  // namespace calib::figures

@@ -3,8 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "calib_core/estimation/identification_problem.hpp"
 #include "calib_core/geometry/touch.hpp"
 #include "calib_core/numerics/uniform_chance.hpp"
+#include "config/recipe.hpp"
 #include "config/truth.hpp"
 #include "sim_controller/world.hpp"
 
@@ -28,8 +30,17 @@ class HiddenCell {
  public:
   HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChance& chance);
 
-  /// Makes these touches of the nominal arm in their order, while the arm warms up.
-  std::vector<Touch> touch(const std::vector<Touch>& planned);
+  /// Makes these touches of the nominal arm in their order, while the arm warms up; after every so many the
+  /// place of the first fitted one again, at the start and at the end too (0: never), as a run does.
+  std::vector<Touch> touch(const std::vector<Touch>& planned, int reference_every = 0);
+
+  /// From now on the block creeps by this in all, evenly over so many touches.
+  void creep(const Eigen::Vector3d& by_m, std::size_t touches);
+  /// Where the block is now against the beginning.
+  [[nodiscard]] const Eigen::Vector3d& crept_m() const { return crept_m_; }
+
+  /// The touches of that place so far.
+  [[nodiscard]] const std::vector<Touch>& references() const { return references_; }
 
   /// The arm's temperature above cold, mean over the fitted touches made so far.
   [[nodiscard]] double mean_rise_k() const { return rise_sum_k_ / fitted_; }
@@ -39,6 +50,7 @@ class HiddenCell {
                                                     double rise_k) const;
 
  private:
+  Touch touch_once(const Touch& planned);
   JointVector contact_joints(const Touch& planned);
   [[nodiscard]] double gap_m(int face, const JointVector& joints) const;
 
@@ -46,8 +58,14 @@ class HiddenCell {
   sim::Plant plant_;
   sim::World world_;
   std::mt19937_64 stops_;
+  std::vector<Touch> references_;
+  Eigen::Vector3d crept_m_ = Eigen::Vector3d::Zero(), creep_per_touch_m_ = Eigen::Vector3d::Zero();
   double rise_sum_k_ = 0.0;
   int fitted_ = 0;
 };
+
+/// A whole run: its touches, and what the reference place says of them, go into `problem`.
+void make_run(HiddenCell& hidden, const std::vector<Touch>& planned, const cell::Recipe& recipe,
+              IdentificationProblem& problem);
 
 }  // namespace calib::figures

@@ -87,18 +87,20 @@ struct TipTally {
 
 struct Tally {
   TipTally box, ranges;
-  std::vector<double> noise_um;
+  std::vector<double> noise_um, pure_error_um, gear_share, tested_um, power;
   int lacks_fit = 0;
 
   void report(const std::string& arm, const std::string& recipe) const {
     std::printf(
         "real arm, %s, %s, %zu seeds: tip over the box %.3f mm (predicted %.3f, ratio %.2f, %.1f %% "
         "within 95 %%), over the joint ranges %.3f mm (predicted %.3f, ratio %.2f, %.1f %%); noise "
-        "%.1f um, lack of fit in %d\n",
+        "%.1f um (repeats %.1f, tested against %.1f), gears %.2f of the maker's variance, lack of fit in "
+        "%d\n",
         arm.c_str(), recipe.c_str(), box.achieved_m.size(), mm_from_metres(median(box.achieved_m)),
         mm_from_metres(median(box.predicted_m)), median(box.ratios), 100.0 * box.coverage(),
         mm_from_metres(median(ranges.achieved_m)), mm_from_metres(median(ranges.predicted_m)),
-        median(ranges.ratios), 100.0 * ranges.coverage(), median(noise_um), lacks_fit);
+        median(ranges.ratios), 100.0 * ranges.coverage(), median(noise_um), median(pure_error_um),
+        median(tested_um), median(gear_share), lacks_fit);
   }
 };
 
@@ -112,7 +114,7 @@ Tally calibrate(const cell::Cell& cell, const cell::Recipe& recipe, const std::v
   for (int seed = 1; seed <= kSeedCount; ++seed) {
     UniformChance chance(static_cast<std::uint64_t>(seed));
     HiddenCell hidden(cell, arm, chance);
-    problem.touches = hidden.touch(planned);
+    make_run(hidden, planned, recipe, problem);
     const IdentificationResult result = identify(problem, recipe.identification);
     if (result.status != IdentificationStatus::kConverged) {
       ADD_FAILURE() << "seed " << seed << ": " << result.message;
@@ -121,6 +123,9 @@ Tally calibrate(const cell::Cell& cell, const cell::Recipe& recipe, const std::v
     tally.box.add(result, in_box, hidden.tips_m(in_box, hidden.mean_rise_k()));
     tally.ranges.add(result, in_ranges, hidden.tips_m(in_ranges, hidden.mean_rise_k()));
     tally.noise_um.push_back(1e6 * result.noise_estimated_m.value_or(0.0));
+    tally.gear_share.push_back(result.uncertainty->gear_share);
+    tally.pure_error_um.push_back(problem.pure_error ? 1e6 * problem.pure_error->std_m : 0.0);
+    tally.tested_um.push_back(1e6 * result.lack_of_fit->noise_m);
     if (result.lack_of_fit && result.lack_of_fit->p < cell.acceptance.lack_of_fit_p_min) ++tally.lacks_fit;
   }
   return tally;

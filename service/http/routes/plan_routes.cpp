@@ -12,6 +12,7 @@
 #include "service/documents/result_view.hpp"
 #include "service/http/routes/internal/request_body.hpp"
 #include "service/http/routes/route_table.hpp"
+#include "service/run/reference_drift.hpp"
 
 namespace cell {
 namespace {
@@ -50,6 +51,7 @@ HttpResponse post_identify(const Call& call) {
         call.text("stiffness") ? with_stiffness(named->second, *choice, cell) : named->second;
     TouchesFile file = touches_from_json("request body", call.request.body, kTouchesBytesMax, cell);
     calib::IdentificationProblem problem = identification_problem(cell, recipe);
+    note_references(file.references, problem);
     problem.touches = std::move(file.touches);
     const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
     if (result.status != calib::IdentificationStatus::kConverged)

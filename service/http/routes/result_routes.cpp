@@ -14,6 +14,7 @@
 #include "service/report/report_html.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/calibrated_arm.hpp"
+#include "service/run/reference_drift.hpp"
 #include "service/store/fault_log.hpp"
 
 namespace cell {
@@ -43,7 +44,7 @@ std::variant<Identified, HttpResponse> identify_stored(const CellOperation& oper
   if (touches.empty()) return conflict("there is no result: no touch has been made yet");
   Identified identified{&recipe->second, identification_problem(cell, recipe->second), {}};
   std::ranges::transform(touches, std::back_inserter(identified.problem.touches), to_touch);
-  identified.problem.drift_m = drift_of(operation.store().references(id));
+  note_references(to_touches(operation.store().references(id), touches), identified.problem);
   identified.result = calib::identify(identified.problem, recipe->second.identification);
   if (identified.result.status == calib::IdentificationStatus::kConverged) return identified;
   return conflict("there is no result: " + identified.result.message);

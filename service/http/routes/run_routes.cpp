@@ -28,7 +28,9 @@ HttpResponse run_view(const Call& call, const StoredRun& run) {
   return json_response(200, run_document(run));
 }
 HttpResponse touches_view(const Call& call, const StoredRun& run) {
-  return json_response(200, touches_document(call.operation.cell(), call.operation.store().touches(run.id)));
+  const RunStore& store = call.operation.store();
+  return json_response(
+      200, touches_document(call.operation.cell(), store.touches(run.id), store.references(run.id)));
 }
 HttpResponse result_view(const Call& call, const StoredRun& run) {
   return get_result(call.operation, run.id);

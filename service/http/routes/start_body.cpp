@@ -20,14 +20,15 @@ using nlohmann::json;
 
 constexpr std::size_t kOperatorBytesMax = 100;
 
-constexpr std::array<std::string_view, 8> kStartKeys{"recipe",
+constexpr std::array<std::string_view, 9> kStartKeys{"recipe",
                                                      "plan_id",
                                                      "kind",
                                                      "operator",
                                                      "touching",
                                                      "block_temperature_c",
                                                      "std_block_temperature_k",
-                                                     "block_temperature_at"};
+                                                     "block_temperature_at",
+                                                     "arm_moving_min"};
 
 Problem wrong(std::string pointer, std::string detail) {
   return {.kind = ProblemKind::kBody, .detail = std::move(detail), .pointer = std::move(pointer)};
@@ -127,6 +128,16 @@ std::optional<Problem> read_temperature(const json& body, std::chrono::system_cl
   return wrong("/block_temperature_at", "a time in UTC such as '2026-01-31T08:15:30Z' is required");
 }
 
+std::optional<Problem> read_warm_up(const json& body, StartRequest& start) {
+  const auto found = body.find("arm_moving_min");
+  if (found == body.end()) return std::nullopt;
+  if (!is_number_within(*found, 0.0, kArmMovingMaxMin))
+    return wrong("/arm_moving_min",
+                 fmt::format("a number of minutes from 0 to {} is required", kArmMovingMaxMin));
+  start.arm_moving_min = found->get<double>();
+  return std::nullopt;
+}
+
 std::variant<StartRequest, Problem> read_body(const json& body, const CellOperation& operation) {
   if (!body.is_object()) return wrong("", "an object is required");
   for (const auto& [key, value] : body.items()) {
@@ -139,6 +150,7 @@ std::variant<StartRequest, Problem> read_body(const json& body, const CellOperat
   if (auto problem = read_touching(body, start)) return *std::move(problem);
   if (auto problem = read_kind(body)) return *std::move(problem);
   if (auto problem = read_temperature(body, operation.clocks().system(), start)) return *std::move(problem);
+  if (auto problem = read_warm_up(body, start)) return *std::move(problem);
   return start;
 }
 

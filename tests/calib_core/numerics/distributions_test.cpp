@@ -165,5 +165,20 @@ TEST(SampleQuantile, OfWhatIsNotANumberIsNotANumberAndOfNothingIsRefused) {
   EXPECT_THROW(sample_quantile({1.0}, 1.1), std::logic_error);
 }
 
+// A chi-square variable of one degree is the square of a normal one: P(|z + 2| > 1.959964) by tables.
+TEST(Power, IsThatOfTheShiftedNormalForOneDegree) {
+  EXPECT_NEAR(chi_square_power(0.05, 1.0, 4.0), 0.516005, 1e-6);
+  EXPECT_NEAR(f_power(0.05, 1.0, 1e7, 4.0), 0.516005, 1e-5);
+}
+
+TEST(Power, IsTheLevelWhereNothingIsAddedAndGrowsWithIt) {
+  EXPECT_NEAR(f_power(0.001, 60.0, 9.0, 1e-9), 0.001, 1e-6);
+  EXPECT_EQ(chi_square_power(0.001, 60.0, 0.0), 0.001);
+  EXPECT_LT(f_power(0.001, 60.0, 9.0, 20.0), f_power(0.001, 60.0, 9.0, 200.0));
+  EXPECT_LT(f_power(0.001, 60.0, 9.0, 20.0), f_power(0.001, 60.0, 90.0, 20.0));
+  EXPECT_THROW(f_power(0.0, 60.0, 9.0, 20.0), std::logic_error);
+  EXPECT_THROW(chi_square_power(0.05, 60.0, -1.0), std::logic_error);
+}
+
 }  // namespace
 }  // namespace calib

@@ -24,7 +24,9 @@ TEST_F(ConditionsView, ConditionsTellAllThatIsKnownAndNullForTheRest) {
   const json known = conditions_json({.operator_name = "A. Turing",
                                       .config_digest = digest(),
                                       .controller_application = "touchcal 1.2.3",
-                                      .controller_session = 7});
+                                      .controller_session = 7,
+                                      .arm_moving_min = 45.0});
+  EXPECT_EQ(known.at("arm_moving_min"), 45.0);
   EXPECT_EQ(known.at("operator"), "A. Turing");
   EXPECT_EQ(known.at("config_digest"), digest());
   EXPECT_EQ(known.at("block_temperature_c"), json_of(path(kBlock)).at("temperature_c"));
@@ -34,7 +36,7 @@ TEST_F(ConditionsView, ConditionsTellAllThatIsKnownAndNullForTheRest) {
   EXPECT_EQ(known.at("versions").at("controller_application"), "touchcal 1.2.3");
   const json unknown = conditions_json({});
   ASSERT_EQ(unknown.size(), known.size());
-  for (const char* key : {"operator", "config_digest", "controller_session"})
+  for (const char* key : {"operator", "config_digest", "controller_session", "arm_moving_min"})
     EXPECT_TRUE(unknown.at(key).is_null()) << key;
 }
 

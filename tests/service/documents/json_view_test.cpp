@@ -159,7 +159,7 @@ TEST(TouchesDocument, IsWhatIdentifyReadsBackToTheLastStep) {
        .role = calib::TouchRole::kHeldOut,
        .joints = {1, -1, 7, 123456789, 0, -270000000}},
       {.number = 3, .plane = 2, .role = calib::TouchRole::kProof}};
-  const std::string document = touches_document(edf(), stored);
+  const std::string document = touches_document(edf(), stored, {});
   const TouchesFile read = touches_from_json("document", document, document.size(), edf());
   ASSERT_EQ(read.touches.size(), stored.size());
   for (std::size_t i = 0; i < stored.size(); ++i) {

@@ -98,6 +98,12 @@ TEST(ResultDocument, ItsPartsHaveTheirFieldsWithTheirTypes) {
   EXPECT_EQ(shape_of(result().at("fit")), (Shape{{"noise_declared_um", "number"},
                                                  {"noise_estimated_um", "number"},
                                                  {"noise_used_um", "number"},
+                                                 {"noise_repeats_um", "null"},
+                                                 {"repeats_degrees_of_freedom", "null"},
+                                                 {"gear_share", "number"},
+                                                 {"lack_of_fit_test", "string"},
+                                                 {"lack_of_fit_noise_um", "number"},
+                                                 {"droop_power", "number"},
                                                  {"lack_of_fit_p", "number"},
                                                  {"degrees_of_freedom", "number"},
                                                  {"planes", "array"}}));
@@ -109,6 +115,7 @@ TEST(ResultDocument, ItsPartsHaveTheirFieldsWithTheirTypes) {
                                   {"joint_ranges_rms_mm", "number"},
                                   {"expanded", "object"},
                                   {"arm_frame", "object"},
+                                  {"warmer", "object"},
                                   {"sources", "array"},
                                   {"tools", "array"},
                                   {"map", "object"}}));
@@ -230,7 +237,11 @@ TEST(ResultDocument, ThePapersArmIsFlagged) {
   const json& warning = result().at("scale").at("warning");
   EXPECT_EQ(result().at("verdict").at("accepted"), false);
   EXPECT_EQ(result().at("verdict").at("reasons"), json::array({warning}));
-  EXPECT_EQ(result().at("warnings"), json::array({warning}));
+  // The touches are exact: beside the scale it warns of the noise that was declared.
+  ASSERT_EQ(result().at("warnings").size(), 2U);
+  EXPECT_NE(result().at("warnings")[0].get<std::string>().find("the declared noise of a touch"),
+            std::string::npos);
+  EXPECT_EQ(result().at("warnings")[1], warning);
 }
 
 TEST(ResultDocument, NamesTheTouchesThatWereRejectedAndWhatWasEstimatedOfTheBlock) {

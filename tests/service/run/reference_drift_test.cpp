@@ -10,13 +10,13 @@ namespace cell {
 namespace {
 
 TEST(ReferenceDrift, IsTheLineThroughTheReadings) {
-  EXPECT_NEAR(trend_m({0.0, 1e-5, 2e-5, 3e-5}), 3e-5, 1e-15);
-  EXPECT_NEAR(trend_m({0.0, -1e-5, -2e-5}), 2e-5, 1e-15);
+  EXPECT_NEAR(reference_place({0.0, 1e-5, 2e-5, 3e-5}).trend_m, 3e-5, 1e-15);
+  EXPECT_NEAR(reference_place({0.0, -1e-5, -2e-5}).trend_m, 2e-5, 1e-15);
 }
 
 TEST(ReferenceDrift, IsNothingOfTooFewReadings) {
-  EXPECT_EQ(trend_m({}), 0.0);
-  EXPECT_EQ(trend_m({0.0, 1e-4}), 0.0) << "two readings cannot tell drift from noise";
+  EXPECT_EQ(reference_place({}).trend_m, 0.0);
+  EXPECT_EQ(reference_place({0.0, 1e-4}).trend_m, 0.0) << "two readings cannot tell drift from noise";
 }
 
 /// Mean square of the trend over many runs with this drift and noise.
@@ -29,7 +29,7 @@ double mean_square(double drift_m, double noise_m) {
     for (int i = 0; i < kReadings; ++i)
       readings_m.push_back(drift_m * i / (kReadings - 1) + noise_m * std::sqrt(12.0) * (chance() - 0.5));
     for (std::size_t i = readings_m.size(); i-- > 0;) readings_m[i] -= readings_m[0];
-    sum += std::pow(trend_m(readings_m), 2);
+    sum += std::pow(reference_place(readings_m).trend_m, 2);
   }
   return sum / kRuns;
 }

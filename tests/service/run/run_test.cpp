@@ -129,18 +129,54 @@ TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
   }
 }
 
+/// Five touches of the reference place, which moves evenly by so much along its face's normal, made by the
+/// nominal arm.
+std::vector<cell::ReferenceTouch> references_moved_by(double drift_m, const cell::Run& run,
+                                                      const calib::IdentificationProblem& problem) {
+  constexpr int kReadings = 5;
+  const calib::Touch place = cell::to_touch(run.touches().front());
+  const calib::Plane& plane = problem.artefact.contact_planes.at(static_cast<std::size_t>(place.face));
+  const auto height_m = [&](const calib::JointVector& joints) {
+    return signed_distance_m(plane, forward_chain(prepare(problem.nominal), joints).tip_in_block_m());
+  };
+  constexpr double kProbeRad = 1e-4;
+  const calib::JointVector unit = calib::JointVector::Unit(1);
+  const double m_per_rad = (height_m(place.joints + kProbeRad * unit) - height_m(place.joints)) / kProbeRad;
+  std::vector<cell::ReferenceTouch> made;
+  for (int i = 0; i < kReadings; ++i) {
+    const double angle_rad = drift_m * i / (kReadings - 1) / m_per_rad;
+    made.push_back({.number = i + 1, .joints = cell::to_wire(place.joints + angle_rad * unit)});
+  }
+  return made;
+}
+
 TEST_F(RunTest, TheDriftOfTheReferencePlaceIsInTheTipsUncertainty) {
   int number = 0;
   for (const calib::Touch& touch : table3_touches()) keep(run_, stored(++number, touch));
+  run_.note_references(references_moved_by(0.0, run_, run_.problem()));
   run_.identify();
-  const double still_m = run_.predicted_tip_rms_m().value();
+  EXPECT_EQ(run_.problem().drift_m, 0.0);
   constexpr double kDriftM = 1e-4;
-  run_.note_drift(kDriftM);
+  run_.note_references(references_moved_by(kDriftM, run_, run_.problem()));
+  EXPECT_NEAR(run_.problem().drift_m, kDriftM, 1e-6);
   EXPECT_TRUE(run_.identify()) << "no touch more, but a drift";
   EXPECT_FALSE(run_.identify());
+  const calib::UncertaintySource& drift = run_.latest().uncertainty->sources.back();
+  EXPECT_EQ(drift.name, "drift");
   // Half of it, in each of three directions.
-  EXPECT_NEAR(run_.predicted_tip_rms_m().value(), std::hypot(still_m, std::sqrt(3.0) * kDriftM / 2.0), 1e-9);
-  EXPECT_EQ(run_.latest().uncertainty->sources.back().name, "drift");
+  EXPECT_NEAR(drift.covariance.trace(), 3.0 * std::pow(run_.problem().drift_m / 2.0, 2), 1e-15);
+}
+
+TEST_F(RunTest, WhatTheReferencePlaceScattersIsPureError) {
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches()) keep(run_, stored(++number, touch));
+  EXPECT_FALSE(run_.problem().pure_error);
+  run_.note_references(references_moved_by(1e-4, run_, run_.problem()));
+  ASSERT_TRUE(run_.problem().pure_error);
+  EXPECT_EQ(run_.problem().pure_error->degrees_of_freedom, 3.0) << "five about a line";
+  EXPECT_LT(run_.problem().pure_error->std_m, 1e-7) << "they are on the line";
+  run_.identify();
+  EXPECT_TRUE(run_.latest().lack_of_fit->is_f_test());
 }
 
 TEST_F(RunTest, TouchesLeftOutAreThoseToFitFromThereOn) {

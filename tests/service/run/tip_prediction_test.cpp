@@ -95,6 +95,31 @@ TEST_F(TipPredictionTest, AtTheBlockTheTipIsBetterKnownThanElsewhere) {
   EXPECT_LT(prediction.at_block_rms_m.value(), prediction.joint_ranges_rms_m.value());
 }
 
+TEST_F(TipPredictionTest, AWarmerArmIsOffByWhatItHasGrown) {
+  Cell cell = edf();
+  cell.arm.growth.reset();
+  EXPECT_FALSE(predict(cell).warmer);
+  constexpr double kExpansionPerK = 2.3e-5, kRiseK = 8.0;
+  cell.arm.growth = Growth{.expansion_per_k = kExpansionPerK, .rise_k = kRiseK};
+  const TipPrediction prediction = predict(cell);
+  // The tips of a grown arm, frame by frame, against those of the arm.
+  calib::KinematicModel grown = cell.arm.model;
+  for (std::size_t frame = 2; frame < calib::kFrameCount - 1; ++frame) {
+    grown.links[frame].d_m *= 1.0 + kExpansionPerK * kRiseK;
+    grown.links[frame].r_m *= 1.0 + kExpansionPerK * kRiseK;
+  }
+  const auto postures = calib::postures_in_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box);
+  double sum = 0.0;
+  for (const calib::JointVector& joints : postures)
+    sum += (forward_chain(prepare(grown), joints).tip_in_block_m() -
+            forward_chain(prepare(cell.arm.model), joints).tip_in_block_m())
+               .squaredNorm();
+  const double by_growth_m = std::sqrt(sum / static_cast<double>(postures.size()));
+  EXPECT_NEAR(prediction.warmer.value().workspace_box_rms_m.value(),
+              std::hypot(prediction.workspace_box_rms_m.value(), by_growth_m), 1e-6);
+  EXPECT_GT(by_growth_m, 5e-5) << "else it would not matter";
+}
+
 TEST_F(TipPredictionTest, InTheArmsOwnFrameTheBlocksPlaceDoesNotCount) {
   calib::IdentificationResult result = calib::identify(problem_, recipe_.identification);
   const TipRegions regions(edf());

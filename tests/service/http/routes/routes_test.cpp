@@ -317,6 +317,8 @@ TEST_F(RoutesTest, AStartsTemperatureComesWithItsDeviationAndWithinBounds) {
       {"a deviation as text", deviation(R"("1")"), 400, std},
       {"a time that is none", deviation(R"(1,"block_temperature_at":"today")"), 400, at},
       {"a time as number", deviation(R"(1,"block_temperature_at":0)"), 400, at},
+      {"an arm that has moved for ever", with(R"("arm_moving_min":1441)"), 400, "/arm_moving_min"},
+      {"moving as text", with(R"("arm_moving_min":"60")"), 400, "/arm_moving_min"},
       {"another kind", with(R"("kind":"proof")"), 400, "/kind"},
       {"no kind", with(R"("kind":null)"), 400, "/kind"}};
   for (const BadBody& bad : bodies) {
@@ -325,7 +327,8 @@ TEST_F(RoutesTest, AStartsTemperatureComesWithItsDeviationAndWithinBounds) {
     EXPECT_EQ(document.value("pointer", ""), bad.pointer) << bad.what << ": " << document;
   }
   // The clock of this cell stands at the beginning of 1970: one that is taken meets the missing link only.
-  const json taken = problem(post("/api/v1/runs", deviation(R"(0.5,"kind":"calibration")")));
+  const json taken =
+      problem(post("/api/v1/runs", deviation(R"(0.5,"kind":"calibration","arm_moving_min":60)")));
   ASSERT_EQ(taken.at("status"), 409);
   EXPECT_EQ(taken.at("errors").size(), 1u);
   const json future =

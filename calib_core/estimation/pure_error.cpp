@@ -1,0 +1,53 @@
+#include "calib_core/estimation/pure_error.hpp"
+
+#include <cmath>
+#include <numeric>
+
+namespace calib {
+namespace {
+
+double mean(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+}  // namespace
+
+std::optional<ReadingLine> line_through(std::span<const double> readings_m) {
+  if (readings_m.size() < 3) return std::nullopt;
+  const auto count = static_cast<double>(readings_m.size());
+  const double middle = (count - 1.0) / 2.0;
+  const double mean_m = mean(readings_m);
+  double along = 0.0, spread = 0.0;
+  for (std::size_t i = 0; i < readings_m.size(); ++i) {
+    const double place = static_cast<double>(i) - middle;
+    along += place * (readings_m[i] - mean_m);
+    spread += place * place;
+  }
+  ReadingLine line{.slope = along / spread};
+  double squares = 0.0;
+  for (std::size_t i = 0; i < readings_m.size(); ++i)
+    squares += std::pow(readings_m[i] - mean_m - line.slope * (static_cast<double>(i) - middle), 2);
+  const double degrees = count - 2.0;
+  line.scatter = {std::sqrt(squares / degrees), degrees};
+  line.variance_of_slope = squares / degrees / spread;
+  return line;
+}
+
+std::optional<TouchNoise> noise_of_pairs(std::span<const double> differences_m) {
+  if (differences_m.size() < 2) return std::nullopt;
+  const double common_m = mean(differences_m);
+  double squares = 0.0;
+  for (const double difference_m : differences_m) squares += std::pow(difference_m - common_m, 2);
+  const double degrees = static_cast<double>(differences_m.size()) - 1.0;
+  return TouchNoise{std::sqrt(0.5 * squares / degrees), degrees};
+}
+
+TouchNoise pooled(const TouchNoise& first, const TouchNoise& second) {
+  const double degrees = first.degrees_of_freedom + second.degrees_of_freedom;
+  if (!(degrees > 0.0)) return {};
+  const double squares = first.degrees_of_freedom * first.std_m * first.std_m +
+                         second.degrees_of_freedom * second.std_m * second.std_m;
+  return {std::sqrt(squares / degrees), degrees};
+}
+
+}  // namespace calib

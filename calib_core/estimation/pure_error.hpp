@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+/// The noise of a touch from what was touched more than once (pure error): no model has a part in it.
+namespace calib {
+
+/// Noise of a touch and how well it is known.
+struct TouchNoise {
+  double std_m = 0.0;
+  double degrees_of_freedom = 0.0;
+};
+
+/// The line through readings that were made one after the other.
+struct ReadingLine {
+  double slope = 0.0;  // per reading
+  double variance_of_slope = 0.0;
+  TouchNoise scatter;  // about the line
+};
+
+/// Nothing for fewer than three readings. `readings_m`: distances of one place in the order of their making.
+std::optional<ReadingLine> line_through(std::span<const double> readings_m);
+
+/// Noise of one touch from the differences of places that were touched twice; what all differences have in
+/// common (another speed) does not count. Nothing for fewer than two.
+std::optional<TouchNoise> noise_of_pairs(std::span<const double> differences_m);
+
+/// Both together, weighted by their degrees of freedom; one without any says nothing.
+TouchNoise pooled(const TouchNoise& first, const TouchNoise& second);
+
+}  // namespace calib

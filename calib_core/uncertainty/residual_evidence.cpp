@@ -1,0 +1,82 @@
+#include "calib_core/uncertainty/residual_evidence.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace calib {
+namespace {
+
+constexpr int kGearScaleSteps = 24;
+constexpr double kGearScaleMax = 4.0;
+constexpr int kNoiseSteps = 24;
+/// The least and the largest noise that is tried, of the largest one that was seen.
+constexpr double kNoiseShareMin = 0.02, kNoiseShareMax = 2.5;
+
+/// Logarithm of the density of a variance that was seen with these degrees of freedom, of what does not
+/// depend on `variance_seen` alone.
+double log_likelihood(double variance_seen, double degrees, double variance) {
+  return -0.5 * degrees * (std::log(variance) + variance_seen / variance);
+}
+
+}  // namespace
+
+double gear_variance_m2(const IdentificationProblem& problem, const LeastSquares& fit,
+                        const FullLinearisation& whole) {
+  double sum = 0.0;  // over the touches, in units of the fit's noise
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const int column = theta_index(joint);
+    sum += std::pow(problem.gear_std_rad[joint], 2) * whole.touch_information(column, column);
+  }
+  return sum * fit.noise_unit_m() * fit.noise_unit_m() / std::max(1, fit.kept_count());
+}
+
+std::optional<double> droop_noncentrality(const IdentificationProblem& problem, const LeastSquares& fit,
+                                          const FullLinearisation& whole, const LackOfFit& test) {
+  Eigen::VectorXd droop = Eigen::VectorXd::Zero(whole.touch_information.rows());
+  for (const int position : estimable_compliances(problem.nongeometric_std)) {
+    const int column = nongeometric_index(position);
+    if (std::ranges::find(fit.arm_columns(), column) != fit.arm_columns().end()) return std::nullopt;
+    droop[column] = *problem.nongeometric_std[static_cast<std::size_t>(position)];
+  }
+  if (droop.isZero(0.0)) return std::nullopt;
+  const Eigen::VectorXd gradient = whole.touch_information * droop;
+  const Eigen::VectorXd of_estimated = gradient(whole.estimated);
+  const double seen = droop.dot(gradient) - of_estimated.dot(whole.estimated_covariance * of_estimated);
+  return std::max(0.0, seen) * std::pow(fit.noise_unit_m() / test.noise_m, 2);
+}
+
+double mean_gear_share(const GearEvidence& evidence) {
+  const double of_residuals = evidence.residuals.std_m * evidence.residuals.std_m;
+  const double of_repeats = evidence.repeats.std_m * evidence.repeats.std_m;
+  const double most = std::max(evidence.residuals.std_m, evidence.repeats.std_m);
+  if (!(evidence.gear_variance_m2 > 0.0) || !(most > 0.0)) return 1.0;
+  std::array<std::array<double, kNoiseSteps>, kGearScaleSteps> logs{};
+  const auto scale_at = [](std::size_t i) {
+    return kGearScaleMax * (static_cast<double>(i) + 0.5) / kGearScaleSteps;
+  };
+  double largest = -std::numeric_limits<double>::infinity();
+  const double ratio = std::pow(kNoiseShareMax / kNoiseShareMin, 2.0 / (kNoiseSteps - 1));
+  double noise_variance = std::pow(kNoiseShareMin * most, 2);
+  for (std::size_t k = 0; k < kNoiseSteps; ++k, noise_variance *= ratio) {
+    const double of_noise = log_likelihood(of_repeats, evidence.repeats.degrees_of_freedom, noise_variance);
+    for (std::size_t i = 0; i < kGearScaleSteps; ++i) {
+      const double share = scale_at(i) * scale_at(i);
+      logs[i][k] = of_noise - 0.5 * share +
+                   log_likelihood(of_residuals, evidence.residuals.degrees_of_freedom,
+                                  noise_variance + share * evidence.gear_variance_m2);
+      largest = std::max(largest, logs[i][k]);
+    }
+  }
+  double sum = 0.0, weights = 0.0;
+  for (std::size_t i = 0; i < kGearScaleSteps; ++i) {
+    double weight = 0.0;
+    for (const double value : logs[i]) weight += std::exp(value - largest);
+    sum += weight * scale_at(i) * scale_at(i);
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+}  // namespace calib

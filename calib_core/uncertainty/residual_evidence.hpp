@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+
+#include "calib_core/estimation/goodness_of_fit.hpp"
+#include "calib_core/uncertainty/uncertainty_propagation.hpp"
+
+/// What the residuals of a fit can say, and what they do say, of the arm beside the noise of the touches.
+namespace calib {
+
+/// Variance of a touch by the maker's figures of the gears, mean over the fitted touches, square metres.
+double gear_variance_m2(const IdentificationProblem& problem, const LeastSquares& fit,
+                        const FullLinearisation& whole);
+
+/// Of the test: by how much a droop that is not in the model moves it when the compliance of each joint is
+/// off by one standard deviation. Nothing where no compliance with a deviation was left out.
+std::optional<double> droop_noncentrality(const IdentificationProblem& problem, const LeastSquares& fit,
+                                          const FullLinearisation& whole, const LackOfFit& test);
+
+/// What the touches of a run say of errors that change from posture to posture.
+struct GearEvidence {
+  TouchNoise residuals;           // of the fit: touches and gears together
+  TouchNoise repeats;             // of touches of one place, where the gears err alike
+  double gear_variance_m2 = 0.0;  // of a touch by the maker's figures
+};
+
+/// The gears' true variance as a share of the maker's: its mean after the touches. Before them the errors of
+/// the gears are s times the maker's, s half-normal with E[s^2] = 1, and every magnitude of the touches' own
+/// noise is alike. 1 where nothing is known.
+double mean_gear_share(const GearEvidence& evidence);
+
+}  // namespace calib

@@ -1,0 +1,94 @@
+#include "calib_core/uncertainty/residual_evidence.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calib_core/identification/identify.hpp"
+#include "tests/calib_core/drawn_cell.hpp"
+
+namespace calib {
+namespace {
+
+constexpr double kGearVariance = 1e-10;  // 10 um squared
+constexpr double kCompliance = 1e-6;     // one standard deviation, rad/Nm
+
+TEST(GearShare, FollowsWhatTheResidualsHaveBeyondTheRepeats) {
+  const auto share = [](double residuals_um, double repeats_um) {
+    return mean_gear_share({{1e-6 * residuals_um, 100.0}, {1e-6 * repeats_um, 50.0}, kGearVariance});
+  };
+  EXPECT_LT(share(10.0, 10.0), 0.15) << "repeats explain all";
+  EXPECT_NEAR(share(std::sqrt(125.0), 5.0), 1.0, 0.15) << "just the maker's";
+  EXPECT_GT(share(std::sqrt(325.0), 5.0), 2.5) << "worn: three times the variance";
+  EXPECT_LT(share(5.0, 5.0), share(8.0, 5.0));
+}
+
+TEST(GearShare, IsTheMakersWhereNothingIsKnown) {
+  EXPECT_NEAR(mean_gear_share({{1e-5, 0.0}, {1e-5, 0.0}, kGearVariance}), 1.0, 0.02);
+  EXPECT_EQ(mean_gear_share({{1e-5, 30.0}, {1e-5, 5.0}, 0.0}), 1.0);
+}
+
+TEST(GearShare, IsLimitedByTheResidualsAlone) {
+  EXPECT_LT(mean_gear_share({{5e-6, 60.0}, {0.0, 0.0}, kGearVariance}), 0.3);
+}
+
+struct Held {
+  IdentificationProblem problem;
+  IdentificationOptions options{.robust = false, .hold_weak = false};
+};
+
+/// Touches of an arm that droops by `sigmas` of its compliances' deviations, which is not estimated.
+Held drooping(double sigmas, double noise_m, UniformChance& chance) {
+  Held held{drawn::problem(drawn::certain_artefact(5), noise_m)};
+  held.problem.nominal.masses[3] = {30.0, {0.2, 0.0, 0.1}};
+  held.problem.nominal.masses[6] = {10.0, {0.0, 0.0, 0.1}};
+  for (const int joint : {1, 2})
+    held.problem.nongeometric_std[static_cast<std::size_t>(compliance_position(joint))] = kCompliance;
+  drawn::Truth truth = drawn::draw_truth(held.problem, chance);
+  for (const int joint : {1, 2})
+    truth.arm.compliance_rad_per_nm[static_cast<std::size_t>(joint)] += sigmas * kCompliance;
+  held.problem.touches = drawn::touches(truth, {.count = 100, .noise_m = noise_m}, chance);
+  return held;
+}
+
+// The power that is told, against how often the test really alarms.
+TEST(DroopPower, IsHowOftenTheTestFindsIt) {
+  constexpr double kNoiseMetres = 10e-6, kLevel = 0.05;
+  constexpr int kRuns = 200;
+  int alarms = 0, made = 0;
+  double told = 0.0;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    UniformChance chance(static_cast<std::uint64_t>(seed));
+    const Held held = drooping(1.0, kNoiseMetres, chance);
+    const IdentificationResult result = identify(held.problem, held.options);
+    if (result.status == IdentificationStatus::kFarTouch) continue;  // a drawn arm too far off to be touched
+    ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+    ++made;
+    ASSERT_TRUE(result.lack_of_fit && result.lack_of_fit->droop_noncentrality);
+    alarms += result.lack_of_fit->p < kLevel ? 1 : 0;
+    told += result.lack_of_fit->power(*result.lack_of_fit->droop_noncentrality, kLevel);
+  }
+  told /= made;
+  EXPECT_GT(made, 190);
+  EXPECT_GT(told, 0.1) << "else the test shows nothing";
+  EXPECT_LT(told, 0.95);
+  EXPECT_NEAR(static_cast<double>(alarms) / made, told, 0.1);
+}
+
+TEST(LackOfFit, IsTestedAgainstRepeatsWhereThereAreSome) {
+  UniformChance chance(7);
+  Held held = drooping(0.0, 10e-6, chance);
+  held.problem.touch_noise_m = 30e-6;  // too large: it hides the misfit
+  const IdentificationResult hidden = identify(held.problem, held.options);
+  EXPECT_FALSE(hidden.lack_of_fit->is_f_test());
+  EXPECT_GT(hidden.lack_of_fit->p, 0.99);
+  EXPECT_TRUE(hidden.is_declared_noise_too_large);
+  EXPECT_FALSE(hidden.warnings.empty());
+  held.problem.pure_error = TouchNoise{3e-6, 200.0};
+  const IdentificationResult shown = identify(held.problem, held.options);
+  EXPECT_TRUE(shown.lack_of_fit->is_f_test());
+  EXPECT_LT(shown.lack_of_fit->p, 1e-3);
+}
+
+}  // namespace
+}  // namespace calib
