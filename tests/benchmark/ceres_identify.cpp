@@ -54,12 +54,50 @@ struct SignedDistances {
   }
 };
 
+/// kAnalytic: all touches.
+class DistancesWithDerivatives : public ceres::CostFunction {
+ public:
+  DistancesWithDerivatives(const Measured& measured, std::span<const calib::Touch> touches)
+      : measured_(measured), touches_(touches) {
+    set_num_residuals(static_cast<int>(touches.size()));
+    mutable_parameter_block_sizes()->push_back(kIdentifiedCount);
+    for (const calib::Touch& touch : touches)
+      joints_.push_back(calib::prepare(measured.nominal.gains, touch.joints));
+  }
+
+  bool Evaluate(double const* const* errors, double* residuals, double** jacobians) const override {
+    calib::ErrorVector all = calib::ErrorVector::Zero();
+    for (std::size_t k = 0; k < measured_.columns.size(); ++k) all[measured_.columns[k]] = errors[0][k];
+    const calib::PreparedModel arm = calib::prepare(calib::apply(measured_.nominal, all));
+    double* slope = jacobians == nullptr ? nullptr : jacobians[0];
+    for (std::size_t i = 0; i < touches_.size(); ++i) {
+      const calib::Chain chain = calib::forward_chain(arm, joints_[i]);
+      *residuals++ = signed_distance(measured_, touches_[i], Vector3<double>(chain.tip_in_block_m()));
+      if (slope == nullptr) continue;
+      const auto face = static_cast<std::size_t>(touches_[i].face);
+      const calib::ArmRow row =
+          calib::distance_derivatives(arm, chain, measured_.contact_planes[face].outward);
+      for (const int column : measured_.columns) *slope++ = row[column];
+    }
+    return true;
+  }
+
+ private:
+  const Measured& measured_;
+  std::span<const calib::Touch> touches_;
+  std::vector<calib::PreparedJoints> joints_;
+};
+
 void add_residuals(ceres::Problem& problem, const Measured& measured, std::span<const calib::Touch> touches,
                    CeresForm form, double* errors) {
   if (form == CeresForm::kTuned) {
     using Cost = ceres::AutoDiffCostFunction<SignedDistances, ceres::DYNAMIC, kIdentifiedCount>;
     problem.AddResidualBlock(
         new Cost(new SignedDistances{measured, touches}, static_cast<int>(touches.size())), nullptr, errors);
+    return;
+  }
+  if (form == CeresForm::kAnalytic) {
+    problem.AddResidualBlock(new DistancesWithDerivatives(measured, touches), nullptr, errors);
     return;
   }
   using Cost = ceres::AutoDiffCostFunction<SignedDistance, 1, kIdentifiedCount>;
@@ -73,7 +111,7 @@ ceres::Solver::Options solver_options(CeresForm form) {
   options.linear_solver_type = ceres::DENSE_QR;
   options.num_threads = 1;
   options.logging_type = ceres::SILENT;
-  if (form == CeresForm::kTuned) options.initial_trust_region_radius = 1e12;
+  if (form != CeresForm::kUsual) options.initial_trust_region_radius = 1e12;
   return options;
 }
 

@@ -19,7 +19,9 @@ inline constexpr int kIdentifiedCount = 25;
 /// kTuned: all that made it faster; one block for all touches, so that what they share is computed once, a
 /// point carried back instead of frames, a nearly undamped start, and GCC told to inline all arithmetic of
 /// derivatives (gnu::flatten), which takes off a third.
-enum class CeresForm { kUsual, kTuned };
+/// kAnalytic: kTuned with the derivatives of our observation matrix instead of automatic ones, from touches
+/// whose sines and cosines are computed once.
+enum class CeresForm { kUsual, kTuned, kAnalytic };
 
 enum class Covariance { kNo, kYes };
 
@@ -30,8 +32,8 @@ struct CeresResult {
   Eigen::MatrixXd covariance{};  // 25 x 25, for residuals with a standard deviation of 1 m; empty with kNo
 };
 
-/// What calib::identify solves once it has chosen `columns`: signed distances of the tips (metres), automatic
-/// derivatives, DENSE_QR, one thread, a start at nominal. The problem is built anew each time. Throws
+/// What calib::identify solves once it has chosen `columns`: signed distances of the tips (metres),
+/// DENSE_QR, one thread, a start at nominal. The problem is built anew each time. Throws
 /// std::logic_error unless there are 25 columns.
 CeresResult ceres_identify(const calib::KinematicModel& nominal, std::span<const calib::Plane> contact_planes,
                            std::span<const calib::Touch> touches, const std::vector<int>& columns,
