@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "calib_core/numerics/gram_matrix.hpp"
+
 namespace calib {
 namespace {
 
@@ -37,7 +39,9 @@ double condition_number_of_information(const Eigen::MatrixXd& information) {
 Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>& matrix, int count) {
   if (count > 0 && count <= std::min(matrix.rows(), matrix.cols())) {
     SymmetricEigen eigen;
-    eigen.compute_values(matrix.transpose() * matrix);
+    Eigen::MatrixXd gram;
+    gram_matrix(matrix, gram);
+    eigen.compute_values(gram);
     const Eigen::VectorXd values = eigen.values().tail(count).reverse();
     // Squaring costs half of the digits.
     if (values[count - 1] > kGramRelative * values[0]) return values.cwiseSqrt();
@@ -47,16 +51,13 @@ Eigen::VectorXd largest_singular_values(const Eigen::Ref<const Eigen::MatrixXd>&
 }
 
 double InformationConditions::extreme_ratio(const Eigen::MatrixXd& information) {
-  eigen_.compute_values(information);
-  return root_of_ratio(eigen_.values());
+  if (!eigenvalues_.compute(information)) return kInfinite;
+  return std::sqrt(eigenvalues_.largest() / eigenvalues_.smallest());
 }
 
 std::optional<ConditionNumbers> InformationConditions::of(const Eigen::MatrixXd& information) {
-  unit_ = information;
-  for (Eigen::Index j = 0; j < unit_.cols(); ++j) {
-    for (Eigen::Index i = 0; i < unit_.rows(); ++i)
-      unit_(i, j) /= std::sqrt(information(i, i) * information(j, j));
-  }
+  scale_ = information.diagonal().cwiseSqrt().cwiseInverse();
+  unit_.noalias() = scale_.asDiagonal() * information * scale_.asDiagonal();
   const ConditionNumbers numbers{extreme_ratio(information), extreme_ratio(unit_)};
   if (numbers.as_is < kGramConditionMax && numbers.unit_columns < kGramConditionMax) return numbers;
   return std::nullopt;

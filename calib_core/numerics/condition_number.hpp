@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "calib_core/numerics/decompositions.hpp"
+#include "calib_core/numerics/extreme_eigenvalues.hpp"
 
 namespace calib {
 
@@ -33,8 +34,9 @@ class InformationConditions {
  private:
   double extreme_ratio(const Eigen::MatrixXd& information);
 
+  Eigen::VectorXd scale_;
   Eigen::MatrixXd unit_;
-  SymmetricEigen eigen_;
+  ExtremeEigenvalues eigenvalues_;
 };
 
 /// Slower and right for every condition number.
