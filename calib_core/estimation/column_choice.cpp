@@ -33,10 +33,7 @@ std::vector<std::size_t> parameters_without_prior(const Artefact& artefact) {
 
 ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefact,
                            std::vector<Touch> touches, Formulation formulation) {
-  const PreparedModel prepared = prepare(nominal);
-  for (Touch& touch : touches) {
-    touch = moved_onto_plane(prepared, artefact.contact_planes[static_cast<std::size_t>(touch.face)], touch);
-  }
+  touches = moved_onto_planes(nominal, artefact.contact_planes, std::move(touches));
   const Eigen::MatrixXd rows = observe(nominal, artefact.contact_planes, touches, formulation).matrix;
   const std::vector<std::size_t> free = parameters_without_prior(artefact);
   if (free.empty()) return {rows, {}};

@@ -194,18 +194,19 @@ std::optional<InputRefusal> find_invalid_input(const IdentificationProblem& prob
 
 SortedTouches sort_touches(const IdentificationProblem& problem, const IdentificationOptions& options) {
   SortedTouches sorted;
-  const PreparedModel start = prepare(apply(problem.nominal, problem.start));
+  const KinematicModel start = apply(problem.nominal, problem.start);
   const auto& planes = problem.artefact.contact_planes;
+  const Eigen::VectorXd distances = signed_distances_m(start, planes, problem.touches);
   for (std::size_t i = 0; i < problem.touches.size(); ++i) {
     const Touch& touch = problem.touches[i];
     if (touch.role == TouchRole::kProof) continue;
     const auto own = static_cast<std::size_t>(touch.face);
-    const Eigen::Vector3d tip = forward_chain(start, touch.joints).tip_in_block_m();
-    const double distance = signed_distance_m(planes[own], tip);
+    const double distance = distances[static_cast<Eigen::Index>(i)];
     if (std::abs(distance) <= kFarOffMetres) {
       if (touch.role == TouchRole::kFit) sorted.fitted.push_back(i);
       continue;
     }
+    const Eigen::Vector3d tip = forward_kinematics(start, touch.joints).translation();
     const auto [other, other_distance] = nearest_other(planes, own, tip);
     if (options.robust && other_distance <= kOnOtherPlaneMetres) {
       sorted.wrong_face.push_back({i, distance, RejectionReason::kWrongFace});

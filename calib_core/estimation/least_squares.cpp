@@ -1,9 +1,11 @@
 #include "calib_core/estimation/least_squares.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 
+#include "calib_core/numerics/gram_matrix.hpp"
 #include "calib_core/numerics/scaled_cholesky.hpp"
 
 namespace calib {
@@ -49,9 +51,12 @@ LeastSquares::LeastSquares(const IdentificationProblem& problem, const Identific
       unit_columns_(options.weights == ColumnScaling::kUnitNorm),
       precision_(prior_precision(problem, arm_columns_, options.prior)) {
   if (problem.touch_noise_m > 0.0) noise_unit_m_ = problem.touch_noise_m;
-  for (const std::size_t touch : touches_) {
-    joints_.push_back(prepare(problem.nominal.gains, problem.touches[touch].joints));
-  }
+  for_each_block(touches_.size(), [&](std::size_t first, std::size_t count) {
+    PostureLanes& block = postures_.emplace_back();
+    for (std::size_t lane = 0; lane < kLaneCount; ++lane)
+      block.set(lane, problem.touches[touches_[first + std::min(lane, count - 1)]].joints);
+    lane_arithmetic().turn(problem.nominal.gains, block);
+  });
   set_weights(options.formulation);
   keep(std::vector<bool>(touches_.size(), true));
   allocate_buffers();
@@ -69,7 +74,7 @@ LeastSquares::LeastSquares(const LeastSquares& other, const IdentificationOption
       noise_unit_m_(other.noise_unit_m_),
       weights_(other.weights_),
       precision_(prior_precision(problem_, arm_columns_, options.prior)),
-      joints_(other.joints_) {
+      postures_(other.postures_) {
   allocate_buffers();
 }
 
@@ -101,21 +106,31 @@ void LeastSquares::keep(const std::vector<bool>& kept) {
   kept_count_ = static_cast<int>(std::accumulate(kept.begin(), kept.end(), 0));
 }
 
-void LeastSquares::fill_row(Eigen::Index row, const PreparedModel& model) {
-  const Touch& touch = problem_.touches[touches_[static_cast<std::size_t>(row)]];
-  const auto face = static_cast<std::size_t>(touch.face);
-  const Plane& plane = planes_[face];
-  const Chain chain = forward_chain(model, joints_[static_cast<std::size_t>(row)]);
-  const Eigen::Vector3d tip = chain.tip_in_block_m();
-  const ArmRow slopes = distance_derivatives(model, chain, plane.outward);
-  const double weight = weights_[row];
-  rows_.residuals_m[row] = signed_distance_m(plane, tip);
-  rows_.weighted_residuals[row] = weight * rows_.residuals_m[row];
-  Eigen::Index column = 0;
-  for (const int arm_column : arm_columns_) rows_.all(row, column++) = weight * slopes[arm_column];
-  for (const ArtefactParameter& parameter : problem_.artefact.parameters) {
-    const auto& shift = parameter.shifts[face];
-    rows_.all(row, column++) = weight * (shift.constant + shift.per_metre.dot(tip));
+void LeastSquares::fill_rows(std::size_t block, const PreparedModel& model) {
+  const std::size_t first = block * kLaneCount;
+  const std::size_t count = std::min(kLaneCount, touches_.size() - first);
+  const auto face_of = [&](std::size_t lane) {
+    return static_cast<std::size_t>(problem_.touches[touches_[first + std::min(lane, count - 1)]].face);
+  };
+  ChainLanes chains;
+  lane_arithmetic().forward_chains(model, postures_[block], chains);
+  VectorLanes outward;
+  for (std::size_t lane = 0; lane < kLaneCount; ++lane) outward.set(lane, planes_[face_of(lane)].outward);
+  ArmRowLanes slopes;
+  lane_arithmetic().distance_derivatives(model, chains, outward, slopes);
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const auto row = static_cast<Eigen::Index>(first + lane);
+    const Eigen::Vector3d tip = chains.tip_in_block_m(lane);
+    const double weight = weights_[row];
+    rows_.residuals_m[row] = signed_distance_m(planes_[face_of(lane)], tip);
+    rows_.weighted_residuals[row] = weight * rows_.residuals_m[row];
+    Eigen::Index column = 0;
+    for (const int arm_column : arm_columns_)
+      rows_.all(row, column++) = weight * slopes[static_cast<std::size_t>(arm_column)].of[lane];
+    for (const ArtefactParameter& parameter : problem_.artefact.parameters) {
+      const auto& shift = parameter.shifts[face_of(lane)];
+      rows_.all(row, column++) = weight * (shift.constant + shift.per_metre.dot(tip));
+    }
   }
 }
 
@@ -141,11 +156,14 @@ void LeastSquares::add_priors(const Estimate& estimate) {
   }
 }
 
-void LeastSquares::linearise(const Estimate& estimate) {
+void LeastSquares::set_rows(const Estimate& estimate) {
   const PreparedModel model = prepare(apply(problem_.nominal, estimate.arm));
   correct_contact_planes(problem_.artefact, estimate.artefact, planes_);
-  for (Eigen::Index row = 0; row < rows_.all.rows(); ++row) fill_row(row, model);
+  for (std::size_t block = 0; block < postures_.size(); ++block) fill_rows(block, model);
+}
 
+void LeastSquares::linearise(const Estimate& estimate) {
+  set_rows(estimate);
   const bool all = kept_count_ == static_cast<int>(kept_.size());
   if (!all) {
     rows_.kept = rows_.all;
@@ -154,11 +172,7 @@ void LeastSquares::linearise(const Estimate& estimate) {
     }
   }
   const Eigen::MatrixXd& fitted_rows = all ? rows_.all : rows_.kept;
-  normal_.touch_information.setZero(rows_.all.cols(), rows_.all.cols());
-  // Eigen 3.4 divides by zero for a product of 48 columns and no rows: a plan with all parameters has both.
-  if (fitted_rows.rows() > 0)
-    normal_.touch_information.selfadjointView<Eigen::Lower>().rankUpdate(fitted_rows.transpose());
-  normal_.touch_information.triangularView<Eigen::StrictlyUpper>() = normal_.touch_information.transpose();
+  gram_matrix(fitted_rows, normal_.touch_information);
   normal_.touch_gradient.noalias() = fitted_rows.transpose() * rows_.weighted_residuals;
   normal_.touch_gradient = -normal_.touch_gradient;
   normal_.information = normal_.touch_information;

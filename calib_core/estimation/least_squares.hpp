@@ -6,6 +6,7 @@
 
 #include "calib_core/estimation/estimate.hpp"
 #include "calib_core/estimation/identification_problem.hpp"
+#include "calib_core/kinematics/posture_lanes.hpp"
 #include "calib_core/numerics/condition_number.hpp"
 
 namespace calib {
@@ -39,6 +40,9 @@ class LeastSquares {
   void keep(const std::vector<bool>& kept);
 
   void linearise(const Estimate& estimate);
+
+  /// Rows and residuals only, of all touches; solve() needs linearise().
+  void set_rows(const Estimate& estimate);
 
   /// Computes the step to the minimum of the linearised problem; false when it has no unique minimum.
   bool solve();
@@ -92,7 +96,7 @@ class LeastSquares {
   };
   void allocate_buffers();
   void set_weights(Formulation formulation);
-  void fill_row(Eigen::Index row, const PreparedModel& model);
+  void fill_rows(std::size_t block, const PreparedModel& model);
   void add_priors(const Estimate& estimate);
 
   const IdentificationProblem& problem_;
@@ -105,7 +109,7 @@ class LeastSquares {
   double noise_unit_m_ = 1.0;
   Eigen::VectorXd weights_;             // one per row, 1/m
   Eigen::VectorXd precision_;           // of the priors
-  std::vector<PreparedJoints> joints_;  // one per touch
+  std::vector<PostureLanes> postures_;  // of the touches; the last one fills up its block
   std::vector<Plane> planes_;           // estimated contact planes; normals of unit length to first order
   Rows rows_;
   NormalEquations normal_;

@@ -1,6 +1,10 @@
 #include "calib_core/observability/observation_matrix.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+
+#include "calib_core/kinematics/posture_lanes.hpp"
 
 namespace calib {
 namespace {
@@ -8,7 +12,58 @@ namespace {
 constexpr int kMoveStepsMax = 12;
 /// Newton's method converges quadratically: the next distance is this one squared over the size of the arm.
 constexpr double kLastStepMetres = 1e-8;
-constexpr double kOnPlaneMetres = 1e-14;  // two digits above the rounding error at a reach of 1 m
+constexpr double kOnPlaneMetres = 1e-14;    // two digits above the rounding error at a reach of 1 m
+constexpr double kSlopeSquaredMin = 1e-12;  // below, no joint moves the tip along the normal
+
+/// Up to four touches; where there are fewer, the last one fills the other lanes.
+struct TouchBlock {
+  PostureLanes postures;
+  VectorLanes outward;
+  std::array<double, kLaneCount> offset_m{};
+
+  TouchBlock(std::span<const Plane> contact_planes, std::span<const Touch> touches) {
+    for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
+      const Touch& touch = touches[std::min(lane, touches.size() - 1)];
+      const Plane& plane = contact_planes[static_cast<std::size_t>(touch.face)];
+      postures.set(lane, touch.joints);
+      outward.set(lane, plane.outward);
+      offset_m[lane] = plane.offset_m;
+    }
+  }
+  [[nodiscard]] double distance_m(const ChainLanes& chains, std::size_t lane) const {
+    return outward.of(lane).dot(chains.tip_in_block_m(lane)) - offset_m[lane];
+  }
+};
+
+/// moved_onto_plane() of a block.
+void move_block(const PreparedModel& model, TouchBlock& block) {
+  const LaneArithmetic& lanes = lane_arithmetic();
+  ChainLanes chains;
+  ArmRowLanes slopes;
+  std::array<bool, kLaneCount> arrived{};
+  for (int step = 0; step < kMoveStepsMax && std::ranges::find(arrived, false) != arrived.end(); ++step) {
+    lanes.turn(model.model.gains, block.postures);
+    lanes.forward_chains(model, block.postures, chains);
+    lanes.distance_derivatives(model, chains, block.outward, slopes);
+    for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
+      if (arrived[lane]) continue;
+      const double distance = block.distance_m(chains, lane);
+      JointVector slope;
+      for (int joint = 0; joint < kJointCount; ++joint) {
+        const auto index = static_cast<std::size_t>(joint);
+        const auto theta = static_cast<std::size_t>(theta_index(joint));
+        const bool turns = model.model.joint_types[index] == JointType::kRevolute;
+        slope[joint] = model.model.gains[index] * slopes[turns ? theta : theta + 1].of[lane];
+      }
+      const double squared = slope.squaredNorm();
+      arrived[lane] = std::abs(distance) < kLastStepMetres || squared < kSlopeSquaredMin;
+      if (std::abs(distance) < kOnPlaneMetres || squared < kSlopeSquaredMin) continue;
+      for (std::size_t joint = 0; joint < kJointCount; ++joint)
+        block.postures.joints[joint].of[lane] -=
+            slope[static_cast<Eigen::Index>(joint)] * (distance / squared);
+    }
+  }
+}
 
 }  // namespace
 
@@ -16,31 +71,59 @@ Observation observe(const KinematicModel& model, std::span<const Plane> contact_
                     std::span<const Touch> touches, Formulation formulation) {
   const auto count = static_cast<Eigen::Index>(touches.size());
   const PreparedModel prepared = prepare(model);
+  const LaneArithmetic& lanes = lane_arithmetic();
   Observation observation{
       Eigen::Matrix<double, Eigen::Dynamic, kErrorParameterCount>(count, kErrorParameterCount),
       Eigen::VectorXd(count)};
-  for (Eigen::Index row = 0; row < count; ++row) {
-    const Touch& touch = touches[static_cast<std::size_t>(row)];
-    const Plane& plane = contact_planes[static_cast<std::size_t>(touch.face)];
-    const Chain chain = forward_chain(prepared, touch.joints);
-    const double factor = row_factor(plane, formulation);
-    observation.matrix.row(row) =
-        factor * distance_derivatives(prepared, chain, plane.outward).head<kErrorParameterCount>();
-    observation.output_error[row] = -factor * signed_distance_m(plane, chain.tip_in_block_m());
-  }
+  for_each_block(touches.size(), [&](std::size_t first, std::size_t block_count) {
+    const std::span<const Touch> here = touches.subspan(first, block_count);
+    TouchBlock block(contact_planes, here);
+    ChainLanes chains;
+    ArmRowLanes slopes;
+    lanes.turn(prepared.model.gains, block.postures);
+    lanes.forward_chains(prepared, block.postures, chains);
+    lanes.distance_derivatives(prepared, chains, block.outward, slopes);
+    for (std::size_t lane = 0; lane < block_count; ++lane) {
+      const auto row = static_cast<Eigen::Index>(first + lane);
+      const double factor =
+          row_factor(contact_planes[static_cast<std::size_t>(here[lane].face)], formulation);
+      for (int column = 0; column < kErrorParameterCount; ++column)
+        observation.matrix(row, column) = factor * slopes[static_cast<std::size_t>(column)].of[lane];
+      observation.output_error[row] = -factor * block.distance_m(chains, lane);
+    }
+  });
   return observation;
 }
 
 Eigen::VectorXd signed_distances_m(const KinematicModel& model, std::span<const Plane> contact_planes,
                                    std::span<const Touch> touches) {
   const PreparedModel prepared = prepare(model);
+  const LaneArithmetic& lanes = lane_arithmetic();
   Eigen::VectorXd distances(static_cast<Eigen::Index>(touches.size()));
-  for (Eigen::Index row = 0; row < distances.size(); ++row) {
-    const Touch& touch = touches[static_cast<std::size_t>(row)];
-    distances[row] = signed_distance_m(contact_planes[static_cast<std::size_t>(touch.face)],
-                                       forward_chain(prepared, touch.joints).tip_in_block_m());
-  }
+  for_each_block(touches.size(), [&](std::size_t first, std::size_t count) {
+    TouchBlock block(contact_planes, touches.subspan(first, count));
+    ChainLanes chains;
+    lanes.turn(prepared.model.gains, block.postures);
+    lanes.forward_chains(prepared, block.postures, chains);
+    for (std::size_t lane = 0; lane < count; ++lane)
+      distances[static_cast<Eigen::Index>(first + lane)] = block.distance_m(chains, lane);
+  });
   return distances;
+}
+
+std::vector<Touch> moved_onto_planes(const KinematicModel& model, std::span<const Plane> contact_planes,
+                                     std::vector<Touch> touches) {
+  const PreparedModel prepared = prepare(model);
+  for_each_block(touches.size(), [&](std::size_t first, std::size_t count) {
+    TouchBlock block(contact_planes, std::span(touches).subspan(first, count));
+    move_block(prepared, block);
+    for (std::size_t lane = 0; lane < count; ++lane) {
+      for (std::size_t joint = 0; joint < kJointCount; ++joint)
+        touches[first + lane].joints[static_cast<Eigen::Index>(joint)] =
+            block.postures.joints[joint].of[lane];
+    }
+  });
+  return touches;
 }
 
 Touch moved_onto_plane(const PreparedModel& model, const Plane& contact_plane, const Touch& touch) {
@@ -52,7 +135,7 @@ Touch moved_onto_plane(const PreparedModel& model, const Plane& contact_plane, c
     const Eigen::Matrix<double, 1, kJointCount> slope =
         contact_plane.outward.transpose() * tip_jacobian(model.model, chain);
     const double squared = slope.squaredNorm();
-    if (squared < 1e-12) break;  // no joint moves the tip along the normal here
+    if (squared < kSlopeSquaredMin) break;
     moved.joints -= slope.transpose() * (distance / squared);
     if (std::abs(distance) < kLastStepMetres) break;
   }

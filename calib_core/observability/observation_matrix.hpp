@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "calib_core/geometry/plane.hpp"
 #include "calib_core/geometry/touch.hpp"
@@ -41,5 +42,9 @@ Eigen::VectorXd signed_distances_m(const KinematicModel& model, std::span<const 
 /// look independent.
 Touch moved_onto_plane(const PreparedModel& model, const Plane& contact_plane, const Touch& touch);
 Touch moved_onto_plane(const KinematicModel& model, const Plane& contact_plane, const Touch& touch);
+
+/// Each of the touches moved onto the plane of its face.
+std::vector<Touch> moved_onto_planes(const KinematicModel& model, std::span<const Plane> contact_planes,
+                                     std::vector<Touch> touches);
 
 }  // namespace calib

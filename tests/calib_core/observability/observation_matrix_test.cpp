@@ -17,6 +17,26 @@ std::vector<Touch> some_touches() {
   return touches;
 }
 
+TEST(Observation, TouchesMovedTogetherAreWhereTheyAreMovedToOneByOne) {
+  const KinematicModel model = paper::nominal();
+  const std::vector<Plane> planes = paper::planes();
+  for (const std::size_t count : {1U, 6U, 20U}) {
+    auto touches = some_touches();
+    touches.resize(count);
+    for (Touch& touch : touches) {
+      touch = moved_onto_plane(model, planes[static_cast<std::size_t>(touch.face)], touch);
+      touch.joints += JointVector::Constant(0.01);  // some ten millimetres off
+    }
+    const std::vector<Touch> moved = moved_onto_planes(model, planes, touches);
+    ASSERT_EQ(moved.size(), count);
+    EXPECT_LT(signed_distances_m(model, planes, moved).cwiseAbs().maxCoeff(), 1e-14);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Plane& plane = planes[static_cast<std::size_t>(touches[i].face)];
+      EXPECT_LT((moved[i].joints - moved_onto_plane(model, plane, touches[i]).joints).norm(), 1e-13) << i;
+    }
+  }
+}
+
 TEST(Observation, PlaneCoefficientsAreEquationSixOfThePaper) {
   // Table II's coefficients, typed from the paper's geometry: a . x + 1 = 0.
   const std::vector<Eigen::Vector3d> coefficients{
