@@ -4,7 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "calib_core/numerics/decompositions.hpp"
+#include "calib_core/numerics/column_loops.hpp"
+#include "calib_core/numerics/wide_registers.hpp"
 
 namespace calib {
 namespace {
@@ -30,37 +31,53 @@ std::vector<int> column_order(const IdentifiabilityOptions& options) {
   return order;
 }
 
+/// Reflectors are the columns of a matrix: number i acts on the rows from i on.
+[[gnu::always_inline]] inline void reflect(const Eigen::MatrixXd& reflectors, Eigen::Index count,
+                                           double* column) {
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double* v = reflectors.data() + i * reflectors.rows() + i;
+    const Eigen::Index rows = reflectors.rows() - i;
+    column_loops::add_multiple(column + i, v, -2.0 * column_loops::dot_product(v, column + i, rows), rows);
+  }
+}
+
+[[gnu::flatten]] void reflect_narrow(const Eigen::MatrixXd& reflectors, Eigen::Index count, double* column) {
+  reflect(reflectors, count, column);
+}
+
+CALIB_FOR_WIDE_REGISTERS void reflect_wide(const Eigen::MatrixXd& reflectors, Eigen::Index count,
+                                           double* column) {
+  reflect(reflectors, count, column);
+}
+
 /// Householder reflectors of the kept columns, in the order they were kept.
 class Reflectors {
  public:
-  explicit Reflectors(Eigen::Index rows) : rows_(rows) {}
+  Reflectors(Eigen::Index rows, Eigen::Index count_max) : vectors_(rows, std::min(rows, count_max)) {}
 
-  [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(vectors_.size()); }
+  [[nodiscard]] Eigen::Index count() const { return count_; }
 
   void apply_to(Eigen::VectorXd& column) const {
-    for (Eigen::Index i = 0; i < count(); ++i) {
-      const Eigen::VectorXd& v = vectors_[static_cast<std::size_t>(i)];
-      auto tail = column.tail(rows_ - i);
-      tail -= 2.0 * v.dot(tail) * v;
-    }
+    (has_wide_registers() ? reflect_wide : reflect_narrow)(vectors_, count_, column.data());
   }
 
   /// Keeps a column that apply_to() has transformed; its tail is reflected onto one entry.
   void keep(Eigen::VectorXd& column) {
-    auto tail = column.tail(rows_ - count());
+    auto tail = column.tail(vectors_.rows() - count_);
     const double norm = tail.norm();
-    Eigen::VectorXd v = tail;
+    auto v = vectors_.col(count_).tail(tail.size());
+    v = tail;
     const double head = v[0] > 0.0 ? -norm : norm;
     v[0] -= head;
     v.normalize();
     tail.setZero();
     tail[0] = head;
-    vectors_.push_back(std::move(v));
+    ++count_;
   }
 
  private:
-  Eigen::Index rows_;
-  std::vector<Eigen::VectorXd> vectors_;
+  Eigen::MatrixXd vectors_;
+  Eigen::Index count_ = 0;
 };
 
 /// The factors f of a dependent column as a combination of the kept ones: R f = top of the reflected column.
@@ -81,16 +98,6 @@ std::vector<std::pair<int, double>> combination(const std::vector<Eigen::VectorX
   return result;
 }
 
-/// The R of [leading, W]. Its columns have the linear dependences of W, with fewer rows to decompose.
-Eigen::MatrixXd with_fewer_rows(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
-                                const Eigen::MatrixXd& leading) {
-  Eigen::MatrixXd all(observation_matrix.rows(), leading.cols() + observation_matrix.cols());
-  if (leading.cols() > 0) all.leftCols(leading.cols()) = leading;
-  all.rightCols(observation_matrix.cols()) = observation_matrix;
-  if (all.rows() <= all.cols()) return all;
-  return upper_triangle(all);
-}
-
 }  // namespace
 
 IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& observation_matrix,
@@ -108,12 +115,11 @@ IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& obs
                kRoundingRelative) *
       longest;
   const double tolerance = std::max(options.qr_tolerance.value_or(0.0), rounding);
-  const Eigen::MatrixXd columns = with_fewer_rows(observation_matrix, leading);
-  const Eigen::Index rows = columns.rows();
+  const Eigen::Index rows = observation_matrix.rows();
 
-  Reflectors reflectors(rows);
+  Reflectors reflectors(rows, leading.cols() + observation_matrix.cols());
   for (Eigen::Index i = 0; i < leading.cols() && reflectors.count() < rows; ++i) {
-    Eigen::VectorXd reflected = columns.col(i);
+    Eigen::VectorXd reflected = leading.col(i);
     reflectors.apply_to(reflected);
     if (reflected.tail(rows - reflectors.count()).norm() > rounding) reflectors.keep(reflected);
   }
@@ -122,7 +128,7 @@ IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& obs
   std::vector<Eigen::VectorXd> kept_columns;
   for (const int column : column_order(options)) {
     CandidateStatus& candidate = set.candidates[static_cast<std::size_t>(column)];
-    Eigen::VectorXd reflected = columns.col(leading.cols() + column);
+    Eigen::VectorXd reflected = observation_matrix.col(column);
     if (reflected.norm() <= rounding) continue;  // stays kNoEffect
     reflectors.apply_to(reflected);
     const double diagonal = reflected.tail(rows - reflectors.count()).norm();  // |R_ii|
