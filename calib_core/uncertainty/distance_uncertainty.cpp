@@ -9,7 +9,7 @@ double mean_distance_std_m(const IdentificationProblem& problem, const LeastSqua
                            const Estimate& estimate, const std::vector<std::size_t>& touches) {
   // Metres, whatever the formulation of the fit.
   LeastSquares distances(problem, {.formulation = Formulation::kSignedDistance}, whole.columns, touches);
-  distances.linearise(estimate);
+  distances.set_rows(estimate);
   const Eigen::VectorXd of_columns = distances.noise_unit_m() * distances.rows().colwise().mean().transpose();
   Eigen::VectorXd mean_row = Eigen::VectorXd::Zero(budget.left_out.rows());
   for (Eigen::Index k = 0; k < of_columns.size(); ++k) mean_row[whole.position_of(k)] = of_columns[k];

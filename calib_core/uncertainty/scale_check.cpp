@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/condition_number.hpp"
 #include "calib_core/numerics/decompositions.hpp"
+#include "calib_core/numerics/gram_matrix.hpp"
 #include "calib_core/numerics/scaled_cholesky.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
 
@@ -45,29 +47,34 @@ ArmVector own_lengths(const KinematicModel& nominal, const std::vector<int>& col
   return own;
 }
 
-/// The maximum a posteriori problem in all errors, with what is beside rigid kinematics, and the artefact;
-/// the block pose is free.
+/// The maximum a posteriori problem in all errors that are known of, with what is beside rigid kinematics,
+/// and the artefact; the block pose is free. What is not known of is as in the model.
 class ScaleTest {
  public:
   ScaleTest(const IdentificationProblem& problem, const FullLinearisation& whole, double noise_ratio,
             const Estimate& estimate)
-      : information_(whole.touch_information / (noise_ratio * noise_ratio)), precision_(information_.rows()) {
+      : columns_(whole.columns) {
+    std::vector<Eigen::Index> positions(columns_.size() + problem.artefact.parameters.size());
+    for (std::size_t k = 0; k < positions.size(); ++k)
+      positions[k] = whole.position_of(static_cast<Eigen::Index>(k));
+    const double square = noise_ratio * noise_ratio;
+    information_ = whole.touch_information(positions, positions) / square;
     Eigen::VectorXd values(information_.rows());
-    values << estimate.arm, estimate.artefact;
-    targets_ = information_ * values + whole.touch_gradient / (noise_ratio * noise_ratio);
-    set_precision(problem);
+    values << estimate.arm(columns_), estimate.artefact;
+    targets_ = information_ * values + whole.touch_gradient(positions) / square;
+    right_ = targets_;
     Eigen::MatrixXd posterior = information_;
-    posterior.diagonal() += precision_;
+    posterior.diagonal() += precision(problem);
     for (const ArtefactEquation& equation : problem.artefact.equations) {
       const double of_equation = 1.0 / (equation.std_m * equation.std_m);
       for (const auto& [i, weight_i] : equation.weights) {
-        targets_with_equations(i) += of_equation * weight_i * equation.value_m;
-        for (const auto& [j, weight_j] : equation.weights) {
-          posterior(kArmParameterCount + i, kArmParameterCount + j) += of_equation * weight_i * weight_j;
-        }
+        right_[artefact_position(i)] += of_equation * weight_i * equation.value_m;
+        for (const auto& [j, weight_j] : equation.weights)
+          posterior(artefact_position(i), artefact_position(j)) += of_equation * weight_i * weight_j;
       }
     }
     cholesky_.emplace(posterior);
+    if (solvable()) solution_ = solve(right_);
   }
 
   [[nodiscard]] bool solvable() const { return cholesky_->is_positive_definite(); }
@@ -77,7 +84,7 @@ class ScaleTest {
   /// The change along `lengths` and its standard deviation, next to errors within the priors.
   [[nodiscard]] std::pair<double, double> stretch(const ArmVector& lengths) const {
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(information_.rows());
-    direction.head(kArmParameterCount) = lengths;
+    direction.head(std::ssize(columns_)) = lengths(columns_);
     const Eigen::VectorXd column = information_ * direction;
     const Eigen::VectorXd explained = solve(column);
     const double information = direction.dot(column) - explained.dot(column);
@@ -90,37 +97,40 @@ class ScaleTest {
   [[nodiscard]] std::optional<double> correction(const IdentificationProblem& problem, std::size_t k) const {
     const auto& std = problem.artefact.parameters[k].std;
     if (!std) return std::nullopt;
-    const Eigen::Index index = kArmParameterCount + static_cast<Eigen::Index>(k);
+    const Eigen::Index index = artefact_position(static_cast<int>(k));
     const double variance = solve(Eigen::VectorXd::Unit(information_.rows(), index))[index];
     const double explained = *std * *std - variance;
     if (explained < kInformedShareMin * *std * *std) return std::nullopt;
-    return solve(right_)[index] / std::sqrt(explained);
+    return solution_[index] / std::sqrt(explained);
   }
 
  private:
-  double& targets_with_equations(int artefact) { return right_[kArmParameterCount + artefact]; }
-
-  void set_precision(const IdentificationProblem& problem) {
-    right_ = targets_;
-    for (int i = 0; i < kArmParameterCount; ++i) {
-      std::optional<double> std;
-      if (i >= kErrorParameterCount) {
-        // Estimated or not, it is within the maker's figures; without any it is as in the model.
-        std =
-            problem.nongeometric_std[static_cast<std::size_t>(i - kErrorParameterCount)].value_or(kExactStd);
-      } else if (error_parameters()[static_cast<std::size_t>(i)].group() != ParameterGroup::kBlockPose) {
-        std = problem.tolerances[static_cast<std::size_t>(i)];
-      }
-      precision_[i] = 1.0 / std::pow(std::max(std.value_or(kFreeStd), kExactStd), 2);
-    }
-    for (std::size_t k = 0; k < problem.artefact.parameters.size(); ++k) {
-      const double std = problem.artefact.parameters[k].std.value_or(kFreeStd);
-      precision_[kArmParameterCount + static_cast<Eigen::Index>(k)] = 1.0 / (std * std);
-    }
+  [[nodiscard]] Eigen::Index artefact_position(int parameter) const {
+    return std::ssize(columns_) + static_cast<Eigen::Index>(parameter);
   }
 
+  [[nodiscard]] Eigen::VectorXd precision(const IdentificationProblem& problem) const {
+    Eigen::VectorXd precision(information_.rows());
+    Eigen::Index row = 0;
+    for (const int column : columns_) {
+      std::optional<double> std;
+      if (column >= kErrorParameterCount) {
+        // Estimated or not, it is within the maker's figures; without any it is as in the model.
+        std = problem.nongeometric_std[static_cast<std::size_t>(column - kErrorParameterCount)].value_or(
+            kExactStd);
+      } else if (error_parameters()[static_cast<std::size_t>(column)].group() != ParameterGroup::kBlockPose) {
+        std = problem.tolerances[static_cast<std::size_t>(column)];
+      }
+      precision[row++] = 1.0 / std::pow(std::max(std.value_or(kFreeStd), kExactStd), 2);
+    }
+    for (const ArtefactParameter& parameter : problem.artefact.parameters)
+      precision[row++] = 1.0 / std::pow(parameter.std.value_or(kFreeStd), 2);
+    return precision;
+  }
+
+  const std::vector<int>& columns_;  // of the arm; the artefact's parameters follow them
   Eigen::MatrixXd information_;
-  Eigen::VectorXd precision_, targets_, right_;
+  Eigen::VectorXd targets_, right_, solution_;  // the last two with the certified lengths
   std::optional<ScaledCholesky> cholesky_;
 };
 
@@ -226,10 +236,14 @@ std::string figure(double value, int digits) {
 
 /// The error of ball radius minus pre-travel that would cause this scale error, metres.
 double ball_error_for(const ArmVector& own, const LeastSquares& fit, double stretch) {
-  const Eigen::Index rows = fit.rows().rows();
   const Eigen::MatrixXd arm_rows = fit.rows().leftCols(fit.arm_count());
-  const Eigen::VectorXd all_one = Eigen::VectorXd::Constant(rows, 1.0 / fit.noise_unit_m());
-  const Eigen::VectorXd moved = least_squares_solution(arm_rows, all_one);
+  const Eigen::VectorXd all_one = Eigen::VectorXd::Constant(arm_rows.rows(), 1.0 / fit.noise_unit_m());
+  Eigen::MatrixXd information;
+  gram_matrix(arm_rows, information);
+  // The rows determine these columns, except those that have a prior.
+  const Eigen::VectorXd moved = InformationConditions().of(information)
+                                    ? ScaledCholesky(information).solve(arm_rows.transpose() * all_one)
+                                    : least_squares_solution(arm_rows, all_one);
   double along = 0.0;
   for (std::size_t i = 0; i < fit.arm_columns().size(); ++i) {
     along += own[fit.arm_columns()[i]] * moved[static_cast<Eigen::Index>(i)];

@@ -32,7 +32,7 @@ UncertaintyBudget in_arm_frame(const UncertaintyBudget& budget) {
   result.unknown_directions = budget.unknown_directions;
   for (int i = 0; i < kArmParameterCount; ++i) {
     if (!is_place_error(i)) continue;
-    for (ArmMatrix* part : {&result.of_noise, &result.identified, &result.held, &result.unseen}) {
+    for (ArmCovariance* part : {&result.of_noise, &result.identified, &result.held, &result.unseen}) {
       part->row(i).setZero();
       part->col(i).setZero();
     }

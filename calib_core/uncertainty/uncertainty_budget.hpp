@@ -9,10 +9,14 @@
 
 namespace calib {
 
+/// A matrix of as many rows and columns as ArmMatrix that is cheap to move: a result holds many.
+using ArmCovariance = Eigen::MatrixXd;
+inline ArmCovariance no_covariance() { return ArmCovariance::Zero(kArmParameterCount, kArmParameterCount); }
+
 /// One source of uncertainty and its contribution to the covariance of the errors.
 struct UncertaintySource {
   std::string name;  // "touch_noise", "block_size", "squareness", "stylus_radius", ...
-  ArmMatrix covariance = ArmMatrix::Zero();
+  ArmCovariance covariance = no_covariance();
 };
 
 struct Correlation {
@@ -27,13 +31,13 @@ struct Correlation {
 /// estimated: `held`. Grouped parameters and those without effect are also unknown within their tolerances:
 /// `unseen`. `of_posture` are errors of the joints that change from posture to posture, and the drift.
 struct UncertaintyBudget {
-  double noise_m = 0.0;                    // of a touch, measured; the declared one is a prior for it
-  double degrees_of_freedom = 0.0;         // of that noise
-  ArmMatrix of_noise = ArmMatrix::Zero();  // the share of `identified` that the noise of the touches has
-  ArmMatrix identified = ArmMatrix::Zero();
-  ArmMatrix held = ArmMatrix::Zero();
-  ArmMatrix unseen = ArmMatrix::Zero();
-  ArmMatrix of_posture = ArmMatrix::Zero();
+  double noise_m = 0.0;                      // of a touch, measured; the declared one is a prior for it
+  double degrees_of_freedom = 0.0;           // of that noise
+  ArmCovariance of_noise = no_covariance();  // the share of `identified` that the noise of the touches has
+  ArmCovariance identified = no_covariance();
+  ArmCovariance held = no_covariance();
+  ArmCovariance unseen = no_covariance();
+  ArmCovariance of_posture = no_covariance();
   /// Of the maker's variance of harmonics that were left out: what the residuals leave of it.
   double harmonic_share = 0.0;
   /// Of the maker's variance of what changes from posture to posture: what the touches say of it.

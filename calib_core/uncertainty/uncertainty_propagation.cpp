@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <string_view>
 
 #include "calib_core/uncertainty/left_out_effects.hpp"
 
@@ -66,11 +67,10 @@ const char* source_name(int arm_column) {
 /// Sums covariances by the name of their source.
 class SourceSum {
  public:
-  explicit SourceSum(const LeastSquares& fit, const Eigen::MatrixXd& covariance)
-      : columns_(fit.arm_columns()), covariance_(covariance) {}
+  explicit SourceSum(const LeastSquares& fit) : columns_(fit.arm_columns()) {}
 
   void add(const std::string& name, const Eigen::MatrixXd& of_unknowns) {
-    ArmMatrix& covariance = source(name).covariance;
+    ArmCovariance& covariance = source(name).covariance;
     for (std::size_t j = 0; j < columns_.size(); ++j) {
       for (std::size_t i = 0; i < columns_.size(); ++i) {
         covariance(columns_[i], columns_[j]) +=
@@ -78,43 +78,62 @@ class SourceSum {
       }
     }
   }
-  /// Adds the contribution of a prior equation `direction . unknowns = value` of this precision.
-  void add_equation(const std::string& name, const Eigen::VectorXd& direction, double precision) {
-    const Eigen::VectorXd moved = covariance_ * direction * std::sqrt(precision);
-    ArmVector arm = ArmVector::Zero();
-    for (std::size_t i = 0; i < columns_.size(); ++i) arm[columns_[i]] = moved[static_cast<Eigen::Index>(i)];
-    source(name).covariance.noalias() += arm * arm.transpose();
-  }
   UncertaintySource& source(const std::string& name) {
     const auto found = std::ranges::find_if(sources_, [&](const auto& s) { return s.name == name; });
     if (found != sources_.end()) return *found;
-    return sources_.emplace_back(UncertaintySource{name, ArmMatrix::Zero()});
+    return sources_.emplace_back(UncertaintySource{name, no_covariance()});
   }
   [[nodiscard]] const std::vector<UncertaintySource>& sources() const { return sources_; }
   std::vector<UncertaintySource> take() { return std::move(sources_); }
 
  private:
   const std::vector<int>& columns_;
-  const Eigen::MatrixXd& covariance_;
   std::vector<UncertaintySource> sources_;
 };
 
+/// The contributions of prior equations `direction . unknowns = value` to the covariance of the unknowns, by
+/// source.
+class PriorSum {
+ public:
+  explicit PriorSum(const Eigen::MatrixXd& covariance) : covariance_(covariance) {}
+
+  void add(const char* name, const Eigen::VectorXd& moved_by_one, double precision) {
+    auto found = std::ranges::find(parts_, std::string_view(name), &Part::first);
+    if (found == parts_.end())
+      found =
+          parts_.emplace(parts_.end(), name, Eigen::MatrixXd::Zero(covariance_.rows(), covariance_.cols()));
+    found->second.selfadjointView<Eigen::Lower>().rankUpdate(moved_by_one, precision);
+  }
+  void add_to(SourceSum& sum) const {
+    for (const auto& [name, lower] : parts_)
+      sum.add(std::string(name), lower.selfadjointView<Eigen::Lower>());
+  }
+
+ private:
+  using Part = std::pair<std::string_view, Eigen::MatrixXd>;
+  const Eigen::MatrixXd& covariance_;
+  std::vector<Part> parts_;
+};
+
 void add_priors(const IdentificationProblem& problem, const IdentificationOptions& options,
-                const LeastSquares& fit, SourceSum& sum) {
+                const LeastSquares& fit, const Eigen::MatrixXd& covariance, SourceSum& sum) {
   const Eigen::VectorXd precision = prior_precision(problem, fit.arm_columns(), options.prior);
   const auto& parameters = problem.artefact.parameters;
+  PriorSum priors(covariance);
   for (Eigen::Index k = 0; k < precision.size(); ++k) {
     if (precision[k] == 0.0) continue;
     const Eigen::Index artefact = k - fit.arm_count();
-    sum.add_equation(artefact < 0 ? source_name(fit.arm_columns()[static_cast<std::size_t>(k)])
-                                  : source_name(parameters[static_cast<std::size_t>(artefact)].kind),
-                     Eigen::VectorXd::Unit(precision.size(), k), precision[k]);
+    priors.add(artefact < 0 ? source_name(fit.arm_columns()[static_cast<std::size_t>(k)])
+                            : source_name(parameters[static_cast<std::size_t>(artefact)].kind),
+               covariance.col(k), precision[k]);
   }
   for (const ArtefactEquation& equation : problem.artefact.equations) {
-    Eigen::VectorXd direction = Eigen::VectorXd::Zero(precision.size());
-    for (const auto& [index, weight] : equation.weights) direction[fit.arm_count() + index] = weight;
-    sum.add_equation("block_size", direction, 1.0 / (equation.std_m * equation.std_m));
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(precision.size());
+    for (const auto& [index, weight] : equation.weights)
+      moved += weight * covariance.col(fit.arm_count() + index);
+    priors.add(source_name(ArtefactKind::kFaceOffset), moved, 1.0 / (equation.std_m * equation.std_m));
   }
+  priors.add_to(sum);
 }
 
 /// True minus estimated errors of arm and artefact when the touches are displaced by something that was not
@@ -161,7 +180,7 @@ double harmonic_share(const IdentificationProblem& problem, const LeastSquares& 
 }
 
 /// Adds what was not estimated: `displacement` is that by one standard deviation.
-void add_left_out(const Eigen::VectorXd& displacement, ArmMatrix& covariance, UncertaintyBudget& result) {
+void add_left_out(const Eigen::VectorXd& displacement, ArmCovariance& covariance, UncertaintyBudget& result) {
   const ArmVector of_arm = displacement.head<kArmParameterCount>();
   covariance.noalias() += of_arm * of_arm.transpose();
   result.left_out.conservativeResize(displacement.size(), result.left_out.cols() + 1);
@@ -198,7 +217,7 @@ void add_lag(const IdentificationProblem& problem, const FullLinearisation& whol
     // The recorded joints are ahead of the true ones: the model sees the touches displaced, not the arm.
     result.lagged.col(joint) = -problem.gear_lag_std_rad[joint] * bias(whole, whole.lag_gradient.col(joint));
     const ArmVector of_arm = result.lagged.col(joint).head<kArmParameterCount>();
-    const ArmMatrix covariance = of_arm * of_arm.transpose();
+    const ArmCovariance covariance = of_arm * of_arm.transpose();
     sum.source("backlash").covariance += covariance;
     result.held += covariance;
   }
@@ -218,7 +237,7 @@ void add_gears(const IdentificationProblem& problem, SourceSum& sum, Uncertainty
 /// stands on the block's base. No touch says in which direction, so that it is the same in each.
 void add_drift(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
   if (problem.drift_m == 0.0) return;
-  ArmMatrix& covariance = sum.source("drift").covariance;
+  ArmCovariance& covariance = sum.source("drift").covariance;
   for (const char* name : {"r0", "d1", "r1"}) {
     const int length = *error_parameter_index(name);
     covariance(length, length) = std::pow(problem.drift_m / 2.0, 2);
@@ -231,7 +250,7 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
                 const LeastSquares& fit, const FullLinearisation& whole, SourceSum& sum,
                 UncertaintyBudget& result) {
   std::vector<Eigen::VectorXd> unknown;
-  ArmMatrix held = ArmMatrix::Zero();
+  ArmCovariance held = no_covariance();
   for (int column = 0; column < kErrorParameterCount; ++column) {
     if (is_estimated(fit, column)) continue;
     const Eigen::VectorXd direction = bias_direction(whole, column);
@@ -253,7 +272,7 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
   sum.source("unseen").covariance = result.unseen;
 }
 
-std::vector<Correlation> strongest(const ArmMatrix& covariance, const std::vector<int>& columns) {
+std::vector<Correlation> strongest(const ArmCovariance& covariance, const std::vector<int>& columns) {
   std::vector<Correlation> all;
   for (std::size_t j = 0; j < columns.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) {
@@ -340,9 +359,9 @@ UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
   const Eigen::MatrixXd& covariance = whole.estimated_covariance;
   const double ratio = result.noise_m / fit.noise_unit_m();
   const Eigen::MatrixXd of_noise = ratio * ratio * (covariance * fit.gradient_covariance() * covariance);
-  SourceSum sum(fit, covariance);
+  SourceSum sum(fit);
   sum.add("touch_noise", of_noise);
-  add_priors(problem, options, fit, sum);
+  add_priors(problem, options, fit, covariance, sum);
   result.of_noise = sum.sources().front().covariance;
   for (const UncertaintySource& source : sum.sources()) result.identified += source.covariance;
   result.left_out.resize(whole.touch_information.rows(), 0);

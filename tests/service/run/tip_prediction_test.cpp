@@ -124,7 +124,7 @@ TEST_F(TipPredictionTest, InTheArmsOwnFrameTheBlocksPlaceDoesNotCount) {
   calib::IdentificationResult result = calib::identify(problem_, recipe_.identification);
   const TipRegions regions(edf());
   const auto only = [&](bool is_place) {
-    calib::ArmMatrix& identified = result.uncertainty->identified;
+    calib::ArmCovariance& identified = result.uncertainty->identified;
     identified.setZero();
     result.uncertainty->held.setZero();
     result.uncertainty->unseen.setZero();
