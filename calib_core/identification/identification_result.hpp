@@ -41,6 +41,7 @@ struct IdentificationResult {
   std::vector<int> nongeometric;
   std::string model_reason;         // why these, in a sentence; empty where there was no choice
   ResidualSum residual_sum;         // of the fitted touches, when converged
+  double gear_variance_m2 = 0.0;    // of a fitted touch by the maker's figures of the gears
   double weight_noise_m = 0.0;      // the noise that weighed the touches against priors; 0 is unknown
   KinematicModel calibrated;        // nominal with `errors`
   Eigen::VectorXd artefact_errors;  // one per artefact parameter, SI units; empty unless converged

@@ -11,6 +11,7 @@
 #include "calib_core/estimation/outlier_rejection.hpp"
 #include "calib_core/identification/face_distances.hpp"
 #include "calib_core/identification/model_selection.hpp"
+#include "calib_core/identification/result_warnings.hpp"
 #include "calib_core/numerics/condition_number.hpp"
 #include "calib_core/uncertainty/distance_uncertainty.hpp"
 #include "calib_core/uncertainty/residual_evidence.hpp"
@@ -18,9 +19,6 @@
 
 namespace calib {
 namespace {
-
-/// The fit is repeated when the measured noise differs from the declared one by more than this factor.
-constexpr double kReweighRatio = 1.1;
 
 /// How many parameters the touches determine, however weakly: several may share one weak direction.
 int count_with_weak(const IdentificationProblem& problem, IdentificationOptions options,
@@ -51,62 +49,51 @@ void list_rejected(const IdentificationProblem& problem, const LeastSquares& fit
   std::ranges::sort(result.rejected, {}, &RejectedTouch::touch);
 }
 
-void warn_of_weak(IdentificationResult& result) {
-  std::string names;
-  for (int i = 0; i < kErrorParameterCount; ++i) {
-    const auto& candidate = result.identifiable.candidates[static_cast<std::size_t>(i)];
-    if (candidate.status != ParameterStatus::kWeak) continue;
-    names += (names.empty() ? "" : ", ") + error_parameters()[static_cast<std::size_t>(i)].name();
+/// The identified parameter with the largest standard deviation relative to weak_std(), when it exceeds that.
+/// The column choice cannot find it: later columns increase the uncertainty of earlier ones.
+std::optional<int> weakest(const IdentificationResult& result) {
+  std::optional<int> weakest;
+  if (!result.uncertainty) return weakest;
+  double most = 1.0;
+  for (const int column : result.identifiable.columns) {
+    const double limit = weak_std(error_parameters()[static_cast<std::size_t>(column)]);
+    const double share = std::sqrt(result.uncertainty->identified(column, column)) / limit;
+    if (share <= most) continue;
+    most = share;
+    weakest = column;
   }
-  if (names.empty()) return;
-  result.warnings.push_back("held at nominal because these touches hardly show it: " + names +
-                            "; spread the touches over more postures and tilts");
+  return weakest;
 }
 
-/// Masses without the deviation of a compliance: the droop is neither in the model nor in an uncertainty.
-void warn_of_droop(const IdentificationProblem& problem, IdentificationResult& result) {
-  const auto has_mass = [](const PointMass& mass) { return mass.mass_kg > 0.0; };
-  if (std::ranges::none_of(problem.nominal.masses, has_mass)) return;
-  if (!estimable_compliances(problem.nongeometric_std).empty()) return;
-  result.warnings.emplace_back(
-      "the arm has masses but no standard deviation of a compliance of joints 1 to 3, so that its droop is "
-      "in no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
+bool may_hold(const IdentificationProblem& problem, const IdentificationOptions& options) {
+  return options.hold_weak && !options.prior && !problem.columns;
 }
 
-void warn_of_drift(const IdentificationProblem& problem, IdentificationResult& result) {
-  if (problem.drift_m == 0.0) return;
-  result.warnings.push_back(
-      "the reference place moved by " + std::to_string(std::lround(1e6 * problem.drift_m)) +
-      " um while the touches were made: the arm was still warming up, or block or probe moved. The result is "
-      "of "
-      "the middle of that, and half of it is in the uncertainty; warm the arm up longer and calibrate again");
+/// Whether another solution follows this one, which is evaluated in part.
+bool is_followed(const IdentificationProblem& problem, const IdentificationOptions& options,
+                 const IdentificationResult& result) {
+  return (may_hold(problem, options) && weakest(result)) || tries_harmonics(problem, options, result) ||
+         is_reweighed(problem, options, result);
 }
 
-void warn_of_declared_noise(const IdentificationProblem& problem, IdentificationResult& result) {
-  if (!result.is_declared_noise_too_large || !result.uncertainty) return;
-  const auto micrometres = [](double metres) { return std::to_string(std::lround(1e6 * metres)) + " um"; };
-  result.warnings.push_back(
-      "the declared noise of a touch, " + micrometres(problem.touch_noise_m) +
-      ", is too large: the residuals show " + micrometres(*result.noise_estimated_m) +
-      ", which chance makes of it in less than 1 of 1,000 runs; " + micrometres(result.uncertainty->noise_m) +
-      " were used. Write \"touch_noise_mm\" in the cell's file as small as the touches are");
-}
+/// kFit: what decides between solutions: goodness of fit, measured noise, uncertainty of what was fitted.
+/// kAll: also distances, uncertainty of what was not fitted, scale check.
+enum class Extent { kFit, kAll };
 
-/// Goodness of fit, distances, uncertainty and scale check of a converged identification.
+/// Evaluates a converged identification, in part when another solution follows it in any case.
 void evaluate(const IdentificationProblem& problem, const IdentificationOptions& options,
-              double declared_noise_m, LeastSquares& fit, const Estimate& estimate,
+              double declared_noise_m, Extent extent, LeastSquares& fit, const Estimate& estimate,
               IdentificationResult& result) {
-  result.distances = face_distances(problem, result);
   result.noise_estimated_m = estimated_noise_m(fit, estimate);
   result.is_declared_noise_too_large = is_declared_too_large(problem, fit, estimate);
-  if (problem.touch_noise_m <= 0.0 && !result.noise_estimated_m) return;  // no noise to propagate
-  const FullLinearisation whole = linearise_all_parameters(problem, options, fit, estimate);
-  result.residual_sum = residual_sum(fit, whole.estimated_covariance);
-  const ExpectedNoise expected{repeat_noise(declared_noise_m, problem.pure_error),
-                               gear_variance_m2(problem, fit, whole)};
+  if (problem.touch_noise_m <= 0.0 && !result.noise_estimated_m) {  // no noise to propagate
+    result.distances = face_distances(problem, result);
+    return;
+  }
+  const Eigen::MatrixXd covariance = inverse_information(fit.information());
+  result.residual_sum = residual_sum(fit, covariance);
+  const ExpectedNoise expected{repeat_noise(declared_noise_m, problem.pure_error), result.gear_variance_m2};
   result.lack_of_fit = lack_of_fit(problem, fit, estimate, result.residual_sum, expected);
-  if (result.lack_of_fit)
-    result.lack_of_fit->droop_noncentrality = droop_noncentrality(problem, fit, whole, *result.lack_of_fit);
   const TouchNoise of_residuals = measured_noise(0.0, result.residual_sum, fit.noise_unit_m());
   const double gear_share = mean_gear_share({of_residuals, expected.repeats, expected.gear_variance_m2});
   // What repeats and gears make of a touch is known better than what was declared.
@@ -116,8 +103,14 @@ void evaluate(const IdentificationProblem& problem, const IdentificationOptions&
   const TouchNoise noise = options.measure_noise
                                ? measured_noise(prior_m, result.residual_sum, fit.noise_unit_m())
                                : TouchNoise{declared_noise_m, std::numeric_limits<double>::infinity()};
-  result.uncertainty =
-      propagate_uncertainty(problem, options, result.identifiable, fit, whole, noise, gear_share);
+  result.uncertainty = fitted_uncertainty(problem, options, fit, covariance, noise);
+  if (extent == Extent::kFit && is_followed(problem, options, result)) return;
+  result.distances = face_distances(problem, result);
+  const FullLinearisation whole = linearise_all_parameters(problem, options, fit, estimate, covariance);
+  if (result.lack_of_fit)
+    result.lack_of_fit->droop_noncentrality = droop_noncentrality(problem, fit, whole, *result.lack_of_fit);
+  result.uncertainty->gear_share = gear_share;
+  add_unfitted(problem, result.identifiable, fit, whole, *result.uncertainty);
   result.scale = check_scale(problem, options, fit, whole, *result.uncertainty, estimate);
   for (FaceDistances& distances : result.distances) {
     if (distances.role == TouchRole::kFit) continue;
@@ -179,23 +172,7 @@ void solve(const IdentificationProblem& problem, const IdentificationOptions& op
   for (const int column : fit.arm_columns()) {
     if (column >= kErrorParameterCount) result.nongeometric.push_back(column - kErrorParameterCount);
   }
-  evaluate(problem, options, declared_noise_m, fit, estimate, result);
-}
-
-/// The identified parameter with the largest standard deviation relative to weak_std(), when it exceeds that.
-/// The column choice cannot find it: later columns increase the uncertainty of earlier ones.
-std::optional<int> weakest(const IdentificationResult& result) {
-  std::optional<int> weakest;
-  if (!result.uncertainty) return weakest;
-  double most = 1.0;
-  for (const int column : result.identifiable.columns) {
-    const double limit = weak_std(error_parameters()[static_cast<std::size_t>(column)]);
-    const double share = std::sqrt(result.uncertainty->identified(column, column)) / limit;
-    if (share <= most) continue;
-    most = share;
-    weakest = column;
-  }
-  return weakest;
+  evaluate(problem, options, declared_noise_m, Extent::kFit, fit, estimate, result);
 }
 
 InputRefusal nothing_identifiable(std::size_t touch_count) {
@@ -228,13 +205,12 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
                                     const IdentificationOptions& options, double declared_noise_m,
                                     const std::vector<std::size_t>& fitted,
                                     const IdentificationResult& before) {
-  const bool may_hold = options.hold_weak && !options.prior && !problem.columns;
   IdentificationResult result = before;
   solve(problem, options, declared_noise_m, fitted, result);
   IdentificationOptions settled = options;  // the outliers are known from the first solution
   settled.robust = false;
   while (result.status == IdentificationStatus::kConverged) {
-    const auto weak = may_hold ? weakest(result) : std::nullopt;
+    const auto weak = may_hold(problem, options) ? weakest(result) : std::nullopt;
     if (!weak) break;
     IdentificationResult next = before_another(before, result);
     std::erase(next.identifiable.columns, *weak);
@@ -247,17 +223,6 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
     result = std::move(next);
   }
   return result;
-}
-
-/// Harmonics are tried beside the compliance only: alone they take up the droop of an arm with even gears.
-bool tries_harmonics(const IdentificationProblem& problem, const IdentificationOptions& options,
-                     const IdentificationResult& without) {
-  bool is_declared = false;
-  for (int position = harmonic_position(0); is_harmonic(position); ++position)
-    is_declared = is_declared || problem.nongeometric_std[static_cast<std::size_t>(position)];
-  return options.harmonics == Harmonics::kWhenShown && options.stiffness && is_declared &&
-         without.status == IdentificationStatus::kConverged &&
-         without.fitted_touch_count >= kHarmonicTouchesMin;
 }
 
 /// solve_and_hold(), and where harmonics are to be tried the same touches with them: what the residuals ask
@@ -280,6 +245,29 @@ IdentificationResult solve_and_select(const IdentificationProblem& problem,
   return taken;
 }
 
+/// Evaluates as a whole a solution that is taken although it was followed by another.
+void complete(const IdentificationProblem& problem, const IdentificationOptions& options,
+              double declared_noise_m, const std::vector<std::size_t>& fitted, IdentificationResult& result) {
+  if (result.status != IdentificationStatus::kConverged || !result.distances.empty()) return;
+  const IdentificationOptions settled = settled_options(options, result);
+  LeastSquares fit(problem, settled, estimated_columns(problem, settled, result.identifiable),
+                   without(fitted, result.rejected));
+  const Estimate estimate{result.errors, result.artefact_errors};
+  fit.linearise(estimate);
+  if (fit.solve()) evaluate(problem, settled, declared_noise_m, Extent::kAll, fit, estimate, result);
+}
+
+/// The test stays that of the declared weights; the droop that it would find is that of what was taken.
+void keep_test(const IdentificationResult& declared, IdentificationResult& taken) {
+  const std::optional<LackOfFit> of_taken = taken.lack_of_fit;
+  taken.lack_of_fit = declared.lack_of_fit;
+  taken.is_declared_noise_too_large = declared.is_declared_noise_too_large;
+  taken.noise_estimated_m = declared.noise_estimated_m;
+  if (!taken.lack_of_fit || !of_taken || !of_taken->droop_noncentrality) return;
+  taken.lack_of_fit->droop_noncentrality =
+      *of_taken->droop_noncentrality * std::pow(of_taken->noise_m / taken.lack_of_fit->noise_m, 2);
+}
+
 /// solve_and_select(), and where the touches are better or worse than declared once more with the noise that
 /// was measured: a noise that is declared too large gives away what the touches say of block and ball.
 IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
@@ -287,16 +275,20 @@ IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
                                      const std::vector<std::size_t>& fitted,
                                      const IdentificationResult& before) {
   IdentificationResult declared = solve_and_select(problem, options, fitted, before);
-  if (!declared.uncertainty || !options.measure_noise || !has_priors(problem, options)) return declared;
-  const double ratio = declared.uncertainty->noise_m / problem.touch_noise_m;
-  if (std::max(ratio, 1.0 / ratio) < kReweighRatio) return declared;
+  if (!is_reweighed(problem, options, declared)) {
+    complete(problem, options, problem.touch_noise_m, fitted, declared);
+    return declared;
+  }
   IdentificationProblem reweighed = problem;
   reweighed.touch_noise_m = declared.uncertainty->noise_m;
   const IdentificationOptions settled = settled_options(options, declared);
   IdentificationResult measured =
       solve_and_hold(reweighed, settled, problem.touch_noise_m, without(fitted, declared.rejected),
                      before_another(before, declared));
-  if (measured.status != IdentificationStatus::kConverged) return declared;
+  if (measured.status != IdentificationStatus::kConverged) {
+    complete(problem, options, problem.touch_noise_m, fitted, declared);
+    return declared;
+  }
   if (measured.identifiable.columns.size() < declared.identifiable.columns.size()) {
     // The noise was measured with a parameter that it makes too weak: once more without it.
     IdentificationOptions again = options;
@@ -304,9 +296,8 @@ IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
     return solve_and_weigh(problem, again, without(fitted, declared.rejected),
                            before_another(before, measured));
   }
-  measured.lack_of_fit = declared.lack_of_fit;  // of the weights that were declared
-  measured.is_declared_noise_too_large = declared.is_declared_noise_too_large;
-  measured.noise_estimated_m = declared.noise_estimated_m;
+  complete(reweighed, settled, problem.touch_noise_m, fitted, measured);
+  keep_test(declared, measured);
   measured.model_reason = declared.model_reason;
   return measured;
 }
@@ -388,12 +379,9 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
   const std::size_t chosen_count = result.identifiable.columns.size();
   result.singular_values =
       nominal_singular_values(problem, options, sorted.fitted, static_cast<int>(chosen_count));
+  result.gear_variance_m2 = gear_variance_m2(problem, sorted.fitted);
   result = solve_and_weigh(problem, options, sorted.fitted, result);
-  if (!options.prior) warn_of_weak(result);
-  if (result.status == IdentificationStatus::kConverged) warn_of_droop(problem, result);
-  warn_of_declared_noise(problem, result);
-  if (result.status == IdentificationStatus::kConverged) warn_of_drift(problem, result);
-  if (result.scale && !result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
+  add_warnings(problem, options, result);
   if (!problem.columns && result.identifiable.columns.size() < chosen_count) {
     result.singular_values.resize(result.identifiable.columns.size());
     result.rank_explanation = explain_rank(problem, sorted.fitted, result.identifiable, result.attainable);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "calib_core/estimation/least_squares.hpp"
 #include "calib_core/numerics/distributions.hpp"
 
 namespace calib {
@@ -28,6 +29,23 @@ ModelChoice choose_harmonics(const IdentificationResult& without, const Identifi
   if (test->p < kLargerModelP)
     return {true, "first harmonics of the joints taken: the touches ask for them" + figures.str()};
   return {false, "first harmonics of the joints left out: the touches do not ask for them" + figures.str()};
+}
+
+bool tries_harmonics(const IdentificationProblem& problem, const IdentificationOptions& options,
+                     const IdentificationResult& without) {
+  bool is_declared = false;
+  for (int position = harmonic_position(0); is_harmonic(position); ++position)
+    is_declared = is_declared || problem.nongeometric_std[static_cast<std::size_t>(position)];
+  return options.harmonics == Harmonics::kWhenShown && options.stiffness && is_declared &&
+         without.status == IdentificationStatus::kConverged &&
+         without.fitted_touch_count >= kHarmonicTouchesMin;
+}
+
+bool is_reweighed(const IdentificationProblem& problem, const IdentificationOptions& options,
+                  const IdentificationResult& declared) {
+  if (!declared.uncertainty || !options.measure_noise || !has_priors(problem, options)) return false;
+  const double ratio = declared.uncertainty->noise_m / problem.touch_noise_m;
+  return std::max(ratio, 1.0 / ratio) >= kReweighRatio;
 }
 
 IdentificationOptions settled_options(IdentificationOptions options, const IdentificationResult& result) {

@@ -10,6 +10,9 @@ namespace calib {
 /// Harmonics are tried from this many fitted touches on: with fewer they cost more than they bring.
 inline constexpr int kHarmonicTouchesMin = 60;
 
+/// A fit is repeated when the measured noise differs from the declared one by more than this factor.
+inline constexpr double kReweighRatio = 1.1;
+
 /// The larger model is taken when chance alone would reduce the residuals as much less often than this.
 inline constexpr double kLargerModelP = 0.01;
 
@@ -29,6 +32,16 @@ struct ModelChoice {
   std::string reason;
 };
 ModelChoice choose_harmonics(const IdentificationResult& without, const IdentificationResult& with);
+
+/// Whether harmonics are tried after the result without them. Beside the compliance only: alone they take up
+/// the droop of an arm with even gears.
+bool tries_harmonics(const IdentificationProblem& problem, const IdentificationOptions& options,
+                     const IdentificationResult& without);
+
+/// Whether the touches are so much better or worse than declared that they are weighed anew against the
+/// priors.
+bool is_reweighed(const IdentificationProblem& problem, const IdentificationOptions& options,
+                  const IdentificationResult& declared);
 
 /// The options that solve for the model of a converged result once more: without a search for outliers and
 /// without a choice of harmonics.

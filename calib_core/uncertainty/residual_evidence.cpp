@@ -22,14 +22,19 @@ double log_likelihood(double variance_seen, double degrees, double variance) {
 
 }  // namespace
 
-double gear_variance_m2(const IdentificationProblem& problem, const LeastSquares& fit,
-                        const FullLinearisation& whole) {
-  double sum = 0.0;  // over the touches, in units of the fit's noise
-  for (int joint = 0; joint < kJointCount; ++joint) {
-    const int column = theta_index(joint);
-    sum += std::pow(problem.gear_std_rad[joint], 2) * whole.touch_information(column, column);
+double gear_variance_m2(const IdentificationProblem& problem, const std::vector<std::size_t>& touches) {
+  if (problem.gear_std_rad.isZero(0.0) || touches.empty()) return 0.0;
+  const PreparedModel nominal = prepare(problem.nominal);
+  double sum = 0.0;
+  for (const std::size_t index : touches) {
+    const Touch& touch = problem.touches[index];
+    const Eigen::Vector3d& outward =
+        problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)].outward;
+    const JointVector per_rad =
+        tip_jacobian(problem.nominal, forward_chain(nominal, touch.joints)).transpose() * outward;
+    sum += per_rad.cwiseProduct(problem.gear_std_rad).squaredNorm();
   }
-  return sum * fit.noise_unit_m() * fit.noise_unit_m() / std::max(1, fit.kept_count());
+  return sum / static_cast<double>(touches.size());
 }
 
 std::optional<double> droop_noncentrality(const IdentificationProblem& problem, const LeastSquares& fit,

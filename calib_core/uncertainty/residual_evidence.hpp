@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "calib_core/estimation/goodness_of_fit.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
@@ -8,9 +9,9 @@
 /// What the residuals of a fit can say, and what they do say, of the arm beside the noise of the touches.
 namespace calib {
 
-/// Variance of a touch by the maker's figures of the gears, mean over the fitted touches, square metres.
-double gear_variance_m2(const IdentificationProblem& problem, const LeastSquares& fit,
-                        const FullLinearisation& whole);
+/// Variance of a touch by the maker's figures of the gears, mean over these touches of the nominal arm,
+/// square metres.
+double gear_variance_m2(const IdentificationProblem& problem, const std::vector<std::size_t>& touches);
 
 /// Of the test: by how much a droop that is not in the model moves it when the compliance of each joint is
 /// off by one standard deviation. Nothing where no compliance with a deviation was left out.

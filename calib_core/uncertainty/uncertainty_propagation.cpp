@@ -67,7 +67,8 @@ const char* source_name(int arm_column) {
 /// Sums covariances by the name of their source.
 class SourceSum {
  public:
-  explicit SourceSum(const LeastSquares& fit) : columns_(fit.arm_columns()) {}
+  SourceSum(const std::vector<int>& columns, std::vector<UncertaintySource> sources)
+      : columns_(columns), sources_(std::move(sources)) {}
 
   void add(const std::string& name, const Eigen::MatrixXd& of_unknowns) {
     ArmCovariance& covariance = source(name).covariance;
@@ -318,7 +319,8 @@ std::optional<double> std_unless_estimated(const IdentificationProblem& problem,
 
 FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
                                            const IdentificationOptions& options, LeastSquares& fit,
-                                           const Estimate& estimate) {
+                                           const Estimate& estimate,
+                                           std::optional<Eigen::MatrixXd> covariance) {
   FullLinearisation whole;
   whole.columns = all_known_columns(problem, fit);
   LeastSquares everything(fit, options, whole.columns);
@@ -343,37 +345,47 @@ FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
   for (Eigen::Index k = 0; k < estimate.artefact.size(); ++k) {
     whole.estimated.push_back(kArmParameterCount + k);
   }
-  whole.estimated_covariance = inverse_information(fit.information());
+  whole.estimated_covariance = covariance ? std::move(*covariance) : inverse_information(fit.information());
   return whole;
+}
+
+UncertaintyBudget fitted_uncertainty(const IdentificationProblem& problem,
+                                     const IdentificationOptions& options, const LeastSquares& fit,
+                                     const Eigen::MatrixXd& covariance, const TouchNoise& noise) {
+  UncertaintyBudget result;
+  result.noise_m = noise.std_m;
+  result.degrees_of_freedom = std::max(1.0, noise.degrees_of_freedom);
+  const double ratio = result.noise_m / fit.noise_unit_m();
+  SourceSum sum(fit.arm_columns(), {});
+  sum.add("touch_noise", ratio * ratio * (covariance * fit.gradient_covariance() * covariance));
+  add_priors(problem, options, fit, covariance, sum);
+  result.of_noise = sum.sources().front().covariance;
+  for (const UncertaintySource& source : sum.sources()) result.identified += source.covariance;
+  result.sources = sum.take();
+  result.artefact_std = (covariance.diagonal().tail(fit.unknown_count() - fit.arm_count())).cwiseSqrt();
+  return result;
+}
+
+void add_unfitted(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
+                  const LeastSquares& fit, const FullLinearisation& whole, UncertaintyBudget& fitted) {
+  SourceSum sum(fit.arm_columns(), std::move(fitted.sources));
+  const double ratio = fitted.noise_m / fit.noise_unit_m();
+  fitted.left_out.resize(whole.touch_information.rows(), 0);
+  add_unseen(problem, identifiable, fit, whole, sum, fitted);
+  add_nongeometric(problem, fit, whole, ratio * ratio, sum, fitted);
+  add_lag(problem, whole, sum, fitted);
+  add_gears(problem, sum, fitted);
+  add_drift(problem, sum, fitted);
+  fitted.sources = sum.take();
+  fitted.correlations = strongest(fitted.identified, fit.arm_columns());
 }
 
 UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
                                         const IdentificationOptions& options,
                                         const IdentifiableSet& identifiable, const LeastSquares& fit,
-                                        const FullLinearisation& whole, const TouchNoise& noise,
-                                        double gear_share) {
-  UncertaintyBudget result;
-  result.noise_m = noise.std_m;
-  result.degrees_of_freedom = std::max(1.0, noise.degrees_of_freedom);
-
-  const Eigen::MatrixXd& covariance = whole.estimated_covariance;
-  const double ratio = result.noise_m / fit.noise_unit_m();
-  const Eigen::MatrixXd of_noise = ratio * ratio * (covariance * fit.gradient_covariance() * covariance);
-  SourceSum sum(fit);
-  sum.add("touch_noise", of_noise);
-  add_priors(problem, options, fit, covariance, sum);
-  result.of_noise = sum.sources().front().covariance;
-  for (const UncertaintySource& source : sum.sources()) result.identified += source.covariance;
-  result.left_out.resize(whole.touch_information.rows(), 0);
-  add_unseen(problem, identifiable, fit, whole, sum, result);
-  add_nongeometric(problem, fit, whole, ratio * ratio, sum, result);
-  add_lag(problem, whole, sum, result);
-  result.gear_share = gear_share;
-  add_gears(problem, sum, result);
-  add_drift(problem, sum, result);
-  result.sources = sum.take();
-  result.artefact_std = (covariance.diagonal().tail(fit.unknown_count() - fit.arm_count())).cwiseSqrt();
-  result.correlations = strongest(result.identified, fit.arm_columns());
+                                        const FullLinearisation& whole, const TouchNoise& noise) {
+  UncertaintyBudget result = fitted_uncertainty(problem, options, fit, whole.estimated_covariance, noise);
+  add_unfitted(problem, identifiable, fit, whole, result);
   return result;
 }
 

@@ -41,17 +41,29 @@ Eigen::MatrixXd lag_displacements(const IdentificationProblem& problem, const Le
 std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
                                            double harmonic_share);
 
-/// `fit` must have been solved at `estimate`.
+/// `fit` must have been solved at `estimate`; `covariance`: the inverse of its information, computed when
+/// missing.
 FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
                                            const IdentificationOptions& options, LeastSquares& fit,
-                                           const Estimate& estimate);
+                                           const Estimate& estimate,
+                                           std::optional<Eigen::MatrixXd> covariance = {});
 
-/// Propagates through the gain of the fit: this noise of the touches, the uncertainty of everything that has
-/// a prior, and the errors that the touches do not determine. `gear_share`: mean_gear_share().
+/// The share of the budget that the fit has: this noise of the touches and the uncertainty of everything that
+/// has a prior. `covariance`: the inverse of fit.information().
+UncertaintyBudget fitted_uncertainty(const IdentificationProblem& problem,
+                                     const IdentificationOptions& options, const LeastSquares& fit,
+                                     const Eigen::MatrixXd& covariance, const TouchNoise& noise);
+
+/// Adds to fitted_uncertainty(), with the gear share that it has, the errors that the touches do not
+/// determine and what was left out.
+void add_unfitted(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
+                  const LeastSquares& fit, const FullLinearisation& whole, UncertaintyBudget& fitted);
+
+/// Both: propagates through the gain of the fit this noise of the touches, the uncertainty of everything that
+/// has a prior, and the errors that the touches do not determine.
 UncertaintyBudget propagate_uncertainty(const IdentificationProblem& problem,
                                         const IdentificationOptions& options,
                                         const IdentifiableSet& identifiable, const LeastSquares& fit,
-                                        const FullLinearisation& whole, const TouchNoise& noise,
-                                        double gear_share = 1.0);
+                                        const FullLinearisation& whole, const TouchNoise& noise);
 
 }  // namespace calib
