@@ -32,7 +32,7 @@ double sideways_pretravel_m(const cell::TrueProbe& probe, const Eigen::Vector3d&
 double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m) {
   const Eigen::Vector3d outside = (box.min_m - point_m).cwiseMax(point_m - box.max_m);
   const double deepest = outside.maxCoeff();
-  return deepest <= 0.0 ? deepest : outside.cwiseMax(0.0).norm();
+  return (deepest <= 0.0 ? deepest : outside.cwiseMax(0.0).norm()) - box.round_m;
 }
 
 double trip_distance_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool,

@@ -41,14 +41,15 @@ Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box) {
 }
 
 double segment_box_distance_m(const Segment& segment, const Box& box) {
-  return segment_box_gap_m(segment, box).norm();
+  return std::max(segment_box_gap_m(segment, box).norm() - box.round_m, 0.0);
 }
 
 bool is_apart(const Segment& segment, const Box& box, double distance_m) {
+  const double from_core_m = distance_m + box.round_m;
   const auto before = segment.from_m.cwiseMax(segment.to_m) - box.min_m;  // negative: entirely before the box
   const auto behind = segment.from_m.cwiseMin(segment.to_m) - box.max_m;
-  if (std::max(behind.maxCoeff(), -before.minCoeff()) >= distance_m) return true;
-  return segment_box_distance_m(segment, box) >= distance_m;
+  if (std::max(behind.maxCoeff(), -before.minCoeff()) >= from_core_m) return true;
+  return segment_box_gap_m(segment, box).norm() >= from_core_m;
 }
 
 double capsule_box_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, double radius_m,

@@ -15,8 +15,9 @@
 /// needs no further library.
 namespace calib {
 
-/// Collision checks of capsules and boxes. A library for general shapes would not give the distance of a
-/// capsule and a box exactly, nor the bound on motion that swept_collision.hpp needs.
+/// Collision checks of capsules and boxes, which may be rounded; a ball is one. A library for general shapes
+/// would not give the distance of a capsule and a box exactly, nor the bound on motion that
+/// swept_collision.hpp needs.
 
 /// A body of the arm or the probe: all points within radius_m of a segment that is fixed in one frame.
 struct Capsule {
@@ -58,7 +59,8 @@ inline bool are_neighbours(const Capsule& a, const Capsule& b) {
   return std::abs(a.frame - b.frame) <= kNeighbourFrames;
 }
 
-/// Vector from a box to the nearest point of a segment, zero when they intersect. Exact up to rounding.
+/// Vector from a box without its round_m to the nearest point of a segment, zero when they intersect. Exact
+/// up to rounding.
 Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box);
 
 /// Shortest distance between a segment and a box, 0 when they intersect. Exact up to rounding.

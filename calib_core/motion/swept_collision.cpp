@@ -89,8 +89,8 @@ SweptCollision::SweptCollision(const CollisionScene& scene, const KinematicModel
     const Capsule& body = scene_.bodies[i];
     const Reach from_base = reach_of(model, body, 0);
     for (std::size_t k = 0; k < scene_.obstacles.size(); ++k) {
-      pairs_.push_back(
-          {i, k, true, body.radius_m + clearance_m + body.margin_m, from_base.levers_m, from_base.origins_m});
+      pairs_.push_back({i, k, true, body.radius_m + clearance_m + body.margin_m + scene_.obstacles[k].round_m,
+                        from_base.levers_m, from_base.origins_m});
     }
     for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
       const Capsule& other = scene_.bodies[k];
@@ -103,7 +103,10 @@ SweptCollision::SweptCollision(const CollisionScene& scene, const KinematicModel
 
 Clash SweptCollision::clash(const Pair& pair, double gap_m) const {
   const Capsule& body = scene_.bodies[pair.body];
-  if (pair.is_obstacle) return {body.name, scene_.obstacles[pair.other].name, gap_m - body.radius_m};
+  if (pair.is_obstacle) {
+    const Box& obstacle = scene_.obstacles[pair.other];
+    return {body.name, obstacle.name, gap_m - body.radius_m - obstacle.round_m};
+  }
   const Capsule& other = scene_.bodies[pair.other];
   return {body.name, other.name, gap_m - body.radius_m - other.radius_m};
 }

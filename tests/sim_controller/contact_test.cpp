@@ -25,6 +25,12 @@ TEST(BoxDistance, IsEuclideanOutsideAndNegativeInside) {
   EXPECT_DOUBLE_EQ(box_distance_m(box, {1, 0, 0}), 0.0);
 }
 
+TEST(BoxDistance, OfABallIsThatFromItsSurface) {
+  const calib::Box ball{"ball", Eigen::Vector3d(1, 2, 3), Eigen::Vector3d(1, 2, 3), 0.5};
+  EXPECT_DOUBLE_EQ(box_distance_m(ball, {1, 5, 7}), 4.5);
+  EXPECT_DOUBLE_EQ(box_distance_m(ball, {1, 2, 2.75}), -0.25);
+}
+
 TEST(Contact, PutsTheTrueBallWherePlaneRadiusPretravelAndNoiseSay) {
   for (const char* name : {"edf", "demo"}) {
     const cell::Cell cell = testing::read_cell(name);

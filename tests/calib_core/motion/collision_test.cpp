@@ -50,6 +50,27 @@ TEST(Collision, SegmentToBoxIsTheLeastDistanceOfItsPoints) {
   }
 }
 
+TEST(Collision, ARoundedBoxIsNearerByItsRounding) {
+  Chance chance;
+  const Box ball{"ball", {0.1, 0.2, -0.1}, {0.1, 0.2, -0.1}, 0.15};
+  const Box box{"box", {-0.3, -0.1, -0.2}, {0.2, 0.4, 0.1}, 0.05};
+  for (int i = 0; i < 5000; ++i) {
+    const Segment segment{chance.point(), chance.point()};
+    const auto from_core_m = [&](const Box& core) {
+      return least([&](double t) {
+        return point_box_distance(segment.from_m + t * (segment.to_m - segment.from_m), core);
+      });
+    };
+    for (const Box& solid : {ball, box}) {
+      const double expected = std::max(from_core_m(solid) - solid.round_m, 0.0);
+      ASSERT_NEAR(segment_box_distance_m(segment, solid), expected, kDistanceErrorMaxMetres);
+      if (expected == 0.0) continue;
+      ASSERT_TRUE(is_apart(segment, solid, expected - kDistanceErrorMaxMetres));
+      ASSERT_FALSE(is_apart(segment, solid, expected + kDistanceErrorMaxMetres));
+    }
+  }
+}
+
 TEST(Collision, SegmentsAlongABoxAndPointsAreNoSpecialCase) {
   const Box box{"box", {0, 0, 0}, {1, 1, 1}};
   EXPECT_DOUBLE_EQ(segment_box_distance_m({{-1, 0.5, 1.25}, {2, 0.5, 1.25}}, box), 0.25);
