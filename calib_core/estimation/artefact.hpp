@@ -7,17 +7,19 @@
 #include <string>
 #include <vector>
 
+#include "calib_core/geometry/contact_surface.hpp"
 #include "calib_core/geometry/face.hpp"
-#include "calib_core/geometry/plane.hpp"
 
 namespace calib {
 
 /// How well one face is known: standard deviations, 0 is exactly known. An estimated face is known from its
-/// drawing only: its offset and tilts have no prior.
+/// drawing only: its offset and tilts have no prior, nor does the centre of a sphere; its radius keeps its
+/// own, as a ball is certified without its place.
 struct FaceUncertainty {
-  double std_offset_m = 0.0;
+  double std_offset_m = 0.0;  // of a sphere, of its radius
   double std_tilt_rad = 0.0;  // about each of the face's two edges
   bool estimated = false;
+  double std_center_m = 0.0;  // of a sphere, of each coordinate of its centre
 };
 
 /// The certified distance of two parallel faces at 20 degrees C.
@@ -42,17 +44,31 @@ struct ArtefactKnowledge {
   double thermal_expansion_per_k = 0.0;
 };
 
-enum class ArtefactKind { kFaceOffset, kFaceTilt, kStylusRadius, kPretravel, kTemperature };
+enum class ArtefactKind {
+  kFaceOffset,
+  kFaceTilt,
+  kSphereCenter,
+  kSphereRadius,
+  kStylusRadius,
+  kPretravel,
+  kTemperature
+};
 
 /// One of these quantities as a parameter of the identification; its value is the error of the quantity. It
-/// changes the signed distance of a ball centre P from face f by value * (constant[f] + per_metre[f] . P).
+/// changes the signed distance of a ball centre P from face f by value * (constant[f] + per_metre[f] . P -
+/// center[f] . n), n the normal of face f at P; only a sphere has a `center`, only a plane a `per_metre`.
 struct ArtefactParameter {
   struct Shift {
     double constant = 0.0;
     Eigen::Vector3d per_metre = Eigen::Vector3d::Zero();
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of the sphere, per unit of the parameter
+
+    [[nodiscard]] double at(const Eigen::Vector3d& point_m, const Eigen::Vector3d& normal) const {
+      return constant + per_metre.dot(point_m) - center.dot(normal);
+    }
   };
 
-  std::string name;  // "stylus_radius", "plane3_offset", "plane3_tilt_u"
+  std::string name;  // "stylus_radius", "plane3_offset", "plane3_tilt_u", "plane6_center_x", "plane6_radius"
   ArtefactKind kind = ArtefactKind::kFaceOffset;
   double nominal = 0.0;       // the given value: metres, radians or degrees C
   std::optional<double> std;  // of its error; nothing for a face that is estimated in place
@@ -67,21 +83,21 @@ struct ArtefactEquation {
 };
 
 struct Artefact {
-  std::vector<Plane> contact_planes;  // one per face, nominal: the plane of the ball centre at the trigger
-  std::vector<ArtefactParameter> parameters;  // of quantities that are not exactly known
+  std::vector<ContactSurface> contact_planes;  // one per face, nominal: of the ball centre at the trigger
+  std::vector<ArtefactParameter> parameters;   // of quantities that are not exactly known
   std::vector<ArtefactEquation> equations;
 };
 
 /// Sets `planes` to the contact planes with these errors of the artefact parameters. Allocates no memory when
 /// the capacity of `planes` suffices. The normals are not normalised again: their length is 1 to first order.
 void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& errors,
-                            std::vector<Plane>& planes);
+                            std::vector<ContactSurface>& planes);
 
 /// The contact planes at the temperature of the block, and the parameters of everything that is not exactly
 /// known, faces first.
 Artefact make_artefact(const ArtefactKnowledge& knowledge);
 
 /// An artefact with exactly known contact planes.
-Artefact exact_artefact(std::vector<Plane> contact_planes);
+Artefact exact_artefact(std::vector<ContactSurface> contact_planes);
 
 }  // namespace calib

@@ -85,8 +85,8 @@ class RegistrationFit {
       const double weight = 1.0 / problem_.touches[i].std_m;
       const auto row = static_cast<Eigen::Index>(i);
       const Eigen::Vector3d point_m = ball_m(i);
-      rows_.row(row) << weight * planes_[i].outward.transpose(),
-          weight * point_m.cross(planes_[i].outward).transpose();
+      const Eigen::Vector3d normal = normal_at(planes_[i], point_m);
+      rows_.row(row) << weight * normal.transpose(), weight * point_m.cross(normal).transpose();
       residuals_[row] = weight * signed_distance_m(planes_[i], point_m);
     }
   }
@@ -206,7 +206,7 @@ class RegistrationFit {
 
   const BlockRegistrationProblem& problem_;
   std::vector<Chain> chains_;
-  std::vector<Plane> planes_;
+  std::vector<ContactSurface> planes_;
   Eigen::Isometry3d old_from_new_ = Eigen::Isometry3d::Identity();
   Eigen::MatrixXd rows_;
   Eigen::VectorXd residuals_;

@@ -48,9 +48,10 @@ ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefa
     const std::size_t parameter = free[static_cast<std::size_t>(j)];
     for (Eigen::Index row = 0; row < touch_count; ++row) {
       const Touch& touch = touches[static_cast<std::size_t>(row)];
-      const auto& shift = artefact.parameters[parameter].shifts[static_cast<std::size_t>(touch.face)];
-      matrix.leading(row, j) =
-          shift.constant + shift.per_metre.dot(forward_kinematics(nominal, touch.joints).translation());
+      const auto face = static_cast<std::size_t>(touch.face);
+      const Eigen::Vector3d tip_m = forward_kinematics(nominal, touch.joints).translation();
+      matrix.leading(row, j) = artefact.parameters[parameter].shifts[face].at(
+          tip_m, normal_at(artefact.contact_planes[face], tip_m));
     }
     for (Eigen::Index e = 0; e < equation_count; ++e) {
       for (const auto& [index, weight] : artefact.equations[static_cast<std::size_t>(e)].weights) {

@@ -1,7 +1,9 @@
 #include "calib_core/estimation/input_check.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <sstream>
 
 #include "calib_core/geometry/face.hpp"
@@ -55,6 +57,11 @@ std::optional<InputRefusal> bad_touch(const IdentificationProblem& problem, Form
       return bad(touch_name(i) + " is on plane " + std::to_string(touch.face + 1) + ", but there are " +
                  std::to_string(planes.size()) + " planes");
     }
+    if (planes[face].is_sphere() && formulation == Formulation::kPlaneCoefficients) {
+      return bad(face_name(face) +
+                 " is a sphere, which has no plane coefficients (eq. 6); use the formulation "
+                 "signed_distance, or leave its touches out");
+    }
     if (planes[face].offset_m == 0.0 && formulation == Formulation::kPlaneCoefficients) {
       return bad(face_name(face) +
                  " goes through the origin, where eq. 6 has no form; use the formulation signed_distance");
@@ -74,17 +81,33 @@ std::optional<InputRefusal> bad_arm(const IdentificationProblem& problem) {
   return std::nullopt;
 }
 
-std::optional<InputRefusal> bad_planes(const std::vector<Plane>& planes) {
+/// How far two surfaces are apart when they are alike; nothing when they are not.
+std::optional<double> apart_m(const ContactSurface& a, const ContactSurface& b) {
+  if (a.is_sphere() != b.is_sphere()) return std::nullopt;
+  const bool alike = a.is_sphere() ? (*a.center_m - *b.center_m).norm() < kSamePlane
+                                   : (a.outward - b.outward).norm() < kSamePlane;
+  if (!alike) return std::nullopt;
+  return std::abs(a.is_sphere() ? a.radius_m() - b.radius_m() : a.offset_m - b.offset_m);
+}
+
+bool is_finite(const ContactSurface& surface) {
+  return surface.outward.allFinite() && std::isfinite(surface.offset_m) &&
+         (!surface.is_sphere() || surface.center_m->allFinite());
+}
+
+std::optional<InputRefusal> bad_planes(const std::vector<ContactSurface>& planes) {
   for (std::size_t a = 0; a < planes.size(); ++a) {
-    if (!planes[a].outward.allFinite() || !std::isfinite(planes[a].offset_m)) {
+    if (!is_finite(planes[a])) {
       return bad(face_name(a) + " is not made of finite numbers");
     }
+    if (planes[a].is_sphere() && !(planes[a].radius_m() > 0.0)) {
+      return bad(face_name(a) + " is a sphere without a radius; give its radius");
+    }
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
-      const bool same_direction = (planes[a].outward - planes[b].outward).norm() < kSamePlane;
-      const double apart = std::abs(planes[a].offset_m - planes[b].offset_m);
-      if (same_direction && apart < kSamePlane) {
+      const auto apart = apart_m(planes[a], planes[b]);
+      if (apart && *apart < kSamePlane) {
         return InputRefusal{IdentificationStatus::kCoincidingPlanes, face_name(a) + " and " + face_name(b) +
-                                                                         " coincide (" + millimetres(apart) +
+                                                                         " coincide (" + millimetres(*apart) +
                                                                          " apart); describe one flat once"};
       }
     }
@@ -128,7 +151,7 @@ std::optional<InputRefusal> bad_prior(const IdentificationProblem& problem,
 }
 
 /// The nearest other plane and its distance.
-std::pair<std::size_t, double> nearest_other(const std::vector<Plane>& planes, std::size_t own,
+std::pair<std::size_t, double> nearest_other(const std::vector<ContactSurface>& planes, std::size_t own,
                                              const Eigen::Vector3d& tip) {
   std::pair<std::size_t, double> nearest{own, std::numeric_limits<double>::infinity()};
   for (std::size_t face = 0; face < planes.size(); ++face) {
@@ -159,6 +182,30 @@ bool all_one_posture(const IdentificationProblem& problem, const std::vector<std
     const JointVector difference = problem.touches[index].joints - problem.touches[fitted[0]].joints;
     return difference.lpNorm<Eigen::Infinity>() < kSamePostureRadians;
   });
+}
+
+/// Whether the centre of this sphere is found by the touches alone.
+bool has_free_center(const Artefact& artefact, std::size_t face) {
+  return std::ranges::any_of(artefact.parameters, [&](const ArtefactParameter& parameter) {
+    return parameter.kind == ArtefactKind::kSphereCenter && !parameter.std &&
+           !parameter.shifts[face].center.isZero(0.0);
+  });
+}
+
+/// The directions from which a sphere was touched, root mean square along the axis that they show least: 0
+/// when all lie in a plane through the centre.
+double shown_least(const IdentificationProblem& problem, const PreparedModel& start, std::size_t face,
+                   const std::vector<std::size_t>& touches) {
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const std::size_t index : touches) {
+    const Eigen::Vector3d normal =
+        normal_at(problem.artefact.contact_planes[face],
+                  forward_chain(start, problem.touches[index].joints).tip_in_block_m());
+    moments += normal * normal.transpose() / static_cast<double>(touches.size());
+  }
+  const auto values =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly).eigenvalues();
+  return std::sqrt(std::max(0.0, values[0]));
 }
 
 }  // namespace
@@ -251,6 +298,33 @@ std::optional<InputRefusal> find_insufficient_data(const IdentificationProblem& 
                         "all " + std::to_string(have) + " touches are on " +
                             face_name(static_cast<std::size_t>(only - on_face.begin())) +
                             "; one plane does not fix an arm, touch the others too"};
+  }
+  return std::nullopt;
+}
+
+std::optional<InputRefusal> find_one_sided_sphere(const IdentificationProblem& problem,
+                                                  const std::vector<std::size_t>& fitted) {
+  const PreparedModel start = prepare(apply(problem.nominal, problem.start));
+  for (std::size_t face = 0; face < problem.artefact.contact_planes.size(); ++face) {
+    if (!has_free_center(problem.artefact, face)) continue;
+    std::vector<std::size_t> touches;
+    std::ranges::copy_if(fitted, std::back_inserter(touches), [&](std::size_t index) {
+      return static_cast<std::size_t>(problem.touches[index].face) == face;
+    });
+    if (touches.empty()) continue;  // find_unconstrained() names it
+    const double shown = shown_least(problem, start, face, touches);
+    if (shown >= kSphereSidesMin) continue;
+    std::ostringstream angle;
+    angle << std::lround(degrees_from_radians(std::asin(std::min(1.0, shown))));
+    return InputRefusal{
+        IdentificationStatus::kUnobservable,
+        "the " + std::to_string(touches.size()) + " touches on " + face_name(face) +
+            ", a sphere, are from one side only (" + angle.str() +
+            " degrees about their middle in one direction, " +
+            std::to_string(std::lround(degrees_from_radians(std::asin(kSphereSidesMin)))) +
+            " are needed), so that its centre cannot be told from the arm; touch it from other sides, or "
+            "give /faces/" +
+            std::to_string(face) + R"(/place "known" with std_center_mm in the block's file)"};
   }
   return std::nullopt;
 }

@@ -114,10 +114,11 @@ void LeastSquares::fill_rows(std::size_t block, const PreparedModel& model) {
   };
   ChainLanes chains;
   lane_arithmetic().forward_chains(model, postures_[block], chains);
-  VectorLanes outward;
-  for (std::size_t lane = 0; lane < kLaneCount; ++lane) outward.set(lane, planes_[face_of(lane)].outward);
+  VectorLanes normals;
+  for (std::size_t lane = 0; lane < kLaneCount; ++lane)
+    normals.set(lane, normal_at(planes_[face_of(lane)], chains.tip_in_block_m(lane)));
   ArmRowLanes slopes;
-  lane_arithmetic().distance_derivatives(model, chains, outward, slopes);
+  lane_arithmetic().distance_derivatives(model, chains, normals, slopes);
   for (std::size_t lane = 0; lane < count; ++lane) {
     const auto row = static_cast<Eigen::Index>(first + lane);
     const Eigen::Vector3d tip = chains.tip_in_block_m(lane);
@@ -128,8 +129,7 @@ void LeastSquares::fill_rows(std::size_t block, const PreparedModel& model) {
     for (const int arm_column : arm_columns_)
       rows_.all(row, column++) = weight * slopes[static_cast<std::size_t>(arm_column)].of[lane];
     for (const ArtefactParameter& parameter : problem_.artefact.parameters) {
-      const auto& shift = parameter.shifts[face_of(lane)];
-      rows_.all(row, column++) = weight * (shift.constant + shift.per_metre.dot(tip));
+      rows_.all(row, column++) = weight * parameter.shifts[face_of(lane)].at(tip, normals.of(lane));
     }
   }
 }

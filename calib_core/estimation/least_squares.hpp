@@ -110,7 +110,7 @@ class LeastSquares {
   Eigen::VectorXd weights_;             // one per row, 1/m
   Eigen::VectorXd precision_;           // of the priors
   std::vector<PostureLanes> postures_;  // of the touches; the last one fills up its block
-  std::vector<Plane> planes_;           // estimated contact planes; normals of unit length to first order
+  std::vector<ContactSurface> planes_;  // estimated; normals of planes of unit length to first order
   Rows rows_;
   NormalEquations normal_;
   Eigen::MatrixXd information_of_positions_;

@@ -16,7 +16,7 @@ struct Distances {
 };
 
 Distances distances_of(const IdentificationProblem& problem, const IdentificationResult& result) {
-  std::vector<Plane> planes;
+  std::vector<ContactSurface> planes;
   correct_contact_planes(problem.artefact, result.artefact_errors, planes);
   return {signed_distances_m(problem.nominal, problem.artefact.contact_planes, problem.touches),
           signed_distances_m(result.calibrated, planes, problem.touches)};

@@ -40,7 +40,7 @@ void list_rejected(const IdentificationProblem& problem, const LeastSquares& fit
     if (!fit.kept()[i]) result.rejected.push_back({fit.touches()[i], 0.0, RejectionReason::kOutlier});
   }
   const KinematicModel arm = apply(problem.nominal, estimate.arm);
-  std::vector<Plane> planes;
+  std::vector<ContactSurface> planes;
   correct_contact_planes(problem.artefact, estimate.artefact, planes);
   for (RejectedTouch& rejected : result.rejected) {
     const Touch& touch = problem.touches[rejected.touch];
@@ -371,7 +371,9 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
     return result;
   }
   choose(problem, options, sorted.fitted, result);
-  if (auto refusal = find_deficit(problem, options, sorted, result)) {
+  auto refusal = find_deficit(problem, options, sorted, result);
+  if (!refusal) refusal = find_one_sided_sphere(problem, sorted.fitted);
+  if (refusal) {
     refuse(result, std::move(*refusal));
     return result;
   }

@@ -61,9 +61,8 @@ Eigen::MatrixX3d derive_by_joints(const TipPostures& postures) {
 }
 
 /// The smallest displacement of the joints that takes the tip one metre along the outward normal.
-JointVector joints_per_metre(const KinematicModel& arm, const Plane& plane, const JointVector& joints) {
-  const Eigen::Matrix<double, 1, kJointCount> slope =
-      plane.outward.transpose() * tip_jacobian(arm, forward_chain(arm, joints));
+JointVector joints_per_metre(const KinematicModel& arm, const Chain& chain, const Eigen::Vector3d& outward) {
+  const Eigen::Matrix<double, 1, kJointCount> slope = outward.transpose() * tip_jacobian(arm, chain);
   const double squared = slope.squaredNorm();
   if (squared < kSlopeMin) return JointVector::Zero();
   return slope.transpose() / squared;
@@ -120,10 +119,11 @@ MonteCarlo::MonteCarlo(const IdentificationProblem& problem, const Identificatio
   problem_.touches.clear();
   for (const std::size_t touch : fitted) problem_.touches.push_back(problem.touches[touch]);
   for (const Touch& touch : problem_.touches) {
-    const Plane& plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
-    joints_per_metre_.push_back(joints_per_metre(result.calibrated, plane, touch.joints));
-    search_directions_.push_back(
-        search_directions(result.calibrated, forward_chain(result.calibrated, touch.joints), plane.outward));
+    const Chain chain = forward_chain(result.calibrated, touch.joints);
+    const Eigen::Vector3d outward = normal_at(
+        problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.tip_in_block_m());
+    joints_per_metre_.push_back(joints_per_metre(result.calibrated, chain, outward));
+    search_directions_.push_back(search_directions(result.calibrated, chain, outward));
   }
   const Eigen::VectorXd precision = prior_precision(problem, columns_, options_.prior);
   prior_std_ = (precision.array() > 0.0).select(precision.cwiseSqrt().cwiseInverse(), 0.0);
@@ -170,11 +170,11 @@ IdentificationProblem MonteCarlo::draw_problem(const Truth& truth, UniformChance
   }
 
   const PreparedModel arm = prepare(apply(problem_.nominal, truth.arm));
-  std::vector<Plane> planes;
+  std::vector<ContactSurface> planes;
   correct_contact_planes(problem_.artefact, truth.artefact, planes);
   for (std::size_t i = 0; i < drawn.touches.size(); ++i) {
     Touch& touch = drawn.touches[i];
-    const Plane& plane = planes[static_cast<std::size_t>(touch.face)];
+    const ContactSurface& plane = planes[static_cast<std::size_t>(touch.face)];
     const double off_m = noise_m_ * standard_normal(chance);
     for (int step = 0; step < kTouchStepsMax; ++step) {
       const Eigen::Vector3d tip_m = forward_chain(arm, touch.joints).tip_in_block_m();

@@ -18,20 +18,23 @@ constexpr double kSlopeSquaredMin = 1e-12;  // below, no joint moves the tip alo
 /// Up to four touches; where there are fewer, the last one fills the other lanes.
 struct TouchBlock {
   PostureLanes postures;
-  VectorLanes outward;
-  std::array<double, kLaneCount> offset_m{};
+  std::array<const ContactSurface*, kLaneCount> surfaces{};
 
-  TouchBlock(std::span<const Plane> contact_planes, std::span<const Touch> touches) {
+  TouchBlock(std::span<const ContactSurface> contact_planes, std::span<const Touch> touches) {
     for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
       const Touch& touch = touches[std::min(lane, touches.size() - 1)];
-      const Plane& plane = contact_planes[static_cast<std::size_t>(touch.face)];
       postures.set(lane, touch.joints);
-      outward.set(lane, plane.outward);
-      offset_m[lane] = plane.offset_m;
+      surfaces[lane] = &contact_planes[static_cast<std::size_t>(touch.face)];
     }
   }
   [[nodiscard]] double distance_m(const ChainLanes& chains, std::size_t lane) const {
-    return outward.of(lane).dot(chains.tip_in_block_m(lane)) - offset_m[lane];
+    return signed_distance_m(*surfaces[lane], chains.tip_in_block_m(lane));
+  }
+  [[nodiscard]] VectorLanes normals(const ChainLanes& chains) const {
+    VectorLanes normals;
+    for (std::size_t lane = 0; lane < kLaneCount; ++lane)
+      normals.set(lane, normal_at(*surfaces[lane], chains.tip_in_block_m(lane)));
+    return normals;
   }
 };
 
@@ -44,7 +47,7 @@ void move_block(const PreparedModel& model, TouchBlock& block) {
   for (int step = 0; step < kMoveStepsMax && std::ranges::find(arrived, false) != arrived.end(); ++step) {
     lanes.turn(model.model.gains, block.postures);
     lanes.forward_chains(model, block.postures, chains);
-    lanes.distance_derivatives(model, chains, block.outward, slopes);
+    lanes.distance_derivatives(model, chains, block.normals(chains), slopes);
     for (std::size_t lane = 0; lane < kLaneCount; ++lane) {
       if (arrived[lane]) continue;
       const double distance = block.distance_m(chains, lane);
@@ -67,7 +70,7 @@ void move_block(const PreparedModel& model, TouchBlock& block) {
 
 }  // namespace
 
-Observation observe(const KinematicModel& model, std::span<const Plane> contact_planes,
+Observation observe(const KinematicModel& model, std::span<const ContactSurface> contact_planes,
                     std::span<const Touch> touches, Formulation formulation) {
   const auto count = static_cast<Eigen::Index>(touches.size());
   const PreparedModel prepared = prepare(model);
@@ -82,7 +85,7 @@ Observation observe(const KinematicModel& model, std::span<const Plane> contact_
     ArmRowLanes slopes;
     lanes.turn(prepared.model.gains, block.postures);
     lanes.forward_chains(prepared, block.postures, chains);
-    lanes.distance_derivatives(prepared, chains, block.outward, slopes);
+    lanes.distance_derivatives(prepared, chains, block.normals(chains), slopes);
     for (std::size_t lane = 0; lane < block_count; ++lane) {
       const auto row = static_cast<Eigen::Index>(first + lane);
       const double factor =
@@ -95,7 +98,8 @@ Observation observe(const KinematicModel& model, std::span<const Plane> contact_
   return observation;
 }
 
-Eigen::VectorXd signed_distances_m(const KinematicModel& model, std::span<const Plane> contact_planes,
+Eigen::VectorXd signed_distances_m(const KinematicModel& model,
+                                   std::span<const ContactSurface> contact_planes,
                                    std::span<const Touch> touches) {
   const PreparedModel prepared = prepare(model);
   const LaneArithmetic& lanes = lane_arithmetic();
@@ -111,7 +115,8 @@ Eigen::VectorXd signed_distances_m(const KinematicModel& model, std::span<const 
   return distances;
 }
 
-std::vector<Touch> moved_onto_planes(const KinematicModel& model, std::span<const Plane> contact_planes,
+std::vector<Touch> moved_onto_planes(const KinematicModel& model,
+                                     std::span<const ContactSurface> contact_planes,
                                      std::vector<Touch> touches) {
   const PreparedModel prepared = prepare(model);
   for_each_block(touches.size(), [&](std::size_t first, std::size_t count) {
@@ -126,14 +131,15 @@ std::vector<Touch> moved_onto_planes(const KinematicModel& model, std::span<cons
   return touches;
 }
 
-Touch moved_onto_plane(const PreparedModel& model, const Plane& contact_plane, const Touch& touch) {
+Touch moved_onto_plane(const PreparedModel& model, const ContactSurface& contact_plane, const Touch& touch) {
   Touch moved = touch;
   for (int step = 0; step < kMoveStepsMax; ++step) {
     const Chain chain = forward_chain(model, moved.joints);
-    const double distance = signed_distance_m(contact_plane, chain.tip_in_block_m());
+    const Eigen::Vector3d tip_m = chain.tip_in_block_m();
+    const double distance = signed_distance_m(contact_plane, tip_m);
     if (std::abs(distance) < kOnPlaneMetres) break;
     const Eigen::Matrix<double, 1, kJointCount> slope =
-        contact_plane.outward.transpose() * tip_jacobian(model.model, chain);
+        normal_at(contact_plane, tip_m).transpose() * tip_jacobian(model.model, chain);
     const double squared = slope.squaredNorm();
     if (squared < kSlopeSquaredMin) break;
     moved.joints -= slope.transpose() * (distance / squared);
@@ -142,7 +148,7 @@ Touch moved_onto_plane(const PreparedModel& model, const Plane& contact_plane, c
   return moved;
 }
 
-Touch moved_onto_plane(const KinematicModel& model, const Plane& contact_plane, const Touch& touch) {
+Touch moved_onto_plane(const KinematicModel& model, const ContactSurface& contact_plane, const Touch& touch) {
   return moved_onto_plane(prepare(model), contact_plane, touch);
 }
 

@@ -37,10 +37,10 @@ std::variant<AimedTouch, std::string> aim_touch(const PlanningProblem& problem,
   auto aimed = estimate.aimed_problem(problem, std::span(&planned.joints, 1));
   if (!aimed) return nominal_touch(problem, planned);
   TouchPose pose = pose_of(problem, planned);
-  const Plane& plane = problem.faces[static_cast<std::size_t>(planned.face)].plane;
-  const Eigen::Vector3d shift_m =
-      estimate.face_shift_m(planned.face, pose.block_from_tip.translation()) * plane.outward;
-  pose.block_from_tip.pretranslate(shift_m);
+  const Eigen::Vector3d point_m = pose.block_from_tip.translation();
+  const ContactSurface surface = surface_of(problem.faces[static_cast<std::size_t>(planned.face)]);
+  pose.block_from_tip.pretranslate(estimate.face_shift_m(planned.face, point_m) *
+                                   normal_at(surface, point_m));
   return recompute(std::move(*aimed), pose, planned);
 }
 

@@ -22,6 +22,9 @@ constexpr double kRejectedShareMax = 0.2;
 constexpr double kOwnShareMin = 1e-3;
 constexpr std::size_t kRecentTouches = 8;
 
+/// Three of these are half of the smallest clearance, kPredictedPositionErrorMinMetres.
+constexpr double kAimedSphereStdMetres = kPredictedPositionErrorMinMetres / 6.0;
+
 constexpr int kStepsMax = 4;
 constexpr double kStepSmall = 1e-4;  // metres and radians; the remaining error is its square
 
@@ -94,9 +97,12 @@ double position_error_bound_m(const PreparedModel& prepared, const Chain& chain,
 }
 
 /// The solid behind a face that is estimated in place is as uncertain as the face, and is not moved with the
-/// estimate: all touches keep the nominal position error.
+/// estimate: all touches keep the nominal position error. So do those beside a sphere whose centre is known
+/// less well than the clearances of aimed touches allow.
 bool has_estimated_face(const PlanningProblem& problem) {
   return std::ranges::any_of(problem.knowledge.artefact.parameters, [](const ArtefactParameter& parameter) {
+    if (parameter.kind == ArtefactKind::kSphereCenter)
+      return !parameter.std || *parameter.std > kAimedSphereStdMetres;
     return parameter.kind == ArtefactKind::kFaceOffset && !parameter.std;
   });
 }
@@ -231,7 +237,7 @@ std::optional<PlanningProblem> OnlineArmEstimate::aimed_problem(const PlanningPr
 }
 
 double OnlineArmEstimate::face_shift_m(int face, const Eigen::Vector3d& point_m) const {
-  std::vector<Plane> planes;
+  std::vector<ContactSurface> planes;
   correct_contact_planes(knowledge_.artefact, estimate_.artefact, planes);
   const auto index = static_cast<std::size_t>(face);
   return signed_distance_m(knowledge_.artefact.contact_planes[index], point_m) -

@@ -161,10 +161,11 @@ bool has_known_offset(const Artefact& artefact, std::size_t face) {
 }
 
 /// Whether the touched faces determine a length. An arm of any size can touch planes that intersect in one
-/// point.
+/// point; a sphere brings its radius, which is always given.
 bool determine_a_length(const IdentificationProblem& problem, const LeastSquares& fit) {
-  std::vector<Plane> known;
+  std::vector<ContactSurface> known;
   for (const std::size_t face : touched_faces(problem, fit)) {
+    if (problem.artefact.contact_planes[face].is_sphere()) return true;
     if (has_known_offset(problem.artefact, face)) known.push_back(problem.artefact.contact_planes[face]);
   }
   Eigen::MatrixXd normals(static_cast<Eigen::Index>(known.size()), 3);
@@ -197,14 +198,15 @@ ScaleCheck without_length(const IdentificationProblem& problem) {
   return check;
 }
 
-/// The distance of two faces with the same normal does not depend on the ball; nor does the difference of two
-/// outside lengths.
+/// The distance of two planes with the same normal does not depend on the ball; nor does the difference of
+/// two outside lengths. What a sphere tells of the scale does.
 ScaleSource source_of(const IdentificationProblem& problem, const IdentificationOptions& options,
                       const LeastSquares& fit) {
   if (options.prior) return ScaleSource::kPrior;
-  std::vector<Plane> touched;
+  std::vector<ContactSurface> touched;
   for (const std::size_t face : touched_faces(problem, fit)) {
-    touched.push_back(problem.artefact.contact_planes[face]);
+    const ContactSurface& surface = problem.artefact.contact_planes[face];
+    if (!surface.is_sphere()) touched.push_back(surface);
   }
   std::vector<double> outside;
   for (std::size_t a = 0; a < touched.size(); ++a) {

@@ -44,6 +44,8 @@ const char* source_name(NongeometricKind kind) {
 const char* source_name(ArtefactKind kind) {
   switch (kind) {
     case ArtefactKind::kFaceOffset:
+    case ArtefactKind::kSphereCenter:
+    case ArtefactKind::kSphereRadius:
       return "block_size";
     case ArtefactKind::kFaceTilt:
       return "squareness";
@@ -298,9 +300,9 @@ Eigen::MatrixXd lag_displacements(const IdentificationProblem& problem, const Le
   for (std::size_t i = 0; i < fit.touches().size(); ++i) {
     if (!fit.kept()[i]) continue;
     const Touch& touch = problem.touches[fit.touches()[i]];
-    const Plane& plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
-    const JointVector directions =
-        search_directions(arm, forward_chain(prepared, touch.joints), plane.outward);
+    const ContactSurface& surface = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
+    const Chain chain = forward_chain(prepared, touch.joints);
+    const JointVector directions = search_directions(arm, chain, normal_at(surface, chain.tip_in_block_m()));
     const auto row = static_cast<Eigen::Index>(i);
     for (int joint = 0; joint < kJointCount; ++joint)
       displaced(row, joint) = directions[joint] * fit.rows()(row, theta_index(joint));

@@ -84,6 +84,8 @@ const char* unit_name(calib::ArtefactKind kind) {
     case calib::ArtefactKind::kTemperature:
       return "degC";
     case calib::ArtefactKind::kFaceOffset:
+    case calib::ArtefactKind::kSphereCenter:
+    case calib::ArtefactKind::kSphereRadius:
     case calib::ArtefactKind::kStylusRadius:
     case calib::ArtefactKind::kPretravel:
       return "mm";

@@ -119,7 +119,8 @@ PlannedIdentification identify_planned(const Cell& cell, const Recipe& recipe, c
   const calib::PreparedModel nominal = calib::prepare(problem.nominal);
   for (const calib::PlannedTouch& planned : plan.touches) {
     // Temperature and pre-travel displace the trigger slightly from the nominal face.
-    const calib::Plane& contact = problem.artefact.contact_planes[static_cast<std::size_t>(planned.face)];
+    const calib::ContactSurface& contact =
+        problem.artefact.contact_planes[static_cast<std::size_t>(planned.face)];
     problem.touches.push_back(
         calib::moved_onto_plane(nominal, contact, {planned.face, planned.joints, planned.role}));
   }

@@ -19,7 +19,8 @@ double condition_number(const Eigen::MatrixXd& r) {
 
 }  // namespace
 
-Matrices matrices_of(const calib::KinematicModel& nominal, const std::vector<calib::Plane>& contact_planes,
+Matrices matrices_of(const calib::KinematicModel& nominal,
+                     const std::vector<calib::ContactSurface>& contact_planes,
                      std::vector<calib::Touch> touches, const calib::IdentificationResult& result) {
   Matrices matrices;
   calib::ErrorVector errors = calib::ErrorVector::Zero();

@@ -21,7 +21,8 @@ struct Matrices {
 };
 
 /// Of eq. 15 iterated as often as `result` did, with its columns.
-Matrices matrices_of(const calib::KinematicModel& nominal, const std::vector<calib::Plane>& contact_planes,
+Matrices matrices_of(const calib::KinematicModel& nominal,
+                     const std::vector<calib::ContactSurface>& contact_planes,
                      std::vector<calib::Touch> touches, const calib::IdentificationResult& result);
 
 /// The linear algebra that an identification cannot do without, as fast as Eigen has it: the QR of the

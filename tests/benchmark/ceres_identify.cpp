@@ -15,13 +15,13 @@ namespace {
 
 struct Measured {
   const calib::KinematicModel& nominal;
-  std::span<const calib::Plane> contact_planes;
+  std::span<const calib::ContactSurface> contact_planes;
   const std::vector<int>& columns;
 };
 
 template <class T>
 T signed_distance(const Measured& measured, const calib::Touch& touch, const Vector3<T>& tip_m) {
-  const calib::Plane& plane = measured.contact_planes[static_cast<std::size_t>(touch.face)];
+  const calib::ContactSurface& plane = measured.contact_planes[static_cast<std::size_t>(touch.face)];
   return plane.outward.x() * tip_m.x() + plane.outward.y() * tip_m.y() + plane.outward.z() * tip_m.z() -
          plane.offset_m;
 }
@@ -131,7 +131,8 @@ Eigen::MatrixXd covariance_of(ceres::Problem& problem, const double* errors) {
 
 }  // namespace
 
-CeresResult ceres_identify(const calib::KinematicModel& nominal, std::span<const calib::Plane> contact_planes,
+CeresResult ceres_identify(const calib::KinematicModel& nominal,
+                           std::span<const calib::ContactSurface> contact_planes,
                            std::span<const calib::Touch> touches, const std::vector<int>& columns,
                            CeresForm form, Covariance covariance) {
   if (columns.size() != kIdentifiedCount) throw std::logic_error("compiled for 25 parameters");

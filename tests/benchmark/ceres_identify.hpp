@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "calib_core/geometry/plane.hpp"
+#include "calib_core/geometry/contact_surface.hpp"
 #include "calib_core/geometry/touch.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
@@ -35,7 +35,8 @@ struct CeresResult {
 /// What calib::identify solves once it has chosen `columns`: signed distances of the tips (metres),
 /// DENSE_QR, one thread, a start at nominal. The problem is built anew each time. Throws
 /// std::logic_error unless there are 25 columns.
-CeresResult ceres_identify(const calib::KinematicModel& nominal, std::span<const calib::Plane> contact_planes,
+CeresResult ceres_identify(const calib::KinematicModel& nominal,
+                           std::span<const calib::ContactSurface> contact_planes,
                            std::span<const calib::Touch> touches, const std::vector<int>& columns,
                            CeresForm form, Covariance covariance);
 

@@ -86,7 +86,7 @@ const IdentificationResult& identified() {
 }
 
 CeresResult solve_with_ceres(CeresForm form, Covariance covariance) {
-  static const std::vector<calib::Plane> planes = calib::paper::planes();
+  static const std::vector<calib::ContactSurface> planes = calib::paper::planes();
   return ceres_identify(study().problem.nominal, planes, study().problem.touches,
                         identified().identifiable.columns, form, covariance);
 }

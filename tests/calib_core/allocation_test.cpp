@@ -58,7 +58,7 @@ IdentificationProblem noisy_problem() {
 
 TEST(Allocations, OfEigenAndOfTheStandardLibraryAreCounted) {
   const KinematicModel model = paper::nominal();
-  const std::vector<Plane> planes = paper::planes();
+  const std::vector<ContactSurface> planes = paper::planes();
   int before = allocations;
   const std::vector<Touch> touches = make_touches();
   EXPECT_EQ(allocations - before, 1);

@@ -26,7 +26,7 @@ ErrorVector draw_errors(UniformChance& chance) {
 }
 
 std::vector<ExactTouch> exact_touches(const KinematicModel& truth, int per_face, UniformChance& chance) {
-  const std::vector<Plane> planes = paper::planes();
+  const std::vector<ContactSurface> planes = paper::planes();
   const std::vector<Face> faces = tx90::faces();
   const PlanningProblem cell{.nominal_position_error_m = 0.012, .tilt_max_rad = radians_from_degrees(45.0)};
   std::vector<ExactTouch> touches;

@@ -56,6 +56,10 @@ ArtefactKnowledge uncertain_artefact(std::size_t face_count) {
   return knowledge;
 }
 
+Face ball(double cap_half_angle_deg) {
+  return sphere_face({0.14, -0.18, 0.11}, 0.025, {0, -1, 0}, radians_from_degrees(cap_half_angle_deg));
+}
+
 IdentificationProblem problem(const ArtefactKnowledge& knowledge, double touch_noise_m) {
   IdentificationProblem problem;
   problem.nominal = paper::nominal();
@@ -70,6 +74,16 @@ Truth truth_of(const IdentificationProblem& cell, const ErrorVector& errors,
   Truth truth{errors, artefact_errors, apply(cell.nominal, errors), {}};
   correct_contact_planes(cell.artefact, artefact_errors, truth.planes);
   return truth;
+}
+
+ErrorVector errors_on(const std::vector<int>& columns, UniformChance& chance) {
+  const ErrorTolerances known = tolerances();
+  ErrorVector errors = ErrorVector::Zero();
+  for (const int column : columns) {
+    const double std = std::min(known[static_cast<std::size_t>(column)].value(), 2e-3);
+    errors[column] = std * study::normal(chance);
+  }
+  return errors;
 }
 
 Eigen::VectorXd draw_artefact_errors(const Artefact& artefact, UniformChance& chance) {
@@ -91,7 +105,7 @@ Truth draw_truth(const IdentificationProblem& cell, UniformChance& chance) {
 }
 
 std::vector<Touch> touches(const Truth& truth, const Manner& manner, UniformChance& chance) {
-  const std::vector<Face> all = tx90::faces();
+  const std::vector<Face> all = manner.block.empty() ? tx90::faces() : manner.block;
   const PlanningProblem cell{.nominal_position_error_m = 0.012, .tilt_max_rad = manner.tilt_max_rad};
   std::vector<Touch> made;
   while (std::ssize(made) < manner.count) {
@@ -101,7 +115,7 @@ std::vector<Touch> touches(const Truth& truth, const Manner& manner, UniformChan
     const auto postures = inverse_kinematics(paper::nominal(), tx90::joint_ranges(), pose.block_from_tip);
     if (postures.empty()) continue;
     const auto pick = static_cast<std::size_t>(chance() * static_cast<double>(postures.size()));
-    Plane met = truth.planes[face];
+    ContactSurface met = truth.planes[face];
     met.offset_m += manner.noise_m * study::normal(chance);
     made.push_back(
         moved_onto_plane(truth.arm, met, {.face = static_cast<int>(face), .joints = postures[pick]}));

@@ -22,6 +22,9 @@ ArtefactKnowledge certain_artefact(std::size_t face_count);
 /// The same with the uncertainties of a good cell.
 ArtefactKnowledge uncertain_artefact(std::size_t face_count);
 
+/// A ball of 50 mm beside the block, as a face; touched around -y.
+Face ball(double cap_half_angle_deg = 100.0);
+
 /// Everything but the touches.
 IdentificationProblem problem(const ArtefactKnowledge& knowledge,
                               double touch_noise_m = study::kTouchNoiseMetres);
@@ -30,11 +33,14 @@ struct Truth {
   ErrorVector errors = ErrorVector::Zero();
   Eigen::VectorXd artefact_errors;
   KinematicModel arm;
-  std::vector<Plane> planes;  // where the ball's centre is at the trigger
+  std::vector<ContactSurface> planes;  // where the ball's centre is at the trigger
 };
 
 Truth truth_of(const IdentificationProblem& cell, const ErrorVector& errors,
                const Eigen::VectorXd& artefact_errors);
+
+/// Errors of a real arm's size on the parameters that are identified, so that nothing is regrouped.
+ErrorVector errors_on(const std::vector<int>& columns, UniformChance& chance);
 
 /// A face estimated in place is 0.5 mm and 1 mrad from its drawing.
 Eigen::VectorXd draw_artefact_errors(const Artefact& artefact, UniformChance& chance);
@@ -48,6 +54,7 @@ struct Manner {
   double tilt_max_rad = radians_from_degrees(45.0);
   std::vector<int> faces;  // all when empty
   double noise_m = study::kTouchNoiseMetres;
+  std::vector<Face> block;  // where the points are sampled; tx90::faces() when empty
 };
 
 /// Touches of the true arm on the true faces, of even points, tilts and turns.

@@ -32,7 +32,7 @@ ErrorVector table3() {
   return errors;
 }
 
-std::vector<Plane> planes() {
+std::vector<ContactSurface> planes() {
   return {{{0, 0, -1}, 0.075}, {{-1, 0, 0}, 0.075}, {{0, -1, 0}, 0.150}, {{0, 0, 1}, 0.075}};
 }
 

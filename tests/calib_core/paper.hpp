@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "calib_core/geometry/plane.hpp"
+#include "calib_core/geometry/contact_surface.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
 
@@ -16,7 +16,7 @@ KinematicModel nominal();
 ErrorVector table3();
 
 /// Table II as planes with outward normals; the tip is the contact point.
-std::vector<Plane> planes();
+std::vector<ContactSurface> planes();
 
 /// The column order of tests/data/table3-exact.expected.json: these are moved to the end.
 std::vector<int> tried_last();

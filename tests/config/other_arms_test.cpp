@@ -40,7 +40,7 @@ std::vector<calib::Touch> exact_touches(const Cell& cell, const calib::Kinematic
                                         std::mt19937_64& chance) {
   constexpr double kOnThePlaneMetres = 1e-14;
   constexpr std::size_t kTouchCount = 125;
-  const std::vector<calib::Plane> planes = exact(cell).contact_planes;
+  const std::vector<calib::ContactSurface> planes = exact(cell).contact_planes;
   std::vector<calib::Touch> touches;
   while (touches.size() < kTouchCount) {
     const std::size_t face = touches.size() % planes.size();

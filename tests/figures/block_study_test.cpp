@@ -113,7 +113,7 @@ std::vector<std::size_t> draw_touches(std::size_t first, std::size_t last, int c
 
 /// The touch made where its face would be if it stood out by this much.
 void displace(const Calibration& one, Touch& touch, double by_m) {
-  Plane plane = paper::planes()[static_cast<std::size_t>(touch.face)];
+  ContactSurface plane = paper::planes()[static_cast<std::size_t>(touch.face)];
   plane.offset_m += by_m;
   touch = moved_onto_plane(one.truth, plane, touch);
 }

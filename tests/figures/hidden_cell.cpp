@@ -84,7 +84,7 @@ HiddenCell::HiddenCell(const cell::Cell& cell, const HiddenArm& arm, UniformChan
 }
 
 double HiddenCell::gap_m(int face, const JointVector& joints) const {
-  const Plane& plane = planes_[static_cast<std::size_t>(face)];
+  const ContactSurface& plane = planes_[static_cast<std::size_t>(face)];
   const Eigen::Isometry3d tool = sim::true_chain(plant_, world_, joints).block_from_frame.back();
   return signed_distance_m(plane, tool.translation()) -
          sim::trip_distance_m(plant_, tool, plane.outward, world_.noise_m);

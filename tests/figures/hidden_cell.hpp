@@ -54,7 +54,7 @@ class HiddenCell {
   JointVector contact_joints(const Touch& planned);
   [[nodiscard]] double gap_m(int face, const JointVector& joints) const;
 
-  std::vector<Plane> planes_;  // where the faces really are
+  std::vector<ContactSurface> planes_;  // where the faces really are
   sim::Plant plant_;
   sim::World world_;
   std::mt19937_64 stops_;

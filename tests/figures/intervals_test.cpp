@@ -187,7 +187,7 @@ TEST(Intervals, WithAnUncertainArtefactCoverTheRegroupedTruthAsOftenAsTheySay) {
   Tally tally(cell, truth, aimed);
   for (int draw = 0; draw < kDrawCount; ++draw) {
     const DrawnArtefact drawn = draw_artefact(known, chance);
-    const std::vector<Plane> planes = make_artefact(drawn.truth).contact_planes;
+    const std::vector<ContactSurface> planes = make_artefact(drawn.truth).contact_planes;
     problem.artefact = exact_artefact(planes);
     problem.touches = captured({truth, planes}, aimed, 0.0, chance);
     const IdentificationResult regrouped = identify(problem, recipe.identification);

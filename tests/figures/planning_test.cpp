@@ -135,7 +135,7 @@ TEST(FiguresOfPlanning, QuickHasHalfTheTipErrorOfAsManyRandomTouches) {
 KinematicModel draw_arm(const cell::Cell& cell, const ErrorTolerances& tolerances,
                         const std::vector<Touch>& touches, UniformChance& chance) {
   constexpr int kAttemptsMax = 1000;
-  const std::vector<Plane> planes = make_artefact(cell::artefact_knowledge(cell)).contact_planes;
+  const std::vector<ContactSurface> planes = make_artefact(cell::artefact_knowledge(cell)).contact_planes;
   for (int attempt = 0; attempt < kAttemptsMax; ++attempt) {
     const KinematicModel arm = apply(cell.arm.model, draw_errors(tolerances, chance));
     if (signed_distances_m(arm, planes, touches).lpNorm<Eigen::Infinity>() <= cell.nominal_position_error_m)

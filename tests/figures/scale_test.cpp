@@ -40,14 +40,14 @@ constexpr Displacement kPlacedByEye{0.004, 0.005};
 constexpr Displacement kMoved{0.040, 0.020};
 
 /// In any direction.
-void move_block(std::vector<Plane>& planes, const Displacement& by, UniformChance& chance) {
+void move_block(std::vector<ContactSurface>& planes, const Displacement& by, UniformChance& chance) {
   const auto direction = [&chance] {
     return Eigen::Vector3d(study::normal(chance), study::normal(chance), study::normal(chance)).normalized();
   };
   const Eigen::Vector3d middle_m(0, -0.075, 0);
   const Eigen::Vector3d shift_m = by.shift_m * direction();
   const Eigen::AngleAxisd turn(by.turn_rad, direction());
-  for (Plane& plane : planes) {
+  for (ContactSurface& plane : planes) {
     const double from_middle_m = plane.offset_m - plane.outward.dot(middle_m);
     plane.outward = turn * plane.outward;
     plane.offset_m = from_middle_m + plane.outward.dot(middle_m + shift_m);

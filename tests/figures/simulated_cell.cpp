@@ -108,7 +108,7 @@ std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& r
 std::vector<Touch> captured(const Truth& truth, std::vector<Touch> touches, double noise_m,
                             UniformChance& chance) {
   for (Touch& touch : touches) {
-    Plane plane = truth.contact_planes[static_cast<std::size_t>(touch.face)];
+    ContactSurface plane = truth.contact_planes[static_cast<std::size_t>(touch.face)];
     plane.offset_m += noise_m * study::normal(chance);
     touch = moved_onto_plane(truth.arm, plane, touch);
   }

@@ -31,7 +31,7 @@ cell::Cell rigid_cell(const std::string& name);
 /// The arm and the contact planes as they are.
 struct Truth {
   KinematicModel arm;
-  std::vector<Plane> contact_planes;
+  std::vector<ContactSurface> contact_planes;
 };
 
 /// Errors of all 37 parameters, each drawn from its tolerance.

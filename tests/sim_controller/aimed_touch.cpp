@@ -30,7 +30,7 @@ Plant perfect_plant(const std::string& name) {
 AimedTouch aimed_touch(const cell::Cell& cell, const Aim& aim) {
   const Plant nominal = make_plant(cell, calib::ErrorVector::Zero());
   const calib::Face& face = cell.block.faces.at(static_cast<std::size_t>(aim.face));
-  const calib::Plane plane = calib::contact_plane(face, cell.probe.stylus);
+  const calib::ContactSurface plane = calib::contact_plane(face, cell.probe.stylus);
   const Eigen::Vector3d point = face.center_m + aim.u_m * face.edge_u + aim.v_m * face.edge_v() +
                                 (plane.offset_m - face.plane.offset_m) * plane.outward;
   for (int azimuth = 0; azimuth < 12; ++azimuth) {

@@ -31,7 +31,7 @@ struct Aim {
 struct AimedTouch {
   TouchMotion motion;
   calib::Face face;
-  calib::Plane contact_plane;
+  calib::ContactSurface contact_plane;
 };
 
 /// A touch that the nominal arm can make from its clear posture: the first turn about the normal and about

@@ -6,6 +6,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <tuple>
 
 #include "tests/calib_core/drawn_cell.hpp"
 
@@ -16,6 +17,16 @@ namespace {
 ArtefactKnowledge everything_uncertain() {
   ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
   knowledge.warmer_than_20_c_k = 4.0;
+  return knowledge;
+}
+
+const Eigen::Vector3d kBallCenter(0.14, -0.18, 0.11);
+
+/// The same with a ball as the sixth face.
+ArtefactKnowledge with_ball(const Eigen::Vector3d& center_m = kBallCenter, double radius_m = 0.025) {
+  ArtefactKnowledge knowledge = everything_uncertain();
+  knowledge.faces.push_back(sphere_face(center_m, radius_m, {0, -1, 0}, 1.5));
+  knowledge.face_uncertainties.push_back({.std_offset_m = 1e-6, .std_center_m = 1e-3});
   return knowledge;
 }
 
@@ -64,6 +75,45 @@ TEST(Artefact, ShiftsDistancesAsTheChangedArtefactDoes) {
           << change.name << " plane " << face + 1;
     }
   }
+}
+
+TEST(Artefact, ShiftsDistancesFromASphereAsTheChangedSphereDoes) {
+  constexpr double kBy = 1e-6;
+  const Artefact before = make_artefact(with_ball());
+  ArtefactKnowledge warmer = with_ball();
+  warmer.warmer_than_20_c_k += 1e4 * kBy;
+  const std::vector<std::tuple<std::string, double, ArtefactKnowledge>> changes{
+      {"plane6_center_x", kBy, with_ball(kBallCenter + kBy * Eigen::Vector3d::UnitX())},
+      {"plane6_center_y", kBy, with_ball(kBallCenter + kBy * Eigen::Vector3d::UnitY())},
+      {"plane6_center_z", kBy, with_ball(kBallCenter + kBy * Eigen::Vector3d::UnitZ())},
+      {"plane6_radius", kBy, with_ball(kBallCenter, 0.025 + kBy)},
+      {"block_temperature", 1e4 * kBy, warmer}};
+  const ContactSurface& ball = before.contact_planes[5];
+  const Eigen::Vector3d point_m(0.155, -0.195, 0.125);
+  for (const auto& [name, by, knowledge] : changes) {
+    const auto shift = parameter(before, name).shifts[5].at(point_m, normal_at(ball, point_m));
+    const double shifted_m = signed_distance_m(make_artefact(knowledge).contact_planes[5], point_m) -
+                             signed_distance_m(ball, point_m);
+    EXPECT_NEAR(shifted_m, by * shift, 2e-4 * kBy) << name;
+    Eigen::VectorXd errors = Eigen::VectorXd::Zero(std::ssize(before.parameters));
+    errors[&parameter(before, name) - before.parameters.data()] = by;
+    std::vector<ContactSurface> corrected;
+    correct_contact_planes(before, errors, corrected);
+    EXPECT_NEAR(signed_distance_m(corrected[5], point_m) - signed_distance_m(ball, point_m), shifted_m,
+                2e-4 * kBy)
+        << name;
+    EXPECT_EQ(parameter(before, name).shifts[2].center, Eigen::Vector3d::Zero()) << name;
+  }
+}
+
+TEST(Artefact, KeepsTheDeviationOfAnEstimatedSpheresRadius) {
+  ArtefactKnowledge knowledge = with_ball();
+  knowledge.face_uncertainties[5].estimated = true;
+  const Artefact artefact = make_artefact(knowledge);
+  EXPECT_FALSE(parameter(artefact, "plane6_center_y").std);
+  EXPECT_EQ(parameter(artefact, "plane6_radius").std, 1e-6);
+  EXPECT_DOUBLE_EQ(parameter(artefact, "plane6_radius").nominal, 0.025);
+  EXPECT_EQ(parameter(artefact, "plane6_center_y").nominal, -0.18);
 }
 
 TEST(Artefact, HasAParameterForWhatIsUncertainOnly) {

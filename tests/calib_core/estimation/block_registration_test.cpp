@@ -134,7 +134,7 @@ TEST(BlockPlace, TheUncertaintyIsTheSpreadOfPlacesThatAreFound) {
     BlockRegistrationProblem problem = problem_of(arm_before(is, ErrorVector::Zero()));
     problem.arm_errors = arm_errors;
     for (RegistrationTouch& touch : problem.touches) {
-      Plane met = contact_plane(problem.faces[static_cast<std::size_t>(touch.face)], kBall);
+      ContactSurface met = contact_plane(problem.faces[static_cast<std::size_t>(touch.face)], kBall);
       met.offset_m += kTouchStdMetres * study::normal(chance);
       touch.joints = moved_onto_plane(arm, met, {.face = touch.face, .joints = touch.joints}).joints;
     }

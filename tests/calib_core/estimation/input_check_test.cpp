@@ -37,7 +37,7 @@ IdentificationProblem good_problem(int count = 100) {
 /// The touch as it would be had the face stood farther out.
 void lift(const IdentificationProblem& problem, Touch& touch, double metres) {
   const KinematicModel arm = apply(problem.nominal, paper::table3());
-  Plane plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
+  ContactSurface plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
   plane.offset_m += metres;
   touch = moved_onto_plane(arm, plane, touch);
 }

@@ -59,7 +59,7 @@ KinematicModel with_prismatic_joint() {
 }
 
 /// Neither orthogonal nor alike, two of them through the origin.
-std::vector<Plane> oblique_planes() {
+std::vector<ContactSurface> oblique_planes() {
   return {{Eigen::Vector3d(0.3, -0.2, 1.0).normalized(), 0.06},
           {Eigen::Vector3d(-1.0, 0.4, 0.2).normalized(), 0.0},
           {Eigen::Vector3d(0.1, -1.0, -0.3).normalized(), 0.15},
@@ -69,7 +69,7 @@ std::vector<Plane> oblique_planes() {
 struct Case {
   std::string name;
   KinematicModel nominal;
-  std::vector<Plane> planes;
+  std::vector<ContactSurface> planes;
   int identifiable_count = 0;
 };
 
@@ -99,7 +99,7 @@ ErrorVector random_errors(const std::vector<int>& columns, std::mt19937& chance)
 }
 
 /// Exact touches of the true arm, postures by chance, each moved onto its plane.
-std::vector<Touch> exact_touches(const KinematicModel& truth, const std::vector<Plane>& planes,
+std::vector<Touch> exact_touches(const KinematicModel& truth, const std::vector<ContactSurface>& planes,
                                  std::mt19937& chance) {
   constexpr std::size_t kTouchesPerFace = 25;
   std::vector<Touch> touches;

@@ -25,17 +25,6 @@ ArtefactKnowledge with_estimated(std::size_t face_count, const std::vector<std::
   return knowledge;
 }
 
-/// Errors of a real arm's size on the parameters that are identified, so that nothing is regrouped.
-ErrorVector errors_on(const std::vector<int>& columns, UniformChance& chance) {
-  const ErrorTolerances tolerances = drawn::tolerances();
-  ErrorVector errors = ErrorVector::Zero();
-  for (const int column : columns) {
-    const double std = std::min(tolerances[static_cast<std::size_t>(column)].value(), 2e-3);
-    errors[column] = std * study::normal(chance);
-  }
-  return errors;
-}
-
 struct Found {
   IdentificationProblem problem;
   drawn::Truth truth;
@@ -48,7 +37,7 @@ Found found_in_place(const ArtefactKnowledge& knowledge, int touch_count) {
   UniformChance chance(21);
   const auto columns = attainable_set(found.problem.nominal, found.problem.artefact, {}).columns;
   const Eigen::VectorXd faces = drawn::draw_artefact_errors(found.problem.artefact, chance);
-  found.truth = drawn::truth_of(found.problem, errors_on(columns, chance), faces);
+  found.truth = drawn::truth_of(found.problem, drawn::errors_on(columns, chance), faces);
   for (ArtefactEquation& equation : found.problem.artefact.equations) {
     equation.value_m = 0.0;
     for (const auto& [index, weight] : equation.weights) equation.value_m += weight * faces[index];

@@ -208,7 +208,7 @@ TEST(Identify, EstimatesTheNoiseAndKeepsHeldOutTouchesOutOfTheFit) {
   std::normal_distribution<double> noise(0.0, kNoise);
   const KinematicModel truth = apply(paper::nominal(), paper::table3());
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    Plane plane = paper::planes()[static_cast<std::size_t>(touches[i].face)];
+    ContactSurface plane = paper::planes()[static_cast<std::size_t>(touches[i].face)];
     plane.offset_m += noise(chance);
     touches[i] = moved_onto_plane(truth, plane, touches[i]);
     if (i % 4 == 3) touches[i].role = TouchRole::kHeldOut;

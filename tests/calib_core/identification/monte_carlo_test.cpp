@@ -55,7 +55,7 @@ Case calibrated(const ArtefactKnowledge& knowledge, const IdentificationOptions&
   UniformChance chance(4);
   const drawn::Truth truth = drawn::truth_of(
       made.problem, paper::table3(), Eigen::VectorXd::Zero(std::ssize(made.problem.artefact.parameters)));
-  made.problem.touches = drawn::touches(truth, {}, chance);
+  made.problem.touches = drawn::touches(truth, {.block = knowledge.faces}, chance);
   made.result = identify(made.problem, made.options);
   EXPECT_EQ(made.result.status, IdentificationStatus::kConverged) << made.result.message;
   return made;
@@ -81,6 +81,13 @@ void expect_linear_and_drawn_to_agree(const Case& made) {
   EXPECT_GT(figures.box_p95_m.value(), figures.box_rms_m.value());
   EXPECT_LT(figures.box_p95_m.value(), 2.5 * figures.box_rms_m.value());
   EXPECT_EQ(figures.warning, "");
+}
+
+TEST(MonteCarlo, AgreesWithTheLinearUncertaintyBesideABallAtAnUnknownPlace) {
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(4);
+  knowledge.faces.push_back(drawn::ball());
+  knowledge.face_uncertainties.push_back({.std_offset_m = 1e-6, .estimated = true});
+  expect_linear_and_drawn_to_agree(calibrated(knowledge, {}));
 }
 
 TEST(MonteCarlo, AgreesWithTheLinearUncertaintyOfTheTouchNoise) {

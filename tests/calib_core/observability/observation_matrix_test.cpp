@@ -65,7 +65,7 @@ TEST(MovedOntoPlane, PutsTheBallCentreOnTheContactPlane) {
   const KinematicModel model = paper::nominal();
   Touch touch{.face = 0, .joints = halton_posture(7, {JointVector::Constant(-1.0), JointVector::Ones()})};
   const double height_m = forward_kinematics(model, touch.joints).translation().z() + 0.01;
-  const Plane plane{Eigen::Vector3d::UnitZ(), height_m};
+  const ContactSurface plane{Eigen::Vector3d::UnitZ(), height_m};
   const Touch moved = moved_onto_plane(model, plane, touch);
   EXPECT_NEAR(forward_kinematics(model, moved.joints).translation().z(), height_m, 1e-13);
 }

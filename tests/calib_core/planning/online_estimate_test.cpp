@@ -101,7 +101,7 @@ TEST_F(OnlineEstimate, AWrongTriggerIsToldAndDoesNotAim) {
   OnlineArmEstimate estimate(problem_);
   for (const Touch& touch : touches_) estimate.add(touch);
   const double before_m = position_error_m(estimate, elsewhere_);
-  Plane early = paper::planes()[0];
+  ContactSurface early = paper::planes()[0];
   early.offset_m += 0.003;
   const PredictedContact contact = estimate.add(moved_onto_plane(truth_, early, touches_[0]));
   EXPECT_TRUE(contact.contradicts);
@@ -114,7 +114,7 @@ TEST_F(OnlineEstimate, AWrongTriggerIsToldAndDoesNotAim) {
 TEST_F(OnlineEstimate, AnEarlyWrongTriggerIsFoundOutByTheTouchesThatFollow) {
   OnlineArmEstimate estimate(problem_);
   for (std::size_t i = 0; i < touches_.size(); ++i) {
-    Plane plane = paper::planes()[static_cast<std::size_t>(touches_[i].face)];
+    ContactSurface plane = paper::planes()[static_cast<std::size_t>(touches_[i].face)];
     plane.offset_m += i == 2 ? 0.003 : 0.0;
     estimate.add(moved_onto_plane(truth_, plane, touches_[i]));
   }

@@ -30,8 +30,8 @@ struct PlannedCell {
   double condition_number_max = 0.0;
 };
 
-std::vector<Plane> contact_planes(const PlanningProblem& problem) {
-  std::vector<Plane> planes;
+std::vector<ContactSurface> contact_planes(const PlanningProblem& problem) {
+  std::vector<ContactSurface> planes;
   for (const Face& face : problem.faces) planes.push_back(contact_plane(face, problem.stylus));
   return planes;
 }
@@ -94,7 +94,7 @@ class EveryPlan : public testing::TestWithParam<const PlannedCell& (*)()> {
 
   /// W of the first touches and its identifiable columns.
   [[nodiscard]] Eigen::MatrixXd identifiable_columns(std::size_t count) const {
-    const std::vector<Plane> planes = contact_planes(problem_);
+    const std::vector<ContactSurface> planes = contact_planes(problem_);
     std::vector<Touch> made;
     for (std::size_t i = 0; i < count; ++i) made.push_back({touches_[i].face, touches_[i].joints});
     const Eigen::MatrixXd matrix =
@@ -206,7 +206,7 @@ TEST_P(EveryPlan, AnArmThatMissesAsInTheTableMeetsItsFaceAndNothingElse) {
   CollisionScene all_but_ball = problem_.scene;
   std::erase_if(all_but_ball.bodies, [](const Capsule& body) { return body.name == "ball"; });
   for (const PlannedTouch& touch : unaimed_) {
-    const Plane plane = contact_plane(face_of(touch), problem_.stylus);
+    const ContactSurface plane = contact_plane(face_of(touch), problem_.stylus);
     Eigen::Isometry3d pose = forward_kinematics(problem_.nominal, touch.approach_joints);
     JointVector joints = touch.approach_joints;
     double height_m = 1.0;

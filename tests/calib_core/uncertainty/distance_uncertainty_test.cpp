@@ -74,7 +74,7 @@ TEST(MeanDistance, CountsALagWhereItDisplacesTheTouchesAndWhereItBendsTheArm) {
   for (int joint = 0; joint < kJointCount; ++joint) {
     IdentificationProblem lagging = problem;
     for (Touch& touch : lagging.touches) {
-      const Plane& plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
+      const ContactSurface& plane = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
       const Chain chain = forward_chain(without.calibrated, touch.joints);
       touch.joints[joint] += kLagRad * search_directions(without.calibrated, chain, plane.outward)[joint];
     }

@@ -93,7 +93,7 @@ TEST(Plan, ItPromisesOfTheTipWhatRunsWithTheDeclaredNoisePromise) {
   for (int run = 0; run < kRunCount; ++run) {
     calib::IdentificationProblem problem = planned.problem;
     for (calib::Touch& touch : problem.touches) {
-      calib::Plane plane = problem.artefact.contact_planes.at(static_cast<std::size_t>(touch.face));
+      calib::ContactSurface plane = problem.artefact.contact_planes.at(static_cast<std::size_t>(touch.face));
       plane.offset_m += noise_m(chance);
       touch = calib::moved_onto_plane(problem.nominal, plane, touch);
     }

@@ -105,7 +105,7 @@ TEST(RobustIdentification, DoesNotShrinkTheArmIntoTheCornerOfThreePlanes) {
   const auto truth = drawn::truth_of(problem, paper::table3(), Eigen::VectorXd());
   problem.touches = drawn::touches(truth, {.count = 160}, chance);
   for (std::size_t i = 0; i < problem.touches.size(); i += 7) {  // makes the robust search run
-    Plane plane = problem.artefact.contact_planes[static_cast<std::size_t>(problem.touches[i].face)];
+    ContactSurface plane = problem.artefact.contact_planes[static_cast<std::size_t>(problem.touches[i].face)];
     plane.offset_m += 1e-3;
     problem.touches[i] = moved_onto_plane(truth.arm, plane, problem.touches[i]);
   }
