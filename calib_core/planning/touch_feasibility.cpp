@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
@@ -19,7 +18,7 @@ constexpr double kClearMoveMaxMetres = 0.100;
 
 /// The largest extent of a box along a direction.
 double reach_m(const Box& box, const Eigen::Vector3d& direction) {
-  return direction.cwiseProduct(box.min_m).cwiseMax(direction.cwiseProduct(box.max_m)).sum();
+  return direction.cwiseProduct(box.min_m).cwiseMax(direction.cwiseProduct(box.max_m)).sum() + box.round_m;
 }
 
 /// Whether a body of the probe is above the plane of the touched face; see TouchMaker::make.
@@ -59,6 +58,26 @@ bool is_singular(const KinematicModel& model, const Chain& chain) {
 
 bool is_probe(const Capsule& body) { return body.frame == kFrameCount - 1; }
 
+/// The obstacles behind the plane of a touch of this solid.
+std::vector<bool> obstacles_behind(const PlanningProblem& problem, const Plane& plane) {
+  std::vector<bool> is_behind;
+  for (const Box& obstacle : problem.scene.obstacles)
+    is_behind.push_back(reach_m(obstacle, plane.outward) < plane.offset_m + kSamePlaneMetres);
+  return is_behind;
+}
+
+/// The ball of a sphere among the obstacles, -1 for none.
+int find_ball(const PlanningProblem& problem, const Face& sphere) {
+  const auto& obstacles = problem.scene.obstacles;
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const bool is_there = (obstacles[i].min_m - sphere.cap->center_m).norm() < kSamePlaneMetres &&
+                          (obstacles[i].max_m - sphere.cap->center_m).norm() < kSamePlaneMetres;
+    if (is_there && std::abs(obstacles[i].round_m - surface_of(sphere).radius_m()) < kSamePlaneMetres)
+      return static_cast<int>(i);
+  }
+  return -1;
+}
+
 }  // namespace
 
 std::string describe(const PlanningProblem& problem, const TouchInfeasibility& infeasibility) {
@@ -76,39 +95,14 @@ std::string describe(const PlanningProblem& problem, const TouchInfeasibility& i
              problem.scene.obstacles[infeasibility.other].name;
     case TouchInfeasibility::Cause::kHitsItself:
       return body(infeasibility.body) + " hits " + body(infeasibility.other);
+    case TouchInfeasibility::Cause::kSmallSphere:
+      return "the sphere with the stylus ball is less than twice as wide as the " +
+             std::to_string(std::lround(mm_from_metres(problem.nominal_position_error_m))) +
+             " mm to either side that the arm may miss it by (nominal_miss_mm)";
     case TouchInfeasibility::Cause::kNoPath:
       return "no clear way from the park posture";
   }
   throw std::logic_error("describe: no such cause");
-}
-
-TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, UniformChance& chance,
-                            double rim_share) {
-  const auto on_rim = [&] { return rim_share > 0.0 && chance() < rim_share; };
-  const auto along = [&](const Eigen::Vector3d& edge, double half_extent_m) -> Eigen::Vector3d {
-    const double even = 2.0 * chance() - 1.0;
-    const double place = on_rim() ? std::copysign(1.0, even) : even;
-    return place * std::max(half_extent_m - problem.nominal_position_error_m, 0.0) * edge;
-  };
-  const Eigen::Vector3d& outward = face.plane.outward;
-  const Eigen::Vector3d on_u = along(face.edge_u, face.half_extent_m.x());
-  const Eigen::Vector3d on_v = along(face.edge_v(), face.half_extent_m.y());
-  const double even_tilt = chance();
-  const double tilt_rad = (on_rim() ? std::cbrt(even_tilt) : even_tilt) * problem.tilt_max_rad;
-  const double direction_rad = chance() * 2.0 * std::numbers::pi;
-  const double turn_rad = chance() * 2.0 * std::numbers::pi;
-
-  Eigen::Matrix3d straight;  // z into the face
-  straight << face.edge_u, -face.edge_v(), -outward;
-  TouchPose pose{.tilt_rad = tilt_rad};
-  pose.block_from_tip.linear() = straight * Eigen::AngleAxisd(direction_rad, Eigen::Vector3d::UnitZ()) *
-                                 Eigen::AngleAxisd(tilt_rad, Eigen::Vector3d::UnitX()) *
-                                 Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ());
-  // The given centre may lie off the plane; the touched point is on it.
-  const Eigen::Vector3d point_m = face.center_m + on_u + on_v;
-  pose.block_from_tip.translation() =
-      point_m + (problem.stylus.radius_m - signed_distance_m(face.plane, point_m)) * outward;
-  return pose;
 }
 
 TouchHeights touch_heights(double nominal_position_error_m, double standoff_min_m) {
@@ -121,17 +115,18 @@ TouchTarget find_target(const PlanningProblem& problem, int face) {
   const Face& wanted = problem.faces[static_cast<std::size_t>(face)];
   const auto& obstacles = problem.scene.obstacles;
   TouchTarget target{.face = face, .is_behind = std::vector<bool>(obstacles.size(), false)};
+  if (wanted.cap) {
+    target.solid = find_ball(problem, wanted);
+    if (target.solid >= 0) target.is_behind = obstacles_behind(problem, wanted.plane);
+    return target;
+  }
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
     const bool is_side =
         std::abs(reach_m(obstacles[i], wanted.plane.outward) - wanted.plane.offset_m) < kSamePlaneMetres;
     if (is_side && obstacles[i].contains(wanted.center_m, kSamePlaneMetres))
       target.solid = static_cast<int>(i);
   }
-  if (target.solid < 0) return target;
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    target.is_behind[i] =
-        reach_m(obstacles[i], wanted.plane.outward) < wanted.plane.offset_m + kSamePlaneMetres;
-  }
+  if (target.solid >= 0) target.is_behind = obstacles_behind(problem, wanted.plane);
   return target;
 }
 
@@ -149,8 +144,8 @@ TouchMaker::TouchMaker(const PlanningProblem& problem)
 /// The line of one touch, followed in either direction; keeps the reason of a failure.
 class TouchMaker::TouchLine {
  public:
-  TouchLine(const TouchMaker& maker, const TouchTarget& target, const TouchPose& pose)
-      : maker_(maker), problem_(maker.problem_), target_(target), pose_(pose) {}
+  TouchLine(const TouchMaker& maker, const TouchTarget& target, const TouchPose& pose, const Plane& plane)
+      : maker_(maker), problem_(maker.problem_), target_(target), pose_(pose), plane_(plane) {}
 
   /// Follows the normal from the contact posture to a height.
   std::optional<JointVector> follow(const JointVector& contact, double to_m) {
@@ -158,7 +153,7 @@ class TouchMaker::TouchLine {
     JointVector joints = contact;
     for (int step = 1; step <= steps; ++step) {
       const double height_m = to_m * step / steps;
-      const auto next = maker_.inverse_.follow(moved(height_m * face().plane.outward), joints);
+      const auto next = maker_.inverse_.follow(moved(height_m * plane_.outward), joints);
       if (!next) return fail({TouchInfeasibility::Cause::kOutOfReach});
       joints = *next;
       if (!check(joints, height_m)) return std::nullopt;
@@ -168,14 +163,14 @@ class TouchMaker::TouchLine {
 
   /// Leaves the slow zone from the approach posture; there must be a path to park from there.
   std::optional<JointVector> leave(const JointVector& approach, const TouchHeights& heights) {
-    const Eigen::Vector3d straight_m = heights.clear_m * face().plane.outward;
+    const Eigen::Vector3d straight_m = heights.clear_m * plane_.outward;
     Eigen::Vector3d off_m = straight_m;
     for (int moves = 0; moves <= kClearMovesMax; ++moves) {
       auto clear = maker_.inverse_.follow(moved(off_m), approach);
       if (!clear || !is_in_range(*clear)) break;
       const Eigen::Vector3d away_m = out_of_slow_zone_m(*clear);
       if (away_m.isZero()) {
-        const double length_m = (off_m - heights.approach_m * face().plane.outward).norm();
+        const double length_m = (off_m - heights.approach_m * plane_.outward).norm();
         if (!check_move(approach, *clear, length_m, heights.approach_m)) return std::nullopt;
         if (!can_reach_park(maker_.space_, *clear)) break;
         return clear;
@@ -198,8 +193,6 @@ class TouchMaker::TouchLine {
   static int steps_over(double length_m) {
     return std::max(static_cast<int>(std::ceil(std::abs(length_m) / kLineStepMetres)), 1);
   }
-
-  [[nodiscard]] const Face& face() const { return problem_.faces[static_cast<std::size_t>(target_.face)]; }
 
   [[nodiscard]] Eigen::Isometry3d moved(const Eigen::Vector3d& off_m) const {
     Eigen::Isometry3d block_from_tip = pose_.block_from_tip;
@@ -232,9 +225,10 @@ class TouchMaker::TouchLine {
     for (const Capsule& body : maker_.travel_scene_.bodies) {
       if (!is_probe(body)) continue;
       const Segment axis = axis_in_block(body, chain);
-      const double needed_m = body.radius_m + body.margin_m + problem_.nominal_position_error_m;
+      const double own_m = body.radius_m + body.margin_m + problem_.nominal_position_error_m;
       for (const Box& obstacle : problem_.scene.obstacles) {
-        if (is_apart(axis, obstacle, needed_m + missing_m)) continue;
+        if (is_apart(axis, obstacle, own_m + missing_m)) continue;
+        const double needed_m = own_m + obstacle.round_m;
         const Eigen::Vector3d gap_m = segment_box_gap_m(axis, obstacle);
         if (needed_m - gap_m.norm() <= missing_m) continue;
         missing_m = needed_m - gap_m.norm();
@@ -277,7 +271,7 @@ class TouchMaker::TouchLine {
       if (is_apart(axis, obstacles[i], body.radius_m + body.margin_m + problem_.nominal_position_error_m))
         continue;
       const bool exempt = is_probe(body) && target_.is_behind[i];
-      if (exempt && is_above_plane(body, axis, face().plane)) continue;
+      if (exempt && is_above_plane(body, axis, plane_)) continue;
       return i;
     }
     return std::nullopt;
@@ -287,14 +281,22 @@ class TouchMaker::TouchLine {
   const PlanningProblem& problem_;
   const TouchTarget& target_;
   const TouchPose& pose_;
+  const Plane& plane_;  // of the face; of a sphere, that which touches it at the contact
   std::optional<TouchInfeasibility> infeasibility_;
 };
 
 std::variant<PlannedTouch, TouchInfeasibility> TouchMaker::make(const TouchTarget& target,
                                                                 const TouchPose& pose,
                                                                 const JointVector& joints) const {
-  const TouchHeights heights = touch_heights(problem_.nominal_position_error_m, problem_.standoff_min_m);
-  TouchLine line(*this, target, pose);
+  const Face& face = problem_.faces[static_cast<std::size_t>(target.face)];
+  if (face.cap && sphere_contact_radius_m(problem_, face) < 2.0 * problem_.nominal_position_error_m)
+    return TouchInfeasibility{TouchInfeasibility::Cause::kSmallSphere};
+  TouchHeights heights = touch_heights(problem_.nominal_position_error_m, problem_.standoff_min_m);
+  heights.search_end_m -= contact_drop_m(problem_, face);
+  const Plane plane = tangent_plane(surface_of(face), pose.block_from_tip.translation());
+  TouchTarget here = target;
+  if (face.cap && target.solid >= 0) here.is_behind = obstacles_behind(problem_, plane);
+  TouchLine line(*this, here, pose, plane);
   if (!line.check(joints, 0.0)) return line.infeasibility();
   const auto approach = line.follow(joints, heights.approach_m);
   if (!approach) return line.infeasibility();
@@ -302,16 +304,15 @@ std::variant<PlannedTouch, TouchInfeasibility> TouchMaker::make(const TouchTarge
   if (!search_end) return line.infeasibility();
   const auto clear = line.leave(*approach, heights);
   if (!clear) return line.infeasibility();
-  return PlannedTouch{
-      .face = target.face,
-      .joints = joints,
-      .clear_joints = *clear,
-      .approach_joints = *approach,
-      .search_end_joints = *search_end,
-      .search_direction = -problem_.faces[static_cast<std::size_t>(target.face)].plane.outward,
-      .search_length_m = heights.approach_m - heights.search_end_m,
-      .tilt_rad = pose.tilt_rad,
-      .predicted_position_error_m = problem_.nominal_position_error_m};
+  return PlannedTouch{.face = target.face,
+                      .joints = joints,
+                      .clear_joints = *clear,
+                      .approach_joints = *approach,
+                      .search_end_joints = *search_end,
+                      .search_direction = -plane.outward,
+                      .search_length_m = heights.approach_m - heights.search_end_m,
+                      .tilt_rad = pose.tilt_rad,
+                      .predicted_position_error_m = problem_.nominal_position_error_m};
 }
 
 std::variant<PlannedTouch, std::string> make_touch(const PlanningProblem& problem, const TouchTarget& target,

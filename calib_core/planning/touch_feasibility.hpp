@@ -9,24 +9,11 @@
 
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/motion/transfer_path.hpp"
-#include "calib_core/numerics/uniform_chance.hpp"
 #include "calib_core/planning/planning_problem.hpp"
 #include "calib_core/planning/touch_plan.hpp"
+#include "calib_core/planning/touch_pose.hpp"
 
 namespace calib {
-
-/// Pose of R_7 when the ball touches a face, and the angle of its z axis to the inward normal of the face.
-struct TouchPose {
-  Eigen::Isometry3d block_from_tip;
-  double tilt_rad = 0.0;
-};
-
-/// A random pose, all quantities uniformly distributed: a point at least the nominal position error inside
-/// the rectangle of the face, a tilt from 0 to the limit in any direction, a rotation about the stylus. The
-/// fraction `rim_share` of the points is on the rim along either edge, and of the tilts closer to the limit:
-/// such touches determine the errors best.
-TouchPose sample_touch_pose(const PlanningProblem& problem, const Face& face, UniformChance& chance,
-                            double rim_share = 0.0);
 
 /// Heights of a touch above its contact plane along the outward normal; metres.
 struct TouchHeights {
@@ -41,13 +28,21 @@ struct TouchTarget {
   int face = 0;
   int solid = -1;               // the obstacle that the face is a side of, -1 for none
   std::vector<bool> is_behind;  // one per obstacle: the touched solid, and those entirely behind the
-                                // plane of the face
+                                // plane of the face; of a sphere, behind that of its pole
 };
 TouchTarget find_target(const PlanningProblem& problem, int face);
 
 /// Why a touch is infeasible.
 struct TouchInfeasibility {
-  enum class Cause { kJointRanges, kSingular, kOutOfReach, kNearObstacle, kHitsItself, kNoPath };
+  enum class Cause {
+    kJointRanges,
+    kSingular,
+    kOutOfReach,
+    kNearObstacle,
+    kHitsItself,
+    kSmallSphere,
+    kNoPath
+  };
   Cause cause = Cause::kJointRanges;
   std::size_t body = 0;   // index into the scene; for kNearObstacle and kHitsItself
   std::size_t other = 0;  // obstacle or body
@@ -64,7 +59,8 @@ class TouchMaker {
 
   /// The complete touch in one posture of the pose, or why it is infeasible.
   ///
-  /// The orientation is constant. Approach, contact and search end lie on the normal of the face. A straight
+  /// The orientation is constant. Approach, contact and search end lie on the normal of the face, of a sphere
+  /// on that at the contact, whose tangent plane is then the plane of the face. A straight
   /// joint move leads from `approach` to `clear`, which lies at least kSlowZoneMetres farther out, moved away
   /// from everything that would be in the slow zone of the probe. At most every 10 mm on these lines the
   /// joints are within their limits (minus one degree) and not near a singular posture, and

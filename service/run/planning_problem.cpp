@@ -1,6 +1,7 @@
 #include "service/run/planning_problem.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "config/identification_problem.hpp"
 
@@ -12,6 +13,18 @@ namespace {
 /// fewer would not show a block that was moved, more would leave no other face to go to in between.
 constexpr int kLeastShare = 3;
 constexpr int kMostShare = 2;
+/// A face that is found in place costs three touches before any tells of the arm; twice as many show from all
+/// sides where it is.
+constexpr int kEstimatedFaceTouches = 6;
+
+/// The fewest and the most touches of a face whose number is free.
+std::pair<int, int> bounds_of(const Cell& cell, const Recipe& recipe, int face) {
+  const int faces = static_cast<int>(recipe.faces.size());
+  const bool is_estimated = cell.block.face_uncertainties[static_cast<std::size_t>(face)].estimated;
+  const int least =
+      std::max(is_estimated ? kEstimatedFaceTouches : 1, recipe.goal.fit_count / (kLeastShare * faces));
+  return {least, std::max(least, kMostShare * recipe.goal.fit_count / faces)};
+}
 
 calib::MotionLimits motion_limits(const Cell& cell) {
   calib::MotionLimits limits{.joint_speeds_max = cell.arm.joint_speeds_max,
@@ -46,11 +59,10 @@ calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe) 
   const bool each = recipe.fit_per_face > 0;
   if (each) problem.goal.fit_count = recipe.fit_per_face * faces;
   for (const int face : recipe.faces) {
+    const auto [least, most] =
+        each ? std::pair(recipe.fit_per_face, recipe.fit_per_face) : bounds_of(cell, recipe, face);
     problem.requests.push_back(
-        {.face = face,
-         .fit_min = each ? recipe.fit_per_face : std::max(1, problem.goal.fit_count / (kLeastShare * faces)),
-         .fit_max = each ? recipe.fit_per_face : std::max(1, kMostShare * problem.goal.fit_count / faces),
-         .held_out_count = recipe.held_out_per_face});
+        {.face = face, .fit_min = least, .fit_max = most, .held_out_count = recipe.held_out_per_face});
   }
   return problem;
 }

@@ -26,6 +26,10 @@ constexpr double kImprovementMin = 3e-5;
 /// invertible, negligible against the touches.
 constexpr double kRidge = 1e-8;
 
+/// The variance of a sphere's centre that is found in place, beside that of the tip: enough to have it
+/// touched from all sides. The tip alone would ask for one point of it in many postures.
+constexpr double kSphereCenterShare = 0.1;
+
 /// The identification from given touches, linearised at the nominal arm.
 class ExpectedIdentification {
  public:
@@ -44,6 +48,16 @@ class ExpectedIdentification {
   [[nodiscard]] const std::vector<int>& estimated() const { return estimated_; }
   [[nodiscard]] Eigen::Index unknown_count() const {
     return std::ssize(estimated_) + nominal_.artefact.size();
+  }
+  /// Positions of the coordinates of spheres that are found in place among all unknowns.
+  [[nodiscard]] std::vector<Eigen::Index> free_sphere_centers() const {
+    std::vector<Eigen::Index> positions;
+    const auto& parameters = problem_.artefact.parameters;
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      if (parameters[k].kind == ArtefactKind::kSphereCenter && !parameters[k].std)
+        positions.push_back(std::ssize(estimated_) + static_cast<Eigen::Index>(k));
+    }
+    return positions;
   }
   /// Positions of the identifiable columns among the estimated ones.
   [[nodiscard]] std::vector<Eigen::Index> positions() const {
@@ -168,12 +182,14 @@ class TouchChooser {
                : region_over_box(arm, problem.joint_ranges, problem.workspace_box);
   }
 
-  /// Weight of the unknowns for the mean square tip error; artefact parameters have none.
+  /// Weight of the unknowns for the mean square tip error; of the artefact only kSphereCenterShare.
   [[nodiscard]] Eigen::MatrixXd tip_weight() const {
     const std::vector<int>& columns = expected_.estimated();
     Eigen::MatrixXd weight = Eigen::MatrixXd::Zero(expected_.unknown_count(), expected_.unknown_count());
     const auto count = std::ssize(columns);
     weight.topLeftCorner(count, count) = region_.mean_square(columns, columns);
+    for (const Eigen::Index center : expected_.free_sphere_centers())
+      weight(center, center) = kSphereCenterShare;
     return weight;
   }
 

@@ -50,6 +50,73 @@ struct TopTouch {
   }
 };
 
+/// The same cell with a ball beside the block as the sixth face.
+PlanningProblem ball_problem(double radius_m) {
+  PlanningProblem problem = top_problem();
+  const Eigen::Vector3d center_m(0.14, -0.18, 0.11);
+  problem.faces.push_back(sphere_face(center_m, radius_m, {0, -1, 0}, radians_from_degrees(100)));
+  problem.scene.obstacles.push_back({"ball", center_m, center_m, radius_m});
+  return problem;
+}
+
+/// What becomes of every posture of random poses on the ball.
+std::vector<std::variant<PlannedTouch, TouchInfeasibility>> touches_on_ball(const PlanningProblem& problem) {
+  const TouchMaker maker(problem);
+  const TouchTarget target = find_target(problem, 5);
+  UniformChance chance(9);
+  std::vector<std::variant<PlannedTouch, TouchInfeasibility>> all;
+  for (int i = 0; i < 300; ++i) {
+    const TouchPose pose = sample_touch_pose(problem, problem.faces[5], chance, 0.7);
+    for (const JointVector& joints : maker.inverse().solve(pose.block_from_tip))
+      all.push_back(maker.make(target, pose, joints));
+  }
+  return all;
+}
+
+TEST(TouchOnASphere, SearchesAlongTheNormalAtItsContact) {
+  const PlanningProblem problem = ball_problem(0.025);
+  const auto on_normal_m = [&](const JointVector& joints, const Eigen::Vector3d& normal) {
+    const Eigen::Vector3d off_m =
+        forward_kinematics(problem.nominal, joints).translation() - problem.faces[5].cap->center_m;
+    EXPECT_LT(off_m.cross(normal).norm(), 1e-9);
+    return off_m.dot(normal);
+  };
+  const double drop_m = 0.028 - std::sqrt(0.028 * 0.028 - 0.012 * 0.012);
+  int feasible = 0;
+  double lowest = -1.0;  // of the normals, along -y
+  for (const auto& made : touches_on_ball(problem)) {
+    const auto* touch = std::get_if<PlannedTouch>(&made);
+    if (!touch) continue;
+    ++feasible;
+    const Eigen::Vector3d normal = -touch->search_direction;
+    lowest = std::max(lowest, normal.y());
+    EXPECT_NEAR(on_normal_m(touch->joints, normal), 0.028, 1e-9);
+    EXPECT_NEAR(on_normal_m(touch->approach_joints, normal), 0.028 + 0.015, 1e-9);
+    EXPECT_NEAR(on_normal_m(touch->search_end_joints, normal), 0.028 - 0.015 - drop_m, 1e-9);
+    EXPECT_NEAR(touch->search_length_m, 0.030 + drop_m, 1e-12);
+    const Chain chain = forward_chain(problem.nominal, touch->joints);
+    for (const Capsule& body : problem.scene.bodies) {  // in contact nothing else is in the ball
+      if (body.name == "ball") continue;
+      const double gap_m =
+          segment_box_gap_m(axis_in_block(body, chain), problem.scene.obstacles.back()).norm();
+      EXPECT_GT(gap_m, 0.025 + body.radius_m) << body.name;
+    }
+  }
+  EXPECT_GT(feasible, 50);
+  EXPECT_GT(lowest, -0.5);  // from its sides too
+}
+
+TEST(TouchOnASphere, IsRefusedWhereTheArmMayMissIt) {
+  const PlanningProblem problem = ball_problem(0.020);  // 23 mm with the stylus ball, for a miss of 12 mm
+  for (const auto& made : touches_on_ball(problem)) {
+    const auto* infeasibility = std::get_if<TouchInfeasibility>(&made);
+    ASSERT_TRUE(infeasibility);
+    EXPECT_EQ(infeasibility->cause, TouchInfeasibility::Cause::kSmallSphere);
+    EXPECT_NE(describe(problem, *infeasibility).find("nominal_miss_mm"), std::string::npos);
+  }
+  EXPECT_FALSE(touches_on_ball(problem).empty());
+}
+
 TEST(TouchCandidate, ChanceIsTheStandardsGenerator) {
   // [rand.predef]: the 10000th value of a default-constructed mt19937_64, whose seed is 5489.
   UniformChance chance(5489);
