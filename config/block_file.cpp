@@ -14,6 +14,10 @@ namespace cell {
 namespace {
 
 constexpr std::size_t kFaceCountMax = 100;
+/// With a less known centre the clearances around a sphere would not hold.
+constexpr double kSphereCenterStdMaxMm = 1.0;
+/// Twice what find_one_sided_sphere() wants of the touches themselves.
+constexpr double kEstimatedCapMinDegrees = 30.0;
 
 Eigen::Vector3d unit_vector(const JsonValue& value) {
   const Eigen::Vector3d direction = value.numbers<3>();
@@ -44,27 +48,85 @@ calib::Face face_from_json(const JsonObject& object) {
   return face;
 }
 
-calib::FaceUncertainty uncertainty_from_json(const JsonObject& object) {
-  calib::FaceUncertainty uncertainty;
-  uncertainty.std_offset_m = object.find_metres("std_offset", kNotNegative).value_or(0.0);
-  if (const auto tilt = object.find("std_tilt_rad")) uncertainty.std_tilt_rad = tilt->number(kNotNegative);
+bool is_estimated(const JsonObject& object) {
   const JsonValue place = object.at("place");
   const std::string text = place.text();
   if (text != "known" && text != "estimated") {
     place.fail("is " + in_quotes(text) + R"(; give "known" or "estimated")");
   }
-  uncertainty.estimated = text == "estimated";
+  return text == "estimated";
+}
+
+calib::FaceUncertainty uncertainty_from_json(const JsonObject& object) {
+  calib::FaceUncertainty uncertainty;
+  uncertainty.std_offset_m = object.find_metres("std_offset", kNotNegative).value_or(0.0);
+  if (const auto tilt = object.find("std_tilt_rad")) uncertainty.std_tilt_rad = tilt->number(kNotNegative);
+  uncertainty.estimated = is_estimated(object);
   return uncertainty;
 }
 
-void read_faces(const JsonValue& value, Block& block) {
+calib::Face sphere_from_json(const JsonObject& object) {
+  const JsonValue half_angle = object.at("cap_half_angle_deg");
+  const double half_angle_deg = half_angle.number({.min = kPositive.min, .max = 180.0});
+  if (is_estimated(object) && half_angle_deg < kEstimatedCapMinDegrees) {
+    half_angle.fail(
+        "is " + plain_number(half_angle_deg) +
+        ": touched from one side only, a sphere whose centre is estimated cannot be told from the "
+        "arm; give at least " +
+        plain_number(kEstimatedCapMinDegrees) + R"(, or "place": "known" with std_center_mm)");
+  }
+  return calib::sphere_face(object.at("center_mm").numbers<3>() * calib::kMetresPerMillimetre,
+                            object.metres("radius", kPositive), unit_vector(object.at("cap_axis")),
+                            calib::radians_from_degrees(half_angle_deg));
+}
+
+calib::FaceUncertainty sphere_uncertainty_from_json(const JsonObject& object) {
+  constexpr NumberRange kCenters{.min = 0.0, .max = kSphereCenterStdMaxMm};
+  return {.std_offset_m = object.find_metres("std_radius", kNotNegative).value_or(0.0),
+          .estimated = is_estimated(object),
+          .std_center_m = object.find_metres("std_center", kCenters).value_or(0.0)};
+}
+
+/// The ball is a solid: nothing of the arm may touch it but the stylus.
+void add_sphere(const JsonObject& object, int number, Block& block) {
+  block.faces.push_back(sphere_from_json(object));
+  block.face_uncertainties.push_back(sphere_uncertainty_from_json(object));
+  const calib::Face& face = block.faces.back();
+  block.solids.push_back({.name = "ball of plane " + std::to_string(number),
+                          .min_m = face.cap->center_m,
+                          .max_m = face.cap->center_m,
+                          .round_m = surface_of(face).radius_m()});
+}
+
+/// "plane" where it is not given.
+bool has_sphere_shape(const JsonValue& item, bool is_first_schema) {
+  for (const auto& [key, value] : item.members()) {
+    if (key != "shape") continue;
+    if (is_first_schema) value.fail(R"(unknown key "shape" in a block of version 1; raise "schema" to 2)");
+    const std::string shape = value.text();
+    if (shape != "plane" && shape != "sphere")
+      value.fail("is " + in_quotes(shape) + R"(; "plane" and "sphere" can be touched, bores cannot)");
+    return shape == "sphere";
+  }
+  return false;
+}
+
+void read_faces(const JsonValue& value, bool is_first_schema, Block& block) {
   for (const JsonValue& item : value.items(1, kFaceCountMax)) {
-    const JsonObject object = item.object({"plane", "outward", "offset_mm", "std_offset_mm", "std_tilt_rad",
-                                           "center_mm", "edge_u", "half_extent_mm", "place"});
+    const bool is_sphere = has_sphere_shape(item, is_first_schema);
+    const JsonObject object =
+        is_sphere ? item.object({"plane", "shape", "center_mm", "std_center_mm", "radius_mm", "std_radius_mm",
+                                 "cap_axis", "cap_half_angle_deg", "place"})
+                  : item.object({"plane", "shape", "outward", "offset_mm", "std_offset_mm", "std_tilt_rad",
+                                 "center_mm", "edge_u", "half_extent_mm", "place"});
     const int plane = static_cast<int>(block.faces.size()) + 1;
     const JsonValue given = object.at("plane");
     if (given.number() != plane)
       given.fail("is not " + std::to_string(plane) + "; number the planes 1, 2, 3, ... in order");
+    if (is_sphere) {
+      add_sphere(object, plane, block);
+      continue;
+    }
     block.faces.push_back(face_from_json(object));
     block.face_uncertainties.push_back(uncertainty_from_json(object));
   }
@@ -106,6 +168,10 @@ calib::KnownLength length_from_json(const JsonValue& value, const Block& block) 
   }
   const auto& first = faces[static_cast<std::size_t>(length.faces[0])];
   const auto& second = faces[static_cast<std::size_t>(length.faces[1])];
+  for (std::size_t i = 0; i < pair.size(); ++i) {
+    if (faces[static_cast<std::size_t>(length.faces[i])].cap)
+      pair[i].fail("is a sphere; a length lies between two flat faces");
+  }
   if (length.faces[0] == length.faces[1]) planes.fail("names one plane twice; a length lies between two");
   if (first.plane.outward.cross(second.plane.outward).norm() > kDirectionErrorMax) {
     planes.fail("the two planes are not parallel; a length lies between parallel faces");
@@ -160,13 +226,14 @@ Block read_block(const std::filesystem::path& file) {
   if (const auto certificate = object.find("certificate")) {
     for (const auto& [key, value] : certificate->members()) block.certificate.emplace(key, value.text());
   }
-  read_faces(object.at("faces"), block);
+  read_faces(object.at("faces"), is_first_schema, block);
   if (const auto lengths = object.find("lengths")) {
     for (const JsonValue& item : lengths->items(0, kFaceCountMax)) {
       block.lengths.push_back(length_from_json(item, block));
     }
   }
-  block.solids = boxes_from_json(object.at("solids"));
+  const std::vector<calib::Box> boxes = boxes_from_json(object.at("solids"));
+  block.solids.insert(block.solids.begin(), boxes.begin(), boxes.end());  // before the balls
   return block;
 }
 

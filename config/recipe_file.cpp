@@ -153,6 +153,20 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, bo
   return options;
 }
 
+/// Eq. 6 has no form for a sphere.
+void demand_planes_for_coefficients(const JsonObject& object, const Block& block, const Recipe& recipe) {
+  if (recipe.identification.formulation != calib::Formulation::kPlaneCoefficients) return;
+  for (const int face : recipe.faces) {
+    if (!block.faces[static_cast<std::size_t>(face)].cap) continue;
+    for (const auto& [key, value] : object.at("identification").members()) {
+      if (key != "formulation") continue;
+      value.fail("plane " + std::to_string(face + 1) +
+                 " of the block is a sphere, which has no plane coefficients; give \"signed_distance\", or "
+                 "leave it out of /touches/planes");
+    }
+  }
+}
+
 }  // namespace
 
 Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block) {
@@ -170,6 +184,7 @@ Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Bloc
   if (const auto every = object.find("reference_every"))
     recipe.reference_every = every->integer(0, kTouchesMax);
   recipe.identification = identification_from_json(object.at("identification"), is_first_schema, arm);
+  demand_planes_for_coefficients(object, block, recipe);
   return recipe;
 }
 

@@ -24,6 +24,7 @@ constexpr NumberRange kExpansions{0.0, 1e-3};
 constexpr NumberRange kKelvins{-50.0, 50.0};
 constexpr NumberRange kTimeConstants{1.0, 1e6};
 constexpr NumberRange kFaceOffsetsMm{-10.0, 10.0};
+constexpr double kSphereShiftMaxMm = 10.0;
 constexpr NumberRange kProbePartsMm{-1.0, 1.0};
 constexpr NumberRange kNoiseMm{0.0, 1.0};
 constexpr std::size_t kFaceCountMax = 100;
@@ -100,6 +101,14 @@ void read_thermal(const JsonObject& object, Truth& truth) {
 void read_block_offsets(const JsonObject& object, Truth& truth) {
   for (const JsonValue& item : object.at("offsets_mm").items(1, kFaceCountMax))
     truth.face_offsets_m.push_back(calib::metres_from_mm(item.number(kFaceOffsetsMm)));
+  const auto shifts = object.find("sphere_shifts_mm");
+  if (!shifts) return;
+  for (const JsonValue& item : shifts->items(1, kFaceCountMax)) {
+    const Eigen::Vector3d shift_mm = item.numbers<3>();
+    if (shift_mm.cwiseAbs().maxCoeff() > kSphereShiftMaxMm)
+      item.fail("is over " + plain_number(kSphereShiftMaxMm) + " mm; give where the sphere nearly is");
+    truth.sphere_shifts_m.emplace_back(shift_mm * calib::kMetresPerMillimetre);
+  }
 }
 
 void read_true_probe(const JsonObject& object, Truth& truth) {
@@ -141,7 +150,7 @@ void read_effects(const JsonObject& object, Truth& truth) {
   read_effect(object, "thermal",
               {"on", "arm_expansion_per_k", "arm_rise_k", "arm_time_constant_s", "block_warmer_k"},
               read_thermal, truth);
-  read_effect(object, "block", {"on", "offsets_mm"}, read_block_offsets, truth);
+  read_effect(object, "block", {"on", "offsets_mm", "sphere_shifts_mm"}, read_block_offsets, truth);
   read_effect(object, "probe",
               {"on", "stylus_radius_mm", "pretravel_mm", "pretravel_tilt_mm", "lobes_mm",
                "lobe_direction_deg", "lobe_direction_rad", "noise_mm"},
@@ -150,8 +159,20 @@ void read_effects(const JsonObject& object, Truth& truth) {
   read_effect(object, "encoder", {"on", "step_deg", "step_rad"}, read_encoder, truth);
 }
 
-/// Moves the side of a solid that the face lies on; false when there is none.
+/// The ball of a sphere among the block's solids: read_block() puts it there.
+calib::Box& ball_of(const calib::Face& sphere, std::vector<calib::Box>& solids) {
+  const auto is_it = [&](const calib::Box& solid) {
+    return solid.round_m > 0.0 && (solid.min_m - sphere.cap->center_m).norm() < kSameSideMetres;
+  };
+  return *std::ranges::find_if(solids, is_it);
+}
+
+/// Moves the side of a solid that the face lies on, or grows the ball; false when there is none.
 bool move_side(const calib::Face& face, double offset_m, std::vector<calib::Box>& solids) {
+  if (face.cap) {
+    ball_of(face, solids).round_m += offset_m;
+    return true;
+  }
   int axis = 0;
   face.plane.outward.cwiseAbs().maxCoeff(&axis);
   const bool outward_is_up = face.plane.outward[axis] > 0.0;
@@ -163,6 +184,22 @@ bool move_side(const calib::Face& face, double offset_m, std::vector<calib::Box>
     return true;
   }
   return false;
+}
+
+void move_spheres(const Truth& truth, const Block& block, std::vector<calib::Box>& solids) {
+  if (truth.sphere_shifts_m.empty()) return;
+  std::vector<calib::Box*> balls;
+  for (const calib::Face& face : block.faces)
+    if (face.cap) balls.push_back(&ball_of(face, solids));
+  if (balls.size() != truth.sphere_shifts_m.size()) {
+    throw ConfigError(truth.file.string(), "/block/sphere_shifts_mm",
+                      "has " + std::to_string(truth.sphere_shifts_m.size()) + " shifts, the block has " +
+                          std::to_string(balls.size()) + " spheres; give one a sphere");
+  }
+  for (std::size_t i = 0; i < balls.size(); ++i) {
+    balls[i]->min_m += truth.sphere_shifts_m[i];
+    balls[i]->max_m += truth.sphere_shifts_m[i];
+  }
 }
 
 }  // namespace
@@ -197,6 +234,7 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
         truth.file.string(), "/block/offsets_mm/" + std::to_string(i),
         "plane " + std::to_string(i + 1) + " lies on no side of the block's solids; leave \"block\" out");
   }
+  move_spheres(truth, block, solids);
   constexpr double kReferenceCelsius = 20.0;
   const double rise_k =
       block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius + truth.warming.block_warmer_k;
@@ -204,6 +242,7 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
   for (calib::Box& solid : solids) {
     solid.min_m *= growth;
     solid.max_m *= growth;
+    solid.round_m *= growth;
   }
   return solids;
 }

@@ -59,6 +59,7 @@ struct Truth {
   calib::JointVector backlash_rad = calib::JointVector::Zero();                // width of the play
   Warming warming;
   std::vector<double> face_offsets_m;  // of each plane outwards, against the block's file; empty: none
+  std::vector<Eigen::Vector3d> sphere_shifts_m;  // of each sphere's centre, likewise
   TrueProbe probe;
   calib::JointVector repeatability_rad = calib::JointVector::Zero();  // one standard deviation of a stop
   double encoder_step_rad = 0.0;
