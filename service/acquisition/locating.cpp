@@ -29,8 +29,10 @@ const calib::Face& face_of(const Cell& cell, int face) {
   return cell.block.faces[static_cast<std::size_t>(face)];
 }
 
+/// Whether a face can be located on: a flat that lies where the file has it.
 bool is_known(const Cell& cell, int face) {
   const auto index = static_cast<std::size_t>(face);
+  if (face_of(cell, face).cap) return false;
   return index >= cell.block.face_uncertainties.size() || !cell.block.face_uncertainties[index].estimated;
 }
 
@@ -63,7 +65,8 @@ std::array<int, 3> chosen_faces(const Cell& cell) {
       chosen = {top, side, end};
     }
   }
-  if (chosen[0] < 0) throw std::invalid_argument("the block has no three known faces that stand in a corner");
+  if (chosen[0] < 0)
+    throw std::invalid_argument("the block has no three known flat faces that stand in a corner");
   return chosen;
 }
 
@@ -73,6 +76,7 @@ int towards(const Cell& cell, int from, const Eigen::Vector3d& direction) {
   double most = 0.5;
   for (int face = 0; face < static_cast<int>(cell.block.faces.size()); ++face) {
     const double along = face_of(cell, face).plane.outward.dot(direction);
+    if (face_of(cell, face).cap) continue;
     if (face == from || along <= most) continue;
     most = along;
     found = face;

@@ -4,6 +4,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -31,8 +32,14 @@ bool is_same_posture(const calib::Touch& touch, int face, const calib::JointVect
   return apart_rad < (touch.face == face ? kSamePostureRad : kSameContactRad);
 }
 
-/// Whether a ball lies over a face's rectangle, as far as the arm is known.
+/// Whether a ball lies over a face's rectangle or cap, as far as the arm is known.
 bool is_over(const calib::Face& face, const Eigen::Vector3d& ball_m, double miss_m) {
+  if (face.cap) {
+    const Eigen::Vector3d from_center_m = ball_m - face.cap->center_m;
+    const double cosine = face.plane.outward.dot(from_center_m.normalized());
+    return std::acos(std::clamp(cosine, -1.0, 1.0)) <=
+           face.cap->half_angle_rad + miss_m / from_center_m.norm();
+  }
   const Eigen::Vector3d off_m = ball_m - face.center_m;
   return std::abs(off_m.dot(face.edge_u)) <= face.half_extent_m.x() + miss_m &&
          std::abs(off_m.dot(face.edge_v())) <= face.half_extent_m.y() + miss_m;

@@ -19,12 +19,17 @@ Json faces_json(const Block& block) {
   for (const calib::Face& face : block.faces) {
     const Eigen::Vector3d& outward = face.plane.outward;
     faces.push_back({{"plane", faces.size() + 1},
+                     {"shape", face.cap ? "sphere" : "plane"},
                      {"outward", {outward.x(), outward.y(), outward.z()}},
                      {"offset_mm", mm_from_metres(face.plane.offset_m)},
                      {"center_mm", vector_mm_json(face.center_m)},
                      {"edge_u", {face.edge_u.x(), face.edge_u.y(), face.edge_u.z()}},
                      {"half_extent_mm",
                       {mm_from_metres(face.half_extent_m.x()), mm_from_metres(face.half_extent_m.y())}}});
+    if (!face.cap) continue;
+    faces.back()["sphere"] = {{"center_mm", vector_mm_json(face.cap->center_m)},
+                              {"radius_mm", mm_from_metres(surface_of(face).radius_m())},
+                              {"cap_half_angle_deg", calib::degrees_from_radians(face.cap->half_angle_rad)}};
   }
   return faces;
 }

@@ -14,7 +14,9 @@ Json vector_mm_json(const Eigen::Vector3d& vector_m) {
 }
 
 Json box_json(const calib::Box& box) {
-  return {{"name", box.name}, {"min_mm", vector_mm_json(box.min_m)}, {"max_mm", vector_mm_json(box.max_m)}};
+  return {{"name", box.name},
+          {"min_mm", vector_mm_json(box.min_m.array() - box.round_m)},
+          {"max_mm", vector_mm_json(box.max_m.array() + box.round_m)}};
 }
 
 Json joints_deg_json(const calib::JointVector& joints_rad) {

@@ -148,9 +148,15 @@ ResultDocument::Rank rank_of(const calib::IdentificationResult& result) {
           .largest_dropped = finite(result.identifiable.largest_dropped)};
 }
 
-/// Distances run along the outward normal from the origin: reference + signed distance.
+/// What distances count from: a plane's from the origin along its outward normal, a sphere's from its centre.
+double reference_of(const Cell& cell, int face) {
+  const calib::Face& touched = cell.block.faces[static_cast<std::size_t>(face)];
+  return touched.cap ? surface_of(touched).radius_m() : touched.plane.offset_m;
+}
+
+/// Distances are reference + signed distance.
 PlaneDistances plane_of(const Cell& cell, const calib::FaceDistances& face) {
-  const double reference = cell.block.faces[static_cast<std::size_t>(face.face)].plane.offset_m;
+  const double reference = reference_of(cell, face.face);
   const auto percent = [](double part, double whole) {
     return whole == 0.0 ? std::nullopt : finite(100.0 * (1.0 - std::abs(part) / std::abs(whole)));
   };
@@ -170,7 +176,7 @@ TouchUse use_of(const calib::IdentificationResult& result, std::size_t touch) {
   return found == result.rejected.end() ? TouchUse::kUsed : TouchUse::kRejected;
 }
 
-/// Distances run along the outward normal from the origin, as those of the planes.
+/// Distances as those of the planes.
 std::vector<ResultDocument::TouchDistances> touches_of(const Cell& cell,
                                                        const calib::IdentificationProblem& problem,
                                                        const calib::IdentificationResult& result) {
@@ -179,7 +185,7 @@ std::vector<ResultDocument::TouchDistances> touches_of(const Cell& cell,
   const auto distances = calib::touch_distances(problem, result);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     const calib::Touch& touch = problem.touches[i];
-    const double reference = cell.block.faces[static_cast<std::size_t>(touch.face)].plane.offset_m;
+    const double reference = reference_of(cell, touch.face);
     list.push_back({.touch = static_cast<int>(i) + 1,
                     .plane = touch.face + 1,
                     .role = touch.role,

@@ -155,8 +155,11 @@ constexpr std::string_view kCell = R"({
     "temperature_c":{"type":["number","null"],"description":"as the block's file has it"},
     "std_temperature_k":{"type":["number","null"]},
     "temperature_at":{"type":["string","null"],"description":"when it was measured; null: it always holds"},
-    "faces":{"type":"array","items":{"type":"object","required":["plane","outward","offset_mm","center_mm","edge_u",
-      "half_extent_mm"]}}}},
+    "faces":{"type":"array","items":{"type":"object","required":["plane","shape","outward","offset_mm","center_mm",
+      "edge_u","half_extent_mm"],"properties":{
+      "shape":{"enum":["plane","sphere"]},
+      "sphere":{"type":"object","description":"of a sphere; the plane beside it touches the pole of what may be touched",
+        "required":["center_mm","radius_mm","cap_half_angle_deg"]}}}}}},
   "place":{"type":["object","null"],
     "description":"where the block was located, against the cell's file; null: where the file has it",
     "properties":{

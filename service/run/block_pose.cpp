@@ -13,6 +13,7 @@ std::string block_pose_digest(const Cell& cell) {
     for (const double number : {link.alpha_rad, link.d_m, link.theta_rad, link.r_m, link.beta_rad})
       add(number);
   for (const calib::Face& face : cell.block.faces) {
+    if (face.cap) continue;  // a block is located on its flats
     for (int axis = 0; axis < 3; ++axis) add(face.plane.outward[axis]);
     add(face.plane.offset_m);
   }

@@ -17,7 +17,7 @@ namespace cell {
 Json vector_mm_json(const Eigen::Vector3d& vector_m);
 
 /// name, min_mm, max_mm.
-Json box_json(const calib::Box& box);
+Json box_json(const calib::Box& box);  // of a rounded one the box around it
 
 /// Six angles in degrees; those of the wire without a rounding.
 Json joints_deg_json(const calib::JointVector& joints_rad);

@@ -84,6 +84,19 @@ TEST_F(LocatingTheBlock, AsksForThreeTouchesOnTheTopTwoOnASideAndOneOnAnEnd) {
   EXPECT_EQ(planes, (std::vector{3, 3, 3, 1, 1, 2}));  // plane 5 looks up too, but lies lower
 }
 
+TEST_F(LocatingTheBlock, LeavesASphereOut) {
+  Cell with_ball = cell_;
+  with_ball.block.faces.push_back(calib::sphere_face({0.14, -0.3, 0.11}, 0.025, {0, -1, 0}, 1.5));
+  with_ball.block.face_uncertainties.emplace_back();
+  const auto spots = place_spots(cell_), beside_ball = place_spots(with_ball);
+  ASSERT_EQ(spots.size(), beside_ball.size());
+  for (std::size_t i = 0; i < spots.size(); ++i) {
+    EXPECT_EQ(spots[i].face, beside_ball[i].face);
+    EXPECT_EQ(spots[i].words, beside_ball[i].words);
+  }
+  EXPECT_EQ(block_pose_digest(with_ball), block_pose_digest(cell_));
+}
+
 TEST_F(LocatingTheBlock, FindsItBehindTheSixthTouch) {
   take_all();
   ASSERT_TRUE(locating_.fit()) << locating_.guide().problem.value_or("");
