@@ -28,10 +28,10 @@ double gear_variance_m2(const IdentificationProblem& problem, const std::vector<
   double sum = 0.0;
   for (const std::size_t index : touches) {
     const Touch& touch = problem.touches[index];
-    const Eigen::Vector3d& outward =
-        problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)].outward;
-    const JointVector per_rad =
-        tip_jacobian(problem.nominal, forward_chain(nominal, touch.joints)).transpose() * outward;
+    const Chain chain = forward_chain(nominal, touch.joints);
+    const Eigen::Vector3d normal = normal_at(
+        problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.tip_in_block_m());
+    const JointVector per_rad = tip_jacobian(problem.nominal, chain).transpose() * normal;
     sum += per_rad.cwiseProduct(problem.gear_std_rad).squaredNorm();
   }
   return sum / static_cast<double>(touches.size());

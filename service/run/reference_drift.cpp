@@ -28,8 +28,9 @@ void note_references(const std::vector<calib::Touch>& at_place, calib::Identific
   const calib::PreparedModel nominal = prepare(problem.nominal);
   std::vector<double> readings_m;
   for (const calib::Touch& touch : at_place) {
-    const calib::Plane& plane = problem.artefact.contact_planes.at(static_cast<std::size_t>(touch.face));
-    readings_m.push_back(signed_distance_m(plane, forward_chain(nominal, touch.joints).tip_in_block_m()));
+    const calib::ContactSurface& surface =
+        problem.artefact.contact_planes.at(static_cast<std::size_t>(touch.face));
+    readings_m.push_back(signed_distance_m(surface, forward_chain(nominal, touch.joints).tip_in_block_m()));
   }
   const ReferencePlace place = reference_place(readings_m);
   problem.drift_m = place.trend_m;

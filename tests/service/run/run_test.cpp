@@ -135,7 +135,8 @@ std::vector<cell::ReferenceTouch> references_moved_by(double drift_m, const cell
                                                       const calib::IdentificationProblem& problem) {
   constexpr int kReadings = 5;
   const calib::Touch place = cell::to_touch(run.touches().front());
-  const calib::Plane& plane = problem.artefact.contact_planes.at(static_cast<std::size_t>(place.face));
+  const calib::ContactSurface& plane =
+      problem.artefact.contact_planes.at(static_cast<std::size_t>(place.face));
   const auto height_m = [&](const calib::JointVector& joints) {
     return signed_distance_m(plane, forward_chain(prepare(problem.nominal), joints).tip_in_block_m());
   };
