@@ -39,8 +39,7 @@ FaceSums face_sums(const IdentificationProblem& problem, LeastSquares& fit) {
     const auto index = static_cast<std::size_t>(row);
     if (!fit.kept()[index]) continue;
     const auto face = static_cast<std::size_t>(problem.touches[fit.touches()[index]].face);
-    const double scaled = fit.residuals_m()[row] / fit.noise_unit_m();
-    sums.squares[face] += scaled * scaled;
+    sums.squares[face] += std::pow(fit.weighted_residuals()[row], 2);
     sums.freedom[face] += std::max(0.0, 1.0 - leverages[row]);
   }
   return sums;
@@ -118,9 +117,7 @@ std::optional<double> estimated_noise_m(const LeastSquares& fit, const Estimate&
 
 ResidualSum residual_sum(const LeastSquares& fit, const Eigen::MatrixXd& covariance) {
   const Eigen::MatrixXd hat = covariance * fit.touch_information();
-  const double rms = fit.residual_rms_m() / fit.noise_unit_m();
-  return {fit.kept_count(), rms * rms * fit.kept_count(), hat.trace(),
-          hat.cwiseProduct(hat.transpose()).sum()};
+  return {fit.kept_count(), fit.weighted_square_sum(), hat.trace(), hat.cwiseProduct(hat.transpose()).sum()};
 }
 
 TouchNoise measured_noise(double declared_m, const ResidualSum& residuals, double noise_unit_m) {

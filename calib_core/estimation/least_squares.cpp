@@ -223,9 +223,16 @@ Eigen::MatrixXd LeastSquares::gradient_covariance() const {
   return weighted.transpose() * weighted;
 }
 
+double LeastSquares::weighted_square_sum() const {
+  double sum = 0.0;
+  for (Eigen::Index row = 0; row < rows_.weighted_residuals.size(); ++row) {
+    if (kept_[static_cast<std::size_t>(row)]) sum += std::pow(rows_.weighted_residuals[row], 2);
+  }
+  return sum;
+}
+
 double LeastSquares::chi_square(const Estimate& estimate) const {
-  const double rms = residual_rms_m() / noise_unit_m_;
-  double sum = rms * rms * kept_count_;
+  double sum = weighted_square_sum();
   Eigen::Index k = 0;
   for (const int column : arm_columns_) sum += precision_[k++] * estimate.arm[column] * estimate.arm[column];
   sum += precision_.tail(estimate.artefact.size()).dot(estimate.artefact.cwiseAbs2());

@@ -62,6 +62,7 @@ class LeastSquares {
   [[nodiscard]] double residual_rms_m() const;  // of the kept touches
   /// The weighted rows: one per touch, one column per unknown.
   [[nodiscard]] const Eigen::MatrixXd& rows() const { return rows_.all; }
+  [[nodiscard]] const Eigen::VectorXd& weighted_residuals() const { return rows_.weighted_residuals; }
   [[nodiscard]] Eigen::VectorXd weighted_targets() const { return -rows_.weighted_residuals; }
   [[nodiscard]] double noise_unit_m() const { return noise_unit_m_; }
 
@@ -72,7 +73,9 @@ class LeastSquares {
   [[nodiscard]] const Eigen::VectorXd& touch_gradient() const { return normal_.touch_gradient; }
   /// Covariance of touch_gradient() for noise of one unit. Equals touch_information() except for eq. 6.
   [[nodiscard]] Eigen::MatrixXd gradient_covariance() const;
-  /// Sum of squares of the kept residuals, priors and equations, each divided by its standard deviation.
+  /// Sum of squares of the kept weighted residuals: for eq. 6 in its weights, those of the fit.
+  [[nodiscard]] double weighted_square_sum() const;
+  /// That sum, and those of priors and equations, each divided by its standard deviation.
   [[nodiscard]] double chi_square(const Estimate& estimate) const;
   /// Number of terms of that sum minus number of unknowns.
   [[nodiscard]] int degrees_of_freedom() const;

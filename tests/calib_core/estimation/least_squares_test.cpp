@@ -127,19 +127,9 @@ TEST_P(WholeProblem, WeighsRowsByTheNoiseAndInEquationSixByThePlanesDistance) {
   EXPECT_NEAR(std::sqrt(mean_square) * kNoiseMetres, 1.0, 1e-9);
 }
 
-INSTANTIATE_TEST_SUITE_P(Formulations, WholeProblem,
-                         ::testing::Values(Formulation::kSignedDistance, Formulation::kPlaneCoefficients),
-                         [](const auto& info) {
-                           return info.param == Formulation::kSignedDistance ? "SignedDistance"
-                                                                             : "PlaneCoefficients";
-                         });
-
-TEST(LeastSquares, StepsAlongTheSlopeOfChiSquareOverItsCurvature) {
-  const IdentificationProblem problem = whole_problem();
-  IdentificationOptions options;
-  options.prior = true;
-  LeastSquares fit(problem, options, all_columns(), all_touches(problem));
-  const Estimate at = some_estimate(problem);
+TEST_P(WholeProblem, StepsAlongTheSlopeOfChiSquareOverItsCurvature) {
+  LeastSquares fit(problem_, options_, all_columns(), all_touches(problem_));
+  const Estimate at = some_estimate(problem_);
   fit.linearise(at);
   ASSERT_TRUE(fit.solve());
   const Eigen::VectorXd downhill = fit.information() * fit.step();
@@ -156,6 +146,13 @@ TEST(LeastSquares, StepsAlongTheSlopeOfChiSquareOverItsCurvature) {
         << unknown;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Formulations, WholeProblem,
+                         ::testing::Values(Formulation::kSignedDistance, Formulation::kPlaneCoefficients),
+                         [](const auto& info) {
+                           return info.param == Formulation::kSignedDistance ? "SignedDistance"
+                                                                             : "PlaneCoefficients";
+                         });
 
 TEST(LeastSquares, ScalingTheColumnsChangesNoStep) {
   const IdentificationProblem problem = whole_problem();
