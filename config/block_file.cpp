@@ -1,5 +1,7 @@
 #include "config/block_file.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -134,11 +136,12 @@ void read_faces(const JsonValue& value, bool is_first_schema, Block& block) {
 
 /// Faces written down with an uncertainty lie as far apart as a length says, within this many standard
 /// deviations.
-constexpr double kLengthDeviationsMax = 5.0;
+constexpr double kLengthDeviationsMax = 3.0;
 
-/// An estimated face may lie anywhere; two known ones must agree with the certificate.
+/// An estimated face may lie anywhere; two known ones must agree with the certificate. Offsets and length are
+/// of one certificate: what the less exact of both statements leaves open is not added to the other.
 void demand_agreement(const JsonValue& value, const calib::KnownLength& length, const Block& block) {
-  double drawn_m = 0.0, variance = length.std_m * length.std_m;
+  double drawn_m = 0.0, of_offsets = 0.0;
   const Eigen::Vector3d outward = block.faces[static_cast<std::size_t>(length.faces[0])].plane.outward;
   for (const int index : length.faces) {
     const auto face = static_cast<std::size_t>(index);
@@ -147,11 +150,12 @@ void demand_agreement(const JsonValue& value, const calib::KnownLength& length, 
     const calib::Plane& plane = block.faces[face].plane;
     const double along_m = plane.offset_m * plane.outward.dot(outward);
     drawn_m = face == static_cast<std::size_t>(length.faces[0]) ? along_m : drawn_m - along_m;
-    variance += known.std_offset_m * known.std_offset_m;
+    of_offsets += known.std_offset_m * known.std_offset_m;
   }
   const auto rounded_mm = [](double m) { return plain_number(std::round(m * 1e9) / 1e6); };
   const double off_m = std::abs(length.value_m - std::abs(drawn_m));
-  if (off_m <= kLengthDeviationsMax * std::sqrt(variance) + kFaceCenterErrorMaxMetres) return;
+  const double std_m = std::max(length.std_m, std::sqrt(of_offsets));
+  if (off_m <= kLengthDeviationsMax * std_m + kFaceCenterErrorMaxMetres) return;
   value.fail("is " + rounded_mm(off_m) + " mm from what the two faces' offsets give, " +
              rounded_mm(std::abs(drawn_m)) +
              " mm; correct the value, the offsets or their standard deviations");
@@ -180,6 +184,12 @@ calib::KnownLength length_from_json(const JsonValue& value, const Block& block) 
   length.std_m = object.metres("std", kPositive);
   demand_agreement(object.at("value_mm"), length, block);
   return length;
+}
+
+bool is_given(const std::vector<calib::KnownLength>& lengths, std::array<int, 2> faces) {
+  return std::ranges::any_of(lengths, [&](const calib::KnownLength& length) {
+    return length.faces == faces || length.faces == std::array{faces[1], faces[0]};
+  });
 }
 
 /// The time of its measurement came with the second schema, and so did an expansion for the temperatures that
@@ -229,7 +239,11 @@ Block read_block(const std::filesystem::path& file) {
   read_faces(object.at("faces"), is_first_schema, block);
   if (const auto lengths = object.find("lengths")) {
     for (const JsonValue& item : lengths->items(0, kFaceCountMax)) {
-      block.lengths.push_back(length_from_json(item, block));
+      const calib::KnownLength length = length_from_json(item, block);
+      if (is_given(block.lengths, length.faces)) {
+        item.fail("is the second length of these two planes; one certificate counts once, keep one of them");
+      }
+      block.lengths.push_back(length);
     }
   }
   const std::vector<calib::Box> boxes = boxes_from_json(object.at("solids"));

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "calib_core/numerics/decompositions.hpp"
+#include "calib_core/numerics/scaled_cholesky.hpp"
+
 namespace calib {
 namespace {
 
@@ -108,9 +111,16 @@ std::optional<int> offset_parameter(const std::vector<ArtefactParameter>& all, i
   return std::nullopt;
 }
 
-/// The distance of faces with the same normal is |o_a - o_b|, with opposite normals o_a + o_b.
-ArtefactEquation equation_of(const ArtefactKnowledge& knowledge, const KnownLength& length,
-                             const std::vector<ArtefactParameter>& all) {
+/// Of the information that lengths have on a combination of offsets; that of the offsets' own priors is 1. A
+/// length with less than this beyond it says nothing new.
+constexpr double kNewInformationMin = 1e-6;
+/// Weights below this fraction of the largest are rounding errors.
+constexpr double kWeightRelative = 1e-9;
+
+/// A length as an equation between offsets, with the certified deviation. The distance of faces with the same
+/// normal is |o_a - o_b|, with opposite normals o_a + o_b.
+ArtefactEquation certified_equation(const ArtefactKnowledge& knowledge, const KnownLength& length,
+                                    const std::vector<ArtefactParameter>& all) {
   const Plane& a = knowledge.faces[static_cast<std::size_t>(length.faces[0])].plane;
   const Plane& b = knowledge.faces[static_cast<std::size_t>(length.faces[1])].plane;
   const double sign_b = a.outward.dot(b.outward) > 0.0 ? -1.0 : 1.0;
@@ -124,6 +134,52 @@ ArtefactEquation equation_of(const ArtefactKnowledge& knowledge, const KnownLeng
     equation.weights.emplace_back(*index, sign * sign_b);
   }
   return equation;
+}
+
+/// The equation of one direction q in the space of the parameters, each in its standard deviations.
+ArtefactEquation equation_along(const Eigen::VectorXd& q, const Eigen::VectorXd& std, double value,
+                                double precision) {
+  const Eigen::VectorXd weights = q.cwiseQuotient(std);
+  Eigen::Index most = 0;
+  weights.cwiseAbs().maxCoeff(&most);
+  ArtefactEquation equation{
+      {}, value / weights[most], 1.0 / (std::abs(weights[most]) * std::sqrt(precision))};
+  for (Eigen::Index k = 0; k < weights.size(); ++k) {
+    const double weight = weights[k] / weights[most];
+    if (std::abs(weight) > kWeightRelative) equation.weights.emplace_back(static_cast<int>(k), weight);
+  }
+  return equation;
+}
+
+/// Lengths and offsets are one certificate. In the offsets, each in its deviations, the priors are the unit
+/// matrix and the lengths have the information G. Where an eigenvalue g of G exceeds 1 the lengths are the
+/// more exact statement: they are to be the whole information on that combination of offsets, so that g - 1
+/// is added. Elsewhere the offsets say it already.
+std::vector<ArtefactEquation> new_equations(const ArtefactKnowledge& knowledge,
+                                            const std::vector<ArtefactParameter>& all) {
+  const auto count = static_cast<Eigen::Index>(all.size());
+  Eigen::VectorXd std(count);
+  for (Eigen::Index k = 0; k < count; ++k)
+    std[k] = all[static_cast<std::size_t>(k)].std.value_or(kFreeArtefactStd);
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  Eigen::VectorXd moment = Eigen::VectorXd::Zero(count);
+  for (const KnownLength& length : knowledge.lengths) {
+    if (length.std_m <= 0.0) continue;
+    const ArtefactEquation certified = certified_equation(knowledge, length, all);
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(count);
+    for (const auto& [index, weight] : certified.weights) row[index] = weight * std[index] / certified.std_m;
+    information += row * row.transpose();
+    moment += row * (certified.value_m / certified.std_m);
+  }
+  std::vector<ArtefactEquation> equations;
+  if (information.isZero(0.0)) return equations;
+  SymmetricEigen eigen;
+  eigen.compute(information);
+  for (Eigen::Index i = count - 1; i >= 0 && eigen.values()[i] > 1.0 + kNewInformationMin; --i) {
+    const Eigen::VectorXd q = eigen.vectors().col(i);
+    equations.push_back(equation_along(q, std, q.dot(moment) / eigen.values()[i], eigen.values()[i] - 1.0));
+  }
+  return equations;
 }
 
 }  // namespace
@@ -147,11 +203,25 @@ Artefact make_artefact(const ArtefactKnowledge& knowledge) {
       knowledge, "block_temperature", ArtefactKind::kTemperature, 20.0 + knowledge.warmer_than_20_c_k,
       knowledge.thermal_expansion_per_k == 0.0 ? 0.0 : knowledge.std_temperature_k,
       [&](const Face& face) { return growth_per_k(knowledge, face); }, artefact.parameters);
-  for (const KnownLength& length : knowledge.lengths) {
-    ArtefactEquation equation = equation_of(knowledge, length, artefact.parameters);
-    if (!equation.weights.empty() && length.std_m > 0.0) artefact.equations.push_back(std::move(equation));
-  }
+  artefact.equations = new_equations(knowledge, artefact.parameters);
   return artefact;
+}
+
+Eigen::MatrixXd prior_covariance(const Artefact& artefact) {
+  const auto count = static_cast<Eigen::Index>(artefact.parameters.size());
+  if (count == 0) return {};
+  Eigen::MatrixXd information = Eigen::MatrixXd::Zero(count, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double std = artefact.parameters[static_cast<std::size_t>(k)].std.value_or(kFreeArtefactStd);
+    information(k, k) = 1.0 / (std * std);
+  }
+  for (const ArtefactEquation& equation : artefact.equations) {
+    for (const auto& [i, weight_i] : equation.weights) {
+      for (const auto& [j, weight_j] : equation.weights)
+        information(i, j) += weight_i * weight_j / (equation.std_m * equation.std_m);
+    }
+  }
+  return ScaledCholesky(information).inverse();
 }
 
 Artefact exact_artefact(std::vector<ContactSurface> contact_planes) {

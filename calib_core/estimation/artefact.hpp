@@ -22,7 +22,8 @@ struct FaceUncertainty {
   double std_center_m = 0.0;  // of a sphere, of each coordinate of its centre
 };
 
-/// The certified distance of two parallel faces at 20 degrees C.
+/// The certified distance of two parallel faces at 20 degrees C. It is of the same certificate as the offsets
+/// of the faces: both are statements about one measurement.
 struct KnownLength {
   std::array<int, 2> faces{};  // indices
   double value_m = 0.0;
@@ -75,7 +76,9 @@ struct ArtefactParameter {
   std::vector<Shift> shifts;  // one per face
 };
 
-/// A certified length as an equation between artefact parameters: sum of weight * parameter = value.
+/// What the certified lengths say beyond the offsets, as an equation between artefact parameters: sum of
+/// weight * parameter = value. Its deviation is so much larger than the certified one that with the priors of
+/// the offsets it is the certified one again: a certificate counts once.
 struct ArtefactEquation {
   std::vector<std::pair<int, double>> weights;  // index of a parameter, weight
   double value_m = 0.0;
@@ -94,8 +97,16 @@ void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& err
                             std::vector<ContactSurface>& planes);
 
 /// The contact planes at the temperature of the block, and the parameters of everything that is not exactly
-/// known, faces first.
+/// known, faces first. A length that is known no better than the offsets of its two faces tell it makes no
+/// equation.
 Artefact make_artefact(const ArtefactKnowledge& knowledge);
+
+/// Standard deviation of a parameter without a prior (metres, radians): practically free.
+inline constexpr double kFreeArtefactStd = 0.1;
+
+/// Covariance of the errors of the parameters before any touch, with what the certified lengths say: the
+/// offsets of two faces with a length between them are correlated. SI units.
+Eigen::MatrixXd prior_covariance(const Artefact& artefact);
 
 /// An artefact with exactly known contact planes.
 Artefact exact_artefact(std::vector<ContactSurface> contact_planes);

@@ -153,6 +153,8 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kBlock, "/std_temperature_k", std::nullopt, "", "\"std_temperature_k\" is missing"},
         Spoiled{kBlock, "/solids/0/max_mm", json({75, -200, 75}), "/solids/0", "not below max_mm"},
         Spoiled{kBlock, "/certificate", 3, "/certificate", "give an object"}));
+        Spoiled{kBlock, "/lengths/0/value_mm", 150.024, "/lengths/0/value_mm", "correct the value"},
+        Spoiled{kBlock, "/lengths/1/planes", json({5, 3}), "/lengths/1", "second length of these"},
 
 INSTANTIATE_TEST_SUITE_P(
     Probe, SpoiledEntry,

@@ -9,6 +9,7 @@
 #include "service/run/reference_drift.hpp"
 #include "sim_controller/contact.hpp"
 #include "tests/calib_core/block_study.hpp"
+#include "tests/figures/simulated_cell.hpp"
 
 namespace calib::figures {
 namespace {
@@ -39,9 +40,8 @@ cell::Truth drawn(const cell::Cell& cell, cell::Truth truth, UniformChance& chan
     truth.errors[i] += cell.arm.std_errors[static_cast<std::size_t>(i)].value_or(0.0) * study::normal(chance);
   }
   truth.face_offsets_m.resize(cell.block.faces.size(), 0.0);
-  for (std::size_t i = 0; i < truth.face_offsets_m.size(); ++i) {
-    truth.face_offsets_m[i] += cell.block.face_uncertainties[i].std_offset_m * study::normal(chance);
-  }
+  const std::vector<double> errors_m = draw_offset_errors_m(cell::artefact_knowledge(cell), chance);
+  for (std::size_t i = 0; i < errors_m.size(); ++i) truth.face_offsets_m[i] += errors_m[i];
   cell::TrueProbe& probe = truth.probe;
   probe.stylus_radius_m = probe.stylus_radius_m.value_or(cell.probe.stylus.radius_m) +
                           cell.probe.std_stylus_radius_m * study::normal(chance);

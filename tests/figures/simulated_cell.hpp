@@ -37,14 +37,17 @@ struct Truth {
 /// Errors of all 37 parameters, each drawn from its tolerance.
 ErrorVector draw_errors(const ErrorTolerances& tolerances, UniformChance& chance);
 
-/// An artefact, and what is written down of it: the same, but for the certified lengths.
+/// Errors of the faces' offsets, drawn from the certificate: those of two faces with a length between them
+/// are correlated. 0 for a face that is estimated in place.
+std::vector<double> draw_offset_errors_m(const ArtefactKnowledge& known, UniformChance& chance);
+
+/// An artefact, and what is written down of it.
 struct DrawnArtefact {
   ArtefactKnowledge truth;
   ArtefactKnowledge known;
 };
 
-/// The artefact that is really there, everything uncertain in `known` drawn from its standard deviation; the
-/// certificates' lengths are those of this artefact, as uncertain as they say.
+/// The artefact that is really there, everything uncertain in `known` drawn from what is said of it.
 DrawnArtefact draw_artefact(const ArtefactKnowledge& known, UniformChance& chance);
 
 /// Postures of the nominal arm on the first `face_count` faces in turn: points, tilts up to the cell's limit

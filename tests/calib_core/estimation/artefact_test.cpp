@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <functional>
 #include <set>
 #include <string>
@@ -159,7 +160,8 @@ TEST(Artefact, MakesALengthAnEquationBetweenOffsets) {
     const Artefact artefact = make_artefact(knowledge);
     ASSERT_EQ(artefact.equations.size(), 1u);
     const ArtefactEquation& equation = artefact.equations[0];
-    EXPECT_EQ(equation.std_m, 2e-6);
+    // The offsets say it within 7 um already: only the rest is new.
+    EXPECT_NEAR(std::pow(equation.std_m, -2), std::pow(2e-6, -2) - 0.5 * std::pow(5e-6, -2), 1.0);
     double sum = 0.0;
     for (const auto& [index, weight] : equation.weights) {
       const std::string& name = artefact.parameters[static_cast<std::size_t>(index)].name;
@@ -175,6 +177,68 @@ TEST(Artefact, ALengthBetweenExactlyKnownFacesSaysNothing) {
   ArtefactKnowledge knowledge = drawn::certain_artefact(5);
   knowledge.lengths = {{{2, 4}, 0.150, 2e-6}};
   EXPECT_TRUE(make_artefact(knowledge).equations.empty());
+}
+
+/// Standard deviation of the distance of two parallel faces before any touch; `sign` -1 on the same side.
+double std_of_distance_m(const Artefact& artefact, int a, int b, double sign) {
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(std::ssize(artefact.parameters));
+  for (Eigen::Index k = 0; k < direction.size(); ++k) {
+    const std::string& name = artefact.parameters[static_cast<std::size_t>(k)].name;
+    if (name == "plane" + std::to_string(a + 1) + "_offset") direction[k] = 1.0;
+    if (name == "plane" + std::to_string(b + 1) + "_offset") direction[k] = sign;
+  }
+  return std::sqrt(direction.dot(prior_covariance(artefact) * direction));
+}
+
+TEST(Certificate, OfOffsetsAndLengthsCountsOnce) {
+  // Offsets within 5 um: without a length the distance is known within 7.07 um, with it as it says.
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
+  const double of_offsets_m = std::sqrt(2.0) * 5e-6;
+  EXPECT_NEAR(std_of_distance_m(make_artefact(knowledge), 2, 4, -1.0), of_offsets_m, 1e-12);
+  for (const double std_m : {1e-6, 5e-6, 7e-6}) {
+    knowledge.lengths = {{{2, 4}, 0.150, std_m}, {{3, 0}, 0.150, 0.5 * std_m}};
+    const Artefact artefact = make_artefact(knowledge);
+    EXPECT_EQ(artefact.equations.size(), 2u);
+    EXPECT_NEAR(std_of_distance_m(artefact, 2, 4, -1.0), std_m, 1e-12);
+    EXPECT_NEAR(std_of_distance_m(artefact, 0, 3, 1.0), 0.5 * std_m, 1e-12);
+    const Eigen::MatrixXd covariance = prior_covariance(artefact);
+    for (Eigen::Index k = 0; k < covariance.rows(); ++k) {
+      EXPECT_LE(covariance(k, k),
+                std::pow(*artefact.parameters[static_cast<std::size_t>(k)].std, 2) * 1.000001);
+    }
+  }
+}
+
+TEST(Certificate, ALengthThatTheOffsetsAlreadyTellBetterSaysNothing) {
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
+  knowledge.lengths = {{{2, 4}, 0.1500001, 8e-6}};
+  const Artefact artefact = make_artefact(knowledge);
+  EXPECT_TRUE(artefact.equations.empty());
+  EXPECT_NEAR(std_of_distance_m(artefact, 2, 4, -1.0), std::sqrt(2.0) * 5e-6, 1e-12);
+}
+
+TEST(Certificate, HoldsThreeLengthsBetweenThreeFacesTogether) {
+  // Three statements of 4 um that close: each distance is known a little better than by its own.
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
+  knowledge.lengths = {{{0, 3}, 0.150, 4e-6}};
+  Face another = knowledge.faces[0];
+  another.plane.offset_m = 0.050;
+  knowledge.faces.push_back(another);
+  knowledge.face_uncertainties.push_back(knowledge.face_uncertainties[0]);
+  knowledge.lengths.push_back({{0, 5}, 0.025, 4e-6});
+  knowledge.lengths.push_back({{5, 3}, 0.125, 4e-6});
+  const Artefact artefact = make_artefact(knowledge);
+  EXPECT_EQ(artefact.equations.size(), 2u);  // the sum of all three offsets is no length
+  EXPECT_NEAR(std_of_distance_m(artefact, 0, 3, 1.0), 4e-6 * std::sqrt(2.0 / 3.0), 1e-11);
+  EXPECT_NEAR(std_of_distance_m(artefact, 0, 5, -1.0), 4e-6 * std::sqrt(2.0 / 3.0), 1e-11);
+}
+
+TEST(Certificate, TiesFacesThatAreFoundInPlace) {
+  ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
+  knowledge.face_uncertainties[2].estimated = knowledge.face_uncertainties[4].estimated = true;
+  EXPECT_GT(std_of_distance_m(make_artefact(knowledge), 2, 4, -1.0), 0.01);
+  knowledge.lengths = {{{2, 4}, 0.150, 5e-6}};
+  EXPECT_NEAR(std_of_distance_m(make_artefact(knowledge), 2, 4, -1.0), 5e-6, 0.2e-6);
 }
 
 }  // namespace
