@@ -22,6 +22,12 @@ constexpr double kExactStd = 1e-12;  // of a tolerance of 0
 /// Planes with a smaller distance to a common point (metres) intersect in it.
 constexpr double kCommonPointMetres = 1e-6;
 
+/// A distance of two faces is a length when it is at least this long and known at least this well.
+constexpr double kLengthMinMetres = 1e-3;
+constexpr double kLengthStdMaxMetres = 1e-3;
+/// Two outside lengths that differ by more than this share tell the ball from the scale.
+constexpr double kLengthsDifferShare = 0.2;
+
 /// A parameter is not tested when the touches determine less than this fraction of its prior variance.
 constexpr double kInformedShareMin = 1e-6;
 
@@ -137,9 +143,11 @@ class ScaleTest {
 std::vector<std::size_t> touched_faces(const IdentificationProblem& problem, const LeastSquares& fit) {
   std::vector<std::size_t> touched;
   for (std::size_t face = 0; face < problem.artefact.contact_planes.size(); ++face) {
-    const bool any = std::ranges::any_of(fit.touches(), [&](std::size_t index) {
-      return static_cast<std::size_t>(problem.touches[index].face) == face;
-    });
+    bool any = false;
+    for (std::size_t i = 0; i < fit.touches().size(); ++i) {
+      any =
+          any || (fit.kept()[i] && static_cast<std::size_t>(problem.touches[fit.touches()[i]].face) == face);
+    }
     if (any) touched.push_back(face);
   }
   return touched;
@@ -198,26 +206,45 @@ ScaleCheck without_length(const IdentificationProblem& problem) {
   return check;
 }
 
-/// The distance of two planes with the same normal does not depend on the ball; nor does the difference of
-/// two outside lengths. What a sphere tells of the scale does.
+/// How well the distance of two parallel faces is known before any touch; `covariance` is prior_covariance().
+double std_of_distance_m(const Artefact& artefact, const Eigen::MatrixXd& covariance, std::size_t a,
+                         std::size_t b, double sign_b) {
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(covariance.rows());
+  for (Eigen::Index k = 0; k < direction.size(); ++k) {
+    const ArtefactParameter& parameter = artefact.parameters[static_cast<std::size_t>(k)];
+    if (parameter.kind == ArtefactKind::kFaceOffset)
+      direction[k] = parameter.shifts[a].constant + sign_b * parameter.shifts[b].constant;
+  }
+  return std::sqrt(direction.dot(covariance * direction));
+}
+
+/// The distance of two faces with the same normal does not depend on the ball; nor does the difference of two
+/// outside lengths. A length counts where both its faces are touched and their distance is known.
 ScaleSource source_of(const IdentificationProblem& problem, const IdentificationOptions& options,
                       const LeastSquares& fit) {
   if (options.prior) return ScaleSource::kPrior;
-  std::vector<ContactSurface> touched;
-  for (const std::size_t face : touched_faces(problem, fit)) {
-    const ContactSurface& surface = problem.artefact.contact_planes[face];
-    if (!surface.is_sphere()) touched.push_back(surface);
-  }
-  std::vector<double> outside;
-  for (std::size_t a = 0; a < touched.size(); ++a) {
-    for (std::size_t b = 0; b < a; ++b) {
-      const double cosine = touched[a].outward.dot(touched[b].outward);
-      if (cosine > 0.999) return ScaleSource::kTwoLengths;
-      if (cosine < -0.999) outside.push_back(touched[a].offset_m + touched[b].offset_m);
+  const std::vector<ContactSurface>& planes = problem.artefact.contact_planes;
+  const Eigen::MatrixXd covariance = prior_covariance(problem.artefact);
+  const std::vector<std::size_t> touched = touched_faces(problem, fit);
+  std::vector<double> outside_m;
+  for (const std::size_t a : touched) {
+    for (const std::size_t b : touched) {
+      if (b >= a) break;
+      if (planes[a].is_sphere() || planes[b].is_sphere()) continue;
+      const double cosine = planes[a].outward.dot(planes[b].outward);
+      if (std::abs(cosine) < 0.999) continue;
+      const double sign_b = cosine > 0.0 ? -1.0 : 1.0;
+      const double distance_m = std::abs(planes[a].offset_m + sign_b * planes[b].offset_m);
+      const bool is_length =
+          distance_m > kLengthMinMetres &&
+          std_of_distance_m(problem.artefact, covariance, a, b, sign_b) < kLengthStdMaxMetres;
+      if (!is_length) continue;
+      if (cosine > 0.0) return ScaleSource::kTwoLengths;
+      outside_m.push_back(distance_m);
     }
   }
-  const auto [least, most] = std::ranges::minmax_element(outside);
-  const bool differ = !outside.empty() && *most - *least > 0.2 * std::abs(*most);
+  const auto [least, most] = std::ranges::minmax_element(outside_m);
+  const bool differ = !outside_m.empty() && *most - *least > kLengthsDifferShare * *most;
   return differ ? ScaleSource::kTwoLengths : ScaleSource::kBlock;
 }
 

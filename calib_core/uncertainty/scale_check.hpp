@@ -5,8 +5,8 @@
 
 namespace calib {
 
-/// What determines the scale of the calibrated arm: one length of the block, two lengths, or the nominal arm
-/// with its tolerances.
+/// What determines the scale of the calibrated arm: one length of the block, two lengths of which both faces
+/// each are touched and lie at a known distance, or the nominal arm with its tolerances.
 enum class ScaleSource { kBlock, kTwoLengths, kPrior };
 
 /// The common scale of all lengths, which revolute joints do not measure. A wrong ball radius, pre-travel,

@@ -25,7 +25,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
      "order and times of a whole plan: planning/touch_planning_test"},
     {"calib_core/planning/planning_problem", "the slow zone of a whole plan: planning/touch_planning_test"},
     {"calib_core/planning/transfer_planning", "between all touches of a plan: planning/touch_planning_test"},
-    {"calib_core/uncertainty/scale_check", "rates of warnings in tests/figures/scale_test"},
     {"calib_core/uncertainty/uncertainty_propagation",
      "coverage of simulated errors in tests/figures/intervals_test"},
     {"config/arm_file",
