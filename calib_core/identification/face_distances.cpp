@@ -24,6 +24,17 @@ Distances distances_of(const IdentificationProblem& problem, const Identificatio
 
 }  // namespace
 
+std::optional<double> found_offset_m(const IdentificationProblem& problem, const IdentificationResult& result,
+                                     std::size_t face) {
+  for (Eigen::Index k = 0; k < result.artefact_errors.size(); ++k) {
+    const ArtefactParameter& parameter = problem.artefact.parameters[static_cast<std::size_t>(k)];
+    const bool is_its_offset =
+        parameter.kind == ArtefactKind::kFaceOffset && parameter.shifts[face].constant != 0.0;
+    if (is_its_offset && !parameter.std) return result.artefact_errors[k];
+  }
+  return std::nullopt;
+}
+
 std::vector<TouchDistance> touch_distances(const IdentificationProblem& problem,
                                            const IdentificationResult& result) {
   const Distances distances = distances_of(problem, result);
@@ -54,7 +65,7 @@ std::vector<FaceDistances> face_distances(const IdentificationProblem& problem,
       if (here.empty()) continue;
       const Eigen::VectorXd before = nominal(here), after = calibrated(here);
       all.push_back({static_cast<int>(face), role, static_cast<int>(here.size()), before.mean(), rms(before),
-                     after.mean(), rms(after), std::nullopt});
+                     after.mean(), rms(after), std::nullopt, found_offset_m(problem, result, face)});
     }
   }
   return all;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "calib_core/identification/identification_result.hpp"
@@ -12,6 +14,11 @@ struct TouchDistance {
   double nominal_m = 0.0;
   double calibrated_m = 0.0;
 };
+
+/// How far outwards of the written plane a face was found that is estimated in place, metres; nothing for any
+/// other face and unless converged.
+std::optional<double> found_offset_m(const IdentificationProblem& problem, const IdentificationResult& result,
+                                     std::size_t face);
 
 /// One per touch of the problem, including rejected and held-out touches: Figures 5 to 12 of the paper.
 std::vector<TouchDistance> touch_distances(const IdentificationProblem& problem,

@@ -24,6 +24,9 @@ struct FaceDistances {
   double calibrated_rms_m = 0.0;
   /// One standard deviation of calibrated_mean_m, of touches that were not fitted; nothing without a noise.
   std::optional<double> calibrated_mean_std_m;
+  /// Of a face that is estimated in place, when converged: how far outwards of the written plane it was
+  /// found. The calibrated distances are from where it was found.
+  std::optional<double> found_offset_m;
 };
 
 struct IdentificationResult {

@@ -160,17 +160,23 @@ std::string scale_text(const ResultDocument::Scale& scale) {
                      figure(scale.stretch_ppm, "{:+.0f}"));
 }
 
+/// "  found at 150.512 mm" for a face that is estimated in place.
+std::string found_at(const PlaneDistances& plane) {
+  if (!plane.estimated_offset_mm) return {};
+  return fmt::format("  found at {} mm", figure(plane.estimated_offset_mm, "{:.3f}"));
+}
+
 std::string planes_text(const std::vector<PlaneDistances>& planes, const char* title) {
   if (planes.empty()) return {};
   std::string lines =
       fmt::format("\n{}\n{:>5}{:>9}{:>13}{:>12}{:>14}{:>12}{:>14}{:>11}\n", title, "plane", "touches",
                   "reference", "nominal", "calibrated", "rms before", "rms after", "removed");
   for (const PlaneDistances& plane : planes) {
-    lines += fmt::format("{:>5}{:>9}{:>10} mm{:>9} mm{:>11} mm{:>9} mm{:>11} mm{:>9} %\n", plane.plane,
+    lines += fmt::format("{:>5}{:>9}{:>10} mm{:>9} mm{:>11} mm{:>9} mm{:>11} mm{:>9} %{}\n", plane.plane,
                          plane.touch_count, figure(plane.reference_mm, "{:.3f}"),
                          figure(plane.nominal_mean_mm, "{:.3f}"), figure(plane.calibrated_mean_mm, "{:.3f}"),
                          figure(plane.nominal_rms_mm, "{:.3f}"), figure(plane.calibrated_rms_mm, "{:.3f}"),
-                         figure(plane.error_removed_percent, "{:.2f}"));
+                         figure(plane.error_removed_percent, "{:.2f}"), found_at(plane));
   }
   return lines;
 }

@@ -113,9 +113,10 @@ constexpr std::string_view kResult = R"({
 constexpr std::string_view kDistances = R"({
 "type":"array",
 "items":{"type":"object",
-  "required":["plane","reference_mm","nominal_mean_mm","calibrated_mean_mm","error_removed_percent",
+  "required":["plane","reference_mm","estimated_offset_mm","nominal_mean_mm","calibrated_mean_mm","error_removed_percent",
     "nominal_agreement_percent","nominal_rms_mm","calibrated_rms_mm"],
-  "properties":{"plane":{"type":"integer","minimum":1},"reference_mm":{"type":["number","null"]}}}})";
+  "properties":{"plane":{"type":"integer","minimum":1},"reference_mm":{"type":["number","null"]},
+    "estimated_offset_mm":{"type":["number","null"],"description":"where a face was found that is estimated in place"}}}})";
 
 constexpr std::string_view kTipUncertainty = R"({
 "type":"object",

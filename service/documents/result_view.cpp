@@ -154,21 +154,26 @@ double reference_of(const Cell& cell, int face) {
   return touched.cap ? surface_of(touched).radius_m() : touched.plane.offset_m;
 }
 
-/// Distances are reference + signed distance.
+/// Distances are reference + signed distance. Those of the
+/// calibrated arm from a face that was found in place begin at its found offset, so that the mean is against
+/// the reference as for the other faces, and not against what the same touches estimated.
 PlaneDistances plane_of(const Cell& cell, const calib::FaceDistances& face) {
   const double reference = reference_of(cell, face.face);
+  const double calibrated = face.calibrated_mean_m + face.found_offset_m.value_or(0.0);
   const auto percent = [](double part, double whole) {
     return whole == 0.0 ? std::nullopt : finite(100.0 * (1.0 - std::abs(part) / std::abs(whole)));
   };
-  return {.plane = face.face + 1,
-          .touch_count = face.touch_count,
-          .reference_mm = finite_mm(reference),
-          .nominal_mean_mm = finite_mm(reference + face.nominal_mean_m),
-          .calibrated_mean_mm = finite_mm(reference + face.calibrated_mean_m),
-          .error_removed_percent = percent(face.calibrated_mean_m, face.nominal_mean_m),
-          .nominal_agreement_percent = percent(face.nominal_mean_m, reference),
-          .nominal_rms_mm = finite_mm(face.nominal_rms_m),
-          .calibrated_rms_mm = finite_mm(face.calibrated_rms_m)};
+  return {
+      .plane = face.face + 1,
+      .touch_count = face.touch_count,
+      .reference_mm = finite_mm(reference),
+      .estimated_offset_mm = face.found_offset_m ? finite_mm(reference + *face.found_offset_m) : std::nullopt,
+      .nominal_mean_mm = finite_mm(reference + face.nominal_mean_m),
+      .calibrated_mean_mm = finite_mm(reference + calibrated),
+      .error_removed_percent = percent(calibrated, face.nominal_mean_m),
+      .nominal_agreement_percent = percent(face.nominal_mean_m, reference),
+      .nominal_rms_mm = finite_mm(face.nominal_rms_m),
+      .calibrated_rms_mm = finite_mm(face.calibrated_rms_m)};
 }
 
 TouchUse use_of(const calib::IdentificationResult& result, std::size_t touch) {
@@ -185,13 +190,15 @@ std::vector<ResultDocument::TouchDistances> touches_of(const Cell& cell,
   const auto distances = calib::touch_distances(problem, result);
   for (std::size_t i = 0; i < distances.size(); ++i) {
     const calib::Touch& touch = problem.touches[i];
+    const auto face = static_cast<std::size_t>(touch.face);
     const double reference = reference_of(cell, touch.face);
+    const double found = reference + calib::found_offset_m(problem, result, face).value_or(0.0);
     list.push_back({.touch = static_cast<int>(i) + 1,
                     .plane = touch.face + 1,
                     .role = touch.role,
                     .use = use_of(result, i),
                     .nominal_mm = finite_mm(reference + distances[i].nominal_m),
-                    .calibrated_mm = finite_mm(reference + distances[i].calibrated_m)});
+                    .calibrated_mm = finite_mm(found + distances[i].calibrated_m)});
   }
   return list;
 }

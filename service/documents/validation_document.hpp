@@ -14,6 +14,7 @@ struct PlaneDistances {
   int plane = 0;  // from 1
   int touch_count = 0;
   std::optional<double> reference_mm;
+  std::optional<double> estimated_offset_mm;  // of a face that was found in place
   std::optional<double> nominal_mean_mm;
   std::optional<double> calibrated_mean_mm;
   std::optional<double> error_removed_percent;
@@ -26,6 +27,7 @@ struct PlaneDistances {
     fields("plane", self.plane);
     fields("touch_count", self.touch_count);
     fields("reference_mm", self.reference_mm);
+    fields("estimated_offset_mm", self.estimated_offset_mm);
     fields("nominal_mean_mm", self.nominal_mean_mm);
     fields("calibrated_mean_mm", self.calibrated_mean_mm);
     fields("error_removed_percent", self.error_removed_percent);

@@ -18,8 +18,10 @@ struct PlaneFigures {
   std::optional<double> reference_mm;
 };
 
+/// Where the face lies: as written, or where it was found in place.
 std::optional<double> reference_of(const std::vector<PlaneDistances>& planes, int plane) {
   for (const PlaneDistances& one : planes) {
+    if (one.plane == plane && one.estimated_offset_mm) return one.estimated_offset_mm;
     if (one.plane == plane && one.reference_mm) return one.reference_mm;
   }
   return std::nullopt;

@@ -68,14 +68,14 @@ std::string distance_table(const std::vector<PlaneDistances>& planes, const char
   for (const PlaneDistances& plane : planes) {
     rows.push_back(
         {fmt::format("d{}", plane.plane), std::to_string(plane.touch_count),
-         figure_text(plane.reference_mm, "{:.3f}"), figure_text(plane.nominal_mean_mm, "{:.3f}"),
-         figure_text(plane.calibrated_mean_mm, "{:.3f}"),
+         figure_text(plane.reference_mm, "{:.3f}"), figure_if_known(plane.estimated_offset_mm, "{:.3f}"),
+         figure_text(plane.nominal_mean_mm, "{:.3f}"), figure_text(plane.calibrated_mean_mm, "{:.3f}"),
          figure_text(plane.nominal_agreement_percent, "{:.2f}"), figure_text(plane.nominal_rms_mm, "{:.3f}"),
          figure_text(plane.calibrated_rms_mm, "{:.3f}"), figure_text(plane.error_removed_percent, "{:.2f}")});
   }
   return html::table(caption,
-                     {"plane", "touches", "reference mm", "nominal mm", "calibrated mm", "agreement %",
-                      "nominal rms mm", "calibrated rms mm", "error removed %"},
+                     {"plane", "touches", "reference mm", "estimated mm", "nominal mm", "calibrated mm",
+                      "agreement %", "nominal rms mm", "calibrated rms mm", "error removed %"},
                      rows);
 }
 

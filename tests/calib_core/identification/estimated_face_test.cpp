@@ -67,6 +67,9 @@ TEST(EstimatedFaces, OfThePlateAreFoundBesideTheKnownBlock) {
   EXPECT_LT((found.result.artefact_errors - found.truth.artefact_errors).norm(), 1e-8);
   for (const FaceDistances& distances : found.result.distances) {
     EXPECT_LT(distances.calibrated_rms_m, 1e-9) << distances.face;  // from the plane as estimated
+    EXPECT_EQ(distances.found_offset_m.has_value(), distances.face == 4);
+    if (distances.face != 4) continue;
+    EXPECT_NEAR(distances.found_offset_m.value(), found.truth.artefact_errors[0], 1e-8);
   }
 }
 

@@ -75,6 +75,7 @@ TEST(ResultDocument, HasTheContractsFieldsWithTheirTypes) {
     EXPECT_EQ(shape_of(plane), (Shape{{"plane", "number"},
                                       {"touch_count", "number"},
                                       {"reference_mm", "number"},
+                                      {"estimated_offset_mm", "null"},
                                       {"nominal_mean_mm", "number"},
                                       {"calibrated_mean_mm", "number"},
                                       {"error_removed_percent", "number"},
@@ -335,6 +336,19 @@ TEST(ResultDocument, PercentagesAreThePapers) {
     EXPECT_NEAR(planes[i].at("nominal_agreement_percent").get<double>(), row.printed_percent, 0.01) << i;
     EXPECT_GE(planes[i].at("error_removed_percent").get<double>(), 99.7) << i;
   }
+}
+
+TEST(ResultDocument, TheMeanOfAFaceFoundInPlaceIsAgainstTheReferenceWithTheFoundOffsetBesideIt) {
+  calib::IdentificationResult identified;
+  identified.distances = {
+      {.face = 2, .nominal_mean_m = 2.3e-3, .calibrated_mean_m = 3e-6, .found_offset_m = 0.5e-3},
+      {.face = 3, .nominal_mean_m = 2.3e-3, .calibrated_mean_m = 3e-6}};
+  const json planes = document_of(problem_of(edf().recipes.at("edf-25")), identified).at("planes");
+  EXPECT_NEAR(planes[0].at("estimated_offset_mm").get<double>(), 150.5, 1e-9);
+  EXPECT_NEAR(planes[0].at("calibrated_mean_mm").get<double>(), 150.503, 1e-9);
+  EXPECT_NEAR(planes[0].at("error_removed_percent").get<double>(), 100.0 * (1.0 - 0.503 / 2.3), 1e-9);
+  EXPECT_TRUE(planes[1].at("estimated_offset_mm").is_null());
+  EXPECT_NEAR(planes[1].at("calibrated_mean_mm").get<double>(), 75.003, 1e-9);
 }
 
 TEST(ResultDocument, AFigureThatIsNoNumberIsNull) {
