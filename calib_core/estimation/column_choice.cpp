@@ -7,6 +7,7 @@
 
 #include "calib_core/geometry/face.hpp"
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/numerics/decompositions.hpp"
 #include "calib_core/numerics/halton.hpp"
 
 namespace calib {
@@ -140,6 +141,23 @@ IdentifiableSet choose_columns(const IdentificationProblem& problem, const Ident
   WeakDiagonals weak{};
   if (options.hold_weak) weak = weak_diagonals(problem, touches, options.formulation);
   return choose_identifiable(matrix.kinematic, options.identifiability, weak, matrix.leading);
+}
+
+std::vector<double> choice_singular_values(const IdentificationProblem& problem,
+                                           const IdentificationOptions& options,
+                                           const std::vector<std::size_t>& touches) {
+  if (touches.empty()) return {};
+  const ChoiceMatrix matrix =
+      choice_matrix(problem.nominal, problem.artefact, pick(problem.touches, touches), options.formulation);
+  const std::vector<int>& excluded = options.identifiability.excluded;
+  std::vector<int> columns;
+  for (int column = 0; column < kErrorParameterCount; ++column) {
+    if (std::ranges::find(excluded, column) == excluded.end()) columns.push_back(column);
+  }
+  Eigen::MatrixXd candidates = select_columns(matrix.kinematic, columns);
+  if (matrix.leading.cols() > 0) candidates -= matrix.leading * (pseudo_inverse(matrix.leading) * candidates);
+  const Eigen::VectorXd sigma = singular_values(candidates);
+  return {sigma.begin(), sigma.end()};
 }
 
 std::vector<int> estimated_columns(const IdentificationProblem& problem, const IdentificationOptions& options,

@@ -28,6 +28,14 @@ Attainable attainable_parameters(const IdentificationProblem& problem, const Ide
 IdentifiableSet choose_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
                                const std::vector<std::size_t>& touches);
 
+/// The singular values, descending, of the matrix that choose_columns() decides on: W of the nominal model
+/// with each touch moved onto its nominal face, without the excluded candidates and without what faces that
+/// are estimated in place explain. As many as candidates (or touches): those beyond the identified ones are
+/// rounding errors where the choice is clear.
+std::vector<double> choice_singular_values(const IdentificationProblem& problem,
+                                           const IdentificationOptions& options,
+                                           const std::vector<std::size_t>& touches);
+
 /// Indices into ArmVector of the estimated parameters: the chosen columns, or with the prior all that are not
 /// excluded; with stiffness also the compliances of joints 1 to 3 that have a prior, with
 /// Harmonics::kEstimate the harmonics that have one. The compliances of the wrist are never estimated:

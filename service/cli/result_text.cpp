@@ -192,6 +192,9 @@ std::string result_text(const ResultDocument& result) {
   for (const ResultDocument::Iteration& iteration : result.iterations)
     lines += " " + figure(iteration.condition_number, "{:.1f}");
   lines += fmt::format(" (columns of unit norm: {})\n", figure(result.scaled_condition_number, "{:.1f}"));
+  if (result.rank.singular_value_gap)
+    lines += fmt::format("smallest singular value kept over the next one: {}\n",
+                         figure(result.rank.singular_value_gap, "{:.3g}"));
   if (!result.rank.explanation.empty())
     lines += fmt::format("not more of them: {}\n", result.rank.explanation);
   lines += fit_text(result.fit);

@@ -42,6 +42,10 @@ constexpr std::string_view kResult = R"({
   "condition_number":{"type":["number","null"]},
   "scaled_condition_number":{"type":["number","null"]},
   "singular_values":{"type":"array","items":{"type":"number"}},
+  "rank":{"type":"object","required":["singular_values","singular_value_gap"],"properties":{
+    "singular_values":{"type":"array","items":{"type":["number","null"]},
+      "description":"of W of the touches that the choice of columns was made with, each moved onto its nominal plane; descending"},
+    "singular_value_gap":{"type":["number","null"],"description":"that of the last identified parameter over the next"}}},
   "parameters":{"type":"array","minItems":37,"items":{"type":"object",
     "required":["name","frame","kind","group","unit","nominal","status","error","std_uncertainty","grouped_with"],
     "properties":{

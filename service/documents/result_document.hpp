@@ -107,6 +107,8 @@ struct ResultDocument {
     std::string explanation;
     std::optional<double> smallest_kept;
     std::optional<double> largest_dropped;
+    std::vector<double> singular_values;       // of the touches that the choice was made with, descending
+    std::optional<double> singular_value_gap;  // of the last identified one over the next
 
     template <class Self, class Fields>
     static void visit(Self& self, Fields& fields) {
@@ -115,6 +117,8 @@ struct ResultDocument {
       fields("explanation", self.explanation);
       fields("smallest_kept", self.smallest_kept);
       fields("largest_dropped", self.largest_dropped);
+      fields("singular_values", self.singular_values);
+      fields("singular_value_gap", self.singular_value_gap);
     }
   };
   /// Distances run along the outward normal from the origin, as those of the planes.

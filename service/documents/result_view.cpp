@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib_core/estimation/column_choice.hpp"
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/identification/face_distances.hpp"
 #include "calib_core/identification/validate.hpp"
@@ -140,12 +141,34 @@ ResultDocument::Fit fit_of(const Cell& cell, const calib::IdentificationProblem&
   return document;
 }
 
-ResultDocument::Rank rank_of(const calib::IdentificationResult& result) {
-  return {.attainable = result.attainable.count,
-          .off_axis = result.attainable.off_axis_count,
-          .explanation = result.rank_explanation,
-          .smallest_kept = finite(result.identifiable.smallest_kept),
-          .largest_dropped = finite(result.identifiable.largest_dropped)};
+/// The touches that the choice of columns was made with: outliers were found after it.
+std::vector<std::size_t> chosen_with(const calib::IdentificationProblem& problem,
+                                     const calib::IdentificationResult& result) {
+  std::vector<std::size_t> touches;
+  for (std::size_t i = 0; i < problem.touches.size(); ++i) {
+    const bool is_on_another =
+        std::ranges::any_of(result.rejected, [&](const calib::RejectedTouch& rejected) {
+          return rejected.touch == i && rejected.reason == calib::RejectionReason::kWrongFace;
+        });
+    if (problem.touches[i].role == calib::TouchRole::kFit && !is_on_another) touches.push_back(i);
+  }
+  return touches;
+}
+
+ResultDocument::Rank rank_of(const calib::IdentificationProblem& problem,
+                             const calib::IdentificationOptions& options,
+                             const calib::IdentificationResult& result) {
+  ResultDocument::Rank rank{.attainable = result.attainable.count,
+                            .off_axis = result.attainable.off_axis_count,
+                            .explanation = result.rank_explanation,
+                            .smallest_kept = finite(result.identifiable.smallest_kept),
+                            .largest_dropped = finite(result.identifiable.largest_dropped)};
+  const std::size_t count = result.identifiable.columns.size();
+  if (count == 0) return rank;  // refused before the choice, perhaps for a touch that cannot be
+  rank.singular_values = calib::choice_singular_values(problem, options, chosen_with(problem, result));
+  if (count < rank.singular_values.size())
+    rank.singular_value_gap = finite(rank.singular_values[count - 1] / rank.singular_values[count]);
+  return rank;
 }
 
 /// What distances count from: a plane's from the origin along its outward normal, a sphere's from its centre.
@@ -258,7 +281,7 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
                           .converged = result.status == calib::IdentificationStatus::kConverged,
                           .identifiable_count = static_cast<int>(result.identifiable.columns.size()),
                           .singular_values = result.singular_values,
-                          .rank = rank_of(result),
+                          .rank = rank_of(problem, options, result),
                           .parameters = parameters_of(problem, options, result),
                           .correlations = correlations_of(result),
                           .artefact_parameters = artefact_parameters_of(problem, result),

@@ -175,6 +175,8 @@ std::string summary_section(const ResultDocument& result) {
                                      std::to_string(result.parameters.size())},
            {"condition number", figure_text(result.condition_number, "{:.0f}") + " (columns of unit norm: " +
                                     figure_text(result.scaled_condition_number, "{:.0f}") + ")"},
+           {"smallest singular value kept over the next",
+            figure_text(result.rank.singular_value_gap, "{:.3g}")},
            {fmt::format("predicted uncertainty of the tip in the workspace box, k = {:g}", tip.expanded.k),
             expanded_words(tip.expanded)},
            {"the same in the arm's own frame, without the block's place",

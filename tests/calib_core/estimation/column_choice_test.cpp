@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,49 @@ TEST(RankExplanation, OfASpreadSetNamesTheStylus) {
   EXPECT_EQ(result.attainable.off_axis_count, 27);
   EXPECT_THAT(result.rank_explanation, AllOf(HasSubstr("25 is the most"), HasSubstr("27 with a tip off it")));
   EXPECT_TRUE(weak_ones(result).empty());
+}
+
+std::vector<std::size_t> all_of(const IdentificationProblem& problem) {
+  std::vector<std::size_t> touches(problem.touches.size());
+  for (std::size_t i = 0; i < touches.size(); ++i) touches[i] = i;
+  return touches;
+}
+
+TEST(ChoiceSingularValues, HaveAGapBehindTheIdentifiedParameters) {
+  for (const bool estimated : {false, true}) {
+    IdentificationProblem problem = touched({.count = 100});
+    ArtefactKnowledge knowledge = drawn::certain_artefact(4);
+    knowledge.face_uncertainties[3].estimated = estimated;
+    problem.artefact = make_artefact(knowledge);
+    IdentificationOptions options;
+    options.hold_weak = false;
+    for (const std::vector<int>& excluded : {std::vector<int>{}, std::vector<int>{3, 21}}) {
+      options.identifiability.excluded = excluded;
+      const std::size_t count = choose_columns(problem, options, all_of(problem)).columns.size();
+      EXPECT_TRUE(!excluded.empty() || (count < 25u) == estimated) << count;
+      const std::vector<double> sigma = choice_singular_values(problem, options, all_of(problem));
+      ASSERT_EQ(sigma.size(), kErrorParameterCount - excluded.size());
+      EXPECT_TRUE(std::ranges::is_sorted(sigma, std::ranges::greater{}));
+      EXPECT_GT(sigma[count - 1], 1e9 * sigma[count]) << count;
+    }
+  }
+}
+
+TEST(ChoiceSingularValues, AreThoseOfTheTouchesThatTheChoiceWasMadeWith) {
+  const IdentificationProblem problem = touched({.count = 100});
+  IdentificationProblem half = problem;
+  half.touches.resize(50);
+  std::vector<std::size_t> first = all_of(half);
+  EXPECT_EQ(choice_singular_values(problem, {}, first), choice_singular_values(half, {}, first));
+  // Where along its normal a touch was made does not matter: it is moved onto its nominal plane.
+  const PreparedModel nominal = prepare(problem.nominal);
+  for (Touch& touch : half.touches) {
+    touch =
+        moved_onto_plane(nominal, half.artefact.contact_planes[static_cast<std::size_t>(touch.face)], touch);
+  }
+  const auto moved = choice_singular_values(half, {}, first);
+  const auto as_made = choice_singular_values(problem, {}, first);
+  for (std::size_t i = 0; i < 25; ++i) EXPECT_NEAR(moved[i] / as_made[i], 1.0, 1e-6) << i;
 }
 
 TEST(RankExplanation, OfATipOffTheAxisSaysNothingOfACrankedOne) {

@@ -90,7 +90,9 @@ TEST(ResultDocument, ItsPartsHaveTheirFieldsWithTheirTypes) {
                                                   {"off_axis", "number"},
                                                   {"explanation", "string"},
                                                   {"smallest_kept", "number"},
-                                                  {"largest_dropped", "number"}}));
+                                                  {"largest_dropped", "number"},
+                                                  {"singular_values", "array"},
+                                                  {"singular_value_gap", "number"}}));
   EXPECT_EQ(shape_of(result().at("scale")), (Shape{{"source", "string"},
                                                    {"std_uncertainty_ppm", "number"},
                                                    {"stretch_ppm", "number"},
@@ -349,6 +351,20 @@ TEST(ResultDocument, TheMeanOfAFaceFoundInPlaceIsAgainstTheReferenceWithTheFound
   EXPECT_NEAR(planes[0].at("error_removed_percent").get<double>(), 100.0 * (1.0 - 0.503 / 2.3), 1e-9);
   EXPECT_TRUE(planes[1].at("estimated_offset_mm").is_null());
   EXPECT_NEAR(planes[1].at("calibrated_mean_mm").get<double>(), 75.003, 1e-9);
+}
+
+TEST(ResultDocument, ShowsTheSingularValuesThatTheChoiceWasMadeOnWithTheirGap) {
+  const json& rank = result().at("rank");
+  const auto sigma = rank.at("singular_values").get<std::vector<double>>();
+  const auto count = result().at("identifiable_count").get<std::size_t>();
+  ASSERT_EQ(sigma.size(), 37u);  // edf-25 leaves no candidate out
+  EXPECT_DOUBLE_EQ(rank.at("singular_value_gap").get<double>(), sigma[count - 1] / sigma[count]);
+  EXPECT_GT(rank.at("singular_value_gap").get<double>(), 1e9);
+  calib::IdentificationResult refused;
+  refused.message = "no touch";
+  const json without = document_of(problem_of(edf().recipes.at("edf-25")), refused).at("rank");
+  EXPECT_EQ(without.at("singular_values"), json::array());
+  EXPECT_TRUE(without.at("singular_value_gap").is_null());
 }
 
 TEST(ResultDocument, AFigureThatIsNoNumberIsNull) {
