@@ -100,6 +100,10 @@ step('TheResultSaysTheVerdictInWordsAndShowsEveryError', async () => {
   const found = result.parameters.find(({status}) => status === 'identified');
   const row = page.locator('table.errors tbody tr', {has: page.getByRole('rowheader', {name: found.name, exact: true})});
   await row.filter({hasText: found.error.toFixed(found.unit === 'rad' ? 5 : 3)}).waitFor();
+  const {expanded, arm_frame} = result.tip_uncertainty;
+  const shown = await page.locator('table.tip-expanded tbody tr').evaluateAll((rows) => rows.map((one) => [...one.querySelectorAll('td')].map((cell) => cell.textContent)));
+  assert.deepEqual(shown, [expanded, arm_frame.expanded].map((of) => [of.box_rms_mm, of.box_p95_mm, of.box_max_mm].map((mm) => mm.toFixed(3))));
+  assert.equal(await page.locator('section:has(table.tip-expanded) ~ section:has(dl.figures)').count(), 1, 'k = 2 stands first');
   assert.equal(await page.locator('.map .layers figure').count(), result.tip_uncertainty.map.counts[1]);
   await expectAccessible(page, 'result');
 });

@@ -1,10 +1,13 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import type {Parameter, Result, Run, UncertaintyMap} from 'page/api/documents.ts';
+import type {Cell, Parameter, Result, Run, UncertaintyMap} from 'page/api/documents.ts';
 import {compareHeldOut, compareRuns, trend, trendChoices} from 'page/model/history.ts';
 import {layersOf, rangeOf} from 'page/model/map_layers.ts';
 import {conditions} from 'page/model/readiness.ts';
 import {kTouchFaults, mainAction, mayPause, mood, touchActions} from 'page/model/states.ts';
+import {residualsOf} from 'page/model/live_figures.ts';
+import {slimResult} from 'page/model/slim_result.ts';
+import {tipRows} from 'page/model/tip_rows.ts';
 import {verdictOf} from 'page/model/verdict.ts';
 import {statusWith} from './statuses.ts';
 
@@ -91,4 +94,32 @@ test('TheRunSaysItsVerdictAndNotAResultThatIsBehindIt', () => {
   assert.equal(verdict({run_id: '2'}, whole), 'accepted');
   assert.equal(verdict({run_id: '2'}, behind), 'incomplete');
   assert.equal(verdictOf('1', whole, {status: null, runs: [{id: '1', verdict: 'rejected'} as Run]}), 'rejected');
+});
+
+const expanded = (rms: number) => ({k: 2, box_rms_mm: rms, box_p95_mm: 1.5 * rms, box_max_mm: 2 * rms});
+const tipOf = (more: object): Result => ({
+  ...resultWith([]),
+  tip_uncertainty: {expanded: expanded(0.1), arm_frame: {at_block_rms_mm: 9, expanded: expanded(0.25)}, at_block_rms_mm: 9, map: null}, ...more,
+} as unknown as Result);
+
+test('TheTipsUncertaintyIsThatOfBothFramesAndOfSimulationsWhereThereAreAny', () => {
+  const linear = [{name: 'tipBlockFrame', rms_mm: 0.1, p95_mm: 0.15000000000000002, worst_mm: 0.2},
+                  {name: 'tipArmFrame', rms_mm: 0.25, p95_mm: 0.375, worst_mm: 0.5}];
+  assert.deepEqual(tipRows(slimResult(tipOf({monte_carlo: null}))), linear);
+  const monte_carlo = {count: 100, converged: 99, box_rms_mm: 0.06, box_p95_mm: 0.11, joint_ranges_rms_mm: 0.2, linear_over_monte_carlo: 0.9};
+  assert.deepEqual(tipRows(slimResult(tipOf({monte_carlo}))),
+                   [...linear, {name: 'tipSimulated', rms_mm: 0.12, p95_mm: 0.11, worst_mm: null}]);
+  assert.deepEqual(tipRows(tipOf({monte_carlo: {...monte_carlo, box_rms_mm: null, box_p95_mm: null}})).at(-1),
+                   {name: 'tipSimulated', rms_mm: null, p95_mm: null, worst_mm: null});
+  assert.deepEqual(tipRows(tipOf({tip_uncertainty: {at_block_rms_mm: 9, map: null}})), [], 'of an older daemon');
+});
+
+test('TheResidualsOfAFaceFoundInPlaceAreFromWhereItWasFound', () => {
+  const cell = {acceptance: {held_out_mean_max_mm: 0.05, held_out_rms_max_mm: 0.05}} as unknown as Cell;
+  const plane = {plane: 5, reference_mm: 0, calibrated_mean_mm: 0.5, calibrated_rms_mm: 0.01};
+  const mean = (estimated_offset_mm?: number | null) =>
+      residualsOf({planes: [{...plane, estimated_offset_mm}], planes_held_out: []} as unknown as Result, cell)[0]!.fit;
+  assert.deepEqual(mean(0.5), {mean_mm: 0, rms_mm: 0.01, isWithin: true});
+  assert.equal(mean(null)?.isWithin, false);
+  assert.equal(mean()?.mean_mm, 0.5);
 });

@@ -127,7 +127,12 @@ export interface Touch { plane: number; role: TouchRole; joints_deg: number[] }
 export interface Touches { touches: Touch[] }
 
 export interface UncertaintyMap { box: Box; counts: Vector; cell_mm: Vector; values_mm: (number | null)[] }
+/** k times the standard uncertainty of the tip over the workspace box. */
+export interface ExpandedTip { k: number; box_rms_mm: number | null; box_p95_mm: number | null; box_max_mm: number | null }
+/** A result that an older daemon stored lacks what is optional. */
 export interface TipUncertainty {
+  expanded?: ExpandedTip;
+  arm_frame?: {expanded: ExpandedTip};
   at_block_rms_mm: number | null;
   workspace_box_rms_mm: number | null;
   joint_ranges_rms_mm: number | null;
@@ -160,11 +165,22 @@ export interface PlaneDistances {
   plane: number;
   touch_count: number;
   reference_mm: number;
+  /** Of a face that was found in place; the calibrated mean scatters about this. */
+  estimated_offset_mm?: number | null;
   nominal_mean_mm: number | null;
   calibrated_mean_mm: number | null;
   error_removed_percent: number | null;
   nominal_rms_mm: number | null;
   calibrated_rms_mm: number | null;
+}
+/** Simulated calibrations: standard uncertainties, and the tip error that 95 % of the errors do not exceed. */
+export interface MonteCarlo {
+  count: number;
+  converged: number;
+  box_rms_mm: number | null;
+  box_p95_mm: number | null;
+  joint_ranges_rms_mm: number | null;
+  linear_over_monte_carlo: number | null;
 }
 /** A figure against its limit (ISO 14253-1). */
 export interface Criterion {
@@ -198,6 +214,7 @@ export interface Result {
     warning: string | null;
   };
   tip_uncertainty: TipUncertainty;
+  monte_carlo?: MonteCarlo | null;
   fit: {noise_declared_um: number | null; noise_estimated_um: number | null; lack_of_fit_p: number | null};
   verdict: {accepted: boolean; reasons: string[]; decision_rule?: DecisionRule};
 }

@@ -13,7 +13,7 @@ export function residualsOf(result: Result, cell: Cell): PlaneResiduals[] {
   const residual = (list: PlaneDistances[], plane: number): Residual | null => {
     const distances = list.find((one) => one.plane === plane);
     if (!distances || distances.calibrated_mean_mm === null || distances.calibrated_rms_mm === null) return null;
-    const mean_mm = distances.calibrated_mean_mm - distances.reference_mm;
+    const mean_mm = distances.calibrated_mean_mm - (distances.estimated_offset_mm ?? distances.reference_mm);
     const rms_mm = distances.calibrated_rms_mm;
     return {mean_mm, rms_mm, isWithin: Math.abs(mean_mm) <= mean_max && rms_mm <= rms_max};
   };

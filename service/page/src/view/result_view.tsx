@@ -3,6 +3,7 @@ import type {Parameter, PlaneDistances, Result, VerdictName} from '../api/docume
 import type {Desk} from '../model/desk.ts';
 import {number, type Language} from '../model/format.ts';
 import {newestRun, type PageState} from '../model/page_state.ts';
+import {tipRows} from '../model/tip_rows.ts';
 import {verdictOf} from '../model/verdict.ts';
 import {sayName, type Say, type WordKey} from '../words/words.ts';
 import {LimitsTable} from './limits_table.tsx';
@@ -29,6 +30,7 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
       <Verdict result={result} verdict={verdict} />
       <Downloads run_id={run_id} desk={desk} />
       {result.verdict.decision_rule ? <LimitsTable rule={result.verdict.decision_rule} /> : null}
+      <TipExpanded result={result} />
       <TipErrors result={result} />
       <Distances result={result} />
       <Errors result={result} />
@@ -102,6 +104,44 @@ function Downloads({run_id, desk}: {run_id: string; desk: Desk}) {
   );
 }
 
+/** Where the result is good, first: the expanded uncertainty of the tip in the workspace box. */
+function TipExpanded({result}: {result: Result}) {
+  const say = useSay();
+  const language = useLanguage();
+  const rows = tipRows(result);
+  if (rows.length === 0) return null;
+  const caption = say('tipExpanded', {k: number(result.tip_uncertainty.expanded?.k ?? null, 0, language)});
+  const simulated = result.monte_carlo;
+  return (
+    <section>
+      <Scroll label={caption}>
+        <table class="tip-expanded">
+          <caption>{caption}</caption>
+          <thead>
+            <tr>{(['tipFrame', 'tipRms', 'tipP95', 'tipWorst'] as const).map((key) => <th key={key} scope="col">{say(key)}</th>)}</tr>
+          </thead>
+          <tbody>
+            {rows.map(({name, rms_mm, p95_mm, worst_mm}) => (
+              <tr key={name}>
+                <th scope="row">{say(name)}</th>
+                <td class="figure">{number(rms_mm, 3, language)}</td>
+                <td class="figure">{number(p95_mm, 3, language)}</td>
+                <td class="figure">{name === 'tipSimulated' ? '' : number(worst_mm, 3, language)}</td>
+              </tr>
+            ))}
+          </tbody>
+        </table>
+      </Scroll>
+      {simulated
+        ? <p class="hint">
+            {say('tipSimulatedCount', {converged: simulated.converged, count: simulated.count,
+                                       ratio: number(simulated.linear_over_monte_carlo, 2, language)})}
+          </p>
+        : null}
+    </section>
+  );
+}
+
 function TipErrors({result}: {result: Result}) {
   const say = useSay();
   const language = useLanguage();
@@ -133,11 +173,17 @@ function TipErrors({result}: {result: Result}) {
 function Distances({result}: {result: Result}) {
   const say = useSay();
   const language = useLanguage();
+  const isAnyFound = [...result.planes, ...result.planes_held_out].some(({estimated_offset_mm}) => estimated_offset_mm != null);
+  const columns: WordKey[] = ['plane', 'role', 'reference', ...(isAnyFound ? ['foundAt' as const] : []), 'before', 'after', 'rmsBefore',
+                              'rmsAfter', 'removed'];
   const row = (kind: WordKey) => (distances: PlaneDistances) => (
     <tr key={`${kind}${distances.plane}`}>
       <th scope="row">{say('plane', {plane: distances.plane})}</th>
       <td>{say(kind)} ({distances.touch_count})</td>
       <td class="figure">{number(distances.reference_mm, 3, language)}</td>
+      {isAnyFound
+        ? <td class="figure">{distances.estimated_offset_mm == null ? '' : number(distances.estimated_offset_mm, 3, language)}</td>
+        : null}
       <td class="figure">{number(distances.nominal_mean_mm, 3, language)}</td>
       <td class="figure">{number(distances.calibrated_mean_mm, 3, language)}</td>
       <td class="figure">{number(distances.nominal_rms_mm, 3, language)}</td>
@@ -151,7 +197,7 @@ function Distances({result}: {result: Result}) {
         <caption>{say('distances')}</caption>
         <thead>
           <tr>
-            {(['plane', 'role', 'reference', 'before', 'after', 'rmsBefore', 'rmsAfter', 'removed'] as const).map((key) => (
+            {columns.map((key) => (
               <th key={key} scope="col">{say(key, {plane: ''})}</th>
             ))}
           </tr>
