@@ -46,26 +46,38 @@ ErrorVector draw_errors(const ErrorTolerances& tolerances, UniformChance& chance
 
 std::vector<double> draw_offset_errors_m(const ArtefactKnowledge& known, UniformChance& chance) {
   const Artefact artefact = make_artefact(known);
-  std::vector<double> errors_m(known.faces.size(), 0.0);
-  if (artefact.parameters.empty()) return errors_m;
-  const Eigen::MatrixXd root = prior_covariance(artefact).llt().matrixL();
-  Eigen::VectorXd unit(root.rows());
-  for (double& deviate : unit) deviate = study::normal(chance);
-  const Eigen::VectorXd drawn = root * unit;
-  for (Eigen::Index k = 0; k < drawn.size(); ++k) {
-    const ArtefactParameter& parameter = artefact.parameters[static_cast<std::size_t>(k)];
+  const Eigen::MatrixXd covariance = prior_covariance(artefact);
+  std::vector<Eigen::Index> places;
+  std::vector<std::size_t> faces;
+  for (std::size_t k = 0; k < artefact.parameters.size(); ++k) {
+    const ArtefactParameter& parameter = artefact.parameters[k];
     if (parameter.kind != ArtefactKind::kFaceOffset || !parameter.std) continue;
-    for (std::size_t face = 0; face < errors_m.size(); ++face) {
-      if (parameter.shifts[face].constant != 0.0) errors_m[face] = drawn[k];
-    }
+    places.push_back(static_cast<Eigen::Index>(k));
+    const auto is_moved = [](const ArtefactParameter::Shift& shift) { return shift.constant != 0.0; };
+    faces.push_back(static_cast<std::size_t>(std::ranges::find_if(parameter.shifts, is_moved) -
+                                             parameter.shifts.begin()));
   }
+  std::vector<double> errors_m(known.faces.size(), 0.0);
+  if (places.empty()) return errors_m;
+  Eigen::VectorXd unit(std::ssize(places));
+  for (double& deviate : unit) deviate = study::normal(chance);
+  const Eigen::MatrixXd of_offsets = covariance(places, places);
+  const Eigen::VectorXd drawn = of_offsets.llt().matrixL() * unit;
+  for (std::size_t i = 0; i < faces.size(); ++i) errors_m[faces[i]] = drawn[static_cast<Eigen::Index>(i)];
   return errors_m;
 }
 
 DrawnArtefact draw_artefact(const ArtefactKnowledge& known, UniformChance& chance) {
   DrawnArtefact drawn{known, known};
-  const std::vector<double> errors_m = draw_offset_errors_m(known, chance);
-  for (std::size_t i = 0; i < errors_m.size(); ++i) drawn.truth.faces[i].plane.offset_m += errors_m[i];
+  for (std::size_t i = 0; i < known.face_uncertainties.size(); ++i) {
+    drawn.truth.faces[i].plane.offset_m += known.face_uncertainties[i].std_offset_m * study::normal(chance);
+  }
+  for (KnownLength& length : drawn.known.lengths) {
+    const Plane& a = drawn.truth.faces[static_cast<std::size_t>(length.faces[0])].plane;
+    const Plane& b = drawn.truth.faces[static_cast<std::size_t>(length.faces[1])].plane;
+    const double sign = a.outward.dot(b.outward) > 0.0 ? -1.0 : 1.0;
+    length.value_m = std::abs(a.offset_m + sign * b.offset_m) + length.std_m * study::normal(chance);
+  }
   for (std::size_t i = 0; i < known.face_uncertainties.size(); ++i) {
     Face& face = drawn.truth.faces[i];
     const double std_rad = known.face_uncertainties[i].std_tilt_rad;

@@ -41,13 +41,15 @@ ErrorVector draw_errors(const ErrorTolerances& tolerances, UniformChance& chance
 /// are correlated. 0 for a face that is estimated in place.
 std::vector<double> draw_offset_errors_m(const ArtefactKnowledge& known, UniformChance& chance);
 
-/// An artefact, and what is written down of it.
+/// An artefact, and what is written down of it: the same, but for the certified lengths.
 struct DrawnArtefact {
   ArtefactKnowledge truth;
   ArtefactKnowledge known;
 };
 
-/// The artefact that is really there, everything uncertain in `known` drawn from what is said of it.
+/// The artefact that is really there, everything uncertain in `known` drawn from its standard deviation by
+/// itself; the certificates' lengths are those of this artefact, as uncertain as they say. Both together know
+/// the artefact better than a certificate that counts once: the harder case for an alarm.
 DrawnArtefact draw_artefact(const ArtefactKnowledge& known, UniformChance& chance);
 
 /// Postures of the nominal arm on the first `face_count` faces in turn: points, tilts up to the cell's limit
