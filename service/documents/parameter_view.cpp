@@ -149,13 +149,15 @@ std::vector<Parameter> parameters_of(const calib::IdentificationProblem& problem
 std::vector<ArtefactParameter> artefact_parameters_of(const calib::IdentificationProblem& problem,
                                                       const calib::IdentificationResult& result) {
   std::vector<ArtefactParameter> list;
+  // Of an offset its certificate may say more than its own deviation: that is no work of the touches.
+  const Eigen::MatrixXd given = calib::prior_covariance(problem.artefact);
   for (std::size_t i = 0; i < problem.artefact.parameters.size(); ++i) {
     const calib::ArtefactParameter& parameter = problem.artefact.parameters[i];
     const auto index = static_cast<Eigen::Index>(i);
     const std::string unit = unit_name(parameter.kind);
     const double scale = unit == "mm" ? calib::mm_from_metres(1.0) : 1.0;
     const double std = result.uncertainty ? result.uncertainty->artefact_std[index] : kUnknown;
-    const bool identified = is_improved(std, parameter.std);
+    const bool identified = !parameter.std || is_improved(std, std::sqrt(given(index, index)));
     const bool estimated = result.artefact_errors.size() > index;
     ArtefactParameter& shown_as = list.emplace_back();
     shown_as.name = parameter.name;

@@ -58,6 +58,24 @@ TEST(ResultDocument, WithAPriorEveryErrorIsIdentifiedAndTheRankStaysThatOfTheTou
   }
 }
 
+TEST(ArtefactParameters, AreNotIdentifiedByTheirCertificate) {
+  Cell certified = edf();
+  certified.block.lengths = {{{0, 3}, 0.150, 2e-6}};
+  const Recipe& recipe = certified.recipes.at("edf-25");
+  calib::IdentificationProblem problem = identification_problem(certified, recipe);
+  problem.touches = table3_touches();
+  const auto found = artefact_parameters_of(problem, calib::identify(problem, recipe.identification));
+  int seen = 0;
+  for (const ArtefactParameter& offset : found) {
+    if (offset.name != "plane1_offset" && offset.name != "plane4_offset") continue;
+    // Within 0.02 mm each as written, and less as they cannot both be off outwards.
+    EXPECT_NEAR(offset.std_uncertainty.value(), 0.02 / std::sqrt(2.0), 0.0007) << offset.name;
+    EXPECT_EQ(offset.status, ArtefactStatus::kPrior) << offset.name;
+    ++seen;
+  }
+  EXPECT_EQ(seen, 2);
+}
+
 TEST(ResultDocument, ShowsLengthsInMillimetresAndAnglesInRadians) {
   const json errors = json_of(kSourceDir / "tests/data/table3-exact.expected.json").at("identified_errors");
   for (const auto& [name, error] : errors.items()) {
