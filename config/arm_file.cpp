@@ -18,8 +18,11 @@ using calib::kJointCount;
 
 constexpr NumberRange kGains{.min = -1000.0, .max = 1000.0};
 constexpr double kGainSizeMin = 1e-3;
-/// rad/Nm; at the bounds 100 Nm turn a joint by 0.6 degrees. An identified one may be a little under 0.
-constexpr NumberRange kCompliances{.min = -1e-4, .max = 1e-4};
+/// rad/Nm; at the bounds 100 Nm turn a joint by 6 degrees. An identified one may be a little under 0, and ten
+/// times what a soft arm has where touches hardly show it: what was exported is read again.
+constexpr NumberRange kCompliances{.min = -1e-3, .max = 1e-3};
+/// A joint of an arm that is worth calibrating does not yield more.
+constexpr NumberRange kComplianceDeviations{.min = 0.0, .max = 1e-4};
 
 /// A unit vector in a file may be this much longer or shorter.
 constexpr double kUnitVectorError = 1e-6;
@@ -149,6 +152,25 @@ std::vector<std::pair<std::size_t, JsonValue>> of_compliant_joints(const JsonVal
   return joints;
 }
 
+bool are_all_zero(const std::optional<JsonValue>& values) {
+  if (!values) return true;
+  const auto joints = of_compliant_joints(*values);
+  return std::ranges::all_of(joints,
+                             [](const auto& joint) { return joint.second.number(kCompliances) == 0.0; });
+}
+
+/// Zeros for all joints say as little of the droop as nothing at all: an arm that does not yield needs no
+/// masses.
+void demand_compliance(const JsonObject& object, const std::optional<JsonValue>& compliances,
+                       const std::optional<JsonValue>& deviations) {
+  if (!are_all_zero(compliances) || !are_all_zero(deviations)) return;
+  object.at("masses").fail(
+      "masses without a compliance: the droop would be neither in the model nor in an uncertainty; add "
+      "\"std_compliance_rad_per_nm\" beside them (0 for a joint that does not yield, over 0 for at least "
+      "one), "
+      "or leave \"gravity\" out");
+}
+
 void read_gravity(const JsonValue& value, bool is_first_schema, Arm& arm) {
   const JsonObject object =
       is_first_schema
@@ -160,18 +182,14 @@ void read_gravity(const JsonValue& value, bool is_first_schema, Arm& arm) {
   read_masses(object.at("masses"), arm.model);
   const auto compliances = object.find("compliance_rad_per_nm");
   const auto deviations = object.find("std_compliance_rad_per_nm");
-  if (!compliances && !deviations) {
-    object.at("masses").fail(
-        "masses without a compliance: the droop would be neither in the model nor in an uncertainty; add "
-        "\"std_compliance_rad_per_nm\" beside them (0 for a joint that does not yield)");
-  }
+  demand_compliance(object, compliances, deviations);
   if (compliances) {
     for (const auto& [joint, item] : of_compliant_joints(*compliances))
       arm.model.compliance_rad_per_nm[joint] = item.number(kCompliances);
   }
   if (deviations) {
     for (const auto& [joint, item] : of_compliant_joints(*deviations)) {
-      const double std = item.number({.min = 0.0, .max = kCompliances.max});
+      const double std = item.number(kComplianceDeviations);
       if (std > 0.0)
         arm.nongeometric_std[static_cast<std::size_t>(calib::compliance_position(static_cast<int>(joint)))] =
             std;

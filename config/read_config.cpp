@@ -49,9 +49,9 @@ void read_frame_overrides(const JsonValue& value, Cell& cell) {
   }
 }
 
-void read_recipes(const JsonObject& object, Cell& cell) {
+void read_recipes(const JsonObject& object, std::optional<StiffnessChoice> stiffness, Cell& cell) {
   for (const JsonValue& item : object.at("recipes").items(1, kRecipeCountMax)) {
-    Recipe recipe = read_recipe(named_file(item, cell), cell.arm, cell.block);
+    Recipe recipe = read_recipe(named_file(item, cell), cell.arm, cell.block, stiffness);
     const std::string name = recipe.name;
     if (!cell.recipes.emplace(name, std::move(recipe)).second) {
       item.fail("a recipe with the name " + in_quotes(name) + " is already there; rename one of them");
@@ -225,7 +225,7 @@ Endpoint endpoint_from_json(const JsonValue& value) {
 
 }  // namespace
 
-Cell read_cell(const std::filesystem::path& file) {
+Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice> stiffness) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
   const bool is_first_schema = has_schema(document, kFirstCellSchema);
@@ -260,7 +260,7 @@ Cell read_cell(const std::filesystem::path& file) {
   if (const auto frames = object.find("frames")) read_frame_overrides(*frames, cell);
   cell.block = read_block(named_file(object.at("block"), cell));
   cell.probe = read_probe(named_file(object.at("probe"), cell));
-  read_recipes(object, cell);
+  read_recipes(object, stiffness, cell);
   read_space(object, cell);
   read_touch_conditions(object, cell);
   read_temperature_age(object, is_first_schema, cell);

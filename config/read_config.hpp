@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "config/cell.hpp"
 #include "config/config_error.hpp"
+#include "config/stiffness_choice.hpp"
 
 namespace cell {
 
@@ -13,7 +15,8 @@ inline constexpr std::string_view kFirstCellSchema =
     "touchcal/cell/1";  // without block_temperature_age_max_h
 
 /// The cell and the arm, block, probe and recipes that it names (paths are relative to the cell file). Throws
-/// ConfigError with file, JSON pointer and remedy. The shapes of the files: config/FILES.md.
-Cell read_cell(const std::filesystem::path& file);
+/// ConfigError with file, JSON pointer and remedy. The shapes of the files: config/FILES.md. `stiffness`: in
+/// place of what each recipe says of it.
+Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice> stiffness = {});
 
 }  // namespace cell

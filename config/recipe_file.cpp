@@ -99,9 +99,10 @@ calib::ColumnScaling weights_from_json(const JsonValue& value) {
 }
 
 /// Of the first schema true or false (the default), since then "on", "off" or "auto" (the default).
+/// `outranking`: in place of it, so that the arm does not matter for what the file says.
 StiffnessChoice stiffness_from_json(const std::optional<JsonValue>& value, bool is_first_schema,
-                                    const Arm& arm) {
-  if (!value) return is_first_schema ? StiffnessChoice::kOff : StiffnessChoice::kAuto;
+                                    const Arm& arm, std::optional<StiffnessChoice> outranking) {
+  if (!value) return outranking.value_or(is_first_schema ? StiffnessChoice::kOff : StiffnessChoice::kAuto);
   std::optional<StiffnessChoice> choice;
   if (is_first_schema) {
     choice = value->boolean() ? StiffnessChoice::kOn : StiffnessChoice::kOff;
@@ -109,6 +110,7 @@ StiffnessChoice stiffness_from_json(const std::optional<JsonValue>& value, bool 
     choice = stiffness_choice_named(value->text());
   }
   if (!choice) value->fail("is " + in_quotes(value->text()) + R"(; give "on", "off" or "auto")");
+  if (outranking) return *outranking;
   if (*choice == StiffnessChoice::kOn && !can_estimate_stiffness(arm)) {
     value->fail("the arm " + in_quotes(arm.name) + " has no masses or no std_compliance_rad_per_nm; add " +
                 "\"gravity\" to its file or give " + (is_first_schema ? "false" : R"("off")"));
@@ -128,7 +130,8 @@ calib::Harmonics harmonics_from_json(const std::optional<JsonValue>& value, bool
 }
 
 calib::IdentificationOptions identification_from_json(const JsonValue& value, bool is_first_schema,
-                                                      const Arm& arm) {
+                                                      const Arm& arm,
+                                                      std::optional<StiffnessChoice> stiffness) {
   const JsonObject object =
       value.object({"formulation", "qr_tolerance", "tried_last", "excluded", "weights", "robust", "prior",
                     "stiffness", "harmonics", "hold_weak", "iterations_max"});
@@ -145,7 +148,8 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, bo
   if (const auto weights = object.find("weights")) options.weights = weights_from_json(*weights);
   if (const auto robust = object.find("robust")) options.robust = robust->boolean();
   if (const auto prior = object.find("prior")) options.prior = prior->boolean();
-  options.stiffness = is_estimated(stiffness_from_json(object.find("stiffness"), is_first_schema, arm), arm);
+  options.stiffness =
+      is_estimated(stiffness_from_json(object.find("stiffness"), is_first_schema, arm, stiffness), arm);
   options.harmonics = harmonics_from_json(object.find("harmonics"), is_first_schema);
   if (const auto hold_weak = object.find("hold_weak")) options.hold_weak = hold_weak->boolean();
   if (const auto count = object.find("iterations_max"))
@@ -169,7 +173,8 @@ void demand_planes_for_coefficients(const JsonObject& object, const Block& block
 
 }  // namespace
 
-Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block) {
+Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block,
+                   std::optional<StiffnessChoice> stiffness) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
   const bool is_first_schema = has_schema(document, kFirstRecipeSchema);
@@ -183,7 +188,8 @@ Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Bloc
   read_touch_counts(object.at("touches"), static_cast<int>(block.faces.size()), recipe);
   if (const auto every = object.find("reference_every"))
     recipe.reference_every = every->integer(0, kTouchesMax);
-  recipe.identification = identification_from_json(object.at("identification"), is_first_schema, arm);
+  recipe.identification =
+      identification_from_json(object.at("identification"), is_first_schema, arm, stiffness);
   demand_planes_for_coefficients(object, block, recipe);
   return recipe;
 }

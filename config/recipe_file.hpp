@@ -1,9 +1,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "config/cell.hpp"
+#include "config/stiffness_choice.hpp"
 
 namespace cell {
 
@@ -11,7 +13,9 @@ inline constexpr std::string_view kRecipeSchema = "touchcal/recipe/2";
 inline constexpr std::string_view kFirstRecipeSchema = "touchcal/recipe/1";  // stiffness true or false
 
 /// A recipe for an arm and a block. A plane that the block does not have is a ConfigError, as is a parameter
-/// name that does not exist, or stiffness of an arm that says nothing of its masses.
-Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block);
+/// name that does not exist, or stiffness of an arm that says nothing of its masses. `stiffness`: in place of
+/// what the file says of it, which must be a choice all the same.
+Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Block& block,
+                   std::optional<StiffnessChoice> stiffness = {});
 
 }  // namespace cell

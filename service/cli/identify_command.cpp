@@ -97,7 +97,9 @@ void simulate(const TipRegions& regions, const Recipe& recipe, const calib::Iden
 ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (arguments.arm_file == "-" || arguments.map_file == "-")
     throw std::invalid_argument("standard output has the result; name a file");
-  const Cell cell = at_temperature(read_cell(arguments.cell_file), arguments.block_temperature);
+  const Cell cell =
+      at_temperature(read_cell(arguments.cell_file, stiffness_choice_named(arguments.stiffness)),
+                     arguments.block_temperature);
   const Recipe recipe = chosen_recipe(cell, arguments);
   const TouchesFile file = read_touches(arguments.touches_file, cell);
   calib::IdentificationProblem problem = identification_problem(cell, recipe);

@@ -39,7 +39,9 @@ TEST_F(Knowledge, ARecipeChoosesWeightsRobustnessAndPrior) {
 TEST_F(Knowledge, StiffnessIsIdentifiedOnlyOfAnArmThatTellsItsMassesAndHowStiffItIsThoughtToBe) {
   edit(kRecipe, [](json& recipe) { recipe["identification"]["stiffness"] = "on"; });
   EXPECT_TRUE(read().recipes.at("edf-25").identification.stiffness);
-  const auto makes_it_rigid = [](json& arm) { arm["gravity"]["std_compliance_rad_per_nm"] = {0, 0}; };
+  const auto makes_it_rigid = [](json& arm) {
+    arm["gravity"].update({{"compliance_rad_per_nm", {1e-6, 2e-6}}, {"std_compliance_rad_per_nm", {0, 0}}});
+  };
   const auto forgets_masses = [](json& arm) { arm.erase("gravity"); };
   for (const std::function<void(json&)>& change :
        {std::function<void(json&)>(makes_it_rigid), std::function<void(json&)>(forgets_masses)}) {
@@ -47,7 +49,17 @@ TEST_F(Knowledge, StiffnessIsIdentifiedOnlyOfAnArmThatTellsItsMassesAndHowStiffI
     const ConfigError error = error_of([&] { static_cast<void>(read()); });
     EXPECT_THAT(error.source(), EndsWith(kRecipe));
     EXPECT_EQ(error.pointer(), "/identification/stiffness");
+    EXPECT_FALSE(read_cell(path(kCell), StiffnessChoice::kOff).recipes.at("edf-25").identification.stiffness)
+        << "what outranks the recipe is all that counts";
   }
+}
+
+TEST_F(Knowledge, AChoiceThatOutranksTheRecipesDoesNotHideAWrongWord) {
+  EXPECT_TRUE(read_cell(path(kCell), StiffnessChoice::kOn).recipes.at("edf-25").identification.stiffness);
+  edit(kRecipe, [](json& recipe) { recipe["identification"]["stiffness"] = "perhaps"; });
+  const ConfigError error =
+      error_of([&] { static_cast<void>(read_cell(path(kCell), StiffnessChoice::kOff)); });
+  EXPECT_EQ(error.pointer(), "/identification/stiffness");
 }
 
 TEST_F(Knowledge, MassesWithoutAComplianceAreRefused) {
@@ -55,6 +67,10 @@ TEST_F(Knowledge, MassesWithoutAComplianceAreRefused) {
   const ConfigError error = error_of([&] { static_cast<void>(read()); });
   EXPECT_EQ(error.pointer(), "/gravity/masses");
   EXPECT_THAT(error.what(), testing::HasSubstr("std_compliance_rad_per_nm"));
+  edit(kArm, [](json& arm) {
+    arm["gravity"].update({{"compliance_rad_per_nm", {0, 0}}, {"std_compliance_rad_per_nm", {0, 0}}});
+  });
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/gravity/masses");
   edit(kArm, [](json& arm) { arm["gravity"]["compliance_rad_per_nm"] = {1e-6, 2e-6}; });
   EXPECT_NO_THROW(static_cast<void>(read())) << "a droop that is in the model";
 }

@@ -110,6 +110,10 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kArm, "/gravity/compliance_rad_per_nm", json({1e-6}), "/gravity/compliance_rad_per_nm", "2"},
         Spoiled{kArm, "/gravity/compliance_rad_per_nm", json({1e-6, 1e-6, 1e-6}),
                 "/gravity/compliance_rad_per_nm", "give two (joints 2 and 3) or six"},
+        Spoiled{kArm, "/gravity/std_compliance_rad_per_nm", json({0, 0, 0, 0, 0, 0}), "/gravity/masses",
+                "over 0 for at least one"},
+        Spoiled{kArm, "/gravity/std_compliance_rad_per_nm/1", 2e-4, "/gravity/std_compliance_rad_per_nm/1",
+                "0.0001"},
         Spoiled{kArm, "/gravity/std_compliance_rad_per_nm/1", -1e-6, "/gravity/std_compliance_rad_per_nm/1",
                 "give 0 to 0.0001"},
         Spoiled{kArm, "/gravity/std_mass_share", 0, "/gravity/std_mass_share", "over 0"},
@@ -149,12 +153,12 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kBlock, "/lengths/0/value_mm", 0, "/lengths/0/value_mm", "over 0"},
         Spoiled{kBlock, "/lengths/0/value_mm", 150.05, "/lengths/0/value_mm", "0.05 mm from what"},
         Spoiled{kBlock, "/lengths/1/value_mm", 149.95, "/lengths/1/value_mm", "offsets give, 150 mm"},
+        Spoiled{kBlock, "/lengths/0/value_mm", 150.024, "/lengths/0/value_mm", "correct the value"},
+        Spoiled{kBlock, "/lengths/1/planes", json({5, 3}), "/lengths/1", "second length of these"},
         Spoiled{kBlock, "/temperature_c", std::nullopt, "/std_temperature_k", "without \"temperature_c\""},
         Spoiled{kBlock, "/std_temperature_k", std::nullopt, "", "\"std_temperature_k\" is missing"},
         Spoiled{kBlock, "/solids/0/max_mm", json({75, -200, 75}), "/solids/0", "not below max_mm"},
         Spoiled{kBlock, "/certificate", 3, "/certificate", "give an object"}));
-        Spoiled{kBlock, "/lengths/0/value_mm", 150.024, "/lengths/0/value_mm", "correct the value"},
-        Spoiled{kBlock, "/lengths/1/planes", json({5, 3}), "/lengths/1", "second length of these"},
 
 INSTANTIATE_TEST_SUITE_P(
     Probe, SpoiledEntry,
