@@ -23,7 +23,6 @@ ExitCode print_problem(const ApiReply& reply, bool json_only) {
     line += fmt::format(" (possible now: {})", exits);
   }
   fmt::print(stderr, "{}\n", line);
-  if (problem.type == ProblemDocument::kPreconditions) return kExitFailed;
   if (reply.status == 422 || reply.status == 404 || reply.status == 401 || reply.status == 403)
     return kExitUsage;
   return kExitRefused;

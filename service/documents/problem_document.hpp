@@ -21,8 +21,6 @@ struct ProblemDocument {
     }
   };
 
-  static constexpr const char* kPreconditions = "urn:touchcal:problem:preconditions";
-
   std::optional<std::string> type;  // urn:touchcal:problem:KIND
   std::optional<std::string> title;
   std::optional<int> status;

@@ -222,6 +222,8 @@ TEST(Daemon, SaysThatTheControllerWasLostWhenItIsKilledInARun) {
   const Finished finished = run.wait();
   EXPECT_EQ(finished.exit_code, cell::kExitFailed) << finished.err;
   EXPECT_THAT(finished.err, HasSubstr("link"));
+  // Nothing was begun this time: a start whose preconditions are not met is refused.
+  EXPECT_EQ(cell.run({"run", kRecipe}).exit_code, cell::kExitRefused);
   const auto status = cell.status();
   EXPECT_EQ(status.at("state"), "ABORTED");
   EXPECT_EQ(status.at("fault_code"), "link_lost");

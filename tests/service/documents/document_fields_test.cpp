@@ -126,7 +126,7 @@ TEST(ProblemDocument, IsReadInFull) {
                                                          .exits = {"reset"},
                                                          .parameter = "p"})
                                                 .body);
-  EXPECT_EQ(read.type, ProblemDocument::kPreconditions);
+  EXPECT_EQ(read.type, "urn:touchcal:problem:preconditions");
   EXPECT_EQ(read.title, "Not in this state");
   EXPECT_EQ(read.status, 409);
   EXPECT_EQ(read.detail, "what");
