@@ -21,6 +21,10 @@ std::optional<StiffnessChoice> stiffness_choice_named(std::string_view name) {
   return found->first;
 }
 
+std::string_view name_of(StiffnessChoice choice) {
+  return std::ranges::find(kChoiceNames, choice, [](const auto& pair) { return pair.first; })->second;
+}
+
 bool can_estimate_stiffness(const Arm& arm) {
   return !calib::estimable_compliances(arm.nongeometric_std).empty();
 }

@@ -13,6 +13,9 @@ enum class StiffnessChoice { kOn, kOff, kAuto };
 /// "on", "off" or "auto"; nothing for another text.
 std::optional<StiffnessChoice> stiffness_choice_named(std::string_view name);
 
+/// The name that stiffness_choice_named() takes.
+std::string_view name_of(StiffnessChoice choice);
+
 /// Whether the arm's file has masses and the standard deviation of a compliance of joints 1 to 3.
 bool can_estimate_stiffness(const Arm& arm);
 

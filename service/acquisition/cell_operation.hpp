@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "config/cell.hpp"
+#include "config/stiffness_choice.hpp"
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/block_location.hpp"
 #include "service/acquisition/command_refusal.hpp"
@@ -35,6 +36,7 @@ struct StartRequest {
   std::optional<std::string> operator_name;
   std::optional<BlockTemperature> block_temperature;  // of this run, in place of that of the block's file
   std::optional<double> arm_moving_min;               // how long the arm has moved before, as a person says
+  std::optional<StiffnessChoice> stiffness;           // of this run, in place of the recipe's
   bool guided = false;  // a person makes the touches with the pendant; nothing is commanded
 };
 

@@ -26,53 +26,61 @@ PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe) {
 
 }  // namespace
 
-PlanCache::Key PlanCache::key_of(const std::string& recipe,
-                                 const std::optional<BlockTemperature>& given) const {
+PlanCache::Key PlanCache::key_of(const std::string& recipe, const PlanGiven& given) const {
+  Key key{recipe, std::nullopt, std::nullopt, std::nullopt};
   const Block& block = cell_.block;
-  const bool is_own =
-      !given || (block.temperature_c == given->celsius && block.std_temperature_k == given->std_k);
-  if (is_own) return {recipe, std::nullopt, std::nullopt};
-  return {recipe, given->celsius, given->std_k};
+  const auto& temperature = given.block_temperature;
+  if (temperature &&
+      (block.temperature_c != temperature->celsius || block.std_temperature_k != temperature->std_k)) {
+    key.celsius = temperature->celsius;
+    key.std_k = temperature->std_k;
+  }
+  const auto named = cell_.recipes.find(recipe);
+  if (named == cell_.recipes.end() || given.stiffness != named->second.identification.stiffness)
+    key.stiffness = given.stiffness;
+  return key;
 }
 
 /// Nobody starts a run at an earlier temperature again.
 void PlanCache::keep(const Key& key, const PlanOutcome& made) {
-  if (std::get<1>(key)) {
-    std::erase_if(plans_, [&key](const auto& plan) {
-      return std::get<0>(plan.first) == std::get<0>(key) && std::get<1>(plan.first).has_value();
-    });
+  if (!key.is_own()) {
+    std::erase_if(
+        plans_, [&key](const auto& plan) { return plan.first.recipe == key.recipe && !plan.first.is_own(); });
   }
   plans_.emplace(key, made);
 }
 
-asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe, std::optional<BlockTemperature> given) {
+asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe, PlanGiven given) {
   const Key key = key_of(recipe, given);
   for (;;) {
     if (const auto made = plans_.find(key); made != plans_.end()) co_return made->second;
-    const auto cell = std::make_shared<const Cell>(with_block_temperature(cell_, given));  // as it stands now
+    // As it stands now.
+    const auto cell = std::make_shared<const Cell>(with_block_temperature(cell_, given.block_temperature));
+    Recipe chosen = cell->recipes.at(recipe);
+    if (given.stiffness) chosen.identification.stiffness = *given.stiffness;
     const int clear_count = clear_count_;
     ++under_way_count_;
     co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
-    const PlanOutcome made = make_outcome(*cell, cell->recipes.at(recipe));
+    const PlanOutcome made = make_outcome(*cell, chosen);
     co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
     --under_way_count_;
     if (clear_count == clear_count_) keep(key, made);
   }
 }
 
-void PlanCache::begin(std::string recipe, std::optional<BlockTemperature> given, std::function<void()> done) {
-  asio::co_spawn(executor_, plan(std::move(recipe), given), [done = std::move(done)](auto&&...) { done(); });
+void PlanCache::begin(std::string recipe, PlanGiven given, std::function<void()> done) {
+  asio::co_spawn(executor_, plan(std::move(recipe), std::move(given)),
+                 [done = std::move(done)](auto&&...) { done(); });
 }
 
-std::optional<PlanOutcome> PlanCache::planned(const std::string& recipe,
-                                              const std::optional<BlockTemperature>& given) const {
+std::optional<PlanOutcome> PlanCache::planned(const std::string& recipe, const PlanGiven& given) const {
   const auto found = plans_.find(key_of(recipe, given));
   return found == plans_.end() ? std::nullopt : std::optional(found->second);
 }
 
 std::shared_ptr<const Plan> PlanCache::plan_with_id(const std::string& id) const {
   for (const auto& [key, outcome] : plans_) {
-    if (std::get<1>(key)) continue;
+    if (!key.is_own()) continue;
     const auto* plan = std::get_if<std::shared_ptr<const Plan>>(&outcome);
     if (plan && (*plan)->id == id) return *plan;
   }

@@ -3,12 +3,12 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <compare>
 #include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <variant>
 
 #include "config/cell.hpp"
@@ -19,8 +19,15 @@ namespace cell {
 /// A recipe's plan, or why there is none: the same whenever it is asked for.
 using PlanOutcome = std::variant<std::shared_ptr<const Plan>, PlanRefusal>;
 
-/// The plans of a cell, by recipe and the block's temperature. Planning takes seconds and has its own thread;
-/// everything else runs on the executor's.
+/// What a run was started with in place of what the cell's files say: the block's temperature, and whether
+/// the compliance is estimated.
+struct PlanGiven {
+  std::optional<BlockTemperature> block_temperature;
+  std::optional<bool> stiffness;
+};
+
+/// The plans of a cell, by recipe and what was given in place of the cell's. Planning takes seconds and has
+/// its own thread; everything else runs on the executor's.
 class PlanCache {
  public:
   /// `cell` must outlive it. Call clear() when its block is found elsewhere.
@@ -31,24 +38,29 @@ class PlanCache {
   PlanCache& operator=(const PlanCache&) = delete;
 
   /// Plans a recipe of the cell, unless it has been planned; again when clear() was called meanwhile. What
-  /// the planner throws becomes a refusal. `given`: a temperature of the block in place of the cell's; of
-  /// each recipe the plan with the latest one is kept.
-  boost::asio::awaitable<PlanOutcome> plan(std::string recipe, std::optional<BlockTemperature> given = {});
+  /// the planner throws becomes a refusal. `given`: what the run has in place of the cell's; of each recipe
+  /// the plan with the latest one is kept.
+  boost::asio::awaitable<PlanOutcome> plan(std::string recipe, PlanGiven given = {});
   /// The same without waiting: `done` is called when planned() has the outcome.
-  void begin(std::string recipe, std::optional<BlockTemperature> given, std::function<void()> done);
+  void begin(std::string recipe, PlanGiven given, std::function<void()> done);
   /// What plan() gave; nothing before.
   [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe,
-                                                   const std::optional<BlockTemperature>& given = {}) const;
+                                                   const PlanGiven& given = {}) const;
   [[nodiscard]] bool is_planning() const { return under_way_count_ > 0; }
-  /// Null when no plan for the cell's own temperature that is kept has this id.
+  /// Null when no plan that is kept has this id and is of what the cell's files say.
   [[nodiscard]] std::shared_ptr<const Plan> plan_with_id(const std::string& id) const;
   /// Discards all plans, also one that is being made: the block was found elsewhere.
   void clear();
 
  private:
-  /// Recipe, temperature and its standard deviation; those nothing for the cell's own.
-  using Key = std::tuple<std::string, std::optional<double>, std::optional<double>>;
-  [[nodiscard]] Key key_of(const std::string& recipe, const std::optional<BlockTemperature>& given) const;
+  struct Key {
+    std::string recipe;
+    std::optional<double> celsius, std_k;  // nothing for the cell's own
+    std::optional<bool> stiffness;         // nothing for the recipe's own
+    auto operator<=>(const Key&) const = default;
+    [[nodiscard]] bool is_own() const { return !celsius && !stiffness; }
+  };
+  [[nodiscard]] Key key_of(const std::string& recipe, const PlanGiven& given) const;
   void keep(const Key& key, const PlanOutcome& made);
 
   boost::asio::any_io_executor executor_;

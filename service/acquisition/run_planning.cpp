@@ -9,6 +9,10 @@ namespace cell {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
+PlanGiven given_to(const Run& run) {
+  return {.block_temperature = run.block_temperature(), .stiffness = run.recipe().identification.stiffness};
+}
+
 RunPlanning::RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, RunStore& store,
                          PlanCache& plans, TouchPreparation& preparation, PublishedStatus& status, Wake& wake)
     : cell_(cell),
@@ -21,14 +25,13 @@ RunPlanning::RunPlanning(const Cell& cell, const std::optional<BlockPose>& place
 
 asio::awaitable<bool> RunPlanning::plan(ActiveRun& active) {
   const std::string recipe = active.run.recipe().name;
-  const std::optional<BlockTemperature> temperature = active.run.block_temperature();
+  const PlanGiven given = given_to(active.run);
   const State state = status_.state();
   // A stop does not wait for the planner: its answer comes, to be used another time.
-  if (!plans_.planned(recipe, temperature))
-    plans_.begin(recipe, temperature, [&wake = wake_] { wake.wake(); });
-  while (!plans_.planned(recipe, temperature) && status_.state() == state) co_await wake_.wait(1h);
+  if (!plans_.planned(recipe, given)) plans_.begin(recipe, given, [&wake = wake_] { wake.wake(); });
+  while (!plans_.planned(recipe, given) && status_.state() == state) co_await wake_.wait(1h);
   if (status_.state() != state) co_return false;
-  const PlanOutcome outcome = *plans_.planned(recipe, temperature);
+  const PlanOutcome outcome = *plans_.planned(recipe, given);
   if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) {
     status_.raise({FaultCode::kRecipeUnreachable, refusal->message}, Event::kAbortFault);
     co_return false;

@@ -14,6 +14,9 @@
 
 namespace cell {
 
+/// What the plan of this run is made with.
+PlanGiven given_to(const Run& run);
+
 /// Gives a run its plan at the start; run, store and touch preparation get the same one. Called by the cell's
 /// loop and by the run recovery.
 class RunPlanning {

@@ -11,6 +11,7 @@
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/configuration_digest.hpp"
 #include "service/run/block_temperature.hpp"
+#include "service/run/run_recipe.hpp"
 
 namespace cell {
 
@@ -48,7 +49,7 @@ std::optional<ActiveRun> RunRecovery::restore() {
     end_for_good(*stored, *why);
     return std::nullopt;
   }
-  ActiveRun active{.run = Run(stored->id, regions_, cell_.recipes.at(stored->recipe), stored->started_at,
+  ActiveRun active{.run = Run(stored->id, regions_, recipe_of(*stored, cell_), stored->started_at,
                               temperature_given_to(*stored, cell_)),
                    .conditions = stored->conditions_json.value_or(""),
                    .guided = is_guided(stored->conditions_json),
@@ -106,7 +107,7 @@ asio::awaitable<bool> RunRecovery::plan_again(ActiveRun& active) {
     const bool planned = co_await planning_.plan(active);  // it was interrupted before it had one
     co_return planned;
   }
-  const PlanOutcome outcome = co_await plans_.plan(run.recipe().name, run.block_temperature());
+  const PlanOutcome outcome = co_await plans_.plan(run.recipe().name, given_to(run));
   const auto* plan = std::get_if<std::shared_ptr<const Plan>>(&outcome);
   if (!plan || (*plan)->id != *active.interruption->plan_id) {
     status_.raise({FaultCode::kDaemonRestarted, "it cannot be resumed: planning now gives a different plan"},

@@ -70,6 +70,7 @@ struct RunArguments {
   std::string recipe;         // of the cell; ignored with a plan
   std::string plan_id;        // of a plan of the daemon; empty for none
   std::string operator_name;  // may be empty
+  std::string stiffness;      // "on", "off" or "auto"; the recipe's choice when empty
   bool guided = false;        // a person makes the touches with the pendant
   TemperatureArguments block_temperature;
   std::optional<double> arm_moving_min;

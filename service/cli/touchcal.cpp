@@ -92,11 +92,7 @@ class CommandLine {
     identify->add_option("--touches", identify_.touches_file, "touches, JSON or CSV")->required();
     identify->add_option("--recipe", identify_.recipe,
                          "recipe whose identification options apply; default: the cell's first");
-    identify
-        ->add_option("--stiffness", identify_.stiffness,
-                     "whether the compliance of the joints is estimated, in place of the recipe's choice; "
-                     "auto: where the arm's file allows it")
-        ->check(CLI::IsMember({"on", "off", "auto"}));
+    add_stiffness(*identify, identify_.stiffness);
     add_block_temperature(*identify, identify_.block_temperature);
     identify
         ->add_option("--monte-carlo", identify_.monte_carlo_count,
@@ -177,11 +173,20 @@ class CommandLine {
     run->add_flag("--guided", run_.guided, "a person makes the touches with the pendant");
     run->add_option("--operator", run_.operator_name,
                     "the person responsible for the run; stored with its result");
+    add_stiffness(*run, run_.stiffness)->excludes("--plan");
     add_block_temperature(*run, run_.block_temperature);
     run->add_option("--arm-moving", run_.arm_moving_min,
                     "minutes that the arm has moved at working speed before: how warm it is")
         ->check(refuse_nan)
         ->check(CLI::Range(0.0, cell::kArmMovingMaxMin));
+  }
+
+  static CLI::Option* add_stiffness(CLI::App& command, std::string& choice) {
+    return command
+        .add_option("--stiffness", choice,
+                    "whether the compliance of the joints is estimated, in place of the recipe's choice; "
+                    "auto: where the arm's file allows it")
+        ->check(CLI::IsMember({"on", "off", "auto"}));
   }
 
   /// CLI::Range lets NaN pass.

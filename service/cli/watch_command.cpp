@@ -133,6 +133,7 @@ StartDocument start_request(const RunArguments& arguments) {
   request.arm_moving_min = arguments.arm_moving_min;
   request.block_temperature_c = arguments.block_temperature.celsius;
   request.std_block_temperature_k = arguments.block_temperature.std_k;
+  if (!arguments.stiffness.empty()) request.stiffness = arguments.stiffness;
   return request;
 }
 

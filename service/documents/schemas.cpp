@@ -102,6 +102,8 @@ constexpr std::string_view kStartRequest = R"({
     "description":"outranks that of the block's file; with its deviation, and with a recipe only"},
   "std_block_temperature_k":{"type":"number","exclusiveMinimum":0,"maximum":100},
   "block_temperature_at":{"type":"string","description":"when it was measured, RFC 3339 in UTC; now if absent"},
+  "stiffness":{"enum":["on","off","auto"],
+    "description":"whether the compliance of the joints is estimated, in place of the recipe's choice; with a recipe only"},
   "touching":{"enum":["automatic","guided"],"description":"guided: a person makes the touches; automatic if absent"}},
 "dependentRequired":{"block_temperature_c":["std_block_temperature_k"],
   "std_block_temperature_k":["block_temperature_c"],"block_temperature_at":["block_temperature_c"]},

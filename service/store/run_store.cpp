@@ -79,8 +79,8 @@ std::int64_t RunStore::begin_run(const NewRun& run) {
   SQLite::Statement insert(*database_,
                            "INSERT INTO runs(recipe, touches_total, started_at, idempotency_key, "
                            "operator_name, config_digest, trace_json, block_temperature_c, "
-                           "std_block_temperature_k, block_temperature_at, block_temperature_source) "
-                           "VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                           "std_block_temperature_k, block_temperature_at, block_temperature_source, "
+                           "stiffness) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, run.recipe);
   insert.bind(2, run.touches_total);
   insert.bind(3, run.started_at);
@@ -94,6 +94,7 @@ std::int64_t RunStore::begin_run(const NewRun& run) {
     bind_or_null(insert, 10, temperature->measured_at);
     bind_or_null(insert, 11, temperature->source);
   }
+  bind_or_null(insert, 12, run.stiffness);
   insert.exec();
   const std::int64_t id = database_->getLastInsertRowid();
   restart_log(*database_);

@@ -77,6 +77,7 @@ struct NewRun {
   std::optional<std::string> idempotency_key;
   std::optional<std::string> operator_name;
   std::optional<StoredTemperature> block_temperature;
+  std::optional<std::string> stiffness;      // "on", "off", "auto"; nothing: the recipe's
   std::optional<std::string> config_digest;  // of the cell's files
   std::optional<std::string>
       conditions_json;  // versions, temperatures, controller: an object, free in its keys
@@ -106,6 +107,7 @@ struct StoredRun {
   std::optional<std::string> plan_id;
   std::optional<std::string> operator_name;
   std::optional<StoredTemperature> block_temperature;
+  std::optional<std::string> stiffness;  // in place of the recipe's
   std::optional<std::string> config_digest;
   std::optional<std::string> conditions_json;
 };

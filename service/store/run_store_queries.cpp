@@ -10,8 +10,8 @@ namespace {
 constexpr const char* kRunColumns =
     "SELECT id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, fault_message, "
     "(SELECT count(*) FROM touches WHERE run_id = runs.id), plan_id, operator_name, block_temperature_c, "
-    "config_digest, trace_json, std_block_temperature_k, block_temperature_at, block_temperature_source FROM "
-    "runs ";
+    "config_digest, trace_json, std_block_temperature_k, block_temperature_at, block_temperature_source, "
+    "stiffness FROM runs ";
 
 std::optional<std::string> text_or_nothing(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getString());
@@ -44,6 +44,7 @@ StoredRun read_run(SQLite::Statement& query) {
           .plan_id = text_or_nothing(query.getColumn(10)),
           .operator_name = text_or_nothing(query.getColumn(11)),
           .block_temperature = read_temperature(query),
+          .stiffness = text_or_nothing(query.getColumn(18)),
           .config_digest = text_or_nothing(query.getColumn(13)),
           .conditions_json = text_or_nothing(query.getColumn(14))};
 }

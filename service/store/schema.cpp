@@ -137,7 +137,10 @@ ALTER TABLE runs ADD COLUMN block_temperature_at TEXT;
 ALTER TABLE runs ADD COLUMN block_temperature_source TEXT;
 )sql";
 
-constexpr std::array kMigrations{kRunsAndTouches, kPlans, kDiary, kTemperatures};
+/// Whether the compliance is estimated, where a run was started with a choice of its own.
+constexpr const char* kStiffness = "ALTER TABLE runs ADD COLUMN stiffness TEXT;";
+
+constexpr std::array kMigrations{kRunsAndTouches, kPlans, kDiary, kTemperatures, kStiffness};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

@@ -78,12 +78,14 @@ class MortalDaemon {
   void command(Command command) {
     if (const auto refusal = operation_->command(command)) throw std::runtime_error(refusal->detail);
   }
-  void start(const std::optional<cell::BlockTemperature>& temperature = {}) {
+  void start(const std::optional<cell::BlockTemperature>& temperature = {},
+             std::optional<cell::StiffnessChoice> stiffness = {}) {
     run_until(State::kIdle);
     if (const auto answer = operation_->start({.recipe = kFewTouches,
                                                .idempotency_key = {},
                                                .operator_name = {},
-                                               .block_temperature = temperature});
+                                               .block_temperature = temperature,
+                                               .stiffness = stiffness});
         const auto* refusal = std::get_if<cell::CommandRefusal>(&answer)) {
       throw std::runtime_error(refusal->detail);
     }
@@ -217,6 +219,26 @@ TEST(Restart, ARunKeepsTheTemperatureThatItWasStartedWith) {
   const auto result = nlohmann::json::parse(daemon.store().result_json(1).value());
   EXPECT_EQ(result.at("conditions").at("block_temperature_c"), 25.0);
   EXPECT_NE(daemon.store().result_json(1), unbroken().result);
+}
+
+TEST(Restart, ARunKeepsTheChoiceOfStiffnessThatItWasStartedWith) {
+  MortalDaemon daemon;
+  daemon.launch();
+  const auto is_elastic = [&] { return daemon.operation().run()->recipe().identification.stiffness; };
+  const bool of_recipe = daemon.cell.recipes.at(kFewTouches).identification.stiffness;
+  daemon.start({}, of_recipe ? cell::StiffnessChoice::kOff : cell::StiffnessChoice::kOn);
+  daemon.run_until([](const cell::Status& status) { return status.touches_done >= 9; });
+  ASSERT_NE(is_elastic(), of_recipe);
+  ASSERT_EQ(daemon.restart().state, State::kHeld);
+  EXPECT_NE(is_elastic(), of_recipe);
+  daemon.command(Command::kResume);
+  daemon.run_until([](const cell::Status& status) {
+    return status.state != State::kHeld && status.state != State::kUnholding;
+  });
+  daemon.finish();
+  EXPECT_EQ(daemon.status().state, State::kComplete);
+  const auto result = nlohmann::json::parse(daemon.store().result_json(1).value());
+  EXPECT_EQ(result.at("model").empty(), of_recipe) << result.at("model");
 }
 
 TEST(Restart, AnInterruptedRunThatIsStoppedStaysInterruptedAndTheNextOneCanStart) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
 #include "service/acquisition/cell_operation.hpp"
 #include "service/documents/parameter_view.hpp"
@@ -15,6 +16,7 @@
 #include "service/run/block_temperature.hpp"
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/reference_drift.hpp"
+#include "service/run/run_recipe.hpp"
 #include "service/store/fault_log.hpp"
 
 namespace cell {
@@ -24,7 +26,7 @@ namespace {
 constexpr double kSameNominal = 1e-9;
 
 struct Identified {
-  const Recipe* recipe = nullptr;
+  Recipe recipe;
   calib::IdentificationProblem problem;
   calib::IdentificationResult result;
 };
@@ -34,20 +36,22 @@ HttpResponse conflict(const std::string& detail) {
 }
 
 /// Identifies the stored touches of a run again: the same result, bit by bit, while the cell is the same.
-std::variant<Identified, HttpResponse> identify_stored(const CellOperation& operation, std::int64_t id) {
+std::variant<Identified, HttpResponse> identify_stored(const CellOperation& operation, std::int64_t id) try {
   const StoredRun run = operation.store().run(id).value();
   const Cell cell = with_block_temperature(operation.cell(), temperature_of(run, operation.cell()));
-  const auto recipe = operation.cell().recipes.find(run.recipe);
-  if (recipe == operation.cell().recipes.end())
+  if (!operation.cell().recipes.contains(run.recipe))
     return conflict("there is no result: this cell no longer has the run's recipe");
   const std::vector<StoredTouch> touches = operation.store().touches(id);
   if (touches.empty()) return conflict("there is no result: no touch has been made yet");
-  Identified identified{&recipe->second, identification_problem(cell, recipe->second), {}};
+  Identified identified{recipe_of(run, cell), {}, {}};
+  identified.problem = identification_problem(cell, identified.recipe);
   std::ranges::transform(touches, std::back_inserter(identified.problem.touches), to_touch);
   note_references(to_touches(operation.store().references(id), touches), identified.problem);
-  identified.result = calib::identify(identified.problem, recipe->second.identification);
+  identified.result = calib::identify(identified.problem, identified.recipe.identification);
   if (identified.result.status == calib::IdentificationStatus::kConverged) return identified;
   return conflict("there is no result: " + identified.result.message);
+} catch (const ConfigError& error) {
+  return conflict(std::string("there is no result: ") + error.what());
 }
 
 bool has_this_nominal(const std::string& result_json, const calib::KinematicModel& model) {
@@ -97,7 +101,7 @@ HttpResponse get_result(const CellOperation& operation, std::int64_t id) {
   const ResultContext context{.complete = false,
                               .warnings = {},
                               .conditions = operation.store().run(id)->conditions_json.value_or("")};
-  return {.body = result_document(operation.tip_regions(), *identified.recipe, identified.problem,
+  return {.body = result_document(operation.tip_regions(), identified.recipe, identified.problem,
                                   identified.result, context)};
 }
 

@@ -9,6 +9,7 @@
 #include "config/block_file.hpp"
 #include "config/config_error.hpp"
 #include "config/json_value.hpp"
+#include "config/stiffness_choice.hpp"
 #include "config/strict_json.hpp"
 #include "config/utc_text.hpp"
 #include "service/run/run_conditions.hpp"
@@ -20,15 +21,16 @@ using nlohmann::json;
 
 constexpr std::size_t kOperatorBytesMax = 100;
 
-constexpr std::array<std::string_view, 9> kStartKeys{"recipe",
-                                                     "plan_id",
-                                                     "kind",
-                                                     "operator",
-                                                     "touching",
-                                                     "block_temperature_c",
-                                                     "std_block_temperature_k",
-                                                     "block_temperature_at",
-                                                     "arm_moving_min"};
+constexpr std::array<std::string_view, 10> kStartKeys{"recipe",
+                                                      "plan_id",
+                                                      "kind",
+                                                      "operator",
+                                                      "touching",
+                                                      "block_temperature_c",
+                                                      "std_block_temperature_k",
+                                                      "block_temperature_at",
+                                                      "arm_moving_min",
+                                                      "stiffness"};
 
 Problem wrong(std::string pointer, std::string detail) {
   return {.kind = ProblemKind::kBody, .detail = std::move(detail), .pointer = std::move(pointer)};
@@ -138,6 +140,26 @@ std::optional<Problem> read_warm_up(const json& body, StartRequest& start) {
   return std::nullopt;
 }
 
+/// A plan was made with the recipe's own choice.
+std::optional<Problem> read_stiffness(const json& body, const Cell& cell, StartRequest& start) {
+  const auto found = body.find("stiffness");
+  if (found == body.end()) return std::nullopt;
+  const std::string pointer = "/stiffness";
+  start.stiffness =
+      found->is_string() ? stiffness_choice_named(found->get_ref<const std::string&>()) : std::nullopt;
+  if (!start.stiffness) return wrong(pointer, "must be 'on', 'off' or 'auto'; or leave it out");
+  if (body.contains("plan_id"))
+    return wrong(pointer,
+                 "cannot be given with a plan, which was made with the recipe's choice; give the recipe in "
+                 "place of the plan");
+  if (*start.stiffness == StiffnessChoice::kOn && !can_estimate_stiffness(cell.arm)) {
+    return wrong(pointer, fmt::format("the arm '{}' has no masses or no std_compliance_rad_per_nm; add "
+                                      "\"gravity\" to its file or give 'off'",
+                                      cell.arm.name));
+  }
+  return std::nullopt;
+}
+
 std::variant<StartRequest, Problem> read_body(const json& body, const CellOperation& operation) {
   if (!body.is_object()) return wrong("", "an object is required");
   for (const auto& [key, value] : body.items()) {
@@ -151,6 +173,7 @@ std::variant<StartRequest, Problem> read_body(const json& body, const CellOperat
   if (auto problem = read_kind(body)) return *std::move(problem);
   if (auto problem = read_temperature(body, operation.clocks().system(), start)) return *std::move(problem);
   if (auto problem = read_warm_up(body, start)) return *std::move(problem);
+  if (auto problem = read_stiffness(body, operation.cell(), start)) return *std::move(problem);
   return start;
 }
 

@@ -39,7 +39,7 @@ TEST_F(PlanCacheTest, APlanThatWasBegunBeforeTheBlockStoodElsewhereIsMadeAgain) 
 
 TEST_F(PlanCacheTest, ATemperatureThatIsGivenHasItsOwnPlanAndTheLatestOneIsKept) {
   const auto id_at = [this](const BlockTemperature& given) {
-    return std::get<std::shared_ptr<const Plan>>(run(plans_.plan("few", given)))->id;
+    return std::get<std::shared_ptr<const Plan>>(run(plans_.plan("few", {given, {}})))->id;
   };
   const BlockTemperature warm{.celsius = 25.0, .std_k = 2.0}, warmer{.celsius = 30.0, .std_k = 2.0};
   EXPECT_EQ(id_at({*edf().block.temperature_c, edf().block.std_temperature_k, {}}), plan_of_owners().id)
@@ -47,10 +47,24 @@ TEST_F(PlanCacheTest, ATemperatureThatIsGivenHasItsOwnPlanAndTheLatestOneIsKept)
   const std::string id = id_at(warm);
   EXPECT_NE(id, plan_of_owners().id);
   EXPECT_EQ(plans_.plan_with_id(id), nullptr) << "it is for that run alone";
-  EXPECT_TRUE(plans_.planned("few", warm));
-  EXPECT_TRUE(plans_.planned("few", BlockTemperature{25.0, 2.0, std::chrono::system_clock::time_point{}}));
+  EXPECT_TRUE(plans_.planned("few", {warm, {}}));
+  EXPECT_TRUE(
+      plans_.planned("few", {BlockTemperature{25.0, 2.0, std::chrono::system_clock::time_point{}}, {}}));
   EXPECT_NE(id_at(warmer), id);
-  EXPECT_FALSE(plans_.planned("few", warm));
+  EXPECT_FALSE(plans_.planned("few", {warm, {}}));
+  EXPECT_TRUE(plans_.planned("few"));
+}
+
+TEST_F(PlanCacheTest, AChoiceOfStiffnessThatIsNotTheRecipesHasItsOwnPlan) {
+  const bool of_recipe = cell_of_owners().recipes.at("few").identification.stiffness;
+  const auto id_with = [this](bool stiffness) {
+    return std::get<std::shared_ptr<const Plan>>(run(plans_.plan("few", {{}, stiffness})))->id;
+  };
+  EXPECT_EQ(id_with(of_recipe), plan_of_owners().id) << "the recipe's own is not planned again";
+  const std::string id = id_with(!of_recipe);
+  EXPECT_NE(id, plan_of_owners().id);
+  EXPECT_EQ(plans_.plan_with_id(id), nullptr) << "it is for that run alone";
+  EXPECT_TRUE(plans_.planned("few", {{}, !of_recipe}));
   EXPECT_TRUE(plans_.planned("few"));
 }
 

@@ -111,9 +111,12 @@ TEST(RunDocument, IsWrittenAsItWasRead) {
 TEST(StartDocument, HoldsOnlyWhatIsAskedFor) {
   EXPECT_EQ(document_text(StartDocument{.operator_name = "A", .recipe = "edf-25"}),
             R"({"operator":"A","recipe":"edf-25"})");
-  EXPECT_EQ(document_text(StartDocument{
-                .block_temperature_c = 25.5, .recipe = "edf-25", .std_block_temperature_k = 0.5}),
-            R"({"block_temperature_c":25.5,"recipe":"edf-25","std_block_temperature_k":0.5})");
+  EXPECT_EQ(
+      document_text(StartDocument{.block_temperature_c = 25.5,
+                                  .recipe = "edf-25",
+                                  .std_block_temperature_k = 0.5,
+                                  .stiffness = "on"}),
+      R"({"block_temperature_c":25.5,"recipe":"edf-25","std_block_temperature_k":0.5,"stiffness":"on"})");
 }
 
 /// The server writes the document and this reads it: the two hold the same keys.

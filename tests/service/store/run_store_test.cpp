@@ -231,15 +231,17 @@ TEST_F(RunStoreTest, ARunTellsWhoStartedItAndWithWhat) {
                                              .started_at = "start",
                                              .operator_name = "Ada",
                                              .block_temperature = measured,
+                                             .stiffness = "off",
                                              .config_digest = "abc",
                                              .conditions_json = "{}"});
   const StoredRun run = store_->run(id).value();
   EXPECT_EQ(run.operator_name, "Ada");
   EXPECT_EQ(run.block_temperature, measured);
+  EXPECT_EQ(run.stiffness, "off");
   EXPECT_EQ(run.config_digest, "abc");
   EXPECT_EQ(run.conditions_json, "{}");
   const StoredRun other = store_->run(begin()).value();
-  EXPECT_FALSE(run.plan_id || other.operator_name || other.block_temperature);
+  EXPECT_FALSE(run.plan_id || other.operator_name || other.block_temperature || other.stiffness);
 }
 
 TEST_F(RunStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {

@@ -7,8 +7,9 @@
 
 namespace cell {
 
-/// Reads the body of POST runs: a recipe, or a plan of one; optionally the operator, who makes the touches
-/// and the block's temperature, measured now unless it says when. The age of that is a precondition.
+/// Reads the body of POST runs: a recipe, or a plan of one; optionally the operator, who makes the touches,
+/// whether the compliance is estimated and the block's temperature, measured now unless it says when. The age
+/// of that is a precondition.
 std::variant<StartRequest, Problem> read_start(const HttpRequest& request, const CellOperation& operation);
 
 }  // namespace cell

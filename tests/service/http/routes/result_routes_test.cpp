@@ -76,6 +76,17 @@ TEST_F(ResultRoutesTest, ARunIsIdentifiedAtItsOwnTemperature) {
   EXPECT_NEAR(lengths(warm) / lengths(run_) - 1.0, 20.0 * 2.36e-5, 5e-5);
 }
 
+TEST_F(ResultRoutesTest, ARunIsIdentifiedWithItsOwnChoiceOfStiffness) {
+  const std::int64_t elastic =
+      cell_.store().begin_run({.recipe = "edf-25", .started_at = "start", .stiffness = "on"});
+  for (const StoredTouch& touch : cell_.store().touches(run_)) cell_.store().append_touch(elastic, touch);
+  const auto model = [&](std::int64_t run) {
+    return json::parse(get_result(cell_.operation(), run).body).at("model");
+  };
+  EXPECT_EQ(model(run_), json::array());
+  EXPECT_EQ(model(elastic), json::array({"compliance2", "compliance3"}));
+}
+
 TEST_F(ResultRoutesTest, WithoutATouchThereIsNeitherResultNorArm) {
   const std::int64_t empty = cell_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
   for (const HttpResponse& response :

@@ -337,6 +337,21 @@ TEST_F(RoutesTest, AStartsTemperatureComesWithItsDeviationAndWithinBounds) {
   EXPECT_EQ(future.at("errors").at(1).at("code"), "temperature_in_future");
 }
 
+TEST_F(RoutesTest, AStartTakesAChoiceOfStiffness) {
+  const auto with = [](const std::string& rest) { return R"({"recipe":"edf-25",)" + rest + "}"; };
+  for (const char* bad : {R"("stiffness":"yes")", R"("stiffness":true)", R"("stiffness":null)"}) {
+    const json document = problem(post("/api/v1/runs", with(bad)));
+    EXPECT_EQ(document.at("status"), 400) << bad << document;
+    EXPECT_EQ(document.value("pointer", ""), "/stiffness") << bad << document;
+  }
+  // One that is taken meets the missing link only.
+  for (const char* choice : {"on", "off", "auto"}) {
+    const json taken = problem(post("/api/v1/runs", with(R"("stiffness":")" + std::string(choice) + '"')));
+    ASSERT_EQ(taken.at("status"), 409) << taken;
+    EXPECT_EQ(taken.at("errors").size(), 1u);
+  }
+}
+
 TEST_F(RoutesTest, CommandsTakeNoBodyButAnEmptyObject) {
   EXPECT_EQ(post("/api/v1/cell/acknowledge", "{}").status, 202u);
   EXPECT_EQ(problem(post("/api/v1/cell/acknowledge", R"({"now":true})")).at("status"), 400);
