@@ -40,17 +40,6 @@ std::optional<CommandRefusal> refuse_touch_test(const Status& status) {
                                               awaited_touch_test().words)};
 }
 
-PlanGiven plan_given(const Cell& cell, const StartRequest& request) {
-  PlanGiven given{.block_temperature = request.block_temperature, .stiffness = std::nullopt};
-  if (request.stiffness) given.stiffness = is_estimated(*request.stiffness, cell.arm);
-  return given;
-}
-
-Recipe recipe_of(const Cell& cell, const StartRequest& request) {
-  const Recipe& recipe = cell.recipes.at(request.recipe);
-  return request.stiffness ? with_stiffness(recipe, *request.stiffness, cell) : recipe;
-}
-
 /// What the status says of a run.
 void describe_run(Status& status, const ActiveRun& active, std::chrono::system_clock::time_point now) {
   const Run& run = active.run;
@@ -175,7 +164,7 @@ std::vector<Unmet> CellOperation::unmet_preconditions() const {
 }
 
 std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request) const {
-  const auto outcome = plans_.planned(request.recipe, plan_given(cell(), request));
+  const auto outcome = plans_.planned(request.recipe, given_to(request, cell()));
   const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
   auto unmet = unmet_for_run(unmet_preconditions(), cell(), {request.block_temperature, clocks_.system()},
                              status_.fault(), no_plan);
@@ -243,9 +232,7 @@ std::variant<Started, CommandRefusal> CellOperation::start(const StartRequest& r
                            .idempotency_key = request.idempotency_key,
                            .operator_name = request.operator_name,
                            .block_temperature = temperature_to_store(cell(), request.block_temperature),
-                           .stiffness = request.stiffness
-                                            ? std::optional(std::string(name_of(*request.stiffness)))
-                                            : std::nullopt,
+                           .stiffness = stiffness_to_store(request),
                            .config_digest = recovery_.config_digest(),
                            .conditions_json = conditions});
   } catch (const std::exception& error) {
@@ -256,7 +243,7 @@ std::variant<Started, CommandRefusal> CellOperation::start(const StartRequest& r
                    fmt::format("free disk space or repair the state directory: {}", error.what())}}};
   }
   run_.emplace(ActiveRun{
-      .run = Run(id, tip_regions(), recipe_of(cell(), request), now_text(), request.block_temperature),
+      .run = Run(id, tip_regions(), recipe_of(request, cell()), now_text(), request.block_temperature),
       .conditions = conditions,
       .guided = request.guided,
       .interruption = std::nullopt,

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "config/cell.hpp"
-#include "config/stiffness_choice.hpp"
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/block_location.hpp"
 #include "service/acquisition/command_refusal.hpp"
@@ -22,23 +21,13 @@
 #include "service/acquisition/published_status.hpp"
 #include "service/acquisition/run_planning.hpp"
 #include "service/acquisition/run_recovery.hpp"
+#include "service/acquisition/start_request.hpp"
 #include "service/acquisition/touch_executor.hpp"
 #include "service/acquisition/touch_preparation.hpp"
 #include "service/base/clocks.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
-
-/// A request for a run.
-struct StartRequest {
-  std::string recipe;
-  std::optional<std::string> idempotency_key;
-  std::optional<std::string> operator_name;
-  std::optional<BlockTemperature> block_temperature;  // of this run, in place of that of the block's file
-  std::optional<double> arm_moving_min;               // how long the arm has moved before, as a person says
-  std::optional<StiffnessChoice> stiffness;           // of this run, in place of the recipe's
-  bool guided = false;  // a person makes the touches with the pendant; nothing is commanded
-};
 
 struct Started {
   std::int64_t run_id = 0;

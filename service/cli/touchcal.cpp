@@ -14,6 +14,7 @@
 #include "service/base/version.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/completion.hpp"
+#include "service/run/run_conditions.hpp"
 
 namespace {
 

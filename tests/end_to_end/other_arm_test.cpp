@@ -53,8 +53,9 @@ TEST_P(WholeRunOfAnotherArm, EndsCompleteWithTheTipCalibrated) {
   ASSERT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
   EXPECT_EQ(loop.status().verdict, cell::Verdict::kAccepted);
   const calib::IdentificationResult& result = loop.operation().run()->latest();
-  EXPECT_LE(held_out(result).mean_max_m, kHeldOutMeanMaxMetres);
-  EXPECT_LE(held_out(result).rms_m, kHeldOutRmsMaxPart * loop.cell.touch_noise_m);
+  // Of forty fitted touches: kHeldOutMeanMaxMetres and kHeldOutRmsMaxPart are for a hundred.
+  EXPECT_LE(held_out(result).mean_max_m, loop.cell.acceptance.held_out_mean_max_m);
+  EXPECT_LE(held_out(result).rms_m, loop.cell.acceptance.held_out_rms_max_m);
   const calib::KinematicModel truth = calib::apply(loop.cell.arm.model, errors);
   const double achieved_m = tip_rms_m(loop.cell.arm.joint_ranges, result.calibrated, truth);
   EXPECT_LE(achieved_m, 0.25e-3);
