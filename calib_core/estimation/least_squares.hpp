@@ -64,6 +64,7 @@ class LeastSquares {
   [[nodiscard]] const Eigen::MatrixXd& rows() const { return rows_.all; }
   [[nodiscard]] const Eigen::VectorXd& weighted_residuals() const { return rows_.weighted_residuals; }
   [[nodiscard]] Eigen::VectorXd weighted_targets() const { return -rows_.weighted_residuals; }
+  [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }  // of the rows, 1/m
   [[nodiscard]] double noise_unit_m() const { return noise_unit_m_; }
 
   /// rows^T rows of the kept touches, without and with the priors.

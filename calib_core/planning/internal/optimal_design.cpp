@@ -68,8 +68,27 @@ class ExpectedIdentification {
     return positions;
   }
 
-  /// One row per touch, divided by the noise.
-  Eigen::MatrixXd rows(std::vector<Touch> touches) { return linearised(std::move(touches)).rows(); }
+  /// One row per touch, divided by the noise. Computed one by one and not in lanes: postures that are turned
+  /// about the stylus have equal rows, and which of them is chosen must not depend on how a processor rounds.
+  Eigen::MatrixXd rows(std::vector<Touch> touches) {
+    const LeastSquares fit = linearised(std::move(touches));
+    const PreparedModel arm = prepare(problem_.nominal);
+    Eigen::MatrixXd rows(fit.rows().rows(), fit.rows().cols());
+    for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+      const Touch& touch = problem_.touches[static_cast<std::size_t>(row)];
+      const auto face = static_cast<std::size_t>(touch.face);
+      const Chain chain = forward_chain(arm, touch.joints);
+      const ArmRow slopes = distance_derivatives(arm, chain, problem_.artefact.contact_planes[face].outward);
+      Eigen::Index column = 0;
+      for (const int arm_column : estimated_) rows(row, column++) = fit.weights()[row] * slopes[arm_column];
+      for (const ArtefactParameter& parameter : problem_.artefact.parameters) {
+        const auto& shift = parameter.shifts[face];
+        rows(row, column++) =
+            fit.weights()[row] * (shift.constant + shift.per_metre.dot(chain.tip_in_block_m()));
+      }
+    }
+    return rows;
+  }
   /// Information of priors and certified lengths.
   Eigen::MatrixXd prior() { return linearised({}).information(); }
 
