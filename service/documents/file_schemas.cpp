@@ -127,7 +127,7 @@ constexpr std::string_view kTipUncertainty = R"({
 "required":["at_block_rms_mm","workspace_box_rms_mm","joint_ranges_rms_mm","expanded","arm_frame","warmer"],
 "properties":{
   "warmer":{"type":["object","null"],"required":["rise_k","workspace_box_rms_mm","joint_ranges_rms_mm"],"properties":{
-    "rise_k":{"type":"number","exclusiveMinimum":0},
+    "rise_k":{"type":"number","minimum":0},
     "workspace_box_rms_mm":{"type":["number","null"]},
     "joint_ranges_rms_mm":{"type":["number","null"]}}},
   "at_block_rms_mm":{"type":["number","null"]},

@@ -150,6 +150,25 @@ void expect_touches_of_the_unbroken_run(const std::vector<cell::StoredTouch>& to
   }
 }
 
+/// A restarted daemon looks at its reference place once more, which tells more of the noise: the result is of
+/// the same touches, weighed a little differently.
+void expect_result_of_the_unbroken_run(const std::string& text) {
+  const auto result = nlohmann::json::parse(text), whole = nlohmann::json::parse(unbroken().result);
+  for (const char* key : {"touch_count", "complete", "converged", "identifiable_count", "rejected_touches"})
+    EXPECT_EQ(result.at(key), whole.at(key)) << key;
+  EXPECT_EQ(result.at("verdict").at("accepted"), whole.at("verdict").at("accepted"));
+  constexpr double kShareOfStd = 0.1;
+  for (std::size_t i = 0; i < whole.at("parameters").size(); ++i) {
+    const auto& ours = result.at("parameters")[i];
+    const auto& theirs = whole.at("parameters")[i];
+    ASSERT_EQ(ours.at("status"), theirs.at("status")) << i;
+    if (theirs.at("status") != "identified") continue;
+    EXPECT_NEAR(ours.at("error").get<double>(), theirs.at("error").get<double>(),
+                kShareOfStd * theirs.at("std_uncertainty").get<double>())
+        << theirs.at("name");
+  }
+}
+
 TEST(Restart, ARunThatWasKilledAgainAndAgainEndsAsTheUnbrokenOne) {
   unbroken();  // first: while it is made no other link is kept alive
   MortalDaemon daemon;
@@ -175,7 +194,7 @@ TEST(Restart, ARunThatWasKilledAgainAndAgainEndsAsTheUnbrokenOne) {
   EXPECT_EQ(daemon.status().state, State::kComplete);
   EXPECT_EQ(daemon.store().touches(1).size(), unbroken().touches.size());
   expect_touches_of_the_unbroken_run(daemon.store().touches(1));
-  EXPECT_TRUE(daemon.store().result_json(1) == unbroken().result);
+  expect_result_of_the_unbroken_run(daemon.store().result_json(1).value());
   EXPECT_THAT(cell::find_damage(daemon.store_file()), ::testing::IsEmpty());
 }
 

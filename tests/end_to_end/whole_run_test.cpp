@@ -9,6 +9,7 @@
 #include "config/touches_file.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/documents/result_view.hpp"
+#include "service/run/reference_drift.hpp"
 #include "service/run/run.hpp"
 #include "tests/end_to_end/held_out.hpp"
 #include "tests/end_to_end/loopback_cell.hpp"
@@ -112,6 +113,7 @@ TEST_P(WholeRun, ItsTouchesReadBackFromAFileGiveTheSameResultToTheBit) {
   const cell::Recipe& recipe = loop_.cell.recipes.at(kRecipe);
   calib::IdentificationProblem problem = cell::identification_problem(loop_.cell, recipe);
   problem.touches = file.touches;
+  cell::note_references(file.references, problem);
   const calib::IdentificationResult again = calib::identify(problem, recipe.identification);
   const calib::IdentificationResult& live = loop_.operation().run()->latest();
   EXPECT_TRUE((again.errors.array() == live.errors.array()).all());

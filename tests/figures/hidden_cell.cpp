@@ -113,7 +113,7 @@ void HiddenCell::creep(const Eigen::Vector3d& by_m, std::size_t touches) {
 
 Touch HiddenCell::touch_once(const Touch& planned) {
   crept_m_ += creep_per_touch_m_;
-  for (Plane& plane : planes_) plane.offset_m += plane.outward.dot(creep_per_touch_m_);
+  for (ContactSurface& plane : planes_) plane.offset_m += plane.outward.dot(creep_per_touch_m_);
   sim::pass(plant_, world_, kTouchSeconds);
   Touch made = planned;
   made.joints = contact_joints(planned);

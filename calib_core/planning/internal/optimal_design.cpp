@@ -78,13 +78,13 @@ class ExpectedIdentification {
       const Touch& touch = problem_.touches[static_cast<std::size_t>(row)];
       const auto face = static_cast<std::size_t>(touch.face);
       const Chain chain = forward_chain(arm, touch.joints);
-      const ArmRow slopes = distance_derivatives(arm, chain, problem_.artefact.contact_planes[face].outward);
+      const Eigen::Vector3d tip_m = chain.tip_in_block_m();
+      const Eigen::Vector3d normal = normal_at(problem_.artefact.contact_planes[face], tip_m);
+      const ArmRow slopes = distance_derivatives(arm, chain, normal);
       Eigen::Index column = 0;
       for (const int arm_column : estimated_) rows(row, column++) = fit.weights()[row] * slopes[arm_column];
       for (const ArtefactParameter& parameter : problem_.artefact.parameters) {
-        const auto& shift = parameter.shifts[face];
-        rows(row, column++) =
-            fit.weights()[row] * (shift.constant + shift.per_metre.dot(chain.tip_in_block_m()));
+        rows(row, column++) = fit.weights()[row] * parameter.shifts[face].at(tip_m, normal);
       }
     }
     return rows;

@@ -221,9 +221,8 @@ TEST(Certificate, HoldsThreeLengthsBetweenThreeFacesTogether) {
   // Three statements of 4 um that close: each distance is known a little better than by its own.
   ArtefactKnowledge knowledge = drawn::uncertain_artefact(5);
   knowledge.lengths = {{{0, 3}, 0.150, 4e-6}};
-  Face another = knowledge.faces[0];
-  another.plane.offset_m = 0.050;
-  knowledge.faces.push_back(another);
+  knowledge.faces.push_back(knowledge.faces[0]);
+  knowledge.faces.back().plane.offset_m = 0.050;
   knowledge.face_uncertainties.push_back(knowledge.face_uncertainties[0]);
   knowledge.lengths.push_back({{0, 5}, 0.025, 4e-6});
   knowledge.lengths.push_back({{5, 3}, 0.125, 4e-6});

@@ -66,14 +66,14 @@ std::vector<ContactSurface> oblique_planes() {
           {Eigen::Vector3d(0.5, 0.6, -0.7).normalized(), 0.0}};
 }
 
-struct Case {
+struct ArmCase {
   std::string name;
   KinematicModel nominal;
   std::vector<ContactSurface> planes;
   int identifiable_count = 0;
 };
 
-IdentificationProblem problem_of(const Case& arm, std::vector<Touch> touches) {
+IdentificationProblem problem_of(const ArmCase& arm, std::vector<Touch> touches) {
   return {arm.nominal, exact_artefact(arm.planes), std::move(touches)};
 }
 
@@ -133,13 +133,13 @@ std::vector<int> all_parameters() {
   return columns;
 }
 
-class AnyArm : public ::testing::TestWithParam<Case> {
+class AnyArm : public ::testing::TestWithParam<ArmCase> {
  protected:
   std::mt19937 chance_{7};
 };
 
 TEST_P(AnyArm, ShowsTheErrorsThatWerePutIn) {
-  const Case& arm = GetParam();
+  const ArmCase& arm = GetParam();
   const std::vector<int> columns = attainable_set(arm.nominal, exact_artefact(arm.planes), {}).columns;
   EXPECT_EQ(static_cast<int>(columns.size()), arm.identifiable_count);
   const ErrorVector errors = random_errors(columns, chance_);
@@ -155,7 +155,7 @@ TEST_P(AnyArm, ShowsTheErrorsThatWerePutIn) {
 }
 
 TEST_P(AnyArm, CarriesTheErrorsThatCannotBeSeenInThoseThatCan) {
-  const Case& arm = GetParam();
+  const ArmCase& arm = GetParam();
   const ErrorVector errors = random_errors(all_parameters(), chance_);
   const auto tip_missed_m = [&](double share) {
     const KinematicModel truth = apply(arm.nominal, share * errors);
@@ -174,13 +174,13 @@ TEST_P(AnyArm, CarriesTheErrorsThatCannotBeSeenInThoseThatCan) {
 // Stylus on the last axis: 25. The place of a prismatic joint's axis has no effect: two fewer.
 INSTANTIATE_TEST_SUITE_P(
     Cases, AnyArm,
-    ::testing::Values(Case{"Tx90OnObliquePlanes", paper::nominal(), oblique_planes(), 25},
-                      Case{"Tx60Like", tx60_like(), paper::planes(), 25},
-                      Case{"Tx60LikeOnObliquePlanes", tx60_like(), oblique_planes(), 25},
-                      Case{"ThreeParallelAxes", three_parallel_axes(), paper::planes(), 25},
-                      Case{"UprightOnTheBlock", upright_on_the_block(), paper::planes(), 25},
-                      Case{"PrismaticJoint", with_prismatic_joint(), paper::planes(), 23},
-                      Case{"PrismaticJointOnObliquePlanes", with_prismatic_joint(), oblique_planes(), 23}),
+    ::testing::Values(ArmCase{"Tx90OnObliquePlanes", paper::nominal(), oblique_planes(), 25},
+                      ArmCase{"Tx60Like", tx60_like(), paper::planes(), 25},
+                      ArmCase{"Tx60LikeOnObliquePlanes", tx60_like(), oblique_planes(), 25},
+                      ArmCase{"ThreeParallelAxes", three_parallel_axes(), paper::planes(), 25},
+                      ArmCase{"UprightOnTheBlock", upright_on_the_block(), paper::planes(), 25},
+                      ArmCase{"PrismaticJoint", with_prismatic_joint(), paper::planes(), 23},
+                      ArmCase{"PrismaticJointOnObliquePlanes", with_prismatic_joint(), oblique_planes(), 23}),
     [](const auto& info) { return info.param.name; });
 
 TEST(ThreeParallelAxes, NeedHayatisBeta) {

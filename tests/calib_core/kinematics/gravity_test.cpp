@@ -10,7 +10,7 @@
 namespace calib {
 namespace {
 
-constexpr double kQuarter = std::numbers::pi / 2;
+constexpr double kQuarterTurn = std::numbers::pi / 2;
 
 /// The paper's arm with masses about as large as a TX90's.
 KinematicModel heavy_arm() {
@@ -56,9 +56,9 @@ TEST(Gravity, PullsAHorizontalUpperArmDown) {
   // At zero the arm stands upright; joint 2 turns it forward.
   const double upper_arm_m = model.links[3].d_m;
   EXPECT_NEAR(torques_at(0.0)[1], 0.0, 1e-12);
-  EXPECT_NEAR(torques_at(kQuarter)[1], 12.0 * kFreeFall * upper_arm_m, 1e-10);
-  EXPECT_NEAR(torques_at(-kQuarter)[1], -12.0 * kFreeFall * upper_arm_m, 1e-10);
-  EXPECT_NEAR(torques_at(kQuarter)[2], 0.0, 1e-12);  // the mass is on joint 3's axis
+  EXPECT_NEAR(torques_at(kQuarterTurn)[1], 12.0 * kFreeFall * upper_arm_m, 1e-10);
+  EXPECT_NEAR(torques_at(-kQuarterTurn)[1], -12.0 * kFreeFall * upper_arm_m, 1e-10);
+  EXPECT_NEAR(torques_at(kQuarterTurn)[2], 0.0, 1e-12);  // the mass is on joint 3's axis
 }
 
 TEST(Gravity, MomentsAreTheWorkPerRadianOfEachJoint) {

@@ -19,7 +19,7 @@ std::vector<Touch> some_touches() {
 
 TEST(Observation, TouchesMovedTogetherAreWhereTheyAreMovedToOneByOne) {
   const KinematicModel model = paper::nominal();
-  const std::vector<Plane> planes = paper::planes();
+  const std::vector<ContactSurface> planes = paper::planes();
   for (const std::size_t count : {1U, 6U, 20U}) {
     auto touches = some_touches();
     touches.resize(count);
@@ -31,7 +31,7 @@ TEST(Observation, TouchesMovedTogetherAreWhereTheyAreMovedToOneByOne) {
     ASSERT_EQ(moved.size(), count);
     EXPECT_LT(signed_distances_m(model, planes, moved).cwiseAbs().maxCoeff(), 1e-14);
     for (std::size_t i = 0; i < count; ++i) {
-      const Plane& plane = planes[static_cast<std::size_t>(touches[i].face)];
+      const ContactSurface& plane = planes[static_cast<std::size_t>(touches[i].face)];
       EXPECT_LT((moved[i].joints - moved_onto_plane(model, plane, touches[i]).joints).norm(), 1e-13) << i;
     }
   }

@@ -11,7 +11,7 @@ namespace calib {
 namespace {
 
 constexpr double kGearVariance = 1e-10;  // 10 um squared
-constexpr double kCompliance = 1e-6;     // one standard deviation, rad/Nm
+constexpr double kCompliance = 3e-7;     // one standard deviation, rad/Nm
 
 TEST(GearShare, FollowsWhatTheResidualsHaveBeyondTheRepeats) {
   const auto share = [](double residuals_um, double repeats_um) {
