@@ -69,8 +69,7 @@ asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe, PlanGiven given
 }
 
 void PlanCache::begin(std::string recipe, PlanGiven given, std::function<void()> done) {
-  asio::co_spawn(executor_, plan(std::move(recipe), std::move(given)),
-                 [done = std::move(done)](auto&&...) { done(); });
+  asio::co_spawn(executor_, plan(std::move(recipe), given), [done = std::move(done)](auto&&...) { done(); });
 }
 
 std::optional<PlanOutcome> PlanCache::planned(const std::string& recipe, const PlanGiven& given) const {
