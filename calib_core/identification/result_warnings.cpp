@@ -55,7 +55,7 @@ void add_warnings(const IdentificationProblem& problem, const IdentificationOpti
   if (!options.prior) warn_of_weak(result);
   if (result.status == IdentificationStatus::kConverged) {
     warn_of_droop(problem, result);
-    warn_of_declared_noise(problem, result);
+    if (options.measure_noise) warn_of_declared_noise(problem, result);
     warn_of_drift(problem, result);
   }
   if (result.scale && !result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);

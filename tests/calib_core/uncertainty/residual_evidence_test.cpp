@@ -84,6 +84,9 @@ TEST(LackOfFit, IsTestedAgainstRepeatsWhereThereAreSome) {
   EXPECT_GT(hidden.lack_of_fit->p, 0.99);
   EXPECT_TRUE(hidden.is_declared_noise_too_large);
   EXPECT_FALSE(hidden.warnings.empty());
+  IdentificationOptions as_declared = held.options;
+  as_declared.measure_noise = false;  // as for the touches of a plan
+  EXPECT_TRUE(identify(held.problem, as_declared).warnings.empty());
   held.problem.pure_error = TouchNoise{3e-6, 200.0};
   const IdentificationResult shown = identify(held.problem, held.options);
   EXPECT_TRUE(shown.lack_of_fit->is_f_test());
