@@ -32,6 +32,15 @@ LoopbackCell::LoopbackCell(const std::string& cell_name)
   cell.recipes.emplace(recipe.name, recipe);
 }
 
+cell::Recipe& LoopbackCell::use(cell::Cell other, int candidate_count) {
+  other.deadlines.heartbeat_timeout = cell.deadlines.heartbeat_timeout;
+  cell = std::move(other);
+  cell::Recipe recipe = cell.recipes.at("quick");
+  recipe.name = kFewCandidates;
+  recipe.candidate_count = candidate_count;
+  return cell.recipes.insert_or_assign(kFewCandidates, std::move(recipe)).first->second;
+}
+
 void LoopbackCell::shut_down() {
   bool down = false;
   boost::asio::co_spawn(io_, operation_->shut_down(), [&down](const std::exception_ptr&) { down = true; });
@@ -114,6 +123,14 @@ std::int64_t LoopbackCell::start(const std::string& recipe) {
 
 void LoopbackCell::command(cell::Command command) {
   if (const auto refusal = operation_->command(command)) throw std::runtime_error(refusal->detail);
+}
+
+void LoopbackCell::run_whole(const std::string& recipe, const cell::Truth& truth) {
+  serve(sim::make_plant(cell, truth), {.controller = {.speed = sim::kSpeedMax}});
+  launch();
+  run_until(cell::State::kIdle);
+  start(recipe);
+  run_until_over();
 }
 
 void LoopbackCell::leave_aborted() {

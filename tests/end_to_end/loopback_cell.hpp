@@ -20,6 +20,9 @@ namespace touchcal::testing {
 inline constexpr const char* kShortRecipe = "short";
 inline constexpr int kShortTouchCount = 4 * (7 + 1);
 
+/// `quick` of a cell, planned from so few candidates that it takes a second: see LoopbackCell::use().
+inline constexpr const char* kFewCandidates = "few candidates";
+
 /// A daemon's CellOperation and the simulated controller on one io_context, over real sockets on loopback,
 /// with a store in a folder of its own. Change `cell` before launch().
 class LoopbackCell {
@@ -27,6 +30,9 @@ class LoopbackCell {
   explicit LoopbackCell(const std::string& cell_name = "edf");
   /// Shuts the operation down as the daemon does at a signal.
   ~LoopbackCell();
+
+  /// Another cell with `kFewCandidates` among its recipes, which is returned to be changed; before serve().
+  cell::Recipe& use(cell::Cell other, int candidate_count);
 
   /// The simulated controller with the cell's truth, instead of the one before, on the same port.
   void serve(std::vector<sim::PlannedFault> faults = {}, double speed = sim::kSpeedMax);
@@ -54,6 +60,8 @@ class LoopbackCell {
   std::int64_t start(const std::string& recipe = kShortRecipe);
   /// std::runtime_error with the reason when it was refused.
   void command(cell::Command command);
+  /// A run of the recipe from the start of everything until it is over, against this truth at full speed.
+  void run_whole(const std::string& recipe, const cell::Truth& truth);
   /// From ABORTED to IDLE, as an operator goes: clear, then reset.
   void leave_aborted();
   [[nodiscard]] bool is_refused(cell::Command command);

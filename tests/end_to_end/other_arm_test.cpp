@@ -36,19 +36,9 @@ class WholeRunOfAnotherArm : public ::testing::TestWithParam<const char*> {};
 TEST_P(WholeRunOfAnotherArm, EndsCompleteWithTheTipCalibrated) {
   const cell::Folder files;
   LoopbackCell loop("demo");
-  const auto heartbeat_timeout = loop.cell.deadlines.heartbeat_timeout;
-  loop.cell = cell::demo_with(GetParam(), files);
-  loop.cell.deadlines.heartbeat_timeout = heartbeat_timeout;
-  cell::Recipe recipe = loop.cell.recipes.at("quick");
-  recipe.name = "few candidates";
-  recipe.candidate_count = 2'000;
-  loop.cell.recipes.emplace(recipe.name, recipe);
+  loop.use(cell::demo_with(GetParam(), files), 2'000);
   const calib::ErrorVector errors = shipped_truth("demo");
-  loop.serve(sim::make_plant(loop.cell, errors), {.controller = {.speed = sim::kSpeedMax}});
-  loop.launch();
-  loop.run_until(State::kIdle);
-  loop.start(recipe.name);
-  loop.run_until_over();
+  loop.run_whole(kFewCandidates, {.errors = errors});
 
   ASSERT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
   EXPECT_EQ(loop.status().verdict, cell::Verdict::kAccepted);

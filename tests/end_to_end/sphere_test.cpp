@@ -40,23 +40,13 @@ class WholeRunWithABall : public ::testing::TestWithParam<Place> {};
 TEST_P(WholeRunWithABall, FindsTheArmAndTheBall) {
   const cell::Folder files;
   LoopbackCell loop("demo");
-  const auto heartbeat_timeout = loop.cell.deadlines.heartbeat_timeout;
   nlohmann::json ball = cell::ball_face();
   ball.update(GetParam().keys);
-  loop.cell = cell::read_cell(cell::write_demo_with(cell::block_with(ball), files));
-  loop.cell.deadlines.heartbeat_timeout = heartbeat_timeout;
-  cell::Recipe recipe = loop.cell.recipes.at("quick");
-  recipe.name = "few candidates";
-  recipe.candidate_count = 3'000;
+  cell::Recipe& recipe =
+      loop.use(cell::read_cell(cell::write_demo_with(cell::block_with(ball), files)), 3'000);
   recipe.goal.fit_count = 60;  // for 28 parameters and more
-  loop.cell.recipes.emplace(recipe.name, recipe);
   const Eigen::Vector3d shift_m = GetParam().shift_m;
-  const cell::Truth truth{.errors = shipped_truth("demo"), .sphere_shifts_m = {shift_m}};
-  loop.serve(sim::make_plant(loop.cell, truth), {.controller = {.speed = sim::kSpeedMax}});
-  loop.launch();
-  loop.run_until(State::kIdle);
-  loop.start(recipe.name);
-  loop.run_until_over();
+  loop.run_whole(kFewCandidates, {.errors = shipped_truth("demo"), .sphere_shifts_m = {shift_m}});
 
   ASSERT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
   EXPECT_EQ(loop.status().verdict, cell::Verdict::kAccepted);
