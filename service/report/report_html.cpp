@@ -142,6 +142,7 @@ std::string run_section(const RunReport& report) {
            {"probe, certificate",
             text_or_unknown(conditions.probe.name) + "; " + certificate_text(conditions.probe.certificate)},
            {"block's temperature", temperature_text(run.block_temperature_c, conditions)},
+           {"arm had moved", figure_text(conditions.arm_moving_min, "{:.0f} min before the run")},
            {"place of the block", place_text(conditions)},
            {"touches made", text_or_unknown(conditions.touch_mode)},
            {"operator", text_or_unknown(run.operator_name)},

@@ -57,6 +57,8 @@ step('TwoPagesShowTheSameAndBothMayAct', async () => {
   const celsius = one.getByLabel('Block, °C');
   assert.equal(await celsius.inputValue(), '20', 'as the block\u2019s file has it');
   await celsius.fill('25.5');
+  const moving = one.getByLabel('Arm moving, min');
+  await moving.fill('45');
   await start(one);
   await waitForState(other, ['Starting', 'Touching']);
   await waitForState(other, 'Touching');
@@ -67,11 +69,13 @@ step('TwoPagesShowTheSameAndBothMayAct', async () => {
   assert.equal(await total(one), await total(other));
   const {conditions} = await cell.get(`/api/v1/runs/${(await cell.get('/api/v1/status')).run_id}`);
   assert.deepEqual([conditions.block_temperature_c, conditions.std_temperature_k, conditions.block_temperature_source], [25.5, 1, 'run']);
+  assert.equal(conditions.arm_moving_min, 45);
   await stopButton(one).click();
   await waitForState(other, 'Stopped');
   await waitForState(one, 'Stopped');
   await one.keyboard.press('Alt+Digit1');
   assert.equal(await celsius.inputValue(), '20', 'it was for that run');
+  assert.equal(await moving.inputValue(), '', 'so were they');
 });
 
 step('APageThatIsLoadedInTheMiddleOfARunHasTheCurvesFromItsBeginning', async () => {

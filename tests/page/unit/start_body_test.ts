@@ -22,6 +22,13 @@ test('ATemperatureIsSentWithItsDeviationWhenItIsNotTheFiles', () => {
                    {recipe: 'quick', touching: 'guided', block_temperature_c: 20, std_block_temperature_k: 0.5});
 });
 
+test('TheMinutesThatTheArmHasMovedAreSentWhenSomebodyWroteThem', () => {
+  assert.deepEqual(startBody('quick', {movingMin: '45'}, kBlock), {recipe: 'quick', arm_moving_min: 45});
+  assert.deepEqual(startBody('quick', {movingMin: ' '}, kBlock), {recipe: 'quick'});
+  assert.deepEqual(startBody('quick', {movingMin: 'long', temperature: {celsius: '25'}}, kBlock),
+                   {recipe: 'quick', arm_moving_min: 'long', block_temperature_c: 25, std_block_temperature_k: 1});
+});
+
 test('WhatIsMissingOrNoNumberIsLeftToTheDaemonToRefuse', () => {
   assert.deepEqual(startBody('quick', {temperature: {celsius: '25'}}, kUnknown), {recipe: 'quick', block_temperature_c: 25});
   assert.deepEqual(startBody('quick', {temperature: {celsius: 'warm'}}, kBlock),

@@ -164,6 +164,14 @@ TEST(Report, TheBlocksTemperatureIsToldWithItsSourceAndTime) {
   EXPECT_THAT(page_of(record()), HasSubstr(", from the block&#39;s file"));
 }
 
+TEST(Report, TheMinutesThatTheArmHadMovedAreTold) {
+  RunRecord moving = record();
+  Json document = Json::parse(moving.result_json.value());
+  document.at("conditions")["arm_moving_min"] = 45;
+  moving.result_json = document.dump();
+  EXPECT_THAT(page_of(moving), HasSubstr("45 min before the run"));
+}
+
 TEST(Report, TextFromOutsideStaysText) {
   RunRecord hostile = record();
   const std::string markup = "<script>alert('x')</script>\x01&\"";

@@ -4,7 +4,7 @@ import type {Cell} from '../api/documents.ts';
 export interface WrittenTemperature { celsius?: string; std?: string }
 
 /** What a start is made with beside the recipe. */
-export interface Conditions { operator?: string; touching?: 'guided'; temperature?: WrittenTemperature }
+export interface Conditions { operator?: string; touching?: 'guided'; temperature?: WrittenTemperature; movingMin?: string }
 
 /** The body of a start, as POST runs takes it. */
 export interface StartBody {
@@ -13,6 +13,7 @@ export interface StartBody {
   touching?: 'guided';
   block_temperature_c?: number | string;
   std_block_temperature_k?: number | string;
+  arm_moving_min?: number | string;
 }
 
 /** What the two fields show: what was written, else the figures of the block's file. */
@@ -21,12 +22,13 @@ export function shownTemperature(written: WrittenTemperature | undefined, block:
 }
 
 /** A temperature is sent when it is another one than the file's; the daemon judges what is no number. */
-export function startBody(recipe: string, {temperature, ...others}: Conditions, block: Cell['block'] | null): StartBody {
+export function startBody(recipe: string, {temperature, movingMin, ...others}: Conditions, block: Cell['block'] | null): StartBody {
   const shown = shownTemperature(temperature, block);
   const ofFile = shownTemperature(undefined, block);
-  if (shown.celsius.trim() === ofFile.celsius && shown.std.trim() === ofFile.std) return {recipe, ...others};
+  const start = {recipe, ...others, ...(movingMin?.trim() && {arm_moving_min: figure(movingMin)})};
+  if (shown.celsius.trim() === ofFile.celsius && shown.std.trim() === ofFile.std) return start;
   return {
-    recipe, ...others,
+    ...start,
     ...(shown.celsius.trim() && {block_temperature_c: figure(shown.celsius)}),
     ...(shown.std.trim() && {std_block_temperature_k: figure(shown.std)}),
   };

@@ -65,7 +65,7 @@ export function App({desk}: {desk: Desk}) {
   }, [theme]);
   const startRun = async (): Promise<void> => {
     if (!await desk.startRun(conditions)) return;
-    setConditions(({temperature: _, ...others}) => others);  // it was measured for this run
+    setConditions(({temperature: _, movingMin: __, ...others}) => others);  // they were of this run
     document.querySelector<HTMLElement>('header h1')?.focus();
   };
   const place = useRef<HTMLElement>(null);

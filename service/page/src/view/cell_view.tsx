@@ -150,6 +150,11 @@ function StartFields({state, given, onConditions}: {state: PageState; given: Con
         <input type="text" inputMode="decimal" maxLength={12} autocomplete="off" placeholder={say('unknown')} value={std}
                onInput={(event) => takeTemperature({std: event.currentTarget.value})} />
       </label>
+      <label>
+        <span>{say('armMoving')}</span>
+        <input type="text" inputMode="decimal" maxLength={6} autocomplete="off" placeholder={say('unknown')} value={given.movingMin ?? ''}
+               onInput={(event) => onConditions({...given, movingMin: event.currentTarget.value})} />
+      </label>
       {state.cell?.place !== undefined && (
         <label class="check">
           <input type="checkbox" checked={given.touching === 'guided'} onChange={(event) => takeGuided(event.currentTarget.checked)} />

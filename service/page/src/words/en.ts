@@ -107,6 +107,7 @@ export const en = {
   operator: 'Operator',
   temperature: 'Block, °C',
   temperatureStd: '± std, K',
+  armMoving: 'Arm moving, min',
   guided: 'Touch by hand',
   optional: 'optional',
 

@@ -109,6 +109,7 @@ export const fr: Words = {
   operator: 'Opérateur',
   temperature: 'Bloc, °C',
   temperatureStd: '± écart, K',
+  armMoving: 'Bras actif, min',
   guided: 'Palper à la main',
   optional: 'facultatif',
 
