@@ -283,9 +283,10 @@ class Step {
     const bool by_edge = running_.outcome == Outcome::kUnexpectedContact;
     if (by_edge && running_.ticks_in_stage < kSteadyTicks) return false;
     if (by_edge && cabinet_.probe_disagrees()) running_.outcome = Outcome::kProbeFault;
-    const bool goes_back = running_.outcome == Outcome::kStopped &&
+    const bool goes_back = running_.outcome == Outcome::kStopped && !running_.returning &&
                            running_.broken_in == cs8::Phase::kSearch && retract_path_.size() > 1;
     if (!goes_back) return true;
+    running_.returning = true;
     follow(plant_, cabinet_.drives, retract_path_.front(), metres_per_second(retract_speed_um_s()));
     enter(Stage::kReturn);
     return false;

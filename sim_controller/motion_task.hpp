@@ -63,7 +63,8 @@ struct RunningCommand {
   std::uint32_t edges = 0;  // of the latch input, since the trigger
   int stop_in_ticks = 0;    // from the trigger to the brakes
   int ticks_in_stage = 0;
-  std::string collision;  // which body hit what
+  bool returning = false;  // a stopped search has set out for its approach posture: the next stop is the last
+  std::string collision;   // which body hit what
 };
 
 /// What the motion task remembers from one command to the next.
@@ -83,7 +84,8 @@ RunningCommand begin_retract(const Plant& plant, Cabinet& cabinet, const std::ve
                              std::uint32_t sequence, const cs8::Retract& order);
 
 /// Ends the running command early: brakes, and reports `outcome` at standstill; the first cause counts.
-/// A search that is stopped (kStopped) goes back to its approach posture.
+/// A search that is stopped (kStopped) goes back to its approach posture; stopped once more on that way, it
+/// stands where it is.
 void break_off(Cabinet& cabinet, RunningCommand& running, cs8::Outcome outcome,
                std::int32_t error_number = 0);
 

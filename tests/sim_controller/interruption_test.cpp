@@ -48,6 +48,24 @@ TEST_F(Interruption, StopInEachPhaseEndsTheTouchWhereTheProtocolSays) {
   }
 }
 
+TEST_F(Interruption, ASecondStopOnTheWayBackFromASearchLeavesTheArmWhereItStands) {
+  Bench bench = Bench::ready(plant());
+  bench.touch_until(1, motion(), Phase::kSearch);
+  bench.pass(milliseconds(500));  // the way back takes longer than to brake
+  bench.send(0, cs8::Stop{});
+  for (int i = 0; i < 100 && bench.phase() != Phase::kRetract; ++i) bench.pass(milliseconds(4));
+  ASSERT_EQ(bench.phase(), Phase::kRetract);
+  const calib::JointVector at_stop = bench.joints();
+  bench.send(0, cs8::Stop{});
+  const auto result = bench.result<cs8::TouchResult>();
+  EXPECT_EQ(result.outcome, Outcome::kStopped);
+  EXPECT_EQ(result.phase, Phase::kSearch);
+  EXPECT_LT(tip_distance_m(plant(), bench.joints(), at_stop), 0.02 * (kTickSeconds + kResetSeconds));
+  EXPECT_GT(tip_distance_m(plant(), bench.joints(), motion().approach), 1e-3);
+  bench.pass(milliseconds(20));
+  EXPECT_TRUE(bench.flag(cs8::kRetractDue));
+}
+
 TEST_F(Interruption, WhatIsLeftNearAFaceTakesNothingButARetractToTheClearPosture) {
   for (const Phase phase : {Phase::kApproach, Phase::kSearch, Phase::kRetract}) {
     for (const bool by_stop : {true, false}) {
