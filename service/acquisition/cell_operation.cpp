@@ -1,5 +1,5 @@
-// The commands of a CellOperation, its preconditions and what it tells; what its states do is in
-// cell_operation_loop.cpp.
+// The commands of a CellOperation, its preconditions and what it tells; what the controller tells is in
+// cell_operation_link.cpp, what its states do in cell_operation_loop.cpp.
 #include "service/acquisition/cell_operation.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -140,25 +140,6 @@ void CellOperation::describe_to(Status& status) {
   status.by_hand = locating ? locating : guided;
 }
 
-void CellOperation::on_controller_state(const cs8::State& state) {
-  session_.on_controller_state(state);
-  location_.on_controller_state(state);
-  manual_.on_controller_state(active(), state);
-  session_.check_task(state);
-}
-
-void CellOperation::on_link_lost(const cs8::LinkError& error) {
-  if (status_.is_ending()) return;
-  session_.forget_standing();
-  const bool is_over = status_.state() == State::kAborted || status_.state() == State::kStopped;
-  if (is_over && status_.fault()) {
-    status_.publish();  // the fault that is there stays until somebody has read it
-  } else {
-    status_.raise(link_fault(error), is_interrupted() ? Event::kNotReadyFault : Event::kLinkDown);
-  }
-  wake_.wake();
-}
-
 std::vector<Unmet> CellOperation::unmet_preconditions() const {
   return unmet_by_controller(session_.connected(), session_.latest_state(), status_.fault());
 }
@@ -260,6 +241,8 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
     return CommandRefusal{.kind = CommandRefusal::Kind::kNotThisRun,
                           .detail = fmt::format("run {} is over", *run_id)};
   }
+  const bool stops = command == Command::kStop || command == Command::kAbort;
+  if (status_.is_ending() && !stops) return CommandRefusal{.detail = "the daemon is ending"};
   const State state = status_.state();
   const auto next = after_command(state, command);
   if (!next) {
@@ -274,6 +257,10 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
   spdlog::info("command {}", command_name(command));
   apply_command(command);
   if (status_.state() == state) status_.enter(*next);
+  // Entering these two states stops the arm. A stop in any other case is sent all the same: nothing here
+  // knows better than who gives it whether something moves.
+  const bool is_sent = *next != state && (*next == State::kStopping || *next == State::kAborting);
+  if (stops && !is_sent) session_.stop();
   return std::nullopt;
 }
 

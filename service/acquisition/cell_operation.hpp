@@ -108,14 +108,16 @@ class CellOperation {
   std::optional<CommandRefusal> locate();
   std::optional<CommandRefusal> take();
   std::optional<CommandRefusal> undo();
-  void on_controller_state(const cs8::State& state);
-  void on_link_lost(const cs8::LinkError& error);
   void describe_to(Status& status);
   void store_fault(const std::string& name, const std::string& message);
   void forget_plans();
   [[nodiscard]] ActiveRun* active() { return run_ ? &*run_ : nullptr; }
   [[nodiscard]] bool is_interrupted() const { return run_ && run_->interruption; }
   [[nodiscard]] std::string now_text() const;
+
+  // what the controller tells (cell_operation_link.cpp)
+  void on_controller_state(const cs8::State& state);
+  void on_link_lost(const cs8::LinkError& error);
 
   // what the states do (cell_operation_loop.cpp)
   boost::asio::awaitable<void> act_on_states();

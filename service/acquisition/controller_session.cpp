@@ -66,6 +66,11 @@ void ControllerSession::check_task(const cs8::State& state) {
                 Event::kAbortFault);
 }
 
+void ControllerSession::stop() {
+  ++stop_count_;
+  controller_.stop();
+}
+
 void ControllerSession::on_entered(State state) {
   if (state == State::kStopping || state == State::kAborting) controller_.stop();
   if (asking_) controller_.finish();
@@ -209,8 +214,9 @@ asio::awaitable<std::optional<calib::JointVector>> ControllerSession::standing_j
 }
 
 asio::awaitable<void> ControllerSession::leave_face() {
+  const int stop_count = stop_count_;
   const auto told = co_await settled_state();
-  if (!told || (told->flags & cs8::kRetractDue) == 0) co_return;
+  if (!told || (told->flags & cs8::kRetractDue) == 0 || stop_count != stop_count_) co_return;
   const cs8::MoveReply reply = co_await controller_.retract(retract_command(cell_));
   const auto* result = std::get_if<cs8::MoveResult>(&reply.answer);
   if (result) controller_.acknowledge(reply.sequence);

@@ -39,6 +39,8 @@ class ControllerSession {
   /// Raises a failed task of the controller. Call it after on_controller_state and the state's other uses.
   void check_task(const cs8::State& state);
   void on_permit(const cs8::Permit& permit);
+  /// A person's stop: sent at once, whenever there is a link.
+  void stop();
   /// A new state of the cell: stops the arm where the state asks for it and returns a requested permit.
   void on_entered(State state);
 
@@ -89,7 +91,7 @@ class ControllerSession {
   /// search line. Empty when that failed, the link is lost or another state was entered.
   boost::asio::awaitable<std::optional<calib::JointVector>> standing_joints();
   /// Retracts before the daemon ends: a stop may have left the stylus at a face. A failure leaves the arm
-  /// where it is.
+  /// where it is, and so does a person's stop.
   boost::asio::awaitable<void> leave_face();
 
  private:
@@ -118,6 +120,7 @@ class ControllerSession {
   std::int32_t task_error_ = 0;                     // in that state
   int inputs_disagree_count_ = 0;                   // newest states of the controller in a row
   bool asking_ = false;                             // for a permit
+  int stop_count_ = 0;                              // stops of a person
 };
 
 }  // namespace cell

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 
 #include "tests/service/acquisition/owners_bench.hpp"
@@ -92,6 +93,26 @@ TEST_F(CellOperationTest, NoStateIsADeadEndAndNoExitIsRefused) {
   EXPECT_FALSE(operation_.command(Command::kStop));
   EXPECT_EQ(operation_.status().state, State::kStopped);
   EXPECT_THAT(operation_.exits(), Contains(Command::kReset));
+}
+
+TEST_F(CellOperationTest, EveryStopIsSentToTheControllerWhateverTheState) {
+  launch();
+  const auto sent_by = [this](Command command) {
+    controller_->asked.clear();
+    EXPECT_FALSE(operation_.command(command));
+    return std::ranges::count(controller_->asked, "stop");
+  };
+  EXPECT_EQ(sent_by(Command::kStop), 1) << "IDLE";
+  EXPECT_EQ(sent_by(Command::kStop), 1) << "STOPPED";
+  EXPECT_FALSE(operation_.command(Command::kReset));
+  tell_state();
+  ASSERT_TRUE(std::holds_alternative<Started>(operation_.start({.recipe = "few"})));
+  EXPECT_EQ(sent_by(Command::kStop), 1) << "STARTING";
+  ASSERT_EQ(operation_.status().state, State::kStopping);
+  EXPECT_EQ(sent_by(Command::kStop), 1) << "STOPPING";
+  EXPECT_EQ(sent_by(Command::kAbort), 1);
+  ASSERT_EQ(operation_.status().state, State::kAborting);
+  EXPECT_EQ(sent_by(Command::kStop), 1) << "ABORTING";
 }
 
 TEST_F(CellOperationTest, ALostLinkIsAFaultAndLookedForAgain) {

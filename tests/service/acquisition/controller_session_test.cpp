@@ -141,6 +141,21 @@ TEST_F(ControllerSessionTest, StoppingTheCellStopsTheArm) {
   EXPECT_THAT(controller.asked, ElementsAre("stop", "stop"));
 }
 
+TEST_F(ControllerSessionTest, AStylusLeavesTheFaceBeforeTheEndUnlessAPersonSaysStop) {
+  status.enter(State::kStopping);
+  controller.state->flags |= cs8::kRetractDue;
+  wake.on_wait = [this] {
+    session.stop();
+    tell_state();
+  };
+  run(session.leave_face());
+  EXPECT_THAT(controller.asked, ElementsAre("stop"));
+  wake.on_wait = [this] { tell_state(); };
+  controller.asked.clear();
+  run(session.leave_face());
+  EXPECT_THAT(controller.asked, ElementsAre("retract 1", "acknowledge 1"));
+}
+
 TEST_F(ControllerSessionTest, TheProbesInputsMayChangeOneAfterTheOther) {
   tell_state();
   EXPECT_EQ(session.view("free").probe, "free");
