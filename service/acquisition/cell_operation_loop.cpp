@@ -23,7 +23,11 @@ constexpr std::chrono::milliseconds kClosePatience{1000};
 }  // namespace
 
 asio::awaitable<void> CellOperation::act_on_states() {
-  while (!status_.is_ending() || (is_active(status_.state()) && !is_interrupted())) {
+  // At the end an interrupted run stays on hold: the next daemon takes it up.
+  const auto is_left = [this] {
+    return !is_active(status_.state()) || (status_.state() == State::kHeld && is_interrupted());
+  };
+  while (!status_.is_ending() || !is_left()) {
     if (status_.state() != State::kExecute && run_) touches_.identify(*run_);
     co_await act_on(status_.state());
   }
@@ -226,11 +230,12 @@ void CellOperation::close_run(RunOutcome outcome) {
 asio::awaitable<void> CellOperation::shut_down() {
   status_.end();
   const State state = status_.state();
-  if (is_active(state) && state != State::kAborting && !is_interrupted()) {
+  if (is_interrupted()) {
+    if (state == State::kUnholding) status_.enter(State::kHolding);  // whatever its resumption waits for
+  } else if (is_active(state) && state != State::kAborting) {
     status_.enter(State::kStopping);
-  } else {
-    wake_.wake();
   }
+  wake_.wake();
   co_await wait_for_end(kStopPatience);
   const auto told = session_.latest_state();
   if (told && told->active_sequence != 0) co_await wait_for_end(kRetractPatience);

@@ -23,15 +23,19 @@ RunPlanning::RunPlanning(const Cell& cell, const std::optional<BlockPose>& place
       status_(status),
       wake_(wake) {}
 
-asio::awaitable<bool> RunPlanning::plan(ActiveRun& active) {
-  const std::string recipe = active.run.recipe().name;
-  const PlanGiven given = given_to(active.run);
+asio::awaitable<bool> RunPlanning::wait_for_outcome(const Run& run) {
+  const std::string recipe = run.recipe().name;
+  const PlanGiven given = given_to(run);
   const State state = status_.state();
-  // A stop does not wait for the planner: its answer comes, to be used another time.
   if (!plans_.planned(recipe, given)) plans_.begin(recipe, given, [&wake = wake_] { wake.wake(); });
   while (!plans_.planned(recipe, given) && status_.state() == state) co_await wake_.wait(1h);
-  if (status_.state() != state) co_return false;
-  const PlanOutcome outcome = *plans_.planned(recipe, given);
+  co_return status_.state() == state;
+}
+
+asio::awaitable<bool> RunPlanning::plan(ActiveRun& active) {
+  const bool goes_on = co_await wait_for_outcome(active.run);
+  if (!goes_on) co_return false;
+  const PlanOutcome outcome = *plans_.planned(active.run.recipe().name, given_to(active.run));
   if (const auto* refusal = std::get_if<PlanRefusal>(&outcome)) {
     status_.raise({FaultCode::kRecipeUnreachable, refusal->message}, Event::kAbortFault);
     co_return false;

@@ -107,7 +107,9 @@ asio::awaitable<bool> RunRecovery::plan_again(ActiveRun& active) {
     const bool planned = co_await planning_.plan(active);  // it was interrupted before it had one
     co_return planned;
   }
-  const PlanOutcome outcome = co_await plans_.plan(run.recipe().name, given_to(run));
+  const bool goes_on = co_await planning_.wait_for_outcome(run);
+  if (!goes_on) co_return false;
+  const PlanOutcome outcome = *plans_.planned(run.recipe().name, given_to(run));
   const auto* plan = std::get_if<std::shared_ptr<const Plan>>(&outcome);
   if (!plan || (*plan)->id != *active.interruption->plan_id) {
     status_.raise({FaultCode::kDaemonRestarted, "it cannot be resumed: planning now gives a different plan"},

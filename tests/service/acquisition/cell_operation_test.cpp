@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 
+#include "service/documents/configuration_digest.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
 namespace cell {
@@ -21,8 +22,12 @@ class CellOperationTest : public ::testing::Test {
   CellOperationTest() { spdlog::set_level(spdlog::level::off); }
   ~CellOperationTest() override {
     controller_->is_connected = false;  // nobody whose answer the end waits for
+    shut_down();
+  }
+  void shut_down() {
     bool down = false;
     boost::asio::co_spawn(io_, operation_.shut_down(), [&](const std::exception_ptr&) { down = true; });
+    io_.restart();
     while (!down) io_.run_one();
   }
   /// The controller tells its state; what waits looks at it.
@@ -126,6 +131,63 @@ TEST_F(CellOperationTest, ALostLinkIsAFaultAndLookedForAgain) {
   io_.poll();
   EXPECT_THAT(controller_->asked, Contains("connect"));
   EXPECT_FALSE(operation_.status().fault) << "it ended with the link";
+}
+
+/// A run that a daemon left open, which a person resumes and which waits then for its plan or its permit.
+class ResumedOperationTest : public CellOperationTest {
+ protected:
+  ResumedOperationTest() {
+    const Plan& plan = plan_of_owners();
+    id_ = store_.begin_run({.recipe = "few",
+                            .started_at = "start",
+                            .config_digest = configuration_digest(cell_of_owners()),
+                            .conditions_json = "{}"});
+    store_.set_plan(id_, static_cast<int>(plan.touches.touches.size()), plan.id, plan.document);
+    launch();
+    EXPECT_EQ(operation_.status().state, State::kHeld);
+    controller_->asked.clear();
+  }
+  void expect_left_for_the_next_daemon() {
+    EXPECT_EQ(operation_.status().state, State::kHeld);
+    EXPECT_EQ(store_.run(id_).value().outcome, RunOutcome::kRunning);
+    EXPECT_THAT(controller_->asked, ::testing::Each(::testing::Not(::testing::StartsWith("touch"))));
+  }
+
+  std::int64_t id_ = 0;
+};
+
+TEST_F(ResumedOperationTest, IsLeftWhereTheDaemonEndsWhileItIsPlanned) {
+  EXPECT_FALSE(operation_.command(Command::kResume));
+  ASSERT_EQ(operation_.status().state, State::kUnholding);
+  shut_down();
+  expect_left_for_the_next_daemon();
+  EXPECT_THAT(controller_->asked, ::testing::Not(Contains(::testing::StartsWith("begin"))));
+}
+
+TEST_F(ResumedOperationTest, DoesNotMoveWhereTheDaemonEndsWhileItsPermitIsAwaited) {
+  controller_->on_begin = [](std::uint32_t run) {
+    cs8::Permit refused;
+    refused.run = run;
+    refused.reason = cs8::PermitReason::kRefused;
+    refused.detail = static_cast<std::int32_t>(cs8::RejectReason::kCellOpen);
+    return refused;
+  };
+  EXPECT_FALSE(operation_.command(Command::kResume));
+  io_.restart();
+  while (operation_.status().waiting_for != "cell_closed") io_.run_one();
+  controller_->on_begin = [](std::uint32_t run) {
+    return cs8::Permit{.run = run, .state = cs8::PermitState::kGranted};
+  };
+  controller_->state->flags &= ~static_cast<std::uint32_t>(cs8::kCellClosed);  // what it waits for
+  shut_down();
+  EXPECT_EQ(operation_.status().state, State::kStopped);
+  EXPECT_THAT(controller_->asked, ::testing::Each(::testing::Not(::testing::StartsWith("touch"))));
+}
+
+TEST_F(ResumedOperationTest, IsNotResumedByADaemonThatEnds) {
+  shut_down();
+  EXPECT_TRUE(operation_.command(Command::kResume));
+  expect_left_for_the_next_daemon();
 }
 
 TEST_F(CellOperationTest, ChangesAreToldAtOnceAndNumbered) {

@@ -33,6 +33,7 @@ class RunRecoveryTest : public ::testing::Test, public OwnersBench {
     return id;
   }
   void hold(ActiveRun& active) {
+    run(plans_.plan("few"));  // else the made-up hours pass while it is planned
     touches_.begin_run(active);
     status.enter(State::kHeld);
     status.enter(State::kUnholding);
@@ -135,7 +136,6 @@ TEST_F(RunRecoveryTest, ARunWithoutAPlanYetIsPlanned) {
   leave_run(0, false);
   ActiveRun active = recovery_.restore().value();
   hold(active);
-  run(plans_.plan("few"));  // else the made-up hours pass while it is planned
   EXPECT_TRUE(run(recovery_.make_resumable(active)));
   EXPECT_EQ(active.run.touches_total(), static_cast<int>(plan_of_owners().touches.touches.size()));
 }
