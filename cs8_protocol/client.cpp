@@ -4,6 +4,7 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -50,7 +51,8 @@ Link::Asking::~Asking() {
 
 asio::awaitable<void> Link::wait(Pending& pending, Clock::time_point accept_by, Clock::time_point answer_by) {
   while (!pending.done && !error_) {
-    const auto deadline = pending.accepted ? answer_by : std::min(accept_by, answer_by);
+    auto deadline = pending.accepted ? answer_by : std::min(accept_by, answer_by);
+    if (pending.settle_by) deadline = std::min(deadline, *pending.settle_by);
     if (Clock::now() >= deadline) {
       fail(LinkErrorKind::kUnanswered,
            pending.what + (pending.accepted ? " was accepted, but no result came within its deadline"
@@ -68,8 +70,13 @@ template <class Result, class Command>
 asio::awaitable<Reply<Result>> Link::command(std::shared_ptr<Link> link, const Command& body) {
   std::uint32_t sequence = 0;
   if (link && link->is_up() && link->waiting_ == nullptr) {
-    sequence = ++link->last_sequence_;
-    link->send(Message{sequence, body});
+    if (link->last_sequence_ == std::numeric_limits<std::uint32_t>::max()) {
+      link->fail(LinkErrorKind::kProtocol,
+                 "the controller's session has no number left for a command: start its application again");
+    } else {
+      sequence = ++link->last_sequence_;
+      link->send(Message{sequence, body});
+    }
   }
   return answer_to<Result>(std::move(link), sequence, std::chrono::milliseconds(body.deadline_ms));
 }
@@ -182,7 +189,7 @@ void Client::finish() {
 std::optional<Permit> Client::latest_permit() const { return link_ ? link_->latest_permit() : std::nullopt; }
 
 void Client::stop() {
-  if (connected()) link_->send(Message{0, Stop{}});
+  if (connected()) link_->stop();
 }
 
 void Client::acknowledge(std::uint32_t sequence) {

@@ -24,6 +24,7 @@ enum class LinkErrorKind {
   kSilent,            // no bytes for the heartbeat timeout, or the controller does not read
   kProtocol,    // bytes that are no frame, a message of the wrong side, an answer to nothing that was asked
   kFault,       // the controller said why it closes the connection
+  kOccupied,    // the controller serves another host
   kUnanswered,  // the controller lives but did not answer a command, query or Begin within its deadline
   kClosed,      // close() on this side
 };
@@ -51,12 +52,15 @@ struct ClientOptions {
   std::chrono::milliseconds heartbeat_timeout{500};  // of both sides
   std::chrono::milliseconds answer_deadline{2000};   // until a command or Begin is taken or refused
   std::chrono::milliseconds result_margin{2000};     // added to a command's or confirmation's own deadline
+  /// A command that State does not tell as running for so long has lost its result: it is asked for.
+  std::chrono::milliseconds result_lost_after{500};
 };
 
 /// Called from the io_context, never from inside a call of the client. They may close or destroy the client.
 struct ClientHooks {
   std::function<void(const State&)> on_state;
   std::function<void(const Permit&)> on_permit;  // each one, also one that is no longer waited for
+  std::function<void()> on_heartbeat;            // with each heartbeat that is sent
   std::function<void(const LinkError&)>
       on_loss;  // once per connection, before a waiting call ends; not after close()
 };
@@ -114,7 +118,8 @@ class Client {
   /// The number the next motion command will have, to be stored before it is sent; 0 when not connected.
   [[nodiscard]] std::uint32_t next_sequence() const;
 
-  /// Motion commands are sent when these are called, before they return; await the reply at once.
+  /// Motion commands are sent when these are called, before they return; await the reply at once. A result
+  /// that is lost on its way is asked for once State tells that the command no longer runs.
   boost::asio::awaitable<TouchReply> touch(Touch command);
   boost::asio::awaitable<MoveReply> travel(Travel command);
   boost::asio::awaitable<MoveReply> retract(Retract command);
@@ -122,8 +127,9 @@ class Client {
   /// The result of a command of this session; waits while it still runs, `deadline` at most.
   boost::asio::awaitable<QueryReply> query(std::uint32_t sequence, std::chrono::milliseconds deadline);
 
-  /// Sent at once, also while a command runs; that command's reply then says kStopped. Nothing when not
-  /// connected.
+  /// Sent at once, also while a command runs; that command's reply then says kStopped. When neither the reply
+  /// nor a State that tells it as running comes within the answer deadline, the connection is ended. Nothing
+  /// when not connected.
   void stop();
   /// Lets the controller forget a result. Call it when the result is stored for good.
   void acknowledge(std::uint32_t sequence);

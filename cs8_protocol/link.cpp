@@ -89,7 +89,11 @@ void Link::greet(const DecodeResult& frame, const ExpectedController& expected) 
   const auto& message = std::get<Message>(frame);
   if (const auto* fault = std::get_if<Fault>(&message.payload)) {
     const bool version = fault->code == FaultCode::kVersion;
-    fail(version ? LinkErrorKind::kIncompatible : LinkErrorKind::kFault, fault_text(*fault));
+    const bool occupied = fault->code == FaultCode::kOccupied;
+    fail(version    ? LinkErrorKind::kIncompatible
+         : occupied ? LinkErrorKind::kOccupied
+                    : LinkErrorKind::kFault,
+         occupied ? "another host is connected to the controller" : fault_text(*fault));
   } else if (const auto* welcome = std::get_if<Welcome>(&message.payload)) {
     const std::string difference = mismatch(*welcome, expected);
     if (difference.empty()) {
@@ -145,6 +149,9 @@ asio::awaitable<void> Link::heartbeat_loop() {
   while (!error_) {
     const auto host_clock = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
     send(Message{0, Heartbeat{static_cast<std::uint32_t>(host_clock.count())}});
+    const auto on_heartbeat = hooks_.on_heartbeat;  // a copy, as for on_loss
+    if (on_heartbeat) on_heartbeat();
+    if (error_) co_return;
     heartbeat_timer_.expires_after(options_.heartbeat_period);
     co_await heartbeat_timer_.async_wait(asio::use_awaitable);
   }
@@ -174,6 +181,14 @@ void Link::send(const Message& message) {
   } else {
     flush();
   }
+}
+
+void Link::stop() {
+  send(Message{0, Stop{}});
+  if (error_ || waiting_ == nullptr || waiting_->done) return;
+  waiting_->is_stopped = true;
+  waiting_->settle_by = Clock::now() + options_.answer_deadline;
+  waiting_->alarm.cancel();
 }
 
 void Link::flush() {
@@ -239,8 +254,7 @@ void Link::take(const Message& message) {
           if (!take_permit(body)) unexpected();
         } else if constexpr (std::is_same_v<Body, Accepted>) {
           if (waiting_ == nullptr || waiting_->sequence != message.sequence) return unexpected();
-          waiting_->accepted = true;
-          waiting_->alarm.cancel();
+          take_acceptance();
         } else if constexpr (std::is_constructible_v<Answer, const Body&>) {
           if (!take_answer(message.sequence, body)) unexpected();
         } else {
@@ -258,8 +272,38 @@ void Link::take_state(const State& state) {
     return;
   }
   latest_state_ = state;
+  watch_command(state);
   const auto on_state = hooks_.on_state;  // a copy, as for on_loss
   if (on_state) on_state(state);
+}
+
+/// Also told again for a command that was asked for and still runs.
+void Link::take_acceptance() {
+  waiting_->accepted = true;
+  waiting_->is_asked_for = false;
+  waiting_->idle_since.reset();
+  waiting_->settle_by.reset();
+  if (waiting_->is_stopped) waiting_->settle_by = Clock::now() + options_.answer_deadline;
+  waiting_->alarm.cancel();
+}
+
+/// The command that is waited for runs as long as State says so; behind that its result is on its way, or
+/// lost.
+void Link::watch_command(const State& state) {
+  if (waiting_ == nullptr || waiting_->done || !waiting_->accepted) return;
+  const auto now = Clock::now();
+  if (state.active_sequence == waiting_->sequence) {
+    waiting_->idle_since.reset();
+    if (waiting_->settle_by) waiting_->settle_by = now + options_.answer_deadline;
+    return;
+  }
+  if (!waiting_->idle_since) waiting_->idle_since = now;
+  if (waiting_->is_asked_for || now - *waiting_->idle_since < options_.result_lost_after) return;
+  waiting_->is_asked_for = true;
+  waiting_->settle_by = now + options_.answer_deadline;
+  const ResultQuery question{waiting_->sequence};
+  send(Message{0, question});
+  waiting_->alarm.cancel();
 }
 
 /// A permit may be reported again and withdrawn at any time; it is granted only to a host that waits for it.
@@ -296,6 +340,10 @@ bool Link::take_answer(std::uint32_t sequence, const Answer& answer) {
   const bool is_result =
       std::holds_alternative<TouchResult>(answer) || std::holds_alternative<MoveResult>(answer);
   if (waiting_ != nullptr && waiting_->sequence == sequence && !waiting_->answer) {
+    if (waiting_->is_asked_for && std::holds_alternative<ResultUnknown>(answer) && !waiting_->takes(answer)) {
+      fail(LinkErrorKind::kUnanswered, waiting_->what + " was accepted, but its result is lost");
+      return true;
+    }
     if (!waiting_->takes(answer)) return false;
     waiting_->answer = answer;
     waiting_->done = true;

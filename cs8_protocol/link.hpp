@@ -46,6 +46,7 @@ class Link : public std::enable_shared_from_this<Link> {
                                             std::chrono::milliseconds confirm_within);
 
   void send(const Message& message);
+  void stop();
   void fail(LinkErrorKind kind, std::string text);
   void close();
 
@@ -64,6 +65,7 @@ class Link : public std::enable_shared_from_this<Link> {
     std::string what;          // is asked for, in words
     bool accepted = false;
     bool done = false;
+    std::optional<Clock::time_point> settle_by;  // sooner than its own deadline
   };
 
   /// The one call that waits for an answer; lives in its coroutine.
@@ -78,6 +80,9 @@ class Link : public std::enable_shared_from_this<Link> {
     const std::uint32_t sequence;
     const MessageType wanted;  // kTouchResult, kMoveResult, or kResultUnknown for a query
     std::optional<Answer> answer;
+    std::optional<Clock::time_point> idle_since;  // by State it is not running
+    bool is_asked_for = false;                    // the result that did not come
+    bool is_stopped = false;
   };
 
   /// The one begin() that waits for its permit; lives in its coroutine.
@@ -111,6 +116,8 @@ class Link : public std::enable_shared_from_this<Link> {
 
   void take(const Message& message);
   void take_state(const State& state);
+  void watch_command(const State& state);
+  void take_acceptance();
   bool take_permit(const Permit& permit);                          // false: it was not asked for
   bool take_answer(std::uint32_t sequence, const Answer& answer);  // false: it answers nothing
 

@@ -14,6 +14,7 @@ FaultCode fault_code_of(cs8::LinkErrorKind kind) {
     case cs8::LinkErrorKind::kFault:
       return FaultCode::kProtocolError;
     case cs8::LinkErrorKind::kUnreachable:
+    case cs8::LinkErrorKind::kOccupied:
     case cs8::LinkErrorKind::kHandshakeTimeout:
     case cs8::LinkErrorKind::kNotConnected:
       return FaultCode::kControllerUnreachable;

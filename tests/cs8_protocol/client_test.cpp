@@ -81,6 +81,12 @@ TEST_F(ClientTest, AnotherArmIsRefusedByName) {
   EXPECT_THAT(error.text, HasSubstr("'tx60', not 'tx90'"));
 }
 
+TEST_F(ClientTest, AControllerThatServesAnotherHostSaysSo) {
+  const LinkError error = refused_handshake(encode({0, Fault{.code = FaultCode::kOccupied}}));
+  EXPECT_EQ(error.kind, LinkErrorKind::kOccupied);
+  EXPECT_THAT(error.text, HasSubstr("another host"));
+}
+
 TEST_F(ClientTest, AnotherApplicationIsRefusedByName) {
   Welcome other = welcome();
   other.application = text16("palletizer");

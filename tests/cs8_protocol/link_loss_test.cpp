@@ -2,6 +2,7 @@
 
 #include <boost/asio/bind_cancellation_slot.hpp>
 #include <boost/asio/cancellation_signal.hpp>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -130,6 +131,97 @@ TEST_F(LinkLoss, AnAcceptedCommandWithoutAResultEndsAtItsOwnDeadline) {
     EXPECT_GE(std::chrono::steady_clock::now() - start, milliseconds(50));
     const auto* error = std::get_if<LinkError>(&reply.answer);
     EXPECT_TRUE(error != nullptr && error->kind == LinkErrorKind::kUnanswered);
+  });
+}
+
+/// A controller that accepts a touch, sends no result, and tells that nothing runs.
+Script loses_result(const Welcome& welcome, const std::optional<Payload>& answer) {
+  return [welcome, answer](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.shake_hands(welcome);
+    co_await peer.receive<Touch>();
+    peer.send(1, Accepted{});
+    peer.send(0, State{.session = welcome.session});
+    const ResultQuery question = co_await peer.receive<ResultQuery>();
+    EXPECT_EQ(question.command_sequence, 1u);
+    if (answer) peer.send(1, *answer);
+    co_await peer.until_closed();
+  };
+}
+
+ClientOptions asks_at_once() {
+  ClientOptions options;
+  options.heartbeat_timeout = std::chrono::seconds(10);
+  options.answer_deadline = milliseconds(200);
+  options.result_lost_after = milliseconds(0);
+  return options;
+}
+
+TEST_F(LinkLoss, AResultThatIsLostIsAskedForOnceNothingRuns) {
+  Client client = make_client(asks_at_once());
+  controller_does({loses_result(welcome(), TouchResult{.outcome = Outcome::kContact})});
+  run([&]() -> asio::awaitable<void> {
+    co_await client.connect(endpoint(), expected());
+    const TouchReply reply = co_await client.touch(some_touch());
+    const auto* result = std::get_if<TouchResult>(&reply.answer);
+    EXPECT_TRUE(result != nullptr && result->outcome == Outcome::kContact);
+    EXPECT_TRUE(client.connected());
+    client.close();
+  });
+  EXPECT_TRUE(losses_.empty());
+}
+
+TEST_F(LinkLoss, AResultThatTheControllerDoesNotHaveEitherEndsTheTouchLongBeforeItsDeadline) {
+  for (const auto& answer : {std::optional<Payload>(ResultUnknown{1}), std::optional<Payload>()}) {
+    losses_.clear();
+    Client client = make_client(asks_at_once());
+    controller_does({loses_result(welcome(), answer)});
+    run([&]() -> asio::awaitable<void> {
+      co_await client.connect(endpoint(), expected());
+      const TouchReply reply = co_await client.touch(some_touch());
+      const auto* error = std::get_if<LinkError>(&reply.answer);
+      EXPECT_TRUE(error != nullptr && error->kind == LinkErrorKind::kUnanswered);
+    });
+    EXPECT_EQ(losses_.size(), 1u);
+  }
+}
+
+TEST_F(LinkLoss, AStopThatEndsNothingIsNotWaitedForUntilTheCommandsDeadline) {
+  ClientOptions options = patient();
+  options.answer_deadline = milliseconds(100);
+  Client client = make_client(options);
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.shake_hands(welcome());
+    co_await peer.receive<Touch>();
+    peer.send(1, Accepted{});
+    peer.send(0, State{.session = welcome().session, .active_sequence = 1});
+    co_await peer.receive<Stop>();
+    co_await peer.until_closed();
+  }});
+  on_state_ = [&](const State&) { client.stop(); };
+  run([&]() -> asio::awaitable<void> {
+    co_await client.connect(endpoint(), expected());
+    const auto start = std::chrono::steady_clock::now();
+    const TouchReply reply = co_await client.touch(Touch{.deadline_ms = 15'000});
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+    const auto* error = std::get_if<LinkError>(&reply.answer);
+    EXPECT_TRUE(error != nullptr && error->kind == LinkErrorKind::kUnanswered);
+  });
+}
+
+TEST_F(LinkLoss, WithoutANumberLeftForACommandTheLinkEndsAndNothingIsSent) {
+  Client client = make_client();
+  Welcome used_up = welcome();
+  used_up.last_sequence = std::numeric_limits<std::uint32_t>::max();
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.shake_hands(used_up);
+    co_await peer.until_closed();
+  }});
+  run([&]() -> asio::awaitable<void> {
+    co_await client.connect(endpoint(), expected());
+    const TouchReply reply = co_await client.touch(some_touch());
+    const auto* error = std::get_if<LinkError>(&reply.answer);
+    EXPECT_EQ(reply.sequence, 0u);
+    EXPECT_THAT(error ? error->text : std::string(), HasSubstr("no number left"));
   });
 }
 

@@ -30,7 +30,8 @@ constexpr cs8::ClientOptions kWaits{.connect_deadline = milliseconds(250),
                                     .heartbeat_period = milliseconds(50),
                                     .heartbeat_timeout = milliseconds(300),
                                     .answer_deadline = milliseconds(600),
-                                    .result_margin = milliseconds(100)};
+                                    .result_margin = milliseconds(100),
+                                    .result_lost_after = milliseconds(60'000)};  // what is lost stays lost
 constexpr std::uint32_t kTouchDeadlineMs = 600;
 
 /// What the controller knows of the touch that was asked for when the link went, once it is back.
