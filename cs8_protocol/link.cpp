@@ -93,7 +93,7 @@ void Link::greet(const DecodeResult& frame, const ExpectedController& expected) 
     fail(version    ? LinkErrorKind::kIncompatible
          : occupied ? LinkErrorKind::kOccupied
                     : LinkErrorKind::kFault,
-         occupied ? "another host is connected to the controller" : fault_text(*fault));
+         fault_text(*fault) + (occupied ? ": another host is connected" : ""));
   } else if (const auto* welcome = std::get_if<Welcome>(&message.payload)) {
     const std::string difference = mismatch(*welcome, expected);
     if (difference.empty()) {
