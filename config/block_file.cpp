@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/certificate.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
@@ -186,6 +187,19 @@ calib::KnownLength length_from_json(const JsonValue& value, const Block& block) 
   return length;
 }
 
+/// Each pair of faces may agree with its length, and all of them together not.
+void demand_one_certificate(const JsonValue& lengths, const Block& block) {
+  const auto found = find_contradicted_length(block);
+  if (!found) return;
+  const JsonValue item = lengths.items(0, kFaceCountMax)[found->length];
+  const JsonObject object = item.object({"planes", "value_mm", "std_mm"});
+  object.at("value_mm")
+      .fail("is " + plain_number(std::round(found->off_m * 1e9) / 1e6) +
+            " mm from what all other lengths and offsets give together (chi-square " +
+            plain_number(std::round(found->chi_square)) + " with " + std::to_string(found->degrees) +
+            " degrees of freedom); correct it, the others or their standard deviations");
+}
+
 bool is_given(const std::vector<calib::KnownLength>& lengths, std::array<int, 2> faces) {
   return std::ranges::any_of(lengths, [&](const calib::KnownLength& length) {
     return length.faces == faces || length.faces == std::array{faces[1], faces[0]};
@@ -245,6 +259,7 @@ Block read_block(const std::filesystem::path& file) {
       }
       block.lengths.push_back(length);
     }
+    demand_one_certificate(*lengths, block);
   }
   const std::vector<calib::Box> boxes = boxes_from_json(object.at("solids"));
   block.solids.insert(block.solids.begin(), boxes.begin(), boxes.end());  // before the balls

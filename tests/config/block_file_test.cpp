@@ -97,6 +97,28 @@ INSTANTIATE_TEST_SUITE_P(
         SpoiledBall{"/faces/5/place", "guessed", "/faces/5/place", "\"known\" or \"estimated\""},
         SpoiledBall{"/lengths/0/planes", json({3, 6}), "/lengths/0/planes/1", "is a sphere"}));
 
+// Plane 5 is estimated, so that no pair of faces shows it: 150.05 mm from 5 to 3, and 150 mm by way of 6.
+TEST_F(BlockWithBall, WithLengthsThatDoNotCloseIsRefused) {
+  json block = json_of(kSourceDir / "config/cells/demo/block.json");
+  block["faces"][4]["place"] = "estimated";
+  json step = block["faces"][2];
+  step["plane"] = 6;
+  step["offset_mm"] = 50;
+  step["center_mm"] = {140, -50, 0};
+  step["place"] = "estimated";
+  block["faces"].push_back(step);
+  const auto length = [](int a, int b, double value_mm) {
+    return json{{"planes", {a, b}}, {"value_mm", value_mm}, {"std_mm", 0.005}};
+  };
+  block["lengths"] = {length(1, 4, 150), length(5, 6, 50), length(6, 3, 100), length(3, 5, 150.01)};
+  EXPECT_EQ(read(block).lengths.size(), 4u);
+  block["lengths"][3]["value_mm"] = 150.05;
+  const ConfigError error = error_of([&] { static_cast<void>(read(block)); });
+  EXPECT_THAT(error.pointer(), testing::MatchesRegex("/lengths/[123]/value_mm"));
+  EXPECT_THAT(error.message(), HasSubstr("is 0.05 mm from what all other lengths and offsets give together"));
+  EXPECT_THAT(error.message(), HasSubstr("correct it, the others or their standard deviations"));
+}
+
 TEST_F(BlockWithBall, TakesNoRecipeWithPlaneCoefficientsThatTouchesTheSphere) {
   const std::filesystem::path file = write_demo_with(block_with(ball_face()), folder_);
   json cell = json_of(file);
