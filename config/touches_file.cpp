@@ -4,8 +4,13 @@
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 
+#include "calib_core/estimation/artefact.hpp"
+#include "calib_core/estimation/identification_problem.hpp"
+#include "calib_core/estimation/pure_error.hpp"
+#include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/joint_units.hpp"
@@ -24,8 +29,9 @@ std::string rounded(double number) {
   return plain_number(std::round(number * kShown) / kShown);
 }
 
-/// A sentence on the joints of one touch that are outside their ranges.
-std::string range_warning(std::size_t number, const calib::JointVector& joints, const Arm& arm) {
+/// A sentence on the joints of one touch that are outside their ranges. `name`: "touch" or "reference touch".
+std::string range_warning(std::string_view name, std::size_t number, const calib::JointVector& joints,
+                          const Arm& arm) {
   const calib::JointVector units = joint_units(arm.model);
   std::ostringstream text;
   const char* separator = ": ";
@@ -38,23 +44,25 @@ std::string range_warning(std::size_t number, const calib::JointVector& joints, 
          << rounded(upper / units[joint]);
     separator = ", ";
   }
-  return "touch " + std::to_string(number) + text.str();
+  return std::string(name) + " " + std::to_string(number) + text.str();
 }
 
-std::vector<std::string> range_warnings(const std::vector<calib::Touch>& touches, const Arm& arm) {
-  std::vector<std::string> warnings;
-  std::size_t untold = 0;
+void warn_of_ranges(std::string_view name, const std::vector<calib::Touch>& touches, const Arm& arm,
+                    std::vector<std::string>& warnings) {
+  std::size_t told = 0, untold = 0;
   for (std::size_t i = 0; i < touches.size(); ++i) {
     if (arm.joint_ranges.contains(touches[i].joints)) continue;
-    if (warnings.size() < kWarningCountMax) {
-      warnings.push_back(range_warning(i + 1, touches[i].joints, arm));
+    if (told < kWarningCountMax) {
+      warnings.push_back(range_warning(name, i + 1, touches[i].joints, arm));
+      ++told;
     } else {
       ++untold;
     }
   }
-  if (untold > 0)
-    warnings.push_back(std::to_string(untold) + " more touches have joints outside their ranges");
-  return warnings;
+  if (untold > 0) {
+    warnings.push_back(std::to_string(untold) + " more " + std::string(name) +
+                       "es have joints outside their ranges");
+  }
 }
 
 calib::TouchRole role_from_json(const JsonValue& value) {
@@ -74,22 +82,107 @@ calib::Touch touch_from_json(const JsonValue& value, int face_count, const calib
   return touch;
 }
 
-/// All on one plane.
-std::vector<calib::Touch> references_from_json(const JsonValue& value, int face_count,
-                                               const calib::JointVector& units) {
+/// Repeated touches of one place end within this of each other: a block that moves farther, or an arm that
+/// grows by more, is another cell.
+constexpr double kSamePlaceMaxMetres = 0.005;
+/// Much more than a turning joint must differ by for that.
+constexpr double kSamePostureMaxRad = calib::radians_from_degrees(2.0);
+
+/// What the touches of the reference place are compared with: the first of them, and its plane by the nominal
+/// arm.
+class ReferencePosture {
+ public:
+  explicit ReferencePosture(const Cell& cell)
+      : cell_(cell),
+        nominal_(calib::prepare(cell.arm.model)),
+        planes_(calib::make_artefact(artefact_knowledge(cell)).contact_planes) {}
+
+  /// ConfigError at `joints` unless `touch` is near its plane, and where the first one was made.
+  void demand(const calib::Touch& touch, const JsonValue& joints) {
+    const Eigen::Vector3d tip_m = calib::forward_chain(nominal_, touch.joints).tip_in_block_m();
+    const double off_m = calib::signed_distance_m(planes_[static_cast<std::size_t>(touch.face)], tip_m);
+    if (std::abs(off_m) > calib::kFarOffMetres) {
+      joints.fail("lead " + millimetres(std::abs(off_m)) + " off plane " + std::to_string(touch.face + 1) +
+                  " (by the nominal arm); correct the plane or the joints, or remove the touch");
+    }
+    if (!first_) {
+      first_ = touch.joints;
+      first_tip_m_ = tip_m;
+      return;
+    }
+    demand_same_joints(touch.joints, joints);
+    if (const double moved_m = (tip_m - first_tip_m_).norm(); moved_m > kSamePlaceMaxMetres) {
+      joints.fail("lead " + millimetres(moved_m) + " from where the first reference touch was made; " +
+                  kOnePlace);
+    }
+  }
+
+ private:
+  static constexpr const char* kOnePlace =
+      "give touches of one place in one posture, or move this one to \"touches\"";
+
+  static std::string millimetres(double metres) {
+    return plain_number(std::round(calib::mm_from_metres(metres) * 1e3) / 1e3) + " mm";
+  }
+
+  void demand_same_joints(const calib::JointVector& joints, const JsonValue& value) const {
+    for (int joint = 0; joint < kJointCount; ++joint) {
+      if (cell_.arm.model.joint_types[static_cast<std::size_t>(joint)] != calib::JointType::kRevolute)
+        continue;
+      const double apart_rad = std::abs(joints[joint] - (*first_)[joint]);
+      if (apart_rad <= kSamePostureMaxRad) continue;
+      value.fail("have joint " + std::to_string(joint + 1) + " " +
+                 rounded(calib::degrees_from_radians(apart_rad)) + " deg from the first reference touch; " +
+                 kOnePlace);
+    }
+  }
+
+  const Cell& cell_;
+  calib::PreparedModel nominal_;
+  std::vector<calib::ContactSurface> planes_;
+  std::optional<calib::JointVector> first_;
+  Eigen::Vector3d first_tip_m_ = Eigen::Vector3d::Zero();
+};
+
+/// All of one place: on one plane, in one posture.
+std::vector<calib::Touch> references_from_json(const JsonValue& value, const Cell& cell) {
+  const int face_count = static_cast<int>(cell.block.faces.size());
+  const calib::JointVector units = joint_units(cell.arm.model);
+  ReferencePosture posture(cell);
   std::vector<calib::Touch> references;
   for (const JsonValue& item : value.items(0, kTouchCountMax)) {
     const JsonObject object = item.object({"plane", "joints_deg"});
     const JsonValue plane = object.at("plane");
-    const int face = plane.integer(1, face_count) - 1;
-    if (!references.empty() && face != references.front().face) {
-      plane.fail("is " + std::to_string(face + 1) + " but the first reference touch is on plane " +
+    const JsonValue joints = object.at("joints_deg");
+    const calib::Touch touch{.face = plane.integer(1, face_count) - 1,
+                             .joints = joints.numbers<kJointCount>().cwiseProduct(units)};
+    if (!references.empty() && touch.face != references.front().face) {
+      plane.fail("is " + std::to_string(touch.face + 1) + " but the first reference touch is on plane " +
                  std::to_string(references.front().face + 1) + "; give the touches of one place");
     }
-    references.push_back(
-        {.face = face, .joints = object.at("joints_deg").numbers<kJointCount>().cwiseProduct(units)});
+    posture.demand(touch, joints);
+    references.push_back(touch);
   }
   return references;
+}
+
+/// Reference touches that say nothing, or less than their number promises.
+void warn_of_references(const std::vector<calib::Touch>& references, const Arm& arm,
+                        std::vector<std::string>& warnings) {
+  if (references.empty()) return;
+  warn_of_ranges("reference touch", references, arm, warnings);
+  const std::size_t count = references.size(), counted = calib::counted_readings(references).size();
+  if (counted < count) {
+    warnings.push_back(std::to_string(count - counted) + " of " + std::to_string(count) +
+                       " reference touches have the joints of another one to the last digit: copies, which "
+                       "are not counted; give in \"reference_touches\" what each touch has measured");
+  }
+  if (counted < calib::kReadingCountMin) {
+    warnings.push_back(std::to_string(counted) + " reference " +
+                       (counted == 1 ? "touch says" : "touches say") +
+                       " nothing of noise and drift, they are not used; give at least " +
+                       std::to_string(calib::kReadingCountMin) + " in \"reference_touches\", or none");
+  }
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -185,8 +278,9 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
     result.touches.push_back(touch_from_json(item, face_count, units));
   }
   if (const auto references = object.find("reference_touches"))
-    result.references = references_from_json(*references, face_count, units);
-  result.warnings = range_warnings(result.touches, cell.arm);
+    result.references = references_from_json(*references, cell);
+  warn_of_ranges("touch", result.touches, cell.arm, result.warnings);
+  warn_of_references(result.references, cell.arm, result.warnings);
   return result;
 }
 
@@ -209,7 +303,7 @@ TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, 
     }
     result.touches.push_back(line.touch(text, face_count, units));
   }
-  result.warnings = range_warnings(result.touches, cell.arm);
+  warn_of_ranges("touch", result.touches, cell.arm, result.warnings);
   return result;
 }
 

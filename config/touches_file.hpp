@@ -19,14 +19,15 @@ inline constexpr std::size_t kTouchesSizeMax = 64U << 20U;
 
 struct TouchesFile {
   std::vector<calib::Touch> touches;
-  std::vector<calib::Touch> references;  // of one place, in the order of their making
-  std::vector<std::string>
-      warnings;  // a sentence a touch with joints outside their ranges; touches count from 1
+  std::vector<calib::Touch> references;  // of one place in one posture, in the order of their making
+  /// A sentence a touch with joints outside their ranges; touches count from 1. And what makes reference
+  /// touches say nothing: too few, or copies of each other.
+  std::vector<std::string> warnings;
 };
 
 /// JSON, or CSV when the file's name ends in .csv or its first line is kTouchesCsvHeader. ConfigError: what
-/// is not as config/FILES.md says, another arm's touches, a plane the block does not have; a CSV error
-/// names its line.
+/// is not as config/FILES.md says, another arm's touches, a plane the block does not have, reference touches
+/// of more than one place; a CSV error names its line.
 TouchesFile read_touches(const std::filesystem::path& file, const Cell& cell);
 
 /// The same from memory. `source` is how messages call the bytes.

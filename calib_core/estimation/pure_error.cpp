@@ -1,7 +1,10 @@
 #include "calib_core/estimation/pure_error.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
+#include <set>
 
 namespace calib {
 namespace {
@@ -10,10 +13,26 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+std::array<double, kJointCount> digits_of(const Touch& touch) {
+  std::array<double, kJointCount> digits{};
+  std::ranges::copy(touch.joints, digits.begin());
+  return digits;
+}
+
 }  // namespace
 
+std::vector<Touch> counted_readings(std::span<const Touch> at_place) {
+  std::set<std::array<double, kJointCount>> seen;
+  std::vector<Touch> once;
+  for (const Touch& touch : at_place) {
+    if (seen.insert(digits_of(touch)).second) once.push_back(touch);
+  }
+  if (2 * once.size() < at_place.size()) return once;
+  return {at_place.begin(), at_place.end()};
+}
+
 std::optional<ReadingLine> line_through(std::span<const double> readings_m) {
-  if (readings_m.size() < 3) return std::nullopt;
+  if (readings_m.size() < kReadingCountMin) return std::nullopt;
   const auto count = static_cast<double>(readings_m.size());
   const double middle = (count - 1.0) / 2.0;
   const double mean_m = mean(readings_m);

@@ -2,6 +2,9 @@
 
 #include <optional>
 #include <span>
+#include <vector>
+
+#include "calib_core/geometry/touch.hpp"
 
 /// The noise of a touch from what was touched more than once (pure error): no model has a part in it.
 namespace calib {
@@ -19,7 +22,16 @@ struct ReadingLine {
   TouchNoise scatter;  // about the line
 };
 
-/// Nothing for fewer than three readings. `readings_m`: distances of one place in the order of their making.
+/// The fewest readings of one place that say something of their scatter.
+inline constexpr std::size_t kReadingCountMin = 3;
+
+/// The touches of one place that count as made one by one, in their order. An encoder's step lets a few have
+/// the same joints to the last digit. Where more than half of them repeat another's they are copies, which
+/// would make any noise look small and well known: then each counts once.
+std::vector<Touch> counted_readings(std::span<const Touch> at_place);
+
+/// Nothing for fewer than kReadingCountMin. `readings_m`: distances of one place in the order of their
+/// making.
 std::optional<ReadingLine> line_through(std::span<const double> readings_m);
 
 /// Noise of one touch from the differences of places that were touched twice; what all differences have in

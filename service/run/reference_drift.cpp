@@ -27,7 +27,7 @@ ReferencePlace reference_place(const std::vector<double>& readings_m) {
 void note_references(const std::vector<calib::Touch>& at_place, calib::IdentificationProblem& problem) {
   const calib::PreparedModel nominal = prepare(problem.nominal);
   std::vector<double> readings_m;
-  for (const calib::Touch& touch : at_place) {
+  for (const calib::Touch& touch : calib::counted_readings(at_place)) {
     const calib::ContactSurface& surface =
         problem.artefact.contact_planes.at(static_cast<std::size_t>(touch.face));
     readings_m.push_back(signed_distance_m(surface, forward_chain(nominal, touch.joints).tip_in_block_m()));

@@ -20,7 +20,7 @@ struct ReferencePlace {
 ReferencePlace reference_place(const std::vector<double>& readings_m);
 
 /// Notes in the problem of a run what the touches at its reference place say, in the order in which they were
-/// made: their heights over the nominal face by the nominal arm.
+/// made: the heights of calib::counted_readings() over the nominal face by the nominal arm.
 void note_references(const std::vector<calib::Touch>& at_place, calib::IdentificationProblem& problem);
 
 }  // namespace cell

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "calib_core/geometry/units.hpp"
 #include "config/read_config.hpp"
 #include "folder.hpp"
@@ -53,13 +55,79 @@ std::string with_references(const std::string& references) {
          "}";
 }
 
+/// A touch of the edf cell, with `moved_deg` added to a joint.
+std::string reference(int joint = 1, double moved_deg = 0.0, int plane = 0) {
+  static const TouchesFile made = read_touches(kSourceDir / "tests/data/table3-exact.touches.json", edf());
+  const calib::Touch& touch = made.touches.front();
+  nlohmann::json joints = nlohmann::json::array();
+  for (int i = 0; i < calib::kJointCount; ++i)
+    joints.push_back(calib::degrees_from_radians(touch.joints[i]) + (i + 1 == joint ? moved_deg : 0.0));
+  return nlohmann::json{{"plane", plane == 0 ? touch.face + 1 : plane}, {"joints_deg", joints}}.dump();
+}
+
+std::string references(const std::vector<std::string>& made) {
+  std::string list;
+  for (const std::string& one : made) list += (list.empty() ? "" : ",") + one;
+  return with_references("[" + list + "]");
+}
+
 TEST(TouchesJson, HasTheTouchesOfTheReferencePlaceInTheirOrder) {
   EXPECT_THAT(from_json(document("")).references, IsEmpty());
-  const TouchesFile file = from_json(with_references(R"([{"plane":2,"joints_deg":[1,2,3,4,5,6]},
-                                    {"plane":2,"joints_deg":[1.001,2,3,4,5,6]}])"));
-  ASSERT_EQ(file.references.size(), 2U);
-  EXPECT_EQ(file.references[1].face, 1);
-  EXPECT_DOUBLE_EQ(file.references[1].joints[0], calib::radians_from_degrees(1.001));
+  const TouchesFile file = from_json(references({reference(), reference(1, 1e-3), reference(1, -1e-3)}));
+  EXPECT_THAT(file.warnings, IsEmpty());
+  ASSERT_EQ(file.references.size(), 3U);
+  EXPECT_EQ(file.references[1].face, file.references[0].face);
+  EXPECT_NEAR(file.references[1].joints[0] - file.references[0].joints[0], calib::radians_from_degrees(1e-3),
+              1e-12);
+}
+
+TEST(TouchesJson, ReferenceTouchesOfMoreThanOnePlaceAreRefusedWithTheirPointer) {
+  const auto refusal = [](const std::string& one, std::size_t before = 1) {
+    std::vector<std::string> made(before, reference());
+    made.push_back(one);
+    return error_of([&] { from_json(references(made)); });
+  };
+  const ConfigError posture = refusal(reference(4, 2.5));
+  EXPECT_EQ(posture.pointer(), "/reference_touches/1/joints_deg");
+  EXPECT_THAT(posture.message(), HasSubstr("joint 4 2.5 deg from the first reference touch; give touches of "
+                                           "one place in one posture"));
+  const ConfigError place = refusal(reference(1, 1.5), 3);
+  EXPECT_EQ(place.pointer(), "/reference_touches/3/joints_deg");
+  EXPECT_THAT(place.message(), HasSubstr("mm from where the first reference touch was made"));
+  const ConfigError off = refusal(reference(3, 60.0), 0);
+  EXPECT_EQ(off.pointer(), "/reference_touches/0/joints_deg");
+  EXPECT_THAT(off.message(), HasSubstr("(by the nominal arm); correct the plane or the joints"));
+  const int plane = from_json(references({reference()})).references.front().face + 1;
+  EXPECT_EQ(refusal(reference(1, 0.0, plane % 4 + 1)).pointer(), "/reference_touches/1/plane");
+}
+
+TEST(TouchesJson, TooFewReferenceTouchesAreAWarning) {
+  for (const auto& [made, said] : {std::pair{std::vector{reference()}, "1 reference touch says nothing"},
+                                   std::pair{std::vector{reference(), reference(1, 1e-3)},
+                                             "2 reference touches say nothing of noise and drift"}}) {
+    EXPECT_THAT(from_json(references(made)).warnings, ElementsAre(HasSubstr(said)));
+  }
+  EXPECT_THAT(from_json(with_references("[]")).warnings, IsEmpty());
+}
+
+TEST(TouchesJson, CopiesAmongReferenceTouchesAreAWarning) {
+  const std::string a = reference(), b = reference(1, 1e-3), c = reference(1, 2e-3);
+  EXPECT_THAT(from_json(references({a, b, c, a})).warnings, IsEmpty()) << "an encoder's step may make that";
+  EXPECT_THAT(from_json(references({a, b, c, a, a, a, b})).warnings,
+              ElementsAre(HasSubstr("4 of 7 reference touches have the joints of another one")));
+  EXPECT_THAT(
+      from_json(references({a, a, a, a})).warnings,
+      ElementsAre(HasSubstr("3 of 4 reference touches"), HasSubstr("1 reference touch says nothing")));
+}
+
+TEST(TouchesJson, AReferenceTouchOutsideTheRangesIsAWarningThatNamesIt) {
+  Cell cell = edf();
+  cell.arm.joint_ranges.upper[5] = -cell.arm.joint_ranges.upper[5];
+  cell.arm.joint_ranges.lower[5] = 2.0 * cell.arm.joint_ranges.upper[5];
+  const TouchesFile file = touches_from_json(
+      "body", references({reference(), reference(1, 1e-3), reference(1, 2e-3)}), kTouchesSizeMax, cell);
+  ASSERT_EQ(file.warnings.size(), 3U);
+  EXPECT_THAT(file.warnings[2], HasSubstr("reference touch 3: joint 6 at"));
 }
 
 struct RefusedTouches {
@@ -81,7 +149,7 @@ TEST(TouchesJson, WhatIsWrongIsSaidWithItsPlace) {
        "/touches/0/role: is \"fitted\""},
       {document(R"({"plane":1,"joints_rad":[1,2,3,4,5,6]})"), "/touches/0/joints_rad: unknown key"},
       {with_references("7"), "body: /reference_touches: is a number"},
-      {with_references(R"([{"plane":1,"joints_deg":[1,2,3,4,5,6]},{"plane":2,"joints_deg":[1,2,3,4,5,6]}])"),
+      {references({reference(), reference(1, 0.0, 2)}),
        "body: /reference_touches/1/plane: is 2 but the first reference touch is on plane 1"},
       {with_references(R"([{"plane":1,"joints_deg":[1,2,3,4,5,6],"role":"fit"}])"),
        "/reference_touches/0/role: unknown key"},

@@ -21,6 +21,27 @@ TEST(PureError, IsTheScatterAboutTheLineOfTheDrift) {
 
 TEST(PureError, NeedsThreeReadings) { EXPECT_FALSE(line_through(std::vector<double>{1.0, 2.0})); }
 
+std::vector<Touch> at_place(const std::vector<double>& first_joints) {
+  std::vector<Touch> touches;
+  for (const double joint : first_joints) {
+    touches.emplace_back();
+    touches.back().joints[0] = joint;
+  }
+  return touches;
+}
+
+TEST(CountedReadings, AreAllOfThemWhereAnEncodersStepMakesSomeAlike) {
+  EXPECT_EQ(counted_readings(at_place({1.0, 2.0, 1.0, 2.0})).size(), 4U);
+  EXPECT_TRUE(counted_readings({}).empty());
+}
+
+TEST(CountedReadings, CountCopiesOnce) {
+  const std::vector<Touch> counted = counted_readings(at_place({2.0, 1.0, 1.0, 2.0, 1.0}));
+  ASSERT_EQ(counted.size(), 2U);
+  EXPECT_EQ(counted[0].joints[0], 2.0);
+  EXPECT_EQ(counted[1].joints[0], 1.0);
+}
+
 // Differences 1, 3, 5: variance 4 about their mean, which two touches share.
 TEST(PureError, OfPairsIsHalfTheVarianceOfTheirDifferencesAboutWhatTheyHaveInCommon) {
   const auto noise = noise_of_pairs(std::vector<double>{1.0, 3.0, 5.0});
