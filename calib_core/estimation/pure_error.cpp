@@ -52,15 +52,6 @@ std::optional<ReadingLine> line_through(std::span<const double> readings_m) {
   return line;
 }
 
-std::optional<TouchNoise> noise_of_pairs(std::span<const double> differences_m) {
-  if (differences_m.size() < 2) return std::nullopt;
-  const double common_m = mean(differences_m);
-  double squares = 0.0;
-  for (const double difference_m : differences_m) squares += std::pow(difference_m - common_m, 2);
-  const double degrees = static_cast<double>(differences_m.size()) - 1.0;
-  return TouchNoise{std::sqrt(0.5 * squares / degrees), degrees};
-}
-
 TouchNoise pooled(const TouchNoise& first, const TouchNoise& second) {
   const double degrees = first.degrees_of_freedom + second.degrees_of_freedom;
   if (!(degrees > 0.0)) return {};

@@ -34,10 +34,6 @@ std::vector<Touch> counted_readings(std::span<const Touch> at_place);
 /// making.
 std::optional<ReadingLine> line_through(std::span<const double> readings_m);
 
-/// Noise of one touch from the differences of places that were touched twice; what all differences have in
-/// common (another speed) does not count. Nothing for fewer than two.
-std::optional<TouchNoise> noise_of_pairs(std::span<const double> differences_m);
-
 /// Both together, weighted by their degrees of freedom; one without any says nothing.
 TouchNoise pooled(const TouchNoise& first, const TouchNoise& second);
 

@@ -42,15 +42,6 @@ TEST(CountedReadings, CountCopiesOnce) {
   EXPECT_EQ(counted[1].joints[0], 1.0);
 }
 
-// Differences 1, 3, 5: variance 4 about their mean, which two touches share.
-TEST(PureError, OfPairsIsHalfTheVarianceOfTheirDifferencesAboutWhatTheyHaveInCommon) {
-  const auto noise = noise_of_pairs(std::vector<double>{1.0, 3.0, 5.0});
-  ASSERT_TRUE(noise);
-  EXPECT_NEAR(noise->std_m, std::sqrt(2.0), 1e-12);
-  EXPECT_EQ(noise->degrees_of_freedom, 2.0);
-  EXPECT_FALSE(noise_of_pairs(std::vector<double>{1.0}));
-}
-
 TEST(PureError, IsPooledByDegreesOfFreedom) {
   const TouchNoise both = pooled({3.0, 1.0}, {1.0, 3.0});
   EXPECT_NEAR(both.std_m, std::sqrt((9.0 + 3.0) / 4.0), 1e-12);
