@@ -207,6 +207,14 @@ Artefact make_artefact(const ArtefactKnowledge& knowledge) {
   return artefact;
 }
 
+std::vector<int> parameters_without_prior(const Artefact& artefact) {
+  std::vector<int> indices;
+  for (std::size_t k = 0; k < artefact.parameters.size(); ++k) {
+    if (!artefact.parameters[k].std) indices.push_back(static_cast<int>(k));
+  }
+  return indices;
+}
+
 Eigen::MatrixXd prior_covariance(const Artefact& artefact) {
   const auto count = static_cast<Eigen::Index>(artefact.parameters.size());
   if (count == 0) return {};

@@ -101,6 +101,9 @@ void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& err
 /// equation.
 Artefact make_artefact(const ArtefactKnowledge& knowledge);
 
+/// Indices of the parameters without a prior: of faces that are estimated in place.
+std::vector<int> parameters_without_prior(const Artefact& artefact);
+
 /// Standard deviation of a parameter without a prior (metres, radians): practically free.
 inline constexpr double kFreeArtefactStd = 0.1;
 

@@ -24,19 +24,11 @@ struct ChoiceMatrix {
   Eigen::MatrixXd leading;
 };
 
-std::vector<std::size_t> parameters_without_prior(const Artefact& artefact) {
-  std::vector<std::size_t> free;
-  for (std::size_t k = 0; k < artefact.parameters.size(); ++k) {
-    if (!artefact.parameters[k].std) free.push_back(k);
-  }
-  return free;
-}
-
 ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefact,
                            std::vector<Touch> touches, Formulation formulation) {
   touches = moved_onto_planes(nominal, artefact.contact_planes, std::move(touches));
   const Eigen::MatrixXd rows = observe(nominal, artefact.contact_planes, touches, formulation).matrix;
-  const std::vector<std::size_t> free = parameters_without_prior(artefact);
+  const std::vector<int> free = parameters_without_prior(artefact);
   if (free.empty()) return {rows, {}};
 
   const auto touch_count = rows.rows();
@@ -46,17 +38,17 @@ ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefa
       Eigen::MatrixXd::Zero(touch_count + equation_count, static_cast<Eigen::Index>(free.size()))};
   matrix.kinematic.topRows(touch_count) = rows;
   for (Eigen::Index j = 0; j < matrix.leading.cols(); ++j) {
-    const std::size_t parameter = free[static_cast<std::size_t>(j)];
+    const int parameter = free[static_cast<std::size_t>(j)];
+    const auto& shifts = artefact.parameters[static_cast<std::size_t>(parameter)].shifts;
     for (Eigen::Index row = 0; row < touch_count; ++row) {
       const Touch& touch = touches[static_cast<std::size_t>(row)];
       const auto face = static_cast<std::size_t>(touch.face);
       const Eigen::Vector3d tip_m = forward_kinematics(nominal, touch.joints).translation();
-      matrix.leading(row, j) = artefact.parameters[parameter].shifts[face].at(
-          tip_m, normal_at(artefact.contact_planes[face], tip_m));
+      matrix.leading(row, j) = shifts[face].at(tip_m, normal_at(artefact.contact_planes[face], tip_m));
     }
     for (Eigen::Index e = 0; e < equation_count; ++e) {
       for (const auto& [index, weight] : artefact.equations[static_cast<std::size_t>(e)].weights) {
-        if (static_cast<std::size_t>(index) == parameter) matrix.leading(touch_count + e, j) = weight;
+        if (index == parameter) matrix.leading(touch_count + e, j) = weight;
       }
     }
   }

@@ -80,22 +80,38 @@ class Reflectors {
   Eigen::Index count_ = 0;
 };
 
-/// The factors f of a dependent column as a combination of the kept ones: R f = top of the reflected column.
-std::vector<std::pair<int, double>> combination(const std::vector<Eigen::VectorXd>& kept_columns,
-                                                const std::vector<int>& kept,
-                                                const Eigen::VectorXd& reflected) {
-  const auto count = static_cast<Eigen::Index>(kept.size());
-  Eigen::MatrixXd r(count, count);
-  for (Eigen::Index j = 0; j < count; ++j) r.col(j) = kept_columns[static_cast<std::size_t>(j)].head(count);
-  const Eigen::VectorXd factors = r.triangularView<Eigen::Upper>().solve(reflected.head(count));
-  const double largest = factors.cwiseAbs().maxCoeff();
-  std::vector<std::pair<int, double>> result;
-  for (Eigen::Index j = 0; j < count; ++j) {
-    if (std::abs(factors[j]) > kFactorRelative * largest) {
-      result.emplace_back(kept[static_cast<std::size_t>(j)], factors[j]);
-    }
+/// Columns that were kept, reflected, in their order: the leading ones, then candidates.
+struct KeptColumns {
+  std::vector<int> leading, candidates;
+  std::vector<Eigen::VectorXd> reflected;
+
+  void keep_leading(int index, const Eigen::VectorXd& column) {
+    leading.push_back(index);
+    reflected.push_back(column);
   }
-  return result;
+  void keep_candidate(int index, const Eigen::VectorXd& column) {
+    candidates.push_back(index);
+    reflected.push_back(column);
+  }
+};
+
+/// Notes the factors f of a dependent column as a combination of the kept ones: R f = top of the reflected
+/// column.
+void note_combination(const KeptColumns& kept, const Eigen::VectorXd& reflected, CandidateStatus& candidate) {
+  const auto count = static_cast<Eigen::Index>(kept.reflected.size());
+  if (count == 0) return;
+  Eigen::MatrixXd r(count, count);
+  for (Eigen::Index j = 0; j < count; ++j) r.col(j) = kept.reflected[static_cast<std::size_t>(j)].head(count);
+  const Eigen::VectorXd factors = r.triangularView<Eigen::Upper>().solve(reflected.head(count));
+  const double least = kFactorRelative * factors.cwiseAbs().maxCoeff();
+  const auto note = [&](const std::vector<int>& indices, Eigen::Index first, auto& list) {
+    for (std::size_t j = 0; j < indices.size(); ++j) {
+      const double factor = factors[first + static_cast<Eigen::Index>(j)];
+      if (std::abs(factor) > least) list.emplace_back(indices[j], factor);
+    }
+  };
+  note(kept.leading, 0, candidate.grouped_with_leading);
+  note(kept.candidates, std::ssize(kept.leading), candidate.grouped_with);
 }
 
 }  // namespace
@@ -118,14 +134,14 @@ IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& obs
   const Eigen::Index rows = observation_matrix.rows();
 
   Reflectors reflectors(rows, leading.cols() + observation_matrix.cols());
+  KeptColumns kept;
   for (Eigen::Index i = 0; i < leading.cols() && reflectors.count() < rows; ++i) {
     Eigen::VectorXd reflected = leading.col(i);
     reflectors.apply_to(reflected);
-    if (reflected.tail(rows - reflectors.count()).norm() > rounding) reflectors.keep(reflected);
+    if (reflected.tail(rows - reflectors.count()).norm() <= rounding) continue;
+    reflectors.keep(reflected);
+    kept.keep_leading(static_cast<int>(i), reflected);
   }
-  const Eigen::Index leading_kept = reflectors.count();
-  std::vector<int> kept;
-  std::vector<Eigen::VectorXd> kept_columns;
   for (const int column : column_order(options)) {
     CandidateStatus& candidate = set.candidates[static_cast<std::size_t>(column)];
     Eigen::VectorXd reflected = observation_matrix.col(column);
@@ -136,18 +152,14 @@ IdentifiableSet choose_identifiable(const Eigen::Ref<const Eigen::MatrixXd>& obs
       candidate.status = ParameterStatus::kIdentified;
       set.smallest_kept = std::min(set.smallest_kept, diagonal);
       reflectors.keep(reflected);
-      kept.push_back(column);
-      kept_columns.push_back(reflected.segment(leading_kept, rows - leading_kept));
+      kept.keep_candidate(column, reflected);
       continue;
     }
     set.largest_dropped = std::max(set.largest_dropped, diagonal);
     candidate.status = diagonal > rounding ? ParameterStatus::kWeak : ParameterStatus::kGrouped;
-    if (candidate.status == ParameterStatus::kGrouped && !kept.empty()) {
-      candidate.grouped_with =
-          combination(kept_columns, kept, reflected.segment(leading_kept, rows - leading_kept));
-    }
+    if (candidate.status == ParameterStatus::kGrouped) note_combination(kept, reflected, candidate);
   }
-  set.columns = kept;
+  set.columns = kept.candidates;
   std::ranges::sort(set.columns);
   return set;
 }

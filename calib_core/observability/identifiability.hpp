@@ -28,11 +28,12 @@ struct IdentifiabilityOptions {
 /// |R_ii| up to which a candidate is weak, one per candidate; 0 disables the limit.
 using WeakDiagonals = std::array<double, kErrorParameterCount>;
 
-/// Status of a candidate. For a grouped one: identified parameter and change of it per unit of the candidate
-/// (SI units).
+/// Status of a candidate. For a grouped one: identified parameters, and leading columns by their index, that
+/// absorb it, with the change of each per unit of the candidate (SI units).
 struct CandidateStatus {
   ParameterStatus status = ParameterStatus::kNoEffect;
   std::vector<std::pair<int, double>> grouped_with;
+  std::vector<std::pair<int, double>> grouped_with_leading;
 };
 
 struct IdentifiableSet {

@@ -46,11 +46,14 @@ struct UncertaintyBudget {
   Eigen::Matrix<double, kArmParameterCount, Eigen::Dynamic>
       unknown_directions;  // one per member of that list
   /// What was not estimated and has a standard deviation: by one of them each displaces true minus estimated
-  /// arm and artefact (rows: ArmVector, then the artefact parameters). `held` and `unseen` are made of them.
+  /// arm and artefact (rows: ArmVector, then the artefact parameters), linearised at the estimate as the
+  /// distances of touches are. `held` is made of them; `unseen` of the same errors on the nominal arm.
   Eigen::MatrixXd left_out;
   /// The same by one standard deviation of the lag of each joint, one column each or none; in `held` as well.
   Eigen::MatrixXd lagged;
   std::vector<UncertaintySource> sources;  // their sum is that of the four above
+  /// One standard deviation of each estimated artefact parameter, of all the above; NaN for a face that is
+  /// estimated in place and is displaced by an unseen error without tolerance.
   Eigen::VectorXd artefact_std;
   std::vector<Correlation> correlations;  // the strongest ones in descending order
 

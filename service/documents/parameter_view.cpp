@@ -1,9 +1,12 @@
 #include "service/documents/parameter_view.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
 
 #include "calib_core/geometry/units.hpp"
 #include "service/documents/figures.hpp"
@@ -36,6 +39,42 @@ const calib::ErrorParameter& parameter_at(int index) {
 /// One shown unit of `from` adds `factor` shown units to `to`, when one SI unit of it adds `factor_si`.
 CarriedError carried_error(int named, int from, int to, double factor_si) {
   return {.name = parameter_at(named).name(), .factor = finite(shown(to, factor_si) / shown(from, 1.0))};
+}
+
+const char* unit_name(calib::ArtefactKind kind) {
+  switch (kind) {
+    case calib::ArtefactKind::kFaceTilt:
+      return "rad";
+    case calib::ArtefactKind::kTemperature:
+      return "degC";
+    case calib::ArtefactKind::kFaceOffset:
+    case calib::ArtefactKind::kSphereCenter:
+    case calib::ArtefactKind::kSphereRadius:
+    case calib::ArtefactKind::kStylusRadius:
+    case calib::ArtefactKind::kPretravel:
+      return "mm";
+  }
+  return "";
+}
+
+/// Shown units of an artefact parameter in one SI unit of it.
+double shown_scale(calib::ArtefactKind kind) {
+  return std::string_view(unit_name(kind)) == "mm" ? calib::mm_from_metres(1.0) : 1.0;
+}
+
+/// By how many shown units one shown unit of error `from` adds to parameters of the artefact, which carry it
+/// along with the other errors: a face that is found in place and cannot be told from the place of the arm.
+std::vector<CarriedError> carried_by_artefact(const calib::Artefact& artefact, int from,
+                                              const calib::CandidateStatus& candidate) {
+  const std::vector<int> leading = calib::parameters_without_prior(artefact);
+  std::vector<CarriedError> list;
+  for (const auto& [position, factor_si] : candidate.grouped_with_leading) {
+    const auto index = static_cast<std::size_t>(leading[static_cast<std::size_t>(position)]);
+    const calib::ArtefactParameter& parameter = artefact.parameters[index];
+    list.push_back({.name = parameter.name,
+                    .factor = finite(shown_scale(parameter.kind) * factor_si / shown(from, 1.0))});
+  }
+  return list;
 }
 
 /// Which grouped errors each candidate carries: the transpose of grouped_with.
@@ -75,22 +114,6 @@ Parameter identity_of(const calib::KinematicModel& nominal, int index) {
   identity.unit = parameter.is_length() ? "mm" : "rad";
   identity.nominal = finite(shown(index, calib::parameter_value(nominal, index)));
   return identity;
-}
-
-const char* unit_name(calib::ArtefactKind kind) {
-  switch (kind) {
-    case calib::ArtefactKind::kFaceTilt:
-      return "rad";
-    case calib::ArtefactKind::kTemperature:
-      return "degC";
-    case calib::ArtefactKind::kFaceOffset:
-    case calib::ArtefactKind::kSphereCenter:
-    case calib::ArtefactKind::kSphereRadius:
-    case calib::ArtefactKind::kStylusRadius:
-    case calib::ArtefactKind::kPretravel:
-      return "mm";
-  }
-  return "";
 }
 
 /// Whether the touches improved on the standard deviation that was given.
@@ -136,6 +159,10 @@ std::vector<Parameter> parameters_of(const calib::IdentificationProblem& problem
     for (const auto& [other, factor] : candidate.grouped_with) {
       if (!estimated) parameter.grouped_with.push_back(carried_error(other, i, other, factor));
     }
+    if (!estimated) {
+      std::ranges::copy(carried_by_artefact(problem.artefact, i, candidate),
+                        std::back_inserter(parameter.grouped_with));
+    }
     parameter.status = estimated ? calib::ParameterStatus::kIdentified : candidate.status;
     if (estimated) parameter.error = finite(shown(i, result.errors[i]));
     if (std) parameter.std_uncertainty = finite(shown(i, *std));
@@ -154,14 +181,13 @@ std::vector<ArtefactParameter> artefact_parameters_of(const calib::Identificatio
   for (std::size_t i = 0; i < problem.artefact.parameters.size(); ++i) {
     const calib::ArtefactParameter& parameter = problem.artefact.parameters[i];
     const auto index = static_cast<Eigen::Index>(i);
-    const std::string unit = unit_name(parameter.kind);
-    const double scale = unit == "mm" ? calib::mm_from_metres(1.0) : 1.0;
+    const double scale = shown_scale(parameter.kind);
     const double std = result.uncertainty ? result.uncertainty->artefact_std[index] : kUnknown;
     const bool identified = !parameter.std || is_improved(std, std::sqrt(given(index, index)));
     const bool estimated = result.artefact_errors.size() > index;
     ArtefactParameter& shown_as = list.emplace_back();
     shown_as.name = parameter.name;
-    shown_as.unit = unit;
+    shown_as.unit = unit_name(parameter.kind);
     shown_as.nominal = finite(scale * parameter.nominal);
     if (estimated) shown_as.value = finite(scale * (parameter.nominal + result.artefact_errors[index]));
     shown_as.std_uncertainty = finite(scale * std);

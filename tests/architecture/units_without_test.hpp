@@ -27,6 +27,9 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"calib_core/planning/transfer_planning", "between all touches of a plan: planning/touch_planning_test"},
     {"calib_core/uncertainty/uncertainty_propagation",
      "coverage of simulated errors in tests/figures/intervals_test"},
+    {"calib_core/uncertainty/unfitted_errors",
+     "the second half of uncertainty_propagation.cpp: identification/estimated_face_test, "
+     "uncertainty/distance_uncertainty_test"},
     {"config/arm_file",
      "every key of every shipped arm: read_config_test, every_entry_test, other_arms_test"},
     {"config/cell", "what follows from a cell: knowledge_test, shipped_files_test"},

@@ -119,6 +119,40 @@ TEST(EstimatedFaces, ThatNobodyTouchedAreNamed) {
   }
 }
 
+/// The only face across x is found in place: no touch tells it from the block's place along x.
+IdentificationProblem without_a_length_along_x() { return drawn::problem(with_estimated(4, {1})); }
+
+TEST(EstimatedFaces, AreAsUncertainAsWhatTheyAreConfoundedWith) {
+  const IdentificationProblem cell = without_a_length_along_x();
+  ASSERT_EQ(cell.artefact.parameters[0].name, "plane2_offset");
+  constexpr int kDraws = 30;
+  UniformChance chance(24);
+  double squares = 0.0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    IdentificationProblem problem = cell;
+    const drawn::Truth truth = drawn::draw_truth(problem, chance);
+    problem.touches = drawn::touches(truth, {.count = 120}, chance);
+    const IdentificationResult result = identify(problem, {});
+    ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+    const double std_m = result.uncertainty->artefact_std[0];
+    EXPECT_GT(std_m, drawn::kPlaceMetres);
+    squares += std::pow((result.artefact_errors[0] - truth.artefact_errors[0]) / std_m, 2);
+  }
+  EXPECT_NEAR(squares / kDraws, 1.0, 0.75);  // three standard deviations of a variance of 30 figures
+}
+
+TEST(EstimatedFaces, AreOfUnknownUncertaintyWhereNoToleranceIsKnown) {
+  IdentificationProblem problem = without_a_length_along_x();
+  problem.tolerances.fill(std::nullopt);
+  UniformChance chance(25);
+  const drawn::Truth truth = drawn::truth_of(problem, paper::table3(), Eigen::VectorXd::Zero(3));
+  problem.touches = drawn::touches(truth, {.count = 120}, chance);
+  const IdentificationResult result = identify(problem, {});
+  ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+  EXPECT_FALSE(std::isfinite(result.uncertainty->artefact_std[0]));
+  for (const int tilt : {1, 2}) EXPECT_LT(result.uncertainty->artefact_std[tilt], 1e-3);
+}
+
 TEST(EstimatedFaces, CostNothingAtTheTipWhenTheRestIsKnown) {
   // The prior knows lengths and place: four faces found in place, noise on the touches.
   const IdentificationProblem cell = drawn::problem(with_estimated(4, {0, 1, 2, 3}));

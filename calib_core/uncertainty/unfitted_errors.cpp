@@ -1,0 +1,229 @@
+// The second half of uncertainty_propagation: what was not fitted.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "calib_core/uncertainty/internal/source_sum.hpp"
+#include "calib_core/uncertainty/left_out_effects.hpp"
+#include "calib_core/uncertainty/uncertainty_propagation.hpp"
+
+namespace calib {
+namespace {
+
+constexpr std::size_t kCorrelationsShown = 10;
+
+/// True minus estimated errors of arm and artefact when the touches are displaced by something that was not
+/// estimated: `gradient` is the sum of their rows times their displacements.
+Eigen::VectorXd bias(const FullLinearisation& whole, const Eigen::Ref<const Eigen::VectorXd>& gradient) {
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(whole.touch_information.rows());
+  direction(whole.estimated) = -whole.estimated_covariance * gradient(whole.estimated);
+  return direction;
+}
+
+/// An error that was not estimated: by how much one unit of it biases the estimated ones, with itself.
+Eigen::VectorXd bias_direction(const FullLinearisation& whole, int column) {
+  Eigen::VectorXd direction = bias(whole, whole.touch_information.col(column));
+  direction[column] += 1.0;
+  return direction;
+}
+
+/// The same of an error that the touches do not tell from others, for the tip, whose derivatives are those of
+/// the nominal arm. There it was found, and there the others absorb it without a rest: a direction that is
+/// linearised at the estimate would leave one at a tip that is linearised elsewhere.
+Eigen::VectorXd unseen_direction(const IdentificationProblem& problem, const CandidateStatus& candidate,
+                                 const LeastSquares& fit, const FullLinearisation& whole, int column) {
+  const bool is_grouped =
+      candidate.status == ParameterStatus::kGrouped || candidate.status == ParameterStatus::kNoEffect;
+  if (!is_grouped || problem.columns) return bias_direction(whole, column);  // nothing was found of this one
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(whole.touch_information.rows());
+  direction[column] = 1.0;
+  for (const auto& [other, factor] : candidate.grouped_with) {
+    direction[other] -= factor;
+    if (!is_estimated(fit, other)) direction += factor * bias_direction(whole, other);  // held since
+  }
+  const std::vector<int> leading = parameters_without_prior(problem.artefact);
+  for (const auto& [index, factor] : candidate.grouped_with_leading)
+    direction[kArmParameterCount + leading[static_cast<std::size_t>(index)]] -= factor;
+  return direction;
+}
+
+/// The harmonics that have a standard deviation, as columns.
+std::vector<Eigen::Index> known_harmonics(const IdentificationProblem& problem) {
+  std::vector<Eigen::Index> columns;
+  for (int position = harmonic_position(0); is_harmonic(position); ++position) {
+    if (problem.nongeometric_std[static_cast<std::size_t>(position)])
+      columns.push_back(nongeometric_index(position));
+  }
+  return columns;
+}
+
+/// The variance that harmonics which were left out may still have, as a share of the maker's: what the
+/// residuals leave of it.
+double harmonic_share(const IdentificationProblem& problem, const LeastSquares& fit,
+                      const FullLinearisation& whole, double noise_variance) {
+  const std::vector<Eigen::Index> columns = known_harmonics(problem);
+  if (columns.empty() || is_estimated(fit, static_cast<int>(columns.front()))) return 0.0;
+  Eigen::VectorXd std(static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    std[static_cast<Eigen::Index>(i)] =
+        *problem.nongeometric_std[static_cast<std::size_t>(columns[i] - kErrorParameterCount)];
+  }
+  const Eigen::MatrixXd shared = whole.touch_information(whole.estimated, columns) * std.asDiagonal();
+  Eigen::MatrixXd information =
+      std.asDiagonal() * whole.touch_information(columns, columns) * std.asDiagonal();
+  information.noalias() -= shared.transpose() * whole.estimated_covariance * shared;
+  return mean_variance_share(information, std.cwiseProduct(whole.touch_gradient(columns)), noise_variance);
+}
+
+void add_square(const Eigen::VectorXd& displacement, ArmCovariance& covariance) {
+  const ArmVector of_arm = displacement.head<kArmParameterCount>();
+  covariance.noalias() += of_arm * of_arm.transpose();
+}
+
+/// Adds what was not estimated: `displacement` is that by one standard deviation.
+void add_left_out(const Eigen::VectorXd& displacement, UncertaintyBudget& result) {
+  result.left_out.conservativeResize(displacement.size(), result.left_out.cols() + 1);
+  result.left_out.rightCols<1>() = displacement;
+}
+
+void add_held(const std::string& name, const Eigen::VectorXd& displacement, SourceSum& sum,
+              UncertaintyBudget& result) {
+  add_square(displacement, sum.source(name).covariance);
+  add_square(displacement, result.held);
+  add_left_out(displacement, result);
+}
+
+/// Adds what the arm does beside rigid kinematics and was not estimated: within the maker's figures it bends
+/// the estimate and remains.
+void add_nongeometric(const IdentificationProblem& problem, const LeastSquares& fit,
+                      const FullLinearisation& whole, double noise_variance, SourceSum& sum,
+                      UncertaintyBudget& result) {
+  result.harmonic_share = harmonic_share(problem, fit, whole, noise_variance);
+  for (int column = kErrorParameterCount; column < kArmParameterCount; ++column) {
+    const auto index = static_cast<std::size_t>(column - kErrorParameterCount);
+    const auto std = std_unless_estimated(problem, column, result.harmonic_share);
+    if (!std || is_estimated(fit, column)) continue;
+    add_held(source_name(nongeometric_parameters()[index].kind), *std * bias_direction(whole, column), sum,
+             result);
+  }
+}
+
+/// Adds the lag of the joints: every touch ends a search, so that it displaces them by a pattern.
+void add_lag(const IdentificationProblem& problem, const FullLinearisation& whole, SourceSum& sum,
+             UncertaintyBudget& result) {
+  result.lagged.resize(whole.touch_information.rows(), whole.lag_gradient.cols());
+  for (Eigen::Index joint = 0; joint < whole.lag_gradient.cols(); ++joint) {
+    // The recorded joints are ahead of the true ones: the model sees the touches displaced, not the arm.
+    result.lagged.col(joint) = -problem.gear_lag_std_rad[joint] * bias(whole, whole.lag_gradient.col(joint));
+    const ArmVector of_arm = result.lagged.col(joint).head<kArmParameterCount>();
+    const ArmCovariance covariance = of_arm * of_arm.transpose();
+    sum.source("backlash").covariance += covariance;
+    result.held += covariance;
+  }
+}
+
+/// Adds what changes from posture to posture: it is in the noise of the touches, and at the tip once more.
+void add_gears(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
+  if (problem.gear_std_rad.isZero(0.0)) return;
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    result.of_posture(theta_index(joint), theta_index(joint)) =
+        result.gear_share * std::pow(problem.gear_std_rad[joint], 2);
+  }
+  sum.source("gears").covariance = result.of_posture;
+}
+
+/// Adds the drift, as a displacement along the lengths before joint 1: they are at right angles where axis 1
+/// stands on the block's base. No touch says in which direction, so that it is the same in each.
+void add_drift(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
+  if (problem.drift_m == 0.0) return;
+  ArmCovariance& covariance = sum.source("drift").covariance;
+  for (const char* name : {"r0", "d1", "r1"}) {
+    const int length = *error_parameter_index(name);
+    covariance(length, length) = std::pow(problem.drift_m / 2.0, 2);
+  }
+  result.of_posture += covariance;
+}
+
+/// The parameters of the artefact without a prior that an error of unknown size displaces are unknown as
+/// well.
+void displace_by_unknown(const Artefact& artefact, const Eigen::VectorXd& direction,
+                         Eigen::VectorXd& artefact_std) {
+  constexpr double kDisplacedMin = 1e-3;  // metres or radians per metre or radian
+  for (const int index : parameters_without_prior(artefact)) {
+    if (std::abs(direction[kArmParameterCount + index]) > kDisplacedMin)
+      artefact_std[index] = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+/// Adds to the artefact's what was not estimated and displaces it along with the arm.
+void displace_artefact(const Eigen::MatrixXd& by_one_std, Eigen::VectorXd& artefact_std) {
+  const auto of_artefact = by_one_std.bottomRows(artefact_std.size());
+  for (Eigen::Index k = 0; k < of_artefact.cols(); ++k)
+    artefact_std = (artefact_std.cwiseAbs2() + of_artefact.col(k).cwiseAbs2()).cwiseSqrt();
+}
+
+/// Adds the errors that were not estimated: each is within its tolerance and biases the estimated ones.
+void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
+                const LeastSquares& fit, const FullLinearisation& whole, SourceSum& sum,
+                UncertaintyBudget& result) {
+  std::vector<Eigen::VectorXd> unknown;
+  ArmCovariance held = no_covariance();
+  for (int column = 0; column < kErrorParameterCount; ++column) {
+    if (is_estimated(fit, column)) continue;
+    const CandidateStatus& candidate = identifiable.candidates[static_cast<std::size_t>(column)];
+    const Eigen::VectorXd direction = unseen_direction(problem, candidate, fit, whole, column);
+    const bool is_held =
+        candidate.status == ParameterStatus::kWeak || candidate.status == ParameterStatus::kExcluded;
+    if (const auto tolerance = std_unless_estimated(problem, column, result.harmonic_share)) {
+      add_square(*tolerance * direction, is_held ? held : result.unseen);
+      add_left_out(*tolerance * bias_direction(whole, column), result);
+    } else {
+      result.unseen_without_tolerance.push_back(column);
+      unknown.push_back(direction);
+      displace_by_unknown(problem.artefact, direction, result.artefact_std);
+    }
+  }
+  result.unknown_directions.resize(kArmParameterCount, static_cast<Eigen::Index>(unknown.size()));
+  for (std::size_t i = 0; i < unknown.size(); ++i) {
+    result.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown[i].head<kArmParameterCount>();
+  }
+  if (!held.isZero(0.0)) sum.source("held").covariance = held;
+  result.held += held;
+  sum.source("unseen").covariance = result.unseen;
+}
+
+std::vector<Correlation> strongest(const ArmCovariance& covariance, const std::vector<int>& columns) {
+  std::vector<Correlation> all;
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    for (std::size_t i = 0; i < j; ++i) {
+      const int a = columns[i], b = columns[j];
+      all.push_back({a, b, covariance(a, b) / std::sqrt(covariance(a, a) * covariance(b, b))});
+    }
+  }
+  const std::size_t shown = std::min(kCorrelationsShown, all.size());
+  std::ranges::partial_sort(all, all.begin() + static_cast<std::ptrdiff_t>(shown), std::ranges::greater{},
+                            [](const Correlation& c) { return std::abs(c.coefficient); });
+  all.resize(shown);
+  return all;
+}
+
+}  // namespace
+
+void add_unfitted(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
+                  const LeastSquares& fit, const FullLinearisation& whole, UncertaintyBudget& fitted) {
+  SourceSum sum(fit.arm_columns(), std::move(fitted.sources));
+  const double ratio = fitted.noise_m / fit.noise_unit_m();
+  fitted.left_out.resize(whole.touch_information.rows(), 0);
+  add_unseen(problem, identifiable, fit, whole, sum, fitted);
+  add_nongeometric(problem, fit, whole, ratio * ratio, sum, fitted);
+  add_lag(problem, whole, sum, fitted);
+  add_gears(problem, sum, fitted);
+  add_drift(problem, sum, fitted);
+  displace_artefact(fitted.left_out, fitted.artefact_std);
+  displace_artefact(fitted.lagged, fitted.artefact_std);
+  fitted.sources = sum.take();
+  fitted.correlations = strongest(fitted.identified, fit.arm_columns());
+}
+
+}  // namespace calib
