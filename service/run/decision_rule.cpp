@@ -46,6 +46,34 @@ void add_tip(const JudgedTip& tip, const Cell& cell, Criteria& list) {
   }
 }
 
+/// A calibration must say more of the tip than what the cell's file assumes of the uncalibrated arm.
+void add_gain(const JudgedTip& tip, const Cell& cell, Criteria& list) {
+  std::vector<std::string> names;
+  for (const int index : tip.unknown_errors) names.push_back(calib::arm_parameter_name(index));
+  list.push_back(
+      {.name = "unknown_errors",
+       .unit = "1",
+       .value = static_cast<double>(names.size()),
+       .limit = 0.0,
+       .miss = fmt::format("no touch shows {0} and the arm's file has no std for {1}: the tip may be "
+                           "off by any amount; touch a face that shows {1}, or give \"std\" of {1}",
+                           fmt::join(names, ", "), names.size() == 1 ? "it" : "them")});
+  if (!names.empty()) return;  // any figure of the tip would mislead
+  const double limit_mm = mm_from_metres(cell.nominal_position_error_m);
+  const std::string known =
+      tip.box_max_m ? fmt::format("{:.3f} mm", mm_from_metres(*tip.box_max_m)) : "unknown";
+  list.push_back(
+      {.name = "nominal_miss",
+       .unit = "mm",
+       .value = in_mm(tip.box_max_m),
+       .limit = limit_mm,
+       .miss = fmt::format("the largest expanded tip uncertainty (k = 2) in the workspace box is {}, "
+                           "but the uncalibrated arm misses by no more than {:.3f} mm "
+                           "(nominal_miss_mm): this says less of the tip than was known before; touch "
+                           "faces in every direction whose place is known",
+                           known, limit_mm)});
+}
+
 void add_scale(const calib::IdentificationResult& result, Criteria& list) {
   if (!result.scale) return;
   const calib::ScaleCheck& scale = *result.scale;
@@ -202,7 +230,9 @@ std::optional<bool> Criterion::proved() const {
 }
 
 JudgedTip judged_tip(const TipPrediction& tip) {
-  JudgedTip judged{.box_rms_m = tip.workspace_box_rms_m, .box_max_m = tip.expanded.box_max_m};
+  JudgedTip judged{.box_rms_m = tip.workspace_box_rms_m,
+                   .box_max_m = tip.expanded.box_max_m,
+                   .unknown_errors = tip.unknown_errors};
   for (const TipPrediction::OfTool& tool : tip.tools)
     judged.tools.push_back({tool.name, tool.workspace_box_rms_m});
   return judged;
@@ -219,7 +249,10 @@ std::vector<Criterion> criteria(const calib::IdentificationResult& result,
                                 const calib::IdentificationOptions& options, const Cell& cell,
                                 const JudgedTip& tip) {
   Criteria list;
-  if (result.status == calib::IdentificationStatus::kConverged) add_tip(tip, cell, list);
+  if (result.status == calib::IdentificationStatus::kConverged) {
+    add_tip(tip, cell, list);
+    add_gain(tip, cell, list);
+  }
   add_scale(result, list);
   add_condition_number(result, cell, list);
   add_lack_of_fit(result, cell, list);

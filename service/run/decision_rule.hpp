@@ -45,6 +45,9 @@ struct JudgedTip {
   };
   std::optional<double> box_rms_m;  // one standard deviation over the workspace box
   std::optional<double> box_max_m;  // expanded, k = 2, at the worst posture in it
+  /// Errors that no touch shows, that move the tip in the box and whose size nobody says: indices into
+  /// ArmVector.
+  std::vector<int> unknown_errors = {};
   std::vector<OfTool> tools = {};
 };
 

@@ -67,13 +67,22 @@ std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& prob
   return fitted;
 }
 
-std::optional<double> predicted_rms_m(const calib::TipRegion& region,
-                                      const calib::UncertaintyBudget& uncertainty) {
-  for (const auto& direction : uncertainty.unknown_directions.colwise()) {
+std::vector<int> unknown_errors_in(const calib::TipRegion& region,
+                                   const calib::UncertaintyBudget& uncertainty) {
+  std::vector<int> matter;
+  for (std::size_t i = 0; i < uncertainty.unseen_without_tolerance.size(); ++i) {
+    const auto direction = uncertainty.unknown_directions.col(static_cast<Eigen::Index>(i));
     // Squares: those of no motion at all may come out a little under 0.
     const double square = direction.dot(region.mean_square * direction);
-    if (!(square <= kUnknownMattersMetres * kUnknownMattersMetres)) return std::nullopt;
+    if (!(square <= kUnknownMattersMetres * kUnknownMattersMetres))
+      matter.push_back(uncertainty.unseen_without_tolerance[i]);
   }
+  return matter;
+}
+
+std::optional<double> predicted_rms_m(const calib::TipRegion& region,
+                                      const calib::UncertaintyBudget& uncertainty) {
+  if (!unknown_errors_in(region, uncertainty).empty()) return std::nullopt;
   return region.rms_m(uncertainty.covariance());
 }
 
@@ -124,6 +133,7 @@ TipPrediction predict_tip(const TipRegions& regions, const calib::Identification
   prediction.workspace_box_rms_m = predicted_rms_m(tip.workspace_box, uncertainty);
   prediction.joint_ranges_rms_m = predicted_rms_m(tip.joint_ranges, uncertainty);
   prediction.expanded = expanded_over(regions.box_postures(), tip.workspace_box, uncertainty);
+  prediction.unknown_errors = unknown_errors_in(tip.workspace_box, uncertainty);
   if (const auto& growth = regions.cell().arm.growth)
     prediction.warmer = warmer_by(*growth, problem.nominal, tip, uncertainty);
   const calib::UncertaintyBudget of_arm = calib::in_arm_frame(uncertainty);

@@ -19,6 +19,10 @@ inline constexpr double kUnknownMattersMetres = 1e-3;
 std::vector<std::size_t> fitted_touches(const calib::IdentificationProblem& problem,
                                         const calib::IdentificationResult& result);
 
+/// The errors without a tolerance that matter in a region: indices into ArmVector.
+std::vector<int> unknown_errors_in(const calib::TipRegion& region,
+                                   const calib::UncertaintyBudget& uncertainty);
+
 /// The predicted deviation over a region, metres. Absent if an error of unknown size matters there or the
 /// region holds no posture: any figure would mislead.
 std::optional<double> predicted_rms_m(const calib::TipRegion& region,
@@ -89,8 +93,9 @@ struct TipPrediction {
   std::optional<double> workspace_box_rms_m;
   std::optional<double> joint_ranges_rms_m;
   Expanded expanded;
-  std::optional<Warmer> warmer;  // nothing where the arm's file has no figures for its warming
-  InArmFrame arm_frame;          // the same with the block's place nominal: calib::in_arm_frame()
+  std::vector<int> unknown_errors;  // unknown_errors_in() the workspace box
+  std::optional<Warmer> warmer;     // nothing where the arm's file has no figures for its warming
+  InArmFrame arm_frame;             // the same with the block's place nominal: calib::in_arm_frame()
   std::vector<OfSource> sources;
   std::vector<OfTool> tools;
   std::optional<calib::UncertaintyMap> map;

@@ -47,8 +47,8 @@ struct Runs {
 
 /// Whether the result says that something is wrong.
 bool is_named(const cell::Cell& cell, const cell::Recipe& recipe, const IdentificationProblem& problem,
-              const IdentificationResult& result, double box_rms_m) {
-  const cell::JudgedTip tip{.box_rms_m = box_rms_m};
+              const IdentificationResult& result, const TipPostures& box) {
+  const cell::JudgedTip tip = tip_to_judge(box, result);
   const auto criteria = cell::criteria(result, recipe.identification, cell, tip);
   return !cell::judge(result, criteria, cell.acceptance, true).accepted || problem.drift_m > 0.0 ||
          (result.scale && !result.scale->warning.empty());
@@ -59,7 +59,7 @@ Runs run(const cell::Cell& cell, cell::Recipe recipe, const Disturbance& disturb
   if (disturbance.is_rigid) recipe = cell::with_stiffness(recipe, cell::StiffnessChoice::kOff, cell);
   HiddenArm arm = shipped_arm(cell, "truth-real");
   disturbance.of_arm(arm);
-  const TipRegion box = region_over_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box);
+  const TipPostures box = postures_of_box(cell);
   const auto postures = postures_in_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box);
   IdentificationProblem problem = cell::identification_problem(cell, recipe);
   Runs runs;
@@ -77,7 +77,7 @@ Runs run(const cell::Cell& cell, cell::Recipe recipe, const Disturbance& disturb
       ++runs.either;
       continue;
     }
-    const auto box_rms_m = box.rms_m(result.uncertainty->covariance());
+    const double box_rms_m = box.spread(result.uncertainty->covariance()).value().rms_m;
     const auto true_tips_m = hidden.tips_m(postures, hidden.mean_rise_k());
     const PreparedModel calibrated = prepare(result.calibrated);
     double sum = 0.0;
@@ -87,8 +87,8 @@ Runs run(const cell::Cell& cell, cell::Recipe recipe, const Disturbance& disturb
       sum += (forward_chain(calibrated, postures[i]).tip_in_block_m() - there_m).squaredNorm();
     }
     const double achieved_m = std::sqrt(sum / static_cast<double>(postures.size()));
-    const bool named = is_named(cell, recipe, problem, result, box_rms_m.value());
-    const bool covered = achieved_m <= kTipCoverageFactor * *box_rms_m;
+    const bool named = is_named(cell, recipe, problem, result, box);
+    const bool covered = achieved_m <= kTipCoverageFactor * box_rms_m;
     runs.named += named ? 1 : 0;
     runs.covered += covered ? 1 : 0;
     runs.either += named || covered ? 1 : 0;

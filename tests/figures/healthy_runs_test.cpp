@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "service/run/verdict.hpp"
 #include "tests/figures/hidden_cell.hpp"
 #include "tests/figures/simulated_cell.hpp"
@@ -75,11 +74,9 @@ Runs run(const cell::Cell& shipped, const cell::Recipe& recipe, HiddenArm arm) {
   cell::Cell cell = shipped;
   make_healthy(recipe, cell, arm);
   const std::vector<Touch> planned = all_planned_touches(shipped, recipe);
-  const TipRegion box = region_over_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box);
+  const TipPostures box = postures_of_box(cell);
   const auto is_accepted = [&](const IdentificationResult& result) {
-    cell::JudgedTip tip;
-    if (result.uncertainty) tip.box_rms_m = box.rms_m(result.uncertainty->covariance());
-    const auto criteria = cell::criteria(result, recipe.identification, shipped, tip);
+    const auto criteria = cell::criteria(result, recipe.identification, shipped, tip_to_judge(box, result));
     return cell::judge(result, criteria, shipped.acceptance, true).accepted;
   };
   const cell::AcceptanceLimits& limits = shipped.acceptance;

@@ -122,6 +122,17 @@ std::vector<Touch> all_planned_touches(const cell::Cell& cell, const cell::Recip
   return touches;
 }
 
+TipPostures postures_of_box(const cell::Cell& cell) {
+  return derive_at_postures(cell.arm.model,
+                            postures_in_box(cell.arm.model, cell.arm.joint_ranges, cell.workspace_box));
+}
+
+cell::JudgedTip tip_to_judge(const TipPostures& box, const IdentificationResult& result) {
+  if (!result.uncertainty) return {};
+  const TipSpread spread = box.spread(result.uncertainty->covariance()).value();
+  return {.box_rms_m = spread.rms_m, .box_max_m = kTipCoverageFactor * spread.max_m};
+}
+
 std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& recipe) {
   std::vector<Touch> touches = all_planned_touches(cell, recipe);
   std::erase_if(touches, [](const Touch& touch) { return touch.role != TouchRole::kFit; });

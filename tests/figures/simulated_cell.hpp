@@ -7,8 +7,10 @@
 #include "calib_core/identification/identify.hpp"
 #include "calib_core/numerics/halton.hpp"
 #include "calib_core/numerics/uniform_chance.hpp"
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "config/identification_problem.hpp"
 #include "config/read_config.hpp"
+#include "service/run/decision_rule.hpp"
 #include "service/run/planning_problem.hpp"
 #include "tests/calib_core/block_study.hpp"
 
@@ -58,6 +60,12 @@ std::vector<Touch> even_touches(const cell::Cell& cell, int face_count, int per_
 
 /// All touches of a recipe's plan in their order.
 std::vector<Touch> all_planned_touches(const cell::Cell& cell, const cell::Recipe& recipe);
+
+/// The postures of the cell's workspace box.
+TipPostures postures_of_box(const cell::Cell& cell);
+
+/// What a verdict judges of the tip over these postures.
+cell::JudgedTip tip_to_judge(const TipPostures& box, const IdentificationResult& result);
 
 /// The touches that a recipe's plan fits: postures of the nominal arm on the nominal faces.
 std::vector<Touch> planned_touches(const cell::Cell& cell, const cell::Recipe& recipe);

@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "calib_core/geometry/units.hpp"
 #include "tests/service/document_shape.hpp"
 #include "tests/service/table3_result.hpp"
 
@@ -41,6 +43,34 @@ TEST(ResultDocument, WhatAnErrorStandsForIsTheOtherSideOfTheGroups) {
   }
   EXPECT_FALSE(grouped.empty());
   EXPECT_EQ(grouped, carried);
+}
+
+TEST(ResultDocument, AFaceInPlaceThatNothingTellsFromThePlaceOfTheArmRejectsTheResult) {
+  // No face across x is known, no gravity: the arm's place along x and plane 2 are one.
+  calib::IdentificationProblem problem = problem_of(edf().recipes.at("edf-25"));
+  problem.nominal.masses = {};
+  problem.nongeometric_std = {};
+  calib::ArtefactKnowledge knowledge = artefact_knowledge(edf());
+  knowledge.face_uncertainties.at(1).estimated = true;
+  problem.artefact = calib::make_artefact(knowledge);
+  problem.attainable.reset();
+  const json document =
+      document_of(problem, calib::identify(problem, edf().recipes.at("edf-25").identification));
+  const auto named = [](const json& list, const std::string& name) {
+    return *std::ranges::find_if(list, [&](const json& one) { return one.at("name") == name; });
+  };
+  const json d1 = named(document.at("parameters"), "d1");
+  EXPECT_EQ(d1.at("status"), "grouped");
+  ASSERT_EQ(d1.at("grouped_with").size(), 1U) << d1;
+  EXPECT_EQ(d1.at("grouped_with")[0].at("name"), "plane2_offset");
+  EXPECT_NEAR(std::abs(d1.at("grouped_with")[0].at("factor").get<double>()), 1.0, 1e-9);
+  const double miss_mm = calib::mm_from_metres(edf().nominal_position_error_m);
+  const double std_mm = named(document.at("artefact_parameters"), "plane2_offset").at("std_uncertainty");
+  EXPECT_GE(std_mm, miss_mm);
+  const json gain = named(document.at("verdict").at("decision_rule").at("criteria"), "nominal_miss");
+  EXPECT_EQ(gain.at("within_limit"), false);
+  EXPECT_GT(gain.at("value").get<double>(), miss_mm);
+  EXPECT_EQ(document.at("verdict").at("accepted"), false);
 }
 
 TEST(ResultDocument, WithAPriorEveryErrorIsIdentifiedAndTheRankStaysThatOfTheTouches) {

@@ -14,13 +14,17 @@ namespace {
 
 using ::testing::Each;
 using ::testing::Field;
+using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr int kHeldOut = 10;
 constexpr double kMeanStdM = 8e-6;
+constexpr double kNominalMissM = 0.012;
+const JudgedTip kGoodTip{.box_rms_m = 5e-5, .box_max_m = 1.9e-4};
 
 Cell cell_with_limits() {
   Cell cell;
+  cell.nominal_position_error_m = kNominalMissM;
   cell.acceptance = {.held_out_mean_max_m = 3e-5, .held_out_rms_max_m = 5e-5, .condition_number_max = 300};
   return cell;
 }
@@ -45,7 +49,7 @@ calib::IdentificationResult good_result() {
 }
 
 std::vector<Criterion> list_of(const calib::IdentificationResult& result,
-                               const Cell& cell = cell_with_limits(), const JudgedTip& tip = {}) {
+                               const Cell& cell = cell_with_limits(), const JudgedTip& tip = kGoodTip) {
   return criteria(result, {}, cell, tip);
 }
 
@@ -59,14 +63,40 @@ const Criterion& named(const std::vector<Criterion>& list, const std::string& na
 
 TEST(Criteria, AreAllThatCanRejectAResult) {
   const auto list = list_of(good_result());
-  for (const char* name :
-       {"scale", "artefact", "condition_number", "lack_of_fit", "rejected_touches", "held_parameters"})
+  for (const char* name : {"scale", "artefact", "condition_number", "lack_of_fit", "rejected_touches",
+                           "held_parameters", "unknown_errors", "nominal_miss"})
     EXPECT_TRUE(named(list, name).within_limit()) << name;
   for (const int plane : {1, 2}) {
     for (const char* name : {"lack_of_fit", "held_out_mean", "held_out_rms"})
       EXPECT_TRUE(named(list, name, plane).within_limit()) << name;
   }
-  EXPECT_EQ(list.size(), 12U);
+  EXPECT_EQ(list.size(), 14U);
+}
+
+TEST(Criteria, ACalibrationMustSayMoreOfTheTipThanWasAssumedBefore) {
+  const auto of_tip = [](std::optional<double> box_max_m) {
+    return list_of(good_result(), cell_with_limits(), {.box_max_m = box_max_m});
+  };
+  EXPECT_TRUE(named(of_tip(kNominalMissM), "nominal_miss").within_limit());
+  for (const std::optional<double> too_large :
+       {std::optional(1.001 * kNominalMissM), std::optional<double>()})
+    EXPECT_FALSE(named(of_tip(too_large), "nominal_miss").within_limit());
+  const Criterion miss = named(of_tip(0.028), "nominal_miss");
+  EXPECT_EQ(miss.value, 28.0);
+  EXPECT_THAT(miss.miss,
+              HasSubstr("is 28.000 mm, but the uncalibrated arm misses by no more than 12.000 mm"));
+  calib::IdentificationResult diverged = good_result();
+  diverged.status = calib::IdentificationStatus::kNotConverged;
+  EXPECT_THAT(list_of(diverged), Each(Field(&Criterion::name, Not("nominal_miss"))))
+      << "that is a reason of its own";
+}
+
+TEST(Criteria, AnErrorOfUnknownSizeThatMovesTheTipIsNamed) {
+  const int d1 = *calib::error_parameter_index("d1");
+  const auto list = list_of(good_result(), cell_with_limits(), {.unknown_errors = {d1}});
+  EXPECT_FALSE(named(list, "unknown_errors").within_limit());
+  EXPECT_THAT(named(list, "unknown_errors").miss, HasSubstr("no touch shows d1 and"));
+  EXPECT_THAT(list, Each(Field(&Criterion::name, Not("nominal_miss")))) << "told once";
 }
 
 TEST(Criteria, ScaleAndArtefactAreLimitedByTheirSignificance) {
@@ -121,7 +151,7 @@ TEST(Criteria, ProvedIsSaidOnlyWhereValueAndUncertaintyAreWithinTheLimit) {
 
 TEST(Criteria, TheTipIsLimitedByItsRmsItsWorstPostureAndForEachTool) {
   Cell cell = cell_with_limits();
-  EXPECT_EQ(list_of(good_result(), cell, {.box_rms_m = 1.0}).size(), 12U) << "no limit";
+  EXPECT_EQ(list_of(good_result(), cell, {.box_rms_m = 1.0}).size(), 14U) << "no limit";
   cell.acceptance.tip_box_rms_max_m = 6e-5;
   cell.acceptance.tip_box_max_m = 2e-4;
   cell.acceptance.tool_box_rms_max_m = {{"gripper", 1e-4}};

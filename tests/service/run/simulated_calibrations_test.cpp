@@ -49,7 +49,9 @@ TEST_F(SimulatedCalibrations, TellHowManyAreDone) {
 }
 
 TEST_F(SimulatedCalibrations, HaveNoFigureWhereAnErrorOfUnknownSizeMatters) {
-  result_.uncertainty->unknown_directions = calib::ArmVector::Unit(*calib::error_parameter_index("r1"));
+  const int r1 = *calib::error_parameter_index("r1");
+  result_.uncertainty->unseen_without_tolerance = {r1};
+  result_.uncertainty->unknown_directions = calib::ArmVector::Unit(r1);
   const calib::MonteCarloFigures figures = simulate(kDraws, 2).value();
   EXPECT_EQ(figures.converged, kDraws);
   EXPECT_EQ(figures.box_rms_m, std::nullopt);

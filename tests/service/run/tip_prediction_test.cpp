@@ -21,6 +21,7 @@ calib::UncertaintyBudget certainty_with(const std::vector<calib::ArmVector>& unk
   calib::UncertaintyBudget uncertainty;
   uncertainty.identified(0, 0) = 4e-8;
   uncertainty.unseen(0, 0) = 5e-8;
+  uncertainty.unseen_without_tolerance.resize(unknown_directions.size());
   uncertainty.unknown_directions.resize(calib::kArmParameterCount,
                                         static_cast<Eigen::Index>(unknown_directions.size()));
   for (std::size_t i = 0; i < unknown_directions.size(); ++i)
@@ -77,12 +78,6 @@ TEST_F(TipPredictionTest, WithoutTolerancesOfTheUnseenErrorsTheToolIsUnknownAndT
   gripper.translate(Eigen::Vector3d(0.2, 0.0, 0.2));
   cell.tools = {{"gripper", gripper}};
   problem_.tolerances.fill(std::nullopt);
-  // Of an arm as it is drawn: one with errors of Table III's size shows a trace of the unseen ones at its
-  // tip.
-  for (calib::Touch& touch : problem_.touches) {
-    const auto face = static_cast<std::size_t>(touch.face);
-    touch = calib::moved_onto_plane(problem_.nominal, problem_.artefact.contact_planes[face], touch);
-  }
   const TipPrediction prediction = predict(cell);
   EXPECT_TRUE(prediction.at_block_rms_m.has_value());
   EXPECT_TRUE(prediction.workspace_box_rms_m.has_value());
@@ -161,10 +156,13 @@ TEST_F(TipPredictionTest, TheExpandedUncertaintyIsKTimesTheStandardOneOverTheBox
 
 TEST_F(TipPredictionTest, AnErrorOfUnknownSizeThatMattersLeavesNoExpandedFigure) {
   calib::IdentificationResult result = calib::identify(problem_, recipe_.identification);
-  result.uncertainty->unknown_directions = calib::ArmVector::Unit(*calib::error_parameter_index("r1"));
+  const int r1 = *calib::error_parameter_index("r1");
+  result.uncertainty->unseen_without_tolerance = {r1};
+  result.uncertainty->unknown_directions = calib::ArmVector::Unit(r1);
   const TipPrediction tip = predict_tip(TipRegions(edf()), problem_, result);
   EXPECT_EQ(tip.expanded.box_rms_m, std::nullopt);
   EXPECT_EQ(tip.expanded.box_max_m, std::nullopt);
+  EXPECT_EQ(tip.unknown_errors, std::vector{r1});
   EXPECT_TRUE(tip.arm_frame.expanded.box_p95_m.has_value()) << "r1 is of the block's place";
 }
 

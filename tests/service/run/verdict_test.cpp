@@ -15,6 +15,7 @@ const AcceptanceLimits kLimits{
     .held_out_mean_max_m = 3e-5, .held_out_rms_max_m = 5e-5, .condition_number_max = 300};
 
 constexpr double kTipBoxRms = 6e-5;
+constexpr double kNominalMiss = 0.012;
 
 calib::FaceDistances held_out(int face, double mean_m, double rms_m) {
   return {.face = face,
@@ -38,8 +39,10 @@ Judgement judged(const calib::IdentificationResult& result, const AcceptanceLimi
                  std::optional<double> tip_box_rms_m = kTipBoxRms, bool complete = true,
                  const calib::IdentificationOptions& options = {}) {
   Cell cell;
+  cell.nominal_position_error_m = kNominalMiss;
   cell.acceptance = limits;
-  return judge(result, criteria(result, options, cell, {.box_rms_m = tip_box_rms_m}), limits, complete);
+  const JudgedTip tip{.box_rms_m = tip_box_rms_m, .box_max_m = kNominalMiss};
+  return judge(result, criteria(result, options, cell, tip), limits, complete);
 }
 
 std::vector<std::string> reasons_against(const calib::IdentificationResult& result, bool complete = true) {

@@ -160,6 +160,8 @@ export const en = {
   criterion_tip_box_rms: 'predicted tip error in the box',
   criterion_tip_box_max: 'largest tip error in the box (k = 2)',
   criterion_tool_box_rms: 'predicted tip error in the box',
+  criterion_unknown_errors: 'errors of unknown size at the tip',
+  criterion_nominal_miss: 'largest tip error (k = 2) against the uncalibrated arm',
   criterion_scale: 'change of all lengths (sigma)',
   criterion_artefact: 'block and ball (sigma)',
   criterion_lack_of_fit: 'lack of fit (p)',

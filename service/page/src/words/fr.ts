@@ -162,6 +162,8 @@ export const fr: Words = {
   criterion_tip_box_rms: 'erreur prévue dans la zone',
   criterion_tip_box_max: 'plus grande erreur dans la zone (k = 2)',
   criterion_tool_box_rms: 'erreur prévue dans la zone',
+  criterion_unknown_errors: 'erreurs de taille inconnue à la pointe',
+  criterion_nominal_miss: 'plus grande erreur (k = 2) face au bras non étalonné',
   criterion_scale: 'variation des longueurs (sigma)',
   criterion_artefact: 'bloc et bille (sigma)',
   criterion_lack_of_fit: 'défaut d’ajustement (p)',
