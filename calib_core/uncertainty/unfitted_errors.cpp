@@ -4,6 +4,8 @@
 #include <functional>
 #include <limits>
 
+#include "calib_core/numerics/decompositions.hpp"
+#include "calib_core/numerics/halton.hpp"
 #include "calib_core/uncertainty/internal/source_sum.hpp"
 #include "calib_core/uncertainty/left_out_effects.hpp"
 #include "calib_core/uncertainty/uncertainty_propagation.hpp"
@@ -133,15 +135,38 @@ void add_gears(const IdentificationProblem& problem, SourceSum& sum, Uncertainty
   sum.source("gears").covariance = result.of_posture;
 }
 
-/// Adds the drift, as a displacement along the lengths before joint 1: they are at right angles where axis 1
-/// stands on the block's base. No touch says in which direction, so that it is the same in each.
+/// The changes of the block's place (three columns, rows: ArmVector) that displace the whole arm by a metre
+/// along x, y and z of the block's frame. The lengths of the place are at right angles only where axis 1
+/// stands on the block's base, and where it is parallel to the block's z axis no length is along y: then the
+/// two angles about these axes, turned against each other, displace it so.
+Eigen::MatrixXd unit_displacements(const KinematicModel& nominal) {
+  constexpr int kPostures = 4;  // three tips that are not in line tell a displacement from a turn
+  const JointRanges ranges{JointVector::Constant(-1.0), JointVector::Constant(1.0)};
+  std::vector<int> place;
+  for (int i = 0; i < kErrorParameterCount; ++i) {
+    if (error_parameters()[static_cast<std::size_t>(i)].group() == ParameterGroup::kBlockPose)
+      place.push_back(i);
+  }
+  Eigen::MatrixXd of_tips(3 * kPostures, std::ssize(place));
+  Eigen::MatrixXd displaced(3 * kPostures, 3);
+  const PreparedModel prepared = prepare(nominal);
+  for (int i = 0; i < kPostures; ++i) {
+    const Chain chain = forward_chain(prepared, halton_posture(i + 1, ranges));
+    of_tips.middleRows<3>(3 * i) = tip_derivatives(nominal, chain)(Eigen::all, place);
+    displaced.middleRows<3>(3 * i).setIdentity();
+  }
+  Eigen::MatrixXd of_arm = Eigen::MatrixXd::Zero(kArmParameterCount, 3);
+  of_arm(place, Eigen::all) = pseudo_inverse(of_tips) * displaced;
+  return of_arm;
+}
+
+/// Adds the drift, as a displacement of the arm. No touch says in which direction, so that it is the same in
+/// each.
 void add_drift(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
   if (problem.drift_m == 0.0) return;
   ArmCovariance& covariance = sum.source("drift").covariance;
-  for (const char* name : {"r0", "d1", "r1"}) {
-    const int length = *error_parameter_index(name);
-    covariance(length, length) = std::pow(problem.drift_m / 2.0, 2);
-  }
+  const Eigen::MatrixXd directions = problem.drift_m / 2.0 * unit_displacements(problem.nominal);
+  covariance.noalias() += directions * directions.transpose();
   result.of_posture += covariance;
 }
 

@@ -2,14 +2,49 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
+#include "calib_core/geometry/face.hpp"
+#include "calib_core/identification/identify.hpp"
+#include "calib_core/numerics/halton.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
+#include "tests/calib_core/drawn_cell.hpp"
 #include "tests/calib_core/paper.hpp"
 #include "tests/calib_core/tx90.hpp"
 
 namespace calib {
 namespace {
+
+// No touch tells in which direction the reference place has drifted: whichever way axis 1 stands, the tip is
+// off by half of it in each.
+TEST(Budget, ADriftMovesTheTipAsFarInEveryDirection) {
+  constexpr double kDriftMetres = 1e-4;
+  for (const double alpha_rad : {0.0, 0.4, 1.5707963}) {
+    KinematicModel nominal = paper::nominal();
+    nominal.links[1].alpha_rad = alpha_rad;
+    IdentificationProblem problem{.nominal = nominal,
+                                  .artefact = exact_artefact(paper::planes()),
+                                  .touch_noise_m = 2e-5,
+                                  .tolerances = drawn::tolerances(),
+                                  .drift_m = kDriftMetres};
+    const JointRanges ranges{JointVector::Constant(-2.0), JointVector::Constant(2.0)};
+    for (int i = 1; i <= 120; ++i)
+      problem.touches.push_back({.face = i % 4, .joints = halton_posture(i, ranges)});
+    problem.touches = moved_onto_planes(nominal, problem.artefact.contact_planes, problem.touches);
+    const IdentificationResult result = identify(problem, {.robust = false});
+    ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+    const UncertaintySource& drift = result.uncertainty->sources.back();
+    ASSERT_EQ(drift.name, "drift");
+    for (const int posture : {7, 40}) {
+      const Chain chain = forward_chain(prepare(nominal), halton_posture(posture, ranges));
+      const auto of_tip = tip_arm_derivatives(nominal, chain);
+      const Eigen::Matrix3d covariance = of_tip * drift.covariance * of_tip.transpose();
+      const Eigen::Matrix3d expected = std::pow(kDriftMetres / 2.0, 2) * Eigen::Matrix3d::Identity();
+      EXPECT_LT((covariance - expected).cwiseAbs().maxCoeff(), 1e-6 * expected(0, 0)) << alpha_rad;
+    }
+  }
+}
 
 // Student's factors of the GUM, table G.2.
 TEST(Coverage, TakesTheEffectiveDegreesOfFreedom) {
