@@ -81,10 +81,14 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
   SQLite::Transaction transaction(*database);
   SQLite::Statement choose(*database,
                            "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
-                           "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ?)");
+                           "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ?) AND id "
+                           "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND ? <= (SELECT "
+                           "max(started_at) FROM runs)");
   choose.bind(1, oldest);
   choose.bind(2, std::string(run_outcome_name(RunOutcome::kRunning)));
   choose.bind(3, std::string(verdict_name(Verdict::kAccepted)));
+  choose.bind(4, kLastRunsKept);
+  choose.bind(5, oldest);
   choose.exec();
   for (const std::string table : kOfRuns)
     database->exec("DELETE FROM " + table + " WHERE run_id IN (SELECT id FROM old_runs)");

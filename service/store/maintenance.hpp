@@ -16,8 +16,13 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
 /// plane, role and source of every touch. Read-only.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
 
+/// So many of the last runs stay however old they are.
+inline constexpr int kLastRunsKept = 10;
+
 /// Deletes the runs that began before `oldest` (as in format_utc()) with all their rows, except the last
-/// accepted run and a running one; returns how many. Faults and audit entries have their own limits.
+/// accepted run, a running one and the last kLastRunsKept; returns how many. Where even the newest run began
+/// before `oldest`, nothing is deleted: more likely than a cell at rest is a clock that has jumped. Faults
+/// and audit entries have their own limits.
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest);
 
 }  // namespace cell

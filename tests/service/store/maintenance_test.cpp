@@ -78,6 +78,7 @@ TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRun
   const std::int64_t rejected = add_run("2026-01-03", Verdict::kRejected);
   const std::int64_t running = add_run("2026-01-04", Verdict::kNone);
   const std::int64_t young = add_run("2026-03-01", Verdict::kRejected);
+  for (int i = 1; i < kLastRunsKept; ++i) add_run("2026-03-02", Verdict::kRejected);
   EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 2);
   EXPECT_FALSE(store_.run(old) || store_.run(rejected));
   EXPECT_THAT(store_.touches(old), IsEmpty());
@@ -85,9 +86,22 @@ TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRun
     EXPECT_TRUE(store_.run(kept));
     EXPECT_TRUE(store_.plan_json(kept));
   }
-  EXPECT_EQ(store_.database()->execAndGet("SELECT count(*) FROM plans").getInt(), 3);
+  EXPECT_EQ(store_.database()->execAndGet("SELECT count(*) FROM plans").getInt(), 4);
   EXPECT_THAT(find_damage(file_), IsEmpty());
   EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 0);
+}
+
+TEST_F(StoreMaintenance, TheLastRunsStayHoweverOldTheyAre) {
+  for (int i = 0; i < kLastRunsKept; ++i) add_run("2026-01-01", Verdict::kRejected);
+  add_run("2026-03-01", Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 1);
+}
+
+TEST_F(StoreMaintenance, AClockThatHasJumpedDeletesNothing) {
+  for (int i = 0; i < 2 * kLastRunsKept; ++i) add_run("2026-01-01", Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2036-01-01"), 0);
+  add_run("2036-01-02", Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2036-01-01"), kLastRunsKept + 1);
 }
 
 }  // namespace
