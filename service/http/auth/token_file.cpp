@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <fstream>
 #include <stdexcept>
 
@@ -23,7 +24,8 @@ std::optional<std::string> read_token(const std::filesystem::path& file) {
   }
   std::string token;
   std::getline(existing, token);
-  if (token.size() < 2 * kTokenBytes) {
+  const bool is_visible = std::ranges::all_of(token, [](char c) { return c > ' ' && c <= '~'; });
+  if (token.size() < 2 * kTokenBytes || !is_visible) {
     throw std::runtime_error(file.string() +
                              ": does not hold a token; remove the file to have a new one made");
   }

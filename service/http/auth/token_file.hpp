@@ -11,7 +11,8 @@ namespace cell {
 inline constexpr std::size_t kTokenBytes = 32;
 
 /// The token in this file; nothing if there is no such file. Throws std::runtime_error that names the file if
-/// its permissions are too wide, it cannot be read or it holds no token.
+/// its permissions are too wide, it cannot be read or it holds no token: fewer characters than one has, or
+/// others than visible ones of ASCII.
 std::optional<std::string> read_token(const std::filesystem::path& file);
 
 }  // namespace cell

@@ -60,9 +60,11 @@ TEST(Tokens, AFileThatOthersMayReadIsRefusedWithTheRemedy) {
   }
 }
 
-TEST(Tokens, AFileThatIsTooShortForATokenIsRefusedByName) {
-  for (const std::string& bytes : {std::string(), std::string("\n"), std::string("secret\n"),
-                                   std::string(63, 'a') + "\n", "\n" + std::string(64, 'a')}) {
+TEST(Tokens, AFileThatHoldsNoTokenIsRefusedByName) {
+  for (const std::string& bytes :
+       {std::string(), std::string("\n"), std::string("secret\n"), std::string(63, 'a') + "\n",
+        "\n" + std::string(64, 'a'), std::string(64, '\0') + "\n", std::string(64, ' ') + "\n",
+        std::string(63, 'a') + "\t\n"}) {
     const Folder state;
     const auto file = state.write(std::string(kOperateTokenFile), bytes);
     std::filesystem::permissions(file, perms::owner_read | perms::owner_write);
