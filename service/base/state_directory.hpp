@@ -10,6 +10,7 @@ inline constexpr std::string_view kStoreFile = "touchcal.sqlite";
 inline constexpr std::string_view kOperateTokenFile = "operate.token";
 inline constexpr std::string_view kViewTokenFile = "view.token";
 inline constexpr std::string_view kBlockPoseFile = "place.json";
+inline constexpr std::string_view kSocketFile = "touchcald.sock";
 inline constexpr std::string_view kLockFile = "touchcald.lock";
 
 /// $XDG_STATE_HOME/touchcal or ~/.local/state/touchcal.

@@ -1,8 +1,13 @@
 #include "service/cli/api_client.hpp"
 
+#include <sys/un.h>
+
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/address.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/ssl/context.hpp>
 #include <boost/asio/ssl/host_name_verification.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -35,6 +40,7 @@ constexpr std::size_t kAnswerSizeMax = 64 * 1024 * 1024;
 
 using Request = http::request<http::string_body>;
 using TlsStream = beast::ssl_stream<beast::tcp_stream>;
+using LocalStream = beast::basic_stream<asio::local::stream_protocol>;
 
 asio::awaitable<void> connect(beast::tcp_stream& stream, std::string host, std::string port,
                               std::chrono::seconds deadline) {
@@ -90,6 +96,21 @@ asio::awaitable<ApiReply> answer_over(Stream& stream, const Request& request) {
   co_return answer.reply();
 }
 
+/// Nothing if nobody listens there.
+asio::awaitable<std::optional<ApiReply>> ask_local(std::filesystem::path socket, Request request,
+                                                   std::chrono::seconds deadline) {
+  const auto executor = co_await asio::this_coro::executor;
+  LocalStream stream(executor);
+  stream.expires_after(deadline);
+  if (socket.string().size() >= sizeof(sockaddr_un::sun_path)) co_return std::nullopt;
+  const asio::local::stream_protocol::endpoint address(socket.string());
+  boost::system::error_code failure;
+  co_await stream.async_connect(address, asio::redirect_error(asio::use_awaitable, failure));
+  if (failure) co_return std::nullopt;
+  ApiReply reply = co_await answer_over(stream, request);
+  co_return reply;
+}
+
 asio::awaitable<ApiReply> ask(std::string host, std::string port, Request request,
                               std::chrono::seconds deadline) {
   const auto executor = co_await asio::this_coro::executor;
@@ -132,10 +153,39 @@ bool is_about_the_certificate(const boost::system::error_code& code) {
          code.message().find("certificate verify failed") != std::string::npos;
 }
 
+bool is_this_machine(const std::string& host) {
+  boost::system::error_code no_address;
+  const auto address = asio::ip::make_address(host, no_address);
+  return no_address ? host == "localhost" : address.is_loopback();
+}
+
+/// What to do about a daemon that was not reached.
+std::string unreached_remedy(const boost::system::error_code& code) {
+  if (is_about_the_certificate(code)) return "name the certificate that signed the daemon's with --ca FILE";
+  if (code == asio::error::eof || code == asio::error::connection_reset || code == beast::error::timeout)
+    return "it took the connection and did not answer: it may have too many, try again";
+  return "start it, or name it with --daemon URL";
+}
+
+/// Runs one exchange to its end; throws what it throws.
+template <class Reply>
+Reply reply_of(asio::awaitable<Reply> exchange) {
+  asio::io_context context(1);
+  std::optional<Reply> reply;
+  std::exception_ptr failure;
+  asio::co_spawn(context, std::move(exchange), [&](std::exception_ptr thrown, Reply answered) {
+    failure = std::move(thrown);
+    if (!failure) reply = std::move(answered);
+  });
+  context.run();
+  if (failure) std::rethrow_exception(failure);
+  return *std::move(reply);
+}
+
 }  // namespace
 
-ApiClient::ApiClient(const std::string& url, std::optional<std::string> token, std::filesystem::path ca_file)
-    : is_secure_(url.starts_with(kSecureScheme)), token_(std::move(token)), ca_file_(std::move(ca_file)) {
+ApiClient::ApiClient(const std::string& url, std::optional<std::string> token, ApiClientOptions options)
+    : is_secure_(url.starts_with(kSecureScheme)), token_(std::move(token)), options_(std::move(options)) {
   std::string rest;
   for (const std::string_view scheme : {kPlainScheme, kSecureScheme}) {
     if (url.starts_with(scheme)) rest = url.substr(scheme.size());
@@ -146,10 +196,21 @@ ApiClient::ApiClient(const std::string& url, std::optional<std::string> token, s
     throw std::invalid_argument("'" + url + "' is neither http://HOST:PORT nor https://HOST:PORT");
   host_ = endpoint->host;
   port_ = std::to_string(endpoint->port);
+  if (token_ && !is_secure_ && !options_.sends_token_in_clear && !is_this_machine(host_)) {
+    throw std::invalid_argument("'" + url +
+                                "': the token would go to another machine in clear; use https, or " +
+                                "say --token-in-clear");
+  }
 }
 
 std::string ApiClient::url() const {
   return std::string(is_secure_ ? kSecureScheme : kPlainScheme) + host_ + ":" + port_;
+}
+
+ApiClient ApiClient::without_socket() const {
+  ApiClient other = *this;
+  other.options_.socket.clear();
+  return other;
 }
 
 ApiReply ApiClient::get(const std::string& target, std::chrono::seconds deadline) const {
@@ -173,30 +234,17 @@ ApiReply ApiClient::request(bool post, const std::string& target, const std::str
     message.body() = body;
     message.prepare_payload();
   }
-  std::optional<ssl::context> trusted;
-  if (is_secure_) trusted.emplace(trusted_by(ca_file_));
-  asio::io_context context(1);
-  std::optional<ApiReply> reply;
-  std::exception_ptr failure;
-  const auto keep = [&](std::exception_ptr thrown, ApiReply answered) {
-    failure = std::move(thrown);
-    if (!failure) reply = std::move(answered);
-  };
-  if (trusted) {
-    asio::co_spawn(context, ask_secure(host_, port_, std::move(message), deadline, *trusted), keep);
-  } else {
-    asio::co_spawn(context, ask(host_, port_, std::move(message), deadline), keep);
-  }
-  context.run();
   try {
-    if (failure) std::rethrow_exception(failure);
+    if (!options_.socket.empty()) {
+      if (auto reply = reply_of(ask_local(options_.socket, message, deadline))) return *std::move(reply);
+    }
+    if (!is_secure_) return reply_of(ask(host_, port_, std::move(message), deadline));
+    ssl::context trusted = trusted_by(options_.ca_file);
+    return reply_of(ask_secure(host_, port_, std::move(message), deadline, trusted));
   } catch (const boost::system::system_error& error) {
-    const bool untrusted = is_about_the_certificate(error.code());
     throw DaemonUnreachable("no touchcald answers at " + url() + " (" + error.code().message() + "); " +
-                            (untrusted ? "name the certificate that signed the daemon's with --ca FILE"
-                                       : "start it, or name it with --daemon URL"));
+                            unreached_remedy(error.code()));
   }
-  return *reply;
 }
 
 std::optional<std::string> find_operate_token(const std::filesystem::path& state_directory) {

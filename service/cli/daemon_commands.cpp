@@ -17,7 +17,8 @@ ExitCode status_command(const ApiClient& daemon, bool json_only) {
   return kExitDone;
 }
 
-ExitCode page_command(const ApiClient& daemon, bool json_only) {
+ExitCode page_command(const ApiClient& reached, bool json_only) {
+  const ApiClient daemon = reached.without_socket();  // the link is of its address
   const std::string role = read_reply(daemon.get("/api/v1/access"), read_access).role;
   const bool operates = role == "operate";
   const std::string link = daemon.url() + "/" + (operates ? "#token=" + *daemon.token() : "");

@@ -250,9 +250,18 @@ class CommandLine {
                     "certificates (PEM) that sign the one of an https daemon; also TOUCHCAL_CA")
         ->default_str(ca_file_);
     sub->add_flag("--json", json_, "one JSON document on standard output");
-    sub->callback([this, command] {
-      action_ = [this, command] {
-        return command(cell::ApiClient(daemon_url_, cell::find_operate_token(state_directory_), ca_file_));
+    sub->add_flag("--token-in-clear", token_in_clear_,
+                  "send the token over http to another machine, where everybody on the way can read it");
+    sub->callback([this, sub, command] {
+      // A daemon that was named is that one; else the one of the state directory, first by its socket.
+      const bool is_named = sub->count("--daemon") > 0 || !environment_or("TOUCHCAL_DAEMON", "").empty();
+      action_ = [this, command, is_named] {
+        const std::filesystem::path state(state_directory_);
+        const cell::ApiClientOptions options{
+            .ca_file = ca_file_,
+            .socket = is_named ? std::filesystem::path() : state / cell::kSocketFile,
+            .sends_token_in_clear = token_in_clear_};
+        return command(cell::ApiClient(daemon_url_, cell::find_operate_token(state), options));
       };
     });
     return sub;
@@ -272,6 +281,7 @@ class CommandLine {
   cell::RunArguments run_{.recipe = "edf-25"};
   std::string shell_;
   std::string run_id_;
+  bool token_in_clear_ = false;
   bool json_ = false;
 };
 

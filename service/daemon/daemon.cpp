@@ -15,6 +15,7 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <csignal>
 #include <cstdio>
 #include <stdexcept>
 
@@ -26,6 +27,7 @@
 #include "service/http/auth/tokens.hpp"
 #include "service/http/routes/api.hpp"
 #include "service/http/server/listener.hpp"
+#include "service/http/server/local_listener.hpp"
 #include "service/store/maintenance.hpp"
 #include "service/store/run_store.hpp"
 
@@ -82,10 +84,28 @@ void limit_allocator() {
   mallopt(M_TRIM_THRESHOLD, kLargePieceBytes);
 }
 
+/// A log whose reader has ended, or a file at its largest size, is a failed write and not the end of a run.
+void ignore_write_signals() {
+  std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
+/// Opens the socket in the state directory. Without one (its path may be too long) the address serves alone.
+void open_socket(std::optional<LocalListener>& socket, asio::io_context& context, Api& api,
+                 const DaemonOptions& options) {
+  const std::filesystem::path file = options.state_directory / kSocketFile;
+  try {
+    socket.emplace(context.get_executor(), file, api, HttpLimits{});
+  } catch (const boost::system::system_error& error) {
+    spdlog::warn("{}: there is no Unix socket: {}", file.string(), error.code().message());
+  }
+}
+
 }  // namespace
 
 void run_daemon(const Cell& cell, const DaemonOptions& options) {
   limit_allocator();
+  ignore_write_signals();
   if (std::filesystem::create_directories(options.state_directory)) {
     std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
   }
@@ -105,24 +125,29 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const auto tls = tls_context(options);
   try {
     listener.emplace(context.get_executor(), listen_address(context, options), api,
-                     HttpLimits{.host_names = options.host_names}, tls);
+                     HttpLimits{.host_names = options.host_names, .trusts_loopback = options.trusts_loopback},
+                     tls);
   } catch (const boost::system::system_error& error) {
     throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; give another address with --listen",
                                          options.listen.host, options.listen.port, error.code().message()));
   }
+  std::optional<LocalListener> socket;
+  open_socket(socket, context, api, options);
   Supervision supervision(context.get_executor());
-  asio::signal_set signals(context, SIGINT, SIGTERM);
+  asio::signal_set signals(context, SIGINT, SIGTERM, SIGHUP);
   signals.async_wait([&](const boost::system::error_code& failure, int signal) {
     if (failure) return;
     spdlog::info("signal {}: stopping", signal);
     supervision.notify_stopping();
     listener->close();
+    if (socket) socket->close();
     asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
     signals.async_wait(
         [&](const boost::system::error_code&, int) { context.stop(); });  // a second signal: at once
   });
   operation.launch();
   listener->launch();
+  if (socket) socket->launch();
   spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());
   const auto address = listener->address();
   fmt::print("listening on {}:{}\n", options.listen.host, address.port());

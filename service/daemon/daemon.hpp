@@ -17,11 +17,15 @@ struct DaemonOptions {
   std::optional<int> retain_days;         // absent: runs are kept for ever
   std::filesystem::path tls_certificate;  // PEM, followed by its chain; with tls_key: TLS
   std::filesystem::path tls_key;
+  bool trusts_loopback = true;  // reading over loopback needs no token
 };
 
-/// Serves one cell until SIGINT or SIGTERM, which stop a motion under way. Prints "listening on HOST:PORT" on
-/// standard output when ready. Throws std::exception if it cannot start (address in use, state directory not
-/// writable).
+/// Longest time to keep runs: a hundred years.
+inline constexpr int kRetainDaysMax = 36'500;
+
+/// Serves one cell, on the address and on a Unix socket in the state directory, until SIGINT, SIGTERM or
+/// SIGHUP, which stop a motion under way. Prints "listening on HOST:PORT" on standard output when ready.
+/// Throws std::exception if it cannot start (address in use, state directory not writable).
 void run_daemon(const Cell& cell, const DaemonOptions& options);
 
 }  // namespace cell

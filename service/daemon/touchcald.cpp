@@ -75,7 +75,7 @@ int main(int argc, char** argv) {
       "touchcald: executes the touches of one robot cell, identifies the arm and serves the JSON API");
   std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key, log_format = "text";
   std::vector<std::string> host_names;
-  bool check = false, verify = false;
+  bool check = false, verify = false, loopback_needs_token = false;
   int retain_days = 0;
   app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json");
   app.add_option("--listen", listen, "HOST:PORT of the API")->default_str("127.0.0.1:8080");
@@ -101,7 +101,9 @@ int main(int argc, char** argv) {
                  "copy the state's database into this new file, then exit; a daemon may run");
   app.add_flag("--verify", verify, "check the state's database for damage, then exit; a daemon may run");
   app.add_option("--retain-days", retain_days, "delete older runs, except the last accepted one")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(1, cell::kRetainDaysMax));
+  app.add_flag("--loopback-needs-token", loopback_needs_token,
+               "reading over a loopback address needs a token too, as behind a proxy on this machine");
   app.set_version_flag("--version", std::string("touchcald ") + cell::kVersion);
 
   try {
@@ -114,6 +116,7 @@ int main(int argc, char** argv) {
     if (cell_file.empty()) throw CLI::RequiredError("--cell");
     if (retain_days > 0) options.retain_days = retain_days;
     options.host_names = host_names;
+    options.trusts_loopback = !loopback_needs_token;
     options.tls_certificate = tls_certificate;
     options.tls_key = tls_key;
     if (!listen.empty()) options.listen = endpoint_option("--listen", listen);

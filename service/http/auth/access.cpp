@@ -10,11 +10,16 @@
 namespace cell {
 namespace {
 
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
 std::string_view token_of(const HttpRequest& request) {
   constexpr std::string_view kScheme = "Bearer ";
   const std::string_view sent =
       request.authorization ? std::string_view(*request.authorization) : std::string_view();
-  return sent.starts_with(kScheme) ? sent.substr(kScheme.size()) : std::string_view();
+  // The name of a scheme is case-insensitive (RFC 9110, 11.1).
+  return std::ranges::equal(sent.substr(0, kScheme.size()), kScheme, {}, lower, lower)
+             ? sent.substr(kScheme.size())
+             : std::string_view();
 }
 
 }  // namespace
@@ -59,10 +64,9 @@ std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access acc
 }
 
 std::optional<HttpResponse> refuse_content_type(const HttpRequest& request) {
-  if (request.body.empty()) return std::nullopt;
+  if (request.body.empty() && !request.announces_body) return std::nullopt;
   const std::string_view type =
       request.content_type ? std::string_view(*request.content_type) : std::string_view();
-  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
   if (std::ranges::equal(type.substr(0, type.find_first_of("; \t")), std::string_view("application/json"), {},
                          lower)) {
     return std::nullopt;

@@ -21,7 +21,8 @@ Role role_of(const HttpRequest& request, const Tokens& tokens);
 /// Nothing if access is granted. Reading needs no token on loopback.
 std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access access, const Tokens& tokens);
 
-/// A body must be declared as JSON: a foreign web page cannot send that without a CORS preflight.
+/// A body, also one that is only announced, must be declared as JSON: a foreign web page cannot send that
+/// without a CORS preflight.
 std::optional<HttpResponse> refuse_content_type(const HttpRequest& request);
 
 }  // namespace cell

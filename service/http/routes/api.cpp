@@ -119,9 +119,15 @@ std::unique_ptr<EventSource> Api::events(const HttpRequest& request) {
   return std::make_unique<EventStream>(services_, run_id, request.last_event_id);
 }
 
-std::size_t Api::body_bytes_max(std::string_view method, std::string_view path) const {
-  const Route* route = find_route(method, path);
-  return route ? route->body_bytes_max : kBodyBytesMax;
+HeaderDecision Api::decide(const HttpRequest& header) const {
+  const Role role = role_of(header, services_.tokens);
+  HeaderDecision decision{.has_token = role == Role::kView || role == Role::kOperate};
+  const auto outcome = admit(header, services_.tokens);
+  if (const auto* admitted = std::get_if<Admitted>(&outcome)) {
+    decision.takes_body = !is_stop(*admitted->route);
+    decision.body_bytes_max = body_bytes_max(*admitted->route);
+  }
+  return decision;
 }
 
 bool Api::ignores_query(std::string_view method, std::string_view path) const {

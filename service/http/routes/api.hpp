@@ -24,9 +24,8 @@ class Api final : public RequestHandler {
   boost::asio::awaitable<HttpResponse> answer(const HttpRequest& request) override;
   HttpResponse refuse(const Problem& problem, const HttpRequest& request) override;
   std::unique_ptr<EventSource> events(const HttpRequest& request) override;
-  [[nodiscard]] std::size_t body_bytes_max(std::string_view method, std::string_view path) const override;
+  [[nodiscard]] HeaderDecision decide(const HttpRequest& header) const override;
   [[nodiscard]] bool ignores_query(std::string_view method, std::string_view path) const override;
-  [[nodiscard]] std::size_t largest_body_bytes() const override { return kTouchesBytesMax; }
 
   [[nodiscard]] Services& services() { return services_; }
 

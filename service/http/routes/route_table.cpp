@@ -51,7 +51,7 @@ std::optional<HttpResponse> refuse_query(const Route& route, const Query& query)
 }
 
 std::optional<HttpResponse> refuse_body(const Route& route, const HttpRequest& request) {
-  if (request.body.size() > route.body_bytes_max)
+  if (request.body.size() > body_bytes_max(route))
     return to_response({.status = 413, .kind = ProblemKind::kTooLarge, .detail = "the body is too large"});
   if (auto refused = refuse_content_type(request)) return refused;
   if (!route.body_schema.empty() || request.body.empty() || request.body == "{}") return std::nullopt;
@@ -71,6 +71,10 @@ std::optional<HttpResponse> refuse_key(const HttpRequest& request) {
 std::span<const Route> routes() {
   static const std::vector<Route> all = all_routes();
   return all;
+}
+
+std::size_t body_bytes_max(const Route& route) {
+  return route.body_schema.empty() ? kEmptyBodyBytesMax : route.body_bytes_max;
 }
 
 bool is_stop(const Route& route) { return route.path == "/api/v1/cell/stop"; }

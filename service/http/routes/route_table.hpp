@@ -73,6 +73,12 @@ struct Route {
   DispatchMode dispatch = DispatchMode::kAtOnce;
 };
 
+/// Largest body where a route takes none but {}.
+inline constexpr std::size_t kEmptyBodyBytesMax = 1024;
+
+/// Largest body of a request to this route.
+std::size_t body_bytes_max(const Route& route);
+
 /// All routes.
 std::span<const Route> routes();
 
@@ -96,7 +102,8 @@ struct Admitted {
   std::string id;  // the segment at {id}, decoded
 };
 
-/// The route of a request, or its refusal: 404, 405, 401, 403, 400, 413, 415.
+/// The route of a request, or its refusal: 404, 405, 401, 403, 400, 413, 415. For a request without its body,
+/// what its header alone decides.
 std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tokens& tokens);
 
 /// The route of a path for this method, without any check; null if there is none.

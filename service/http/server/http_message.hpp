@@ -25,6 +25,7 @@ struct HttpRequest {
   std::optional<std::string> idempotency_key;
   std::optional<std::string> if_none_match;
   std::optional<std::string> last_event_id;
+  bool announces_body = false;  // by its header; the body itself may not be here yet
   std::string body;
   bool from_loopback = false;
   std::string remote;  // the client's address, for the audit

@@ -1,20 +1,39 @@
 #include "service/http/server/listener.hpp"
 
-#include <spdlog/spdlog.h>
-
+#include <array>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
 #include <utility>
 
+#include "service/http/server/internal/accepting.hpp"
 #include "service/http/server/request_handler.hpp"
+#include "service/http/server/response_text.hpp"
 
 namespace cell {
 
 namespace asio = boost::asio;
 using asio::ip::tcp;
+
+namespace {
+
+/// Connections that are told at once that there is no place for them; more are only closed.
+constexpr int kTurnedAwayMax = 32;
+
+/// Says `text`, and closes when the client has read it or after a second: unread bytes would reset it.
+asio::awaitable<void> turn_away(tcp::socket socket, std::string text) {
+  boost::beast::tcp_stream stream(std::move(socket));
+  stream.expires_after(std::chrono::seconds(1));
+  co_await asio::async_write(stream, asio::buffer(text), asio::use_awaitable);
+  boost::system::error_code failure;
+  stream.socket().shutdown(tcp::socket::shutdown_send, failure);
+  std::array<char, 4096> unread;
+  const auto room = asio::buffer(unread);
+  while (!failure) co_await stream.async_read_some(room, asio::redirect_error(asio::use_awaitable, failure));
+}
+
+}  // namespace
 
 HttpListener::HttpListener(asio::any_io_executor executor, const tcp::endpoint& address,
                            RequestHandler& handler, HttpLimits limits,
@@ -24,56 +43,49 @@ HttpListener::HttpListener(asio::any_io_executor executor, const tcp::endpoint& 
       address_(acceptor_.local_endpoint()),
       limits_(limits),
       tls_(std::move(tls)),
-      handler_(handler) {}
+      handler_(handler),
+      bodies_(std::make_shared<BodyBudget>(limits.bodies_bytes_max)),
+      connections_(limits.connections) {}
 
-void HttpListener::launch() { asio::co_spawn(executor_, accept(), asio::detached); }
+void HttpListener::launch() {
+  asio::co_spawn(executor_,
+                 accept_connections<tcp>(acceptor_, [this](tcp::socket socket) { serve(std::move(socket)); }),
+                 asio::detached);
+}
 
 void HttpListener::close() { acceptor_.close(); }
-
-bool HttpListener::has_room(const asio::ip::address& client) const {
-  if (connections_ >= limits_.connections_max) return false;
-  const auto found = connections_of_.find(client);
-  const int most = client.is_loopback() ? limits_.loopback_connections_max : limits_.address_connections_max;
-  return found == connections_of_.end() || found->second < most;
-}
-
-asio::awaitable<void> HttpListener::accept() {
-  while (acceptor_.is_open()) {
-    boost::system::error_code failure;
-    tcp::socket socket = co_await acceptor_.async_accept(asio::redirect_error(asio::use_awaitable, failure));
-    if (failure == asio::error::operation_aborted) break;
-    if (failure) {
-      // Out of descriptors: present connections will end.
-      spdlog::warn("a connection could not be accepted: {}", failure.message());
-      asio::steady_timer pause(executor_, std::chrono::milliseconds(100));
-      co_await pause.async_wait(asio::redirect_error(asio::use_awaitable, failure));
-      continue;
-    }
-    serve(std::move(socket));
-  }
-}
 
 void HttpListener::serve(tcp::socket socket) {
   boost::system::error_code gone;
   const asio::ip::address client = socket.remote_endpoint(gone).address();
-  if (gone || !has_room(client)) return;  // the socket closes here
-  ++connections_;
-  ++connections_of_[client];
-  const auto ended = [this, client](const std::exception_ptr& thrown) {
-    --connections_;
-    if (--connections_of_[client] == 0) connections_of_.erase(client);
-    try {
-      if (thrown) std::rethrow_exception(thrown);
-    } catch (const boost::system::system_error&) {
-      // the client went away
-    } catch (const std::exception& error) {
-      spdlog::error("a request failed: {}", error.what());
-    }
+  if (gone) return;  // the socket closes here
+  const std::shared_ptr<Connection> connection = connections_.take(origin_of(client));
+  if (!connection) {
+    tell_full(std::move(socket), client);
+    return;
+  }
+  const auto ended = [this, connection](const std::exception_ptr& thrown) {
+    connections_.give_back(connection);
+    log_end(thrown);
   };
   asio::co_spawn(executor_,
-                 tls_ ? serve_tls_session(std::move(socket), *tls_, handler_, limits_)
-                      : serve_session(std::move(socket), handler_, limits_),
+                 tls_ ? serve_tls_session(std::move(socket), *tls_, handler_, limits_, bodies_, connection)
+                      : serve_session(std::move(socket), handler_, limits_, bodies_, connection),
                  ended);
+}
+
+void HttpListener::tell_full(tcp::socket socket, const asio::ip::address& client) {
+  if (tls_ || turned_away_ >= kTurnedAwayMax) return;
+  const Problem full{.status = 503,
+                     .kind = ProblemKind::kBusy,
+                     .detail =
+                         "all connections are in use by clients with a token; close some, or use the "
+                         "Unix socket in the state directory"};
+  const HttpRequest unread{.method = "GET", .remote = client.to_string()};
+  std::string text = response_text(handler_.refuse(full, unread), 1, false, false);
+  ++turned_away_;
+  asio::co_spawn(executor_, turn_away(std::move(socket), std::move(text)),
+                 [this](const std::exception_ptr&) { --turned_away_; });
 }
 
 }  // namespace cell

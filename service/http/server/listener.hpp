@@ -1,11 +1,10 @@
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
-#include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <map>
 #include <memory>
 
+#include "service/http/server/body_budget.hpp"
 #include "service/http/server/session.hpp"
 
 namespace cell {
@@ -13,7 +12,7 @@ namespace cell {
 class RequestHandler;
 
 /// Accepts connections on one address and serves `handler` over them, HTTP/1.1, with TLS where there is a
-/// certificate.
+/// certificate. Where no place is left, a client is told so (503).
 class HttpListener {
  public:
   /// Binds at once; port 0 takes a free one. Throws boost::system::system_error if the address is in use.
@@ -27,9 +26,8 @@ class HttpListener {
   [[nodiscard]] boost::asio::ip::tcp::endpoint address() const { return address_; }
 
  private:
-  boost::asio::awaitable<void> accept();
-  [[nodiscard]] bool has_room(const boost::asio::ip::address& client) const;
   void serve(boost::asio::ip::tcp::socket socket);
+  void tell_full(boost::asio::ip::tcp::socket socket, const boost::asio::ip::address& client);
 
   boost::asio::any_io_executor executor_;
   boost::asio::ip::tcp::acceptor acceptor_;
@@ -37,8 +35,9 @@ class HttpListener {
   HttpLimits limits_;
   std::shared_ptr<boost::asio::ssl::context> tls_;
   RequestHandler& handler_;
-  int connections_ = 0;
-  std::map<boost::asio::ip::address, int> connections_of_;
+  std::shared_ptr<BodyBudget> bodies_;
+  ConnectionTable connections_;
+  int turned_away_ = 0;  // and not closed yet
 };
 
 }  // namespace cell

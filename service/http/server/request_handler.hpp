@@ -1,7 +1,7 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
-#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -26,6 +26,13 @@ class EventSource {
   virtual boost::asio::awaitable<void> wait() = 0;
 };
 
+/// What follows from the header of a request alone, before its body is read.
+struct HeaderDecision {
+  bool takes_body = false;  // otherwise the answer is the same without one
+  std::uint64_t body_bytes_max = 0;
+  bool has_token = false;  // one of the daemon's
+};
+
 /// What a connection calls. The server knows neither routes nor the cell.
 class RequestHandler {
  public:
@@ -40,12 +47,10 @@ class RequestHandler {
   virtual HttpResponse refuse(const Problem& problem, const HttpRequest& request) = 0;
   /// The events of a request whose answer was a stream of them.
   virtual std::unique_ptr<EventSource> events(const HttpRequest& request) = 0;
-  /// How long the body of a request to this path may be; kBodyBytesMax where there is no such route.
-  [[nodiscard]] virtual std::size_t body_bytes_max(std::string_view method, std::string_view path) const = 0;
+  /// A body is received only where this says so. `header`: the request without its body.
+  [[nodiscard]] virtual HeaderDecision decide(const HttpRequest& header) const = 0;
   /// Whether a request is taken whatever its query is, as a stop is.
   [[nodiscard]] virtual bool ignores_query(std::string_view method, std::string_view path) const = 0;
-  /// The largest body that any route takes.
-  [[nodiscard]] virtual std::size_t largest_body_bytes() const = 0;
 };
 
 inline constexpr std::string_view kEventStreamType = "text/event-stream";

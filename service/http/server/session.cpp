@@ -9,16 +9,17 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/read.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/ssl/ssl_stream.hpp>
 #include <memory>
 #include <utility>
 #include <variant>
 
+#include "service/http/server/body_budget.hpp"
+#include "service/http/server/ends.hpp"
 #include "service/http/server/request_handler.hpp"
+#include "service/http/server/request_head.hpp"
 #include "service/http/server/response_text.hpp"
-#include "service/http/server/target.hpp"
 
 namespace cell {
 
@@ -32,146 +33,22 @@ namespace {
 constexpr std::size_t kReadBytes = 4096;
 
 using Parser = http::request_parser<http::string_body>;
-using Incoming = http::request<http::string_body>;
 using PlainStream = beast::tcp_stream;
+using LocalStream = beast::basic_stream<asio::local::stream_protocol>;
 using TlsStream = beast::ssl_stream<beast::tcp_stream>;
 
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
+std::string string_of(beast::string_view text) { return {text.data(), text.size()}; }
 
-std::optional<std::string> field(const Incoming& request, http::field name) {
-  const auto found = request.find(name);
-  return found == request.end() ? std::nullopt : std::optional<std::string>(found->value());
-}
-
-std::optional<std::string> field(const Incoming& request, beast::string_view name) {
-  const auto found = request.find(name);
-  return found == request.end() ? std::nullopt : std::optional<std::string>(found->value());
-}
-
-/// A list field may be repeated (RFC 9110, 5.3).
-std::optional<std::string> list_field(const Incoming& request, http::field name) {
-  std::optional<std::string> joined;
-  const auto [first, last] = request.equal_range(name);
-  for (auto line = first; line != last; ++line)
-    joined = joined ? *joined + ", " + std::string(line->value()) : std::string(line->value());
-  return joined;
-}
-
-/// The two ends of a connection and the accepted values of Host: another Host is a page that reached the
-/// daemon under a name of its own (DNS rebinding).
-struct Ends {
-  bool from_loopback = false;
-  std::string remote;
-  std::string scheme;  // of an accepted Origin
-  std::vector<std::string> hosts;
-
-  Ends(const tcp::socket& socket, const char* own_scheme, const std::vector<std::string>& names)
-      : scheme(own_scheme) {
-    const tcp::endpoint client = socket.remote_endpoint();
-    const tcp::endpoint own = socket.local_endpoint();
-    from_loopback = client.address().is_loopback();
-    remote = client.address().to_string();
-    const std::string port = ":" + std::to_string(own.port());
-    const std::string address = own.address().to_string();
-    hosts = {"127.0.0.1" + port, "localhost" + port, "[::1]" + port,
-             (own.address().is_v6() ? "[" + address + "]" : address) + port};
-    for (const std::string& name : names) {
-      hosts.push_back(name + port);
-      hosts.push_back(name);  // at the scheme's own port, where a proxy listens
-    }
-  }
-
-  [[nodiscard]] bool is_our_host(beast::string_view host) const {
-    return std::ranges::any_of(hosts, [&](const std::string& own) { return beast::iequals(host, own); });
-  }
-  [[nodiscard]] bool is_our_origin(beast::string_view origin) const {
-    return origin.starts_with(scheme) && is_our_host(origin.substr(scheme.size()));
-  }
-};
-
-/// What Beast accepts although RFC 9110 and 9112 forbid it. `raw_header`: the bytes, which still show folded
-/// lines.
-std::optional<Problem> find_http_fault(const Incoming& request, std::string_view raw_header,
-                                       const Ends& ends) {
-  if (raw_header.find("\r\n ") != raw_header.npos || raw_header.find("\r\n\t") != raw_header.npos) {
-    return Problem{.kind = ProblemKind::kHttp, .detail = "a header field must be on one line"};
-  }
-  const auto hosts = request.count(http::field::host);
-  if (hosts > 1 || (hosts == 0 && request.version() >= 11)) {
-    return Problem{.kind = ProblemKind::kHost, .detail = "exactly one Host is required"};
-  }
-  if (hosts == 1 && !ends.is_our_host(request[http::field::host])) {
-    return Problem{.status = 421,
-                   .kind = ProblemKind::kHost,
-                   .detail = "unknown Host; --host-name adds a name of the daemon"};
-  }
-  const auto codings = request.count(http::field::transfer_encoding);
-  if (codings > 0 && (request.version() < 11 || codings > 1 ||
-                      !beast::iequals(request[http::field::transfer_encoding], "chunked"))) {
-    return Problem{.status = 501,
-                   .kind = ProblemKind::kTransferEncoding,
-                   .detail = "the only transfer encoding is chunked"};
-  }
-  if (request.count(http::field::content_length) > 1 ||
-      request[http::field::content_length].find_first_not_of("0123456789") != beast::string_view::npos) {
-    return Problem{.kind = ProblemKind::kContentLength, .detail = "Content-Length must be one number"};
-  }
-  for (const http::field once : {http::field::authorization, http::field::content_type}) {
-    if (request.count(once) > 1)
-      return Problem{.kind = ProblemKind::kHttp, .detail = "a field is given twice"};
-  }
-  if (request.count("Idempotency-Key") > 1)
-    return Problem{.kind = ProblemKind::kHttp, .detail = "a field is given twice"};
-  if (request.count(http::field::expect) > 0) {
-    return Problem{.status = 417, .kind = ProblemKind::kExpect, .detail = "Expect is not supported"};
-  }
-  if (request.count(http::field::origin) > 0 && !ends.is_our_origin(request[http::field::origin])) {
-    return Problem{
-        .status = 403, .kind = ProblemKind::kOrigin, .detail = "requests from other origins are refused"};
-  }
-  return std::nullopt;
-}
-
-/// A HEAD is handled as a GET.
-std::string method_of(const Incoming& request) {
-  return request.method() == http::verb::head || request.method_string().empty()
-             ? "GET"
-             : std::string(request.method_string());
-}
-
-/// The parsed target. A stop is taken even with a malformed query.
-std::optional<std::pair<std::string, Query>> target_of(const Incoming& incoming,
-                                                       const RequestHandler& handler) {
-  const std::string_view target = view(incoming.target());
-  if (auto parsed = parse_target(target)) return parsed;
-  auto path = parse_target(target.substr(0, target.find('?')));
-  const bool is_taken = path && handler.ignores_query(view(incoming.method_string()), path->first);
-  return is_taken ? std::move(path) : std::nullopt;
-}
-
-Problem bad_target(std::string_view target) {
-  return {.kind = ProblemKind::kTarget,
-          .detail =
-              target.starts_with('/')
-                  ? "the target is malformed (RFC 3986): a % takes two hexadecimal digits behind it, control "
-                    "characters are not allowed, and [ ] { } | \" < > # and spaces are percent-encoded"
-                  : "the target must be a path"};
-}
-
-std::optional<HttpRequest> to_request(Incoming& incoming, const Ends& ends, const RequestHandler& handler) {
-  auto target = target_of(incoming, handler);
-  if (!target) return std::nullopt;
-  return HttpRequest{.method = method_of(incoming),
-                     .path = std::move(target->first),
-                     .query = std::move(target->second),
-                     .authorization = field(incoming, http::field::authorization),
-                     .content_type = field(incoming, http::field::content_type),
-                     .idempotency_key = field(incoming, "Idempotency-Key"),
-                     .if_none_match = list_field(incoming, http::field::if_none_match),
-                     .last_event_id = field(incoming, "Last-Event-ID"),
-                     .body = std::move(incoming.body()),
-                     .from_loopback = ends.from_loopback,
-                     .remote = ends.remote};
+RequestHead head_of(const Parser& parser, std::string bytes) {
+  const auto& request = parser.get();
+  RequestHead head{.method = string_of(request.method_string()),
+                   .target = string_of(request.target()),
+                   .version = request.version(),
+                   .is_chunked = parser.chunked(),
+                   .bytes = std::move(bytes)};
+  for (const auto& field : request)
+    head.fields.emplace_back(string_of(field.name_string()), string_of(field.value()));
+  return head;
 }
 
 Problem too_large() {
@@ -191,31 +68,48 @@ std::optional<Problem> problem_of(const boost::system::error_code& failure) {
   return std::nullopt;  // a socket error
 }
 
-/// Largest body of this request.
-std::uint64_t body_bytes_max(const Incoming& request, const RequestHandler& handler,
-                             const HttpLimits& limits) {
-  const auto target = target_of(request, handler);
-  const std::size_t of_route =
-      target ? handler.body_bytes_max(view(request.method_string()), target->first) : kBodyBytesMax;
-  return of_route > kBodyBytesMax ? of_route : limits.body_bytes_max;
+/// Nobody needs an extension of a chunk, and one that does not end would be kept.
+void refuse_chunk_extension(std::uint64_t, beast::string_view extension, boost::system::error_code& failure) {
+  if (!extension.empty()) failure = http::error::bad_chunk_extension;
+}
+
+/// Largest body of a request that takes one.
+std::uint64_t body_bytes_max(const HeaderDecision& decision, const HttpLimits& limits) {
+  return decision.body_bytes_max > kBodyBytesMax ? decision.body_bytes_max
+                                                 : std::min(decision.body_bytes_max, limits.body_bytes_max);
 }
 
 /// Serves the requests of a connection in order, with or without TLS.
 template <class Stream>
 class Session {
  public:
-  Session(Stream stream, RequestHandler& handler, const HttpLimits& limits, Ends ends)
+  Session(Stream stream, RequestHandler& handler, const HttpLimits& limits,
+          std::shared_ptr<BodyBudget> bodies, Ends ends, std::shared_ptr<Connection> connection)
       : stream_(std::move(stream)),
         handler_(handler),
         limits_(limits),
+        bodies_(std::move(bodies)),
         ends_(std::move(ends)),
-        buffer_(limits.header_bytes_max + handler.largest_body_bytes()) {}
+        connection_(std::move(connection)),
+        buffer_(2 * std::size_t{limits.header_bytes_max} + kReadBytes) {
+    connection_->end = [this] { beast::get_lowest_layer(stream_).close(); };
+    expires_after(limits_.request_deadline);  // until the first request is here
+  }
+  ~Session() { connection_->end = {}; }
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
   asio::awaitable<void> serve();
 
  private:
   asio::awaitable<bool> serve_one();
-  asio::awaitable<std::optional<Problem>> read_request(Parser& parser);
+  asio::awaitable<std::optional<Problem>> read_checked_header(Parser& parser, RequestHead& head);
+  asio::awaitable<std::optional<Problem>> read_body(Parser& parser, std::uint64_t bytes_max,
+                                                    BodyClaim& claim);
+  asio::awaitable<bool> answer(const HttpRequest& request, const RequestHead& head, bool keep_alive);
+  asio::awaitable<bool> refuse(const Problem& problem, const RequestHead& head);
+  asio::awaitable<void> wait_for_request();
+  asio::awaitable<void> skip(std::uint64_t bytes);
   asio::awaitable<std::variant<std::string, boost::system::error_code>> read_header(Parser& parser);
   asio::awaitable<void> read_some();
   asio::awaitable<void> write(const std::string& text);
@@ -228,7 +122,9 @@ class Session {
   Stream stream_;
   RequestHandler& handler_;
   HttpLimits limits_;
+  std::shared_ptr<BodyBudget> bodies_;
   Ends ends_;
+  std::shared_ptr<Connection> connection_;
   beast::flat_buffer buffer_;
 };
 
@@ -261,26 +157,64 @@ asio::awaitable<std::variant<std::string, boost::system::error_code>> Session<St
   }
 }
 
-/// Reads one request; returns what is wrong with it. An error in the header is reported before the body
-/// comes, which the client may hold back (Expect). Throws when the connection ends.
+/// Reads the header of a request into `head`; returns what is wrong with it. Throws when the connection ends.
 template <class Stream>
-asio::awaitable<std::optional<Problem>> Session<Stream>::read_request(Parser& parser) {
-  boost::system::error_code failure;
-  const auto header = co_await read_header(parser);
-  if (const auto* raw = std::get_if<std::string>(&header)) {
-    if (auto problem = find_http_fault(parser.get(), *raw, ends_)) co_return problem;
-    if (parser.is_done()) co_return std::nullopt;
-    const std::uint64_t body_max = body_bytes_max(parser.get(), handler_, limits_);
-    if (parser.content_length().value_or(0) > body_max) co_return too_large();
-    parser.body_limit(body_max);
-    co_await http::async_read(stream_, buffer_, parser, asio::redirect_error(asio::use_awaitable, failure));
-    if (!failure) co_return std::nullopt;
-  } else {
-    failure = std::get<boost::system::error_code>(header);
+asio::awaitable<std::optional<Problem>> Session<Stream>::read_checked_header(Parser& parser,
+                                                                             RequestHead& head) {
+  auto header = co_await read_header(parser);
+  if (auto* raw = std::get_if<std::string>(&header)) {
+    head = head_of(parser, std::move(*raw));
+    co_return find_http_fault(head, ends_);
   }
+  head = head_of(parser, {});
+  const auto& failure = std::get<boost::system::error_code>(header);
   auto problem = problem_of(failure);
   if (!problem) throw boost::system::system_error(failure);
   co_return problem;
+}
+
+/// Reads the body of a request; returns what is wrong with it. What is not yet part of the body, a chunk's
+/// line or trailers, is bounded like a header. Throws when the connection ends.
+template <class Stream>
+asio::awaitable<std::optional<Problem>> Session<Stream>::read_body(Parser& parser, std::uint64_t bytes_max,
+                                                                   BodyClaim& claim) {
+  if (parser.content_length().value_or(0) > bytes_max) co_return too_large();
+  parser.body_limit(bytes_max);
+  parser.eager(true);
+  auto chunk_rule = refuse_chunk_extension;
+  parser.on_chunk_header(chunk_rule);
+  while (true) {
+    boost::system::error_code failure;
+    buffer_.consume(parser.put(buffer_.cdata(), failure));
+    if (failure && failure != http::error::need_more) {
+      auto problem = problem_of(failure);
+      if (!problem) throw boost::system::system_error(failure);
+      co_return problem;
+    }
+    if (!claim.grow_to(parser.get().body().size())) {
+      co_return Problem{.status = 503,
+                        .kind = ProblemKind::kBusy,
+                        .detail = "too many bodies are being received; send it again later"};
+    }
+    if (parser.is_done()) co_return std::nullopt;
+    if (buffer_.size() > limits_.header_bytes_max)
+      co_return Problem{.kind = ProblemKind::kHttp,
+                        .detail = "the line of a chunk or the trailers are too long"};
+    co_await read_some();
+  }
+}
+
+/// Discards so many bytes of a body that nobody needs, so that the connection can go on.
+template <class Stream>
+asio::awaitable<void> Session<Stream>::skip(std::uint64_t bytes) {
+  expires_after(limits_.request_deadline);
+  while (true) {
+    const std::uint64_t here = std::min<std::uint64_t>(bytes, buffer_.size());
+    buffer_.consume(here);
+    bytes -= here;
+    if (bytes == 0) co_return;
+    co_await read_some();
+  }
 }
 
 /// A client that does not read its events within the deadline is disconnected.
@@ -297,52 +231,84 @@ asio::awaitable<void> Session<Stream>::write_events(const HttpRequest& request) 
   }
 }
 
+/// Answers what is not served; the connection is to end.
+template <class Stream>
+asio::awaitable<bool> Session<Stream>::refuse(const Problem& problem, const RequestHead& head) {
+  const HttpRequest refused{.method = head.route_method(), .path = head.target, .remote = ends_.remote()};
+  const std::string text =
+      response_text(handler_.refuse(problem, refused), head.version % 10, false, head.is_head());
+  co_await write(text);
+  co_return false;
+}
+
 /// False when the connection is to end.
 template <class Stream>
-asio::awaitable<bool> Session<Stream>::serve_one() {
-  Parser parser;
-  parser.header_limit(limits_.header_bytes_max);
-  parser.body_limit(std::max<std::uint64_t>(limits_.body_bytes_max, handler_.largest_body_bytes()));
+asio::awaitable<bool> Session<Stream>::answer(const HttpRequest& request, const RequestHead& head,
+                                              bool keep_alive) {
+  beast::get_lowest_layer(stream_).expires_never();
+  connection_->is_answering = true;
+  const HttpResponse response = co_await handler_.answer(request);
+  const bool is_stream = response.content_type == kEventStreamType;
+  const std::string text =
+      response_text(response, head.version % 10, keep_alive && !is_stream, head.is_head());
+  co_await write(text);
+  if (is_stream && !head.is_head()) co_await write_events(request);
+  connection_->is_answering = false;
+  co_return keep_alive && !is_stream;
+}
+
+/// The first bytes of the next request, which may come late; of the first one they may not.
+template <class Stream>
+asio::awaitable<void> Session<Stream>::wait_for_request() {
+  if (!connection_->has_requested) co_return;
   if (buffer_.size() == 0) {
     expires_after(limits_.idle_deadline);
     co_await read_some();
   }
   expires_after(limits_.request_deadline);
-  auto problem = co_await read_request(parser);
-  const bool head = parser.get().method() == http::verb::head;
-  const unsigned minor = parser.get().version() % 10;
-  std::optional<HttpRequest> request;
-  if (!problem) {
-    request = to_request(parser.get(), ends_, handler_);
-    if (!request) problem = bad_target(view(parser.get().target()));
+}
+
+/// False when the connection is to end. A request that is refused, or a stop, is answered before its body
+/// comes, which may be large or never end.
+template <class Stream>
+asio::awaitable<bool> Session<Stream>::serve_one() {
+  Parser parser;
+  parser.header_limit(limits_.header_bytes_max);
+  parser.body_limit(boost::none);  // whose it is decides first
+  co_await wait_for_request();
+  RequestHead head;
+  auto problem = co_await read_checked_header(parser, head);
+  if (problem) co_return co_await refuse(*problem, head);
+  auto parsed = to_request(head, ends_, handler_);
+  if (const auto* bad_target = std::get_if<Problem>(&parsed)) co_return co_await refuse(*bad_target, head);
+  HttpRequest& request = std::get<HttpRequest>(parsed);
+  bool keep_alive = parser.get().keep_alive();  // not what a trailer says
+  const HeaderDecision decision = handler_.decide(request);
+  connection_->has_requested = true;
+  connection_->has_token = connection_->has_token || decision.has_token;
+  BodyClaim claim(bodies_);
+  std::uint64_t unread = 0;
+  if (request.announces_body && decision.takes_body) {
+    problem = co_await read_body(parser, body_bytes_max(decision, limits_), claim);
+    if (problem) co_return co_await refuse(*problem, head);
+    request.body = std::move(parser.get().body());
+  } else if (request.announces_body) {
+    unread = parser.content_length().value_or(limits_.body_bytes_max + 1);
+    keep_alive = keep_alive && unread <= limits_.body_bytes_max;
   }
-  if (problem) {
-    const HttpRequest refused{.method = method_of(parser.get()),
-                              .path = std::string(parser.get().target()),
-                              .remote = ends_.remote};
-    const std::string text = response_text(handler_.refuse(*problem, refused), minor, false, head);
-    co_await write(text);
-    co_return false;
-  }
-  const bool keep_alive = parser.get().keep_alive();
-  beast::get_lowest_layer(stream_).expires_never();
-  const HttpResponse response = co_await handler_.answer(*request);
-  const bool is_stream = response.content_type == kEventStreamType;
-  const std::string text = response_text(response, minor, keep_alive && !is_stream, head);
-  co_await write(text);
-  if (!is_stream || head) co_return keep_alive && !is_stream;
-  co_await write_events(*request);
-  co_return false;
+  const bool goes_on = co_await answer(request, head, keep_alive);
+  if (goes_on && unread > 0) co_await skip(unread);
+  co_return goes_on;
 }
 
 template <class Stream>
 asio::awaitable<void> Session<Stream>::serve() {
   if constexpr (std::is_same_v<Stream, TlsStream>) {
-    expires_after(limits_.request_deadline);
     co_await stream_.async_handshake(asio::ssl::stream_base::server, asio::use_awaitable);
   }
-  bool goes_on = true;
+  bool goes_on = !connection_->is_closed;
   while (goes_on) goes_on = co_await serve_one();
+  connection_->has_token = false;  // it only ends: its place may be given to another
   co_await finish();
 }
 
@@ -355,7 +321,7 @@ asio::awaitable<void> Session<Stream>::finish() {
     co_await stream_.async_shutdown(asio::redirect_error(asio::use_awaitable, failure));
     co_return;
   }
-  beast::get_lowest_layer(stream_).socket().shutdown(tcp::socket::shutdown_send, failure);
+  beast::get_lowest_layer(stream_).socket().shutdown(asio::socket_base::shutdown_send, failure);
   std::array<char, kReadBytes> unread;
   const auto room = asio::buffer(unread);
   while (!failure) co_await stream_.async_read_some(room, asio::redirect_error(asio::use_awaitable, failure));
@@ -363,19 +329,32 @@ asio::awaitable<void> Session<Stream>::finish() {
 
 }  // namespace
 
-asio::awaitable<void> serve_session(tcp::socket socket, RequestHandler& handler, HttpLimits limits) {
+asio::awaitable<void> serve_session(tcp::socket socket, RequestHandler& handler, HttpLimits limits,
+                                    std::shared_ptr<BodyBudget> bodies,
+                                    std::shared_ptr<Connection> connection) {
   socket.set_option(tcp::no_delay(true));
-  Ends ends(socket, "http://", limits.host_names);
-  Session<PlainStream> session(PlainStream(std::move(socket)), handler, limits, std::move(ends));
+  Ends ends(socket.remote_endpoint(), socket.local_endpoint(), "http://", limits);
+  Session<PlainStream> session(PlainStream(std::move(socket)), handler, limits, std::move(bodies),
+                               std::move(ends), std::move(connection));
   co_await session.serve();
 }
 
 asio::awaitable<void> serve_tls_session(tcp::socket socket, asio::ssl::context& tls, RequestHandler& handler,
-                                        HttpLimits limits) {
+                                        HttpLimits limits, std::shared_ptr<BodyBudget> bodies,
+                                        std::shared_ptr<Connection> connection) {
   socket.set_option(tcp::no_delay(true));
-  Ends ends(socket, "https://", limits.host_names);
+  Ends ends(socket.remote_endpoint(), socket.local_endpoint(), "https://", limits);
   Session<TlsStream> session(TlsStream(beast::tcp_stream(std::move(socket)), tls), handler, limits,
-                             std::move(ends));
+                             std::move(bodies), std::move(ends), std::move(connection));
+  co_await session.serve();
+}
+
+asio::awaitable<void> serve_local_session(asio::local::stream_protocol::socket socket,
+                                          RequestHandler& handler, HttpLimits limits,
+                                          std::shared_ptr<BodyBudget> bodies,
+                                          std::shared_ptr<Connection> connection) {
+  Session<LocalStream> session(LocalStream(std::move(socket)), handler, limits, std::move(bodies),
+                               Ends::of_unix_socket(), std::move(connection));
   co_await session.serve();
 }
 

@@ -18,6 +18,19 @@ TEST(Access, ATokenHasOneRole) {
   EXPECT_EQ(role_of({}, kTokens), Role::kNone);
 }
 
+TEST(Access, TheNameOfTheSchemeMayBeInAnyCase) {
+  for (const char* scheme : {"bearer ", "BEARER ", "Bearer "})
+    EXPECT_EQ(role_of({.authorization = scheme + kTokens.operate}, kTokens), Role::kOperate) << scheme;
+  for (const char* scheme : {"Basic ", "Bearer", "bearer  ", ""})
+    EXPECT_EQ(role_of({.authorization = scheme + kTokens.operate}, kTokens), Role::kWrongToken) << scheme;
+}
+
+TEST(Access, ABodyThatIsOnlyAnnouncedHasItsTypeToo) {
+  EXPECT_FALSE(refuse_content_type({}));
+  EXPECT_EQ(refuse_content_type({.announces_body = true}).value().status, 415U);
+  EXPECT_FALSE(refuse_content_type({.content_type = "application/json", .announces_body = true}));
+}
+
 TEST(Access, ReadingNeedsATokenFromElsewhereOnlyAndOperatingAlways) {
   EXPECT_FALSE(refuse_access({.from_loopback = true}, Access::kView, kTokens));
   EXPECT_EQ(refuse_access({}, Access::kView, kTokens).value().status, 401U);

@@ -107,17 +107,43 @@ TEST_F(ListenerTest, AFieldThatDecidesSomethingStandsOnce) {
 
 class CrowdedListenerTest : public ServedApi {
  protected:
-  CrowdedListenerTest() : ServedApi({.loopback_connections_max = 2}) {}
+  CrowdedListenerTest() : ServedApi({.connections = {.loopback_connections_max = 2}}) {}
+
+  [[nodiscard]] std::string get_with_token() const {
+    return get("/healthz", "Authorization: Bearer " + kTokens.view + "\r\n");
+  }
 };
 
-TEST_F(CrowdedListenerTest, OneAddressDoesNotTakeAllConnections) {
+TEST_F(CrowdedListenerTest, TheOldestConnectionWithoutATokenGoesForANewOne) {
+  RawClient operating = connect();
+  operating.send(get_with_token());
+  EXPECT_EQ(operating.receive().status, 200u);
+  RawClient silent = connect();
+  // Each of them is served, and the one with the token is still there.
+  for (int i = 0; i < 10; ++i) {
+    RawClient next = connect();
+    next.send(post("/api/v1/cell/stop", "Content-Length: 0\r\nConnection: close\r\n", ""));
+    EXPECT_EQ(next.receive().status, 202u);
+  }
+  EXPECT_TRUE(silent.closed());
+  operating.send(get("/healthz"));
+  EXPECT_EQ(operating.receive().status, 200u);
+}
+
+TEST_F(CrowdedListenerTest, WhereAllConnectionsHaveATokenANewOneIsToldSo) {
   RawClient first = connect();
   RawClient second = connect();
   for (RawClient* client : {&first, &second}) {
-    client->send(get("/healthz"));
+    client->send(get_with_token());
     EXPECT_EQ(client->receive().status, 200u);
   }
-  EXPECT_TRUE(connect().closed());
+  RawClient third = connect();
+  third.send(get("/healthz"));
+  const RawAnswer answer = third.receive();
+  EXPECT_EQ(answer.status, 503u);
+  EXPECT_THAT(json::parse(answer.body).at("detail"), HasSubstr("all connections are in use"));
+  third.send_no_more();
+  EXPECT_TRUE(third.closed());
   first.send(get("/healthz", "Connection: close\r\n"));
   EXPECT_EQ(first.receive().status, 200u);
   EXPECT_TRUE(first.closed());
@@ -127,13 +153,14 @@ TEST_F(CrowdedListenerTest, OneAddressDoesNotTakeAllConnections) {
 
 class ImpatientListenerTest : public ServedApi {
  protected:
-  ImpatientListenerTest() : ServedApi({.connections_max = 1, .request_deadline = std::chrono::seconds(1)}) {}
+  ImpatientListenerTest()
+      : ServedApi({.connections = {.connections_max = 1}, .request_deadline = std::chrono::seconds(1)}) {}
 };
 
 TEST_F(ImpatientListenerTest, HalfARequestEndsAtTheDeadline) {
   for (const std::string& half : {std::string("G"), "GET /healthz HTTP/1.1\r\n" + host_line(),
-                                  post("/api/v1/cell/stop", "Content-Length: 2\r\n", "{"),
-                                  post("/api/v1/cell/stop", "Transfer-Encoding: chunked\r\n", "2\n{}\n")}) {
+                                  post("/api/v1/cell/reset", "Content-Length: 2\r\n", "{"),
+                                  post("/api/v1/cell/reset", "Transfer-Encoding: chunked\r\n", "2\n{}\n")}) {
     RawClient client = connect();
     client.send(half);
     const RawAnswer answer = client.receive();
@@ -142,13 +169,9 @@ TEST_F(ImpatientListenerTest, HalfARequestEndsAtTheDeadline) {
   }
 }
 
-TEST_F(ImpatientListenerTest, OneConnectionTooManyIsClosedAndTheOthersAreServed) {
-  RawClient first = connect();
-  first.send(get("/healthz"));
-  EXPECT_EQ(first.receive().status, 200u);
-  EXPECT_TRUE(connect().closed());
-  first.send(get("/healthz"));
-  EXPECT_EQ(first.receive().status, 200u);
+TEST_F(ImpatientListenerTest, AConnectionThatSaysNothingEndsAtTheDeadlineOfItsFirstRequest) {
+  RawClient silent = connect();
+  EXPECT_TRUE(silent.closed());
 }
 
 }  // namespace

@@ -53,8 +53,78 @@ TEST_F(SessionTest, TheOnlyTransferEncodingIsChunkedOnce) {
                  post("/api/v1/cell/stop", "Transfer-Encoding: chunked\r\nContent-Length: 2\r\n", chunks));
   expect_refused(400,
                  post("/api/v1/cell/stop", "Content-Length: 2\r\nTransfer-Encoding: chunked\r\n", chunks));
-  expect_refused(400, post("/api/v1/cell/stop", "Transfer-Encoding: chunked\r\n", "x\r\n{}\r\n0\r\n\r\n"));
-  expect_served(202, post("/api/v1/cell/stop", "Transfer-Encoding: Chunked\r\n", chunks));
+  expect_refused(400, post("/api/v1/cell/reset", "Transfer-Encoding: chunked\r\n", "x\r\n{}\r\n0\r\n\r\n"));
+  expect_served(202, post("/api/v1/cell/reset", "Transfer-Encoding: Chunked\r\n", chunks));
+}
+
+TEST_F(SessionTest, ChunkExtensionsAreRefusedAlsoWhereTheyDoNotEnd) {
+  const std::string chunked = "Transfer-Encoding: chunked\r\n";
+  expect_refused(400, post("/api/v1/cell/reset", chunked, "2;a=b\r\n{}\r\n0\r\n\r\n"));
+  expect_refused(400, post("/api/v1/cell/reset", chunked, "2\r\n{}\r\n0;a=b\r\n\r\n"));
+  const std::string endless(3 * kServedLimits.header_bytes_max, 'x');
+  expect_refused(400, post("/api/v1/cell/reset", chunked, "2;a=" + endless));
+  expect_refused(400, post("/api/v1/cell/reset", chunked, "2\r\n{}\r\n0\r\nTrailer: " + endless));
+}
+
+TEST_F(SessionTest, TrailersAreNoHeaders) {
+  const std::string begin = "POST /api/v1/cell/reset HTTP/1.1\r\n" + host_line() +
+                            "Transfer-Encoding: chunked\r\nContent-Type: application/json\r\n";
+  const std::string token = "Authorization: Bearer " + kTokens.operate + "\r\n";
+  const std::string chunks = "2\r\n{}\r\n0\r\n";
+  RawClient client = connect();
+  client.send(begin + "\r\n" + chunks + token + "\r\n");
+  EXPECT_EQ(client.receive().status, 401u) << "the token has to stand in the header";
+  expect_served(202, begin + token + "\r\n" + chunks +
+                         "Connection: close\r\nIdempotency-Key: a\r\nOrigin: http://evil.example\r\n\r\n");
+}
+
+TEST_F(SessionTest, WhatTheHeaderDecidesIsAnsweredBeforeTheBody) {
+  const auto begun = [&](const std::string& target, const std::string& lines) {
+    RawClient client = connect();
+    client.send("POST " + target + " HTTP/1.1\r\n" + host_line() + lines +
+                "Content-Length: 1000000\r\n\r\n{");
+    RawAnswer answer = client.receive();
+    EXPECT_EQ(answer.header["connection"], "close") << target << lines;
+    return answer.status;
+  };
+  const std::string json_type = "Content-Type: application/json\r\n";
+  const auto token = [](const std::string& text) { return "Authorization: Bearer " + text + "\r\n"; };
+  EXPECT_EQ(begun("/api/v1/identify", json_type), 401u);
+  EXPECT_EQ(begun("/api/v1/identify", json_type + token(std::string(64, 'x'))), 401u);
+  EXPECT_EQ(begun("/api/v1/identify", json_type + token(kTokens.view)), 403u);
+  EXPECT_EQ(begun("/nothing", json_type + token(kTokens.operate)), 404u);
+  EXPECT_EQ(begun("/api/v1/status", json_type + token(kTokens.operate)), 405u);
+  EXPECT_EQ(begun("/api/v1/runs", json_type + token(kTokens.operate)), 413u);
+  EXPECT_EQ(begun("/api/v1/identify", token(kTokens.operate)), 415u);
+}
+
+TEST_F(SessionTest, AStopDoesNotWaitForItsBodyHoweverLargeItIs) {
+  const std::string body = "Content-Length: 100000000\r\n";
+  RawClient client = connect();
+  client.send(post("/api/v1/cell/stop", body, std::string(100000, 'x')));
+  RawAnswer answer = client.receive();
+  EXPECT_EQ(answer.status, 202u);
+  EXPECT_EQ(answer.header["connection"], "close");
+  RawClient chunked = connect();
+  chunked.send(post("/api/v1/cell/stop", "Transfer-Encoding: chunked\r\n", "x;"));
+  EXPECT_EQ(chunked.receive().status, 202u);
+  expect_served(202, post("/api/v1/cell/stop", "Content-Length: 9\r\n", "no object"));
+}
+
+class SmallBudgetTest : public ServedApi {
+ protected:
+  SmallBudgetTest() : ServedApi({.bodies_bytes_max = 1000}) {}
+};
+
+TEST_F(SmallBudgetTest, BodiesTogetherAreBoundedAndTheRoomOfOneThatEndedIsFree) {
+  const std::string body(700, ' ');
+  const std::string lines = "Content-Length: 700\r\n";
+  RawClient slow = connect();
+  slow.send(post("/api/v1/identify", lines, body.substr(100)));
+  expect_refused(503, post("/api/v1/identify", lines, body));
+  slow.send(body.substr(0, 100));
+  EXPECT_EQ(slow.receive().status, 400u) << "no touches document, but it was received";
+  expect_served(400, post("/api/v1/identify", lines, body));
 }
 
 TEST_F(SessionTest, TheContentLengthIsOneNumber) {
@@ -162,7 +232,10 @@ TEST_F(SessionTest, OtherPagesAreNotTaken) {
         "http://" + host() + ".evil.example", std::string("http://127.0.0.1:1")}) {
     expect_refused(403, get("/api/v1/status", "Origin: " + foreign + "\r\n"));
   }
-  expect_served(200, get("/api/v1/status", "Origin: http://" + host() + "\r\n"));
+  const std::string own = "Origin: http://" + host() + "\r\n";
+  expect_served(200, get("/api/v1/status", own));
+  expect_served(200, get("/api/v1/status", "Origin: https://cell-3.plant.example\r\n"));
+  expect_refused(400, get("/api/v1/status", own + own));
 }
 
 TEST_F(SessionTest, HeadSaysWhatGetWouldAndNoBody) {
