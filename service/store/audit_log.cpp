@@ -2,14 +2,19 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <algorithm>
+
 #include "service/store/internal/relaxed_durability.hpp"
 
 namespace cell {
 
-void AuditLog::append(const AuditEntry& entry, bool at_once) {
-  std::optional<RelaxedDurability> unsynced;
-  if (!at_once) unsynced.emplace(*database_);
-  SQLite::Transaction transaction(*database_);
+namespace {
+
+constexpr const char* kByStrangers = "who IN ('none', 'wrong token')";
+
+}  // namespace
+
+std::int64_t AuditLog::insert(const AuditEntry& entry) {
   SQLite::Statement insert(
       *database_, "INSERT INTO audit(at, who, remote, action, outcome, detail) VALUES(?, ?, ?, ?, ?, ?)");
   insert.bind(1, entry.at);
@@ -19,10 +24,52 @@ void AuditLog::append(const AuditEntry& entry, bool at_once) {
   insert.bind(5, entry.outcome);
   insert.bind(6, entry.detail);
   insert.exec();
-  SQLite::Statement drop(*database_, "DELETE FROM audit WHERE id <= ?");
-  drop.bind(1, database_->getLastInsertRowid() - kKept);
-  drop.exec();
+  return database_->getLastInsertRowid();
+}
+
+/// What is there from earlier starts.
+void AuditLog::count_rows() {
+  if (count_) return;
+  of_strangers_.clear();
+  SQLite::Statement strangers(*database_,
+                              std::string("SELECT id FROM audit WHERE ") + kByStrangers + " ORDER BY id");
+  while (strangers.executeStep()) of_strangers_.push_back(strangers.getColumn(0).getInt64());
+  count_ = database_->execAndGet("SELECT count(*) FROM audit").getInt64() -
+           static_cast<std::int64_t>(of_strangers_.size());
+}
+
+void AuditLog::append(const AuditEntry& entry, bool at_once) {
+  std::optional<RelaxedDurability> unsynced;
+  if (!at_once) unsynced.emplace(*database_);
+  SQLite::Transaction transaction(*database_);
+  count_rows();
+  insert(entry);
+  const std::int64_t excess = std::max<std::int64_t>(*count_ + 1 - kKept, 0);
+  if (excess > 0) {
+    SQLite::Statement drop(*database_,
+                           std::string("DELETE FROM audit WHERE id IN (SELECT id FROM audit WHERE NOT ") +
+                               kByStrangers + " ORDER BY id LIMIT ?)");
+    drop.bind(1, excess);
+    drop.exec();
+  }
   transaction.commit();
+  *count_ += 1 - excess;
+}
+
+void AuditLog::append_of_stranger(const AuditEntry& entry) {
+  const RelaxedDurability unsynced(*database_);
+  SQLite::Transaction transaction(*database_);
+  count_rows();
+  const std::int64_t id = insert(entry);
+  const std::size_t excess = of_strangers_.size() + 1 - std::min(of_strangers_.size() + 1, kOfStrangersKept);
+  if (excess > 0) {
+    SQLite::Statement drop(*database_, std::string("DELETE FROM audit WHERE id <= ? AND ") + kByStrangers);
+    drop.bind(1, of_strangers_[excess - 1]);
+    drop.exec();
+  }
+  transaction.commit();
+  of_strangers_.erase(of_strangers_.begin(), of_strangers_.begin() + static_cast<std::ptrdiff_t>(excess));
+  of_strangers_.push_back(id);
 }
 
 std::vector<AuditEntry> AuditLog::page(int limit, std::optional<std::int64_t> before_id) const {

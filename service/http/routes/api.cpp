@@ -32,6 +32,8 @@ constexpr int kAtWorkMax = 4;
 /// After so many wrong tokens from one address, each further answer is delayed.
 constexpr int kWrongTokensFree = 5;
 constexpr std::size_t kWrongAddressesMax = 1024;
+/// After so long without another one they are forgotten.
+constexpr auto kWrongTokensKept = 10min;
 constexpr std::size_t kActionBytesMax = 200;
 
 HttpResponse busy(std::string detail, const char* retry_after_s) {
@@ -43,14 +45,16 @@ HttpResponse busy(std::string detail, const char* retry_after_s) {
 
 bool is_command(const HttpRequest& request) { return request.method != "GET"; }
 
-/// The stored answer to a key, or its refusal; nothing for a new key.
+/// The stored answer to a key, or its refusal; nothing for a new key. `must_go_on`: also where keys cannot be
+/// looked up.
 std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed,
-                                          std::chrono::system_clock::time_point now) {
+                                          std::chrono::system_clock::time_point now, bool must_go_on) {
   KeyLookUp found;
   try {
     found = answers.take(keyed, format_utc(now - std::chrono::hours(AnswerStore::kKeptHours)));
   } catch (const std::exception& error) {
     spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
+    if (must_go_on) return std::nullopt;
     return to_response({.status = 503,
                         .kind = ProblemKind::kIdempotencyKey,
                         .detail = "earlier answers cannot be read; see the log"});
@@ -102,6 +106,8 @@ asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
     co_return *refused;
   }
   const Admitted& admitted = std::get<Admitted>(outcome);
+  if (request.authorization && role_of(request, services_.tokens) != Role::kWrongToken)
+    wrong_tokens_.erase(request.remote);
   HttpResponse response;
   if (is_command(request)) {
     response = co_await execute_command(request, admitted);
@@ -176,7 +182,8 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
   const KeyedRequest keyed{.key = *request.idempotency_key,
                            .request = request.method + " " + request.path,
                            .body_digest = sha256_hex(request.body)};
-  if (auto answered = answer_to_key(services_.answers, keyed, services_.operation.clocks().system()))
+  if (auto answered = answer_to_key(services_.answers, keyed, services_.operation.clocks().system(),
+                                    halts_only(*admitted.route)))
     co_return *std::move(answered);
   response = co_await make_answer(request, admitted);
   if (response.status >= 300) {
@@ -196,17 +203,14 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
 std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
 
 bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bool at_once) {
+  const Role role = role_of(request, services_.tokens);
   const AuditEntry entry{.at = now_text(),
-                         .who = std::string(role_name(role_of(request, services_.tokens))),
+                         .who = std::string(role_name(role)),
                          .remote = request.remote,
                          .action = (request.method + " " + request.path).substr(0, kActionBytesMax),
                          .outcome = outcome};
   try {
-    if (at_once) {
-      services_.audit.append_command(entry);
-    } else {
-      services_.audit.append_refusal(entry);
-    }
+    append_audit(entry, role, at_once);
     return true;
   } catch (const std::exception& error) {
     spdlog::error("{} {} could not be recorded: {}", entry.action, outcome, error.what());
@@ -214,10 +218,29 @@ bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bo
   }
 }
 
+/// Strangers have a place and a rate of their own.
+void Api::append_audit(const AuditEntry& entry, Role role, bool at_once) {
+  if (role == Role::kNone || role == Role::kWrongToken) {
+    const auto left_out = stranger_rate_.admit(services_.operation.clocks().steady());
+    if (!left_out) return;
+    AuditEntry counted = entry;
+    if (*left_out > 0) counted.detail = std::to_string(*left_out) + " more before it were not recorded";
+    services_.audit.append_of_stranger(counted);
+  } else if (at_once) {
+    services_.audit.append_command(entry);
+  } else {
+    services_.audit.append_refusal(entry);
+  }
+}
+
 asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
   if (!request.authorization) co_return;
   if (wrong_tokens_.size() >= kWrongAddressesMax) wrong_tokens_.clear();
-  if (++wrong_tokens_[request.remote] <= kWrongTokensFree) co_return;
+  WrongTokens& wrong = wrong_tokens_[request.remote];
+  const auto now = services_.operation.clocks().steady();
+  if (now - wrong.latest > kWrongTokensKept) wrong.count = 0;
+  wrong.latest = now;
+  if (++wrong.count <= kWrongTokensFree) co_return;
   asio::steady_timer timer(executor_, 1s);
   co_await timer.async_wait(asio::use_awaitable);
 }

@@ -3,9 +3,11 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <chrono>
 #include <map>
 #include <string>
 
+#include "service/http/auth/record_rate.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 #include "service/http/server/request_handler.hpp"
@@ -36,6 +38,7 @@ class Api final : public RequestHandler {
                                                             const Admitted& admitted);
   [[nodiscard]] std::string now_text() const;
   bool write_audit(const HttpRequest& request, const std::string& outcome, bool at_once);
+  void append_audit(const AuditEntry& entry, Role role, bool at_once);
   boost::asio::awaitable<void> delay_wrong_token(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_status(const HttpRequest& request, const Admitted& admitted);
   boost::asio::awaitable<void> wait_for_plan(const HttpRequest& request);
@@ -44,8 +47,14 @@ class Api final : public RequestHandler {
   boost::asio::any_io_executor executor_;
   Services services_;
   boost::asio::thread_pool worker_{1};
-  int at_work_ = 0;                          // requests on the worker or queued for it
-  std::map<std::string, int> wrong_tokens_;  // consecutive ones, by address
+  int at_work_ = 0;  // requests on the worker or queued for it
+  /// Consecutive wrong tokens of an address.
+  struct WrongTokens {
+    int count = 0;
+    std::chrono::steady_clock::time_point latest;
+  };
+  std::map<std::string, WrongTokens> wrong_tokens_;
+  RecordRate stranger_rate_{50, std::chrono::seconds(1)};
 };
 
 }  // namespace cell

@@ -1,5 +1,6 @@
 #include "service/store/audit_log.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include "service/store/run_store.hpp"
@@ -36,6 +37,36 @@ TEST_F(AuditLogTest, TheAuditIsReadInPages) {
   EXPECT_EQ(second[1].who, "operate");
   EXPECT_EQ(second[1].action, "POST /api/v1/runs");
   EXPECT_EQ(second[1].detail, "run 1");
+}
+
+TEST_F(AuditLogTest, AFloodOfStrangersDisplacesNoCommandAlsoOverARestart) {
+  constexpr int kKept = static_cast<int>(AuditLog::kOfStrangersKept);
+  {
+    AuditLog audit(store_.database());
+    audit.append_command({.at = "t", .who = "operate", .outcome = "202"});
+    for (int i = 0; i < kKept + 10; ++i) audit.append_of_stranger({.who = "none", .outcome = "401"});
+    EXPECT_EQ(audit.page(2 * kKept).size(), AuditLog::kOfStrangersKept + 1);
+  }
+  AuditLog audit(store_.database());
+  for (int i = 0; i < 10; ++i) audit.append_of_stranger({.who = "wrong token", .outcome = "401"});
+  const auto all = audit.page(2 * kKept);
+  EXPECT_EQ(all.size(), AuditLog::kOfStrangersKept + 1);
+  EXPECT_EQ(all.front().who, "wrong token");
+  EXPECT_EQ(all.back().who, "operate");
+}
+
+TEST_F(AuditLogTest, TheOldestCommandsGoAndNoStrangerWithThem) {
+  store_.database()->exec("WITH RECURSIVE n(i) AS (SELECT 1 UNION ALL SELECT i + 1 FROM n WHERE i < " +
+                          std::to_string(AuditLog::kKept) +
+                          ") INSERT INTO audit(at, who, remote, action, outcome, detail) SELECT 't', "
+                          "'operate', '', '', i, '' FROM n");
+  AuditLog audit(store_.database());
+  audit.append_of_stranger({.who = "none", .outcome = "401"});
+  audit.append_command({.at = "t", .who = "operate", .outcome = "new"});
+  const auto all = audit.page(AuditLog::kKept + 10);
+  EXPECT_EQ(all.size(), static_cast<std::size_t>(AuditLog::kKept) + 1);
+  EXPECT_EQ(all.back().outcome, "2");
+  EXPECT_EQ(all[1].who, "none");
 }
 
 }  // namespace

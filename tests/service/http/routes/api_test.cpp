@@ -125,6 +125,46 @@ TEST_F(ApiTest, EveryRefusalOfACommandIsWrittenDown) {
   EXPECT_EQ(last_audit().id, before) << "reading is no command";
 }
 
+TEST_F(ApiTest, AFloodOfStrangersDisplacesNoCommandFromTheAudit) {
+  send(post("/api/v1/cell/reset"));
+  HttpRequest stranger = post("/api/v1/cell/reset");
+  stranger.authorization.reset();
+  for (int i = 0; i < 500; ++i) EXPECT_EQ(send(stranger).status, 401u);
+  const auto all = api_.services().audit.page(1000);
+  EXPECT_LT(all.size(), 100u);
+  EXPECT_EQ(all[all.size() - 2].outcome, "202") << "what came of the command";
+}
+
+TEST_F(ApiTest, ARightTokenEndsTheWrongOnesBeforeIt) {
+  HttpRequest wrong = post("/api/v1/cell/reset");
+  wrong.authorization = "Bearer " + std::string(64, 'x');
+  int answered = 0;
+  const auto ask = [&](const HttpRequest& request) {
+    boost::asio::co_spawn(quiet_.context(), api_.answer(request),
+                          [&](const std::exception_ptr&, const HttpResponse&) { ++answered; });
+    quiet_.context().restart();
+    quiet_.context().poll();
+  };
+  const HttpRequest right = post("/api/v1/cell/stop");
+  for (int round = 0; round < 3; ++round) {
+    for (int i = 0; i < 5; ++i) ask(wrong);
+    ask(right);
+    EXPECT_EQ(answered, 6 * (round + 1)) << "at once";
+  }
+  for (int i = 0; i < 6; ++i) ask(wrong);
+  EXPECT_EQ(answered, 23) << "the sixth in a row waits";
+  quiet_.context().run();
+  EXPECT_EQ(answered, 24);
+}
+
+TEST_F(ApiTest, APauseWithAKeyIsTakenWhereKeysCannotBeLookedUp) {
+  const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then"});
+  quiet_.store().database()->exec("DROP TABLE answers");
+  const std::string of_run = "/api/v1/runs/" + std::to_string(run);
+  EXPECT_EQ(send(keyed(of_run + "/pause", "one")).status, 409u) << "it reached the state machine";
+  EXPECT_EQ(send(keyed(of_run + "/resume", "two")).status, 503u);
+}
+
 TEST_F(ApiTest, ACommandThatCannotBeWrittenDownIsNotTakenButForAStop) {
   quiet_.store().database()->exec("DROP TABLE audit");
   const HttpResponse refused = send(post("/api/v1/cell/reset"));
