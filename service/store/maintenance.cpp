@@ -74,6 +74,13 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
   return damage;
 }
 
+std::uintmax_t disk_room_bytes(const SharedDatabase& database) {
+  std::error_code unknown;
+  const auto space =
+      std::filesystem::space(std::filesystem::path(database->getFilename()).parent_path(), unknown);
+  return space.available;  // the largest number where it is unknown
+}
+
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest) {
   constexpr std::array kOfRuns{"touches",       "superseded_touches", "reference_touches",
                                "open_commands", "plan_changes",       "resumptions",

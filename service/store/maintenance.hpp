@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
 /// Damage of a database file, one line each; empty if there is none. Checks pages, indices, foreign keys, and
 /// plane, role and source of every touch. Read-only.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
+
+/// Free bytes on the disk of the database; the largest number where that is unknown.
+std::uintmax_t disk_room_bytes(const SharedDatabase& database);
 
 /// So many of the last runs stay however old they are.
 inline constexpr int kLastRunsKept = 10;

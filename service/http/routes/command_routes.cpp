@@ -14,10 +14,15 @@ HttpResponse give(const Call& call, Command command, std::optional<std::int64_t>
   return json_response(202, call.services.feed.document());
 }
 
+/// The run under way is known without the database, which a pause or an abort must not need.
+bool has_run(const Call& call, std::int64_t id) {
+  return call.operation.status().run_id == id || call.operation.store().run(id);
+}
+
 template <Command kCommand>
 HttpResponse run_command(const Call& call) {
   const auto id = call.run_id();
-  if (!id || !call.operation.store().run(*id)) return not_found(fmt::format("there is no run '{}'", call.id));
+  if (!id || !has_run(call, *id)) return not_found(fmt::format("there is no run '{}'", call.id));
   return give(call, kCommand, id);
 }
 

@@ -1,10 +1,15 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
+#include <array>
+
 #include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/openapi.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
+#include "service/store/maintenance.hpp"
+#include "service/store/run_store.hpp"
 
 namespace cell {
 namespace {
@@ -13,9 +18,25 @@ constexpr std::string_view kPrometheusText = "text/plain; version=0.0.4; charset
 
 HttpResponse get_health(const Call&) { return json_response(200, R"({"status":"ok"})"); }
 
+/// A state that has to be left first.
+std::optional<Unmet> unmet_by_state(State state) {
+  constexpr std::array kNotReady{State::kStopped, State::kStopping, State::kAborted, State::kAborting};
+  if (std::ranges::find(kNotReady, state) == kNotReady.end()) return std::nullopt;
+  return Unmet{"state", fmt::format("the cell is in {}", state_name(state))};
+}
+
+/// Without room to record it, a start is refused.
+std::optional<Unmet> unmet_by_disk(const RunStore& store) {
+  constexpr std::uintmax_t kRoomBytes = 1024 * 1024;
+  if (disk_room_bytes(store.database()) >= kRoomBytes) return std::nullopt;
+  return Unmet{"disk_full", "the disk of the state directory is full: a run could not be recorded"};
+}
+
 /// A cell is ready if it accepts a run now, or executes one.
 HttpResponse get_readiness(const Call& call) {
-  const auto unmet = call.operation.unmet_preconditions();
+  auto unmet = call.operation.unmet_preconditions();
+  if (auto one = unmet_by_state(call.operation.status().state)) unmet.push_back(*std::move(one));
+  if (auto one = unmet_by_disk(call.operation.store())) unmet.push_back(*std::move(one));
   if (unmet.empty()) return json_response(200, R"({"status":"ready"})");
   Problem problem{.status = 503, .kind = ProblemKind::kNotReady, .detail = "a run cannot start"};
   for (const Unmet& one : unmet) problem.errors.emplace_back(one.code, one.detail);

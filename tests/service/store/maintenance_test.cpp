@@ -91,6 +91,12 @@ TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRun
   EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 0);
 }
 
+TEST_F(StoreMaintenance, TheRoomOnTheDiskOfTheDatabaseIsTold) {
+  constexpr double kOthersWriteBytes = 1e9;
+  EXPECT_NEAR(static_cast<double>(disk_room_bytes(store_.database())),
+              static_cast<double>(std::filesystem::space(folder_.path()).available), kOthersWriteBytes);
+}
+
 TEST_F(StoreMaintenance, TheLastRunsStayHoweverOldTheyAre) {
   for (int i = 0; i < kLastRunsKept; ++i) add_run("2026-01-01", Verdict::kRejected);
   add_run("2026-03-01", Verdict::kRejected);

@@ -443,6 +443,8 @@ TEST_F(RoutesTest, ACellThatIsNotReadySaysWhatStandsInTheWay) {
   const json unready = problem(get("/readyz"));
   EXPECT_EQ(unready.at("status"), 503);
   EXPECT_EQ(unready.at("errors")[0].at("code"), "controller_not_connected");
+  EXPECT_EQ(unready.at("errors")[1].at("code"), "state");
+  EXPECT_EQ(unready.at("errors")[1].at("detail"), "the cell is in STOPPED");
 }
 
 TEST_F(RoutesTest, FiguresForPrometheusTellStateAndLink) {
