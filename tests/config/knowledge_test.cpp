@@ -211,7 +211,11 @@ TEST_F(Knowledge, AnExpansionAloneIsForTemperaturesThatComeWithTheRun) {
 }
 
 TEST_F(Knowledge, ACellSaysHowOldATemperatureMayBeFromItsSecondSchemaOn) {
-  EXPECT_EQ(json_of(path(kCell)).at("schema"), kFirstCellSchema) << "files of the first are read";
+  edit(kCell, [](json& cell) {
+    cell["schema"] = kFirstCellSchema;
+    cell["acceptance"].erase("tip_box_max_mm");
+  });
+  EXPECT_FALSE(read().acceptance.tip_box_max_m) << "files of the first are read";
   EXPECT_EQ(read().block_temperature_age_max, std::chrono::hours(8));
   edit(kCell, [](json& cell) { cell["block_temperature_age_max_h"] = 1.5; });
   EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/block_temperature_age_max_h");
@@ -222,6 +226,14 @@ TEST_F(Knowledge, ACellSaysHowOldATemperatureMayBeFromItsSecondSchemaOn) {
     EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/block_temperature_age_max_h")
         << wrong;
   }
+}
+
+TEST_F(Knowledge, ACellLimitsTheTipAtItsWorstFromItsSecondSchemaOn) {
+  const Cell shipped = read();
+  ASSERT_TRUE(shipped.acceptance.tip_box_max_m);
+  EXPECT_LT(*shipped.acceptance.tip_box_max_m, shipped.nominal_position_error_m) << "else it says nothing";
+  edit(kCell, [](json& cell) { cell["schema"] = kFirstCellSchema; });
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/acceptance/tip_box_max_mm");
 }
 
 }  // namespace
