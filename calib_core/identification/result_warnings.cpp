@@ -1,11 +1,15 @@
-#include "calib_core/identification/result_warnings.hpp"
-
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
+
+#include "calib_core/identification/result_warnings.hpp"
 
 namespace calib {
 namespace {
+
+/// Fewer touches of one face may be outliers each for itself.
+constexpr int kLostTouchesMin = 3;
 
 void warn_of_weak(IdentificationResult& result) {
   std::string names;
@@ -27,6 +31,45 @@ void warn_of_droop(const IdentificationProblem& problem, IdentificationResult& r
   result.warnings.emplace_back(
       "the arm has masses but no standard deviation of a compliance of joints 1 to 3, so that its droop is "
       "in no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
+}
+
+/// Beyond it a workshop's temperature is unusual.
+constexpr double kUsualFrom20C = 10.0;
+
+/// Nothing but the given figure says how warm the block is: all lengths follow it, and the residuals stay.
+void warn_of_temperature(const IdentificationProblem& problem, IdentificationResult& result) {
+  const auto& all = problem.artefact.parameters;
+  const auto given = std::ranges::find(all, ArtefactKind::kTemperature, &ArtefactParameter::kind);
+  if (given == all.end() || std::abs(given->nominal - 20.0) <= kUsualFrom20C) return;
+  result.warnings.push_back(
+      "the block was given as " + std::to_string(std::lround(given->nominal)) +
+      " degrees C, far from the 20 of its certificate: all lengths of the arm are scaled "
+      "by it and no touch shows a wrong figure; check the block's temperature");
+}
+
+/// A face whose touches were all left out as outliers: the others agree with another place of it.
+void warn_of_lost_faces(const IdentificationProblem& problem, IdentificationResult& result) {
+  for (std::size_t face = 0; face < problem.artefact.contact_planes.size(); ++face) {
+    int kept = 0, lost = 0;
+    double off_m = 0.0;
+    for (std::size_t i = 0; i < problem.touches.size(); ++i) {
+      const Touch& touch = problem.touches[i];
+      if (touch.role != TouchRole::kFit || static_cast<std::size_t>(touch.face) != face) continue;
+      const auto rejected = std::ranges::find(result.rejected, i, &RejectedTouch::touch);
+      rejected == result.rejected.end() ? ++kept : ++lost;
+      if (rejected != result.rejected.end()) off_m += rejected->residual_m;
+    }
+    if (kept > 0 || lost < kLostTouchesMin) continue;
+    std::ostringstream millimetres;
+    millimetres.precision(3);
+    millimetres << std::fixed << 1e3 * off_m / lost;
+    result.warnings.push_back(
+        "all " + std::to_string(lost) + " touches of plane " + std::to_string(face + 1) +
+        " were left out: they are " + millimetres.str() +
+        " mm in the mean from where the other planes want it. Check its offset_mm and the lengths in the "
+        "block's file, and stylus_radius_mm and pretravel_mm in the probe's file, of which an error counts "
+        "twice between opposite planes");
+  }
 }
 
 void warn_of_drift(const IdentificationProblem& problem, IdentificationResult& result) {
@@ -57,6 +100,8 @@ void add_warnings(const IdentificationProblem& problem, const IdentificationOpti
     warn_of_droop(problem, result);
     if (options.measure_noise) warn_of_declared_noise(problem, result);
     warn_of_drift(problem, result);
+    warn_of_temperature(problem, result);
+    warn_of_lost_faces(problem, result);
   }
   if (result.scale && !result.scale->warning.empty()) result.warnings.push_back(result.scale->warning);
 }

@@ -18,6 +18,7 @@
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/configuration_digest.hpp"
 #include "service/documents/result_view.hpp"
+#include "service/run/block_temperature.hpp"
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/reference_drift.hpp"
 #include "service/run/run_conditions.hpp"
@@ -101,7 +102,8 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
       at_temperature(read_cell(arguments.cell_file, stiffness_choice_named(arguments.stiffness)),
                      arguments.block_temperature);
   const Recipe recipe = chosen_recipe(cell, arguments);
-  const TouchesFile file = read_touches(arguments.touches_file, cell);
+  TouchesFile file = read_touches(arguments.touches_file, cell);
+  if (auto warning = unknown_temperature_warning(cell)) file.warnings.push_back(*std::move(warning));
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
   problem.touches = file.touches;
   note_references(file.references, problem);

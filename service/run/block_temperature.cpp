@@ -68,6 +68,15 @@ std::optional<std::string> unknown_expansion_reason(const Cell& cell) {
       cell.block.file.string());
 }
 
+std::optional<std::string> unknown_temperature_warning(const Cell& cell) {
+  if (cell.block.temperature_c || !cell.block.thermal_expansion_per_k) return std::nullopt;
+  return fmt::format(
+      "{}: /temperature_c is missing beside thermal_expansion_per_k: the block is taken as of 20 degrees C "
+      "exactly, and no uncertainty has its growth of {:.3g} ppm per kelvin; give its temperature with "
+      "--block-temperature and --std-block-temperature, or enter it there",
+      cell.block.file.string(), 1e6 * *cell.block.thermal_expansion_per_k);
+}
+
 std::optional<TemperatureRefusal> refuse_temperature(const Cell& cell,
                                                      const std::optional<BlockTemperature>& given,
                                                      std::chrono::system_clock::time_point now) {

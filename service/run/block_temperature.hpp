@@ -32,6 +32,10 @@ std::optional<TemperatureRefusal> refuse_temperature(const Cell& cell,
 /// Why a temperature that is given cannot be used: nobody knows how the block grows with it.
 std::optional<std::string> unknown_expansion_reason(const Cell& cell);
 
+/// Why the block of a result without a temperature is not as certain as it looks: it can grow, and is taken
+/// as of the 20 degrees C of its certificate. Nothing where its temperature is known.
+std::optional<std::string> unknown_temperature_warning(const Cell& cell);
+
 /// What the store keeps of a run's temperature: `given`, or without it that of the cell's block; nothing when
 /// that is unknown too.
 std::optional<StoredTemperature> temperature_to_store(const Cell& cell,

@@ -12,8 +12,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"calib_core/estimation/outlier_rejection",
      "needs a whole identification: tests/figures/block_study_test"},
     {"calib_core/identification/face_distances", "reference figures in identification/identify_test"},
-    {"calib_core/identification/result_warnings",
-     "each with its cause: identification/identify_test, uncertainty/residual_evidence_test"},
     {"calib_core/kinematics/error_parameters",
      "against differences of poses: kinematics/kinematic_model_test"},
     {"calib_core/kinematics/nongeometric_parameters",

@@ -19,6 +19,7 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 const std::string kTouches = std::string(TOUCHCAL_SOURCE_DIR) + "/tests/data/table3-exact.touches.json";
 
@@ -194,6 +195,20 @@ TEST_F(OfflineCommands, AnArmWhoseFramesTheCellGivesItselfIsExportedWithAWarning
   const Finished finished = identify({"--export", file("arm.json"), "--json"});
   EXPECT_THAT(finished.err, HasSubstr("frame 0"));
   EXPECT_EQ(json::parse(finished.out).at("cell_frames"), json::array({0}));
+}
+
+TEST_F(OfflineCommands, ABlockThatCanGrowAndHasNoTemperatureIsAWarning) {
+  std::filesystem::copy(std::string(TOUCHCAL_SOURCE_DIR) + "/config", folder_ / "config",
+                        std::filesystem::copy_options::recursive);
+  cell_ = file("config/cells/edf/cell.json");
+  json block = json::parse(read(file("config/cells/edf/block.json")));
+  block["schema"] = "touchcal/block/2";
+  for (const char* key : {"temperature_c", "std_temperature_k"}) block.erase(key);
+  std::ofstream(file("config/cells/edf/block.json")) << block;
+  EXPECT_THAT(identify({}).err, HasSubstr("block.json: /temperature_c is missing"));
+  EXPECT_THAT(json::parse(identify({"--json"}).out).at("warnings").dump(), HasSubstr("/temperature_c"));
+  EXPECT_THAT(identify({"--block-temperature", "21", "--std-block-temperature", "1"}).err,
+              Not(HasSubstr("/temperature_c")));
 }
 
 TEST_F(OfflineCommands, TheMapHasALineForEachCell) {

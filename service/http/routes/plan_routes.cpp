@@ -12,6 +12,7 @@
 #include "service/documents/result_view.hpp"
 #include "service/http/routes/internal/request_body.hpp"
 #include "service/http/routes/route_table.hpp"
+#include "service/run/block_temperature.hpp"
 #include "service/run/reference_drift.hpp"
 
 namespace cell {
@@ -50,6 +51,7 @@ HttpResponse post_identify(const Call& call) {
     const Recipe recipe =
         call.text("stiffness") ? with_stiffness(named->second, *choice, cell) : named->second;
     TouchesFile file = touches_from_json("request body", call.request.body, kTouchesBytesMax, cell);
+    if (auto warning = unknown_temperature_warning(cell)) file.warnings.push_back(*std::move(warning));
     calib::IdentificationProblem problem = identification_problem(cell, recipe);
     note_references(file.references, problem);
     problem.touches = std::move(file.touches);

@@ -57,6 +57,17 @@ TEST_F(BlockTemperatureTest, AnUnknownOneIsToldWithFilePointerAndRemedyAndOneOfT
   EXPECT_EQ(code(measured(0s)), "");
 }
 
+TEST_F(BlockTemperatureTest, AnExpansionWithoutATemperatureIsAWarning) {
+  EXPECT_FALSE(unknown_temperature_warning(read()));
+  forget_temperature();
+  EXPECT_THAT(unknown_temperature_warning(read()).value(),
+              AllOf(HasSubstr("block.json: /temperature_c is missing"), HasSubstr("23.6 ppm per kelvin"),
+                    HasSubstr("--block-temperature")));
+  EXPECT_FALSE(unknown_temperature_warning(with_block_temperature(read(), measured(0s))));
+  edit(kBlock, [](json& block) { block.erase("thermal_expansion_per_k"); });
+  EXPECT_FALSE(unknown_temperature_warning(read()));
+}
+
 TEST_F(BlockTemperatureTest, WithoutAnExpansionItSaysNothing) {
   forget_temperature();
   edit(kBlock, [](json& block) { block.erase("thermal_expansion_per_k"); });
