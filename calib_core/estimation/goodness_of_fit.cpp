@@ -67,15 +67,16 @@ std::optional<LackOfFit> against_repeats(const LeastSquares& fit, const Residual
                                 fit.noise_unit_m() * fit.noise_unit_m() / variance,
                    .degrees_of_freedom = degrees,
                    .noise_degrees = expected.repeats.degrees_of_freedom / (share * share),
-                   .noise_m = std::sqrt(variance)};
+                   .noise_m = std::sqrt(variance),
+                   .repeats_m = expected.repeats.std_m,
+                   .gears_m = std::sqrt(expected.gear_variance_m2)};
 }
 
 }  // namespace
 
-double LackOfFit::power(double noncentrality, double p_min) const {
+double DroopTest::power(double p_min) const {
   if (p_min <= 0.0) return 0.0;
-  if (std::isinf(noise_degrees)) return chi_square_power(p_min, degrees_of_freedom, noncentrality);
-  return f_power(p_min, degrees_of_freedom, noise_degrees, noncentrality);
+  return f_power(p_min, directions, residual_degrees, noncentrality);
 }
 
 TouchNoise repeat_noise(double declared_m, const std::optional<TouchNoise>& pure_error) {

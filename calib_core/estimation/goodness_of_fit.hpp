@@ -9,6 +9,24 @@
 
 namespace calib {
 
+/// F test of the residuals for one thing that is not in the model: a droop of the joints under the masses, in
+/// the directions in which it would move the touches. What else is in the residuals counts as noise here, the
+/// gears with it, so that it finds far less than a test of all residuals at once does.
+struct DroopTest {
+  double f = 0.0;
+  double p = 1.0;
+  double directions = 0.0;        // numerator's degrees of freedom
+  double residual_degrees = 0.0;  // denominator's
+  /// Of F when the compliance of each joint is off by one standard deviation.
+  double noncentrality = 0.0;
+
+  /// The probability that this test gives less than `p_min` (in (0, 1)) with such a droop.
+  [[nodiscard]] double power(double p_min) const;
+};
+
+/// Such a droop is told of: chance makes it of nothing in 1 of 1,000 runs.
+inline constexpr double kDroopShownP = 0.001;
+
 /// Test of the residuals in total and per face (a face without touches has p = 1), against the noise that
 /// they should have: where touches were repeated, an F test against what these say of it, with the maker's
 /// figures of the gears; else a chi-square test against the declared noise. A small p: the model does not
@@ -20,13 +38,14 @@ struct LackOfFit {
   double noise_m = 0.0;                                            // that noise
   double p = 1.0;
   std::vector<double> p_of_face;
-  /// How far the droop that is not in the model would move the statistic if each joint's compliance were off
-  /// by one standard deviation: noncentrality. Nothing where it is in the model or has no deviation.
-  std::optional<double> droop_noncentrality;
+  /// Of `noise_m`, where it is made of them: what repeats say, and the maker's figures of the gears, which
+  /// bound it.
+  double repeats_m = 0.0;
+  double gears_m = 0.0;
+  /// Nothing where the droop is in the model or has no deviation.
+  std::optional<DroopTest> droop;
 
   [[nodiscard]] bool is_f_test() const { return std::isfinite(noise_degrees); }
-  /// The probability that this test gives less than `p_min` when something adds this noncentrality.
-  [[nodiscard]] double power(double noncentrality, double p_min) const;
 };
 
 /// A smaller p is a doubt: a run does not end early on it.

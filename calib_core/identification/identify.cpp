@@ -107,8 +107,7 @@ void evaluate(const IdentificationProblem& problem, const IdentificationOptions&
   if (extent == Extent::kFit && is_followed(problem, options, result)) return;
   result.distances = face_distances(problem, result);
   const FullLinearisation whole = linearise_all_parameters(problem, options, fit, estimate, covariance);
-  if (result.lack_of_fit)
-    result.lack_of_fit->droop_noncentrality = droop_noncentrality(problem, fit, whole, *result.lack_of_fit);
+  if (result.lack_of_fit) result.lack_of_fit->droop = test_droop(problem, fit, whole, result.residual_sum);
   result.uncertainty->gear_share = gear_share;
   add_unfitted(problem, result.identifiable, fit, whole, *result.uncertainty);
   result.scale = check_scale(problem, options, fit, whole, *result.uncertainty, estimate);
@@ -257,15 +256,13 @@ void complete(const IdentificationProblem& problem, const IdentificationOptions&
   if (fit.solve()) evaluate(problem, settled, declared_noise_m, Extent::kAll, fit, estimate, result);
 }
 
-/// The test stays that of the declared weights; the droop that it would find is that of what was taken.
+/// The test stays that of the declared weights; the one for a droop is that of what was taken.
 void keep_test(const IdentificationResult& declared, IdentificationResult& taken) {
   const std::optional<LackOfFit> of_taken = taken.lack_of_fit;
   taken.lack_of_fit = declared.lack_of_fit;
   taken.is_declared_noise_too_large = declared.is_declared_noise_too_large;
   taken.noise_estimated_m = declared.noise_estimated_m;
-  if (!taken.lack_of_fit || !of_taken || !of_taken->droop_noncentrality) return;
-  taken.lack_of_fit->droop_noncentrality =
-      *of_taken->droop_noncentrality * std::pow(of_taken->noise_m / taken.lack_of_fit->noise_m, 2);
+  if (taken.lack_of_fit && of_taken) taken.lack_of_fit->droop = of_taken->droop;
 }
 
 /// solve_and_select(), and where the touches are better or worse than declared once more with the noise that

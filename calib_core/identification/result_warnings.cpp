@@ -1,9 +1,9 @@
+#include "calib_core/identification/result_warnings.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <string>
-
-#include "calib_core/identification/result_warnings.hpp"
 
 namespace calib {
 namespace {
@@ -31,6 +31,20 @@ void warn_of_droop(const IdentificationProblem& problem, IdentificationResult& r
   result.warnings.emplace_back(
       "the arm has masses but no standard deviation of a compliance of joints 1 to 3, so that its droop is "
       "in no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
+}
+
+/// A droop that was left out and that the touches show.
+void warn_of_shown_droop(IdentificationResult& result) {
+  if (!result.lack_of_fit || !result.lack_of_fit->droop) return;
+  const DroopTest& droop = *result.lack_of_fit->droop;
+  if (droop.p >= kDroopShownP) return;
+  std::ostringstream figures;
+  figures.precision(2);
+  figures << "F " << droop.f << ", p " << droop.p;
+  result.warnings.push_back(
+      "the residuals look like a droop of the joints, which is not in the model (" + figures.str() +
+      "), so that the tip's uncertainty may be too small; estimate it (identify --stiffness on, or "
+      "\"stiffness\":\"auto\" in the recipe)");
 }
 
 /// Beyond it a workshop's temperature is unusual.
@@ -100,6 +114,7 @@ void add_warnings(const IdentificationProblem& problem, const IdentificationOpti
     warn_of_droop(problem, result);
     if (options.measure_noise) warn_of_declared_noise(problem, result);
     warn_of_drift(problem, result);
+    warn_of_shown_droop(result);
     warn_of_temperature(problem, result);
     warn_of_lost_faces(problem, result);
   }

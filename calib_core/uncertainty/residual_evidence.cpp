@@ -5,6 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "calib_core/numerics/decompositions.hpp"
+#include "calib_core/numerics/distributions.hpp"
+
 namespace calib {
 namespace {
 
@@ -13,6 +16,15 @@ constexpr double kGearScaleMax = 4.0;
 constexpr int kNoiseSteps = 24;
 /// The least and the largest noise that is tried, of the largest one that was seen.
 constexpr double kNoiseShareMin = 0.02, kNoiseShareMax = 2.5;
+
+/// Of the information that touches have on the droop, in its deviations: less than this beside what was
+/// estimated is rounding.
+constexpr double kSeenMin = 1e-9;
+
+/// Of the declared noise's: residuals with less are rounding, of touches that nobody measured.
+constexpr double kVarianceMin = 1e-6;
+/// With more the test finds the droop for certain.
+constexpr double kNoncentralityMax = 1e5;
 
 /// Logarithm of the density of a variance that was seen with these degrees of freedom, of what does not
 /// depend on `variance_seen` alone.
@@ -37,19 +49,42 @@ double gear_variance_m2(const IdentificationProblem& problem, const std::vector<
   return sum / static_cast<double>(touches.size());
 }
 
-std::optional<double> droop_noncentrality(const IdentificationProblem& problem, const LeastSquares& fit,
-                                          const FullLinearisation& whole, const LackOfFit& test) {
-  Eigen::VectorXd droop = Eigen::VectorXd::Zero(whole.touch_information.rows());
+std::optional<DroopTest> test_droop(const IdentificationProblem& problem, const LeastSquares& fit,
+                                    const FullLinearisation& whole, const ResidualSum& residuals) {
+  std::vector<Eigen::Index> left_out;
+  std::vector<double> std;
   for (const int position : estimable_compliances(problem.nongeometric_std)) {
     const int column = nongeometric_index(position);
     if (std::ranges::find(fit.arm_columns(), column) != fit.arm_columns().end()) return std::nullopt;
-    droop[column] = *problem.nongeometric_std[static_cast<std::size_t>(position)];
+    left_out.push_back(column);
+    std.push_back(*problem.nongeometric_std[static_cast<std::size_t>(position)]);
   }
-  if (droop.isZero(0.0)) return std::nullopt;
-  const Eigen::VectorXd gradient = whole.touch_information * droop;
-  const Eigen::VectorXd of_estimated = gradient(whole.estimated);
-  const double seen = droop.dot(gradient) - of_estimated.dot(whole.estimated_covariance * of_estimated);
-  return std::max(0.0, seen) * std::pow(fit.noise_unit_m() / test.noise_m, 2);
+  if (left_out.empty()) return std::nullopt;
+  const Eigen::VectorXd scale = Eigen::Map<const Eigen::VectorXd>(std.data(), std::ssize(std));
+  const Eigen::MatrixXd shared = whole.touch_information(whole.estimated, left_out) * scale.asDiagonal();
+  const Eigen::VectorXd gradient = scale.cwiseProduct(whole.touch_gradient(left_out));
+  const Eigen::MatrixXd own =
+      scale.asDiagonal() * whole.touch_information(left_out, left_out) * scale.asDiagonal();
+  SymmetricEigen beside;
+  beside.compute(own - shared.transpose() * whole.estimated_covariance * shared);
+  DroopTest test;
+  double explained = 0.0;
+  for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+    const double seen = beside.values()[i];
+    if (seen <= kSeenMin * own.trace()) continue;  // this droop looks like what was estimated
+    explained += std::pow(beside.vectors().col(i).dot(gradient), 2) / seen;
+    test.noncentrality += seen * std::pow(beside.vectors().col(i).sum(), 2);
+    test.directions += 1.0;
+  }
+  test.residual_degrees = residuals.noise_degrees() - test.directions;
+  if (test.directions == 0.0 || test.residual_degrees < 1.0) return std::nullopt;
+  const double squares = residuals.sum_of_squares - residuals.of_priors() - explained;
+  // Residuals that are smaller than the priors alone make them leave the declared noise.
+  const double variance = squares > 0.0 ? std::max(squares / test.residual_degrees, kVarianceMin) : 1.0;
+  test.f = explained / test.directions / variance;
+  test.p = f_survival(test.f, test.directions, test.residual_degrees);
+  test.noncentrality = std::min(test.noncentrality / variance, kNoncentralityMax);
+  return test;
 }
 
 double mean_gear_share(const GearEvidence& evidence) {

@@ -13,10 +13,11 @@ namespace calib {
 /// square metres.
 double gear_variance_m2(const IdentificationProblem& problem, const std::vector<std::size_t>& touches);
 
-/// Of the test: by how much a droop that is not in the model moves it when the compliance of each joint is
-/// off by one standard deviation. Nothing where no compliance with a deviation was left out.
-std::optional<double> droop_noncentrality(const IdentificationProblem& problem, const LeastSquares& fit,
-                                          const FullLinearisation& whole, const LackOfFit& test);
+/// Score test for the compliance of the joints that have a deviation and were left out, at the converged fit:
+/// how much of the residuals their columns would explain beside all that was estimated. Nothing where none
+/// was left out, where these touches do not show it beside the rest, or without a degree of freedom.
+std::optional<DroopTest> test_droop(const IdentificationProblem& problem, const LeastSquares& fit,
+                                    const FullLinearisation& whole, const ResidualSum& residuals);
 
 /// What the touches of a run say of errors that change from posture to posture.
 struct GearEvidence {

@@ -62,6 +62,15 @@ std::string rejected_text(const ResultDocument& result) {
   return lines;
 }
 
+/// The test of all residuals, and the parts of the noise that it allows.
+std::string tested_against(const ResultDocument::Fit& fit) {
+  const std::string noise = figure(fit.lack_of_fit_noise_um, "{:.1f}");
+  if (fit.lack_of_fit_test != "F") return fmt::format("chi-square test against the declared {} um", noise);
+  return fmt::format("F test against {} um: {} um by repeats, {} um by the maker's figures of the gears",
+                     noise, figure(fit.lack_of_fit_repeats_um, "{:.1f}"),
+                     figure(fit.lack_of_fit_gears_um, "{:.1f}"));
+}
+
 std::string fit_text(const ResultDocument::Fit& fit) {
   std::string lines =
       fmt::format("noise of a touch: declared {} um, from the residuals {} um\n",
@@ -72,9 +81,7 @@ std::string fit_text(const ResultDocument::Fit& fit) {
                     figure(fit.noise_repeats_um, "{:.1f}"), figure(fit.repeats_degrees_of_freedom, "{:.0f}"));
   }
   if (!fit.lack_of_fit_p) return lines;
-  lines += fmt::format("lack of fit: p = {} ({} test against {} um)", figure(fit.lack_of_fit_p, "{:.2g}"),
-                       fit.lack_of_fit_test == "F" ? "F" : "chi-square",
-                       figure(fit.lack_of_fit_noise_um, "{:.1f}"));
+  lines += fmt::format("lack of fit: p = {} ({})", figure(fit.lack_of_fit_p, "{:.2g}"), tested_against(fit));
   const char* separator = "; plane";
   for (const ResultDocument::PlaneFit& plane : fit.planes) {
     lines += fmt::format("{} {} {}", separator, plane.plane, figure(plane.p, "{:.2g}"));
@@ -82,9 +89,10 @@ std::string fit_text(const ResultDocument::Fit& fit) {
   }
   lines += "\n";
   if (fit.droop_power) {
-    lines +=
-        fmt::format("a droop of one standard deviation is not in the model; this test finds {:.0f} of 100\n",
-                    100.0 * *fit.droop_power);
+    lines += fmt::format(
+        "droop that is not in the model: p = {} (F test, which finds {:.0f} of 100 droops of one "
+        "standard deviation)\n",
+        figure(fit.droop_p, "{:.2g}"), 100.0 * *fit.droop_power);
   }
   return lines;
 }

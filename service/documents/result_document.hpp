@@ -191,10 +191,13 @@ struct ResultDocument {
     std::optional<double> noise_used_um;
     std::optional<double> noise_repeats_um;  // nothing where no place was touched often enough
     std::optional<double> repeats_degrees_of_freedom;
-    std::optional<double> gear_share;             // of the maker's variance of the gears
-    std::optional<std::string> lack_of_fit_test;  // against the repeats: F, against the declared: chi-square
-    std::optional<double> lack_of_fit_noise_um;   // what the residuals are tested against
-    std::optional<double> droop_power;            // of the test, at the cell's limit
+    std::optional<double> gear_share;              // of the maker's variance of the gears
+    std::optional<std::string> lack_of_fit_test;   // against the repeats: F, against the declared: chi-square
+    std::optional<double> lack_of_fit_noise_um;    // what the residuals are tested against
+    std::optional<double> lack_of_fit_repeats_um;  // of that, what repeats say
+    std::optional<double> lack_of_fit_gears_um;    // of that, the maker's figures of the gears
+    std::optional<double> droop_p;                 // of the test for a droop that is not in the model
+    std::optional<double> droop_power;  // how often that test tells of a droop of one standard deviation
     std::optional<double> lack_of_fit_p;
     std::optional<double> degrees_of_freedom;
     std::vector<PlaneFit> planes;
@@ -209,6 +212,9 @@ struct ResultDocument {
       fields("gear_share", self.gear_share);
       fields("lack_of_fit_test", self.lack_of_fit_test);
       fields("lack_of_fit_noise_um", self.lack_of_fit_noise_um);
+      fields("lack_of_fit_repeats_um", self.lack_of_fit_repeats_um);
+      fields("lack_of_fit_gears_um", self.lack_of_fit_gears_um);
+      fields("droop_p", self.droop_p);
       fields("droop_power", self.droop_power);
       fields("lack_of_fit_p", self.lack_of_fit_p);
       fields("degrees_of_freedom", self.degrees_of_freedom);

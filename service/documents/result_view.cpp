@@ -111,7 +111,7 @@ std::vector<ResultDocument::PlaneFit> plane_fits_of(const calib::IdentificationR
   return planes;
 }
 
-ResultDocument::Fit fit_of(const Cell& cell, const calib::IdentificationProblem& problem,
+ResultDocument::Fit fit_of(const calib::IdentificationProblem& problem,
                            const calib::IdentificationResult& result) {
   const auto& lack_of_fit = result.lack_of_fit;
   const auto& uncertainty = result.uncertainty;
@@ -129,9 +129,13 @@ ResultDocument::Fit fit_of(const Cell& cell, const calib::IdentificationProblem&
   if (lack_of_fit) {
     document.lack_of_fit_test = lack_of_fit->is_f_test() ? "F" : "chi_square";
     document.lack_of_fit_noise_um = micrometres(lack_of_fit->noise_m);
-    if (lack_of_fit->droop_noncentrality) {
-      document.droop_power =
-          finite(lack_of_fit->power(*lack_of_fit->droop_noncentrality, cell.acceptance.lack_of_fit_p_min));
+    if (lack_of_fit->is_f_test()) {
+      document.lack_of_fit_repeats_um = micrometres(lack_of_fit->repeats_m);
+      document.lack_of_fit_gears_um = micrometres(lack_of_fit->gears_m);
+    }
+    if (lack_of_fit->droop) {
+      document.droop_p = finite(lack_of_fit->droop->p);
+      document.droop_power = finite(lack_of_fit->droop->power(calib::kDroopShownP));
     }
     document.lack_of_fit_p = finite(lack_of_fit->p);
     document.degrees_of_freedom = finite(lack_of_fit->degrees_of_freedom);
@@ -291,7 +295,7 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
                           .planes_proof = planes_of(cell, result.distances, calib::TouchRole::kProof),
                           .touches = touches_of(cell, problem, result),
                           .scale = scale_of(result.scale),
-                          .fit = fit_of(cell, problem, result)};
+                          .fit = fit_of(problem, result)};
   for (const NongeometricParameter& parameter : document.nongeometric_parameters)
     document.model.push_back(parameter.name);
   if (!result.model_reason.empty()) document.model_reason = result.model_reason;

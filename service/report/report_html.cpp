@@ -242,8 +242,11 @@ std::string budget_section(const ResultDocument& result) {
       {"noise by the residuals", figure_text(fit.noise_estimated_um, "{:.1f} µm")},
       {"noise by repeated touches of one place", figure_text(fit.noise_repeats_um, "{:.1f} µm")},
       {"tested against (repeats and gears, or declared)", figure_text(fit.lack_of_fit_noise_um, "{:.1f} µm")},
+      {"of that, by repeats", figure_text(fit.lack_of_fit_repeats_um, "{:.1f} µm")},
+      {"of that, by the maker's figures of the gears", figure_text(fit.lack_of_fit_gears_um, "{:.1f} µm")},
       {"lack of fit, p", figure_text(fit.lack_of_fit_p, "{:.3g}")},
-      {"a droop of one standard deviation found in", figure_text(fit.droop_power, "{:.2f} of 1")},
+      {"droop that is not in the model, p", figure_text(fit.droop_p, "{:.3g}")},
+      {"that test finds a droop of one standard deviation in", figure_text(fit.droop_power, "{:.2f} of 1")},
       {"degrees of freedom", figure_text(fit.degrees_of_freedom, "{:.1f}")}};
   for (const ResultDocument::PlaneFit& plane : fit.planes)
     lack.push_back({fmt::format("lack of fit of plane {}, p", plane.plane), figure_text(plane.p, "{:.3g}")});
