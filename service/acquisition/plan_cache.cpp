@@ -5,6 +5,8 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <exception>
+#include <string_view>
 
 namespace cell {
 
@@ -12,11 +14,22 @@ namespace asio = boost::asio;
 
 namespace {
 
+/// What leaves the planner when nobody wants its plan any more.
+class GivenUp : public std::exception {
+ public:
+  [[nodiscard]] const char* what() const noexcept override { return "nobody waits for this plan any more"; }
+};
+
 /// On the planner's thread: nothing may be thrown there, the coroutine would go on beside the sockets.
-PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe) {
+/// `goes_on` is called now and then.
+PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe, const std::function<bool()>& goes_on) {
+  const auto end_unless_wanted = [&goes_on](std::string_view, double) {
+    if (!goes_on()) throw GivenUp();
+  };
   try {
+    end_unless_wanted({}, 0.0);
     const TipRegions regions(cell);  // those of the status are for the other thread
-    auto made = make_plan(regions, recipe);
+    auto made = make_plan(regions, recipe, end_unless_wanted);
     if (auto* refusal = std::get_if<PlanRefusal>(&made)) return std::move(*refusal);
     return std::make_shared<const Plan>(std::get<Plan>(std::move(made)));
   } catch (const std::exception& error) {
@@ -51,6 +64,10 @@ void PlanCache::keep(const Key& key, const PlanOutcome& made) {
 }
 
 asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe, PlanGiven given) {
+  return make(std::move(recipe), given, std::make_shared<std::atomic<bool>>(false));
+}
+
+asio::awaitable<PlanOutcome> PlanCache::make(std::string recipe, PlanGiven given, Cancelled cancelled) {
   const Key key = key_of(recipe, given);
   for (;;) {
     if (const auto made = plans_.find(key); made != plans_.end()) co_return made->second;
@@ -61,15 +78,23 @@ asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe, PlanGiven given
     const int clear_count = clear_count_;
     ++under_way_count_;
     co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
-    const PlanOutcome made = make_outcome(*cell, chosen);
+    const std::function<bool()> goes_on = [this, cancelled] { return !ending_ && !*cancelled; };
+    const PlanOutcome made = make_outcome(*cell, chosen, goes_on);
     co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
     --under_way_count_;
+    if (*cancelled) co_return made;
     if (clear_count == clear_count_) keep(key, made);
   }
 }
 
 void PlanCache::begin(std::string recipe, PlanGiven given, std::function<void()> done) {
-  asio::co_spawn(executor_, plan(std::move(recipe), given), [done = std::move(done)](auto&&...) { done(); });
+  begun_ = std::make_shared<std::atomic<bool>>(false);
+  asio::co_spawn(executor_, make(std::move(recipe), given, begun_),
+                 [done = std::move(done)](auto&&...) { done(); });
+}
+
+void PlanCache::cancel() {
+  if (begun_) *begun_ = true;
 }
 
 std::optional<PlanOutcome> PlanCache::planned(const std::string& recipe, const PlanGiven& given) const {

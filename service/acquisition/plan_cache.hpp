@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/thread_pool.hpp>
@@ -33,7 +34,10 @@ class PlanCache {
   /// `cell` must outlive it. Call clear() when its block is found elsewhere.
   PlanCache(boost::asio::any_io_executor executor, const Cell& cell)
       : executor_(std::move(executor)), cell_(cell) {}
-  ~PlanCache() { planner_.join(); }
+  ~PlanCache() {
+    ending_ = true;
+    planner_.join();
+  }
   PlanCache(const PlanCache&) = delete;
   PlanCache& operator=(const PlanCache&) = delete;
 
@@ -43,6 +47,9 @@ class PlanCache {
   boost::asio::awaitable<PlanOutcome> plan(std::string recipe, PlanGiven given = {});
   /// The same without waiting: `done` is called when planned() has the outcome.
   void begin(std::string recipe, PlanGiven given, std::function<void()> done);
+  /// Gives up what begin() began last, unless it is done: nobody waits for it any more, and the planner is
+  /// free for the next.
+  void cancel();
   /// What plan() gave; nothing before.
   [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe,
                                                    const PlanGiven& given = {}) const;
@@ -62,9 +69,13 @@ class PlanCache {
   };
   [[nodiscard]] Key key_of(const std::string& recipe, const PlanGiven& given) const;
   void keep(const Key& key, const PlanOutcome& made);
+  using Cancelled = std::shared_ptr<std::atomic<bool>>;  // set here, read by the planner
+  boost::asio::awaitable<PlanOutcome> make(std::string recipe, PlanGiven given, Cancelled cancelled);
 
   boost::asio::any_io_executor executor_;
   const Cell& cell_;
+  std::atomic<bool> ending_ = false;  // read by the planner
+  Cancelled begun_;
   boost::asio::thread_pool planner_{1};
   std::map<Key, PlanOutcome> plans_;
   int under_way_count_ = 0;  // on the planner's thread, or waiting for it

@@ -29,7 +29,9 @@ asio::awaitable<bool> RunPlanning::wait_for_outcome(const Run& run) {
   const State state = status_.state();
   if (!plans_.planned(recipe, given)) plans_.begin(recipe, given, [&wake = wake_] { wake.wake(); });
   while (!plans_.planned(recipe, given) && status_.state() == state) co_await wake_.wait(1h);
-  co_return status_.state() == state;
+  const bool goes_on = status_.state() == state;
+  if (!goes_on) plans_.cancel();
+  co_return goes_on;
 }
 
 asio::awaitable<bool> RunPlanning::plan(ActiveRun& active) {

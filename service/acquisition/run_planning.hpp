@@ -27,8 +27,8 @@ class RunPlanning {
 
   /// False when there is no plan, which raises a fault, or when another state was entered meanwhile.
   boost::asio::awaitable<bool> plan(ActiveRun& active);
-  /// Waits for what the plan cache has for this run: false when another state was entered meanwhile. A stop
-  /// does not wait for the planner: its outcome comes, to be used another time.
+  /// Waits for what the plan cache has for this run. False when another state was entered meanwhile: a stop
+  /// does not wait for the planner, and the planner gives up what nobody waits for.
   boost::asio::awaitable<bool> wait_for_outcome(const Run& run);
   /// Hands the plan to the run; there is no estimate of the arm yet.
   void begin_touches(ActiveRun& active);

@@ -37,6 +37,18 @@ TEST_F(PlanCacheTest, APlanThatWasBegunBeforeTheBlockStoodElsewhereIsMadeAgain) 
   EXPECT_FALSE(plans_.planned("few"));
 }
 
+TEST_F(PlanCacheTest, APlanThatIsGivenUpIsNeitherMadeNorRefusedTheNextTime) {
+  bool done = false;
+  plans_.begin("few", {}, [&done] { done = true; });
+  plans_.cancel();
+  io.restart();
+  io.run();
+  EXPECT_TRUE(done);
+  EXPECT_FALSE(plans_.planned("few"));
+  EXPECT_FALSE(plans_.is_planning());
+  EXPECT_EQ(std::get<std::shared_ptr<const Plan>>(run(plans_.plan("few")))->id, plan_of_owners().id);
+}
+
 TEST_F(PlanCacheTest, ATemperatureThatIsGivenHasItsOwnPlanAndTheLatestOneIsKept) {
   const auto id_at = [this](const BlockTemperature& given) {
     return std::get<std::shared_ptr<const Plan>>(run(plans_.plan("few", {given, {}})))->id;
