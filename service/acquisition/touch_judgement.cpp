@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "calib_core/geometry/units.hpp"
+#include "cs8_protocol/wire_units.hpp"
 #include "service/run/touch_command.hpp"
 
 namespace cell {
@@ -77,6 +78,12 @@ TouchJudgement judge_touch(const Cell& cell, const calib::PlannedTouch& planned,
                  Event::kSuspendFault);
   if (history.last_contact == result.contact)
     return again_or_hold(FaultCode::kRepeatedTouch, {}, history.attempts, 1);
+  const double overtravel_m = cs8::metres_from_dmm(result.overtravel_dmm);
+  if (cell.probe.overtravel_m > 0.0 && overtravel_m > cell.probe.overtravel_m)
+    return fault(FaultCode::kOvertravel,
+                 fmt::format("{:.2f} mm, and the stylus bends by {:.2f}", calib::mm_from_metres(overtravel_m),
+                             calib::mm_from_metres(cell.probe.overtravel_m)),
+                 Event::kAbortFault);
   if (const auto why = implausibility_reason(cell, planned, result))
     return fault(FaultCode::kImplausibleTouch, *why, Event::kAbortFault);
   const auto spread = contact_spread_m(cell, result);

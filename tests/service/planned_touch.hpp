@@ -2,6 +2,7 @@
 
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "cs8_protocol/messages.hpp"
+#include "cs8_protocol/wire_units.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/shipped_cell.hpp"
 
@@ -36,9 +37,11 @@ inline cs8::TouchResult contact(const Eigen::Vector3d& off_m) {
   return {.outcome = cs8::Outcome::kContact,
           .source = cs8::CaptureSource::kLatched,
           .contact = joints_off(off_m),
+          .search_speed_um_s = cs8::um_s_from_metres_per_second(edf().speeds.contact_m_s()),
           .monitor_speed_percent = 100,
           .first_source = cs8::CaptureSource::kLatched,
-          .first_contact = joints_off(off_m)};
+          .first_contact = joints_off(off_m),
+          .edges = 1};
 }
 
 }  // namespace cell

@@ -5,6 +5,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <exception>
 
+#include "cs8_protocol/wire_units.hpp"
 #include "service/run/planning_problem.hpp"
 #include "service/run/touch_command.hpp"
 
@@ -83,6 +84,7 @@ cs8::TouchResult OwnersBench::contact() const {
   result.contact = to_wire(preparation.made()->touch.joints);
   result.first_source = result.source;
   result.first_contact = result.contact;
+  result.search_speed_um_s = cs8::um_s_from_metres_per_second(cell_of_owners().speeds.contact_m_s());
   result.monitor_speed_percent = 100;
   result.edges = 1;
   return result;

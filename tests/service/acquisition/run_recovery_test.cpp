@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/commanded_touch.hpp"
 #include "service/run/run_conditions.hpp"
 #include "service/run/touch_command.hpp"
@@ -100,6 +101,7 @@ TEST_F(RunRecoveryTest, AnAnswerThatTheControllerStillHasIsKeptFirst) {
     result.outcome = cs8::Outcome::kContact;
     result.source = result.first_source = cs8::CaptureSource::kLatched;
     result.contact = result.first_contact = to_wire(third.joints);
+    result.search_speed_um_s = cs8::um_s_from_metres_per_second(cell_of_owners().speeds.contact_m_s());
     result.monitor_speed_percent = 100;
     result.edges = 1;
     return result;

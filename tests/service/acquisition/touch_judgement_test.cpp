@@ -23,6 +23,25 @@ TEST(TouchJudgement, AContactIsKeptAndItsBounceIsTold) {
   EXPECT_EQ(judged.warnings.front().code, FaultCode::kProbeBounced);
 }
 
+TEST(TouchJudgement, AnAnswerThatContradictsItselfOrTheCommandIsNoContact) {
+  const auto code_of = [](const auto& change) {
+    cs8::TouchResult result = contact({0, 0, 0});
+    change(result);
+    const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {});
+    return judged.next == Next::kFault ? std::optional(judged.fault.code) : std::nullopt;
+  };
+  EXPECT_EQ(code_of([](auto&) {}), std::nullopt);
+  EXPECT_EQ(code_of([](auto& result) { result.overtravel_dmm = -1; }), FaultCode::kImplausibleTouch);
+  EXPECT_EQ(code_of([](auto& result) { result.edges = 0; }), FaultCode::kImplausibleTouch);
+  EXPECT_EQ(code_of([](auto& result) { result.phase = cs8::Phase::kRetract; }), FaultCode::kImplausibleTouch);
+  EXPECT_EQ(code_of([](auto& result) { result.search_speed_um_s += 1; }), FaultCode::kImplausibleTouch);
+  ASSERT_GT(edf().probe.overtravel_m, 0.0);
+  const std::int32_t most_dmm = cs8::dmm_from_metres(edf().probe.overtravel_m);
+  EXPECT_EQ(code_of([most_dmm](auto& result) { result.overtravel_dmm = most_dmm; }), std::nullopt);
+  EXPECT_EQ(code_of([most_dmm](auto& result) { result.overtravel_dmm = most_dmm + 1; }),
+            FaultCode::kOvertravel);
+}
+
 TEST(TouchJudgement, TwoContactsTooFarApartAreMadeAgainUntilAPersonIsAsked) {
   const calib::PlannedTouch planned = planned_touch();
   cs8::TouchResult result = contact({0, 0, 0});

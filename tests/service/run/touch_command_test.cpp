@@ -173,6 +173,7 @@ TEST(Implausible, AFirstTouchThatIsMissingOrElsewhereIsTold) {
               HasSubstr("the first of its two contacts is missing"));
   Cell once = edf();
   once.speeds.second.reset();
+  result.search_speed_um_s = cs8::um_s_from_metres_per_second(once.speeds.search_m_s);
   EXPECT_EQ(implausibility_reason(once, planned, result), std::nullopt);
 }
 
