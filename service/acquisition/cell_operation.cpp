@@ -92,6 +92,7 @@ CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, R
       loop_{.executor = executor, .ended = TimerWake(executor)} {
   controller_->listen({.on_state = [this](const cs8::State& state) { on_controller_state(state); },
                        .on_permit = [this](const cs8::Permit& permit) { session_.on_permit(permit); },
+                       .on_heartbeat = [this] { session_.on_heartbeat(); },
                        .on_loss = [this](const cs8::LinkError& error) { on_link_lost(error); }});
   if (const auto accepted = store_.last_accepted())
     status_.set_last_accepted(accepted->id, accepted->ended_at);

@@ -122,10 +122,12 @@ class CellOperation {
   // what the states do (cell_operation_loop.cpp)
   boost::asio::awaitable<void> act_on_states();
   boost::asio::awaitable<void> act_on(State state);
+  boost::asio::awaitable<void> break_off(State state, std::string why);
   boost::asio::awaitable<void> reset();
   boost::asio::awaitable<void> connect();
   boost::asio::awaitable<void> start_run();
   boost::asio::awaitable<void> resume_run();
+  [[nodiscard]] bool can_search();
   boost::asio::awaitable<bool> obtain_permit();
   boost::asio::awaitable<void> wait_out_suspension();
   boost::asio::awaitable<void> pass_block();

@@ -1,6 +1,5 @@
 // What the controller tells a CellOperation.
 #include "service/acquisition/cell_operation.hpp"
-#include "service/acquisition/link_fault.hpp"
 
 namespace cell {
 
@@ -13,13 +12,7 @@ void CellOperation::on_controller_state(const cs8::State& state) {
 
 void CellOperation::on_link_lost(const cs8::LinkError& error) {
   if (status_.is_ending()) return;
-  session_.forget_standing();
-  const bool is_over = status_.state() == State::kAborted || status_.state() == State::kStopped;
-  if (is_over && status_.fault()) {
-    status_.publish();  // the fault that is there stays until somebody has read it
-  } else {
-    status_.raise(link_fault(error), is_interrupted() ? Event::kNotReadyFault : Event::kLinkDown);
-  }
+  session_.on_link_lost(error, is_interrupted() ? Event::kNotReadyFault : Event::kLinkDown);
   wake_.wake();
 }
 

@@ -28,9 +28,30 @@ asio::awaitable<void> CellOperation::act_on_states() {
     return !is_active(status_.state()) || (status_.state() == State::kHeld && is_interrupted());
   };
   while (!status_.is_ending() || !is_left()) {
-    if (status_.state() != State::kExecute && run_) touches_.identify(*run_);
-    co_await act_on(status_.state());
+    const State state = status_.state();
+    std::optional<std::string> failure;
+    try {
+      if (state != State::kExecute && run_) touches_.identify(*run_);
+      co_await act_on(state);
+    } catch (const std::exception& error) {
+      failure = error.what();
+    }
+    if (failure) co_await break_off(state, *failure);
   }
+}
+
+/// What nobody foresaw ends the run, never the daemon with its STOP.
+asio::awaitable<void> CellOperation::break_off(State state, std::string why) {
+  if (is_active(status_.state()) && state != State::kAborting) {
+    status_.raise({FaultCode::kInternalError, std::move(why)}, Event::kAbortFault);
+    co_return;
+  }
+  // The end of the run itself failed, or what is done without one.
+  spdlog::error("in the state {}: {}", state_name(state), why);
+  if (run_) run_->open = false;
+  status_.set_fault({FaultCode::kInternalError, std::move(why)});
+  status_.enter(State::kAborted);
+  co_await wake_.wait(1s);
 }
 
 asio::awaitable<void> CellOperation::act_on(State state) {
@@ -121,7 +142,7 @@ asio::awaitable<void> CellOperation::connect() {
 asio::awaitable<void> CellOperation::start_run() {
   session_.forget_standing();
   const bool planned = co_await planning_.plan(*run_);
-  if (!planned || status_.state() != State::kStarting) co_return;
+  if (!planned || status_.state() != State::kStarting || !can_search()) co_return;
   const bool permitted = co_await obtain_permit();
   run_->began = clocks_.system();
   if (permitted) status_.apply(Event::kDone);
@@ -131,9 +152,20 @@ asio::awaitable<void> CellOperation::resume_run() {
   session_.forget_standing();  // on hold the arm may have been moved by hand
   const bool resumable = co_await recovery_.make_resumable(*run_);
   const bool goes_on = status_.state() == State::kUnholding || status_.state() == State::kUnsuspending;
-  if (!resumable || !goes_on) co_return;
+  if (!resumable || !goes_on || !can_search()) co_return;
   const bool permitted = co_await obtain_permit();
   if (permitted) status_.apply(Event::kDone);
+}
+
+/// False for a plan whose searches the controller will not make.
+bool CellOperation::can_search() {
+  if (run_->guided) return true;  // nothing is commanded
+  std::vector<calib::PlannedTouch> touches;
+  for (std::size_t i = 0; const calib::PlannedTouch* planned = run_->run.planned(i); ++i)
+    touches.push_back(*planned);
+  auto fault = session_.search_fault(touches);
+  if (fault) status_.raise(*std::move(fault), Event::kAbortFault);
+  return !fault;
 }
 
 asio::awaitable<bool> CellOperation::obtain_permit() {

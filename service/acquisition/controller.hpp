@@ -30,7 +30,6 @@ class Controller {
   [[nodiscard]] virtual std::optional<cs8::Permit> latest_permit() const = 0;
 
   [[nodiscard]] virtual std::optional<cs8::State> latest_state() const = 0;
-  [[nodiscard]] virtual std::optional<std::chrono::steady_clock::time_point> heard_at() const = 0;
 
   [[nodiscard]] virtual std::uint32_t next_sequence() const = 0;
   /// Sent when these are called, before they return; await the reply at once.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cs8_protocol/names.hpp"
 #include "service/acquisition/controller_session.hpp"
 #include "service/run/touch_command.hpp"
 
@@ -31,18 +32,27 @@ void ControllerSession::wait_for(const AwaitedAction* awaited) {
   status_.wait_for(name);
 }
 
+void ControllerSession::give_permit_back() {
+  is_permitted_ = false;
+  controller_.finish();
+}
+
 void ControllerSession::on_permit(const cs8::Permit& permit) {
+  if (is_permitted_ && permit.state != cs8::PermitState::kGranted)
+    spdlog::warn("the controller changed the permit of run {} to {}: {}", permit.run, cs8::name(permit.state),
+                 cs8::name(permit.reason));
   if (asking_ && permit.state == cs8::PermitState::kAwaited) wait_for(&awaited_confirmation());
 }
 
 asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number) {
   const State state = status_.state();
   const auto ready_by = clocks_.steady() + cell_.deadlines.ready;
-  while (status_.state() == state && !is_permitted(run_number)) {
+  while (status_.state() == state && (is_doubted_ || !is_permitted(run_number))) {
     const auto told = controller_.latest_state();
     asking_ = true;
     const cs8::PermitReply reply = co_await controller_.begin(run_number, cell_.deadlines.confirm);
     asking_ = false;
+    is_doubted_ = false;
     const auto* permit = std::get_if<cs8::Permit>(&reply);
     if (!permit) co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     if (!permit || status_.state() != state) continue;
@@ -53,7 +63,8 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
     }  // else granted, or taken away while it was awaited: asked for again
   }
   wait_for(nullptr);
-  co_return status_.state() == state;
+  is_permitted_ = status_.state() == state;
+  co_return is_permitted_;
 }
 
 /// Waits for what a person at the cell can fix; anything else ends the run.

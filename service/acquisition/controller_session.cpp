@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "calib_core/geometry/units.hpp"
 #include "cs8_protocol/names.hpp"
+#include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/link_fault.hpp"
 #include "service/run/touch_command.hpp"
 
@@ -19,9 +21,8 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// Pauses between attempts to connect grow, to limit the attempts at a controller that is off.
-constexpr auto kFirstPause = 100ms;
-constexpr auto kLongestPause = 2000ms;
+/// More different faults of the link than this in a row are not told apart.
+constexpr std::size_t kToldFaultsMax = 16;
 
 /// An arm that rests says so within this time.
 constexpr auto kSettleMax = 10s;
@@ -58,6 +59,50 @@ void ControllerSession::on_controller_state(const cs8::State& state) {
     status_.warn({FaultCode::kArmMoved, {}});
   }
   state_at_ = clocks_.steady();
+  if (is_permitted_ && is_moving_state()) permission_.on_state(state, *state_at_);
+  hold_without_permission();
+}
+
+bool ControllerSession::is_moving_state() const {
+  return status_.state() == State::kExecute || status_.state() == State::kCompleting;
+}
+
+void ControllerSession::on_heartbeat() {
+  if (is_permitted_ && is_moving_state()) permission_.on_heartbeat();
+  hold_without_permission();
+}
+
+/// The arm is told to stop: a controller that lost the permission and moves all the same is not to be
+/// trusted.
+void ControllerSession::hold_without_permission() {
+  if (!is_permitted_ || !is_moving_state()) {
+    permission_ = {};
+    return;
+  }
+  auto fault = permission_.fault(clocks_.steady());
+  if (!fault) return;
+  is_doubted_ = true;
+  stop_sent_ = true;
+  controller_.stop();
+  status_.raise(*std::move(fault), Event::kHoldFault);
+}
+
+std::optional<Fault> ControllerSession::search_fault(std::span<const calib::PlannedTouch> touches) const {
+  const std::int32_t speed_um_s = cs8::um_s_from_metres_per_second(cell_.speeds.search_m_s);
+  if (search_speed_max_um_s_ > 0 && speed_um_s > search_speed_max_um_s_) {
+    return Fault{FaultCode::kPlanInvalid,
+                 fmt::format("searches at {} um/s, and the controller takes {} at most", speed_um_s,
+                             search_speed_max_um_s_)};
+  }
+  if (search_length_max_dmm_ <= 0) return std::nullopt;
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    if (cs8::dmm_from_metres(touches[i].search_length_m) <= search_length_max_dmm_) continue;
+    return Fault{FaultCode::kPlanInvalid,
+                 fmt::format("touch {} searches over {:.1f} mm, and the controller takes {:.1f} at most",
+                             i + 1, calib::mm_from_metres(touches[i].search_length_m),
+                             calib::mm_from_metres(cs8::metres_from_dmm(search_length_max_dmm_)))};
+  }
+  return std::nullopt;
 }
 
 void ControllerSession::check_task(const cs8::State& state) {
@@ -96,9 +141,8 @@ ControllerView ControllerSession::view(const std::optional<std::string>& probe) 
 }
 
 std::optional<std::int64_t> ControllerSession::data_age_ms() const {
-  const auto heard = controller_.heard_at();
-  if (!heard) return std::nullopt;
-  return std::chrono::duration_cast<std::chrono::milliseconds>(clocks_.steady() - *heard).count();
+  if (!state_at_) return std::nullopt;
+  return std::chrono::duration_cast<std::chrono::milliseconds>(clocks_.steady() - *state_at_).count();
 }
 
 asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) {
@@ -107,9 +151,14 @@ asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) 
   const cs8::ExpectedController expected{.arm = cell_.arm.name,
                                          .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
                                          .upper_limits = to_wire(cell_.arm.joint_ranges.upper)};
-  for (auto pause = std::chrono::milliseconds(kFirstPause); status_.state() == state && !status_.is_ending();
-       pause = std::min(2 * pause, std::chrono::milliseconds(kLongestPause))) {
+  while (status_.state() == state && !status_.is_ending()) {
+    const auto pause = std::chrono::ceil<std::chrono::milliseconds>(pause_.earliest() - clocks_.steady());
+    if (pause > 0ms) {
+      co_await wake_.wait(pause);
+      continue;
+    }
     const cs8::ConnectReply reply = co_await controller_.connect(expected);
+    pause_.on_try(clocks_.steady(), std::holds_alternative<cs8::Welcome>(reply));
     if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
       on_welcome(*welcome, state, run_interrupted);
       co_return waits_for_reset ? 0 : unsettled_sequence_;
@@ -118,16 +167,54 @@ asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) 
     const auto& there = status_.fault();
     const bool keeps_fault = waits_for_reset && there;
     if (!keeps_fault && (!there || there->message() != fault.message()))
-      status_.raise(fault, run_interrupted ? Event::kNotReadyFault : Event::kLinkDown);
-    if (status_.state() == state && !status_.is_ending()) co_await wake_.wait(pause);
+      raise_link_fault(fault, run_interrupted ? Event::kNotReadyFault : Event::kLinkDown);
   }
   co_return 0;
+}
+
+void ControllerSession::close() {
+  controller_.close();
+  pause_.on_link_end(clocks_.steady());
+}
+
+void ControllerSession::on_link_lost(const cs8::LinkError& error, Event event) {
+  standing_.reset();
+  is_permitted_ = false;
+  pause_.on_link_end(clocks_.steady());
+  if (pause_.short_links() == 0) told_faults_.clear();
+  // A person reads why a run ended, and how it ended, to the end.
+  const bool is_over = status_.state() == State::kAborted || status_.state() == State::kStopped;
+  if (is_over && status_.fault()) {
+    status_.publish();
+  } else {
+    raise_link_fault(link_fault(error), event);
+  }
+}
+
+/// A controller that takes one link after the other and loses it fills no table: while no link lasts, each of
+/// its faults is kept once, and again with the number of links when that has become ten times as large.
+void ControllerSession::raise_link_fault(Fault fault, Event event) {
+  if (told_faults_.size() >= kToldFaultsMax) told_faults_.clear();
+  const bool is_new = told_faults_.insert(fault.message()).second;
+  const int count = pause_.short_links();
+  bool is_round = count > 1;
+  for (int rest = count; rest > 1; rest /= 10) is_round = is_round && rest % 10 == 0;
+  if (count > 1) fault.detail += fmt::format(" ({} short links in a row)", count);
+  if (is_new || is_round || is_active(status_.state())) {
+    status_.raise(std::move(fault), event);
+  } else {
+    status_.show(std::move(fault), event);
+  }
 }
 
 void ControllerSession::on_welcome(const cs8::Welcome& welcome, State state, bool run_interrupted) {
   number_ = welcome.session;
   application_ = application_text(welcome);
   overruns_.reset();
+  asking_ = false;
+  is_permitted_ = false;
+  search_length_max_dmm_ = welcome.search_length_max_dmm;
+  search_speed_max_um_s_ = welcome.search_speed_max_um_s;
   // A fault that ended a run stays until somebody has read it.
   if (status_.fault() && is_link_fault(status_.fault()->code) && state != State::kAborted)
     status_.clear_fault();
@@ -153,6 +240,7 @@ void ControllerSession::acknowledge(std::uint32_t sequence) {
 
 asio::awaitable<bool> ControllerSession::travel(cs8::Travel command) {
   standing_.reset();
+  stop_sent_ = false;
   const cs8::MoveReply reply = co_await controller_.travel(command);
   co_return take_move(reply);
 }
@@ -160,7 +248,7 @@ asio::awaitable<bool> ControllerSession::travel(cs8::Travel command) {
 bool ControllerSession::take_move(const cs8::MoveReply& reply) {
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     const OutcomeFault refused = fault_of(*rejected);
-    const bool holds = refused.holds && status_.state() == State::kExecute;
+    const bool holds = refused.holds && is_moving_state();
     status_.raise(refused.fault, holds ? Event::kHoldFault : Event::kAbortFault);
     return false;
   }
@@ -169,7 +257,7 @@ bool ControllerSession::take_move(const cs8::MoveReply& reply) {
   controller_.acknowledge(reply.sequence);
   if (result->outcome == cs8::Outcome::kArrived) return true;
   if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {
-    status_.raise(fault->fault, Event::kAbortFault);
+    status_.raise(fault->fault, fault->holds && is_moving_state() ? Event::kHoldFault : Event::kAbortFault);
   } else {
     expect_stop(result->outcome);
   }
@@ -177,7 +265,7 @@ bool ControllerSession::take_move(const cs8::MoveReply& reply) {
 }
 
 void ControllerSession::expect_stop(cs8::Outcome outcome) {
-  const bool asked = status_.state() == State::kStopping || status_.state() == State::kAborting;
+  const bool asked = stop_sent_ || status_.state() == State::kStopping || status_.state() == State::kAborting;
   if (outcome == cs8::Outcome::kStopped && asked) return;
   status_.raise(
       {FaultCode::kProtocolError, fmt::format("unexpected answer '{}' to a command", cs8::name(outcome))},
@@ -191,7 +279,7 @@ asio::awaitable<std::optional<cs8::State>> ControllerSession::settled_state() {
   const auto asked_at = clocks_.steady();
   while (controller_.connected() && status_.state() == state) {
     const auto told = controller_.latest_state();
-    if (told && state_at_ > asked_at && (told->flags & cs8::kSettled) != 0) co_return told;
+    if (told && state_at_ && *state_at_ > asked_at && (told->flags & cs8::kSettled) != 0) co_return told;
     if (clocks_.steady() > asked_at + kSettleMax)
       status_.raise({FaultCode::kMotionError, "the arm does not come to rest"}, Event::kAbortFault);
     co_await wake_.wait(20ms);
@@ -204,6 +292,7 @@ asio::awaitable<std::optional<calib::JointVector>> ControllerSession::standing_j
   auto told = co_await settled_state();
   if (told && (told->flags & cs8::kRetractDue) != 0) {
     const State state = status_.state();
+    stop_sent_ = false;
     const cs8::MoveReply reply = co_await controller_.retract(retract_command(cell_));
     take_move(reply);
     if (status_.state() != state) co_return std::nullopt;

@@ -4,13 +4,17 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 
 #include "calib_core/geometry/joint_vector.hpp"
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "service/acquisition/controller.hpp"
+#include "service/acquisition/permission_watch.hpp"
 #include "service/acquisition/published_status.hpp"
+#include "service/acquisition/reconnect_pause.hpp"
 #include "service/acquisition/wake.hpp"
 #include "service/base/clocks.hpp"
 #include "service/run/readiness.hpp"
@@ -39,6 +43,8 @@ class ControllerSession {
   /// Raises a failed task of the controller. Call it after on_controller_state and the state's other uses.
   void check_task(const cs8::State& state);
   void on_permit(const cs8::Permit& permit);
+  /// With each heartbeat that is sent: holds a run whose controller tells no State any more.
+  void on_heartbeat();
   /// A person's stop: sent at once, whenever there is a link.
   void stop();
   /// A new state of the cell: stops the arm where the state asks for it and returns a requested permit.
@@ -48,6 +54,7 @@ class ControllerSession {
   [[nodiscard]] std::optional<cs8::State> latest_state() const { return controller_.latest_state(); }
   /// The shown state; `probe` stays while its two inputs change one after the other.
   [[nodiscard]] ControllerView view(const std::optional<std::string>& probe) const;
+  /// The age of the newest State; nothing before the first.
   [[nodiscard]] std::optional<std::int64_t> data_age_ms() const;
   /// The controller's application: the session, one per start of it; its name and version as it reported
   /// them.
@@ -58,12 +65,19 @@ class ControllerSession {
   /// of a command that the controller still has and that must be settled now; 0 without one.
   /// `run_interrupted`: while a run is on hold and not resumed, a missing link changes nothing.
   boost::asio::awaitable<std::uint32_t> connect(bool run_interrupted);
-  void close() { controller_.close(); }
+  void close();
+  /// The link was lost.
+  void on_link_lost(const cs8::LinkError& error, Event event);
 
   /// Obtains a person's permit before anything moves (PROTOCOL.md, section 7), for the run of this number.
   /// True when it is given; else a fault or a command has entered another state.
   boost::asio::awaitable<bool> obtain_permit(std::uint32_t run_number);
-  void give_permit_back() { controller_.finish(); }
+  void give_permit_back();
+  /// What State says against the motion that is under way, in words; empty when it says nothing.
+  [[nodiscard]] std::string lost_permission() const { return permission_.told(); }
+  /// Why the controller will not make one of these touches: what it said in its Welcome of the searches that
+  /// it takes.
+  [[nodiscard]] std::optional<Fault> search_fault(std::span<const calib::PlannedTouch> touches) const;
 
   // The command that is open at the controller.
   [[nodiscard]] const std::optional<OpenTouch>& open_touch() const { return open_touch_; }
@@ -77,7 +91,10 @@ class ControllerSession {
 
   [[nodiscard]] std::uint32_t next_sequence() const { return controller_.next_sequence(); }
   /// The command is sent before this returns; await the reply at once.
-  boost::asio::awaitable<cs8::TouchReply> touch(cs8::Touch command) { return controller_.touch(command); }
+  boost::asio::awaitable<cs8::TouchReply> touch(cs8::Touch command) {
+    stop_sent_ = false;
+    return controller_.touch(command);
+  }
   /// True when the arm has arrived.
   boost::asio::awaitable<bool> travel(cs8::Travel command);
   /// Handles a command that ended stopped: by a person's request, or else it is a fault.
@@ -103,6 +120,9 @@ class ControllerSession {
                                                   std::chrono::steady_clock::time_point at_latest);
   void on_welcome(const cs8::Welcome& welcome, State state, bool run_interrupted);
   bool take_move(const cs8::MoveReply& reply);
+  [[nodiscard]] bool is_moving_state() const;
+  void raise_link_fault(Fault fault, Event event);
+  void hold_without_permission();
   boost::asio::awaitable<std::optional<cs8::State>> settled_state();
 
   const Cell& cell_;
@@ -116,11 +136,19 @@ class ControllerSession {
   std::uint32_t unsettled_sequence_ = 0;   // an open command found in a state that does not settle it
   std::optional<OpenTouch> open_touch_;
   std::optional<calib::JointVector> standing_;
-  std::chrono::steady_clock::time_point state_at_;  // when the newest state was received
-  std::int32_t task_error_ = 0;                     // in that state
-  int inputs_disagree_count_ = 0;                   // newest states of the controller in a row
-  bool asking_ = false;                             // for a permit
-  int stop_count_ = 0;                              // stops of a person
+  std::optional<std::chrono::steady_clock::time_point> state_at_;  // when the newest state was received
+  std::int32_t task_error_ = 0;                                    // in that state
+  int inputs_disagree_count_ = 0;                                  // newest states of the controller in a row
+  bool asking_ = false;                                            // for a permit
+  int stop_count_ = 0;                                             // stops of a person
+  bool stop_sent_ = false;                                         // since the last command
+  bool is_permitted_ = false;  // from the confirmation until the permit is given back
+  bool is_doubted_ = false;    // the permit: State says that there is none
+  PermissionWatch permission_;
+  ReconnectPause pause_;
+  std::set<std::string> told_faults_;       // of links, since one of them lasted
+  std::int32_t search_length_max_dmm_ = 0;  // of Welcome, 10^-4 mm; 0 is unknown
+  std::int32_t search_speed_max_um_s_ = 0;
 };
 
 }  // namespace cell

@@ -55,6 +55,7 @@ Cs8Controller::Cs8Controller(asio::any_io_executor executor, const Deadlines& de
       client_(executor, client_options(deadlines),
               {.on_state = [this](const cs8::State& state) { hooks_.on_state(state); },
                .on_permit = [this](const cs8::Permit& permit) { hooks_.on_permit(permit); },
+               .on_heartbeat = [this] { hooks_.on_heartbeat(); },
                .on_loss = [this](const cs8::LinkError& error) { hooks_.on_loss(error); }}) {}
 
 asio::awaitable<cs8::ConnectReply> Cs8Controller::connect(cs8::ExpectedController expected) {

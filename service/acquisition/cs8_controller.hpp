@@ -23,9 +23,6 @@ class Cs8Controller : public Controller {
   void finish() override { client_.finish(); }
   [[nodiscard]] std::optional<cs8::Permit> latest_permit() const override { return client_.latest_permit(); }
   [[nodiscard]] std::optional<cs8::State> latest_state() const override { return client_.latest_state(); }
-  [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> heard_at() const override {
-    return client_.heard_at();
-  }
   [[nodiscard]] std::uint32_t next_sequence() const override { return client_.next_sequence(); }
   boost::asio::awaitable<cs8::TouchReply> touch(cs8::Touch command) override {
     return client_.touch(command);

@@ -34,6 +34,10 @@ void PublishedStatus::raise(Fault fault, Event event) {
   } catch (const std::exception& error) {
     spdlog::error("the fault could not be stored: {}", error.what());
   }
+  show(std::move(fault), event);
+}
+
+void PublishedStatus::show(Fault fault, Event event) {
   status_.fault = std::move(fault);
   publish();
   apply(event);

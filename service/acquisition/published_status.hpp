@@ -38,6 +38,8 @@ class PublishedStatus {
   void apply(Event event);
   /// A fault: logged, kept, published; then its event.
   void raise(Fault fault, Event event);
+  /// The same for a fault that is there once more: published, neither logged nor kept again.
+  void show(Fault fault, Event event);
   /// Published and logged while the run goes on.
   void warn(Fault fault);
   void publish();

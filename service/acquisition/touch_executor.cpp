@@ -187,7 +187,13 @@ void TouchExecutor::take_contact(ActiveRun& active, const OpenTouch& open, const
 /// with.
 bool TouchExecutor::accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
                            const cs8::TouchResult& result, HeldBy held_by) {
-  const TouchJudgement judged = judge_touch(cell_, touch, result, history_);
+  TouchJudgement judged = judge_touch(cell_, touch, result, history_);
+  // An arm that must not move touches nothing: this is no measurement of it.
+  if (auto lost = session_.lost_permission(); judged.next == TouchJudgement::Next::kKeep && !lost.empty())
+    judged = {.next = TouchJudgement::Next::kFault,
+              .fault = {FaultCode::kPermissionLost, std::move(lost)},
+              .event = Event::kHoldFault,
+              .warnings = {}};
   for (const Fault& warning : judged.warnings) status_.warn(warning);
   if (judged.next == TouchJudgement::Next::kKeep) {
     history_ = {.attempts = 0, .spread_m = {}, .last_contact = result.contact};

@@ -221,12 +221,13 @@ constexpr std::array kTable{
                "check the stylus and lower the search speed, then touchcal clear, "
                "touchcal reset and start a new run",
                FaultKind::kAborted, "P17"},
-    FaultEntry{FaultCode::kPermissionLost, "permission_lost",
-               "power, mode, hold, emergency stop or an opened cell took the permission to move",
-               "the arm stopped and stands where it was",
-               "restore power and remote mode, close the cell, then touchcal clear, "
-               "touchcal reset and start a new run",
-               FaultKind::kAborted, "P20"},
+    FaultEntry{
+        FaultCode::kPermissionLost, "permission_lost",
+        "power, mode, hold, emergency stop or an opened cell took the permission to move",
+        "the arm stopped and stands where it was",
+        "restore power and remote mode, close the cell, then touchcal resume to go on with the touch that "
+        "was broken off, or touchcal stop; touchcal clear where it was aborted, then touchcal reset",
+        FaultKind::kHeld, "P20"},
     FaultEntry{FaultCode::kCollision, "collision", "the arm collided with something",
                "the drives cut out; the arm is where it was",
                "look at arm, probe and block, free the arm by hand, then touchcal clear, touchcal reset and "
@@ -274,6 +275,14 @@ constexpr std::array kTable{
         "to "
         "find the block again; touchcal resume goes on where the block is sure to stand as it was located",
         FaultKind::kHeld},
+    FaultEntry{
+        FaultCode::kStateMissing, "state_missing", "the controller does not tell its state any more",
+        "the arm was told to stop",
+        "look at the controller's screen and at the arm, then touchcal resume to go on, or touchcal stop",
+        FaultKind::kHeld},
+    FaultEntry{FaultCode::kInternalError, "internal_error", "the daemon met an error of its own",
+               "the arm was told to stop and stands where it was",
+               "note the message and report it, then touchcal clear, touchcal reset and start a new run"},
 };
 
 }  // namespace

@@ -71,6 +71,8 @@ enum class FaultCode {
   kNotIdentifiable,
   kDaemonRestarted,
   kBlockMoved,
+  kStateMissing,
+  kInternalError,
 };
 
 /// Effect of a fault on the run. A refused command or start changes nothing; a warning is kept with the run,

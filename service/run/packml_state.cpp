@@ -223,7 +223,8 @@ State after_event(State state, Event event) {
     if (state == State::kUnholding || state == State::kUnsuspending) return State::kHolding;
     return state == State::kStarting ? State::kStopping : state;
   }
-  if (event == Event::kHoldFault) return state == State::kExecute ? State::kHolding : state;
+  if (event == Event::kHoldFault)
+    return state == State::kExecute || state == State::kCompleting ? State::kHolding : state;
   if (event == Event::kSuspendFault) return state == State::kExecute ? State::kSuspending : state;
   if (event == Event::kLinkDown) {
     if (is_active(state)) return State::kAborting;

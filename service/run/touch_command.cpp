@@ -80,7 +80,7 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
     case cs8::Outcome::kHeartbeatLost:
       return OutcomeFault{{FaultCode::kLinkLost, "the controller heard no heartbeat " + where}};
     case cs8::Outcome::kPermissionLost:
-      return OutcomeFault{{FaultCode::kPermissionLost, where}};
+      return OutcomeFault{{FaultCode::kPermissionLost, where}, true};
     case cs8::Outcome::kCollision:
       return OutcomeFault{{FaultCode::kCollision, where}};
     case cs8::Outcome::kDeadline:

@@ -129,8 +129,30 @@ INSTANTIATE_TEST_SUITE_P(
         Case{R"({"fault":"collision","touch":5})", "collision"},
         Case{R"({"fault":"wrong_joints","on":"touch_result","count":5})", "implausible_touch"}));
 
+/// The run waits with the fault and goes on when the cause is gone.
+class Held : public PlannedFaults, public ::testing::WithParamInterface<Case> {};
+
+TEST_P(Held, ARunWaitsForAPersonAndGoesOn) {
+  SCOPED_TRACE(GetParam().fault);
+  const std::int64_t id = run_with(GetParam().fault);
+  EXPECT_EQ(loop_.status().state, State::kHeld);
+  EXPECT_EQ(loop_.fault_name(), GetParam().expected);
+  expect_touches_once(loop_, id, GetParam().made);
+  mend(GetParam().mends);
+  loop_.command(Command::kResume);
+  loop_.run_until_over();
+  EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
+  expect_touches_once(loop_, id, kShortTouchCount);
+}
+
+INSTANTIATE_TEST_SUITE_P(AtTouchFive, Held,
+                         ::testing::Values(Case{R"({"fault":"probe_stuck","touch":5})",
+                                                "probe_stuck",
+                                                kFaulty - 1,
+                                                {R"({"fault":"probe_mended"})"}}));
+
 INSTANTIATE_TEST_SUITE_P(
-    People, Aborted,
+    People, Held,
     ::testing::Values(
         Case{R"({"fault":"hold","touch":5})", "permission_lost", kFaulty - 1, {R"({"fault":"move"})"}},
         Case{R"({"fault":"references_lost","touch":5})",
@@ -162,28 +184,6 @@ INSTANTIATE_TEST_SUITE_P(
              "permission_lost",
              kFaulty - 1,
              {R"({"fault":"remote_mode"})", R"({"fault":"power_on"})"}}));
-
-/// The run waits with the fault and goes on when the cause is gone.
-class Held : public PlannedFaults, public ::testing::WithParamInterface<Case> {};
-
-TEST_P(Held, ARunWaitsForAPersonAndGoesOn) {
-  SCOPED_TRACE(GetParam().fault);
-  const std::int64_t id = run_with(GetParam().fault);
-  EXPECT_EQ(loop_.status().state, State::kHeld);
-  EXPECT_EQ(loop_.fault_name(), GetParam().expected);
-  expect_touches_once(loop_, id, GetParam().made);
-  mend(GetParam().mends);
-  loop_.command(Command::kResume);
-  loop_.run_until_over();
-  EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
-  expect_touches_once(loop_, id, kShortTouchCount);
-}
-
-INSTANTIATE_TEST_SUITE_P(AtTouchFive, Held,
-                         ::testing::Values(Case{R"({"fault":"probe_stuck","touch":5})",
-                                                "probe_stuck",
-                                                kFaulty - 1,
-                                                {R"({"fault":"probe_mended"})"}}));
 
 class Unhurt : public PlannedFaults, public ::testing::WithParamInterface<const char*> {};
 

@@ -133,6 +133,18 @@ TEST_F(CellOperationTest, ALostLinkIsAFaultAndLookedForAgain) {
   EXPECT_FALSE(operation_.status().fault) << "it ended with the link";
 }
 
+TEST_F(CellOperationTest, AnErrorThatNobodyForesawEndsTheRunAndNotTheDaemon) {
+  launch();
+  controller_->on_begin = [](std::uint32_t) -> cs8::PermitReply { throw std::runtime_error("scripted"); };
+  ASSERT_TRUE(std::holds_alternative<Started>(operation_.start({.recipe = "few"})));
+  io_.restart();
+  while (operation_.status().state != State::kAborted) io_.run_one();
+  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kInternalError);
+  EXPECT_THAT(controller_->asked, Contains("stop"));
+  EXPECT_EQ(store_.runs(1).front().outcome, RunOutcome::kAborted);
+  EXPECT_FALSE(operation_.command(Command::kClear));
+}
+
 /// A run that a daemon left open, which a person resumes and which waits then for its plan or its permit.
 class ResumedOperationTest : public CellOperationTest {
  protected:

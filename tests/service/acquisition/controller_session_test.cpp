@@ -168,9 +168,96 @@ TEST_F(ControllerSessionTest, TheProbesInputsMayChangeOneAfterTheOther) {
 
 TEST_F(ControllerSessionTest, DataIsAsOldAsTheClockThatWasHandedInSays) {
   EXPECT_EQ(session.data_age_ms(), std::nullopt);
-  controller.heard = time.clocks().steady();
+  tell_state();
   time.pass(140ms);
   EXPECT_EQ(session.data_age_ms(), 140);
+  session.on_heartbeat();
+  EXPECT_EQ(session.data_age_ms(), 140) << "only State says how the controller is";
+}
+
+TEST_F(ControllerSessionTest, WhatStateSaysHoldsARunThatHasItsPermit) {
+  status.enter(State::kStarting);
+  ASSERT_TRUE(run(session.obtain_permit(7)));
+  status.enter(State::kExecute);
+  controller.state->permit = cs8::PermitState::kGranted;
+  const auto tell_for = [this](std::chrono::milliseconds duration) {
+    for (auto passed = 0ms; passed <= duration; passed += 20ms) {
+      tell_state();
+      time.pass(20ms);
+    }
+  };
+  tell_for(2s);
+  EXPECT_EQ(status.state(), State::kExecute);
+  controller.asked.clear();
+  controller.state->emergency_stop = 2;
+  tell_for(PermissionWatch::kAnswerPatience - 40ms);
+  EXPECT_EQ(status.state(), State::kExecute) << "the controller's own answer comes first";
+  EXPECT_FALSE(session.lost_permission().empty()) << "and a contact is none by now";
+  tell_for(40ms);
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_THAT(faults, ElementsAre("permission_lost"));
+  EXPECT_THAT(status.fault().value().message(), ::testing::HasSubstr("emergency stop"));
+  EXPECT_THAT(controller.asked, ElementsAre("stop"));
+  // A permit that State denies is asked for again, whatever the controller said of it before.
+  controller.state->emergency_stop = 0;
+  status.enter(State::kUnholding);
+  controller.asked.clear();
+  EXPECT_TRUE(run(session.obtain_permit(7)));
+  EXPECT_THAT(controller.asked, ElementsAre("begin 7"));
+}
+
+TEST_F(ControllerSessionTest, NoStateAtAllHoldsARun) {
+  status.enter(State::kStarting);
+  ASSERT_TRUE(run(session.obtain_permit(7)));
+  status.enter(State::kExecute);
+  controller.state->permit = cs8::PermitState::kGranted;
+  tell_state();
+  for (int i = 1; i < PermissionWatch::kSilentHeartbeatsMax; ++i) session.on_heartbeat();
+  EXPECT_EQ(status.state(), State::kExecute);
+  session.on_heartbeat();
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_THAT(faults, ElementsAre("state_missing"));
+}
+
+TEST_F(ControllerSessionTest, WithoutAPermitStateHoldsNothing) {
+  status.enter(State::kExecute);  // a guided run: a person jogs the arm, in manual mode
+  controller.state->mode = cs8::WorkingMode::kManual;
+  for (int i = 0; i < 100; ++i) {
+    tell_state();
+    session.on_heartbeat();
+    time.pass(20ms);
+  }
+  EXPECT_EQ(status.state(), State::kExecute);
+}
+
+TEST_F(ControllerSessionTest, LinksThatDieAtOnceAreTriedWithPausesAndFillNoTable) {
+  controller.is_connected = false;
+  status.enter(State::kResetting);
+  for (int i = 0; i < 20; ++i) {
+    run(session.connect(false));
+    controller.is_connected = false;
+    session.on_link_lost({cs8::LinkErrorKind::kPeerClosed, "the connection ended"}, Event::kLinkDown);
+  }
+  EXPECT_GT(time.since_begin(), 25s);
+  EXPECT_THAT(faults, ElementsAre("link_lost", "link_lost")) << "the first and the tenth";
+  EXPECT_THAT(status.fault().value().message(), ::testing::HasSubstr("20 short links"));
+}
+
+TEST_F(ControllerSessionTest, ASearchThatTheControllerWillNotMakeIsNamedBeforeAnythingMoves) {
+  status.enter(State::kResetting);
+  const std::vector<calib::PlannedTouch>& touches = plan_of_owners().touches.touches;
+  const auto fault_with = [&](std::int32_t length_dmm, std::int32_t speed_um_s) {
+    cs8::Welcome welcome;
+    welcome.search_length_max_dmm = length_dmm;
+    welcome.search_speed_max_um_s = speed_um_s;
+    controller.on_connect = [welcome] { return welcome; };
+    run(session.connect(false));
+    const auto fault = session.search_fault(touches);
+    return fault ? fault->detail : std::string();
+  };
+  EXPECT_EQ(fault_with(400'000, 20'000), "");
+  EXPECT_THAT(fault_with(10'000, 20'000), ::testing::StartsWith("touch 1 searches over"));
+  EXPECT_THAT(fault_with(400'000, 100), ::testing::HasSubstr("takes 100 at most"));
 }
 
 TEST_F(ControllerSessionTest, AMoveThatDoesNotArriveIsAFaultUnlessSomebodyAskedForAStop) {

@@ -33,10 +33,6 @@ class ScriptedController : public Controller {
   void finish() override;
   [[nodiscard]] std::optional<cs8::Permit> latest_permit() const override { return permit; }
   [[nodiscard]] std::optional<cs8::State> latest_state() const override;
-  [[nodiscard]] std::optional<std::chrono::steady_clock::time_point> heard_at() const override {
-    return heard;
-  }
-
   [[nodiscard]] std::uint32_t next_sequence() const override { return sequence + 1; }
   boost::asio::awaitable<cs8::TouchReply> touch(cs8::Touch command) override;
   boost::asio::awaitable<cs8::MoveReply> travel(cs8::Travel command) override;
@@ -56,7 +52,6 @@ class ScriptedController : public Controller {
   bool is_connected = true;
   std::optional<cs8::State> state = ready_state();
   std::optional<cs8::Permit> permit;
-  std::optional<std::chrono::steady_clock::time_point> heard;
   std::uint32_t sequence = 0;  // of the last command
   std::vector<std::string> asked;
 

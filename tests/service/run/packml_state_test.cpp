@@ -53,7 +53,7 @@ const std::array kTable{
     Row{kCompleting,
         {no, no, no, no, no, no, no, no,
          kCompleting, no, kStopping, kAborting, no, no, kCompleting},
-        {kComplete, kCompleting, kCompleting, kAborting, kCompleting, kAborting}},
+        {kComplete, kHolding, kCompleting, kAborting, kCompleting, kAborting}},
     Row{kComplete,
         {kStarting, no, no, no, no, kComplete, kComplete, no,
          kComplete, kComplete, kStopped, kComplete, no, kResetting, kComplete},

@@ -62,4 +62,6 @@ export const kFaultTitlesFr: Readonly<Record<string, string>> = {
   not_identifiable: 'paramètres non déterminés',
   daemon_restarted: 'démon relancé',
   block_moved: 'bloc déplacé',
+  state_missing: 'état de la baie manquant',
+  internal_error: 'erreur interne',
 };

@@ -1,0 +1,44 @@
+#include "service/acquisition/reconnect_pause.hpp"
+
+#include <gtest/gtest.h>
+
+namespace cell {
+namespace {
+
+using namespace std::chrono_literals;
+using TimePoint = ReconnectPause::TimePoint;
+
+TEST(ReconnectPause, GrowsWithLinksThatDieAtOnceAsWithTriesThatFail) {
+  for (const bool linked : {false, true}) {
+    ReconnectPause pause;
+    TimePoint now = TimePoint{} + 1h;
+    EXPECT_LE(pause.earliest(), now) << "the first try is made at once";
+    for (const auto expected : {100ms, 200ms, 400ms, 800ms, 1600ms, 2000ms, 2000ms}) {
+      pause.on_try(now, linked);
+      pause.on_link_end(now);
+      EXPECT_EQ(pause.earliest() - now, expected);
+      now = pause.earliest();
+    }
+    EXPECT_EQ(pause.short_links(), linked ? 7 : 0);
+  }
+}
+
+TEST(ReconnectPause, ALinkThatLastedEndsTheGrowthAndItsEndIsAllowedToBeNoticed) {
+  ReconnectPause pause;
+  TimePoint now = TimePoint{} + 1h;
+  for (int i = 0; i < 5; ++i) {
+    pause.on_try(now, true);
+    pause.on_link_end(now);
+    now = pause.earliest();
+  }
+  pause.on_try(now, true);
+  now += ReconnectPause::kLasts;
+  pause.on_link_end(now);
+  EXPECT_EQ(pause.short_links(), 0);
+  EXPECT_EQ(pause.earliest() - now, ReconnectPause::kFirst);
+  pause.on_try(now, false);
+  EXPECT_EQ(pause.earliest() - now, ReconnectPause::kFirst);
+}
+
+}  // namespace
+}  // namespace cell
