@@ -98,8 +98,6 @@ CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, R
     status_.set_last_accepted(accepted->id, accepted->ended_at);
 }
 
-std::string CellOperation::now_text() const { return format_utc(clocks_.system()); }
-
 void CellOperation::launch() {
   if (auto restored = recovery_.restore()) {
     run_.emplace(*std::move(restored));
@@ -187,6 +185,9 @@ std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& re
                           .unmet = std::move(unmet)};
   }
   const bool waits_for_remote = request.guided && state == State::kResetting;
+  if (waits_for_remote && (session_.open_touch() || session_.sequence_to_settle() != 0))
+    return CommandRefusal{.detail = "a touch of the last run is still to be stored; then once more",
+                          .code = FaultCode::kNotInThisState};
   if (!waits_for_remote && !after_command(state, Command::kStart)) {
     return CommandRefusal{.detail = fmt::format("a run cannot start in the state {}", state_name(state)),
                           .code = FaultCode::kNotInThisState};
@@ -256,7 +257,9 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
   if (command == Command::kTake) return take();
   if (command == Command::kUndo) return undo();
   spdlog::info("command {}", command_name(command));
-  apply_command(command);
+  if (!apply_command(command))
+    return CommandRefusal{.detail = "it could not be stored: " + status_.fault()->message(),
+                          .code = FaultCode::kStoreFailed};
   if (status_.state() == state) status_.enter(*next);
   // Entering these two states stops the arm. A stop in any other case is sent all the same: nothing here
   // knows better than who gives it whether something moves.
@@ -312,8 +315,9 @@ std::optional<CommandRefusal> CellOperation::refuse_undo() const {
   return CommandRefusal{.detail = "there is no touch by hand to take back"};
 }
 
-/// What a command changes that was not refused, before the next state is entered.
-void CellOperation::apply_command(Command command) {
+/// What a command changes that was not refused, before the next state is entered. False when a person's word
+/// on a hold could not be stored: the run stays on hold.
+bool CellOperation::apply_command(Command command) {
   const bool answers_hold =
       command == Command::kResume || command == Command::kRetry || command == Command::kSkip;
   const bool settles_fault = answers_hold || command == Command::kAcknowledge || command == Command::kClear ||
@@ -327,9 +331,11 @@ void CellOperation::apply_command(Command command) {
     status_.publish();
   }
   if (status_.state() == State::kHeld && answers_hold) {
-    touches_.settle_hold(*run_, command);
+    const bool stored = touches_.settle_hold(*run_, command);
     status_.publish();
+    return stored;
   }
+  return true;
 }
 
 std::optional<CommandRefusal> CellOperation::locate() {
@@ -365,13 +371,6 @@ std::vector<Command> CellOperation::exits() const {
 
 void CellOperation::keep_place_in(const std::filesystem::path& file) {
   if (location_.keep_in(file)) forget_plans();
-}
-
-/// All that was planned or made ready where the block stood before.
-void CellOperation::forget_plans() {
-  run_.reset();
-  plans_.clear();
-  preparation_.forget_all();
 }
 
 Status CellOperation::status() const {

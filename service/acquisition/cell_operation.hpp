@@ -104,7 +104,7 @@ class CellOperation {
   [[nodiscard]] std::optional<CommandRefusal> refusal_reason(Command command) const;
   [[nodiscard]] std::optional<CommandRefusal> refuse_answer_to_hold(Command command) const;
   [[nodiscard]] std::optional<CommandRefusal> refuse_undo() const;
-  void apply_command(Command command);
+  bool apply_command(Command command);
   std::optional<CommandRefusal> locate();
   std::optional<CommandRefusal> take();
   std::optional<CommandRefusal> undo();

@@ -6,6 +6,7 @@
 #include "calib_core/planning/aimed_transfer.hpp"
 #include "service/acquisition/cell_operation.hpp"
 #include "service/acquisition/touch_judgement.hpp"
+#include "service/base/utc_time.hpp"
 #include "service/run/touch_command.hpp"
 
 namespace cell {
@@ -187,6 +188,13 @@ asio::awaitable<void> CellOperation::wait_out_suspension() {
   status_.apply(Event::kDone);
 }
 
+/// All that was planned or made ready where the block stood before.
+void CellOperation::forget_plans() {
+  run_.reset();
+  plans_.clear();
+  preparation_.forget_all();
+}
+
 asio::awaitable<void> CellOperation::pass_block() {
   const bool found = co_await location_.pass();
   if (!found) co_return;
@@ -228,6 +236,8 @@ asio::awaitable<bool> CellOperation::park() {
   const bool arrived = co_await session_.travel(command);
   co_return arrived;
 }
+
+std::string CellOperation::now_text() const { return format_utc(clocks_.system()); }
 
 /// The run is over: its verdict and its latest result are stored with it.
 void CellOperation::close_run(RunOutcome outcome) {

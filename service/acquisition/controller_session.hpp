@@ -27,6 +27,7 @@ struct OpenTouch {
   std::uint32_t sequence = 0;
   calib::PlannedTouch planned;  // as it was aimed
   int aimed_with = 0;           // as StoredTouch::aimed_with
+  std::int64_t run_id = 0;      // whose touch it is: no other run may keep it
 };
 
 /// What is known of the controller across connections: the link, the permit, the command still open there,

@@ -129,9 +129,8 @@ std::optional<std::string> ManualTouching::take_touch(ActiveRun* active, const H
   result.source = cs8::CaptureSource::kPolled;
   result.contact = touch.wire_joints;
   result.edges = 1;
-  const std::optional<OpenTouch>& open = session_.open_touch();
   const calib::PlannedTouch wanted = *planned;  // the run goes on to the next one
-  if (!touches_.keep(*active, wanted, result, open ? &*open : nullptr)) return "it could not be stored";
+  if (!touches_.keep(*active, wanted, result, nullptr)) return "it could not be stored";
   if (active->place_check) {
     if (const auto moved = active->place_check->check(active->run.problem().touches.back()))
       status_.raise(*moved, Event::kHoldFault);
@@ -170,7 +169,7 @@ void ManualTouching::undo(ActiveRun& active) {
   try {
     store_.withdraw_touch(active.run.id(), active.run.touches().back().number, "a person took it back");
   } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
     return;
   }
   active.run.withdraw_last();

@@ -53,7 +53,7 @@ class ReferenceMonitor {
                               const HeightM& height_m) const;
 
   // A person's answer to a hold.
-  void look_again() { place_->made_at = -1; }
+  void look_again() { place_->due = true; }
   void allow_drift() { place_->allowed_drift_m = place_->drift_m; }
   void skip(int touches_done);
 
@@ -67,7 +67,7 @@ class ReferenceMonitor {
     int made_at = -1;                             // touches done when the last one was made
     double drift_m = 0.0;                         // of the last one
     double allowed_drift_m = 0.0;                 // what a person has let pass
-    bool due = false;                             // whatever is done: a restarted daemon looks again
+    bool due = false;                             // whatever is done: a daemon restarted, or a person asked
   };
 
   int every_ = 0;

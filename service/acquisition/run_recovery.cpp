@@ -78,7 +78,8 @@ void RunRecovery::take_up_open_command(std::int64_t run_id) {
   const auto open = store_.open_command(run_id);
   auto command = open ? command_from_text(open->touch_json) : std::nullopt;
   if (!command) return;
-  session_.set_open_touch({open->session, open->sequence, std::move(command->touch), open->aimed_with});
+  session_.set_open_touch(
+      {open->session, open->sequence, std::move(command->touch), open->aimed_with, run_id});
   preparation_.set_made_path(std::move(command->path));
 }
 
@@ -123,6 +124,7 @@ asio::awaitable<bool> RunRecovery::plan_again(ActiveRun& active) {
   if (!active.guided) {
     preparation_.recall(run);
     touches_.restore_reference(active);
+    touches_.suspect_last(active);
   }
   co_return true;
 }

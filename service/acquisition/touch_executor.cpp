@@ -42,6 +42,9 @@ void TouchExecutor::begin_run(const ActiveRun& active) {
   held_by_ = HeldBy::kNothing;
   history_ = {};
   outlier_.settle();
+  if (beside_plan_) settle_beside_plan();  // of a run that was stopped before it could be stored
+  total_stored_ = true;
+  stylus_allowed_ = false;
   reference_.begin_run(active.run.recipe().reference_every);
   false_trigger_count_ = 0;
 }
@@ -58,6 +61,17 @@ void TouchExecutor::restore_reference(ActiveRun& active) {
   run.note_references(there);
   const auto reference = there.empty() ? std::nullopt : std::optional(from_wire(there.front().joints));
   reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
+}
+
+void TouchExecutor::suspect_last(const ActiveRun& active) {
+  const Run& run = active.run;
+  const calib::PlannedTouch* planned = run.touches_made() > 0 ? run.planned(run.touches_made() - 1) : nullptr;
+  if (!planned) return;
+  calib::OnlineArmEstimate with = preparation_.aim();
+  if (!with.add(run.problem().touches.back()).contradicts) return;
+  auto made = preparation_.aim_or_nominal(*planned);
+  if (auto* aimed = std::get_if<calib::AimedTouch>(&made))
+    outlier_.begin(std::move(*aimed), preparation_.aim());
 }
 
 asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
@@ -79,7 +93,8 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   if (!ready) co_return;
   const OutgoingTouch outgoing = preparation_.send_next();
   session_.forget_standing();
-  const OpenTouch open{session_.number(), session_.next_sequence(), outgoing.touch, outgoing.aimed_with};
+  const OpenTouch open{session_.number(), session_.next_sequence(), outgoing.touch, outgoing.aimed_with,
+                       active.run.id()};
   if (!keep_open_command(active, open)) co_return;
   auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
   work_ahead(active);
@@ -120,9 +135,7 @@ bool TouchExecutor::keep_open_command(ActiveRun& active, const OpenTouch& open) 
   const Run& run = active.run;
   session_.set_open_touch(open);
   try {
-    const std::vector<PlanChange>& changes = run.plan_changes();
-    for (; active.stored_changes < changes.size(); ++active.stored_changes)
-      store_.append_plan_change(run.id(), changes[active.stored_changes]);
+    store_plan_changes(active);
     store_.set_open_command(run.id(), {.session = open.session,
                                        .sequence = open.sequence,
                                        .aimed_with = open.aimed_with,
@@ -133,6 +146,12 @@ bool TouchExecutor::keep_open_command(ActiveRun& active, const OpenTouch& open) 
     status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
     return false;
   }
+}
+
+void TouchExecutor::store_plan_changes(ActiveRun& active) {
+  const std::vector<PlanChange>& changes = active.run.plan_changes();
+  for (; active.stored_changes < changes.size(); ++active.stored_changes)
+    store_.append_plan_change(active.run.id(), changes[active.stored_changes]);
 }
 
 /// While the arm moves.
@@ -152,16 +171,24 @@ void TouchExecutor::identify(ActiveRun& active) {
 /// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.
 void TouchExecutor::stop_when_good_enough(ActiveRun& active, std::size_t first) {
   Run& run = active.run;
+  if (!total_stored_) store_total(run);
   if (!run.meets_accuracy_goal()) return;
   const int dropped = run.drop_fit_touches(first);
   if (dropped == 0) return;
   spdlog::info("run {} is accurate enough: {} touches are left out", run.id(), dropped);
+  store_total(run);
+  status_.publish();
+}
+
+/// For the list of runs; the changes of the plan say the same, so that a failure is only tried again.
+void TouchExecutor::store_total(const Run& run) {
   try {
     store_.set_touches_total(run.id(), run.touches_total());
+    total_stored_ = true;
   } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    total_stored_ = false;
+    spdlog::warn("run {}: its number of touches could not be stored: {}", run.id(), error.what());
   }
-  status_.publish();
 }
 
 void TouchExecutor::take_contact(ActiveRun& active, const OpenTouch& open, const cs8::TouchReply& reply,
@@ -255,8 +282,9 @@ bool TouchExecutor::keep(ActiveRun& active, const calib::PlannedTouch& planned,
   try {
     store_.append_touch(run.id(), touch);
   } catch (const std::exception& error) {
+    // The controller keeps its answer until it is acknowledged: a run on hold stores it when it goes on.
     status_.raise({FaultCode::kStoreFailed, error.what()},
-                  active.interruption ? Event::kNotReadyFault : Event::kAbortFault);
+                  status_.state() == State::kExecute ? Event::kHoldFault : Event::kNotReadyFault);
     return false;
   }
   run.add(touch);
@@ -281,7 +309,8 @@ asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std:
   if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
   const auto* result = std::get_if<cs8::TouchResult>(&reply);
   const std::optional<OpenTouch> open = session_.open_touch();
-  const bool ours = active && open && open->session == session_.number() && open->sequence == sequence;
+  const bool ours = active && open && open->run_id == active->run.id() &&
+                    open->session == session_.number() && open->sequence == sequence;
   if (result && ours && judge_touch(cell_, open->planned, *result, {}).next == TouchJudgement::Next::kKeep) {
     spdlog::info("run {}: touch {} had been made when the run ended", active->run.id(),
                  active->run.touches_done() + 1);
@@ -293,11 +322,12 @@ asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std:
   session_.acknowledge(sequence);
 }
 
-/// A contact of a run that is over: its stored result follows, its verdict does not change.
+/// A contact of a run that is over or on hold: its stored result follows, its verdict does not change.
 bool TouchExecutor::keep_late_touch(ActiveRun& active, const OpenTouch& open,
                                     const cs8::TouchResult& result) {
   if (!keep(active, open.planned, result, &open)) return false;
   identify(active);
+  if (active.open && !active.interruption && !active.guided) suspect_last(active);
   try {
     if (const auto document = result_json(active, regions_))
       store_.set_result_json(active.run.id(), *document);

@@ -43,7 +43,10 @@ class TouchExecutor {
   boost::asio::awaitable<void> make_next_touch(ActiveRun& active);
   /// Computes the result of all touches so far, unless it exists.
   void identify(ActiveRun& active);
-  /// Stores a contact and adds it to the run; false when it could not be stored, which ends the run.
+  /// When a run continues after a restart, or a contact was kept late: a last touch that the others
+  /// contradict is made again before anything else. The estimate must be that without it.
+  void suspect_last(const ActiveRun& active);
+  /// Stores a contact and adds it to the run; false when it could not be stored, which holds the run.
   /// `answered` is the command that it answers; null where none is known.
   bool keep(ActiveRun& active, const calib::PlannedTouch& planned, const cs8::TouchResult& result,
             const OpenTouch* answered);
@@ -53,8 +56,8 @@ class TouchExecutor {
 
   [[nodiscard]] HeldBy held_by() const { return held_by_; }
   void forget_hold() { held_by_ = HeldBy::kNothing; }
-  /// A person's answer to the hold, other than to go on.
-  void settle_hold(ActiveRun& active, Command command);
+  /// A person's answer to the hold. False when it could not be stored: nothing has changed then.
+  bool settle_hold(ActiveRun& active, Command command);
   /// Goes on from the hold.
   [[nodiscard]] Command answer_to_hold() const { return answer_; }
 
@@ -73,16 +76,18 @@ class TouchExecutor {
   void watch_fit(const ActiveRun& active);
   bool keep_late_touch(ActiveRun& active, const OpenTouch& open, const cs8::TouchResult& result);
 
+  void store_plan_changes(ActiveRun& active);
+  void store_total(const Run& run);
+
   // Beside the plan (touch_executor_beside_plan.cpp).
-  boost::asio::awaitable<std::optional<cs8::TouchResult>> touch_beside_plan(ActiveRun& active,
-                                                                            calib::AimedTouch aimed,
-                                                                            HeldBy held_by);
+  boost::asio::awaitable<bool> touch_beside_plan(ActiveRun& active, calib::AimedTouch aimed, HeldBy held_by);
+  void settle_beside_plan();
   boost::asio::awaitable<void> touch_reference(ActiveRun& active);
   bool aim_at_reference();
   void judge_reference(const ActiveRun& active, const calib::JointVector& contact);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
-  void replace_last(ActiveRun& active, OutlierRetest::Replaced replaced);
-  bool leave_out_outlier(ActiveRun& active);
+  bool replace_last(ActiveRun& active, OutlierRetest::Replaced replaced);
+  bool leave_out(ActiveRun& active, bool outlier);
 
   const Cell& cell_;
   const TipRegions& regions_;  // of the cell
@@ -95,6 +100,14 @@ class TouchExecutor {
   TouchHistory history_;
   ReferenceMonitor reference_;
   OutlierRetest outlier_;
+  /// The contact of a touch beside the plan until it is stored: the controller has it as well.
+  struct BesidePlan {
+    std::uint32_t session = 0;
+    std::uint32_t sequence = 0;
+    cs8::TouchResult result;
+  };
+  std::optional<BesidePlan> beside_plan_;
+  bool total_stored_ = true;  // the run's number of touches
   int false_trigger_count_ = 0;
   bool stylus_allowed_ = false;  // by a person
   HeldBy held_by_ = HeldBy::kNothing;

@@ -17,20 +17,21 @@ namespace cell {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
-/// A touch as it is given; nothing when there is no measurement.
-asio::awaitable<std::optional<cs8::TouchResult>> TouchExecutor::touch_beside_plan(ActiveRun& active,
-                                                                                  calib::AimedTouch aimed,
-                                                                                  HeldBy held_by) {
+/// Makes a touch as it is given, unless the contact of the last one is still to be stored; false when there
+/// is no measurement. The controller keeps the contact until settle_beside_plan().
+asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib::AimedTouch aimed,
+                                                       HeldBy held_by) {
+  if (beside_plan_) co_return true;
   const auto from = co_await session_.standing_joints();
-  if (status_.state() != State::kExecute) co_return std::nullopt;
+  if (status_.state() != State::kExecute) co_return false;
   if (!from) {
     co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
-    co_return std::nullopt;
+    co_return false;
   }
   auto ready = preparation_.prepare(std::move(aimed), *from);
   if (!ready) {
     status_.raise({FaultCode::kNoSafeWay, "to a place that was touched before"}, Event::kAbortFault);
-    co_return std::nullopt;
+    co_return false;
   }
   const OutgoingTouch outgoing = preparation_.send(*std::move(ready));
   session_.forget_standing();
@@ -40,15 +41,21 @@ asio::awaitable<std::optional<cs8::TouchResult>> TouchExecutor::touch_beside_pla
   const cs8::TouchReply reply = co_await std::move(answer);
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     take_rejection(*rejected, held_by);
-    co_return std::nullopt;
+    co_return false;
   }
   const auto* result = std::get_if<cs8::TouchResult>(&reply.answer);
-  if (!result) co_return std::nullopt;  // a lost link was reported by the controller's hook
-  if (!accept(active, outgoing.touch, reply.sequence, *result, held_by)) co_return std::nullopt;
-  session_.acknowledge(reply.sequence);
+  if (!result) co_return false;  // a lost link was reported by the controller's hook
+  if (!accept(active, outgoing.touch, reply.sequence, *result, held_by)) co_return false;
+  beside_plan_ = {session_.number(), reply.sequence, *result};
   preparation_.set_missed(false);
   session_.set_standing(outgoing.touch.clear_joints);
-  co_return *result;
+  co_return true;
+}
+
+/// What the contact says is stored, or there is nothing to store: the controller may forget it.
+void TouchExecutor::settle_beside_plan() {
+  if (beside_plan_->session == session_.number()) session_.acknowledge(beside_plan_->sequence);
+  beside_plan_.reset();
 }
 
 bool TouchExecutor::aim_at_reference() {
@@ -64,26 +71,29 @@ bool TouchExecutor::aim_at_reference() {
 
 asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
   if (!aim_at_reference()) co_return;
-  const auto result = co_await touch_beside_plan(active, *reference_.aimed(), HeldBy::kReference);
-  if (!result) co_return;
+  const bool touched = co_await touch_beside_plan(active, *reference_.aimed(), HeldBy::kReference);
+  if (!touched) co_return;
   const Run& run = active.run;
-  const calib::JointVector contact = from_wire(result->contact);
+  const calib::JointVector contact = from_wire(beside_plan_->result.contact);
   const auto height_m = [this](const calib::JointVector& joints) {
     return preparation_.height_m(reference_.planned().face, joints);
   };
-  const ReferenceMonitor::Reading reading = reference_.add_contact(contact, run.touches_done(), height_m);
-  if (reading.told_m) status_.set_reference_drift(*reading.told_m);
+  ReferenceMonitor with_contact = reference_;
+  const ReferenceMonitor::Reading reading = with_contact.add_contact(contact, run.touches_done(), height_m);
   const double drift_mm = calib::mm_from_metres(reading.drift_m);
   try {
     store_.append_reference(run.id(), {.number = reading.number,
                                        .touches_done = run.touches_done(),
-                                       .joints = result->contact,
+                                       .joints = beside_plan_->result.contact,
                                        .drift_mm = reading.told_m ? std::optional(drift_mm) : std::nullopt,
                                        .captured_at = format_utc(clocks_.system())});
   } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
     co_return;
   }
+  settle_beside_plan();
+  reference_ = std::move(with_contact);
+  if (reading.told_m) status_.set_reference_drift(*reading.told_m);
   spdlog::info("run {} reference touch {}: drift {:.3f} mm", run.id(), reading.number, drift_mm);
   active.run.note_references(store_.references(run.id()));
   active.run.identify();
@@ -110,37 +120,40 @@ void TouchExecutor::judge_reference(const ActiveRun& active, const calib::JointV
 }
 
 asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
-  const auto result = co_await touch_beside_plan(active, outlier_.aimed(), HeldBy::kOutlier);
-  if (!result) co_return;
+  const bool touched = co_await touch_beside_plan(active, outlier_.aimed(), HeldBy::kOutlier);
+  if (!touched) co_return;
+  const cs8::TouchResult& result = beside_plan_->result;
   const int face = outlier_.aimed().touch.face;
   const StoredTouch& first = active.run.touches().back();
   StoredTouch again = first;
-  again.joints = result->contact;
-  again.source = result->source;
-  again.overtravel_dmm = result->overtravel_dmm;
+  again.joints = result.contact;
+  again.source = result.source;
+  again.overtravel_dmm = result.overtravel_dmm;
   again.captured_at = format_utc(clocks_.system());
   again.sequence = 0;  // no command of the plan
   const double apart_m = std::abs(preparation_.height_m(face, from_wire(again.joints)) -
                                   preparation_.height_m(face, from_wire(first.joints)));
   auto finding = outlier_.judge(first, again, apart_m, agreement_max_m(cell_));
+  if (auto* replaced = std::get_if<OutlierRetest::Replaced>(&finding)) {
+    if (!replace_last(active, std::move(*replaced))) co_return;
+  }
+  settle_beside_plan();
   if (const auto* confirmed = std::get_if<OutlierRetest::Confirmed>(&finding)) {
     status_.warn(confirmed->warning);
     outlier_.settle();
   } else if (const auto* held = std::get_if<OutlierRetest::Held>(&finding)) {
     held_by_ = HeldBy::kOutlier;
     status_.raise(held->fault, Event::kHoldFault);
-  } else {
-    replace_last(active, std::get<OutlierRetest::Replaced>(std::move(finding)));
   }
 }
 
-void TouchExecutor::replace_last(ActiveRun& active, OutlierRetest::Replaced replaced) {
+bool TouchExecutor::replace_last(ActiveRun& active, OutlierRetest::Replaced replaced) {
   const StoredTouch& again = replaced.again;
   try {
     store_.replace_touch(active.run.id(), again, "it did not fit the others, its repetition does");
   } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
-    return;
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
+    return false;
   }
   active.run.replace_last(again);
   spdlog::warn("run {} touch {} is replaced by its repetition, which fits the others", active.run.id(),
@@ -148,11 +161,14 @@ void TouchExecutor::replace_last(ActiveRun& active, OutlierRetest::Replaced repl
   preparation_.set_aim(std::move(replaced.aim));
   outlier_.settle();
   status_.publish();
+  return true;
 }
 
-void TouchExecutor::settle_hold(ActiveRun& active, Command command) {
-  answer_ = command;
+bool TouchExecutor::settle_hold(ActiveRun& active, Command command) {
   const bool retry = command == Command::kRetry, skip = command == Command::kSkip;
+  const bool leaves_out = skip && (held_by_ == HeldBy::kTouch || held_by_ == HeldBy::kOutlier);
+  if (leaves_out && !leave_out(active, held_by_ == HeldBy::kOutlier)) return false;
+  answer_ = command;
   const HeldBy held_by = std::exchange(held_by_, retry ? held_by_ : HeldBy::kNothing);
   if (held_by == HeldBy::kDrift && retry) reference_.look_again();
   if (held_by == HeldBy::kDrift && !retry) {
@@ -165,25 +181,38 @@ void TouchExecutor::settle_hold(ActiveRun& active, Command command) {
     status_.warn({FaultCode::kTouchOutlier, fmt::format("touch {}", active.run.touches_done())});
     outlier_.settle();
   }
-  if (!skip || (held_by != HeldBy::kTouch && held_by != HeldBy::kOutlier)) return;
-  if (held_by == HeldBy::kOutlier && !leave_out_outlier(active)) return;
-  spdlog::warn("run {}: touch {} of the plan is left out, the run stays incomplete", active.run.id(),
-               active.run.touches_made() + 1);
-  active.run.skip_next();
+  return true;
 }
 
-/// False when that could not be stored.
-bool TouchExecutor::leave_out_outlier(ActiveRun& active) {
+/// The touch that holds the run, with the contact that does not fit where it is an `outlier`. Stored in one
+/// piece before it counts; false when that could not be.
+bool TouchExecutor::leave_out(ActiveRun& active, bool outlier) {
+  Run& run = active.run;
+  std::vector<PlanChange> changes(
+      run.plan_changes().begin() + static_cast<std::ptrdiff_t>(active.stored_changes),
+      run.plan_changes().end());
+  const int place = static_cast<int>(run.touches_made()) - (outlier ? 1 : 0);
+  changes.push_back({PlanChange::Kind::kSkip, place});
   try {
-    store_.withdraw_touch(active.run.id(), active.run.touches().back().number,
-                          "it did not fit the others, and a person left it out");
+    if (outlier) {
+      store_.leave_out(run.id(), changes,
+                       Withdrawal{.number = run.touches().back().number,
+                                  .reason = "it did not fit the others, and a person left it out"});
+    } else {
+      store_.leave_out(run.id(), changes);
+    }
   } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
+    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
     return false;
   }
-  active.run.withdraw_last();
-  preparation_.set_aim(outlier_.without());
-  outlier_.settle();
+  if (outlier) {
+    run.withdraw_last();
+    preparation_.set_aim(outlier_.without());
+    outlier_.settle();
+  }
+  spdlog::warn("run {}: touch {} of the plan is left out, the run stays incomplete", run.id(), place + 1);
+  run.skip_next();
+  active.stored_changes = run.plan_changes().size();
   return true;
 }
 

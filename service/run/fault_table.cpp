@@ -257,8 +257,8 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kStoreFailed, "store_failed", "a touch could not be stored",
                "the arm finished the touch and stands clear of the face",
                "free disk space or repair the state directory's "
-               "rights, then touchcal clear, touchcal reset and start a new run",
-               FaultKind::kAborted, "P39"},
+               "rights, then touchcal resume if the run is on hold, else touchcal clear and touchcal reset",
+               FaultKind::kHeld, "P39"},
     FaultEntry{FaultCode::kNotIdentifiable, "not_identifiable", "the touches do not determine the parameters",
                "the arm finished its touches",
                "look at the result's message; change the recipe and start a new run", FaultKind::kWarning},

@@ -131,6 +131,10 @@ void Run::withdraw_last() {
   touches_.pop_back();
   problem_.touches.pop_back();
   identified_count_ = 0;
+  if (!touches_.empty()) return;
+  latest_ = {};  // without a touch there is nothing to identify from
+  predicted_tip_rms_m_.reset();
+  touch_benefit_.reset();
 }
 
 void Run::note_references(const std::vector<ReferenceTouch>& references) {

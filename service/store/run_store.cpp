@@ -54,6 +54,14 @@ void supersede(SQLite::Database& database, std::int64_t run_id, int number, cons
   remove.exec();
 }
 
+void insert_plan_change(SQLite::Database& database, std::int64_t run_id, const PlanChange& change) {
+  SQLite::Statement insert(database, "INSERT INTO plan_changes(run_id, kind, place) VALUES(?, ?, ?)");
+  insert.bind(1, run_id);
+  insert.bind(2, std::string(row::plan_change_name(change.kind)));
+  insert.bind(3, change.place);
+  insert.exec();
+}
+
 }  // namespace
 
 struct RunStore::Statements {
@@ -125,11 +133,15 @@ void RunStore::set_touches_total(std::int64_t run_id, int touches_total) {
 
 void RunStore::append_plan_change(std::int64_t run_id, const PlanChange& change) {
   const RelaxedDurability unsynced(*database_);
-  SQLite::Statement insert(*database_, "INSERT INTO plan_changes(run_id, kind, place) VALUES(?, ?, ?)");
-  insert.bind(1, run_id);
-  insert.bind(2, std::string(row::plan_change_name(change.kind)));
-  insert.bind(3, change.place);
-  insert.exec();
+  insert_plan_change(*database_, run_id, change);
+}
+
+void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& changes,
+                         const std::optional<Withdrawal>& withdrawn) {
+  SQLite::Transaction transaction(*database_);
+  if (withdrawn) supersede(*database_, run_id, withdrawn->number, withdrawn->reason);
+  for (const PlanChange& change : changes) insert_plan_change(*database_, run_id, change);
+  transaction.commit();
 }
 
 void RunStore::set_open_command(std::int64_t run_id, const OpenCommand& command) {

@@ -60,6 +60,12 @@ struct PlanChange {
   int place = 0;  // index in the plan at that time, from 0
 };
 
+/// A touch that is to count no longer, and why.
+struct Withdrawal {
+  int number = 0;
+  std::string reason;
+};
+
 /// The temperature of the block that a run was started with.
 struct StoredTemperature {
   double celsius = 0.0;
@@ -142,6 +148,10 @@ class RunStore {
   void replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason);
   /// Removes the touch, which is kept as superseded.
   void withdraw_touch(std::int64_t run_id, int number, const std::string& reason);
+  /// Changes of the plan by a person's word, the withdrawal of a touch with them: durable on return, all or
+  /// none.
+  void leave_out(std::int64_t run_id, const std::vector<PlanChange>& changes,
+                 const std::optional<Withdrawal>& withdrawn = {});
   void append_reference(std::int64_t run_id, const ReferenceTouch& touch);
   void append_resumption(std::int64_t run_id, const std::string& at, int touches_done);
   void finish_run(std::int64_t run_id, const RunEnd& end);

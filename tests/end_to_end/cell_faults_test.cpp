@@ -149,20 +149,23 @@ class FailingStore : public ::testing::Test {
   FullDisk disk_{loop_};
 };
 
-TEST_F(FailingStore, ATouchThatCannotBeStoredDoesNotCountAndIsKeptOnceThereIsRoom) {
+TEST_F(FailingStore, ATouchThatCannotBeStoredHoldsTheRunAndIsKeptOnceThereIsRoom) {
   for (const int number : {1, 17, kShortTouchCount}) {
     SCOPED_TRACE("touch " + std::to_string(number));
     disk_.refuse_touches_from(number);
     const std::int64_t id = loop_.start();
     loop_.run_until_over();
-    expect_fault(State::kAborted);
+    expect_fault(State::kHeld);
     EXPECT_EQ(loop_.status().touches_done, number - 1);
     expect_touches_once(loop_, id, number - 1);
-    EXPECT_EQ(loop_.store().run(id)->outcome, cell::RunOutcome::kAborted);
-    EXPECT_EQ(loop_.store().run(id)->fault_code, "store_failed");
+    loop_.command(Command::kResume);
+    loop_.run_until_over();
+    expect_fault(State::kHeld);  // still full
     disk_.relieve();
-    leave_and_run_anew();
-    expect_touches_once(loop_, id, number);
+    loop_.command(Command::kResume);
+    loop_.run_until_over();
+    EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
+    expect_touches_once(loop_, id, kShortTouchCount);
   }
 }
 
@@ -170,7 +173,7 @@ TEST_F(FailingStore, ADiskThatStaysFullIsToldAtEveryResetAndLosesNothing) {
   disk_.refuse_touches_from(5);
   const std::int64_t id = loop_.start();
   loop_.run_until_over();
-  loop_.command(Command::kClear);
+  loop_.command(Command::kStop);
   loop_.run_until(State::kStopped);
   for (int attempt = 0; attempt < 2; ++attempt) {
     loop_.command(Command::kReset);

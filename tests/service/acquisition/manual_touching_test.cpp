@@ -88,5 +88,23 @@ TEST_F(ManualTouchingTest, WithoutATouchLeftTheStepIsDone) {
   EXPECT_EQ(status.state(), State::kCompleting);
 }
 
+TEST_F(ManualTouchingTest, WithTheLastTouchTakenBackNothingIsIdentifiedAnyMore) {
+  // As many as the parameters need, as a person would make them.
+  for (const calib::PlannedTouch& planned : plan_of_owners().touches.touches) {
+    StoredTouch touch{
+        .number = active_.run.touches_done() + 1, .plane = planned.face + 1, .role = planned.role};
+    touch.joints = to_wire(planned.joints);
+    store.append_touch(active_.run.id(), touch);
+    active_.run.add(touch);
+  }
+  active_.run.identify();
+  ASSERT_EQ(active_.run.latest().status, calib::IdentificationStatus::kConverged);
+  while (active_.run.touches_done() > 0) manual_.undo(active_);
+  active_.run.identify();
+  EXPECT_NE(active_.run.latest().status, calib::IdentificationStatus::kConverged);
+  EXPECT_FALSE(active_.run.predicted_tip_rms_m());
+  EXPECT_TRUE(store.touches(active_.run.id()).empty());
+}
+
 }  // namespace
 }  // namespace cell

@@ -97,6 +97,13 @@ TEST_F(ReferenceMonitorTest, APersonsWordIsToLookAgainOrToGoOnWithout) {
   EXPECT_FALSE(monitor_.is_due(5, kMoreToMake));
 }
 
+TEST_F(ReferenceMonitorTest, APersonsWordToLookAgainHoldsBetweenTwoDueTouchesToo) {
+  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
+  EXPECT_TRUE(touch(0.0012, 7).hold);
+  monitor_.look_again();
+  EXPECT_TRUE(monitor_.is_due(7, kMoreToMake)) << "seven is no multiple of five";
+}
+
 TEST_F(ReferenceMonitorTest, ARestartedDaemonLooksAgainBeforeAnythingElse) {
   monitor_.begin_run(5);
   monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);

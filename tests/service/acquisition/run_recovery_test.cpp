@@ -89,6 +89,24 @@ TEST_F(RunRecoveryTest, GoesOnWithTheSamePlanBehindTheSameTouches) {
   EXPECT_EQ(store.run(id).value().outcome, RunOutcome::kRunning);
 }
 
+TEST_F(RunRecoveryTest, ALastTouchThatTheOthersContradictIsMadeAgainBeforeAnythingElse) {
+  const std::int64_t id = leave_run(24);
+  const calib::PlannedTouch& last = plan_of_owners().touches.touches[24];
+  const calib::JointVector beside =
+      last.joints + (last.approach_joints - last.joints) * 0.8;  // millimetres before the face
+  store.append_touch(
+      id,
+      {.number = 25, .plane = last.face + 1, .role = last.role, .joints = to_wire(beside), .aimed_with = 23});
+  ActiveRun active = recovery_.restore().value();
+  hold(active);
+  ASSERT_TRUE(run(recovery_.make_resumable(active)));
+  status.enter(State::kExecute);
+  controller.on_touch = [this](const cs8::Touch&) { return contact(); };
+  run(touches_.make_next_touch(active));
+  EXPECT_EQ(active.run.touches_done(), 25) << "the repetition counts in its place";
+  EXPECT_EQ(store.superseded_touches(id).size(), 1u);
+}
+
 TEST_F(RunRecoveryTest, AnAnswerThatTheControllerStillHasIsKeptFirst) {
   const std::int64_t id = leave_run(2);
   const calib::PlannedTouch& third = plan_of_owners().touches.touches[2];

@@ -25,6 +25,12 @@ class TouchExecutorTest : public ::testing::Test, public OwnersBench {
     const std::vector<StoredTouch> stored = store.touches(active_.run.id());
     EXPECT_EQ(static_cast<int>(stored.size()), active_.run.touches_done());
   }
+  /// From here on every commit fails.
+  void break_store() {
+    sqlite3_commit_hook(
+        store.database()->getHandle(), [](void*) { return 1; }, nullptr);
+  }
+  void mend_store() { sqlite3_commit_hook(store.database()->getHandle(), nullptr, nullptr); }
   [[nodiscard]] long acknowledged_count() const {
     return std::ranges::count_if(controller.asked,
                                  [](const std::string& one) { return one.starts_with("acknowledge"); });
@@ -131,6 +137,9 @@ TEST_F(TouchExecutorTest, ATouchThatMeetsNothingHoldsTheRunAndIsForgottenByTheCo
   const int total = active_.run.touches_total();
   touches_.settle_hold(active_, Command::kSkip);
   EXPECT_EQ(active_.run.skipped_count(), 1);
+  ASSERT_EQ(store.plan_changes(active_.run.id()).size(), 1u) << "a person's word outlives the daemon at once";
+  EXPECT_EQ(store.plan_changes(active_.run.id())[0].kind, PlanChange::Kind::kSkip);
+  EXPECT_EQ(active_.stored_changes, 1u);
   EXPECT_EQ(active_.run.touches_made(), place);
   EXPECT_EQ(active_.run.touches_total(), total);
   EXPECT_EQ(touches_.held_by(), HeldBy::kNothing);
@@ -188,6 +197,78 @@ TEST_F(TouchExecutorTest, ATouchThatTheOthersContradictIsMadeAgainAndReplaced) {
   EXPECT_NE(active_.run.touches().back().joints, beside);
   EXPECT_EQ(store.superseded_touches(active_.run.id()).size(), 1u);
   expect_run_is_as_stored();
+}
+
+TEST_F(TouchExecutorTest, AWordThatCannotBeStoredChangesNothing) {
+  controller.on_touch = [](const cs8::Touch&) {
+    cs8::TouchResult nothing;
+    nothing.outcome = cs8::Outcome::kNoContact;
+    return nothing;
+  };
+  run(touches_.make_next_touch(active_));
+  break_store();
+  EXPECT_FALSE(touches_.settle_hold(active_, Command::kSkip));
+  mend_store();
+  EXPECT_EQ(active_.run.skipped_count(), 0);
+  EXPECT_EQ(touches_.held_by(), HeldBy::kTouch) << "it can be said again";
+  EXPECT_TRUE(touches_.settle_hold(active_, Command::kSkip));
+}
+
+TEST_F(TouchExecutorTest, ALockOfAnotherProgramHoldsTheRunAndTheContactIsKeptOnceItIsGone) {
+  SQLite::Database other((folder.path() / "touchcal.sqlite").string(), SQLite::OPEN_READWRITE);
+  controller.on_touch = [&](const cs8::Touch&) {
+    other.exec("BEGIN IMMEDIATE");
+    return contact();
+  };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_THAT(faults, ElementsAre("store_failed"));
+  EXPECT_EQ(acknowledged_count(), 0) << "the controller keeps it";
+  other.exec("ROLLBACK");
+  status.enter(State::kHeld);
+  status.enter(State::kUnholding);
+  controller.on_query = [this](std::uint32_t) { return contact(); };
+  run(touches_.settle_open_command(&active_, session.open_touch().value().sequence));
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  expect_run_is_as_stored();
+  EXPECT_EQ(acknowledged_count(), 1);
+}
+
+TEST_F(TouchExecutorTest, ALateTouchOfAnotherRunIsNotKeptByThisOne) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  ASSERT_TRUE(session.open_touch());
+  ActiveRun next = planned_run();
+  controller.on_query = [this](std::uint32_t) { return contact(); };
+  run(touches_.settle_open_command(&next, 1));
+  EXPECT_EQ(next.run.touches_done(), 0);
+  EXPECT_TRUE(store.touches(next.run.id()).empty());
+}
+
+TEST_F(TouchExecutorTest, AContactAtTheReferencePlaceIsAcknowledgedOnceItIsStored) {
+  ActiveRun active = begun_run("edf-25");
+  active.run.set_plan(plan_of_owners().touches);
+  touches_.begin_run(active);
+  while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
+  const long before = acknowledged_count();
+  const auto touches_sent = [this] {
+    return std::ranges::count_if(controller.asked,
+                                 [](const std::string& one) { return one.starts_with("touch"); });
+  };
+  const long sent = touches_sent();
+  break_store();
+  run(touches_.make_next_touch(active));
+  mend_store();
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_EQ(touches_sent(), sent + 1);
+  EXPECT_EQ(acknowledged_count(), before);
+  EXPECT_TRUE(store.references(active.run.id()).empty());
+  status.enter(State::kExecute);
+  run(touches_.make_next_touch(active));
+  EXPECT_EQ(touches_sent(), sent + 1) << "it is not touched twice";
+  EXPECT_EQ(acknowledged_count(), before + 1);
+  ASSERT_EQ(store.references(active.run.id()).size(), 1u);
+  EXPECT_EQ(store.references(active.run.id())[0].number, 1);
 }
 
 TEST_F(TouchExecutorTest, TheReferencePlaceIsTouchedBesideThePlan) {

@@ -115,7 +115,8 @@ export const kFaultsFr: Record<string, FaultWords> = {
   no_safe_way: words('aucun chemin libre d’obstacles ne mène de la posture du bras à la suivante', kStill,
     `amenez le bras au boîtier à sa posture de repos, ${kAnew}`),
   store_failed: words('un palpage n’a pas pu être enregistré', kClear,
-    `libérez de la place sur le disque ou réparez les droits du dossier d’état, ${kAnew}`),
+    'libérez de la place sur le disque ou réparez les droits du dossier d’état, ' +
+      'puis touchcal resume si l’essai est en attente, sinon touchcal clear et touchcal reset'),
   not_identifiable: words('les palpages ne déterminent pas les paramètres', 'le bras a fini ses palpages',
     'regardez le message du résultat ; changez la recette et faites un nouvel essai'),
   block_moved: words('le bloc n’est pas où il a été localisé', 'le bras s’est arrêté à ce palpage ou s’en est retiré',
