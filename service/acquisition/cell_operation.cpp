@@ -148,6 +148,8 @@ std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request) const {
   const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
   auto unmet = unmet_for_run(unmet_preconditions(), cell(), {request.block_temperature, clocks_.system()},
                              status_.fault(), no_plan);
+  if (auto lost = unmet_by_lost_place(store_.runs(1), recovery_.config_digest(), place().has_value()))
+    unmet.push_back(*std::move(lost));
   return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
 }
 

@@ -6,6 +6,8 @@
 #include <array>
 
 #include "service/acquisition/link_fault.hpp"
+#include "service/base/state_directory.hpp"
+#include "service/documents/conditions_view.hpp"
 #include "service/run/block_temperature.hpp"
 
 namespace cell {
@@ -60,6 +62,19 @@ std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& c
     found.push_back({refusal->code, refusal->words});
   if (no_plan) found.push_back(unmet(FaultCode::kRecipeUnreachable, no_plan->message));
   return found;
+}
+
+std::optional<Unmet> unmet_by_lost_place(const std::vector<StoredRun>& runs,
+                                         const std::optional<std::string>& config_digest,
+                                         bool place_is_known) {
+  if (place_is_known || runs.empty()) return std::nullopt;
+  const StoredRun& last = runs.front();
+  if (last.config_digest != config_digest || !names_place(last.conditions_json)) return std::nullopt;
+  return Unmet{
+      "place_lost",
+      fmt::format("restore {} of the state directory, or find the block with touchcal locate (run {} had "
+                  "it at a place that was found by touches, and that file is gone)",
+                  kBlockPoseFile, last.id)};
 }
 
 std::vector<Unmet> unmet_without_motion(std::vector<Unmet> of_run) {

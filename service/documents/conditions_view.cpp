@@ -1,5 +1,7 @@
 #include "service/documents/conditions_view.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include "cs8_protocol/messages.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/base/version.hpp"
@@ -44,6 +46,13 @@ std::string conditions_document(const Cell& cell, const RunConditions& condition
 bool is_guided(const std::optional<std::string>& conditions) {
   if (!conditions) return false;
   return touching_of(*conditions) == touch_mode_name(TouchMode::kGuided);
+}
+
+bool names_place(const std::optional<std::string>& conditions) {
+  if (!conditions) return false;
+  const nlohmann::json document = nlohmann::json::parse(*conditions, nullptr, false);
+  const auto place = document.is_object() ? document.find("place") : document.end();
+  return place != document.end() && !place->is_null();
 }
 
 }  // namespace cell

@@ -17,5 +17,7 @@ std::string conditions_document(const Cell& cell, const RunConditions& condition
 
 /// True if these stored conditions say that a person made the touches.
 bool is_guided(const std::optional<std::string>& conditions);
+/// True if these stored conditions name a place where the block was found; false for what is no json.
+bool names_place(const std::optional<std::string>& conditions);
 
 }  // namespace cell

@@ -8,6 +8,7 @@
 #include <string>
 #include <system_error>
 
+#include "service/base/state_directory.hpp"
 #include "service/store/internal/row_text.hpp"
 
 namespace cell {
@@ -34,9 +35,13 @@ SQLite::Database open_to_read(const std::filesystem::path& file) {
 }  // namespace
 
 void back_up(const std::filesystem::path& database_file, const std::filesystem::path& copy) {
-  if (std::filesystem::exists(copy))
-    throw std::runtime_error(copy.string() + ": the file exists; name a new one");
+  const std::filesystem::path place = database_file.parent_path() / kBlockPoseFile;
+  const std::filesystem::path place_copy = copy.string() + "." + std::string(kBlockPoseFile);
+  for (const std::filesystem::path& file : {copy, place_copy})
+    if (std::filesystem::exists(file))
+      throw std::runtime_error(file.string() + ": the file exists; name a new one");
   try {
+    if (std::filesystem::exists(place)) std::filesystem::copy_file(place, place_copy);
     SQLite::Database from = open_to_read(database_file);
     SQLite::Database to(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     to.exec("PRAGMA synchronous = FULL");
@@ -46,6 +51,7 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
   } catch (const std::exception& error) {
     std::error_code ignored;
     std::filesystem::remove(copy, ignored);
+    std::filesystem::remove(place_copy, ignored);
     throw std::runtime_error(copy.string() + ": no backup was made: " + error.what());
   }
 }

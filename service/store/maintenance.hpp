@@ -10,7 +10,8 @@
 namespace cell {
 
 /// Copies the database into a new file, also beside a running daemon; everything committed before the call is
-/// in the copy. Throws std::runtime_error if it fails; no partial file remains.
+/// in the copy. The place of the block, which lies beside the database, is copied to the file of the same
+/// name with ".place.json" behind it. Throws std::runtime_error if it fails; no partial file remains.
 void back_up(const std::filesystem::path& database_file, const std::filesystem::path& copy);
 
 /// Damage of a database file, one line each; empty if there is none. Checks pages, indices, foreign keys, and

@@ -70,6 +70,18 @@ TEST(Preconditions, ATemperatureThatIsTooOldIsOneOfThem) {
   EXPECT_THAT(measured(-1), ElementsAre("temperature_in_future"));
 }
 
+TEST(Preconditions, APlaceThatTheLastRunHadAndNobodyHasNowIsOneOfThem) {
+  const StoredRun at_place{
+      .id = 7, .config_digest = "digest", .conditions_json = R"({"place":{"shift_mm":[1]}})"};
+  EXPECT_EQ(unmet_by_lost_place({at_place}, "digest", false).value().code, "place_lost");
+  EXPECT_FALSE(unmet_by_lost_place({at_place}, "digest", true));
+  EXPECT_FALSE(unmet_by_lost_place({at_place}, "another", false))
+      << "the files say where the block stands now";
+  EXPECT_FALSE(unmet_by_lost_place({}, "digest", false));
+  const StoredRun at_files{.id = 8, .config_digest = "digest", .conditions_json = R"({"place":null})"};
+  EXPECT_FALSE(unmet_by_lost_place({at_files, at_place}, "digest", false));
+}
+
 TEST(Preconditions, ARunByHandNeedsNothingThatOnlyMotionNeeds) {
   cs8::State state = ScriptedController::ready_state();
   state.mode = cs8::WorkingMode::kManual;

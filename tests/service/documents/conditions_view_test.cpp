@@ -62,6 +62,16 @@ TEST_F(ConditionsView, ConditionsTellWhereTheBlockStood) {
   EXPECT_EQ(told.at("touch_count"), 6);
 }
 
+TEST_F(ConditionsView, StoredConditionsSayWhetherTheBlockWasFound) {
+  EXPECT_FALSE(names_place(std::nullopt));
+  EXPECT_FALSE(names_place("no json"));
+  EXPECT_FALSE(names_place(conditions_document(read(), {})));
+  RunConditions found;
+  found.place.emplace();
+  found.place->cell_from_block.setIdentity();
+  EXPECT_TRUE(names_place(conditions_document(read(), found)));
+}
+
 TEST_F(ConditionsView, ConditionsTellWhoToldTheTemperatureAndWhen) {
   const json of_file = conditions_json({});
   EXPECT_EQ(of_file.at("block_temperature_source"), "file");

@@ -44,6 +44,19 @@ TEST_F(StoreMaintenance, ABackupOfADatabaseInUseHasAllThatIsStored) {
   EXPECT_EQ(copy.touches(run).size(), 1u);
 }
 
+TEST_F(StoreMaintenance, ABackupHasThePlaceOfTheBlockBesideIt) {
+  back_up(file_, copy_);
+  const std::filesystem::path place = folder_.path() / "copy.sqlite.place.json";
+  EXPECT_FALSE(std::filesystem::exists(place)) << "none was found yet";
+  std::filesystem::remove(copy_);
+  folder_.write("place.json", "where it stands");
+  back_up(file_, copy_);
+  EXPECT_EQ(bytes_of(place), "where it stands");
+  std::filesystem::remove(copy_);
+  EXPECT_THROW(back_up(file_, copy_), std::runtime_error) << "the place of another backup is not replaced";
+  EXPECT_FALSE(std::filesystem::exists(copy_));
+}
+
 TEST_F(StoreMaintenance, ABackupNeverReplacesAFileAndLeavesNoHalfOne) {
   EXPECT_THROW(back_up(folder_.path() / "gone.sqlite", copy_), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(copy_));
