@@ -46,8 +46,7 @@ struct UncertaintyBudget {
   Eigen::Matrix<double, kArmParameterCount, Eigen::Dynamic>
       unknown_directions;  // one per member of that list
   /// What was not estimated and has a standard deviation: by one of them each displaces true minus estimated
-  /// arm and artefact (rows: ArmVector, then the artefact parameters), linearised at the estimate as the
-  /// distances of touches are. `held` is made of them; `unseen` of the same errors on the nominal arm.
+  /// arm and artefact (rows: ArmVector, then the artefact parameters). `held` and `unseen` are made of them.
   Eigen::MatrixXd left_out;
   /// The same by one standard deviation of the lag of each joint, one column each or none; in `held` as well.
   Eigen::MatrixXd lagged;

@@ -30,9 +30,9 @@ Eigen::VectorXd bias_direction(const FullLinearisation& whole, int column) {
   return direction;
 }
 
-/// The same of an error that the touches do not tell from others, for the tip, whose derivatives are those of
-/// the nominal arm. There it was found, and there the others absorb it without a rest: a direction that is
-/// linearised at the estimate would leave one at a tip that is linearised elsewhere.
+/// The same of an error of unknown size that the touches do not tell from others, to say whether it moves the
+/// tip at all. It was found on the nominal arm, where the tip's derivatives are taken, and there the others
+/// absorb it without a rest: linearised at the estimate it would leave one, however small, of unknown size.
 Eigen::VectorXd unseen_direction(const IdentificationProblem& problem, const CandidateStatus& candidate,
                                  const LeastSquares& fit, const FullLinearisation& whole, int column) {
   const bool is_grouped =
@@ -197,14 +197,15 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
   for (int column = 0; column < kErrorParameterCount; ++column) {
     if (is_estimated(fit, column)) continue;
     const CandidateStatus& candidate = identifiable.candidates[static_cast<std::size_t>(column)];
-    const Eigen::VectorXd direction = unseen_direction(problem, candidate, fit, whole, column);
     const bool is_held =
         candidate.status == ParameterStatus::kWeak || candidate.status == ParameterStatus::kExcluded;
     if (const auto tolerance = std_unless_estimated(problem, column, result.harmonic_share)) {
-      add_square(*tolerance * direction, is_held ? held : result.unseen);
-      add_left_out(*tolerance * bias_direction(whole, column), result);
+      const Eigen::VectorXd displacement = *tolerance * bias_direction(whole, column);
+      add_square(displacement, is_held ? held : result.unseen);
+      add_left_out(displacement, result);
     } else {
       result.unseen_without_tolerance.push_back(column);
+      const Eigen::VectorXd direction = unseen_direction(problem, candidate, fit, whole, column);
       unknown.push_back(direction);
       displace_by_unknown(problem.artefact, direction, result.artefact_std);
     }

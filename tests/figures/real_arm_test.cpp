@@ -60,19 +60,15 @@ struct TipTally {
   std::vector<double> achieved_m, predicted_m, ratios;
   double covered = 0.0, coordinates = 0.0;
 
-  /// Predicts as a cell does, by the derivatives of its nominal arm.
-  void add(const KinematicModel& nominal, const IdentificationResult& result,
-           const std::vector<JointVector>& postures, const std::vector<Eigen::Vector3d>& true_tips_m) {
+  void add(const IdentificationResult& result, const std::vector<JointVector>& postures,
+           const std::vector<Eigen::Vector3d>& true_tips_m) {
     const PreparedModel model = prepare(result.calibrated);
-    const PreparedModel before = prepare(nominal);
     const ArmMatrix covariance = result.uncertainty->covariance();
     double sum = 0.0, predicted = 0.0;
     for (std::size_t i = 0; i < postures.size(); ++i) {
       const Chain chain = forward_chain(model, postures[i]);
       const Eigen::Vector3d error_m = chain.tip_in_block_m() - true_tips_m[i];
-      const Chain of_nominal = forward_chain(before, postures[i]);
-      const auto slopes =
-          point_arm_derivatives(before, of_nominal, of_nominal.tip_in_block_m(), kFrameCount - 1);
+      const auto slopes = point_arm_derivatives(model, chain, chain.tip_in_block_m(), kFrameCount - 1);
       const Eigen::Vector3d variance = (slopes * covariance * slopes.transpose()).diagonal();
       const Eigen::Vector3d of_noise =
           (slopes * result.uncertainty->of_noise * slopes.transpose()).diagonal();
@@ -127,8 +123,8 @@ Tally calibrate(const cell::Cell& cell, const cell::Recipe& recipe, const std::v
       ADD_FAILURE() << "seed " << seed << ": " << result.message;
       continue;
     }
-    tally.box.add(problem.nominal, result, in_box, hidden.tips_m(in_box, hidden.mean_rise_k()));
-    tally.ranges.add(problem.nominal, result, in_ranges, hidden.tips_m(in_ranges, hidden.mean_rise_k()));
+    tally.box.add(result, in_box, hidden.tips_m(in_box, hidden.mean_rise_k()));
+    tally.ranges.add(result, in_ranges, hidden.tips_m(in_ranges, hidden.mean_rise_k()));
     tally.noise_um.push_back(1e6 * result.noise_estimated_m.value_or(0.0));
     tally.gear_share.push_back(result.uncertainty->gear_share);
     tally.pure_error_um.push_back(problem.pure_error ? 1e6 * problem.pure_error->std_m : 0.0);
