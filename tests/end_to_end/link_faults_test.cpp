@@ -117,7 +117,17 @@ TEST(LinkFaults, AnAnswerToNothingThatWasAskedEndsTheRunAtAnyTouch) {
 
 TEST(LinkFaults, AnAnswerThatDoesNotComeEndsTheRun) {
   meet_at_touches({Fault::kDrop, MessageType::kTouch, "answer_missing", Reached::kNotMade}, {1});
-  meet_at_touches({Fault::kDrop, MessageType::kTouchResult, "answer_missing", Reached::kUntold}, {17});
+}
+
+TEST(LinkFaults, AResultThatIsLostOnItsWayIsAskedForAndTheRunIsWhole) {
+  LoopbackCell loop;
+  loop.serve({{Fault::kDrop, MessageType::kTouchResult, 17}});
+  loop.launch();
+  loop.run_until(State::kIdle);
+  const std::int64_t id = loop.start();
+  loop.run_until_over();
+  EXPECT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
+  expect_touches_once(loop, id, kShortTouchCount);
 }
 
 TEST(LinkFaults, AControllerThatDoesNotForgetAResultRefusesTheNextTouchAndIsMetAnew) {
