@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cs8_protocol/codec.hpp"
 #include "sim_controller/admission.hpp"
@@ -51,9 +52,9 @@ class Step {
     state_.last_heard = now_;
     advance();
     const cs8::MessageType type = cs8::type_of(message);
+    if (!state_.greeted && type != cs8::MessageType::kHello) return fault(cs8::FaultCode::kNoHandshake, 0);
     if (cs8::is_from_controller(type))
       return fault(cs8::FaultCode::kWrongSide, static_cast<std::int32_t>(type));
-    if (!state_.greeted && type != cs8::MessageType::kHello) return fault(cs8::FaultCode::kNoHandshake, 0);
     std::visit([&](const auto& payload) { take(message.sequence, payload); }, message.payload);
     report_state();
   }
@@ -74,7 +75,6 @@ class Step {
   }
 
   void take(std::uint32_t, const cs8::Heartbeat&) {}
-
   void take(std::uint32_t, const cs8::Begin& begin) {
     if (const auto reason = refusal_of_begin()) {
       // A new run while one moves: the permit goes, and with it the motion.
@@ -306,7 +306,8 @@ class Step {
     Cabinet& cabinet = state_.cabinet;
     if (cabinet.probe_disagrees()) tell(withdraw(state_.permit, PermitReason::kProbeFault));
     if (!motion_permitted(cabinet.panel)) {
-      tell(withdraw(state_.permit, PermitReason::kPermissionLost));
+      const bool collided = running() && running()->outcome == Outcome::kCollision;
+      tell(withdraw(state_.permit, collided ? PermitReason::kBrokenOff : PermitReason::kPermissionLost));
       if (running()) break_off(cabinet, *running(), Outcome::kPermissionLost);
     }
     if (cabinet.task_error != 0) {  // the supervisor's
@@ -318,16 +319,16 @@ class Step {
   // ---- ends ----
 
   void finish() {
-    const RunningCommand ended = *std::move(running());
-    running().reset();
+    const RunningCommand ended = *std::exchange(running(), std::nullopt);
     const bool retract_due = !state_.motion.retract_path.empty();
-    const bool near_something = !retract_due && !state_.cabinet.probe_free();
     if (ended.outcome == Outcome::kCollision) replies.warning = ended.collision;
-    state_.operator_called = ended.outcome == Outcome::kCollision ||
-                             (ended.outcome == Outcome::kUnexpectedContact && near_something);
+    state_.operator_called =
+        ended.outcome == Outcome::kCollision ||
+        (ended.outcome == Outcome::kUnexpectedContact && !retract_due && !state_.cabinet.probe_free());
     state_.stored_result = result(state_, ended);
     if (state_.greeted) replies.messages.push_back(*state_.stored_result);
-    tell(after_command(state_.permit, ended.outcome, retract_due));
+    const bool may_retract = motion_permitted(state_.cabinet.panel) && state_.cabinet.task_error == 0;
+    tell(after_command(state_.permit, ended.outcome, retract_due && may_retract));
   }
 
   void lose_link() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "cs8_protocol/wire_units.hpp"
 #include "sim_controller/admission.hpp"
@@ -36,6 +37,10 @@ class Step {
     if (seen_.sensed.collision) return collide();
     if (cabinet_.drives.error != 0 && running_.stage != Stage::kBreakOff && !search_line_ended()) {
       break_off(cabinet_, running_, Outcome::kMotionError, cabinet_.drives.error);
+      return false;
+    }
+    if (wire_failed()) {
+      break_off(cabinet_, running_, Outcome::kProbeFault);
       return false;
     }
     switch (running_.stage) {
@@ -89,6 +94,12 @@ class Step {
     return true;
   }
 
+  /// A cable that is cut or shorted ends whatever relies on the probe; a Retract does not.
+  bool wire_failed() const {
+    return cabinet_.probe_disagrees() && running_.stage != Stage::kBreakOff &&
+           !std::holds_alternative<cs8::Retract>(running_.order);
+  }
+
   // ---- the way there ----
 
   bool travel() {
@@ -135,6 +146,7 @@ class Step {
       again.to = 1.0;
       follow(plant_, cabinet_.drives, std::move(again), metres_per_second(speed_um_s));
     }
+    running_.search_speed_um_s = speed_um_s;
     running_.last.reset();
     running_.latch_armed = true;
     running_.edges = 0;
@@ -178,11 +190,6 @@ class Step {
     }
     if (running_.stop_in_ticks-- == 0) reset_motion(cabinet_.drives);
     if (running_.stop_in_ticks >= -1 || !cabinet_.arm_rests()) return stuck_moving();
-    if (cabinet_.probe_disagrees()) {
-      running_.outcome = Outcome::kProbeFault;
-      running_.broken_in = cs8::Phase::kSearch;
-      return true;
-    }
     if (!cabinet_.probe_touched() && !cabinet_.probe_free()) return stuck_moving();
     return judge(capture);
   }
@@ -195,15 +202,16 @@ class Step {
       running_.outcome = Outcome::kNoContact;
       return begin_retract();
     }
-    capture.overtravel_m = tip_distance_m(plant_, capture.contact, capture.stopped);
+    capture.overtravel_m = tip_distance_m(plant_, capture.contact, *capture.stopped);
     const bool second_follows = touch().second_speed_um_s > 0 && !running_.first;
     running_.outcome = capture.overtravel_m > plant_.overtravel_m ? Outcome::kOvertravel : Outcome::kContact;
-    if (running_.outcome == Outcome::kContact && second_follows) return begin_back_off(capture);
+    if (running_.outcome == Outcome::kContact && second_follows) return begin_back_off();
     return begin_retract();
   }
 
-  bool begin_back_off(const Capture& capture) {
-    running_.first = capture;
+  /// What is captured next is the contact; what was is the first one, whether there is a next or not.
+  bool begin_back_off() {
+    running_.first = std::exchange(running_.last, std::nullopt);
     Stretch back = retract_path_.front();
     const double length_m = tip_distance_m(plant_, back.path.front(), back.path.back());
     const double share = cs8::metres_from_dmm(touch().second_backoff_dmm) / length_m;
@@ -263,7 +271,7 @@ class Step {
   bool last_reseat() {
     if (cabinet_.probe_free()) return true;
     if (running_.ticks_in_stage < kReseatTicksMax) return false;
-    running_.outcome = cabinet_.probe_disagrees() ? Outcome::kProbeFault : Outcome::kProbeStuck;
+    running_.outcome = Outcome::kProbeStuck;
     return true;
   }
 
@@ -283,6 +291,8 @@ class Step {
     const bool by_edge = running_.outcome == Outcome::kUnexpectedContact;
     if (by_edge && running_.ticks_in_stage < kSteadyTicks) return false;
     if (by_edge && cabinet_.probe_disagrees()) running_.outcome = Outcome::kProbeFault;
+    if (running_.last && !running_.last->stopped)  // broken off between trigger and standstill
+      running_.last->stopped = encoder_reading(plant_, cabinet_.drives.joints);
     const bool goes_back = running_.outcome == Outcome::kStopped && !running_.returning &&
                            running_.broken_in == cs8::Phase::kSearch && retract_path_.size() > 1;
     if (!goes_back) return true;

@@ -41,7 +41,7 @@ cs8::Phase phase_of(Stage stage);
 struct Capture {
   cs8::CaptureSource source = cs8::CaptureSource::kNone;
   calib::JointVector contact = calib::JointVector::Zero();
-  calib::JointVector stopped = calib::JointVector::Zero();
+  std::optional<calib::JointVector> stopped;  // once the arm rests
   double overtravel_m = 0.0;
   TimePoint at{};
 };
@@ -59,6 +59,7 @@ struct RunningCommand {
   std::optional<Capture> last;
   bool seated = false;  // the probe was free again on the way back: from there it is watched
   std::int32_t monitor_speed_percent = 100;  // the lowest in a search
+  std::int32_t search_speed_um_s = 0;        // of the last search that began
   bool latch_armed = false;
   std::uint32_t edges = 0;  // of the latch input, since the trigger
   int stop_in_ticks = 0;    // from the trigger to the brakes

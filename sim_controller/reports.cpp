@@ -25,20 +25,20 @@ cs8::CaptureSource source_of(const std::optional<Capture>& capture) {
   return capture ? capture->source : cs8::CaptureSource::kNone;
 }
 
-cs8::TouchResult touch_result(const ControllerState& state, const RunningCommand& ended,
-                              const cs8::Touch& order) {
+cs8::TouchResult touch_result(const ControllerState& state, const RunningCommand& ended) {
   cs8::TouchResult result;
   result.outcome = ended.outcome;
   result.phase = ended.broken_in;
   result.source = source_of(ended.last);
   result.contact = contact_joints(ended.last);
-  result.stopped = wire_from_joints(ended.last ? ended.last->stopped : state.cabinet.drives.joints);
+  result.stopped = wire_from_joints(ended.last && ended.last->stopped ? *ended.last->stopped
+                                                                      : state.cabinet.drives.joints);
   result.first_source = source_of(ended.first);
   result.first_contact = contact_joints(ended.first);
   const double first_m = ended.first ? ended.first->overtravel_m : 0.0;
   const double last_m = ended.last ? ended.last->overtravel_m : 0.0;
   result.overtravel_dmm = cs8::dmm_from_metres(std::max(first_m, last_m));
-  result.search_speed_um_s = ended.first ? order.second_speed_um_s : order.search_speed_um_s;
+  result.search_speed_um_s = ended.search_speed_um_s;
   result.monitor_speed_percent = ended.monitor_speed_percent;
   if (ended.last) result.contact_clock_ms = clock_ms(ended.last->at);
   result.error_number = ended.error_number;
@@ -100,9 +100,7 @@ cs8::State state_report(const ControllerState& state, TimePoint now) {
 }
 
 cs8::Message result(const ControllerState& state, const RunningCommand& ended) {
-  if (const auto* order = std::get_if<cs8::Touch>(&ended.order)) {
-    return {ended.sequence, touch_result(state, ended, *order)};
-  }
+  if (std::holds_alternative<cs8::Touch>(ended.order)) return {ended.sequence, touch_result(state, ended)};
   const cs8::MoveResult moved{ended.outcome, ended.broken_in, wire_from_joints(state.cabinet.drives.joints),
                               ended.error_number};
   return {ended.sequence, moved};

@@ -120,7 +120,7 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
         if (const auto* message = std::get_if<cs8::Message>(&frame)) {
           self->receive(connection, *message);
         } else {
-          self->refuse(connection, cs8::fault_for(std::get<cs8::DecodeError>(frame)));
+          self->refuse(connection, self->fault_of(connection, std::get<cs8::DecodeError>(frame)));
         }
       }
       // What still comes is read and forgotten: closing on unread bytes would take the last message from the
@@ -133,6 +133,19 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
     self->release(connection);
     connection->close_now();
     self->connections_.erase(connection);
+  }
+
+  /// What a frame is refused with: before Hello any message but that one, then a message of the other side.
+  [[nodiscard]] cs8::Fault fault_of(const ConnectionPtr& connection, const cs8::DecodeError& error) const {
+    const bool type_is_known = error.kind != cs8::DecodeErrorKind::kBadMagic &&
+                               error.kind != cs8::DecodeErrorKind::kVersion &&
+                               error.kind != cs8::DecodeErrorKind::kUnknownType;
+    if (!type_is_known) return cs8::fault_for(error);
+    const bool greeted = connection != host_ || state_.greeted;
+    if (!greeted && error.type != cs8::MessageType::kHello) return {cs8::FaultCode::kNoHandshake, 0};
+    if (cs8::is_from_controller(error.type))
+      return {cs8::FaultCode::kWrongSide, static_cast<std::int32_t>(error.type)};
+    return cs8::fault_for(error);
   }
 
   /// Ends the connection behind what waits to be sent. The place is free for another host at once.

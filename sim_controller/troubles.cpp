@@ -63,7 +63,6 @@ void collide(ControllerState& state) {
   if (!state.motion.running) return;
   break_off(state.cabinet, *state.motion.running, cs8::Outcome::kCollision);
   state.motion.running->collision = "following error";
-  state.motion.retract_path.clear();  // the operator frees the arm
 }
 
 }  // namespace

@@ -30,6 +30,11 @@ TEST_F(Controller, AnswersNothingBeforeHelloButAFault) {
   ASSERT_EQ(replies.size(), 1u);
   EXPECT_EQ(std::get<cs8::Fault>(replies.front().payload).code, cs8::FaultCode::kNoHandshake);
   EXPECT_TRUE(bench.last.close);
+  Bench other(plant());
+  other.happen(ConnectionOpened{});
+  EXPECT_EQ(std::get<cs8::Fault>(other.send(1, cs8::Accepted{}).front().payload).code,
+            cs8::FaultCode::kNoHandshake)
+      << "whoever may send it";
 }
 
 TEST_F(Controller, ClosesOnAMessageThatOnlyItSends) {

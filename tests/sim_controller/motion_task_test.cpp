@@ -111,7 +111,33 @@ TEST_F(MotionTask, AWireThatOnlyShowsAtTheContactIsAProbeFaultThere) {
     });
     EXPECT_EQ(result.outcome, Outcome::kProbeFault);
     EXPECT_EQ(result.phase, Phase::kSearch);
+    EXPECT_NE(result.stopped, cs8::JointsMicrodeg{}) << "it stands somewhere";
   }
+}
+
+TEST_F(MotionTask, AWireThatFailsOnTheWayBackStopsTheArmThere) {
+  Bench bench = Bench::ready(plant());
+  bench.touch_until(1, motion(), Phase::kRetract);
+  bench.state.cabinet.world.probe.troubles.loop_wire = WireTrouble::kCut;  // never free again
+  const auto result = bench.result<cs8::TouchResult>();
+  EXPECT_EQ(result.outcome, Outcome::kProbeFault);
+  EXPECT_EQ(result.phase, Phase::kRetract);
+  EXPECT_NE(result.stopped, touch().clear);
+  bench.pass(milliseconds(20));
+  EXPECT_TRUE(bench.flag(cs8::kRetractDue));
+}
+
+TEST_F(MotionTask, ASecondContactThatIsNotMadeLeavesTheFirstOneInItsOwnFields) {
+  const auto result = touched(twice(), Phase::kSearch, [](Cabinet& cabinet) {
+    cabinet.world.probe.troubles.stylus = StylusTrouble::kSticks;
+  });
+  ASSERT_EQ(result.outcome, Outcome::kProbeStuck);
+  EXPECT_EQ(result.source, cs8::CaptureSource::kNone);
+  EXPECT_EQ(result.contact, cs8::JointsMicrodeg{});
+  EXPECT_EQ(result.contact_clock_ms, 0U);
+  EXPECT_EQ(result.first_source, cs8::CaptureSource::kLatched);
+  EXPECT_NE(result.first_contact, cs8::JointsMicrodeg{});
+  EXPECT_EQ(result.search_speed_um_s, touch().search_speed_um_s) << "the second search did not begin";
 }
 
 TEST_F(MotionTask, AProbeThatDoesNotSeatAgainIsStuckAndNoMeasurement) {

@@ -106,6 +106,13 @@ TEST_F(Troubles, EndATouchWithTheirOutcome) {
   }
 }
 
+TEST_F(Troubles, ACollisionNearAFaceLeavesTheWayBackDue) {
+  Bench bench = Bench::ready(plant());
+  touch_with(bench, R"({"fault":"collision","touch":1,"phase":"approach"})");
+  bench.pass(milliseconds(20));
+  EXPECT_TRUE(bench.flag(cs8::kRetractDue));
+}
+
 TEST_F(Troubles, AreToldInTheResult) {
   EXPECT_EQ(touch_with(R"({"fault":"latch_lost","touch":1})").source, cs8::CaptureSource::kPolled);
   EXPECT_EQ(touch_with(R"({"fault":"probe_bounces","touch":1,"times":3})").edges, 4U);
@@ -128,6 +135,7 @@ TEST_F(Troubles, EndThePermitWithTheTouch) {
   for (const Case& trouble : {Case{R"({"fault":"emergency_stop","touch":1})", PermitReason::kPermissionLost},
                               Case{R"({"fault":"open_cell","touch":1})", PermitReason::kPermissionLost},
                               Case{R"({"fault":"task_dies","touch":1,"error":20})", PermitReason::kBrokenOff},
+                              Case{R"({"fault":"collision","touch":1})", PermitReason::kBrokenOff},
                               Case{R"({"fault":"loop_cut","touch":1})", PermitReason::kProbeFault}}) {
     SCOPED_TRACE(trouble.fault);
     Bench bench = Bench::ready(plant());
