@@ -109,7 +109,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/http/routes/route_table", "routes_test"},
     {"service/http/routes/run_routes", "routes_test"},
     {"service/http/routes/service_routes", "routes_test and openapi_test"},
-    {"service/http/routes/start_body", "routes_test"},
     {"service/http/routes/status_feed", "event_stream_test and api_test"},
     {"service/http/routes/status_routes", "routes_test"},
     {"service/http/server/response_text", "session_test reads the bytes"},

@@ -1,15 +1,6 @@
 #include "service/http/routes/routes.hpp"
 
-#include <gmock/gmock.h>
-
-#include <nlohmann/json.hpp>
-#include <regex>
-
-#include "service/http/routes/route_table.hpp"
-#include "service/http/server/target.hpp"
-#include "tests/service/document_schema.hpp"
-#include "tests/service/http/test_tokens.hpp"
-#include "tests/service/quiet_cell.hpp"
+#include "tests/service/http/routes/routes_bench.hpp"
 
 namespace cell {
 namespace {
@@ -19,58 +10,6 @@ using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Pair;
-
-/// The problem document of a refusal; the test fails when it is none.
-json problem(const HttpResponse& response) {
-  EXPECT_EQ(response.content_type, "application/problem+json");
-  const json document = json::parse(response.body, nullptr, false);
-  EXPECT_TRUE(document.is_object()) << response.body;
-  if (!document.is_object()) return json::object();
-  EXPECT_EQ(document.value("status", 0u), response.status);
-  for (const char* field : {"type", "title", "detail"})
-    EXPECT_FALSE(document.value(field, "").empty()) << field << " is missing: " << response.body;
-  EXPECT_THAT(document.value("type", ""), ::testing::StartsWith("urn:touchcal:problem:"));
-  return document;
-}
-
-class RoutesTest : public ::testing::Test {
- protected:
-  HttpResponse send(const HttpRequest& request) {
-    const HttpResponse response = route(request, cell_.operation(), kTokens);
-    expect_as_documented(request, response);
-    return response;
-  }
-
-  HttpResponse get(const std::string& target) {
-    HttpRequest request = made("GET", target);
-    request.from_loopback = true;
-    return send(request);
-  }
-  HttpResponse post(const std::string& target, const std::string& body = "") {
-    HttpRequest request = made("POST", target);
-    request.authorization = "Bearer " + kTokens.operate;
-    request.content_type = "application/json";
-    request.body = body;
-    return send(request);
-  }
-  static HttpRequest made(const std::string& method, const std::string& target) {
-    const auto parsed = parse_target(target).value();
-    return {.method = method, .path = parsed.first, .query = parsed.second};
-  }
-  json status() { return json::parse(get("/api/v1/status").body); }
-
-  std::int64_t stored_run(std::optional<std::string> key = std::nullopt) {
-    return cell_.store().begin_run(
-        {.recipe = "edf-25", .started_at = "start", .idempotency_key = std::move(key)});
-  }
-  /// The route's path with a run that is there.
-  std::string with_run(const Route& name) {
-    return std::regex_replace(std::string(name.path), std::regex("\\{id\\}"), std::to_string(stored_run()));
-  }
-  static std::string path_of(std::int64_t run) { return "/api/v1/runs/" + std::to_string(run); }
-
-  QuietCell cell_;
-};
 
 TEST_F(RoutesTest, StatusHasAStrongTagThatNamesTheInstanceAndItsSequence) {
   const HttpResponse response = get("/api/v1/status");
@@ -228,128 +167,6 @@ TEST_F(RoutesTest, ReadingNeedsATokenFromElsewhereOnly) {
     EXPECT_NE(send(request).status, 401u) << name.path;
   }
   EXPECT_GT(seen, 0);
-}
-
-TEST_F(RoutesTest, ABodyMustSayThatItIsJson) {
-  HttpRequest request = made("POST", "/api/v1/runs");
-  request.authorization = "Bearer " + kTokens.operate;
-  request.body = R"({"recipe":"edf-25"})";
-  for (const char* type :
-       {"text/plain", "application/x-www-form-urlencoded", "application/jsonx", "", "json"}) {
-    request.content_type = type;
-    EXPECT_EQ(problem(send(request)).at("status"), 415) << type;
-  }
-  request.content_type.reset();
-  EXPECT_EQ(problem(send(request)).at("status"), 415);
-  for (const char* type : {"application/json", "application/json; charset=utf-8",
-                           "application/json ;charset=utf-8", "Application/JSON"}) {
-    request.content_type = type;
-    EXPECT_NE(send(request).status, 415u) << type;
-  }
-}
-
-struct BadBody {
-  const char* what;
-  std::string body;
-  unsigned status = 400;
-  std::string pointer;
-};
-
-TEST_F(RoutesTest, AStartsBodyIsTakenToTheLetter) {
-  const std::vector<BadBody> bodies{{"nothing", ""},
-                                    {"blanks", "  \n"},
-                                    {"no JSON", "recipe=edf-25"},
-                                    {"cut off", R"({"recipe":"edf-25")"},
-                                    {"something behind", R"({"recipe":"edf-25"} x)"},
-                                    {"an array", R"(["edf-25"])"},
-                                    {"a string", R"("edf-25")"},
-                                    {"null", "null"},
-                                    {"no recipe", "{}", 400, "/recipe"},
-                                    {"a number", R"({"recipe":25})", 400, "/recipe"},
-                                    {"a null", R"({"recipe":null})", 400, "/recipe"},
-                                    {"an unknown key", R"({"recipe":"edf-25","speed":2})", 400, "/speed"},
-                                    {"an unknown key that needs escapes", R"({"a/b~c":2})", 400, "/a~1b~0c"},
-                                    {"a key twice", R"({"recipe":"edf-25","recipe":"edf-23"})"},
-                                    {"a NUL", std::string(R"({"recipe":"edf-25"})") + '\0'},
-                                    {"a NUL inside", std::string("{\"recipe\":\"edf\0-25\"}", 20)},
-                                    {"no UTF-8", "{\"recipe\":\"\xff\xfe\"}"},
-                                    {"a byte order mark", "\xEF\xBB\xBF{\"recipe\":\"edf-25\"}"},
-                                    {"deep nesting", std::string(30000, '[') + std::string(30000, ']')},
-                                    {"deep nesting in the recipe", R"({"recipe":)" + std::string(30000, '[') +
-                                                                       std::string(30000, ']') + "}"},
-                                    {"a huge number", R"({"recipe":1e999})"},
-                                    {"NaN", R"({"recipe":NaN})"},
-                                    {"an unknown recipe", R"({"recipe":"edf-99"})", 422, "/recipe"},
-                                    {"an empty name", R"({"recipe":""})", 422, "/recipe"},
-                                    {"a name with a NUL", R"({"recipe":"edf-25\u0000"})", 422, "/recipe"}};
-  for (const BadBody& bad : bodies) {
-    const json document = problem(post("/api/v1/runs", bad.body));
-    EXPECT_EQ(document.at("status"), bad.status) << bad.what << ": " << document;
-    ASSERT_TRUE(document.contains("pointer")) << bad.what << ": " << document;
-    if (!bad.pointer.empty()) {
-      EXPECT_EQ(document.at("pointer"), bad.pointer) << bad.what;
-    }
-    EXPECT_TRUE(cell_.store().runs(1).empty()) << bad.what << " began a run";
-  }
-}
-
-TEST_F(RoutesTest, AStartsTemperatureComesWithItsDeviationAndWithinBounds) {
-  const std::string c = "/block_temperature_c", std = "/std_block_temperature_k",
-                    at = "/block_temperature_at";
-  const auto with = [](const std::string& rest) { return R"({"recipe":"edf-25",)" + rest + "}"; };
-  const auto value = [&](const std::string& text) {
-    return with(R"("std_block_temperature_k":0.5,"block_temperature_c":)" + text);
-  };
-  const auto deviation = [&](const std::string& text) {
-    return with(R"("block_temperature_c":25,"std_block_temperature_k":)" + text);
-  };
-  const std::vector<BadBody> bodies{
-      {"no deviation", with(R"("block_temperature_c":25)"), 400, std},
-      {"a deviation alone", with(R"("std_block_temperature_k":0.5)"), 400, c},
-      {"a time alone", with(R"("block_temperature_at":"1970-01-01T00:00:00Z")"), 400, c},
-      {"a text", value(R"("25")"), 400, c},
-      {"a null", value("null"), 400, c},
-      {"kelvins", value("298.15"), 400, c},
-      {"colder than a room", value("-50.1"), 400, c},
-      {"certainty", deviation("0"), 400, std},
-      {"a negative deviation", deviation("-1"), 400, std},
-      {"no knowledge", deviation("101"), 400, std},
-      {"a deviation as text", deviation(R"("1")"), 400, std},
-      {"a time that is none", deviation(R"(1,"block_temperature_at":"today")"), 400, at},
-      {"a time as number", deviation(R"(1,"block_temperature_at":0)"), 400, at},
-      {"an arm that has moved for ever", with(R"("arm_moving_min":1441)"), 400, "/arm_moving_min"},
-      {"moving as text", with(R"("arm_moving_min":"60")"), 400, "/arm_moving_min"},
-      {"another kind", with(R"("kind":"proof")"), 400, "/kind"},
-      {"no kind", with(R"("kind":null)"), 400, "/kind"}};
-  for (const BadBody& bad : bodies) {
-    const json document = problem(post("/api/v1/runs", bad.body));
-    EXPECT_EQ(document.at("status"), bad.status) << bad.what << ": " << document;
-    EXPECT_EQ(document.value("pointer", ""), bad.pointer) << bad.what << ": " << document;
-  }
-  // The clock of this cell stands at the beginning of 1970: one that is taken meets the missing link only.
-  const json taken =
-      problem(post("/api/v1/runs", deviation(R"(0.5,"kind":"calibration","arm_moving_min":60)")));
-  ASSERT_EQ(taken.at("status"), 409);
-  EXPECT_EQ(taken.at("errors").size(), 1u);
-  const json future =
-      problem(post("/api/v1/runs", deviation(R"(0.5,"block_temperature_at":"1970-01-01T00:10:00Z")")));
-  ASSERT_EQ(future.at("status"), 409);
-  EXPECT_EQ(future.at("errors").at(1).at("code"), "temperature_in_future");
-}
-
-TEST_F(RoutesTest, AStartTakesAChoiceOfStiffness) {
-  const auto with = [](const std::string& rest) { return R"({"recipe":"edf-25",)" + rest + "}"; };
-  for (const char* bad : {R"("stiffness":"yes")", R"("stiffness":true)", R"("stiffness":null)"}) {
-    const json document = problem(post("/api/v1/runs", with(bad)));
-    EXPECT_EQ(document.at("status"), 400) << bad << document;
-    EXPECT_EQ(document.value("pointer", ""), "/stiffness") << bad << document;
-  }
-  // One that is taken meets the missing link only.
-  for (const char* choice : {"on", "off", "auto"}) {
-    const json taken = problem(post("/api/v1/runs", with(R"("stiffness":")" + std::string(choice) + '"')));
-    ASSERT_EQ(taken.at("status"), 409) << taken;
-    EXPECT_EQ(taken.at("errors").size(), 1u);
-  }
 }
 
 TEST_F(RoutesTest, CommandsTakeNoBodyButAnEmptyObject) {
