@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 #include <set>
 
@@ -13,16 +14,21 @@ double mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-std::array<double, kJointCount> digits_of(const Touch& touch) {
-  std::array<double, kJointCount> digits{};
-  std::ranges::copy(touch.joints, digits.begin());
+/// Finer than an encoder of a robot's joint reads (1e-5 degrees), in rad or m.
+constexpr double kSameReading = 1.7e-7;
+
+std::array<std::int64_t, kJointCount> digits_of(const Touch& touch) {
+  std::array<std::int64_t, kJointCount> digits{};
+  std::ranges::transform(touch.joints, digits.begin(), [](double joint) {
+    return static_cast<std::int64_t>(std::llround(joint / kSameReading));
+  });
   return digits;
 }
 
 }  // namespace
 
 std::vector<Touch> counted_readings(std::span<const Touch> at_place) {
-  std::set<std::array<double, kJointCount>> seen;
+  std::set<std::array<std::int64_t, kJointCount>> seen;
   std::vector<Touch> once;
   for (const Touch& touch : at_place) {
     if (seen.insert(digits_of(touch)).second) once.push_back(touch);

@@ -26,7 +26,7 @@ struct ReadingLine {
 inline constexpr std::size_t kReadingCountMin = 3;
 
 /// The touches of one place that count as made one by one, in their order. An encoder's step lets a few have
-/// the same joints to the last digit. Where more than half of them repeat another's they are copies, which
+/// the same joints. Where more than half of them repeat another's they are copies, which
 /// would make any noise look small and well known: then each counts once.
 std::vector<Touch> counted_readings(std::span<const Touch> at_place);
 

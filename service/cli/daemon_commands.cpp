@@ -19,7 +19,16 @@ ExitCode status_command(const ApiClient& daemon, bool json_only) {
 
 ExitCode page_command(const ApiClient& reached, bool json_only) {
   const ApiClient daemon = reached.without_socket();  // the link is of its address
-  const std::string role = read_reply(daemon.get("/api/v1/access"), read_access).role;
+  const ApiReply access = [&] {
+    try {
+      return daemon.get("/api/v1/access");
+    } catch (const DaemonUnreachable&) {
+      reached.get("/api/v1/access");  // where nothing answers by the socket either, that is what is told
+      throw DaemonUnreachable("touchcald answers by its socket, but not at " + daemon.url() +
+                              ", where a browser would look; give its address with --daemon");
+    }
+  }();
+  const std::string role = read_reply(access, read_access).role;
   const bool operates = role == "operate";
   const std::string link = daemon.url() + "/" + (operates ? "#token=" + *daemon.token() : "");
   fmt::print("{}\n", json_only ? document_text(PageLinkDocument{.role = role, .url = link}) : link);

@@ -139,8 +139,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     if (failure) return;
     spdlog::info("signal {}: stopping", signal);
     supervision.notify_stopping();
-    listener->close();
-    if (socket) socket->close();
+    // A stop is taken until the arm has been drawn back: the listeners close with the end.
     asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
     signals.async_wait(
         [&](const boost::system::error_code&, int) { context.stop(); });  // a second signal: at once

@@ -62,9 +62,10 @@ void AuditLog::append_of_stranger(const AuditEntry& entry) {
   count_rows();
   const std::int64_t id = insert(entry);
   const std::size_t excess = of_strangers_.size() + 1 - std::min(of_strangers_.size() + 1, kOfStrangersKept);
-  if (excess > 0) {
-    SQLite::Statement drop(*database_, std::string("DELETE FROM audit WHERE id <= ? AND ") + kByStrangers);
-    drop.bind(1, of_strangers_[excess - 1]);
+  SQLite::Statement drop(*database_, "DELETE FROM audit WHERE id = ?");
+  for (std::size_t i = 0; i < excess; ++i) {
+    drop.reset();
+    drop.bind(1, of_strangers_[i]);
     drop.exec();
   }
   transaction.commit();

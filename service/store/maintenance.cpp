@@ -84,7 +84,7 @@ std::uintmax_t disk_room_bytes(const SharedDatabase& database) {
   std::error_code unknown;
   const auto space =
       std::filesystem::space(std::filesystem::path(database->getFilename()).parent_path(), unknown);
-  return space.available;  // the largest number where it is unknown
+  return unknown ? 0 : space.available;  // a directory that is no longer there has no room
 }
 
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest) {

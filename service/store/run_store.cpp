@@ -62,6 +62,22 @@ void insert_plan_change(SQLite::Database& database, std::int64_t run_id, const P
   insert.exec();
 }
 
+/// A statement that is kept between calls, for one use: it ends with it, also when it failed. One that a
+/// lock of another program left unended would be a transaction that stays open: what is written after it
+/// reads as stored on this connection, and never reaches the file.
+class OneUse {
+ public:
+  explicit OneUse(SQLite::Statement& statement) : statement_(statement) {}
+  ~OneUse() { statement_.tryReset(); }
+  OneUse(const OneUse&) = delete;
+  OneUse& operator=(const OneUse&) = delete;
+  SQLite::Statement* operator->() { return &statement_; }
+  SQLite::Statement& operator*() { return statement_; }
+
+ private:
+  SQLite::Statement& statement_;
+};
+
 }  // namespace
 
 struct RunStore::Statements {
@@ -146,22 +162,20 @@ void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& cha
 
 void RunStore::set_open_command(std::int64_t run_id, const OpenCommand& command) {
   const RelaxedDurability unsynced(*database_);
-  SQLite::Statement& insert = statements_->set_open_command;
-  insert.tryReset();
-  insert.bind(1, run_id);
-  insert.bind(2, command.session);
-  insert.bind(3, command.sequence);
-  insert.bind(4, command.aimed_with);
-  insert.bind(5, command.touch_json);
-  insert.exec();
+  OneUse insert(statements_->set_open_command);
+  insert->bind(1, run_id);
+  insert->bind(2, command.session);
+  insert->bind(3, command.sequence);
+  insert->bind(4, command.aimed_with);
+  insert->bind(5, command.touch_json);
+  insert->exec();
 }
 
 bool RunStore::make_durable(std::int64_t run_id) {
   try {
-    SQLite::Statement& update = statements_->make_durable;
-    update.tryReset();
-    update.bind(1, run_id);
-    update.exec();
+    OneUse update(statements_->make_durable);
+    update->bind(1, run_id);
+    update->exec();
     return true;
   } catch (const SQLite::Exception&) {
     return false;
@@ -169,10 +183,9 @@ bool RunStore::make_durable(std::int64_t run_id) {
 }
 
 void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
-  SQLite::Statement& insert = statements_->append_touch;
-  insert.tryReset();
-  bind_touch(insert, run_id, touch);
-  insert.exec();
+  OneUse insert(statements_->append_touch);
+  bind_touch(*insert, run_id, touch);
+  insert->exec();
 }
 
 void RunStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {

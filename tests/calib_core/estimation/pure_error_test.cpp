@@ -35,6 +35,10 @@ TEST(CountedReadings, AreAllOfThemWhereAnEncodersStepMakesSomeAlike) {
   EXPECT_TRUE(counted_readings({}).empty());
 }
 
+TEST(CountedReadings, AreCopiesAlsoWhereTheyDifferByLessThanAnEncoderReads) {
+  EXPECT_EQ(counted_readings(at_place({1.0, 1.0 + 1e-9, 1.0 - 2e-9, 1.0 + 3e-9})).size(), 1U);
+}
+
 TEST(CountedReadings, CountCopiesOnce) {
   const std::vector<Touch> counted = counted_readings(at_place({2.0, 1.0, 1.0, 2.0, 1.0}));
   ASSERT_EQ(counted.size(), 2U);

@@ -110,6 +110,14 @@ TEST_F(StoreMaintenance, TheRoomOnTheDiskOfTheDatabaseIsTold) {
               static_cast<double>(std::filesystem::space(folder_.path()).available), kOthersWriteBytes);
 }
 
+TEST_F(StoreMaintenance, ADirectoryThatWasMovedAwayHasNoRoom) {
+  std::filesystem::path moved = folder_.path();
+  moved += ".moved";
+  std::filesystem::rename(folder_.path(), moved);
+  EXPECT_EQ(disk_room_bytes(store_.database()), 0U);
+  std::filesystem::rename(moved, folder_.path());
+}
+
 TEST_F(StoreMaintenance, TheLastRunsStayHoweverOldTheyAre) {
   for (int i = 0; i < kLastRunsKept; ++i) add_run("2026-01-01", Verdict::kRejected);
   add_run("2026-03-01", Verdict::kRejected);

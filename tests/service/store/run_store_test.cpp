@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 
 #include "tests/config/folder.hpp"
@@ -242,6 +243,27 @@ TEST_F(RunStoreTest, ARunTellsWhoStartedItAndWithWhat) {
   EXPECT_EQ(run.conditions_json, "{}");
   const StoredRun other = store_->run(begin()).value();
   EXPECT_FALSE(run.plan_id || other.operator_name || other.block_temperature || other.stiffness);
+}
+
+TEST_F(RunStoreTest, AfterALockOfAnotherProgramWhatIsWrittenReachesTheFile) {
+  const std::int64_t run = begin();
+  SQLite::Database other(file_.string(), SQLite::OPEN_READWRITE);
+  const std::vector<std::function<void()>> meeting_the_lock{
+      [&] { store_->set_open_command(run, {.session = 1, .sequence = 1, .touch_json = "{}"}); },
+      [&] {
+        if (!store_->make_durable(run)) throw SQLite::Exception("as it tells");
+      },
+      [&] { store_->append_touch(run, touch(1)); }};
+  int stored = 0;
+  for (const auto& write : meeting_the_lock) {
+    other.exec("BEGIN IMMEDIATE");
+    EXPECT_THROW(write(), SQLite::Exception);
+    other.exec("ROLLBACK");
+    store_->append_touch(run, touch(++stored));
+    EXPECT_EQ(other.execAndGet("SELECT count(*) FROM touches").getInt(), stored);
+    store_->set_touches_total(run, 10 + stored);
+    EXPECT_EQ(other.execAndGet("SELECT touches_total FROM runs").getInt(), 10 + stored);
+  }
 }
 
 TEST_F(RunStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {
