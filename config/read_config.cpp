@@ -127,6 +127,12 @@ void read_temperature_age(const JsonObject& object, bool is_first_schema, Cell& 
       std::chrono::duration<double, std::chrono::hours::period>(age->number(kHours)));
 }
 
+void read_permit_lifetime(const JsonObject& object, bool is_first_schema, Cell& cell) {
+  constexpr int kShiftMinutes = 480;
+  if (const auto minutes = find_in_second(object, "permit_minutes", is_first_schema))
+    cell.permit_lifetime = std::chrono::minutes(minutes->integer(1, kShiftMinutes));
+}
+
 AcceptanceLimits acceptance_from_json(const JsonValue& value, bool is_first_schema) {
   const JsonObject object = value.object({"held_out_mean_max_mm", "held_out_rms_max_mm",
                                           "condition_number_max", "lack_of_fit_p_min", "tip_box_rms_max_mm",
@@ -248,6 +254,7 @@ Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice>
                                                                        "touch_noise_mm",
                                                                        "unknown_place_std",
                                                                        "block_temperature_age_max_h",
+                                                                       "permit_minutes",
                                                                        "acceptance",
                                                                        "speeds",
                                                                        "deadlines",
@@ -264,6 +271,7 @@ Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice>
   read_space(object, cell);
   read_touch_conditions(object, cell);
   read_temperature_age(object, is_first_schema, cell);
+  read_permit_lifetime(object, is_first_schema, cell);
   cell.acceptance = acceptance_from_json(object.at("acceptance"), is_first_schema);
   if (const auto tools = object.find("tools")) read_tools(*tools, is_first_schema, cell);
   cell.speeds = speeds_from_json(object.at("speeds"), cell.probe);

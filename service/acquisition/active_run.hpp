@@ -30,10 +30,16 @@ struct ActiveRun {
   std::chrono::system_clock::time_point began{};  // to touch
   std::optional<Interruption> interruption;       // until somebody resumes it
   std::optional<PlaceCheck> place_check;          // once it is planned, where the block was located
+
+  /// The changes of its plan behind the stored ones.
+  [[nodiscard]] std::vector<PlanChange> changes_to_store() const;
 };
 
 /// The result document, as json text; nothing before there is a result.
 std::optional<std::string> result_json(const ActiveRun& active, const TipRegions& regions);
+
+/// The calibrated arm that goes with it, as a file; nothing before there is a result.
+std::optional<std::string> arm_json(const ActiveRun& active, const Cell& cell);
 
 /// What a run that ends by `outcome` is worth: complete with every touch made and a result, it is judged by
 /// the rule of the regions' cell; else it is incomplete. Sets `finished`.

@@ -70,7 +70,8 @@ BlockLocation::BlockLocation(const Cell& configured, ControllerSession& session,
       wake_(wake),
       clocks_(std::move(clocks)),
       cell_(configured),
-      regions_(std::in_place, cell_) {}
+      regions_(std::in_place, cell_),
+      located_(std::make_shared<const LocatedCell>(LocatedCell{cell_, std::nullopt})) {}
 
 bool BlockLocation::keep_in(const std::filesystem::path& file) {
   file_ = file;
@@ -237,6 +238,11 @@ void BlockLocation::use(BlockPose place) {
   cell_ = cell_with_block_pose(configured_, place);
   regions_.emplace(cell_);
   place_ = std::move(place);
+  auto located = std::make_shared<const LocatedCell>(LocatedCell{cell_, place_});
+  {
+    const std::lock_guard lock(located_mutex_);
+    located_ = std::move(located);
+  }
   const Eigen::Vector3d shift_m = place_->cell_from_block.translation();
   spdlog::info(
       "the block stands {:.1f} {:.1f} {:.1f} mm and {:.2f} degrees from where the cell's file has it",

@@ -2,6 +2,8 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +20,12 @@
 
 namespace cell {
 
+/// The cell with its block where it was found last, as one value.
+struct LocatedCell {
+  Cell cell;
+  std::optional<BlockPose> place;  // empty while the block is where the cell file says
+};
+
 /// Where the block stands: the dialogue that finds it by a person's touches (locating.hpp), the pass around
 /// it that proves the place, the file that keeps it, and the cell with its block there. Whether it still
 /// stands there is asked in each run: place_check.hpp.
@@ -33,6 +41,11 @@ class BlockLocation {
 
   /// The cell with its block at the last found pose. Always the same object.
   [[nodiscard]] const Cell& cell() const { return cell_; }
+  /// The same as a value that does not change, for any thread.
+  [[nodiscard]] std::shared_ptr<const LocatedCell> located_cell() const {
+    const std::lock_guard lock(located_mutex_);
+    return located_;
+  }
   [[nodiscard]] const TipRegions& regions() const { return *regions_; }
   /// Empty while the block is where the cell file says.
   [[nodiscard]] const std::optional<BlockPose>& place() const { return place_; }
@@ -76,6 +89,8 @@ class BlockLocation {
   Cell cell_;
   std::optional<TipRegions> regions_;  // of cell_
   std::optional<BlockPose> place_;
+  mutable std::mutex located_mutex_;  // held for the exchange of a pointer
+  std::shared_ptr<const LocatedCell> located_;
   std::filesystem::path file_;  // empty: nowhere
   std::optional<Locating> locating_;
   std::optional<HandTouchWatch> watch_;         // as long as the dialogue lasts

@@ -13,10 +13,6 @@
 #include "service/acquisition/preconditions.hpp"
 #include "service/base/log_format.hpp"
 #include "service/base/utc_time.hpp"
-#include "service/documents/conditions_view.hpp"
-#include "service/run/block_temperature.hpp"
-#include "service/run/run_conditions.hpp"
-#include "service/store/fault_log.hpp"
 
 namespace cell {
 
@@ -39,6 +35,12 @@ std::optional<CommandRefusal> refuse_touch_test(const Status& status) {
   return CommandRefusal{.detail = fmt::format("the touch test is asked for once a run starts; then {}",
                                               awaited_touch_test().words)};
 }
+
+/// Where the ball was when the probe tripped is not known of a contact that is only reported by word, and the
+/// stylus may be bent by then: good enough to find the block, not to calibrate with.
+constexpr const char* kNoTakeInRun =
+    "in a guided run a touch counts only where the controller saw the probe trip: jog back until it is free, "
+    "then touch again, slowly";
 
 /// What the status says of a run.
 void describe_run(Status& status, const ActiveRun& active, std::chrono::system_clock::time_point now) {
@@ -63,20 +65,20 @@ void describe_run(Status& status, const ActiveRun& active, std::chrono::system_c
 
 }  // namespace
 
-CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, RunStore& store,
+CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, StoreQueue store,
                              Endpoint controller, std::string instance_id, Clocks clocks)
-    : CellOperation(executor, cell, store,
+    : CellOperation(executor, cell, std::move(store),
                     std::make_unique<Cs8Controller>(executor, cell.deadlines, std::move(controller)),
                     std::move(instance_id), std::move(clocks)) {}
 
-CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, RunStore& store,
+CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, StoreQueue store,
                              std::unique_ptr<Controller> controller, std::string instance_id, Clocks clocks)
-    : store_(store),
+    : store_(std::move(store)),
       clocks_(std::move(clocks)),
       wake_(executor),
       status_(clocks_, wake_, std::move(instance_id),
               {.describe = [this](Status& status) { describe_to(status); },
-               .on_entered = [this](State state) { session_.on_entered(state); },
+               .on_entered = [this](State state) { on_entered(state); },
                .store_fault = [this](const std::string& name,
                                      const std::string& message) { store_fault(name, message); }}),
       controller_(std::move(controller)),
@@ -94,7 +96,7 @@ CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, R
                        .on_permit = [this](const cs8::Permit& permit) { session_.on_permit(permit); },
                        .on_heartbeat = [this] { session_.on_heartbeat(); },
                        .on_loss = [this](const cs8::LinkError& error) { on_link_lost(error); }});
-  if (const auto accepted = store_.last_accepted())
+  if (const auto accepted = store_.store().last_accepted())
     status_.set_last_accepted(accepted->id, accepted->ended_at);
 }
 
@@ -102,6 +104,7 @@ void CellOperation::launch() {
   if (auto restored = recovery_.restore()) {
     run_.emplace(*std::move(restored));
     touches_.begin_run(*run_);
+    manual_.begin_run();
     set_logged_run(run_->run.id());
   }
   status_.enter(run_ ? State::kHeld : State::kResetting);  // finding the controller moves nothing
@@ -115,7 +118,7 @@ void CellOperation::launch() {
 
 void CellOperation::store_fault(const std::string& name, const std::string& message) {
   const auto run_id = run_ && run_->open ? std::optional(run_->run.id()) : std::nullopt;
-  FaultLog(store_.database()).append(run_id, now_text(), name, message);
+  store_.append_fault({.run_id = run_id, .at = now_text(), .code = name, .message = message});
 }
 
 void CellOperation::describe_to(Status& status) {
@@ -143,103 +146,6 @@ std::vector<Unmet> CellOperation::unmet_preconditions() const {
   return unmet_by_controller(session_.connected(), session_.latest_state(), status_.fault());
 }
 
-std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request) const {
-  const auto outcome = plans_.planned(request.recipe, given_to(request, cell()));
-  const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
-  auto unmet = unmet_for_run(unmet_preconditions(), cell(), {request.block_temperature, clocks_.system()},
-                             status_.fault(), no_plan);
-  if (auto lost = unmet_by_lost_place(store_.runs(1), recovery_.config_digest(), place().has_value()))
-    unmet.push_back(*std::move(lost));
-  return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
-}
-
-/// The answer to a start whose Idempotency-Key was there before; nothing when it was not.
-std::optional<std::variant<Started, CommandRefusal>> CellOperation::repeated_start(
-    const StartRequest& request) const {
-  const auto earlier = request.idempotency_key ? store_.run_with_key(*request.idempotency_key) : std::nullopt;
-  if (!earlier) return std::nullopt;
-  if (earlier->recipe == request.recipe) return Started{earlier->id, true};
-  return CommandRefusal{
-      .kind = CommandRefusal::Kind::kOtherKey,
-      .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'", earlier->id,
-                            earlier->recipe)};
-}
-
-std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& request) const {
-  if (!cell().recipes.contains(request.recipe)) {
-    std::string known;
-    for (const auto& [name, unused] : cell().recipes) known += (known.empty() ? "" : ", ") + name;
-    return CommandRefusal{
-        .kind = CommandRefusal::Kind::kUnknownRecipe,
-        .detail = fmt::format("there is no recipe '{}'; this cell has {}", request.recipe, known)};
-  }
-  if (status_.is_ending()) return CommandRefusal{.detail = "the daemon is ending"};
-  const State state = status_.state();
-  if (is_active(state)) {
-    return CommandRefusal{
-        .detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->run.id() : 0),
-        .code = FaultCode::kRunActive};
-  }
-  auto unmet = unmet_for(request);
-  if (!unmet.empty()) {
-    return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
-                          .detail = "the cell is not ready",
-                          .unmet = std::move(unmet)};
-  }
-  const bool waits_for_remote = request.guided && state == State::kResetting;
-  if (waits_for_remote && (session_.open_touch() || session_.sequence_to_settle() != 0))
-    return CommandRefusal{.detail = "a touch of the last run is still to be stored; then once more",
-                          .code = FaultCode::kNotInThisState};
-  if (!waits_for_remote && !after_command(state, Command::kStart)) {
-    return CommandRefusal{.detail = fmt::format("a run cannot start in the state {}", state_name(state)),
-                          .code = FaultCode::kNotInThisState};
-  }
-  return std::nullopt;
-}
-
-std::variant<Started, CommandRefusal> CellOperation::start(const StartRequest& request) {
-  if (auto repeated = repeated_start(request)) return *std::move(repeated);
-  if (auto refusal = refuse_start(request)) return *std::move(refusal);
-  const std::string conditions = conditions_document(
-      with_block_temperature(cell(), request.block_temperature),
-      {.operator_name = request.operator_name,
-       .config_digest = recovery_.config_digest(),
-       .controller_application = session_.application(),
-       .controller_session = session_.number(),
-       .touch_mode = request.guided ? TouchMode::kGuided : TouchMode::kAutomatic,
-       .temperature_source = request.block_temperature ? TemperatureSource::kRun : TemperatureSource::kFile,
-       .arm_moving_min = request.arm_moving_min,
-       .place = place()});
-  std::int64_t id = 0;
-  try {
-    id = store_.begin_run({.recipe = request.recipe,
-                           .started_at = now_text(),
-                           .idempotency_key = request.idempotency_key,
-                           .operator_name = request.operator_name,
-                           .block_temperature = temperature_to_store(cell(), request.block_temperature),
-                           .stiffness = stiffness_to_store(request),
-                           .config_digest = recovery_.config_digest(),
-                           .conditions_json = conditions});
-  } catch (const std::exception& error) {
-    return CommandRefusal{
-        .kind = CommandRefusal::Kind::kPreconditions,
-        .detail = "the cell is not ready",
-        .unmet = {{"store_not_writable",
-                   fmt::format("free disk space or repair the state directory: {}", error.what())}}};
-  }
-  run_.emplace(ActiveRun{
-      .run = Run(id, tip_regions(), recipe_of(request, cell()), now_text(), request.block_temperature),
-      .conditions = conditions,
-      .guided = request.guided,
-      .interruption = std::nullopt,
-      .place_check = std::nullopt});
-  set_logged_run(id);
-  touches_.begin_run(*run_);
-  status_.begin_run(id);
-  status_.enter(State::kStarting);
-  return Started{id, false};
-}
-
 std::optional<CommandRefusal> CellOperation::command(Command command, std::optional<std::int64_t> run_id) {
   if (run_id && (!run_ || run_->run.id() != *run_id)) {
     return CommandRefusal{.kind = CommandRefusal::Kind::kNotThisRun,
@@ -256,12 +162,10 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
   }
   if (auto refusal = refusal_reason(command)) return refusal;
   if (command == Command::kLocate) return locate();
-  if (command == Command::kTake) return take();
+  if (command == Command::kTake) return location_.take();
   if (command == Command::kUndo) return undo();
   spdlog::info("command {}", command_name(command));
-  if (!apply_command(command))
-    return CommandRefusal{.detail = "it could not be stored: " + status_.fault()->message(),
-                          .code = FaultCode::kStoreFailed};
+  apply_command(command);
   if (status_.state() == state) status_.enter(*next);
   // Entering these two states stops the arm. A stop in any other case is sent all the same: nothing here
   // knows better than who gives it whether something moves.
@@ -281,10 +185,10 @@ std::optional<CommandRefusal> CellOperation::refusal_reason(Command command) con
     case Command::kTouchTest:
       return refuse_touch_test(status_.latest());
     case Command::kTake:
-      if (location_.awaits_touch() || manual_.awaits_touch()) return std::nullopt;
-      return CommandRefusal{.detail =
-                                "no touch by hand is awaited: touchcal locate or touchcal run --guided asks "
-                                "for some"};
+      if (location_.awaits_touch()) return std::nullopt;
+      return CommandRefusal{.detail = manual_.awaits_touch()
+                                          ? kNoTakeInRun
+                                          : "no touch is awaited: touchcal locate asks for some"};
     case Command::kUndo:
       return refuse_undo();
     case Command::kStart:
@@ -317,9 +221,8 @@ std::optional<CommandRefusal> CellOperation::refuse_undo() const {
   return CommandRefusal{.detail = "there is no touch by hand to take back"};
 }
 
-/// What a command changes that was not refused, before the next state is entered. False when a person's word
-/// on a hold could not be stored: the run stays on hold.
-bool CellOperation::apply_command(Command command) {
+/// What a command changes that was not refused, before the next state is entered.
+void CellOperation::apply_command(Command command) {
   const bool answers_hold =
       command == Command::kResume || command == Command::kRetry || command == Command::kSkip;
   const bool settles_fault = answers_hold || command == Command::kAcknowledge || command == Command::kClear ||
@@ -333,11 +236,9 @@ bool CellOperation::apply_command(Command command) {
     status_.publish();
   }
   if (status_.state() == State::kHeld && answers_hold) {
-    const bool stored = touches_.settle_hold(*run_, command);
+    touches_.settle_hold(*run_, command);
     status_.publish();
-    return stored;
   }
-  return true;
 }
 
 std::optional<CommandRefusal> CellOperation::locate() {
@@ -347,11 +248,6 @@ std::optional<CommandRefusal> CellOperation::locate() {
   status_.forget_run();
   status_.enter(State::kStarting);
   return std::nullopt;
-}
-
-/// Takes the arm's present position as the touch expected from a person.
-std::optional<CommandRefusal> CellOperation::take() {
-  return location_.awaits_touch() ? location_.take() : manual_.take(active());
 }
 
 /// The last touch that a person made is forgotten and asked for again.

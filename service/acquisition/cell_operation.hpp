@@ -16,16 +16,17 @@
 #include "service/acquisition/block_location.hpp"
 #include "service/acquisition/command_refusal.hpp"
 #include "service/acquisition/controller_session.hpp"
+#include "service/acquisition/hold_time.hpp"
 #include "service/acquisition/manual_touching.hpp"
 #include "service/acquisition/plan_cache.hpp"
 #include "service/acquisition/published_status.hpp"
 #include "service/acquisition/run_planning.hpp"
 #include "service/acquisition/run_recovery.hpp"
 #include "service/acquisition/start_request.hpp"
+#include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_executor.hpp"
 #include "service/acquisition/touch_preparation.hpp"
 #include "service/base/clocks.hpp"
-#include "service/store/run_store.hpp"
 
 namespace cell {
 
@@ -35,15 +36,16 @@ struct Started {
 };
 
 /// The cell in operation: the state and the run. Commands act at once on the state (run/packml_state.hpp);
-/// one loop does what the state asks for, a step at a time, by the owners of what the step needs. One thread:
-/// that of the executor.
+/// one loop does what the state asks for, a step at a time, by the owners of what the step needs. One thread,
+/// that of the executor, but for what says that it is for any.
 class CellOperation {
  public:
-  /// `cell` and `store` must outlive the operation.
-  CellOperation(boost::asio::any_io_executor executor, const Cell& cell, RunStore& store, Endpoint controller,
-                std::string instance_id, Clocks clocks);
+  /// `cell` and the store must outlive the operation, and the store's executor must have ended its work when
+  /// the operation is destroyed.
+  CellOperation(boost::asio::any_io_executor executor, const Cell& cell, StoreQueue store,
+                Endpoint controller, std::string instance_id, Clocks clocks);
   /// With a controller of any kind.
-  CellOperation(boost::asio::any_io_executor executor, const Cell& cell, RunStore& store,
+  CellOperation(boost::asio::any_io_executor executor, const Cell& cell, StoreQueue store,
                 std::unique_ptr<Controller> controller, std::string instance_id, Clocks clocks);
   CellOperation(const CellOperation&) = delete;
   CellOperation& operator=(const CellOperation&) = delete;
@@ -54,7 +56,7 @@ class CellOperation {
   /// then closes the link, on which the controller stops the arm.
   boost::asio::awaitable<void> shut_down();
 
-  std::variant<Started, CommandRefusal> start(const StartRequest& request);
+  boost::asio::awaitable<std::variant<Started, CommandRefusal>> start(StartRequest request);
   /// `run_id` when the command names a run: it must be the active one.
   std::optional<CommandRefusal> command(Command command, std::optional<std::int64_t> run_id = {});
   /// The commands that lead out of the present state and are taken now.
@@ -67,6 +69,7 @@ class CellOperation {
 
   [[nodiscard]] Status status() const;
   [[nodiscard]] std::uint64_t sequence() const { return status_.latest().sequence; }
+  /// From any thread.
   [[nodiscard]] std::optional<std::int64_t> data_age_ms() const { return session_.data_age_ms(); }
   /// The controller's last reported state; empty before the first.
   [[nodiscard]] std::optional<cs8::State> controller_state() const { return session_.latest_state(); }
@@ -76,12 +79,18 @@ class CellOperation {
   [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
   /// The run under way or the last one of this daemon; null before the first.
   [[nodiscard]] const Run* run() const { return run_ ? &run_->run : nullptr; }
+  /// The same with what belongs to it.
+  [[nodiscard]] const ActiveRun* active_run() const { return run_ ? &*run_ : nullptr; }
   /// The result document of run(), as json text; nothing before there is a result.
   [[nodiscard]] std::optional<std::string> result_json() const;
   /// The cell with its block at the last found pose.
   [[nodiscard]] const Cell& cell() const { return location_.cell(); }
+  /// The same with place(), from any thread: a value that does not change.
+  [[nodiscard]] std::shared_ptr<const LocatedCell> located_cell() const { return location_.located_cell(); }
   [[nodiscard]] const TipRegions& tip_regions() const { return location_.regions(); }
-  [[nodiscard]] const RunStore& store() const { return store_; }
+  /// Digest of the cell's files at the daemon's start.
+  [[nodiscard]] const std::optional<std::string>& config_digest() const { return recovery_.config_digest(); }
+  [[nodiscard]] const RunStore& store() const { return store_.store(); }
   [[nodiscard]] const Clocks& clocks() const { return clocks_; }
 
   /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on a thread of its own.
@@ -98,16 +107,26 @@ class CellOperation {
 
  private:
   // commands and status (cell_operation.cpp)
-  std::optional<std::variant<Started, CommandRefusal>> repeated_start(const StartRequest& request) const;
-  [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request) const;
-  [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request) const;
+  /// What the store knows before a start.
+  struct Earlier {
+    std::optional<StoredRun> with_key;  // that the same Idempotency-Key started
+    std::vector<StoredRun> last;        // one, where there was any
+  };
+  [[nodiscard]] static std::optional<std::variant<Started, CommandRefusal>> repeated_start(
+      const StartRequest& request, const Earlier& earlier);
+  [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request,
+                                                           const Earlier& earlier) const;
+  [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request, const Earlier& earlier) const;
+  boost::asio::awaitable<std::variant<Started, CommandRefusal>> start_alone(const StartRequest& request);
+  boost::asio::awaitable<void> give_up(std::int64_t run_id);
+  [[nodiscard]] NewRun new_run(const StartRequest& request) const;
   [[nodiscard]] std::optional<CommandRefusal> refusal_reason(Command command) const;
   [[nodiscard]] std::optional<CommandRefusal> refuse_answer_to_hold(Command command) const;
   [[nodiscard]] std::optional<CommandRefusal> refuse_undo() const;
-  bool apply_command(Command command);
+  void apply_command(Command command);
   std::optional<CommandRefusal> locate();
-  std::optional<CommandRefusal> take();
   std::optional<CommandRefusal> undo();
+  void on_entered(State state);
   void describe_to(Status& status);
   void store_fault(const std::string& name, const std::string& message);
   void forget_plans();
@@ -118,6 +137,7 @@ class CellOperation {
   // what the controller tells (cell_operation_link.cpp)
   void on_controller_state(const cs8::State& state);
   void on_link_lost(const cs8::LinkError& error);
+  [[nodiscard]] Event after_lost_link() const;
 
   // what the states do (cell_operation_loop.cpp)
   boost::asio::awaitable<void> act_on_states();
@@ -129,11 +149,14 @@ class CellOperation {
   boost::asio::awaitable<void> resume_run();
   [[nodiscard]] bool can_search();
   boost::asio::awaitable<bool> obtain_permit();
+  [[nodiscard]] bool has_permit() const;
+  void end_old_permit();
+  void tell_resumption(bool looks_at_reference) const;
   boost::asio::awaitable<void> wait_out_suspension();
   boost::asio::awaitable<void> pass_block();
   boost::asio::awaitable<void> complete_run();
   boost::asio::awaitable<bool> park();
-  void close_run(RunOutcome outcome);
+  boost::asio::awaitable<void> close_run(RunOutcome outcome);
   boost::asio::awaitable<void> wait_for_end(std::chrono::milliseconds at_most);
 
   /// Where the coroutine runs, and its end.
@@ -143,12 +166,13 @@ class CellOperation {
     bool runs = false;
   };
 
-  RunStore& store_;
+  StoreQueue store_;
   Clocks clocks_;
   TimerWake wake_;  // of the loop, when it has something to do
   PublishedStatus status_;
   std::unique_ptr<Controller> controller_;
   ControllerSession session_;
+  HoldTime hold_time_;  // of the run
   BlockLocation location_;
   PlanCache plans_;
   TouchPreparation preparation_;
@@ -158,6 +182,7 @@ class CellOperation {
   RunRecovery recovery_;
   std::optional<ActiveRun> run_;
   Loop loop_;
+  bool is_starting_ = false;  // a start waits for the store
 };
 
 }  // namespace cell

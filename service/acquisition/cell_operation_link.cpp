@@ -7,12 +7,18 @@ void CellOperation::on_controller_state(const cs8::State& state) {
   session_.on_controller_state(state);
   location_.on_controller_state(state);
   manual_.on_controller_state(active(), state);
-  session_.check_task(state);
+  session_.check_task(state, location_.is_passing() ? Event::kAbortFault : Event::kHoldFault);
+}
+
+/// A run keeps its touches; the way around the block has none and begins anew.
+Event CellOperation::after_lost_link() const {
+  if (is_interrupted()) return Event::kNotReadyFault;
+  return location_.is_passing() ? Event::kAbortFault : Event::kLinkDown;
 }
 
 void CellOperation::on_link_lost(const cs8::LinkError& error) {
   if (status_.is_ending()) return;
-  session_.on_link_lost(error, is_interrupted() ? Event::kNotReadyFault : Event::kLinkDown);
+  session_.on_link_lost(error, after_lost_link());
   wake_.wake();
 }
 

@@ -3,6 +3,8 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 #include "calib_core/planning/aimed_transfer.hpp"
 #include "service/acquisition/cell_operation.hpp"
 #include "service/acquisition/touch_judgement.hpp"
@@ -21,13 +23,19 @@ constexpr std::chrono::milliseconds kStopPatience{3000};
 constexpr std::chrono::milliseconds kRetractPatience{10'000};  // as long as the arm still moves then
 constexpr std::chrono::milliseconds kClosePatience{1000};
 
+/// How often a run on hold looks whether its permit has lasted long enough.
+constexpr std::chrono::milliseconds kPermitLook{10'000};
+
 }  // namespace
+
+void CellOperation::on_entered(State state) {
+  session_.on_entered(state);
+  hold_time_.on_entered(state, clocks_.steady());
+}
 
 asio::awaitable<void> CellOperation::act_on_states() {
   // At the end an interrupted run stays on hold: the next daemon takes it up.
-  const auto is_left = [this] {
-    return !is_active(status_.state()) || (status_.state() == State::kHeld && is_interrupted());
-  };
+  const auto is_left = [this] { return !is_active(status_.state()) || status_.state() == State::kHeld; };
   while (!status_.is_ending() || !is_left()) {
     const State state = status_.state();
     std::optional<std::string> failure;
@@ -87,12 +95,12 @@ asio::awaitable<void> CellOperation::act_on(State state) {
     case State::kStopping:
       if (status_.is_ending()) co_await session_.leave_face();
       session_.give_permit_back();
-      close_run(RunOutcome::kStopped);
+      co_await close_run(RunOutcome::kStopped);
       status_.apply(Event::kDone);
       break;
     case State::kAborting:
       session_.give_permit_back();
-      close_run(RunOutcome::kAborted);
+      co_await close_run(RunOutcome::kAborted);
       status_.apply(Event::kDone);
       break;
     case State::kSuspending:
@@ -108,9 +116,10 @@ asio::awaitable<void> CellOperation::act_on(State state) {
     case State::kStopped:
     case State::kAborted:
     case State::kHeld:
-      // A finished or interrupted run stays to be read while the link comes and goes.
-      if (session_.connected() || (state == State::kHeld && !is_interrupted())) {
-        co_await wake_.wait(1h);
+      // A run that is finished or on hold stays to be read while the link comes and goes.
+      if (session_.connected()) {
+        end_old_permit();
+        co_await wake_.wait(state == State::kHeld ? kPermitLook : 1h);
       } else {
         co_await connect();
       }
@@ -151,11 +160,37 @@ asio::awaitable<void> CellOperation::start_run() {
 
 asio::awaitable<void> CellOperation::resume_run() {
   session_.forget_standing();  // on hold the arm may have been moved by hand
+  const bool answer_stored = co_await touches_.store_answer(*run_);
+  const bool is_held_again = status_.state() != State::kUnholding && status_.state() != State::kUnsuspending;
+  if (!answer_stored || is_held_again) co_return;
   const bool resumable = co_await recovery_.make_resumable(*run_);
   const bool goes_on = status_.state() == State::kUnholding || status_.state() == State::kUnsuspending;
   if (!resumable || !goes_on || !can_search()) co_return;
+  end_old_permit();
+  // Whatever took the permission may have moved something too, and an arm that stood still has cooled.
+  const bool looks = !has_permit() || hold_time_.exceeds(HoldTime::kReferenceMax, clocks_.steady());
+  if (looks) touches_.look_at_reference();
   const bool permitted = co_await obtain_permit();
-  if (permitted) status_.apply(Event::kDone);
+  if (run_->run.touches_done() == 0) run_->began = clocks_.system();
+  if (!permitted) co_return;
+  tell_resumption(looks);
+  status_.apply(Event::kDone);
+}
+
+/// What was checked before a run goes on; its drift is told with the reference touch.
+void CellOperation::tell_resumption(bool looks_at_reference) const {
+  const Run& run = run_->run;
+  const std::uint32_t before = run.touches().empty() ? 0 : run.touches().back().session;
+  const char* session = before == 0 ? "" : before == session_.number() ? ", the same" : ", a new one";
+  const auto told = session_.latest_state();
+  const bool tested = told && (told->flags & cs8::kTouchTested) != 0;
+  spdlog::info(
+      "run {} goes on behind {} of {} touches: controller session {}{}; files of the cell and plan as at its "
+      "start; block {}; stylus {}; reference place {}",
+      run.id(), run.touches_done(), run.touches_total(), session_.number(), session,
+      place() ? "where it was located" : "where the cell's file has it",
+      tested ? "touched by hand" : "not touched by hand",
+      looks_at_reference ? "touched next where the recipe has one" : "not due");
 }
 
 /// False for a plan whose searches the controller will not make.
@@ -175,14 +210,28 @@ asio::awaitable<bool> CellOperation::obtain_permit() {
   co_return permitted;
 }
 
+bool CellOperation::has_permit() const {
+  return run_ && session_.has_permit(static_cast<std::uint32_t>(run_->run.id()));
+}
+
+/// Who confirmed a run long ago need not be at the cell any more: the key is asked for again.
+void CellOperation::end_old_permit() {
+  if (!has_permit() || !hold_time_.exceeds(cell().permit_lifetime, clocks_.steady())) return;
+  spdlog::info("run {} was on hold for more than {} min: it is confirmed again when it goes on",
+               run_->run.id(), cell().permit_lifetime.count());
+  session_.end_permit();
+}
+
 /// Until what keeps the arm waiting has passed; nothing moves here.
 asio::awaitable<void> CellOperation::wait_out_suspension() {
   const auto is_back = [this] {
     const auto state = session_.latest_state();
     return state && state->monitor_speed_percent == 100;
   };
-  while (status_.state() == State::kSuspended && !is_back())
+  while (status_.state() == State::kSuspended && !is_back()) {
+    end_old_permit();
     co_await wake_.wait(1s);  // each state of the controller wakes
+  }
   if (status_.state() != State::kSuspended) co_return;
   status_.clear_fault();
   status_.apply(Event::kDone);
@@ -217,8 +266,10 @@ asio::awaitable<void> CellOperation::complete_run() {
   if (run.skipped_count() > 0)
     status_.warn({FaultCode::kTouchesLeftOut, fmt::format("{} by a person", run.skipped_count())});
   session_.give_permit_back();
-  close_run(RunOutcome::kComplete);
-  status_.apply(Event::kDone);
+  co_await close_run(RunOutcome::kComplete);
+  // It is over, also where the link was lost while its end was stored.
+  const State state = status_.state();
+  if (state != State::kStopping && state != State::kAborting) status_.enter(State::kComplete);
 }
 
 asio::awaitable<bool> CellOperation::park() {
@@ -229,7 +280,7 @@ asio::awaitable<bool> CellOperation::park() {
   const auto via = calib::find_aimed_transfer(preparation_.problem(), preparation_.aim(),
                                               preparation_.leaving(*from), {to, std::nullopt, nullptr});
   if (!via) {
-    status_.raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kAbortFault);
+    status_.raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kHoldFault);
     co_return false;
   }
   const cs8::Travel command = travel_command(cell(), to, *via);
@@ -240,30 +291,33 @@ asio::awaitable<bool> CellOperation::park() {
 std::string CellOperation::now_text() const { return format_utc(clocks_.system()); }
 
 /// The run is over: its verdict and its latest result are stored with it.
-void CellOperation::close_run(RunOutcome outcome) {
+asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
   session_.forget_standing();
-  if (!run_ || !run_->open) return;
+  if (!run_ || !run_->open) co_return;
   const Run& run = run_->run;
   run_->open = false;
   const Verdict verdict = conclude(*run_, outcome, tip_regions());
-  status_.set_verdict(verdict);
   RunEnd end{.outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
              .verdict = verdict,
              .ended_at = now_text(),
-             .result_json = result_json()};
+             .result_json = result_json(),
+             .arm_json = arm_json(*run_, cell())};
   if (const auto& fault = status_.fault()) {
     end.fault_code = std::string(describe(fault->code).name);
     end.fault_message = fault->message();
   }
   run_->interruption.reset();
-  try {
-    store_.finish_run(run.id(), end);
-    if (verdict == Verdict::kAccepted) status_.set_last_accepted(run.id(), end.ended_at);
-  } catch (const std::exception& error) {
-    run_->finished = false;  // what is not on the disk is not accepted
+  const bool finished = std::exchange(run_->finished, false);  // what is not on the disk is not accepted
+  const auto write = [id = run.id(), end](RunStore& store) { store.finish_run(id, end); };
+  const auto failure = co_await store_.write(write);
+  if (failure) {
     status_.set_verdict(Verdict::kIncomplete);
-    status_.set_fault({FaultCode::kStoreFailed, error.what()});
-    spdlog::error("run {}: its end could not be stored: {}", run.id(), error.what());
+    status_.set_fault({FaultCode::kStoreFailed, *failure});
+    spdlog::error("run {}: its end could not be stored: {}", run.id(), *failure);
+  } else {
+    run_->finished = finished;
+    status_.set_verdict(verdict);
+    if (verdict == Verdict::kAccepted) status_.set_last_accepted(run.id(), end.ended_at);
   }
   spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome),
                verdict_name(end.verdict), run.touches_done(), run.touches_total());
@@ -271,6 +325,7 @@ void CellOperation::close_run(RunOutcome outcome) {
 
 asio::awaitable<void> CellOperation::shut_down() {
   status_.end();
+  if (is_starting_) co_await loop_.ended.wait(kStopPatience);  // it is refused now, and leaves no run behind
   const State state = status_.state();
   if (is_interrupted()) {
     if (state == State::kUnholding) status_.enter(State::kHolding);  // whatever its resumption waits for

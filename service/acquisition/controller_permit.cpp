@@ -1,5 +1,6 @@
 // How a ControllerSession obtains a person's confirmation before anything moves. Each co_await stands alone
 // in its statement, see cs8_controller.cpp.
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -20,9 +21,9 @@ constexpr auto kAskAgain = 10s;
 
 }  // namespace
 
-bool ControllerSession::is_permitted(std::uint32_t run_number) const {
+bool ControllerSession::has_permit(std::uint32_t run_number) const {
   const auto permit = controller_.latest_permit();  // that of the run before may not be back yet
-  return controller_.connected() && permit && permit->run == run_number &&
+  return !is_doubted_ && controller_.connected() && permit && permit->run == run_number &&
          permit->state == cs8::PermitState::kGranted;
 }
 
@@ -37,6 +38,24 @@ void ControllerSession::give_permit_back() {
   controller_.finish();
 }
 
+Fault ControllerSession::with_permission_told(Fault fault) const {
+  if (fault.code != FaultCode::kPermissionLost) return fault;
+  const auto add = [&fault](const std::string& words) {
+    if (words.empty() || fault.detail.find(words) != std::string::npos) return;
+    fault.detail += (fault.detail.empty() ? "" : "; ") + words;
+  };
+  if (const auto state = controller_.latest_state()) add(cell::lost_permission(*state));
+  const auto permit = controller_.latest_permit();
+  if (permit && permit->state != cs8::PermitState::kGranted)
+    add(fmt::format("the permit ended by '{}'", cs8::name(permit->reason)));
+  return fault;
+}
+
+void ControllerSession::end_permit() {
+  is_doubted_ = true;  // until another is asked for: that this one ended is told later
+  give_permit_back();
+}
+
 void ControllerSession::on_permit(const cs8::Permit& permit) {
   if (is_permitted_ && permit.state != cs8::PermitState::kGranted)
     spdlog::warn("the controller changed the permit of run {} to {}: {}", permit.run, cs8::name(permit.state),
@@ -47,7 +66,7 @@ void ControllerSession::on_permit(const cs8::Permit& permit) {
 asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number) {
   const State state = status_.state();
   const auto ready_by = clocks_.steady() + cell_.deadlines.ready;
-  while (status_.state() == state && (is_doubted_ || !is_permitted(run_number))) {
+  while (status_.state() == state && !has_permit(run_number)) {
     const auto told = controller_.latest_state();
     asking_ = true;
     const cs8::PermitReply reply = co_await controller_.begin(run_number, cell_.deadlines.confirm);
@@ -67,7 +86,7 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
   co_return is_permitted_;
 }
 
-/// Waits for what a person at the cell can fix; anything else ends the run.
+/// Waits for what a person at the cell can fix. Anything else ends a start; a run on hold stays there.
 asio::awaitable<void> ControllerSession::take_refused_permit(const cs8::Permit& permit,
                                                              std::optional<cs8::State> told,
                                                              std::chrono::steady_clock::time_point ready_by) {
@@ -75,7 +94,10 @@ asio::awaitable<void> ControllerSession::take_refused_permit(const cs8::Permit& 
   const cs8::Rejected refused{static_cast<cs8::RejectReason>(permit.detail)};
   const AwaitedAction* awaited = awaited_after_rejection(refused.reason, told ? told->flags : 0);
   if (!awaited) {
-    status_.raise(fault_of(refused).fault, Event::kAbortFault);
+    const OutcomeFault failed = fault_of(refused);
+    const bool ends = state == State::kStarting && !failed.holds;
+    status_.raise(failed.fault, ends ? Event::kAbortFault : Event::kNotReadyFault);
+    meet_anew_after(refused);
     co_return;
   }
   wait_for(awaited);

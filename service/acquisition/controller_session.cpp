@@ -59,6 +59,7 @@ void ControllerSession::on_controller_state(const cs8::State& state) {
     status_.warn({FaultCode::kArmMoved, {}});
   }
   state_at_ = clocks_.steady();
+  told_at_ = *state_at_;
   if (is_permitted_ && is_moving_state()) permission_.on_state(state, *state_at_);
   hold_without_permission();
 }
@@ -84,7 +85,7 @@ void ControllerSession::hold_without_permission() {
   is_doubted_ = true;
   stop_sent_ = true;
   controller_.stop();
-  status_.raise(*std::move(fault), Event::kHoldFault);
+  status_.raise(with_permission_told(*std::move(fault)), Event::kHoldFault);
 }
 
 std::optional<Fault> ControllerSession::search_fault(std::span<const calib::PlannedTouch> touches) const {
@@ -105,10 +106,9 @@ std::optional<Fault> ControllerSession::search_fault(std::span<const calib::Plan
   return std::nullopt;
 }
 
-void ControllerSession::check_task(const cs8::State& state) {
+void ControllerSession::check_task(const cs8::State& state, Event event) {
   if (std::exchange(task_error_, state.task_error) == state.task_error || state.task_error == 0) return;
-  status_.raise({FaultCode::kTaskFailed, fmt::format("run-time error {}", state.task_error)},
-                Event::kAbortFault);
+  status_.raise({FaultCode::kTaskFailed, fmt::format("run-time error {}", state.task_error)}, event);
 }
 
 void ControllerSession::stop() {
@@ -131,6 +131,7 @@ ControllerView ControllerSession::view(const std::optional<std::string>& probe) 
   view.cell_closed = (state->flags & cs8::kCellClosed) != 0;
   view.touch_tested = (state->flags & cs8::kTouchTested) != 0;
   view.permit = std::string(cs8::name(state->permit));
+  view.retract_due = (state->flags & cs8::kRetractDue) != 0;
   const cs8::ProbeInputs inputs = cs8::probe_inputs(state->flags);
   if (inputs.agree()) {
     view.probe = inputs.free() ? "free" : "touched";
@@ -141,8 +142,9 @@ ControllerView ControllerSession::view(const std::optional<std::string>& probe) 
 }
 
 std::optional<std::int64_t> ControllerSession::data_age_ms() const {
-  if (!state_at_) return std::nullopt;
-  return std::chrono::duration_cast<std::chrono::milliseconds>(clocks_.steady() - *state_at_).count();
+  const std::chrono::steady_clock::time_point told_at = told_at_;
+  if (told_at == std::chrono::steady_clock::time_point::min()) return std::nullopt;
+  return std::chrono::duration_cast<std::chrono::milliseconds>(clocks_.steady() - told_at).count();
 }
 
 asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) {
@@ -165,7 +167,7 @@ asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) 
     }
     const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
     const auto& there = status_.fault();
-    const bool keeps_fault = waits_for_reset && there;
+    const bool keeps_fault = (waits_for_reset || (state == State::kHeld && !run_interrupted)) && there;
     if (!keeps_fault && (!there || there->message() != fault.message()))
       raise_link_fault(fault, run_interrupted ? Event::kNotReadyFault : Event::kLinkDown);
   }
@@ -182,9 +184,14 @@ void ControllerSession::on_link_lost(const cs8::LinkError& error, Event event) {
   is_permitted_ = false;
   pause_.on_link_end(clocks_.steady());
   if (pause_.short_links() == 0) told_faults_.clear();
-  // A person reads why a run ended, and how it ended, to the end.
-  const bool is_over = status_.state() == State::kAborted || status_.state() == State::kStopped;
-  if (is_over && status_.fault()) {
+  // A person reads why a run ended or is on hold, and how it ended, to the end.
+  const State state = status_.state();
+  const bool is_over = state == State::kAborted || state == State::kStopped;
+  const bool is_held = state == State::kHolding || (state == State::kHeld && event == Event::kLinkDown);
+  const auto& there = status_.fault();
+  const bool is_told = there && there->code != FaultCode::kStateMissing;  // which this is the reason of
+  if ((is_over || is_held) && is_told) {
+    spdlog::warn("{}", link_fault(error).message());
     status_.publish();
   } else {
     raise_link_fault(link_fault(error), event);
@@ -215,9 +222,9 @@ void ControllerSession::on_welcome(const cs8::Welcome& welcome, State state, boo
   is_permitted_ = false;
   search_length_max_dmm_ = welcome.search_length_max_dmm;
   search_speed_max_um_s_ = welcome.search_speed_max_um_s;
-  // A fault that ended a run stays until somebody has read it.
-  if (status_.fault() && is_link_fault(status_.fault()->code) && state != State::kAborted)
-    status_.clear_fault();
+  // A fault that ended a run or holds it stays until somebody has read it.
+  const bool stays = state == State::kAborted || (state == State::kHeld && !run_interrupted);
+  if (status_.fault() && is_link_fault(status_.fault()->code) && !stays) status_.clear_fault();
   if (state == State::kHeld && run_interrupted && !status_.fault())
     status_.set_fault({FaultCode::kDaemonRestarted, {}});
   status_.publish();
@@ -250,6 +257,7 @@ bool ControllerSession::take_move(const cs8::MoveReply& reply) {
     const OutcomeFault refused = fault_of(*rejected);
     const bool holds = refused.holds && is_moving_state();
     status_.raise(refused.fault, holds ? Event::kHoldFault : Event::kAbortFault);
+    meet_anew_after(*rejected);
     return false;
   }
   const auto* result = std::get_if<cs8::MoveResult>(&reply.answer);
@@ -257,7 +265,8 @@ bool ControllerSession::take_move(const cs8::MoveReply& reply) {
   controller_.acknowledge(reply.sequence);
   if (result->outcome == cs8::Outcome::kArrived) return true;
   if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {
-    status_.raise(fault->fault, fault->holds && is_moving_state() ? Event::kHoldFault : Event::kAbortFault);
+    status_.raise(with_permission_told(fault->fault),
+                  fault->holds && is_moving_state() ? Event::kHoldFault : Event::kAbortFault);
   } else {
     expect_stop(result->outcome);
   }
@@ -269,7 +278,11 @@ void ControllerSession::expect_stop(cs8::Outcome outcome) {
   if (outcome == cs8::Outcome::kStopped && asked) return;
   status_.raise(
       {FaultCode::kProtocolError, fmt::format("unexpected answer '{}' to a command", cs8::name(outcome))},
-      Event::kAbortFault);
+      is_moving_state() ? Event::kHoldFault : Event::kAbortFault);
+}
+
+void ControllerSession::meet_anew_after(const cs8::Rejected& rejected) {
+  if (rejected.reason == cs8::RejectReason::kResultUnacknowledged) close();
 }
 
 /// The controller's state, told after this call and at rest; nothing when the link is lost, another state was

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <boost/asio/awaitable.hpp>
 #include <chrono>
 #include <cstdint>
@@ -41,8 +42,9 @@ class ControllerSession {
 
   // What the controller reports.
   void on_controller_state(const cs8::State& state);
-  /// Raises a failed task of the controller. Call it after on_controller_state and the state's other uses.
-  void check_task(const cs8::State& state);
+  /// Raises a failed task of the controller, with this event. Call it after on_controller_state and the
+  /// state's other uses.
+  void check_task(const cs8::State& state, Event event);
   void on_permit(const cs8::Permit& permit);
   /// With each heartbeat that is sent: holds a run whose controller tells no State any more.
   void on_heartbeat();
@@ -55,7 +57,7 @@ class ControllerSession {
   [[nodiscard]] std::optional<cs8::State> latest_state() const { return controller_.latest_state(); }
   /// The shown state; `probe` stays while its two inputs change one after the other.
   [[nodiscard]] ControllerView view(const std::optional<std::string>& probe) const;
-  /// The age of the newest State; nothing before the first.
+  /// The age of the newest State; nothing before the first. From any thread.
   [[nodiscard]] std::optional<std::int64_t> data_age_ms() const;
   /// The controller's application: the session, one per start of it; its name and version as it reported
   /// them.
@@ -63,19 +65,26 @@ class ControllerSession {
   [[nodiscard]] const std::optional<std::string>& application() const { return application_; }
 
   /// Tries until there is a link, the state changes or the daemon ends. Moves nothing. Returns the sequence
-  /// of a command that the controller still has and that must be settled now; 0 without one.
-  /// `run_interrupted`: while a run is on hold and not resumed, a missing link changes nothing.
+  /// of a command that the controller still has and that must be settled now; 0 without one. The fault that
+  /// holds a run stays. `run_interrupted`: by the end of the daemon before.
   boost::asio::awaitable<std::uint32_t> connect(bool run_interrupted);
   void close();
-  /// The link was lost.
+  /// The link was lost. Why a run ended or is on hold stays to be read.
   void on_link_lost(const cs8::LinkError& error, Event event);
 
   /// Obtains a person's permit before anything moves (PROTOCOL.md, section 7), for the run of this number.
   /// True when it is given; else a fault or a command has entered another state.
   boost::asio::awaitable<bool> obtain_permit(std::uint32_t run_number);
   void give_permit_back();
+  /// The same in the middle of a run: a person confirms it again before it goes on.
+  void end_permit();
+  /// A person has confirmed this run, and nothing has ended that since.
+  [[nodiscard]] bool has_permit(std::uint32_t run_number) const;
   /// What State says against the motion that is under way, in words; empty when it says nothing.
   [[nodiscard]] std::string lost_permission() const { return permission_.told(); }
+  /// A fault that lost permission caused, with what the controller tells of it: its State, and why the permit
+  /// ended. Any other as it is.
+  [[nodiscard]] Fault with_permission_told(Fault fault) const;
   /// Why the controller will not make one of these touches: what it said in its Welcome of the searches that
   /// it takes.
   [[nodiscard]] std::optional<Fault> search_fault(std::span<const calib::PlannedTouch> touches) const;
@@ -100,6 +109,8 @@ class ControllerSession {
   boost::asio::awaitable<bool> travel(cs8::Travel command);
   /// Handles a command that ended stopped: by a person's request, or else it is a fault.
   void expect_stop(cs8::Outcome outcome);
+  /// A controller that missed an acknowledgement is met anew: its Welcome names the result that it still has.
+  void meet_anew_after(const cs8::Rejected& rejected);
 
   // Where the last command left the arm, when that is certain.
   [[nodiscard]] const std::optional<calib::JointVector>& standing() const { return standing_; }
@@ -113,7 +124,6 @@ class ControllerSession {
   boost::asio::awaitable<void> leave_face();
 
  private:
-  [[nodiscard]] bool is_permitted(std::uint32_t run_number) const;
   void wait_for(const AwaitedAction* awaited);
   boost::asio::awaitable<void> take_refused_permit(const cs8::Permit& permit, std::optional<cs8::State> told,
                                                    std::chrono::steady_clock::time_point ready_by);
@@ -150,6 +160,8 @@ class ControllerSession {
   std::set<std::string> told_faults_;       // of links, since one of them lasted
   std::int32_t search_length_max_dmm_ = 0;  // of Welcome, 10^-4 mm; 0 is unknown
   std::int32_t search_speed_max_um_s_ = 0;
+  /// state_at_ for other threads; the least value before the first.
+  std::atomic<std::chrono::steady_clock::time_point> told_at_{std::chrono::steady_clock::time_point::min()};
 };
 
 }  // namespace cell

@@ -47,7 +47,7 @@ bool is_over(const calib::Face& face, const Eigen::Vector3d& ball_m, double miss
 
 }  // namespace
 
-ManualTouching::ManualTouching(const Cell& cell, RunStore& store, ControllerSession& session,
+ManualTouching::ManualTouching(const Cell& cell, StoreQueue& store, ControllerSession& session,
                                TouchPreparation& preparation, TouchExecutor& touches, PublishedStatus& status,
                                Wake& wake)
     : cell_(cell),
@@ -58,9 +58,26 @@ ManualTouching::ManualTouching(const Cell& cell, RunStore& store, ControllerSess
       status_(status),
       wake_(wake) {}
 
+void ManualTouching::begin_run() {
+  taken_.reset();
+  is_storing_ = false;
+  undo_count_ = 0;
+}
+
 asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
   touches_.forget_hold();
   const Run& run = active.run;
+  const auto taken = std::exchange(taken_, std::nullopt);
+  if (taken && taken->run_id == run.id()) {
+    co_await keep(active, *taken);
+    co_return;
+  }
+  if (run.touches_done() == 0) undo_count_ = 0;
+  if (undo_count_ > 0) {
+    --undo_count_;
+    co_await withdraw_last(active);
+    co_return;
+  }
   if (!run.next()) {
     status_.apply(Event::kDone);
     co_return;
@@ -101,14 +118,6 @@ std::optional<HandGuide> ManualTouching::guide(State state) {
   return guide_;
 }
 
-std::optional<CommandRefusal> ManualTouching::take(ActiveRun* active) {
-  auto taken = watch_->take();
-  if (auto* why = std::get_if<std::string>(&taken)) return CommandRefusal{.detail = std::move(*why)};
-  if (auto why = take_touch(active, std::get<HandTouch>(taken)))
-    return CommandRefusal{.detail = std::move(*why)};
-  return std::nullopt;
-}
-
 void ManualTouching::on_controller_state(ActiveRun* active, const cs8::State& state) {
   if (!watch_) return;
   if (const auto touch = watch_->on_controller_state(state)) take_touch(active, *touch);
@@ -118,7 +127,9 @@ void ManualTouching::on_controller_state(ActiveRun* active, const cs8::State& st
 std::optional<std::string> ManualTouching::take_touch(ActiveRun* active, const HandTouch& touch) {
   const calib::PlannedTouch* planned = active ? active->run.next() : nullptr;
   if (!guide_ || !planned || status_.state() != State::kExecute) return "no touch is awaited now";
-  if (auto why = why_not(active->run, *planned, touch)) {
+  std::optional<std::string> why = why_not(active->run, *planned, touch);
+  if (taken_ || is_storing_ || undo_count_ > 0) why = "the one before was still being stored: touch again";
+  if (why) {
     spdlog::info("touch by hand not taken: {}", *why);
     guide_->problem = why;
     status_.publish();
@@ -129,15 +140,21 @@ std::optional<std::string> ManualTouching::take_touch(ActiveRun* active, const H
   result.source = cs8::CaptureSource::kPolled;
   result.contact = touch.wire_joints;
   result.edges = 1;
-  const calib::PlannedTouch wanted = *planned;  // the run goes on to the next one
-  if (!touches_.keep(*active, wanted, result, nullptr)) return "it could not be stored";
-  if (active->place_check) {
-    if (const auto moved = active->place_check->check(active->run.problem().touches.back()))
+  taken_ = Taken{.run_id = active->run.id(), .wanted = *planned, .result = result};
+  wake_.wake();
+  return std::nullopt;
+}
+
+asio::awaitable<void> ManualTouching::keep(ActiveRun& active, Taken taken) {
+  is_storing_ = true;
+  const bool kept = co_await touches_.keep(active, taken.wanted, taken.result, std::nullopt);
+  is_storing_ = false;
+  if (!kept) co_return;
+  if (active.place_check) {
+    if (const auto moved = active.place_check->check(active.run.problem().touches.back()))
       status_.raise(*moved, Event::kHoldFault);
   }
   status_.publish();
-  wake_.wake();
-  return std::nullopt;
 }
 
 /// Why a touch cannot be the planned one; nothing when it can.
@@ -165,18 +182,30 @@ std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::
   return std::nullopt;
 }
 
-void ManualTouching::undo(ActiveRun& active) {
-  try {
-    store_.withdraw_touch(active.run.id(), active.run.touches().back().number, "a person took it back");
-  } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
-    return;
+void ManualTouching::undo(const ActiveRun& active) {
+  if (taken_) {
+    taken_.reset();  // it is not stored yet
+  } else {
+    undo_count_ = std::min(undo_count_ + 1, active.run.touches_done() + (is_storing_ ? 1 : 0));
+  }
+  wake_.wake();
+}
+
+asio::awaitable<void> ManualTouching::withdraw_last(ActiveRun& active) {
+  const auto write = [id = active.run.id(), number = active.run.touches().back().number](RunStore& store) {
+    store.withdraw_touch(id, number, "a person took it back");
+  };
+  is_storing_ = true;
+  const auto failure = co_await store_.write(write);
+  is_storing_ = false;
+  if (failure) {
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kHoldFault);
+    co_return;
   }
   active.run.withdraw_last();
   preparation_.restart_aim();
   guide_.reset();
   status_.publish();
-  wake_.wake();
 }
 
 }  // namespace cell

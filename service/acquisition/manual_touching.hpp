@@ -6,7 +6,6 @@
 
 #include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
-#include "service/acquisition/command_refusal.hpp"
 #include "service/acquisition/hand_touch.hpp"
 #include "service/acquisition/touch_executor.hpp"
 #include "service/run/hand_guide.hpp"
@@ -19,29 +18,39 @@ namespace cell {
 class ManualTouching {
  public:
   /// All must outlive it.
-  ManualTouching(const Cell& cell, RunStore& store, ControllerSession& session, TouchPreparation& preparation,
-                 TouchExecutor& touches, PublishedStatus& status, Wake& wake);
+  ManualTouching(const Cell& cell, StoreQueue& store, ControllerSession& session,
+                 TouchPreparation& preparation, TouchExecutor& touches, PublishedStatus& status, Wake& wake);
 
-  /// Shows which touch comes next and waits for it. Ends the step (Event::kDone) when no touch is left.
+  /// A run begins: nothing of the one before is to be stored or taken back.
+  void begin_run();
+  /// Stores what was touched or taken back; else shows which touch comes next and waits for it. Ends the step
+  /// (Event::kDone) when no touch is left.
   boost::asio::awaitable<void> await_touch(ActiveRun& active);
   [[nodiscard]] bool awaits_touch() const { return watch_.has_value(); }
-  /// Takes the arm's present position as the expected touch; there must be one. `active`: null without a run.
-  std::optional<CommandRefusal> take(ActiveRun* active);
   /// Watches for a touch by a person who jogs, while one is expected.
   void on_controller_state(ActiveRun* active, const cs8::State& state);
   /// Withdraws the run's last touch and asks for it again. The online estimate is made again from the others.
-  void undo(ActiveRun& active);
+  void undo(const ActiveRun& active);
   /// The instruction shown to the person; empty outside EXECUTE, where the watch ends.
   std::optional<HandGuide> guide(State state);
 
  private:
+  /// A touch that is the expected one and is not stored yet.
+  struct Taken {
+    std::int64_t run_id = 0;
+    calib::PlannedTouch wanted;
+    cs8::TouchResult result;
+  };
+
+  boost::asio::awaitable<void> keep(ActiveRun& active, Taken taken);
+  boost::asio::awaitable<void> withdraw_last(ActiveRun& active);
   [[nodiscard]] HandGuide guide_to(const Run& run) const;
   std::optional<std::string> take_touch(ActiveRun* active, const HandTouch& touch);
   [[nodiscard]] std::optional<std::string> why_not(const Run& run, const calib::PlannedTouch& planned,
                                                    const HandTouch& touch) const;
 
   const Cell& cell_;
-  RunStore& store_;
+  StoreQueue& store_;
   ControllerSession& session_;
   TouchPreparation& preparation_;
   TouchExecutor& touches_;
@@ -49,6 +58,9 @@ class ManualTouching {
   Wake& wake_;
   std::optional<HandTouchWatch> watch_;  // as long as touches are awaited
   std::optional<HandGuide> guide_;       // to the one that is
+  std::optional<Taken> taken_;
+  bool is_storing_ = false;
+  int undo_count_ = 0;  // touches to be taken back
 };
 
 }  // namespace cell

@@ -30,6 +30,10 @@ void ReferenceMonitor::restore(const calib::PlannedTouch& planned, const calib::
                  .due = true};
 }
 
+void ReferenceMonitor::make_due() {
+  if (place_) place_->due = true;
+}
+
 bool ReferenceMonitor::is_due(int touches_done, bool all_made) const {
   if (!place_) return false;
   if (place_->count == 0 || place_->due) return true;

@@ -39,6 +39,10 @@ class ReferenceMonitor {
   void restore(const calib::PlannedTouch& planned, const calib::JointVector& contact,
                const std::optional<calib::JointVector>& reference, int count);
 
+  /// Before anything else: the arm may have been moved or loaded since the last touch. Nothing without a
+  /// place.
+  void make_due();
+
   /// True at the start, after every `every` touches, and at the end.
   [[nodiscard]] bool is_due(int touches_done, bool all_made) const;
   /// The touch of the place, which must be known.

@@ -13,7 +13,7 @@ PlanGiven given_to(const Run& run) {
   return {.block_temperature = run.block_temperature(), .stiffness = run.recipe().identification.stiffness};
 }
 
-RunPlanning::RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, RunStore& store,
+RunPlanning::RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, StoreQueue& store,
                          PlanCache& plans, TouchPreparation& preparation, PublishedStatus& status, Wake& wake)
     : cell_(cell),
       place_(place),
@@ -42,25 +42,29 @@ asio::awaitable<bool> RunPlanning::plan(ActiveRun& active) {
     status_.raise({FaultCode::kRecipeUnreachable, refusal->message}, Event::kAbortFault);
     co_return false;
   }
-  co_return adopt(active, *std::get<std::shared_ptr<const Plan>>(outcome));
+  const auto plan = std::get<std::shared_ptr<const Plan>>(outcome);
+  const bool adopted = co_await adopt(active, plan);
+  co_return adopted;
 }
 
-bool RunPlanning::adopt(ActiveRun& active, const Plan& plan) {
-  if (const auto invalid = plan_fault(plan.touches.touches)) {
+asio::awaitable<bool> RunPlanning::adopt(ActiveRun& active, std::shared_ptr<const Plan> plan) {
+  if (const auto invalid = plan_fault(plan->touches.touches)) {
     status_.raise(*invalid, Event::kAbortFault);
-    return false;
+    co_return false;
   }
   Run& run = active.run;
-  run.set_plan(plan.touches);
-  try {
-    store_.set_plan(run.id(), run.touches_total(), plan.id, plan.document);
-  } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
-    return false;
+  run.set_plan(plan->touches);
+  const auto write = [id = run.id(), total = run.touches_total(), plan](RunStore& store) {
+    store.set_plan(id, total, plan->id, plan->document);
+  };
+  const auto failure = co_await store_.write(write);
+  if (failure) {
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kAbortFault);
+    co_return false;
   }
   begin_touches(active);
   status_.publish();
-  return true;
+  co_return true;
 }
 
 void RunPlanning::begin_touches(ActiveRun& active) {

@@ -1,16 +1,17 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
+#include <memory>
 #include <optional>
 
 #include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/plan_cache.hpp"
 #include "service/acquisition/published_status.hpp"
+#include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_preparation.hpp"
 #include "service/acquisition/wake.hpp"
 #include "service/run/block_pose.hpp"
-#include "service/store/run_store.hpp"
 
 namespace cell {
 
@@ -22,7 +23,7 @@ PlanGiven given_to(const Run& run);
 class RunPlanning {
  public:
   /// All must outlive it. `place`: where the block was located, if it was.
-  RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, RunStore& store, PlanCache& plans,
+  RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, StoreQueue& store, PlanCache& plans,
               TouchPreparation& preparation, PublishedStatus& status, Wake& wake);
 
   /// False when there is no plan, which raises a fault, or when another state was entered meanwhile.
@@ -34,11 +35,11 @@ class RunPlanning {
   void begin_touches(ActiveRun& active);
 
  private:
-  bool adopt(ActiveRun& active, const Plan& plan);
+  boost::asio::awaitable<bool> adopt(ActiveRun& active, std::shared_ptr<const Plan> plan);
 
   const Cell& cell_;
   const std::optional<BlockPose>& place_;
-  RunStore& store_;
+  StoreQueue& store_;
   PlanCache& plans_;
   TouchPreparation& preparation_;
   PublishedStatus& status_;

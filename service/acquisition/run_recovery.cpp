@@ -7,11 +7,13 @@
 #include <utility>
 
 #include "service/acquisition/commanded_touch.hpp"
+#include "service/acquisition/restored_touches.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/configuration_digest.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/run_recipe.hpp"
+#include "service/store/damaged_store.hpp"
 
 namespace cell {
 
@@ -24,7 +26,7 @@ std::optional<std::string> why_not_resumable(const Cell& cell, const StoredRun& 
   return std::nullopt;
 }
 
-RunRecovery::RunRecovery(const Cell& cell, const TipRegions& regions, RunStore& store, PlanCache& plans,
+RunRecovery::RunRecovery(const Cell& cell, const TipRegions& regions, StoreQueue& store, PlanCache& plans,
                          ControllerSession& session, TouchPreparation& preparation, RunPlanning& planning,
                          TouchExecutor& touches, PublishedStatus& status, Clocks clocks)
     : cell_(cell),
@@ -40,27 +42,57 @@ RunRecovery::RunRecovery(const Cell& cell, const TipRegions& regions, RunStore& 
       config_digest_(configuration_digest(cell)) {}
 
 std::optional<ActiveRun> RunRecovery::restore() {
-  auto stored = store_.running();
-  // An older one was over for everybody; only its end could not be written then.
-  if (stored && stored->id != store_.runs(1).front().id) stored.reset();
-  store_.finish_interrupted(format_utc(clocks_.system()), stored ? std::optional(stored->id) : std::nullopt);
+  const std::optional<StoredRun> stored = open_run();
+  store_.store().finish_interrupted(format_utc(clocks_.system()),
+                                    stored ? std::optional(stored->id) : std::nullopt);
   if (!stored) return std::nullopt;
   if (const auto why = why_not_resumable(cell_, *stored, config_digest_)) {
     end_for_good(*stored, *why);
     return std::nullopt;
   }
-  ActiveRun active{.run = Run(stored->id, regions_, recipe_of(*stored, cell_), stored->started_at,
-                              temperature_given_to(*stored, cell_)),
-                   .conditions = stored->conditions_json.value_or(""),
-                   .guided = is_guided(stored->conditions_json),
-                   .interruption = Interruption{stored->plan_id, store_.plan_changes(stored->id)},
+  try {
+    return take_up(*stored);
+  } catch (const DamagedStore& damage) {
+    end_for_good(*stored, damage.what());
+    return std::nullopt;
+  }
+}
+
+/// The run to take up. One that is damaged is over: nothing moves by it.
+std::optional<StoredRun> RunRecovery::open_run() {
+  try {
+    auto stored = store_.store().running();
+    // An older one was over for everybody; only its end could not be written then.
+    if (stored && stored->id != store_.store().runs(1).front().id) stored.reset();
+    return stored;
+  } catch (const DamagedStore& damage) {
+    spdlog::error("no run is taken up: {}", damage.what());
+    return std::nullopt;
+  }
+}
+
+std::optional<ActiveRun> RunRecovery::take_up(const StoredRun& stored) {
+  const std::vector<StoredTouch> touches = store_.store().touches(stored.id);
+  if (const auto why = why_no_touches_of(cell_, touches)) {
+    end_for_good(stored, *why);
+    return std::nullopt;
+  }
+  // What is read on the way is looked at now: a person is told before anything moves.
+  (void)store_.store().references(stored.id);
+  (void)store_.store().superseded_touches(stored.id);
+  (void)store_.store().plan_json(stored.id);
+  ActiveRun active{.run = Run(stored.id, regions_, recipe_of(stored, cell_), stored.started_at,
+                              temperature_given_to(stored, cell_)),
+                   .conditions = stored.conditions_json.value_or(""),
+                   .guided = is_guided(stored.conditions_json),
+                   .interruption = Interruption{stored.plan_id, store_.store().plan_changes(stored.id)},
                    .place_check = std::nullopt};
-  active.run.restore(store_.touches(stored->id), stored->touches_total);
-  take_up_open_command(stored->id);
-  status_.begin_run(stored->id);
+  active.run.restore(touches, stored.touches_total);
+  take_up_open_command(stored.id);
+  status_.begin_run(stored.id);
   status_.set_fault({FaultCode::kDaemonRestarted, {}});
-  spdlog::warn("run {} was interrupted after {} of {} touches; it waits to be resumed", stored->id,
-               stored->touches_done, stored->touches_total);
+  spdlog::warn("run {} was interrupted after {} of {} touches; it waits to be resumed", stored.id,
+               stored.touches_done, stored.touches_total);
   return active;
 }
 
@@ -71,13 +103,16 @@ void RunRecovery::end_for_good(const StoredRun& run, const std::string& why) {
              .ended_at = format_utc(clocks_.system())};
   end.fault_code = std::string(describe(FaultCode::kDaemonRestarted).name);
   end.fault_message = Fault{FaultCode::kDaemonRestarted, "it cannot be resumed: " + why}.message();
-  store_.finish_run(run.id, end);
+  store_.store().finish_run(run.id, end);
 }
 
 void RunRecovery::take_up_open_command(std::int64_t run_id) {
-  const auto open = store_.open_command(run_id);
-  auto command = open ? command_from_text(open->touch_json) : std::nullopt;
-  if (!command) return;
+  const auto open = store_.store().open_command(run_id);
+  if (!open) return;
+  auto command = command_from_text(open->touch_json);
+  if (!command)
+    throw DamagedStore(store_.store().file(), "table open_commands, run " + std::to_string(run_id),
+                       "it is no touch command");
   session_.set_open_touch(
       {open->session, open->sequence, std::move(command->touch), open->aimed_with, run_id});
   preparation_.set_made_path(std::move(command->path));
@@ -95,10 +130,15 @@ asio::awaitable<bool> RunRecovery::make_resumable(ActiveRun& active) {
     session_.drop_open_touch();  // lost with its session
   if (session_.open_touch()) co_await touches_.settle_open_command(&active, session_.open_touch()->sequence);
   if (!goes_on()) co_return false;
-  if (!active.interruption) co_return true;
+  if (!active.interruption) {
+    if (active.run.planned(0)) co_return true;
+    const bool planned = co_await planning_.plan(active);  // it was broken off before it had one
+    co_return planned;
+  }
   const bool planned = co_await plan_again(active);
   if (!planned || status_.state() != state) co_return false;
-  co_return resume(active);
+  const bool resumed = co_await resume(active);
+  co_return resumed;
 }
 
 /// The run's plan once more: planning is deterministic, and a plan's id is the digest of its document.
@@ -120,23 +160,28 @@ asio::awaitable<bool> RunRecovery::plan_again(ActiveRun& active) {
   run.set_plan((*plan)->touches);
   for (const PlanChange& change : active.interruption->plan_changes) run.change_plan(change);
   active.stored_changes = run.plan_changes().size();
+  if (const auto why = why_not_of_plan(cell_, run, active.guided)) {
+    status_.raise({FaultCode::kDaemonRestarted, "it cannot be resumed: " + *why}, Event::kAbortFault);
+    co_return false;
+  }
   planning_.begin_touches(active);
   if (!active.guided) {
     preparation_.recall(run);
-    touches_.restore_reference(active);
+    co_await touches_.restore_reference(active);
     touches_.suspect_last(active);
   }
   co_return true;
 }
 
 /// From here on the run is this daemon's; its time so far is what the plan says of the touches made.
-bool RunRecovery::resume(ActiveRun& active) {
+asio::awaitable<bool> RunRecovery::resume(ActiveRun& active) {
   const Run& run = active.run;
-  try {
-    store_.append_resumption(run.id(), format_utc(clocks_.system()), run.touches_done());
-  } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kNotReadyFault);
-    return false;
+  const auto write = [id = run.id(), at = format_utc(clocks_.system()),
+                      done = run.touches_done()](RunStore& store) { store.append_resumption(id, at, done); };
+  const auto failure = co_await store_.write(write);
+  if (failure) {
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kNotReadyFault);
+    co_return false;
   }
   active.interruption.reset();
   double made_s = 0.0;
@@ -145,7 +190,7 @@ bool RunRecovery::resume(ActiveRun& active) {
   active.began = clocks_.system() -
                  std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>(made_s));
   status_.publish();
-  return true;
+  co_return true;
 }
 
 }  // namespace cell

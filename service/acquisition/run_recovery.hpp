@@ -7,8 +7,8 @@
 #include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/run_planning.hpp"
+#include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_executor.hpp"
-#include "service/store/run_store.hpp"
 
 namespace cell {
 
@@ -22,28 +22,31 @@ std::optional<std::string> why_not_resumable(const Cell& cell, const StoredRun& 
 class RunRecovery {
  public:
   /// All must outlive it. Takes the digest of the cell's files, at the daemon's start.
-  RunRecovery(const Cell& cell, const TipRegions& regions, RunStore& store, PlanCache& plans,
+  RunRecovery(const Cell& cell, const TipRegions& regions, StoreQueue& store, PlanCache& plans,
               ControllerSession& session, TouchPreparation& preparation, RunPlanning& planning,
               TouchExecutor& touches, PublishedStatus& status, Clocks clocks);
 
   [[nodiscard]] const std::optional<std::string>& config_digest() const { return config_digest_; }
 
   /// Takes up the run that the previous daemon left open, or ends it in the store when it cannot be resumed.
-  /// Moves nothing. Passes on what the store throws.
+  /// Also one whose rows are damaged, or whose touches cannot be those of a run of this cell, ends. Moves
+  /// nothing. Passes on what the store throws. Before the store's thread begins.
   std::optional<ActiveRun> restore();
   /// Prepares a run on hold for a person's confirmation: the link, the outcome of its last command, its plan.
   /// False when another state was entered.
   boost::asio::awaitable<bool> make_resumable(ActiveRun& active);
 
  private:
+  std::optional<StoredRun> open_run();
+  std::optional<ActiveRun> take_up(const StoredRun& stored);
   void end_for_good(const StoredRun& run, const std::string& why);
   void take_up_open_command(std::int64_t run_id);
   boost::asio::awaitable<bool> plan_again(ActiveRun& active);
-  bool resume(ActiveRun& active);
+  boost::asio::awaitable<bool> resume(ActiveRun& active);
 
   const Cell& cell_;
   const TipRegions& regions_;
-  RunStore& store_;
+  StoreQueue& store_;
   PlanCache& plans_;
   ControllerSession& session_;
   TouchPreparation& preparation_;

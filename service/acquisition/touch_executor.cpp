@@ -24,9 +24,20 @@ namespace {
 /// This many false triggers in a run indicate a fault.
 constexpr int kFalseTriggersMany = 3;
 
+/// For the list of runs; the changes of the plan say the same, so that a failure is only tried again.
+bool store_total(RunStore& store, std::int64_t run_id, int touches_total) {
+  try {
+    store.set_touches_total(run_id, touches_total);
+    return true;
+  } catch (const std::exception& error) {
+    spdlog::warn("run {}: its number of touches could not be stored: {}", run_id, error.what());
+    return false;
+  }
+}
+
 }  // namespace
 
-TouchExecutor::TouchExecutor(const Cell& cell, const TipRegions& regions, RunStore& store,
+TouchExecutor::TouchExecutor(const Cell& cell, const TipRegions& regions, StoreQueue& store,
                              ControllerSession& session, TouchPreparation& preparation,
                              PublishedStatus& status, Wake& wake, Clocks clocks)
     : cell_(cell),
@@ -43,21 +54,23 @@ void TouchExecutor::begin_run(const ActiveRun& active) {
   history_ = {};
   outlier_.settle();
   if (beside_plan_) settle_beside_plan();  // of a run that was stopped before it could be stored
-  total_stored_ = true;
+  total_is_due_ = false;
+  leaves_out_.reset();
   stylus_allowed_ = false;
   reference_.begin_run(active.run.recipe().reference_every);
   false_trigger_count_ = 0;
 }
 
-void TouchExecutor::restore_reference(ActiveRun& active) {
+asio::awaitable<void> TouchExecutor::restore_reference(ActiveRun& active) {
   Run& run = active.run;
   reference_.begin_run(run.recipe().reference_every);
   const std::vector<StoredTouch>& made = run.touches();
   const auto first = std::ranges::find(made, calib::TouchRole::kFit, &StoredTouch::role);
-  if (first == made.end() || run.recipe().reference_every == 0) return;
+  if (first == made.end() || run.recipe().reference_every == 0) co_return;
   const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(first->number - 1));
-  if (!planned) return;
-  const std::vector<ReferenceTouch> there = store_.references(run.id());
+  if (!planned) co_return;
+  const auto read = [id = run.id()](RunStore& store) { return store.references(id); };
+  const std::vector<ReferenceTouch> there = co_await store_.run(read);
   run.note_references(there);
   const auto reference = there.empty() ? std::nullopt : std::optional(from_wire(there.front().joints));
   reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
@@ -92,10 +105,11 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   const bool ready = co_await prepare(active);
   if (!ready) co_return;
   const OutgoingTouch outgoing = preparation_.send_next();
-  session_.forget_standing();
   const OpenTouch open{session_.number(), session_.next_sequence(), outgoing.touch, outgoing.aimed_with,
                        active.run.id()};
-  if (!keep_open_command(active, open)) co_return;
+  const bool kept = co_await keep_open_command(active, open);
+  if (!kept) co_return;
+  session_.forget_standing();
   auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
   work_ahead(active);
   const cs8::TouchReply reply = co_await std::move(answer);
@@ -103,7 +117,7 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
     session_.drop_open_touch();
     take_rejection(*rejected, HeldBy::kTouch);
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
-    take_contact(active, open, reply, *result);
+    co_await take_contact(active, open, *result);
   }  // a lost link was reported by the controller's hook
 }
 
@@ -123,40 +137,50 @@ asio::awaitable<bool> TouchExecutor::prepare(ActiveRun& active) {
   preparation_.add_contacts(run);
   if (preparation_.prepare_next(run, *from)) co_return true;
   const int plane = run.next()->face + 1;
-  status_.raise(
-      {FaultCode::kNoSafeWay, fmt::format("to touch {} on plane {}", run.touches_done() + 1, plane)},
-      Event::kAbortFault);
+  hold_without_way(*from, fmt::format("to touch {} on plane {}", run.touches_done() + 1, plane),
+                   HeldBy::kTouch);
   co_return false;
 }
 
-/// What is needed to know the answer again after a restart, kept before the command leaves. False when it
-/// cannot be kept: then the command must not leave.
-bool TouchExecutor::keep_open_command(ActiveRun& active, const OpenTouch& open) {
-  const Run& run = active.run;
-  session_.set_open_touch(open);
-  try {
-    store_plan_changes(active);
-    store_.set_open_command(run.id(), {.session = open.session,
-                                       .sequence = open.sequence,
-                                       .aimed_with = open.aimed_with,
-                                       .touch_json = command_text(open.planned, preparation_.made_path())});
-    return true;
-  } catch (const std::exception& error) {
-    session_.drop_open_touch();
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
-    return false;
-  }
+/// A person can jog the arm to where there is a way, or leave the touch out.
+void TouchExecutor::hold_without_way(const calib::JointVector& from, const std::string& to, HeldBy held_by) {
+  held_by_ = held_by;
+  const char* stuck = preparation_.can_leave(from) ? "" : "; where it stands it has no room to leave";
+  status_.raise({FaultCode::kNoSafeWay, to + stuck}, Event::kHoldFault);
 }
 
-void TouchExecutor::store_plan_changes(ActiveRun& active) {
-  const std::vector<PlanChange>& changes = active.run.plan_changes();
-  for (; active.stored_changes < changes.size(); ++active.stored_changes)
-    store_.append_plan_change(active.run.id(), changes[active.stored_changes]);
+/// What is needed to know the answer again after a restart, kept before the command leaves. False when it
+/// cannot be kept, or the state has changed meanwhile, or the arm has been moved: then the command must not
+/// leave.
+asio::awaitable<bool> TouchExecutor::keep_open_command(ActiveRun& active, OpenTouch open) {
+  const Run& run = active.run;
+  session_.set_open_touch(open);
+  const bool stood = session_.standing().has_value();
+  const OpenCommand command{.session = open.session,
+                            .sequence = open.sequence,
+                            .aimed_with = open.aimed_with,
+                            .touch_json = command_text(open.planned, preparation_.made_path())};
+  std::size_t stored = 0;  // of the changes: what is stored before one fails is not stored again
+  const auto write = [id = run.id(), changes = active.changes_to_store(), command, &stored](RunStore& store) {
+    for (; stored < changes.size(); ++stored) store.append_plan_change(id, changes[stored]);
+    store.set_open_command(id, command);
+  };
+  const auto failure = co_await store_.write(write);
+  active.stored_changes += stored;
+  const bool has_moved = stood && !session_.standing();
+  if (!failure && status_.state() == State::kExecute && !has_moved) co_return true;
+  session_.drop_open_touch();
+  if (failure) {
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kHoldFault);
+  } else {  // its sequence number belongs to the command that leaves next
+    store_.behind([id = run.id()](RunStore& store) { store.forget_open_command(id); });
+  }
+  co_return false;
 }
 
 /// While the arm moves.
 void TouchExecutor::work_ahead(ActiveRun& active) {
-  store_.make_durable(active.run.id());
+  store_.behind([id = active.run.id()](RunStore& store) { store.make_durable(id); });
   identify(active);
   preparation_.add_contacts(active.run);
   const std::size_t behind = active.run.touches_made() + 1;
@@ -171,34 +195,23 @@ void TouchExecutor::identify(ActiveRun& active) {
 /// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.
 void TouchExecutor::stop_when_good_enough(ActiveRun& active, std::size_t first) {
   Run& run = active.run;
-  if (!total_stored_) store_total(run);
   if (!run.meets_accuracy_goal()) return;
   const int dropped = run.drop_fit_touches(first);
   if (dropped == 0) return;
   spdlog::info("run {} is accurate enough: {} touches are left out", run.id(), dropped);
-  store_total(run);
+  total_is_due_ = true;
   status_.publish();
 }
 
-/// For the list of runs; the changes of the plan say the same, so that a failure is only tried again.
-void TouchExecutor::store_total(const Run& run) {
-  try {
-    store_.set_touches_total(run.id(), run.touches_total());
-    total_stored_ = true;
-  } catch (const std::exception& error) {
-    total_stored_ = false;
-    spdlog::warn("run {}: its number of touches could not be stored: {}", run.id(), error.what());
-  }
-}
-
-void TouchExecutor::take_contact(ActiveRun& active, const OpenTouch& open, const cs8::TouchReply& reply,
-                                 const cs8::TouchResult& result) {
+asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch open,
+                                                  cs8::TouchResult result) {
   const calib::PlannedTouch& touch = open.planned;
-  if (!accept(active, touch, reply.sequence, result, HeldBy::kTouch)) return;
+  if (!accept(active, touch, open.sequence, result, HeldBy::kTouch)) co_return;
   const calib::JointVector contact = from_wire(result.contact);
   if (const calib::PlannedTouch* of_plan = active.run.next()) reference_.note_fitted(*of_plan, contact);
-  if (!keep(active, touch, result, &open)) return;
-  session_.acknowledge(reply.sequence);
+  const bool kept = co_await keep(active, touch, result, open);
+  if (!kept) co_return;
+  session_.acknowledge(open.sequence);
   preparation_.set_missed(false);
   session_.set_standing(touch.clear_joints);
   if (active.place_check) {
@@ -255,19 +268,20 @@ void TouchExecutor::take_no_measurement(const ActiveRun& active, const calib::Pl
   if (code == FaultCode::kCollision) preparation_.forget_made();  // what was known of the arm may be wrong
   held_by_ = held_by;
   const bool of_plan = held_by == HeldBy::kTouch;
-  status_.raise(
-      of_plan && active.place_check ? active.place_check->explain(judged.fault, touch.face) : judged.fault,
-      judged.event);
+  const Fault told = session_.with_permission_told(judged.fault);
+  status_.raise(of_plan && active.place_check ? active.place_check->explain(told, touch.face) : told,
+                judged.event);
 }
 
 void TouchExecutor::take_rejection(const cs8::Rejected& rejected, HeldBy held_by) {
   const OutcomeFault refused = fault_of(rejected);
   held_by_ = held_by;
   status_.raise(refused.fault, refused.event());
+  session_.meet_anew_after(rejected);
 }
 
-bool TouchExecutor::keep(ActiveRun& active, const calib::PlannedTouch& planned,
-                         const cs8::TouchResult& result, const OpenTouch* answered) {
+asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch planned,
+                                          cs8::TouchResult result, std::optional<OpenTouch> answered) {
   Run& run = active.run;
   const StoredTouch touch{.number = run.touches_done() + 1,
                           .plane = planned.face + 1,
@@ -279,13 +293,19 @@ bool TouchExecutor::keep(ActiveRun& active, const calib::PlannedTouch& planned,
                           .session = answered ? answered->session : 0,
                           .sequence = answered ? answered->sequence : 0,
                           .aimed_with = answered ? answered->aimed_with : 0};
-  try {
-    store_.append_touch(run.id(), touch);
-  } catch (const std::exception& error) {
+  const std::optional<int> total = total_is_due_ ? std::optional(run.touches_total()) : std::nullopt;
+  bool total_stored = false;
+  const auto write = [id = run.id(), touch, total, &total_stored](RunStore& store) {
+    store.append_touch(id, touch);
+    total_stored = total && store_total(store, id, *total);
+  };
+  const auto failure = co_await store_.write(write);
+  if (total_stored) total_is_due_ = false;
+  if (failure) {
     // The controller keeps its answer until it is acknowledged: a run on hold stores it when it goes on.
-    status_.raise({FaultCode::kStoreFailed, error.what()},
+    status_.raise({FaultCode::kStoreFailed, *failure},
                   status_.state() == State::kExecute ? Event::kHoldFault : Event::kNotReadyFault);
-    return false;
+    co_return false;
   }
   run.add(touch);
   const bool polled = result.source == cs8::CaptureSource::kPolled;
@@ -294,7 +314,7 @@ bool TouchExecutor::keep(ActiveRun& active, const calib::PlannedTouch& planned,
               run.touches_done(), planned.face + 1, cs8::name(result.source),
               polled ? ", late by up to 4 ms of its speed: check the latch" : "", result.edges,
               cs8::metres_from_dmm(result.overtravel_dmm) * 1e3);
-  return true;
+  co_return true;
 }
 
 /// The newest touch is known to the aim at once; one that the others contradict is made again while the arm
@@ -311,31 +331,46 @@ asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std:
   const std::optional<OpenTouch> open = session_.open_touch();
   const bool ours = active && open && open->run_id == active->run.id() &&
                     open->session == session_.number() && open->sequence == sequence;
-  if (result && ours && judge_touch(cell_, open->planned, *result, {}).next == TouchJudgement::Next::kKeep) {
-    spdlog::info("run {}: touch {} had been made when the run ended", active->run.id(),
+  std::optional<TouchJudgement> judged;
+  if (result && ours) judged = judge_touch(cell_, open->planned, *result, {});
+  if (judged && judged->next == TouchJudgement::Next::kKeep) {
+    spdlog::info("run {}: touch {} had been made when the run was broken off", active->run.id(),
                  active->run.touches_done() + 1);
-    if (!keep_late_touch(*active, *open, *result)) {
+    const bool kept = co_await keep_late_touch(*active, *open, *result);
+    if (!kept) {
       if (!active->open) status_.enter(State::kStopped);  // it waits there until it can be stored
       co_return;
     }
   }
   session_.acknowledge(sequence);
+  if (judged && judged->next == TouchJudgement::Next::kFault && judged->event == Event::kAbortFault &&
+      active->open)
+    status_.raise(judged->fault, judged->event);
 }
 
 /// A contact of a run that is over or on hold: its stored result follows, its verdict does not change.
-bool TouchExecutor::keep_late_touch(ActiveRun& active, const OpenTouch& open,
-                                    const cs8::TouchResult& result) {
-  if (!keep(active, open.planned, result, &open)) return false;
+asio::awaitable<bool> TouchExecutor::keep_late_touch(ActiveRun& active, OpenTouch open,
+                                                     cs8::TouchResult result) {
+  const calib::PlannedTouch* of_plan = active.run.next();
+  const bool goes_on = active.open && !active.interruption && !active.guided;
+  const calib::JointVector contact = from_wire(result.contact);
+  if (goes_on && of_plan) reference_.note_fitted(*of_plan, contact);
+  const bool kept = co_await keep(active, open.planned, result, open);
+  if (!kept) co_return false;
   identify(active);
-  if (active.open && !active.interruption && !active.guided) suspect_last(active);
-  try {
-    if (const auto document = result_json(active, regions_))
-      store_.set_result_json(active.run.id(), *document);
-  } catch (const std::exception& error) {
-    spdlog::error("run {}: its result could not be stored: {}", active.run.id(), error.what());
+  if (goes_on) aim_behind_late_touch(active, contact);
+  if (const auto document = result_json(active, regions_)) {
+    store_.behind([id = active.run.id(), json = *document, arm = arm_json(active, cell_)](RunStore& store) {
+      store.set_result_json(id, json, arm);
+    });
   }
   status_.publish();
-  return true;
+  co_return true;
+}
+
+void TouchExecutor::aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact) {
+  if (preparation_.made() && preparation_.is_surprise(contact)) preparation_.drop_next();
+  suspect_last(active);
 }
 
 }  // namespace cell

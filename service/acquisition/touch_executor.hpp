@@ -9,9 +9,9 @@
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/outlier_retest.hpp"
 #include "service/acquisition/reference_monitor.hpp"
+#include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_judgement.hpp"
 #include "service/acquisition/touch_preparation.hpp"
-#include "service/store/run_store.hpp"
 
 namespace cell {
 
@@ -30,13 +30,16 @@ enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus };
 class TouchExecutor {
  public:
   /// All must outlive it.
-  TouchExecutor(const Cell& cell, const TipRegions& regions, RunStore& store, ControllerSession& session,
+  TouchExecutor(const Cell& cell, const TipRegions& regions, StoreQueue& store, ControllerSession& session,
                 TouchPreparation& preparation, PublishedStatus& status, Wake& wake, Clocks clocks);
 
   /// Begins a run, without a hold or a suspect.
   void begin_run(const ActiveRun& active);
   /// Continues a run after a restart: restores the reference place.
-  void restore_reference(ActiveRun& active);
+  boost::asio::awaitable<void> restore_reference(ActiveRun& active);
+
+  /// The run was out of hands: its reference place, if it has one, is touched before the next touch.
+  void look_at_reference() { reference_.make_due(); }
 
   /// Makes one touch: the retest of an outlier, the reference place or the next of the plan. Ends the step
   /// (Event::kDone) when no touch is left.
@@ -47,37 +50,39 @@ class TouchExecutor {
   /// contradict is made again before anything else. The estimate must be that without it.
   void suspect_last(const ActiveRun& active);
   /// Stores a contact and adds it to the run; false when it could not be stored, which holds the run.
-  /// `answered` is the command that it answers; null where none is known.
-  bool keep(ActiveRun& active, const calib::PlannedTouch& planned, const cs8::TouchResult& result,
-            const OpenTouch* answered);
+  /// `answered` is the command that it answers; empty where none is known.
+  boost::asio::awaitable<bool> keep(ActiveRun& active, calib::PlannedTouch planned, cs8::TouchResult result,
+                                    std::optional<OpenTouch> answered);
   /// Settles a result that the controller still has, of a run that has ended or is on hold: a contact in it
-  /// is stored with that run, then the controller may forget it. `active`: null without a run.
+  /// is stored with that run, then the controller may forget it. One that tells of a collision or the like
+  /// ends a run on hold. `active`: null without a run.
   boost::asio::awaitable<void> settle_open_command(ActiveRun* active, std::uint32_t sequence);
 
   [[nodiscard]] HeldBy held_by() const { return held_by_; }
   void forget_hold() { held_by_ = HeldBy::kNothing; }
-  /// A person's answer to the hold. False when it could not be stored: nothing has changed then.
-  bool settle_hold(ActiveRun& active, Command command);
+  /// A person's answer to the hold. store_answer() follows before anything moves.
+  void settle_hold(ActiveRun& active, Command command);
+  /// What the answer changes in the plan is stored, then it counts. False when it could not be stored: the
+  /// run is held again, as before the answer.
+  boost::asio::awaitable<bool> store_answer(ActiveRun& active);
   /// Goes on from the hold.
   [[nodiscard]] Command answer_to_hold() const { return answer_; }
 
  private:
   boost::asio::awaitable<bool> prepare(ActiveRun& active);
-  bool keep_open_command(ActiveRun& active, const OpenTouch& open);
+  void hold_without_way(const calib::JointVector& from, const std::string& to, HeldBy held_by);
+  boost::asio::awaitable<bool> keep_open_command(ActiveRun& active, OpenTouch open);
   void work_ahead(ActiveRun& active);
   void stop_when_good_enough(ActiveRun& active, std::size_t first);
-  void take_contact(ActiveRun& active, const OpenTouch& open, const cs8::TouchReply& reply,
-                    const cs8::TouchResult& result);
+  boost::asio::awaitable<void> take_contact(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
   bool accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
               const cs8::TouchResult& result, HeldBy held_by);
   void take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
                            const TouchJudgement& judged, HeldBy held_by);
   void take_rejection(const cs8::Rejected& rejected, HeldBy held_by);
   void watch_fit(const ActiveRun& active);
-  bool keep_late_touch(ActiveRun& active, const OpenTouch& open, const cs8::TouchResult& result);
-
-  void store_plan_changes(ActiveRun& active);
-  void store_total(const Run& run);
+  boost::asio::awaitable<bool> keep_late_touch(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
+  void aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact);
 
   // Beside the plan (touch_executor_beside_plan.cpp).
   boost::asio::awaitable<bool> touch_beside_plan(ActiveRun& active, calib::AimedTouch aimed, HeldBy held_by);
@@ -86,12 +91,12 @@ class TouchExecutor {
   bool aim_at_reference();
   void judge_reference(const ActiveRun& active, const calib::JointVector& contact);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
-  bool replace_last(ActiveRun& active, OutlierRetest::Replaced replaced);
-  bool leave_out(ActiveRun& active, bool outlier);
+  boost::asio::awaitable<bool> replace_last(ActiveRun& active, OutlierRetest::Replaced replaced);
+  boost::asio::awaitable<bool> leave_out(ActiveRun& active, bool outlier);
 
   const Cell& cell_;
   const TipRegions& regions_;  // of the cell
-  RunStore& store_;
+  StoreQueue& store_;
   ControllerSession& session_;
   TouchPreparation& preparation_;
   PublishedStatus& status_;
@@ -107,11 +112,12 @@ class TouchExecutor {
     cs8::TouchResult result;
   };
   std::optional<BesidePlan> beside_plan_;
-  bool total_stored_ = true;  // the run's number of touches
+  bool total_is_due_ = false;  // the run's number of touches has changed and is not stored yet
   int false_trigger_count_ = 0;
   bool stylus_allowed_ = false;  // by a person
   HeldBy held_by_ = HeldBy::kNothing;
   Command answer_ = Command::kResume;
+  std::optional<HeldBy> leaves_out_;  // by a person's answer, which is not stored yet
 };
 
 }  // namespace cell

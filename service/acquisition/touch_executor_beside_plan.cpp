@@ -30,7 +30,7 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
   }
   auto ready = preparation_.prepare(std::move(aimed), *from);
   if (!ready) {
-    status_.raise({FaultCode::kNoSafeWay, "to a place that was touched before"}, Event::kAbortFault);
+    hold_without_way(*from, "to a place that was touched before", held_by);
     co_return false;
   }
   const OutgoingTouch outgoing = preparation_.send(*std::move(ready));
@@ -62,7 +62,8 @@ bool TouchExecutor::aim_at_reference() {
   if (reference_.aimed()) return true;
   auto made = preparation_.aim_or_nominal(reference_.planned());
   if (const auto* why = std::get_if<std::string>(&made)) {
-    status_.raise({FaultCode::kNoSafeWay, "to the reference place: " + *why}, Event::kAbortFault);
+    held_by_ = HeldBy::kReference;
+    status_.raise({FaultCode::kNoSafeWay, "to the reference place: " + *why}, Event::kHoldFault);
     return false;
   }
   reference_.set_aimed(std::get<calib::AimedTouch>(std::move(made)));
@@ -81,21 +82,26 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
   ReferenceMonitor with_contact = reference_;
   const ReferenceMonitor::Reading reading = with_contact.add_contact(contact, run.touches_done(), height_m);
   const double drift_mm = calib::mm_from_metres(reading.drift_m);
-  try {
-    store_.append_reference(run.id(), {.number = reading.number,
-                                       .touches_done = run.touches_done(),
-                                       .joints = beside_plan_->result.contact,
-                                       .drift_mm = reading.told_m ? std::optional(drift_mm) : std::nullopt,
-                                       .captured_at = format_utc(clocks_.system())});
-  } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
+  const ReferenceTouch made{.number = reading.number,
+                            .touches_done = run.touches_done(),
+                            .joints = beside_plan_->result.contact,
+                            .drift_mm = reading.told_m ? std::optional(drift_mm) : std::nullopt,
+                            .captured_at = format_utc(clocks_.system())};
+  std::vector<ReferenceTouch> there;
+  const auto write = [id = run.id(), made, &there](RunStore& store) {
+    store.append_reference(id, made);
+    there = store.references(id);
+  };
+  const auto failure = co_await store_.write(write);
+  if (failure) {
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kHoldFault);
     co_return;
   }
   settle_beside_plan();
   reference_ = std::move(with_contact);
   if (reading.told_m) status_.set_reference_drift(*reading.told_m);
   spdlog::info("run {} reference touch {}: drift {:.3f} mm", run.id(), reading.number, drift_mm);
-  active.run.note_references(store_.references(run.id()));
+  active.run.note_references(there);
   active.run.identify();
   status_.publish();
   judge_reference(active, contact);
@@ -135,7 +141,8 @@ asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
                                   preparation_.height_m(face, from_wire(first.joints)));
   auto finding = outlier_.judge(first, again, apart_m, agreement_max_m(cell_));
   if (auto* replaced = std::get_if<OutlierRetest::Replaced>(&finding)) {
-    if (!replace_last(active, std::move(*replaced))) co_return;
+    const bool stored = co_await replace_last(active, std::move(*replaced));
+    if (!stored) co_return;
   }
   settle_beside_plan();
   if (const auto* confirmed = std::get_if<OutlierRetest::Confirmed>(&finding)) {
@@ -147,13 +154,15 @@ asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
   }
 }
 
-bool TouchExecutor::replace_last(ActiveRun& active, OutlierRetest::Replaced replaced) {
+asio::awaitable<bool> TouchExecutor::replace_last(ActiveRun& active, OutlierRetest::Replaced replaced) {
   const StoredTouch& again = replaced.again;
-  try {
-    store_.replace_touch(active.run.id(), again, "it did not fit the others, its repetition does");
-  } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
-    return false;
+  const auto write = [id = active.run.id(), again](RunStore& store) {
+    store.replace_touch(id, again, "it did not fit the others, its repetition does");
+  };
+  const auto failure = co_await store_.write(write);
+  if (failure) {
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kHoldFault);
+    co_return false;
   }
   active.run.replace_last(again);
   spdlog::warn("run {} touch {} is replaced by its repetition, which fits the others", active.run.id(),
@@ -161,13 +170,12 @@ bool TouchExecutor::replace_last(ActiveRun& active, OutlierRetest::Replaced repl
   preparation_.set_aim(std::move(replaced.aim));
   outlier_.settle();
   status_.publish();
-  return true;
+  co_return true;
 }
 
-bool TouchExecutor::settle_hold(ActiveRun& active, Command command) {
+void TouchExecutor::settle_hold(ActiveRun& active, Command command) {
   const bool retry = command == Command::kRetry, skip = command == Command::kSkip;
-  const bool leaves_out = skip && (held_by_ == HeldBy::kTouch || held_by_ == HeldBy::kOutlier);
-  if (leaves_out && !leave_out(active, held_by_ == HeldBy::kOutlier)) return false;
+  if (skip && (held_by_ == HeldBy::kTouch || held_by_ == HeldBy::kOutlier)) leaves_out_ = held_by_;
   answer_ = command;
   const HeldBy held_by = std::exchange(held_by_, retry ? held_by_ : HeldBy::kNothing);
   if (held_by == HeldBy::kDrift && retry) reference_.look_again();
@@ -181,29 +189,34 @@ bool TouchExecutor::settle_hold(ActiveRun& active, Command command) {
     status_.warn({FaultCode::kTouchOutlier, fmt::format("touch {}", active.run.touches_done())});
     outlier_.settle();
   }
-  return true;
+}
+
+asio::awaitable<bool> TouchExecutor::store_answer(ActiveRun& active) {
+  if (!leaves_out_) co_return true;
+  const bool stored = co_await leave_out(active, *leaves_out_ == HeldBy::kOutlier);
+  if (!stored) held_by_ = *leaves_out_;
+  leaves_out_.reset();
+  co_return stored;
 }
 
 /// The touch that holds the run, with the contact that does not fit where it is an `outlier`. Stored in one
 /// piece before it counts; false when that could not be.
-bool TouchExecutor::leave_out(ActiveRun& active, bool outlier) {
+asio::awaitable<bool> TouchExecutor::leave_out(ActiveRun& active, bool outlier) {
   Run& run = active.run;
-  std::vector<PlanChange> changes(
-      run.plan_changes().begin() + static_cast<std::ptrdiff_t>(active.stored_changes),
-      run.plan_changes().end());
+  std::vector<PlanChange> changes = active.changes_to_store();
   const int place = static_cast<int>(run.touches_made()) - (outlier ? 1 : 0);
   changes.push_back({PlanChange::Kind::kSkip, place});
-  try {
-    if (outlier) {
-      store_.leave_out(run.id(), changes,
-                       Withdrawal{.number = run.touches().back().number,
-                                  .reason = "it did not fit the others, and a person left it out"});
-    } else {
-      store_.leave_out(run.id(), changes);
-    }
-  } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kHoldFault);
-    return false;
+  std::optional<Withdrawal> withdrawn;
+  if (outlier)
+    withdrawn = Withdrawal{.number = run.touches().back().number,
+                           .reason = "it did not fit the others, and a person left it out"};
+  const auto write = [id = run.id(), changes, withdrawn](RunStore& store) {
+    store.leave_out(id, changes, withdrawn);
+  };
+  const auto failure = co_await store_.write(write);
+  if (failure) {
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kNotReadyFault);
+    co_return false;
   }
   if (outlier) {
     run.withdraw_last();
@@ -213,7 +226,7 @@ bool TouchExecutor::leave_out(ActiveRun& active, bool outlier) {
   spdlog::warn("run {}: touch {} of the plan is left out, the run stays incomplete", run.id(), place + 1);
   run.skip_next();
   active.stored_changes = run.plan_changes().size();
-  return true;
+  co_return true;
 }
 
 }  // namespace cell

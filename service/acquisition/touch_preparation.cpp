@@ -96,6 +96,12 @@ bool TouchPreparation::prepare_next(Run& run, const calib::JointVector& joints) 
   return next_.has_value();
 }
 
+bool TouchPreparation::can_leave(const calib::JointVector& joints) const {
+  return calib::find_aimed_transfer(planning_, *aim_, leaving(joints),
+                                    {planning_.park_joints, std::nullopt, nullptr})
+      .has_value();
+}
+
 void TouchPreparation::look_ahead(Run& run, std::size_t place) {
   next_ = prepared(run, place, calib::transfer_end_of(*made_));
 }
@@ -181,7 +187,7 @@ std::optional<PreparedTouch> TouchPreparation::prepared(Run& run, std::size_t pl
       touch->planned = planned->joints;
       return touch;
     }
-    if (!run.defer(place)) break;
+    if (!can_leave(from.joints) || !run.defer(place)) break;
   }
   return std::nullopt;
 }

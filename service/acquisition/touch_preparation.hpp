@@ -60,8 +60,11 @@ class TouchPreparation {
   bool reroute_from(const calib::JointVector& joints, const calib::PlannedTouch& next);
   /// Prepares the run's next touch from here. A touch that cannot be made as aimed is made with the nominal
   /// miss, which keeps the plan's order; without a path to that either, it is put off to the end, once. False
-  /// when it cannot be made then.
+  /// when it cannot be made then, or the arm cannot leave.
   bool prepare_next(Run& run, const calib::JointVector& joints);
+  /// Whether a clear path leads from here to the park posture: after a hold the arm stands where a person
+  /// left it, and where it cannot leave, no touch is to blame.
+  [[nodiscard]] bool can_leave(const calib::JointVector& joints) const;
   /// Prepares the touch after the one under way, at this position in the plan.
   void look_ahead(Run& run, std::size_t place);
   /// Prepares a touch outside the plan, from here.

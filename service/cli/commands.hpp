@@ -96,6 +96,16 @@ struct ExportArguments {
 /// Writes a run's calibrated arm as an arm file.
 ExitCode export_command(const ApiClient& daemon, const ExportArguments& arguments, bool json);
 
+/// Upper bound of --limit: all that the daemon keeps.
+inline constexpr int kAuditLimitMax = 101'000;
+
+struct AuditArguments {
+  int limit = 50;
+  bool csv = false;
+};
+/// Prints the newest rows of the audit log, newest first.
+ExitCode audit_command(const ApiClient& daemon, const AuditArguments& arguments, bool json);
+
 struct ReportArguments {
   std::string run_id;
   std::string format = "html";  // html, csv or pdf

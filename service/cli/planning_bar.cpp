@@ -8,7 +8,7 @@
 namespace cell {
 namespace {
 
-constexpr int kBarWidth = 30;
+constexpr int kPlanningBarWidth = 30;
 
 }  // namespace
 
@@ -16,9 +16,9 @@ void PlanningBar::show(std::string_view stage, double share) {
   const int percent = static_cast<int>(100.0 * std::clamp(share, 0.0, 1.0));
   if (!on_terminal_ || percent == shown_percent_) return;
   shown_percent_ = percent;
-  const auto filled = static_cast<std::size_t>(percent * kBarWidth / 100);
+  const auto filled = static_cast<std::size_t>(percent * kPlanningBarWidth / 100);
   fmt::print(stderr, "\r\033[K[{}{}] {:>3} %  {}", std::string(filled, '#'),
-             std::string(kBarWidth - filled, '.'), percent, stage);
+             std::string(kPlanningBarWidth - filled, '.'), percent, stage);
   std::fflush(stderr);
 }
 

@@ -248,6 +248,8 @@ std::string status_text(const StatusDocument& status) {
       yes_no(status.controller_cell_closed, "closed", "OPEN"),
       yes_no(status.controller_touch_tested, "made", "missing"), text_or_unknown(status.probe),
       text_or_unknown(status.controller_permit));
+  if (status.retract_due.value_or(false))
+    lines += "arm         at a face; it is taken back before anything else\n";
   if (status.waiting_for) lines += fmt::format("waiting     {}\n", awaited_instruction(*status.waiting_for));
   if (status.run_id) {
     lines += fmt::format(

@@ -67,6 +67,7 @@ class CommandLine {
     exported->add_option("--arm", export_.arm_file, "the file to write; - is standard output")->required();
     exported->add_flag("--force", export_.overwrite, "overwrite the file");
     add_report();
+    add_audit();
     for (const auto& [name, description] : kCellCommands) {
       add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {
         return cell::give_command(daemon, command, json_);
@@ -228,6 +229,17 @@ class CommandLine {
     report->add_flag("--force", report_.overwrite, "overwrite the file");
   }
 
+  void add_audit() {
+    auto* audit = add_for_daemon(
+        "audit", "list the audit log, newest first: who gave which command, from where, and what came of it",
+        [this](const cell::ApiClient& daemon) { return cell::audit_command(daemon, audit_, json_); });
+    audit->add_option("--limit", audit_.limit, "number of rows")
+        ->check(CLI::Range(1, cell::kAuditLimitMax))
+        ->default_str("50");
+    audit->add_flag("--csv", audit_.csv, "as a table for other programs")
+        ->excludes(audit->get_option("--json"));
+  }
+
   void add_completion() {
     auto* completion = app_.add_subcommand("completion", "print a shell completion script for touchcal");
     completion->add_option("SHELL", shell_, "bash or zsh")->required()->check(CLI::IsMember({"bash", "zsh"}));
@@ -274,6 +286,7 @@ class CommandLine {
   cell::PlanArguments plan_;
   cell::ExportArguments export_;
   cell::ReportArguments report_;
+  cell::AuditArguments audit_;
   // Not by CLI11's envname: with it the environment of one subcommand would override the flag of another.
   std::string daemon_url_ = environment_or("TOUCHCAL_DAEMON", "http://127.0.0.1:8080");
   std::string state_directory_ = environment_or("TOUCHCAL_STATE", cell::default_state_directory().string());

@@ -14,12 +14,15 @@
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <csignal>
 #include <cstdio>
 #include <stdexcept>
+#include <thread>
 
 #include "service/acquisition/cell_operation.hpp"
+#include "service/base/run_on.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/daemon/listen_address.hpp"
@@ -59,17 +62,21 @@ class DirectoryLock {
   int descriptor_;
 };
 
-/// At once and then daily. A failure is repeated the next day.
-asio::awaitable<void> delete_old_runs(const RunStore& store, Clocks clocks, int retain_days) {
+/// At once and then daily, on the store's thread. A failure is repeated the next day.
+asio::awaitable<void> delete_old_runs(const RunStore& store, asio::any_io_executor disk, Clocks clocks,
+                                      int retain_days) {
   asio::steady_timer day(co_await asio::this_coro::executor);
   for (;;) {
-    try {
-      const auto oldest = clocks.system() - std::chrono::days(retain_days);
-      const int deleted = delete_runs_before(store.database(), format_utc(oldest));
-      if (deleted > 0) spdlog::info("{} runs older than {} days were deleted", deleted, retain_days);
-    } catch (const std::exception& error) {
-      spdlog::error("old runs could not be deleted: {}", error.what());
-    }
+    const std::string oldest = format_utc(clocks.system() - std::chrono::days(retain_days));
+    const auto delete_them = [&store, oldest, retain_days] {
+      try {
+        const int deleted = delete_runs_before(store.database(), oldest);
+        if (deleted > 0) spdlog::info("{} runs older than {} days were deleted", deleted, retain_days);
+      } catch (const std::exception& error) {
+        spdlog::error("old runs could not be deleted: {}", error.what());
+      }
+    };
+    co_await run_on(disk, delete_them);
     day.expires_after(std::chrono::days(1));
     co_await day.async_wait(asio::use_awaitable);
   }
@@ -101,6 +108,44 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
   }
 }
 
+/// At its end all that was to be written is written: it refers to coroutines that are destroyed next.
+class WorkDone {
+ public:
+  explicit WorkDone(asio::thread_pool& disk) : disk_(disk) {}
+  ~WorkDone() { disk_.join(); }
+  WorkDone(const WorkDone&) = delete;
+  WorkDone& operator=(const WorkDone&) = delete;
+
+ private:
+  asio::thread_pool& disk_;
+};
+
+/// The thread that serves, until its end. What nobody foresaw there ends a connection and no run.
+class HttpThread {
+ public:
+  explicit HttpThread(asio::io_context& context) : context_(context), thread_([this] { serve(); }) {}
+  ~HttpThread() {
+    context_.stop();
+    thread_.join();
+  }
+  HttpThread(const HttpThread&) = delete;
+  HttpThread& operator=(const HttpThread&) = delete;
+
+ private:
+  void serve() {
+    while (!context_.stopped()) {
+      try {
+        context_.run();
+      } catch (const std::exception& error) {
+        spdlog::error("while serving: {}", error.what());
+      }
+    }
+  }
+
+  asio::io_context& context_;
+  std::thread thread_;
+};
+
 }  // namespace
 
 void run_daemon(const Cell& cell, const DaemonOptions& options) {
@@ -110,21 +155,28 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
   }
   const DirectoryLock lock(options.state_directory);
+  refuse_lost_store(options.state_directory);
   RunStore store(options.state_directory / kStoreFile);
   const Tokens tokens = load_or_make_tokens(options.state_directory);
   const Clocks clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now};
 
+  // Requests on their way to the operation wait in its context, with sockets of the other: it goes first.
+  asio::io_context http(1);
   asio::io_context context(1);
-  if (options.retain_days)
-    asio::co_spawn(context, delete_old_runs(store, clocks, *options.retain_days), asio::detached);
-  CellOperation operation(context.get_executor(), cell, store, options.controller.value_or(cell.controller),
-                          random_hex(8), clocks);
+  asio::thread_pool disk(1);
+  CellOperation operation(context.get_executor(), cell, StoreQueue(store, disk.get_executor()),
+                          options.controller.value_or(cell.controller), random_hex(8), clocks);
   operation.keep_place_in(options.state_directory / kBlockPoseFile);
-  Api api(context.get_executor(), operation, tokens);
+  if (options.retain_days) {
+    asio::co_spawn(context, delete_old_runs(store, disk.get_executor(), clocks, *options.retain_days),
+                   asio::detached);
+  }
+  Api api(http.get_executor(), {.operation = context.get_executor(), .store = disk.get_executor()}, operation,
+          tokens);
   std::optional<HttpListener> listener;
   const auto tls = tls_context(options);
   try {
-    listener.emplace(context.get_executor(), listen_address(context, options), api,
+    listener.emplace(http.get_executor(), listen_address(http, options), api,
                      HttpLimits{.host_names = options.host_names, .trusts_loopback = options.trusts_loopback},
                      tls);
   } catch (const boost::system::system_error& error) {
@@ -132,7 +184,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
                                          options.listen.host, options.listen.port, error.code().message()));
   }
   std::optional<LocalListener> socket;
-  open_socket(socket, context, api, options);
+  open_socket(socket, http, api, options);
   Supervision supervision(context.get_executor());
   asio::signal_set signals(context, SIGINT, SIGTERM, SIGHUP);
   signals.async_wait([&](const boost::system::error_code& failure, int signal) {
@@ -152,6 +204,8 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   fmt::print("listening on {}:{}\n", options.listen.host, address.port());
   std::fflush(stdout);
   supervision.notify_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
+  const WorkDone written(disk);
+  const HttpThread http_thread(http);
   context.run();
 }
 

@@ -11,6 +11,7 @@
 #include "service/daemon/listen_address.hpp"
 #include "service/http/auth/token_file.hpp"
 #include "service/http/auth/tokens.hpp"
+#include "service/store/maintenance.hpp"
 
 namespace cell {
 
@@ -69,8 +70,10 @@ SelfCheck check_daemon(const fs::path& cell_file, const DaemonOptions& options) 
   }
   const std::initializer_list<std::function<void()>> others{
       [&] { check_state(options.state_directory); },
+      [&] { refuse_lost_store(options.state_directory); },
       [&] { read_token(options.state_directory / kOperateTokenFile); },
-      [&] { read_token(options.state_directory / kViewTokenFile); }, [&] { check_address(options); },
+      [&] { read_token(options.state_directory / kViewTokenFile); },
+      [&] { check_address(options); },
       [&] { tls_context(options); }};
   for (const auto& part : others) {
     try {

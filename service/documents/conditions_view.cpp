@@ -55,4 +55,12 @@ bool names_place(const std::optional<std::string>& conditions) {
   return place != document.end() && !place->is_null();
 }
 
+bool stood_at(const std::optional<std::string>& conditions, const std::optional<BlockPose>& place) {
+  const auto place_in = [](const std::string& text) {
+    const nlohmann::json document = nlohmann::json::parse(text, nullptr, false);
+    return document.is_object() ? document.value("place", nlohmann::json()) : nlohmann::json();
+  };
+  return place_in(conditions.value_or("")) == place_in(document_text({.place = block_pose_of(place)}));
+}
+
 }  // namespace cell

@@ -19,5 +19,8 @@ std::string conditions_document(const Cell& cell, const RunConditions& condition
 bool is_guided(const std::optional<std::string>& conditions);
 /// True if these stored conditions name a place where the block was found; false for what is no json.
 bool names_place(const std::optional<std::string>& conditions);
+/// True if the block stood at `place` by these stored conditions: the same location, or that of the cell's
+/// file. Conditions of an older daemon, which name none, are those of the file.
+bool stood_at(const std::optional<std::string>& conditions, const std::optional<BlockPose>& place);
 
 }  // namespace cell

@@ -48,6 +48,7 @@ void set_controller(const ControllerView& controller, StatusDocument& document) 
   document.controller_touch_tested = controller.touch_tested;
   document.controller_permit = controller.permit;
   document.probe = controller.probe;
+  document.retract_due = controller.retract_due;
 }
 
 /// Instructions to a person who touches by hand.

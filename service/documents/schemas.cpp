@@ -11,7 +11,7 @@ constexpr std::string_view kStatus = R"({
 "required":["state","waiting_for","run_id","recipe","touches_done","touches_total","plane","identifiable_count",
   "condition_number","predicted_tip_rms_mm","more_would_bring","eta_s","verdict","controller_connected",
   "controller_powered","controller_mode","controller_estop","controller_cell_closed","controller_touch_tested",
-  "controller_permit","probe","by_hand","by_hand_step","by_hand_plane","by_hand_index","by_hand_total",
+  "controller_permit","probe","retract_due","by_hand","by_hand_step","by_hand_plane","by_hand_index","by_hand_total",
   "by_hand_words","by_hand_problem","by_hand_joints_deg","fault_code","fault_message","fault_robot_action","fault_next_step",
   "warning_code","warning_message","reference_drift_mm","last_accepted_run_id","last_accepted_at","data_age_ms","sequence","instance_id","since"],
 "properties":{
@@ -37,6 +37,8 @@ constexpr std::string_view kStatus = R"({
   "controller_touch_tested":{"type":["boolean","null"]},
   "controller_permit":{"type":["string","null"]},
   "probe":{"enum":["free","touched","fault",null]},
+  "retract_due":{"type":["boolean","null"],
+    "description":"the arm stands at a face after a touch that was broken off; it is taken back before anything else"},
   "by_hand":{"enum":["locate","guided",null],
     "description":"what a person with the pendant does: finds the block, or makes a run's touches"},
   "by_hand_step":{"enum":["touch","undo","pass","passing",null],
@@ -213,6 +215,25 @@ constexpr std::string_view kAccess = R"({
 "required":["role"],
 "properties":{"role":{"enum":["operate","view","none","wrong token"]}}})";
 
+constexpr std::string_view kAudit = R"({
+"type":"object",
+"required":["rows","next_before"],
+"properties":{
+  "rows":{"type":"array","items":{
+    "type":"object",
+    "required":["id","at","role","operator","remote","action","outcome","detail","hash"],
+    "properties":{
+      "id":{"type":"string"},
+      "at":{"type":"string"},
+      "role":{"enum":["operate","view","none","wrong token"]},
+      "operator":{"type":["string","null"],"description":"of the run that the request is for"},
+      "remote":{"type":"string"},
+      "action":{"type":"string"},
+      "outcome":{"type":"string","description":"asked: before it is executed; else the status of the answer"},
+      "detail":{"type":"string"},
+      "hash":{"type":"string","description":"SHA-256 of the hash of the row before and of this row"}}}},
+  "next_before":{"type":["string","null"],"description":"ask for the next page with before; null on the last"}}})";
+
 constexpr std::string_view kOpenApi = R"({
 "type":"object",
 "required":["openapi","info","paths","components"],
@@ -230,6 +251,7 @@ constexpr std::array kSchemas{DocumentSchema{"Status", kStatus},
                               DocumentSchema{"Faults", kFaults},
                               DocumentSchema{"Health", kHealth},
                               DocumentSchema{"Access", kAccess},
+                              DocumentSchema{"Audit", kAudit},
                               DocumentSchema{"OpenApi", kOpenApi}};
 
 }  // namespace

@@ -33,6 +33,7 @@ struct StatusDocument {
   std::optional<bool> controller_touch_tested;
   std::optional<std::string> controller_permit;
   std::optional<std::string> probe;
+  std::optional<bool> retract_due;
   std::optional<HandActivity> by_hand;
   std::optional<HandStep> by_hand_step;
   std::optional<int> by_hand_plane;
@@ -78,6 +79,7 @@ struct StatusDocument {
     fields("controller_touch_tested", self.controller_touch_tested);
     fields("controller_permit", self.controller_permit);
     fields("probe", self.probe);
+    fields("retract_due", self.retract_due);
     fields("by_hand", self.by_hand);
     fields("by_hand_step", self.by_hand_step);
     fields("by_hand_plane", self.by_hand_plane);

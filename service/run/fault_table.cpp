@@ -45,11 +45,13 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kNotInThisState, "not_in_this_state", "the state does not allow this command",
                "the arm goes on as before", "give one of the commands that are named as exits",
                FaultKind::kRefused, "P40"},
-    FaultEntry{FaultCode::kAnswerMissing, "answer_missing",
-               "the controller lives but did not answer a command in time",
-               "the link was cut, on which the arm stops by itself",
-               "look at the controller's screen, then touchcal clear, touchcal reset and start a new run",
-               FaultKind::kAborted, "P23"},
+    FaultEntry{
+        FaultCode::kAnswerMissing, "answer_missing",
+        "the controller lives but did not answer a command in time",
+        "the link was cut, on which the arm stops by itself",
+        "look at the controller's screen, then touchcal resume to go on with the touch that was broken "
+        "off, or touchcal stop; in ABORTED touchcal clear, then touchcal reset",
+        FaultKind::kHeld, "P23"},
     FaultEntry{
         FaultCode::kPlanInvalid, "plan_invalid", "a touch of the plan has no length, no speed or no number",
         "nothing moved",
@@ -150,7 +152,8 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kControllerUnreachable, "controller_unreachable",
                "the controller cannot be reached", "nothing: there is no link",
                "check that the controller's application runs and that its address is right; the daemon keeps "
-               "trying"},
+               "trying; then touchcal resume where a run is on hold",
+               FaultKind::kHeld},
     FaultEntry{FaultCode::kControllerIncompatible, "controller_incompatible",
                "the controller is not the one this cell is made for",
                "nothing: it was refused before any motion",
@@ -160,14 +163,15 @@ constexpr std::array kTable{
         FaultCode::kProtocolError, "protocol_error",
         "the controller sent something the protocol does not know",
         "the arm stops by itself when the link is gone; it stands where it was",
-        "check what listens at the controller's address and that no other host uses it; after a run touchcal "
-        "clear and touchcal reset, else the daemon keeps trying",
-        FaultKind::kAborted, "P36"},
-    FaultEntry{FaultCode::kLinkLost, "link_lost", "the link to the controller was lost",
-               "the arm stops by itself after the heartbeat time-out and stands where it was",
-               "look at cable and controller, then touchcal clear, touchcal reset and start a new run; it "
-               "begins with a retract",
-               FaultKind::kAborted, "P22"},
+        "check what listens at the controller's address and that no other host uses it; the daemon keeps "
+        "trying; then touchcal resume where a run is on hold, in ABORTED touchcal clear and touchcal reset",
+        FaultKind::kHeld, "P36"},
+    FaultEntry{
+        FaultCode::kLinkLost, "link_lost", "the link to the controller was lost",
+        "the arm stops by itself after the heartbeat time-out and stands where it was",
+        "look at cable and controller; the daemon keeps trying; then touchcal resume to go on with the "
+        "touch that was broken off, or touchcal stop; in ABORTED touchcal clear, then touchcal reset",
+        FaultKind::kHeld, "P22"},
     FaultEntry{FaultCode::kRecipeUnreachable, "recipe_unreachable",
                "the recipe's touches cannot be planned in this cell", "nothing moved",
                "change the place of the block, the tilt limit or the recipe", FaultKind::kAborted, "P05"},
@@ -226,7 +230,7 @@ constexpr std::array kTable{
         "power, mode, hold, emergency stop or an opened cell took the permission to move",
         "the arm stopped and stands where it was",
         "restore power and remote mode, close the cell, then touchcal resume to go on with the touch that "
-        "was broken off, or touchcal stop; touchcal clear where it was aborted, then touchcal reset",
+        "was broken off, or touchcal stop; in ABORTED touchcal clear, then touchcal reset",
         FaultKind::kHeld, "P20"},
     FaultEntry{FaultCode::kCollision, "collision", "the arm collided with something",
                "the drives cut out; the arm is where it was",
@@ -236,10 +240,13 @@ constexpr std::array kTable{
                "the arm stopped and stands where it was",
                "look up the controller's error number, then touchcal clear, "
                "touchcal reset and start a new run"},
-    FaultEntry{FaultCode::kTaskFailed, "task_failed", "a task of the controller's application ended",
-               "the arm stopped and stands where it was",
-               "note the error number, stop and start the application at the pendant, then touchcal clear, "
-               "touchcal reset and start a new run"},
+    FaultEntry{
+        FaultCode::kTaskFailed, "task_failed", "a task of the controller's application ended",
+        "the arm stopped and stands where it was",
+        "note the error number, stop and start the application at the pendant and jog the arm clear of "
+        "the block, then touchcal resume to go on, or touchcal stop; in ABORTED touchcal clear, then "
+        "touchcal reset",
+        FaultKind::kHeld},
     FaultEntry{FaultCode::kTouchDeadline, "touch_deadline", "a touch took longer than its deadline",
                "the arm was stopped and stands where it was",
                "check hold and monitor speed, then touchcal clear, "
@@ -253,7 +260,10 @@ constexpr std::array kTable{
                FaultKind::kAborted, "P37"},
     FaultEntry{FaultCode::kNoSafeWay, "no_safe_way",
                "no collision-free path leads from the arm's posture to the next one", "nothing moved",
-               "jog the arm to its park posture, then touchcal clear, touchcal reset and start a new run"},
+               "jog the arm clear of the block, best to its park posture, then touchcal resume to go on, "
+               "touchcal skip to leave this touch out, or touchcal stop; in ABORTED touchcal clear, then "
+               "touchcal reset",
+               FaultKind::kHeld},
     FaultEntry{FaultCode::kStoreFailed, "store_failed", "a touch could not be stored",
                "the arm finished the touch and stands clear of the face",
                "free disk space or repair the state directory's "

@@ -103,6 +103,22 @@ State after_abort(State state) {
                                                                                     : State::kAborting;
 }
 
+/// Has touches to lose, and no end is under way.
+bool can_be_held(State state) {
+  return is_active(state) && state != State::kStopping && state != State::kAborting;
+}
+
+State after_hold_fault(State state) {
+  return can_be_held(state) && state != State::kHeld ? State::kHolding : state;
+}
+
+State after_lost_link(State state) {
+  if (can_be_held(state)) return after_hold_fault(state);
+  if (is_active(state)) return State::kAborting;
+  // Nothing moves: reconnecting needs no command.
+  return state == State::kIdle ? State::kResetting : state;
+}
+
 }  // namespace
 
 std::string_view state_name(State state) {
@@ -223,14 +239,9 @@ State after_event(State state, Event event) {
     if (state == State::kUnholding || state == State::kUnsuspending) return State::kHolding;
     return state == State::kStarting ? State::kStopping : state;
   }
-  if (event == Event::kHoldFault)
-    return state == State::kExecute || state == State::kCompleting ? State::kHolding : state;
+  if (event == Event::kHoldFault) return after_hold_fault(state);
   if (event == Event::kSuspendFault) return state == State::kExecute ? State::kSuspending : state;
-  if (event == Event::kLinkDown) {
-    if (is_active(state)) return State::kAborting;
-    // Nothing moves: reconnecting needs no command.
-    return state == State::kIdle ? State::kResetting : state;
-  }
+  if (event == Event::kLinkDown) return after_lost_link(state);
   switch (state) {
     case State::kResetting:
       return State::kIdle;

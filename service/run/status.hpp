@@ -22,6 +22,7 @@ struct ControllerView {
   std::optional<bool> touch_tested;   // the stylus, by hand
   std::optional<std::string> permit;  // "granted": the run was confirmed at the cell
   std::optional<std::string> probe;   // "free", "touched", "fault"
+  std::optional<bool> retract_due;    // the arm stands at a face and is taken back before anything else
 
   bool operator==(const ControllerView&) const = default;
 };

@@ -78,7 +78,7 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
     case cs8::Outcome::kUnexpectedContact:
       return OutcomeFault{{FaultCode::kUnexpectedContact, where}};
     case cs8::Outcome::kHeartbeatLost:
-      return OutcomeFault{{FaultCode::kLinkLost, "the controller heard no heartbeat " + where}};
+      return OutcomeFault{{FaultCode::kLinkLost, "the controller heard no heartbeat " + where}, true};
     case cs8::Outcome::kPermissionLost:
       return OutcomeFault{{FaultCode::kPermissionLost, where}, true};
     case cs8::Outcome::kCollision:
@@ -90,7 +90,8 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
     case cs8::Outcome::kProbeFault:
       return OutcomeFault{{FaultCode::kProbeFault, where}};
     case cs8::Outcome::kTaskFailed:
-      return OutcomeFault{{FaultCode::kTaskFailed, fmt::format("run-time error {} {}", error_number, where)}};
+      return OutcomeFault{{FaultCode::kTaskFailed, fmt::format("run-time error {} {}", error_number, where)},
+                          true};
     case cs8::Outcome::kMotionError:
       break;
   }
@@ -107,7 +108,7 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
     case cs8::RejectReason::kTouchTestMissing:
       return {{FaultCode::kTouchTestMissing, {}}, true};
     case cs8::RejectReason::kTaskFailed:
-      return {{FaultCode::kTaskFailed, fmt::format("run-time error {}", rejected.detail)}};
+      return {{FaultCode::kTaskFailed, fmt::format("run-time error {}", rejected.detail)}, true};
     case cs8::RejectReason::kProbeTriggered:
       return {{FaultCode::kProbeTriggered, {}}, true};
     case cs8::RejectReason::kMonitorSpeed:
@@ -122,9 +123,9 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
     case cs8::RejectReason::kEmergencyStop:
     case cs8::RejectReason::kNotCalibrated:
     case cs8::RejectReason::kNotPermitted:
+    case cs8::RejectReason::kResultUnacknowledged:  // it is asked for on a new connection
       return {{FaultCode::kTouchRejected, why}, true};
     case cs8::RejectReason::kBusy:
-    case cs8::RejectReason::kResultUnacknowledged:
     case cs8::RejectReason::kStaleSequence:
     case cs8::RejectReason::kOutOfRange:
     case cs8::RejectReason::kNothingToRetract:

@@ -6,20 +6,68 @@
 
 namespace cell {
 
-void FaultLog::append(std::optional<std::int64_t> run_id, const std::string& at, const std::string& code,
-                      const std::string& message) {
+namespace {
+
+/// The code of the fault that is told where nothing can be stored (run/fault_table.cpp).
+constexpr const char* kLostCode = "store_failed";
+
+}  // namespace
+
+void FaultLog::insert(const StoredFault& fault) {
+  SQLite::Statement insert(*database_, "INSERT INTO faults(run_id, at, code, message) VALUES(?, ?, ?, ?)");
+  if (fault.run_id) insert.bind(1, *fault.run_id);
+  insert.bind(2, fault.at);
+  insert.bind(3, fault.code);
+  insert.bind(4, fault.message);
+  insert.exec();
+}
+
+/// What waits, all or nothing.
+void FaultLog::store_all() try {
   const RelaxedDurability unsynced(*database_);
   SQLite::Transaction transaction(*database_);
-  SQLite::Statement insert(*database_, "INSERT INTO faults(run_id, at, code, message) VALUES(?, ?, ?, ?)");
-  if (run_id) insert.bind(1, *run_id);
-  insert.bind(2, at);
-  insert.bind(3, code);
-  insert.bind(4, message);
-  insert.exec();
+  for (const StoredFault& fault : waiting_) insert(fault);
+  if (lost_ > 0) {
+    insert({.run_id = {},
+            .at = waiting_.back().at,
+            .code = kLostCode,
+            .message = std::to_string(lost_) + " more faults up to now could not be stored"});
+  }
   SQLite::Statement drop(*database_, "DELETE FROM faults WHERE id <= ?");
   drop.bind(1, database_->getLastInsertRowid() - kKept);
   drop.exec();
   transaction.commit();
+  waiting_.clear();
+  lost_ = 0;
+} catch (...) {
+  changes_ = database_->getTotalChanges();
+  throw;
+}
+
+void FaultLog::append(std::optional<std::int64_t> run_id, const std::string& at, const std::string& code,
+                      const std::string& message) {
+  waiting_.push_back({.run_id = run_id, .at = at, .code = code, .message = message});
+  try {
+    store_all();
+  } catch (const std::exception&) {
+    if (waiting_.size() > kWaitingMax) {
+      waiting_.pop_back();
+      ++lost_;
+    }
+    throw;
+  }
+}
+
+bool FaultLog::store_waiting() {
+  if (waiting_.empty()) return true;
+  // Not at each call: each may wait for a lock, or for a disk that is still full.
+  if (database_->getTotalChanges() == changes_) return false;
+  try {
+    store_all();
+  } catch (const std::exception&) {
+    return false;
+  }
+  return true;
 }
 
 std::vector<StoredFault> FaultLog::page(int limit, std::optional<std::int64_t> before_id,

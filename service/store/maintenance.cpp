@@ -2,13 +2,19 @@
 
 #include <SQLiteCpp/Backup.h>
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "service/base/state_directory.hpp"
+#include "service/store/audit_chain.hpp"
+#include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
 
 namespace cell {
@@ -27,9 +33,64 @@ std::string impossible_touches() {
          largest_joint + ")) > 2147483648";
 }
 
+/// Rows that are not as they were written. A file of an earlier schema has no checksums yet.
+void find_damaged_rows(SQLite::Database& database, std::vector<std::string>& damage) {
+  row::add_checksum_function(database);
+  const auto version = static_cast<std::size_t>(database.execAndGet("PRAGMA user_version").getInt());
+  const bool has_checksums =
+      database.execAndGet("SELECT count(*) FROM pragma_table_info('touches') WHERE name = 'checksum'")
+          .getInt() > 0;
+  if (version > migrations().size() || has_checksums != (version >= kChecksumSchema)) {
+    damage.push_back("its tables are not those of schema " + std::to_string(version) +
+                     ", or a newer touchcald has written it");
+    return;
+  }
+  if (!has_checksums) return;
+  for (const row::CheckedRows* rows : row::all_checked_rows()) {
+    SQLite::Statement query(database, "SELECT " + rows->run + ", " + rows->number + " FROM " + rows->table +
+                                          " WHERE NOT " + rows->is_whole());
+    while (query.executeStep()) {
+      const std::string run = query.getColumn(0).getString(), number = query.getColumn(1).getString();
+      std::string line = "table " + rows->name;
+      if (!run.empty()) line.append(", run ").append(run);
+      if (!number.empty()) line.append(", number ").append(number);
+      line.append(": ").append(row::kOtherChecksum);
+      damage.push_back(std::move(line));
+    }
+  }
+  SQLite::Statement lost(database, "SELECT id FROM runs WHERE NOT " + row::has_its_rows() +
+                                       " OR (plan_id IS NOT NULL AND plan_id NOT IN (SELECT id FROM plans))");
+  while (lost.executeStep())
+    damage.push_back("run " + lost.getColumn(0).getString() +
+                     ": touches or the plan that it had are not there");
+}
+
 SQLite::Database open_to_read(const std::filesystem::path& file) {
   if (!std::filesystem::exists(file)) throw std::runtime_error(file.string() + ": there is no such file");
   return {file.string(), SQLite::OPEN_READONLY, kReadBusyMilliseconds};
+}
+
+/// The same, also on a disk that cannot be written: a database with a log needs a file beside it.
+SQLite::Database open_to_check(const std::filesystem::path& file) {
+  try {
+    SQLite::Database database = open_to_read(file);
+    database.exec("SELECT count(*) FROM sqlite_schema");
+    return database;
+  } catch (const SQLite::Exception& error) {
+    const int code = error.getErrorCode();
+    if (code != SQLITE_CANTOPEN && code != SQLITE_READONLY) throw;
+  }
+  std::error_code missing;
+  const auto log_bytes = std::filesystem::file_size(file.string() + "-wal", missing);
+  if (!missing && log_bytes > 0) {
+    throw StoreNotChecked(file.string() +
+                          ": its directory cannot be written, and its log (-wal) is not in it "
+                          "yet; copy both to a writable disk and verify the copy");
+  }
+  std::string uri = "file:";
+  for (const char byte : std::filesystem::absolute(file).string())
+    uri += byte == '%' ? "%25" : byte == '?' ? "%3f" : byte == '#' ? "%23" : std::string(1, byte);
+  return {uri + "?immutable=1", SQLite::OPEN_READONLY | SQLite::OPEN_URI, kReadBusyMilliseconds};
 }
 
 }  // namespace
@@ -56,10 +117,22 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
   }
 }
 
+void refuse_lost_store(const std::filesystem::path& state_directory) {
+  const auto has = [&](std::string_view file) { return std::filesystem::exists(state_directory / file); };
+  const bool was_in_use = has(kBlockPoseFile) || (has(kOperateTokenFile) && has(kViewTokenFile));
+  const std::filesystem::path database = state_directory / kStoreFile;
+  std::error_code missing;
+  const auto bytes = std::filesystem::file_size(database, missing);
+  if (!was_in_use || (!missing && bytes > 0)) return;
+  throw std::runtime_error(database.string() + (missing ? ": is missing" : ": is empty") +
+                           ", and its state directory was in use; restore the last backup to it, or give "
+                           "another --state to begin without the earlier runs");
+}
+
 std::vector<std::string> find_damage(const std::filesystem::path& database_file) {
   std::vector<std::string> damage;
   try {
-    SQLite::Database database = open_to_read(database_file);
+    SQLite::Database database = open_to_check(database_file);
     SQLite::Statement integrity(database, "PRAGMA integrity_check");
     while (integrity.executeStep()) {
       if (const std::string line = integrity.getColumn(0).getString(); line != "ok") damage.push_back(line);
@@ -69,11 +142,15 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
       damage.push_back("table " + orphans.getColumn(0).getString() + ": a row belongs to no " +
                        orphans.getColumn(2).getString());
     }
+    find_damaged_rows(database, damage);
     SQLite::Statement touches(database, impossible_touches());
     while (touches.executeStep()) {
       damage.push_back("run " + touches.getColumn(0).getString() + ", touch " +
                        touches.getColumn(1).getString() + ": not a touch");
     }
+    std::ranges::move(find_audit_damage(database), std::back_inserter(damage));
+  } catch (const StoreNotChecked&) {
+    throw;
   } catch (const std::exception& error) {
     damage.emplace_back(error.what());
   }
@@ -88,9 +165,14 @@ std::uintmax_t disk_room_bytes(const SharedDatabase& database) {
 }
 
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest) {
-  constexpr std::array kOfRuns{"touches",       "superseded_touches", "reference_touches",
-                               "open_commands", "plan_changes",       "resumptions",
-                               "faults"};
+  constexpr std::array kOfRuns{"touches",
+                               "superseded_touches",
+                               "reference_touches",
+                               "open_commands",
+                               "plan_changes",
+                               "resumptions",
+                               "faults",
+                               "arms"};
   SQLite::Transaction transaction(*database);
   SQLite::Statement choose(*database,
                            "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "

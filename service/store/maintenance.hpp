@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,20 @@ namespace cell {
 /// name with ".place.json" behind it. Throws std::runtime_error if it fails; no partial file remains.
 void back_up(const std::filesystem::path& database_file, const std::filesystem::path& copy);
 
-/// Damage of a database file, one line each; empty if there is none. Checks pages, indices, foreign keys, and
-/// plane, role and source of every touch. Read-only.
+/// Throws std::runtime_error, with what to do, for a state directory that was in use (the place of the block
+/// or both tokens are there) and whose database is missing or empty: it would begin as if nothing had been.
+void refuse_lost_store(const std::filesystem::path& state_directory);
+
+/// Nobody can say whether a database is damaged.
+class StoreNotChecked : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Damage of a database file, one line each; empty if there is none. Checks pages, indices, foreign keys, the
+/// checksum of every row that a run rests on, that no row of an ended run is gone, plane, role and source
+/// of every touch, and the chains of the audit. Read-only, also on a disk that cannot be written;
+/// StoreNotChecked where a log lies beside the file there, which only a writer can put into it.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
 
 /// Free bytes on the disk of the database; the largest number where that is unknown.

@@ -15,6 +15,11 @@ std::runtime_error unknown(const char* what, const std::string& name) {
 
 }  // namespace
 
+std::string place_of(std::string_view table, std::int64_t run_id, std::optional<int> number) {
+  std::string place = "table " + std::string(table) + ", run " + std::to_string(run_id);
+  return number ? place + ", number " + std::to_string(*number) : place;
+}
+
 std::string_view plan_change_name(PlanChange::Kind kind) {
   switch (kind) {
     case PlanChange::Kind::kDefer:

@@ -2,9 +2,16 @@
 #include "service/store/run_store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <sys/stat.h>
 
+#include <stdexcept>
+#include <utility>
+
+#include "service/store/damaged_store.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
+#include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
+#include "service/store/internal/run_change.hpp"
 
 namespace cell {
 namespace {
@@ -39,8 +46,19 @@ int bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouch
   return index;
 }
 
+/// A damaged touch stays where it is: its copy would get a checksum that says it is whole.
+void demand_whole_touch(SQLite::Database& database, std::int64_t run_id, int number) {
+  SQLite::Statement query(
+      database, "SELECT " + row::touch_rows().is_whole() + " FROM touches WHERE run_id = ? AND number = ?");
+  query.bind(1, run_id);
+  query.bind(2, number);
+  if (!query.executeStep() || query.getColumn(0).getInt() == 1) return;
+  throw DamagedStore(database.getFilename(), row::place_of("touches", run_id, number), row::kOtherChecksum);
+}
+
 /// Moves a touch to superseded_touches, inside the caller's transaction.
 void supersede(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason) {
+  demand_whole_touch(database, run_id, number);
   SQLite::Statement keep(database, "INSERT INTO superseded_touches(run_id, " + row::kTouchColumns +
                                        ", reason) SELECT run_id, " + row::kTouchColumns +
                                        ", ? FROM touches WHERE run_id = ? AND number = ?");
@@ -48,6 +66,7 @@ void supersede(SQLite::Database& database, std::int64_t run_id, int number, cons
   keep.bind(2, run_id);
   keep.bind(3, number);
   if (keep.exec() != 1) throw SQLite::Exception("there is no such touch to supersede");
+  row::seal(database, row::superseded_rows(), "id", database.getLastInsertRowid());
   SQLite::Statement remove(database, "DELETE FROM touches WHERE run_id = ? AND number = ?");
   remove.bind(1, run_id);
   remove.bind(2, number);
@@ -60,6 +79,26 @@ void insert_plan_change(SQLite::Database& database, std::int64_t run_id, const P
   insert.bind(2, std::string(row::plan_change_name(change.kind)));
   insert.bind(3, change.place);
   insert.exec();
+  row::seal(database, row::plan_change_rows(), "id", database.getLastInsertRowid());
+}
+
+/// The result and the arm of a run: nothing takes the place of an arm that belongs to another result.
+void write_result(SQLite::Database& database, std::int64_t run_id,
+                  const std::optional<std::string>& result_json, const std::optional<std::string>& arm_json) {
+  SQLite::Statement result(database,
+                           "UPDATE runs SET result_json = ?1, result_checksum = CASE WHEN ?1 IS NOT "
+                           "NULL THEN row_checksum('results', ?2, ?1) END WHERE id = ?2");
+  bind_or_null(result, 1, result_json);
+  result.bind(2, run_id);
+  result.exec();
+  SQLite::Statement forget(database, "DELETE FROM arms WHERE run_id = ?");
+  forget.bind(1, run_id);
+  forget.exec();
+  if (!arm_json) return;
+  SQLite::Statement arm(database, "INSERT INTO arms(run_id, document, checksum)" + row::arm_rows().values(2));
+  arm.bind(1, run_id);
+  arm.bind(2, *arm_json);
+  arm.exec();
 }
 
 /// A statement that is kept between calls, for one use: it ends with it, also when it failed. One that a
@@ -78,28 +117,64 @@ class OneUse {
   SQLite::Statement& statement_;
 };
 
+/// Which file stands at a path: its device and its inode; nothing where none does.
+std::optional<std::pair<dev_t, ino_t>> file_at(const std::string& path) {
+  struct stat found {};
+  if (::stat(path.c_str(), &found) != 0) return std::nullopt;
+  return std::pair{found.st_dev, found.st_ino};
+}
+
+/// SQLite goes on writing to a file that was moved or removed, where the next daemon does not find it.
+void demand_file(const std::string& path, const std::optional<std::pair<dev_t, ino_t>>& opened) {
+  if (file_at(path) == opened) return;
+  throw std::runtime_error(
+      path +
+      " was moved, removed or replaced since touchcald started; put it back, or stop the "
+      "run and start touchcald again");
+}
+
 }  // namespace
 
 struct RunStore::Statements {
+  static constexpr int kTouchParameters = 16;
+
   explicit Statements(SQLite::Database& database)
-      : append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns +
-                                   ") VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)"),
+      : append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns + ", checksum)" +
+                                   row::touch_rows().values(kTouchParameters)),
         set_open_command(database,
                          "INSERT OR REPLACE INTO open_commands(run_id, session, sequence, aimed_with, "
-                         "touch_json) VALUES(?, ?, ?, ?, ?)"),
-        make_durable(database, "UPDATE open_commands SET session = session WHERE run_id = ?") {}
+                         "touch_json, checksum)" +
+                             row::open_command_rows().values(5)),
+        make_durable(database, "UPDATE open_commands SET session = session WHERE run_id = ?"),
+        opened(file_at(database.getFilename())) {}
 
   SQLite::Statement append_touch;
   SQLite::Statement set_open_command;
   SQLite::Statement make_durable;
+  std::optional<std::pair<dev_t, ino_t>> opened;  // the file at the path of the database
 };
 
 RunStore::RunStore(const std::filesystem::path& file)
     : database_(open_database(file)), statements_(std::make_unique<Statements>(*database_)) {}
 
+RunStore::RunStore(SharedDatabase to_read) : database_(std::move(to_read)) {}
+
+std::unique_ptr<const RunStore> RunStore::reader(const std::filesystem::path& file) {
+  return std::unique_ptr<const RunStore>(new RunStore(open_database_to_read(file)));
+}
+
 RunStore::~RunStore() = default;
 
+std::filesystem::path RunStore::file() const { return database_->getFilename(); }
+
 std::int64_t RunStore::begin_run(const NewRun& run) {
+  const std::int64_t id = insert_run(run);
+  restart_log(*database_);
+  return id;
+}
+
+std::int64_t RunStore::insert_run(const NewRun& run) {
+  SQLite::Transaction transaction(*database_);
   SQLite::Statement insert(*database_,
                            "INSERT INTO runs(recipe, touches_total, started_at, idempotency_key, "
                            "operator_name, config_digest, trace_json, block_temperature_c, "
@@ -121,35 +196,57 @@ std::int64_t RunStore::begin_run(const NewRun& run) {
   bind_or_null(insert, 12, run.stiffness);
   insert.exec();
   const std::int64_t id = database_->getLastInsertRowid();
-  restart_log(*database_);
+  row::seal(*database_, row::run_rows(), "id", id);
+  transaction.commit();
   return id;
+}
+
+void RunStore::withdraw_run(std::int64_t run_id) {
+  SQLite::Statement remove(*database_, "DELETE FROM runs WHERE id = ?");
+  remove.bind(1, run_id);
+  remove.exec();
 }
 
 void RunStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
                         const std::string& document) {
   SQLite::Transaction transaction(*database_);
-  SQLite::Statement insert(*database_, "INSERT OR IGNORE INTO plans(id, document) VALUES(?, ?)");
+  // One that was damaged is written again.
+  SQLite::Statement forget(*database_,
+                           "DELETE FROM plans WHERE id = ? AND NOT " + row::plan_rows().is_whole());
+  forget.bind(1, plan_id);
+  forget.exec();
+  SQLite::Statement insert(
+      *database_, "INSERT OR IGNORE INTO plans(id, document, checksum)" + row::plan_rows().values(2));
   insert.bind(1, plan_id);
   insert.bind(2, document);
   insert.exec();
-  SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ?, plan_id = ? WHERE id = ?");
-  update.bind(1, touches_total);
-  update.bind(2, plan_id);
-  update.bind(3, run_id);
-  update.exec();
+  row::change_run(*database_, run_id, [&] {
+    SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ?, plan_id = ? WHERE id = ?");
+    update.bind(1, touches_total);
+    update.bind(2, plan_id);
+    update.bind(3, run_id);
+    update.exec();
+  });
   transaction.commit();
 }
 
 void RunStore::set_touches_total(std::int64_t run_id, int touches_total) {
-  SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ? WHERE id = ?");
-  update.bind(1, touches_total);
-  update.bind(2, run_id);
-  update.exec();
+  SQLite::Transaction transaction(*database_);
+  row::change_run(*database_, run_id, [&] {
+    SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ? WHERE id = ?");
+    update.bind(1, touches_total);
+    update.bind(2, run_id);
+    update.exec();
+  });
+  transaction.commit();
 }
 
 void RunStore::append_plan_change(std::int64_t run_id, const PlanChange& change) {
   const RelaxedDurability unsynced(*database_);
+  SQLite::Transaction transaction(*database_);
   insert_plan_change(*database_, run_id, change);
+  row::note_rows(*database_, run_id);
+  transaction.commit();
 }
 
 void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& changes,
@@ -157,10 +254,12 @@ void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& cha
   SQLite::Transaction transaction(*database_);
   if (withdrawn) supersede(*database_, run_id, withdrawn->number, withdrawn->reason);
   for (const PlanChange& change : changes) insert_plan_change(*database_, run_id, change);
+  row::note_rows(*database_, run_id);
   transaction.commit();
 }
 
 void RunStore::set_open_command(std::int64_t run_id, const OpenCommand& command) {
+  demand_file(database_->getFilename(), statements_->opened);
   const RelaxedDurability unsynced(*database_);
   OneUse insert(statements_->set_open_command);
   insert->bind(1, run_id);
@@ -169,6 +268,13 @@ void RunStore::set_open_command(std::int64_t run_id, const OpenCommand& command)
   insert->bind(4, command.aimed_with);
   insert->bind(5, command.touch_json);
   insert->exec();
+}
+
+void RunStore::forget_open_command(std::int64_t run_id) {
+  const RelaxedDurability unsynced(*database_);
+  SQLite::Statement remove(*database_, "DELETE FROM open_commands WHERE run_id = ?");
+  remove.bind(1, run_id);
+  remove.exec();
 }
 
 bool RunStore::make_durable(std::int64_t run_id) {
@@ -183,6 +289,17 @@ bool RunStore::make_durable(std::int64_t run_id) {
 }
 
 void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
+  if (!row::has_ended(*database_, run_id)) {
+    insert_touch(run_id, touch);
+    return;
+  }
+  SQLite::Transaction transaction(*database_);
+  insert_touch(run_id, touch);
+  row::note_rows(*database_, run_id);
+  transaction.commit();
+}
+
+void RunStore::insert_touch(std::int64_t run_id, const StoredTouch& touch) {
   OneUse insert(statements_->append_touch);
   bind_touch(*insert, run_id, touch);
   insert->exec();
@@ -191,20 +308,23 @@ void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
 void RunStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {
   SQLite::Transaction transaction(*database_);
   supersede(*database_, run_id, number, reason);
+  row::note_rows(*database_, run_id);
   transaction.commit();
 }
 
 void RunStore::replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason) {
   SQLite::Transaction transaction(*database_);
   supersede(*database_, run_id, again.number, reason);
-  append_touch(run_id, again);
+  insert_touch(run_id, again);
+  row::note_rows(*database_, run_id);
   transaction.commit();
 }
 
 void RunStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch) {
-  SQLite::Statement insert(
-      *database_, "INSERT INTO reference_touches(run_id, number, touches_done, " + row::kJointColumns +
-                      ", drift_mm, captured_at) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  SQLite::Transaction transaction(*database_);
+  SQLite::Statement insert(*database_, "INSERT INTO reference_touches(run_id, number, touches_done, " +
+                                           row::kJointColumns + ", drift_mm, captured_at, checksum)" +
+                                           row::reference_rows().values(11));
   int index = 0;
   insert.bind(++index, run_id);
   insert.bind(++index, touch.number);
@@ -213,6 +333,8 @@ void RunStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch
   bind_or_null(insert, ++index, touch.drift_mm);
   insert.bind(++index, touch.captured_at);
   insert.exec();
+  row::note_rows(*database_, run_id);
+  transaction.commit();
 }
 
 void RunStore::append_resumption(std::int64_t run_id, const std::string& at, int touches_done) {
@@ -224,36 +346,54 @@ void RunStore::append_resumption(std::int64_t run_id, const std::string& at, int
 }
 
 void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
-  SQLite::Statement update(*database_,
-                           "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ?, fault_code = ?, "
-                           "fault_message = ?, result_json = ? WHERE id = ?");
-  update.bind(1, std::string(run_outcome_name(end.outcome)));
-  update.bind(2, std::string(verdict_name(end.verdict)));
-  update.bind(3, end.ended_at);
-  bind_or_null(update, 4, end.fault_code);
-  bind_or_null(update, 5, end.fault_message);
-  bind_or_null(update, 6, end.result_json);
-  update.bind(7, run_id);
-  update.exec();
+  SQLite::Transaction transaction(*database_);
+  write_result(*database_, run_id, end.result_json, end.arm_json);
+  row::change_run(*database_, run_id, [&] {
+    SQLite::Statement update(*database_,
+                             "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ?, fault_code = ?, "
+                             "fault_message = ? WHERE id = ?");
+    update.bind(1, std::string(run_outcome_name(end.outcome)));
+    update.bind(2, std::string(verdict_name(end.verdict)));
+    update.bind(3, end.ended_at);
+    bind_or_null(update, 4, end.fault_code);
+    bind_or_null(update, 5, end.fault_message);
+    update.bind(6, run_id);
+    update.exec();
+    row::count_rows_of(*database_, run_id);
+  });
+  transaction.commit();
 }
 
-void RunStore::set_result_json(std::int64_t run_id, const std::string& result_json) {
-  SQLite::Statement update(*database_, "UPDATE runs SET result_json = ? WHERE id = ?");
-  update.bind(1, result_json);
-  update.bind(2, run_id);
-  update.exec();
+void RunStore::set_result_json(std::int64_t run_id, const std::string& result_json,
+                               const std::optional<std::string>& arm_json) {
+  SQLite::Transaction transaction(*database_);
+  write_result(*database_, run_id, result_json, arm_json);
+  row::note_rows(*database_, run_id);
+  transaction.commit();
 }
 
 int RunStore::finish_interrupted(const std::string& now, std::optional<std::int64_t> but) {
-  SQLite::Statement update(*database_,
-                           "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ? WHERE outcome = ? AND id "
-                           "IS NOT ?");
-  update.bind(1, std::string(run_outcome_name(RunOutcome::kInterrupted)));
-  update.bind(2, std::string(verdict_name(Verdict::kIncomplete)));
-  update.bind(3, now);
-  update.bind(4, std::string(run_outcome_name(RunOutcome::kRunning)));
-  bind_or_null(update, 5, but);
-  return update.exec();
+  SQLite::Transaction transaction(*database_);
+  SQLite::Statement query(*database_, "SELECT id FROM runs WHERE outcome = ? AND id IS NOT ?");
+  query.bind(1, std::string(run_outcome_name(RunOutcome::kRunning)));
+  bind_or_null(query, 2, but);
+  std::vector<std::int64_t> open;
+  while (query.executeStep()) open.push_back(query.getColumn(0).getInt64());
+  query.reset();
+  for (const std::int64_t run_id : open) {
+    row::change_run(*database_, run_id, [&] {
+      SQLite::Statement update(*database_,
+                               "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ? WHERE id = ?");
+      update.bind(1, std::string(run_outcome_name(RunOutcome::kInterrupted)));
+      update.bind(2, std::string(verdict_name(Verdict::kIncomplete)));
+      update.bind(3, now);
+      update.bind(4, run_id);
+      update.exec();
+      row::count_rows_of(*database_, run_id);
+    });
+  }
+  transaction.commit();
+  return static_cast<int>(open.size());
 }
 
 }  // namespace cell

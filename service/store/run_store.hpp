@@ -97,6 +97,7 @@ struct RunEnd {
   std::optional<std::string> fault_code;
   std::optional<std::string> fault_message;
   std::optional<std::string> result_json;  // the last result document
+  std::optional<std::string> arm_json;     // the calibrated arm that goes with it, as a file
 };
 
 struct StoredRun {
@@ -120,10 +121,13 @@ struct StoredRun {
 
 /// Runs and touches in one SQLite file. What a call writes is durable on return unless stated otherwise.
 /// Every call may throw std::exception if the file cannot be read or written; it has changed nothing then.
+/// Each row that a run rests on has a checksum, written with it and compared when it is read.
 class RunStore {
  public:
   /// Opens or creates the file. A file of a newer schema is refused.
   explicit RunStore(const std::filesystem::path& file);
+  /// Only reads, over its own connection, so that another thread may have it: open_database_to_read().
+  static std::unique_ptr<const RunStore> reader(const std::filesystem::path& file);
   ~RunStore();
   RunStore(const RunStore&) = delete;
   RunStore& operator=(const RunStore&) = delete;
@@ -131,7 +135,12 @@ class RunStore {
   /// The connection, shared with the other tables of the same file.
   [[nodiscard]] const SharedDatabase& database() const { return database_; }
 
+  /// The file, for another connection.
+  [[nodiscard]] std::filesystem::path file() const;
+
   std::int64_t begin_run(const NewRun& run);
+  /// Removes a run that was begun here and nowhere else: nobody was told of it, and its key is new again.
+  void withdraw_run(std::int64_t run_id);
   /// Stores the plan of the run, once it is known. A plan of several runs is stored once.
   void set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
                 const std::string& document);
@@ -143,6 +152,8 @@ class RunStore {
   /// arm moves, lets it survive a power failure as well; false if that fails, which the next write reports.
   void set_open_command(std::int64_t run_id, const OpenCommand& command);
   bool make_durable(std::int64_t run_id);
+  /// The command has not left after all. Durable with the next touch.
+  void forget_open_command(std::int64_t run_id);
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
   /// `again` replaces the touch of its number, which is kept as superseded.
   void replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason);
@@ -155,15 +166,20 @@ class RunStore {
   void append_reference(std::int64_t run_id, const ReferenceTouch& touch);
   void append_resumption(std::int64_t run_id, const std::string& at, int touches_done);
   void finish_run(std::int64_t run_id, const RunEnd& end);
-  /// Replaces the result of a run that ended.
-  void set_result_json(std::int64_t run_id, const std::string& result_json);
+  /// Replaces the result of a run that ended, and the arm that went with it.
+  void set_result_json(std::int64_t run_id, const std::string& result_json,
+                       const std::optional<std::string>& arm_json = {});
   /// Ends the runs that an earlier daemon left open, except `but`, as interrupted; returns how many.
   int finish_interrupted(const std::string& now, std::optional<std::int64_t> but = {});
+
+  // What follows throws DamagedStore for a row that is not as it was written, for rows of a run that ended
+  // and are gone, and for text that should be JSON and is not.
 
   /// Newest first; only runs before `before_id`, if given.
   [[nodiscard]] std::vector<StoredRun> runs(int limit, std::optional<std::int64_t> before_id = {}) const;
   [[nodiscard]] std::optional<StoredRun> run(std::int64_t id) const;
   [[nodiscard]] std::optional<StoredRun> run_with_key(const std::string& idempotency_key) const;
+  /// Nothing also where its row is damaged, which the log says: an older one would be a wrong answer.
   [[nodiscard]] std::optional<StoredRun> last_accepted() const;
   /// The newest run that has not ended.
   [[nodiscard]] std::optional<StoredRun> running() const;
@@ -174,14 +190,20 @@ class RunStore {
   [[nodiscard]] std::optional<OpenCommand> open_command(std::int64_t run_id) const;
   [[nodiscard]] std::vector<PlanChange> plan_changes(std::int64_t run_id) const;
   [[nodiscard]] std::optional<std::string> result_json(std::int64_t run_id) const;
+  /// The calibrated arm that was stored when the run ended, as a file.
+  [[nodiscard]] std::optional<std::string> arm_json(std::int64_t run_id) const;
   /// The document of the plan that the run follows.
   [[nodiscard]] std::optional<std::string> plan_json(std::int64_t run_id) const;
 
  private:
   struct Statements;
+  explicit RunStore(SharedDatabase to_read);
+
+  std::int64_t insert_run(const NewRun& run);
+  void insert_touch(std::int64_t run_id, const StoredTouch& touch);
 
   SharedDatabase database_;
-  std::unique_ptr<Statements> statements_;  // used at each touch, prepared once
+  std::unique_ptr<Statements> statements_;  // used at each touch, prepared once; null for a reader
 };
 
 }  // namespace cell

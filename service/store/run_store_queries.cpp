@@ -1,17 +1,64 @@
 // What a RunStore reads.
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <spdlog/spdlog.h>
+#include <sqlite3.h>
 
+#include <nlohmann/json.hpp>
+
+#include "service/store/damaged_store.hpp"
+#include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
 namespace {
 
-constexpr const char* kRunColumns =
-    "SELECT id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, fault_message, "
-    "(SELECT count(*) FROM touches WHERE run_id = runs.id), plan_id, operator_name, block_temperature_c, "
-    "config_digest, trace_json, std_block_temperature_k, block_temperature_at, block_temperature_source, "
-    "stiffness FROM runs ";
+/// The last two columns: the row is whole; the rows that belong to it are there.
+const std::string& run_columns() {
+  static const std::string columns =
+      "SELECT id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, fault_message, "
+      "(SELECT count(*) FROM touches WHERE run_id = runs.id), plan_id, operator_name, block_temperature_c, "
+      "config_digest, trace_json, std_block_temperature_k, block_temperature_at, block_temperature_source, "
+      "stiffness, " +
+      row::run_rows().is_whole() + ", " + row::has_its_rows() + " FROM runs ";
+  return columns;
+}
+
+/// A failure to read that is damage of the file, as such.
+[[noreturn]] void rethrow(const SQLite::Database& database, const SQLite::Exception& error) {
+  if (error.getErrorCode() == SQLITE_CORRUPT || error.getErrorCode() == SQLITE_NOTADB)
+    throw DamagedStore(database.getFilename(), "its pages", error.what());
+  throw error;
+}
+
+/// `column` of a row: whether it is as it was written.
+void demand_whole(const SQLite::Database& database, SQLite::Statement& query, int column,
+                  std::string_view table, std::int64_t run_id, int number_column = -1) {
+  if (query.getColumn(column).getInt() == 1) return;
+  const auto number =
+      number_column < 0 ? std::nullopt : std::optional(query.getColumn(number_column).getInt());
+  throw DamagedStore(database.getFilename(), row::place_of(table, run_id, number), row::kOtherChecksum);
+}
+
+/// Text that another part of the daemon reads as JSON.
+std::string json_text(const SQLite::Database& database, SQLite::Statement& query, int column,
+                      std::string_view table, std::int64_t run_id, const char* what) {
+  std::string text = query.getColumn(column).getString();
+  if (nlohmann::json::accept(text)) return text;
+  throw DamagedStore(database.getFilename(), row::place_of(table, run_id), std::string(what) + " is no JSON");
+}
+
+/// A run that ended has all its rows still; a row may be gone, or stand at another run.
+void demand_rows(const SQLite::Database& database, std::int64_t run_id) {
+  SQLite::Statement query(database, "SELECT " + row::run_rows().is_whole() + ", " + row::has_its_rows() +
+                                        " FROM runs WHERE id = ?");
+  query.bind(1, run_id);
+  if (!query.executeStep()) return;
+  demand_whole(database, query, 0, "runs", run_id);
+  if (query.getColumn(1).getInt() == 1) return;
+  throw DamagedStore(database.getFilename(), row::place_of("runs", run_id),
+                     "it has not the touches that it ended with");
+}
 
 std::optional<std::string> text_or_nothing(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getString());
@@ -30,8 +77,14 @@ std::optional<StoredTemperature> read_temperature(SQLite::Statement& query) {
                            .source = text_or_nothing(query.getColumn(17))};
 }
 
-StoredRun read_run(SQLite::Statement& query) {
-  return {.id = query.getColumn(0).getInt64(),
+StoredRun read_run(const SQLite::Database& database, SQLite::Statement& query) {
+  const std::int64_t id = query.getColumn(0).getInt64();
+  demand_whole(database, query, 19, "runs", id);
+  if (query.getColumn(20).getInt() != 1) demand_rows(database, id);
+  std::optional<std::string> conditions;
+  if (!query.getColumn(14).isNull())
+    conditions = json_text(database, query, 14, "runs", id, "its conditions");
+  return {.id = id,
           .recipe = query.getColumn(1).getString(),
           .touches_total = query.getColumn(2).getInt(),
           .touches_done = query.getColumn(9).getInt(),
@@ -46,12 +99,31 @@ StoredRun read_run(SQLite::Statement& query) {
           .block_temperature = read_temperature(query),
           .stiffness = text_or_nothing(query.getColumn(18)),
           .config_digest = text_or_nothing(query.getColumn(13)),
-          .conditions_json = text_or_nothing(query.getColumn(14))};
+          .conditions_json = std::move(conditions)};
 }
 
-std::optional<StoredRun> first_run(SQLite::Statement& query) {
+std::optional<StoredRun> first_run(const SQLite::Database& database, SQLite::Statement& query) {
   if (!query.executeStep()) return std::nullopt;
-  return read_run(query);
+  return read_run(database, query);
+}
+
+/// A row that is not found may be one whose number, or what was asked for, is another now. Of runs from
+/// `first_id` on.
+void demand_none_damaged(const SQLite::Database& database, const row::CheckedRows& rows,
+                         std::int64_t first_id = 0) {
+  SQLite::Statement damaged(database, "SELECT " + rows.run + " FROM " + rows.table + " WHERE " + rows.run +
+                                          " >= ? AND NOT " + rows.is_whole() + " LIMIT 1");
+  damaged.bind(1, first_id);
+  if (!damaged.executeStep()) return;
+  throw DamagedStore(database.getFilename(), row::place_of(rows.table, damaged.getColumn(0).getInt64()),
+                     row::kOtherChecksum);
+}
+
+/// True for the number of a run that was stored once.
+bool was_given(const SQLite::Database& database, std::int64_t id) {
+  SQLite::Statement given(database, "SELECT 1 FROM sqlite_sequence WHERE name = 'runs' AND seq >= ?");
+  given.bind(1, id);
+  return id > 0 && given.executeStep();
 }
 
 cs8::JointsMicrodeg read_joints(SQLite::Statement& query, int first) {
@@ -76,66 +148,96 @@ StoredTouch read_touch(SQLite::Statement& query) {
 
 }  // namespace
 
-std::vector<StoredRun> RunStore::runs(int limit, std::optional<std::int64_t> before_id) const {
-  SQLite::Statement query(*database_, std::string(kRunColumns) + "WHERE id < ? ORDER BY id DESC LIMIT ?");
+std::vector<StoredRun> RunStore::runs(int limit, std::optional<std::int64_t> before_id) const try {
+  SQLite::Statement query(*database_, run_columns() + "WHERE id < ? ORDER BY id DESC LIMIT ?");
   query.bind(1, before_id.value_or(INT64_MAX));
   query.bind(2, limit);
   std::vector<StoredRun> found;
-  while (query.executeStep()) found.push_back(read_run(query));
+  while (query.executeStep()) found.push_back(read_run(*database_, query));
   return found;
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::optional<StoredRun> RunStore::run(std::int64_t id) const {
-  SQLite::Statement query(*database_, std::string(kRunColumns) + "WHERE id = ?");
+std::optional<StoredRun> RunStore::run(std::int64_t id) const try {
+  SQLite::Statement query(*database_, run_columns() + "WHERE id = ?");
   query.bind(1, id);
-  return first_run(query);
+  auto found = first_run(*database_, query);
+  if (!found && was_given(*database_, id)) demand_none_damaged(*database_, row::run_rows());
+  return found;
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::optional<StoredRun> RunStore::run_with_key(const std::string& idempotency_key) const {
-  SQLite::Statement query(*database_, std::string(kRunColumns) + "WHERE idempotency_key = ?");
+std::optional<StoredRun> RunStore::run_with_key(const std::string& idempotency_key) const try {
+  SQLite::Statement query(*database_, run_columns() + "WHERE idempotency_key = ?");
   query.bind(1, idempotency_key);
-  return first_run(query);
+  return first_run(*database_, query);
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::optional<StoredRun> RunStore::last_accepted() const {
-  SQLite::Statement query(*database_,
-                          std::string(kRunColumns) + "WHERE verdict = ? ORDER BY id DESC LIMIT 1");
+std::optional<StoredRun> RunStore::last_accepted() const try {
+  SQLite::Statement query(*database_, run_columns() + "WHERE verdict = ? ORDER BY id DESC LIMIT 1");
   query.bind(1, std::string(verdict_name(Verdict::kAccepted)));
-  return first_run(query);
+  auto found = first_run(*database_, query);
+  demand_none_damaged(*database_, row::run_rows(), found ? found->id : 0);
+  return found;
+} catch (const std::runtime_error& error) {
+  spdlog::error("which run was accepted last cannot be told: {}", error.what());
+  return std::nullopt;
 }
 
-std::optional<StoredRun> RunStore::running() const {
-  SQLite::Statement query(*database_,
-                          std::string(kRunColumns) + "WHERE outcome = ? ORDER BY id DESC LIMIT 1");
+std::optional<StoredRun> RunStore::running() const try {
+  SQLite::Statement query(*database_, run_columns() + "WHERE outcome = ? ORDER BY id DESC LIMIT 1");
   query.bind(1, std::string(run_outcome_name(RunOutcome::kRunning)));
-  return first_run(query);
+  auto found = first_run(*database_, query);
+  if (!found) demand_none_damaged(*database_, row::run_rows());
+  return found;
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::vector<StoredTouch> RunStore::touches(std::int64_t run_id) const {
-  SQLite::Statement query(*database_,
-                          "SELECT " + row::kTouchColumns + " FROM touches WHERE run_id = ? ORDER BY number");
+std::vector<StoredTouch> RunStore::touches(std::int64_t run_id) const try {
+  demand_rows(*database_, run_id);
+  SQLite::Statement query(*database_, "SELECT " + row::kTouchColumns + ", " + row::touch_rows().is_whole() +
+                                          " FROM touches WHERE run_id = ? ORDER BY number");
   query.bind(1, run_id);
   std::vector<StoredTouch> found;
-  while (query.executeStep()) found.push_back(read_touch(query));
+  while (query.executeStep()) {
+    demand_whole(*database_, query, 15, "touches", run_id, 0);
+    found.push_back(read_touch(query));
+  }
   return found;
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::vector<SupersededTouch> RunStore::superseded_touches(std::int64_t run_id) const {
-  SQLite::Statement query(*database_, "SELECT " + row::kTouchColumns +
-                                          ", reason FROM superseded_touches WHERE run_id = ? ORDER BY id");
+std::vector<SupersededTouch> RunStore::superseded_touches(std::int64_t run_id) const try {
+  demand_rows(*database_, run_id);
+  SQLite::Statement query(*database_, "SELECT " + row::kTouchColumns + ", reason, " +
+                                          row::superseded_rows().is_whole() +
+                                          " FROM superseded_touches WHERE run_id = ? ORDER BY id");
   query.bind(1, run_id);
   std::vector<SupersededTouch> found;
-  while (query.executeStep()) found.push_back({read_touch(query), query.getColumn(15).getString()});
+  while (query.executeStep()) {
+    demand_whole(*database_, query, 16, "superseded_touches", run_id, 0);
+    found.push_back({read_touch(query), query.getColumn(15).getString()});
+  }
   return found;
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::vector<ReferenceTouch> RunStore::references(std::int64_t run_id) const {
+std::vector<ReferenceTouch> RunStore::references(std::int64_t run_id) const try {
+  demand_rows(*database_, run_id);
   SQLite::Statement query(*database_, "SELECT number, touches_done, " + row::kJointColumns +
-                                          ", drift_mm, captured_at FROM reference_touches "
-                                          "WHERE run_id = ? ORDER BY number");
+                                          ", drift_mm, captured_at, " + row::reference_rows().is_whole() +
+                                          " FROM reference_touches WHERE run_id = ? ORDER BY number");
   query.bind(1, run_id);
   std::vector<ReferenceTouch> found;
   while (query.executeStep()) {
+    demand_whole(*database_, query, 10, "reference_touches", run_id, 0);
     found.push_back({.number = query.getColumn(0).getInt(),
                      .touches_done = query.getColumn(1).getInt(),
                      .joints = read_joints(query, 2),
@@ -143,45 +245,87 @@ std::vector<ReferenceTouch> RunStore::references(std::int64_t run_id) const {
                      .captured_at = query.getColumn(9).getString()});
   }
   return found;
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::optional<OpenCommand> RunStore::open_command(std::int64_t run_id) const {
+std::optional<OpenCommand> RunStore::open_command(std::int64_t run_id) const try {
+  // A damaged touch may be the answer.
+  (void)touches(run_id);
+  (void)superseded_touches(run_id);
   SQLite::Statement query(
       *database_,
-      "SELECT session, sequence, aimed_with, touch_json FROM open_commands AS open WHERE run_id = ? "
-      "AND NOT EXISTS(SELECT 1 FROM touches WHERE run_id = open.run_id AND session = open.session AND "
-      "sequence = open.sequence) AND NOT EXISTS(SELECT 1 FROM superseded_touches WHERE run_id = open.run_id "
-      "AND session = open.session AND sequence = open.sequence)");
+      "SELECT session, sequence, aimed_with, touch_json, " + row::open_command_rows().is_whole() +
+          " FROM open_commands AS open WHERE run_id = ? "
+          "AND NOT EXISTS(SELECT 1 FROM touches WHERE run_id = open.run_id AND session = open.session AND "
+          "sequence = open.sequence) AND NOT EXISTS(SELECT 1 FROM superseded_touches WHERE run_id = "
+          "open.run_id AND session = open.session AND sequence = open.sequence)");
   query.bind(1, run_id);
-  if (!query.executeStep()) return std::nullopt;
-  return OpenCommand{.session = query.getColumn(0).getUInt(),
-                     .sequence = query.getColumn(1).getUInt(),
-                     .aimed_with = query.getColumn(2).getInt(),
-                     .touch_json = query.getColumn(3).getString()};
+  if (!query.executeStep()) {
+    demand_none_damaged(*database_, row::open_command_rows());
+    return std::nullopt;
+  }
+  demand_whole(*database_, query, 4, "open_commands", run_id);
+  return OpenCommand{
+      .session = query.getColumn(0).getUInt(),
+      .sequence = query.getColumn(1).getUInt(),
+      .aimed_with = query.getColumn(2).getInt(),
+      .touch_json = json_text(*database_, query, 3, "open_commands", run_id, "the commanded touch")};
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::vector<PlanChange> RunStore::plan_changes(std::int64_t run_id) const {
-  SQLite::Statement query(*database_, "SELECT kind, place FROM plan_changes WHERE run_id = ? ORDER BY id");
+std::vector<PlanChange> RunStore::plan_changes(std::int64_t run_id) const try {
+  demand_rows(*database_, run_id);
+  SQLite::Statement query(*database_, "SELECT kind, place, " + row::plan_change_rows().is_whole() +
+                                          ", id FROM plan_changes WHERE run_id = ? ORDER BY id");
   query.bind(1, run_id);
   std::vector<PlanChange> found;
-  while (query.executeStep())
+  while (query.executeStep()) {
+    demand_whole(*database_, query, 2, "plan_changes", run_id, 3);
     found.push_back({row::plan_change_named(query.getColumn(0).getString()), query.getColumn(1).getInt()});
+  }
   return found;
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::optional<std::string> RunStore::result_json(std::int64_t run_id) const {
-  SQLite::Statement query(*database_, "SELECT result_json FROM runs WHERE id = ?");
+std::optional<std::string> RunStore::result_json(std::int64_t run_id) const try {
+  SQLite::Statement query(*database_,
+                          "SELECT result_json, " + row::result_rows().is_whole() + " FROM runs WHERE id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return std::nullopt;
-  return text_or_nothing(query.getColumn(0));
+  demand_whole(*database_, query, 1, "runs", run_id);
+  if (query.getColumn(0).isNull()) return std::nullopt;
+  return json_text(*database_, query, 0, "runs", run_id, "its result");
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
-std::optional<std::string> RunStore::plan_json(std::int64_t run_id) const {
-  SQLite::Statement query(
-      *database_, "SELECT plans.document FROM runs JOIN plans ON plans.id = runs.plan_id WHERE runs.id = ?");
+std::optional<std::string> RunStore::arm_json(std::int64_t run_id) const try {
+  demand_rows(*database_, run_id);
+  SQLite::Statement query(*database_,
+                          "SELECT document, " + row::arm_rows().is_whole() + " FROM arms WHERE run_id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return std::nullopt;
-  return text_or_nothing(query.getColumn(0));
+  demand_whole(*database_, query, 1, "arms", run_id);
+  return json_text(*database_, query, 0, "arms", run_id, "the arm");
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
+}
+
+std::optional<std::string> RunStore::plan_json(std::int64_t run_id) const try {
+  SQLite::Statement query(*database_, "SELECT plans.document, " + row::plan_rows().is_whole() +
+                                          " FROM runs LEFT JOIN plans ON plans.id = runs.plan_id WHERE "
+                                          "runs.id = ? AND runs.plan_id IS NOT NULL");
+  query.bind(1, run_id);
+  if (!query.executeStep()) return std::nullopt;
+  if (query.getColumn(0).isNull())
+    throw DamagedStore(database_->getFilename(), row::place_of("runs", run_id), "its plan is not there");
+  demand_whole(*database_, query, 1, "plans", run_id);
+  return json_text(*database_, query, 0, "plans", run_id, "the plan");
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
 }  // namespace cell

@@ -6,6 +6,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "service/store/audit_chain.hpp"
+#include "service/store/damaged_store.hpp"
+#include "service/store/internal/row_checksum.hpp"
+
 namespace cell {
 namespace {
 
@@ -140,7 +144,36 @@ ALTER TABLE runs ADD COLUMN block_temperature_source TEXT;
 /// Whether the compliance is estimated, where a run was started with a choice of its own.
 constexpr const char* kStiffness = "ALTER TABLE runs ADD COLUMN stiffness TEXT;";
 
-constexpr std::array kMigrations{kRunsAndTouches, kPlans, kDiary, kTemperatures, kStiffness};
+/// A checksum for each row that a run rests on (filled in by fill_checksums()), what a run that ended had of
+/// them, and the arm that it gave.
+constexpr const char* kChecksums = R"sql(
+ALTER TABLE touches ADD COLUMN checksum INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN checksum INTEGER;
+ALTER TABLE reference_touches ADD COLUMN checksum INTEGER;
+ALTER TABLE plan_changes ADD COLUMN checksum INTEGER;
+ALTER TABLE open_commands ADD COLUMN checksum INTEGER;
+ALTER TABLE plans ADD COLUMN checksum INTEGER;
+ALTER TABLE runs ADD COLUMN checksum INTEGER;
+ALTER TABLE runs ADD COLUMN result_checksum INTEGER;
+ALTER TABLE runs ADD COLUMN rows_kept TEXT;
+CREATE TABLE arms(
+  run_id INTEGER PRIMARY KEY REFERENCES runs(id),
+  document TEXT NOT NULL,
+  checksum INTEGER
+) STRICT;
+)sql";
+
+/// Each row of the audit has the hash of the one before with its own content: audit_chain.hpp, whose
+/// kAuditChainSql is what the index is on. The rows that are there are chained by migrate().
+constexpr const char* kAuditChained = R"sql(
+ALTER TABLE audit ADD COLUMN operator_name TEXT NOT NULL DEFAULT '';
+ALTER TABLE audit ADD COLUMN hash TEXT NOT NULL DEFAULT '';
+CREATE INDEX audit_of_chain ON audit((who IN ('none', 'wrong token')), id);
+CREATE TABLE audit_chains(chain INTEGER PRIMARY KEY, anchor TEXT NOT NULL, newest TEXT NOT NULL) STRICT;
+)sql";
+
+constexpr std::array kMigrations{kRunsAndTouches, kPlans,     kDiary,       kTemperatures,
+                                 kStiffness,      kChecksums, kAuditChained};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.
@@ -163,9 +196,20 @@ void migrate(SQLite::Database& database, const std::filesystem::path& file) {
   }
   if (version == newest) return;
   SQLite::Transaction transaction(database);
-  for (int next = version; next < newest; ++next) database.exec(kMigrations[static_cast<std::size_t>(next)]);
+  for (int next = version; next < newest; ++next) {
+    const char* migration = kMigrations[static_cast<std::size_t>(next)];
+    database.exec(migration);
+    if (migration == kChecksums) row::fill_checksums(database);
+    if (migration == kAuditChained) chain_audit_rows(database);
+  }
   database.exec("PRAGMA user_version = " + std::to_string(newest));
   transaction.commit();
+}
+
+/// What is written into a damaged tree may be lost, and what is read from it missing.
+void refuse_damaged_pages(SQLite::Database& database, const std::filesystem::path& file) {
+  const std::string found = database.execAndGet("PRAGMA quick_check(1)").getString();
+  if (found != "ok") throw DamagedStore(file, "its pages", found);
 }
 
 }  // namespace
@@ -179,11 +223,24 @@ SharedDatabase open_database(const std::filesystem::path& file) try {
   database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
   // RunStore::begin_run() restarts the log before it grows beyond what a run writes.
   database->exec("PRAGMA wal_autocheckpoint = 4000");
+  row::add_checksum_function(*database);
+  refuse_damaged_pages(*database, file);
   migrate(*database, file);
   preallocate_log(*database);
   return database;
 } catch (const SQLite::Exception& error) {
   throw std::runtime_error(file.string() + ": " + error.what() + "; repair the file or give another --state");
+}
+
+SharedDatabase open_database_to_read(const std::filesystem::path& file) try {
+  // Not OPEN_READONLY: a reader of a WAL file takes part in its index.
+  auto database = std::make_shared<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE);
+  database->setBusyTimeout(kBusyMilliseconds);
+  database->exec("PRAGMA query_only = ON");
+  row::add_checksum_function(*database);
+  return database;
+} catch (const SQLite::Exception& error) {
+  throw std::runtime_error(file.string() + ": " + error.what());
 }
 
 }  // namespace cell

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -17,9 +18,17 @@ using SharedDatabase = std::shared_ptr<SQLite::Database>;
 /// SQL of each schema version, relative to the one before, from version 1 on.
 std::span<const char* const> migrations();
 
+/// From this schema on rows have checksums.
+inline constexpr std::size_t kChecksumSchema = 6;
+
 /// Opens or creates the file (WAL, synchronous FULL: a commit is durable on return) and migrates it to the
 /// newest schema, all or nothing. Throws std::runtime_error that names the file if that fails, also for a
 /// file of a newer schema, which is not changed.
 SharedDatabase open_database(const std::filesystem::path& file);
+
+/// A further connection to a file that open_database() has opened, for another thread: it reads what is
+/// committed, never waits for a commit under way, and refuses to write. Throws std::runtime_error that names
+/// the file.
+SharedDatabase open_database_to_read(const std::filesystem::path& file);
 
 }  // namespace cell

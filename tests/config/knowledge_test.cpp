@@ -210,6 +210,17 @@ TEST_F(Knowledge, AnExpansionAloneIsForTemperaturesThatComeWithTheRun) {
   }
 }
 
+TEST_F(Knowledge, ACellSaysHowLongARunOnHoldKeepsItsConfirmationFromItsSecondSchemaOn) {
+  edit(kCell, [](json& cell) { cell["schema"] = kCellSchema; });
+  EXPECT_EQ(read().permit_lifetime, std::chrono::minutes(30));
+  edit(kCell, [](json& cell) { cell["permit_minutes"] = 5; });
+  EXPECT_EQ(read().permit_lifetime, std::chrono::minutes(5));
+  for (const json& wrong : {json(0), json(481), json(1.5), json("5")}) {
+    edit(kCell, [&](json& cell) { cell["permit_minutes"] = wrong; });
+    EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/permit_minutes") << wrong;
+  }
+}
+
 TEST_F(Knowledge, ACellSaysHowOldATemperatureMayBeFromItsSecondSchemaOn) {
   edit(kCell, [](json& cell) {
     cell["schema"] = kFirstCellSchema;

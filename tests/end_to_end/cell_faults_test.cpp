@@ -20,7 +20,7 @@ void expect_fault_and_refused_start(LoopbackCell& loop, const std::string& fault
   EXPECT_EQ(loop.status().state, State::kResetting);
   EXPECT_EQ(loop.fault_name(), fault);
   EXPECT_FALSE(loop.status().controller.connected);
-  const auto answer = loop.operation().start({.recipe = kShortRecipe});
+  const auto answer = loop.ask_to_start({.recipe = kShortRecipe});
   const auto& refusal = std::get<cell::CommandRefusal>(answer);
   EXPECT_EQ(refusal.kind, cell::CommandRefusal::Kind::kPreconditions);
   ASSERT_EQ(refusal.unmet.size(), 1U);
@@ -65,7 +65,7 @@ TEST(CellFaults, ABlockOfUnknownTemperatureIsNotCalibratedOn) {
   loop.cell.block.temperature_c.reset();
   loop.launch();
   loop.run_until(State::kIdle);
-  const auto answer = loop.operation().start({.recipe = kShortRecipe});
+  const auto answer = loop.ask_to_start({.recipe = kShortRecipe});
   const auto& refusal = std::get<cell::CommandRefusal>(answer);
   EXPECT_EQ(refusal.kind, cell::CommandRefusal::Kind::kPreconditions);
   EXPECT_EQ(refusal.unmet.front().code, "temperature_missing");
@@ -105,7 +105,8 @@ class FullDisk {
   void refuse_touches_from(int number) {
     refuse("touch_refused", "INSERT ON touches", "WHEN NEW.number >= " + std::to_string(number));
   }
-  void refuse_changes_of_runs() { refuse("run_refused", "UPDATE ON runs", ""); }
+  /// Of their plan and of their end; a run that begins is one with its checksum.
+  void refuse_changes_of_runs() { refuse("run_refused", "UPDATE OF plan_id, outcome ON runs", ""); }
   void refuse_new_runs() { refuse("new_run_refused", "INSERT ON runs", ""); }
 
   void relieve() {
@@ -189,7 +190,7 @@ TEST_F(FailingStore, ADiskThatStaysFullIsToldAtEveryResetAndLosesNothing) {
 
 TEST_F(FailingStore, ARunThatCannotBeWrittenDoesNotBegin) {
   disk_.refuse_new_runs();
-  const auto answer = loop_.operation().start({.recipe = kShortRecipe});
+  const auto answer = loop_.ask_to_start({.recipe = kShortRecipe});
   const auto* refusal = std::get_if<cell::CommandRefusal>(&answer);
   ASSERT_TRUE(refusal);
   ASSERT_EQ(refusal->unmet.size(), 1u);

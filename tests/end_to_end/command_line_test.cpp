@@ -131,6 +131,21 @@ TEST_F(CommandLine, CheckTellsAllThatIsWrongAtOnceAndChangesNothing) {
   EXPECT_THAT(open.err, HasSubstr("chmod 600"));
 }
 
+TEST_F(CommandLine, AnEmptyDatabaseOfAStateDirectoryThatWasInUseIsNoNewOne) {
+  const auto state = folder_ / "state";
+  std::filesystem::create_directory(state);
+  std::ofstream(state / "touchcal.sqlite").close();
+  std::ofstream(state / "place.json") << "{}";
+  for (const char* how : {"--check", "--loopback-needs-token"}) {
+    const Finished refused = run({"touchcald", how, "--cell", cell_file("demo"), "--state", state.string(),
+                                  "--listen", "127.0.0.1:0"});
+    EXPECT_EQ(refused.exit_code, cell::kExitFailed);
+    EXPECT_THAT(refused.err, HasSubstr("touchcal.sqlite: is empty"));
+    EXPECT_THAT(refused.err, HasSubstr("restore the last backup"));
+  }
+  EXPECT_EQ(std::filesystem::file_size(state / "touchcal.sqlite"), 0U);
+}
+
 TEST_F(CommandLine, TheUnitIsAsClosedAsItCanBe) {
   const std::string unit = std::string(TOUCHCAL_SOURCE_DIR) + "/service/touchcald.service";
   const Finished judged = run({"/usr/bin/systemd-analyze", "security", "--offline=true", "--threshold=10",

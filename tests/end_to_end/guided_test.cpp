@@ -18,7 +18,7 @@ class GuidedRun : public ::testing::Test {
     loop_.launch();
     loop_.run_until(State::kIdle);
     pendant_.take_over();
-    const auto answer = loop_.operation().start(
+    const auto answer = loop_.ask_to_start(
         {.recipe = kShortRecipe, .idempotency_key = {}, .operator_name = {}, .guided = true});
     if (const auto* refusal = std::get_if<cell::CommandRefusal>(&answer))
       throw std::runtime_error(refusal->detail);
@@ -62,6 +62,17 @@ TEST_F(GuidedRun, IdentifiesTheArmWithoutAMotionCommand) {
   EXPECT_EQ(loop_.status().controller.mode, "manual");
 }
 
+TEST_F(GuidedRun, TakesNoTouchByWord) {
+  start();
+  const auto refusal = loop_.operation().command(Command::kTake);
+  ASSERT_TRUE(refusal) << "a bent stylus would be a touch";
+  EXPECT_EQ(refusal->kind, cell::CommandRefusal::Kind::kState);
+  EXPECT_NE(refusal->detail.find("guided run"), std::string::npos) << refusal->detail;
+  for (const Command command : loop_.operation().exits()) EXPECT_NE(command, Command::kTake);
+  loop_.command(Command::kStop);
+  loop_.run_until(State::kStopped);
+}
+
 TEST_F(GuidedRun, TakesNoTouchOnAnotherPlaneOrTwiceAndCanLeaveOneOut) {
   const std::int64_t id = start();
   const cell::HandGuide first = loop_.status().by_hand.value();
@@ -81,13 +92,27 @@ TEST_F(GuidedRun, TakesNoTouchOnAnotherPlaneOrTwiceAndCanLeaveOneOut) {
   EXPECT_FALSE(touch_as_told());
   EXPECT_EQ(loop_.status().touches_done, 1);
   loop_.command(Command::kUndo);
-  EXPECT_EQ(loop_.status().touches_done, 0);
-  loop_.run_until([](const cell::Status& status) { return status.by_hand.has_value(); });
+  loop_.run_until(
+      [](const cell::Status& status) { return status.touches_done == 0 && status.by_hand.has_value(); });
   EXPECT_EQ(loop_.status().by_hand->about_joints, first.about_joints);
   EXPECT_EQ(loop_.store().superseded_touches(id).size(), 1U);
   EXPECT_TRUE(loop_.is_refused(Command::kUndo));
   loop_.command(Command::kStop);
   loop_.run_until(State::kStopped);
+}
+
+TEST_F(GuidedRun, KeepsItsTouchesWhenTheLinkIsLost) {
+  start();
+  ASSERT_FALSE(touch_as_told());
+  loop_.run_until([](const cell::Status& status) { return status.by_hand && status.by_hand->index == 2; });
+  loop_.inject(R"({"fault":"close"})");
+  loop_.run_until(State::kHeld);
+  EXPECT_EQ(loop_.fault_name(), "link_lost");
+  loop_.command(Command::kResume);
+  loop_.run_until([](const cell::Status& status) { return status.by_hand.has_value(); });
+  EXPECT_EQ(loop_.status().by_hand->index, 2);
+  EXPECT_FALSE(touch_as_told());
+  EXPECT_EQ(loop_.status().touches_done, 2);
 }
 
 TEST_F(GuidedRun, GoesOnByHandWhenTheDaemonWasStartedAnew) {
@@ -98,10 +123,15 @@ TEST_F(GuidedRun, GoesOnByHandWhenTheDaemonWasStartedAnew) {
         [done](const cell::Status& status) { return status.by_hand && status.by_hand->index == done + 2; });
   }
   const cell::HandGuide third = loop_.status().by_hand.value();
+  SQLite::Database& database = *loop_.store().database();
+  const std::string checksum = database.execAndGet("SELECT checksum FROM runs").getString();
   loop_.command(Command::kStop);
   loop_.run_until(State::kStopped);
   // As a daemon that was killed leaves it.
-  loop_.store().database()->exec("UPDATE runs SET outcome = 'running', ended_at = NULL");
+  database.exec(
+      "UPDATE runs SET outcome = 'running', verdict = 'none', ended_at = NULL, fault_code = NULL, "
+      "fault_message = NULL, rows_kept = NULL, checksum = " +
+      checksum);
   loop_.relaunch();
   EXPECT_EQ(loop_.status().state, State::kHeld);
   loop_.run_until([](const cell::Status& status) { return status.controller.connected; });

@@ -45,8 +45,8 @@ std::string describe(const Case& link_case, std::uint32_t nth) {
          " " + std::to_string(nth);
 }
 
-/// A run that meets the fault, and everything that has to hold afterwards. `before` touches are made in
-/// peace.
+/// A run that meets the fault, waits with its touches and goes on when a person says so. `before` touches are
+/// made in peace.
 void meet(const Case& link_case, std::uint32_t nth, int before) {
   SCOPED_TRACE(describe(link_case, nth));
   const int captured = before + (link_case.reached == Reached::kCaptured ? 1 : 0);
@@ -59,28 +59,28 @@ void meet(const Case& link_case, std::uint32_t nth, int before) {
   loop.run_until(State::kIdle);
   const std::int64_t id = loop.start();
   loop.run_until_over();
-  ASSERT_EQ(loop.status().state, State::kAborted);
+  ASSERT_EQ(loop.status().state, State::kHeld);
   EXPECT_EQ(loop.fault_name(), link_case.expected);
   expect_touches_once(loop, id, captured);
-  const auto stored = loop.store().run(id).value();
-  EXPECT_EQ(stored.outcome, cell::RunOutcome::kAborted);
-  EXPECT_EQ(stored.verdict, cell::Verdict::kIncomplete);
-  EXPECT_EQ(stored.fault_code, link_case.expected);
+  EXPECT_EQ(loop.store().run(id)->outcome, cell::RunOutcome::kRunning);
 
-  loop.leave_aborted();
+  loop.run_until(
+      [&](const cell::Status& status) { return status.controller.connected && status.touches_done >= kept; });
+  EXPECT_EQ(loop.status().state, State::kHeld) << "a link alone moves nothing";
+  EXPECT_EQ(loop.fault_name(), link_case.expected) << "until a person resumes";
   expect_touches_once(loop, id, kept);
-  const std::int64_t next = loop.start();
+  loop.command(Command::kResume);
   loop.run_until_over();
   EXPECT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
-  expect_touches_once(loop, next, kShortTouchCount);
-  expect_touches_once(loop, id, kept);
+  expect_touches_once(loop, id, kShortTouchCount);
+  EXPECT_EQ(loop.store().runs(10).size(), 1U);
 }
 
 void meet_at_touches(const Case& link_case, std::initializer_list<int> touches) {
   for (const int nth : touches) meet(link_case, static_cast<std::uint32_t>(nth), nth - 1);
 }
 
-TEST(LinkFaults, AControllerThatClosesEndsTheRunAtAnyTouch) {
+TEST(LinkFaults, AControllerThatClosesHoldsTheRunAtAnyTouch) {
   const auto touches = {1, 2, 17, kShortTouchCount};
   meet_at_touches({Fault::kCloseSocket, MessageType::kTouch, "link_lost", Reached::kNotMade}, touches);
   meet_at_touches({Fault::kCloseSocket, MessageType::kAccepted, "link_lost", Reached::kUntold}, touches);
@@ -92,20 +92,20 @@ TEST(LinkFaults, AControllerThatClosesWhenItMayForgetAResultHasGivenItAlready) {
                   {1, 17, kShortTouchCount});
 }
 
-TEST(LinkFaults, ASilentControllerEndsTheRunAtAnyTouch) {
+TEST(LinkFaults, ASilentControllerHoldsTheRunAtAnyTouch) {
   for (const MessageType on : {MessageType::kTouch, MessageType::kTouchResult}) {
     meet_at_touches({Fault::kGoSilent, on, "link_lost", Reached::kUntold}, {1, 17, kShortTouchCount});
   }
 }
 
-TEST(LinkFaults, BytesThatAreNoFrameEndTheRunAtAnyTouch) {
+TEST(LinkFaults, BytesThatAreNoFrameHoldTheRunAtAnyTouch) {
   const auto touches = {1, 17, kShortTouchCount};
   meet_at_touches({Fault::kGarbage, MessageType::kTouch, "protocol_error", Reached::kNotMade}, touches);
   meet_at_touches({Fault::kGarbage, MessageType::kAccepted, "protocol_error", Reached::kUntold}, touches);
   meet_at_touches({Fault::kGarbage, MessageType::kTouchResult, "protocol_error", Reached::kUntold}, touches);
 }
 
-TEST(LinkFaults, AnAnswerToNothingThatWasAskedEndsTheRunAtAnyTouch) {
+TEST(LinkFaults, AnAnswerToNothingThatWasAskedHoldsTheRunAtAnyTouch) {
   const auto touches = {1, 17, kShortTouchCount};
   // A touch that was made under another number is not the one that was asked for.
   meet_at_touches({Fault::kWrongSequence, MessageType::kTouch, "protocol_error", Reached::kNotMade}, touches);
@@ -115,7 +115,7 @@ TEST(LinkFaults, AnAnswerToNothingThatWasAskedEndsTheRunAtAnyTouch) {
                   touches);
 }
 
-TEST(LinkFaults, AnAnswerThatDoesNotComeEndsTheRun) {
+TEST(LinkFaults, AnAnswerThatDoesNotComeHoldsTheRun) {
   meet_at_touches({Fault::kDrop, MessageType::kTouch, "answer_missing", Reached::kNotMade}, {1});
 }
 
@@ -147,7 +147,7 @@ TEST(LinkFaults, TheWayHomeMayFailTooAndEveryTouchIsKept) {
   }
 }
 
-TEST(LinkFaults, ACablePulledInASearchLeavesTheStylusAtTheFaceAndTheNextRunTakesItBackFirst) {
+TEST(LinkFaults, ACablePulledInASearchLeavesTheStylusAtTheFaceAndTheResumedRunTakesItBackFirst) {
   LoopbackCell loop;
   // A hundred times as fast as an arm: a search takes longer than the 20 ms between two reports of the state.
   loop.serve({}, 100.0);
@@ -167,19 +167,54 @@ TEST(LinkFaults, ACablePulledInASearchLeavesTheStylusAtTheFaceAndTheNextRunTakes
   loop.launch(relay.port());
   loop.run_until(State::kIdle);
   const std::int64_t id = loop.start();
-  loop.run_until(State::kAborted);
+  loop.run_until(State::kHeld);
   EXPECT_EQ(loop.fault_name(), "link_lost");
-  expect_touches_once(loop, id, loop.status().touches_done);
+  expect_touches_once(loop, id, 0);
 
   asked.clear();
-  loop.leave_aborted();
-  const std::int64_t next = loop.start();
+  loop.command(Command::kResume);
   loop.run_until_touches(2);
-  expect_touches_once(loop, next, 2);
+  expect_touches_once(loop, id, 2);
   ASSERT_GE(asked.size(), 3U);
   EXPECT_EQ(asked[0], MessageType::kRetract);
   EXPECT_EQ(asked[1], MessageType::kTouch);
   EXPECT_EQ(asked[2], MessageType::kTouch);
+}
+
+TEST(LinkFaults, ALinkThatIsLostBeforeThereIsAPlanHoldsTheRunWhichIsPlannedOnceItGoesOn) {
+  LoopbackCell loop;
+  loop.serve();
+  loop.launch();
+  loop.run_until(State::kIdle);
+  const std::int64_t id = loop.start();
+  loop.run_until([&](const cell::Status&) { return loop.operation().is_planning(); });
+  loop.inject(R"({"fault":"close"})");
+  loop.run_until(State::kHeld);
+  EXPECT_EQ(loop.fault_name(), "link_lost");
+  loop.command(Command::kResume);
+  loop.run_until_over();
+  EXPECT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
+  expect_touches_once(loop, id, kShortTouchCount);
+}
+
+TEST(LinkFaults, ARunOnHoldForAnotherReasonKeepsItWhileTheLinkComesAndGoes) {
+  LoopbackCell loop;
+  loop.serve();
+  loop.launch();
+  loop.run_until(State::kIdle);
+  loop.inject(R"({"fault":"probe_stuck","touch":5})");
+  const std::int64_t id = loop.start();
+  loop.run_until_over();
+  loop.inject(R"({"fault":"close"})");
+  loop.run_until([](const cell::Status& status) { return !status.controller.connected; });
+  loop.run_until([](const cell::Status& status) { return status.controller.connected; });
+  EXPECT_EQ(loop.status().state, State::kHeld);
+  EXPECT_EQ(loop.fault_name(), "probe_stuck");
+  loop.inject(R"({"fault":"probe_mended"})");
+  loop.command(Command::kResume);
+  loop.run_until_over();
+  EXPECT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
+  expect_touches_once(loop, id, kShortTouchCount);
 }
 
 TEST(LinkFaults, BetweenRunsTheLinkComesBackByItself) {

@@ -112,6 +112,10 @@ TEST_F(BlockElsewhere, ATouchTakenBackIsMadeAgainAndTheDialogueCanBeLeft) {
   const auto spots = cell::place_spots(loop_.cell);
   pendant.touch(spots[0].face, spots[0].point_m);
   EXPECT_EQ(loop_.status().by_hand->index, 2);
+  loop_.inject(R"({"fault":"close"})");
+  loop_.run_until([](const cell::Status& status) { return !status.controller.connected; });
+  loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
+  EXPECT_EQ(loop_.status().by_hand->index, 2) << "a lost link takes no touch";
   loop_.command(Command::kLocate);  // once more changes nothing
   EXPECT_EQ(loop_.status().by_hand->index, 2);
   loop_.command(Command::kUndo);

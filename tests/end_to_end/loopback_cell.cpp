@@ -83,8 +83,8 @@ void LoopbackCell::inject(const std::string& line) {
 }
 
 void LoopbackCell::launch(std::optional<std::uint16_t> port) {
-  operation_.emplace(io_.get_executor(), cell, store_, cell::Endpoint{"127.0.0.1", port.value_or(port_)},
-                     "end-to-end",
+  operation_.emplace(io_.get_executor(), cell, cell::StoreQueue(store_, io_.get_executor()),
+                     cell::Endpoint{"127.0.0.1", port.value_or(port_)}, "end-to-end",
                      cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
   if (!place_file.empty()) operation_->keep_place_in(place_file);
   operation_->launch();
@@ -115,10 +115,23 @@ void LoopbackCell::run_until_over() {
 }
 
 std::int64_t LoopbackCell::start(const std::string& recipe) {
-  const auto answer = operation_->start({.recipe = recipe});
+  const auto answer = ask_to_start(cell::StartRequest{.recipe = recipe});
   if (const auto* refusal = std::get_if<cell::CommandRefusal>(&answer))
     throw std::runtime_error(refusal->detail);
   return std::get<cell::Started>(answer).run_id;
+}
+
+std::variant<cell::Started, cell::CommandRefusal> LoopbackCell::ask_to_start(
+    const cell::StartRequest& request) {
+  std::optional<std::variant<cell::Started, cell::CommandRefusal>> answer;
+  boost::asio::co_spawn(io_, operation_->start(request),
+                        [&answer](const std::exception_ptr& failure,
+                                  const std::variant<cell::Started, cell::CommandRefusal>& given) {
+                          if (failure) std::rethrow_exception(failure);
+                          answer = given;
+                        });
+  while (!answer) io_.run_one();
+  return *answer;
 }
 
 void LoopbackCell::command(cell::Command command) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "service/acquisition/cell_operation.hpp"
@@ -58,6 +59,8 @@ class LoopbackCell {
 
   /// The id of the run that was started; std::runtime_error with the reason when it was refused.
   std::int64_t start(const std::string& recipe = kShortRecipe);
+  /// What the operation answers.
+  std::variant<cell::Started, cell::CommandRefusal> ask_to_start(const cell::StartRequest& request);
   /// std::runtime_error with the reason when it was refused.
   void command(cell::Command command);
   /// A run of the recipe from the start of everything until it is over, against this truth at full speed.

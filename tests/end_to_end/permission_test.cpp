@@ -121,15 +121,16 @@ TEST_F(Permission, ARunOnHoldGoesOnWithoutAnotherConfirmation) {
 
 TEST_F(Permission, AfterALostLinkNothingMovesWithoutANewConfirmation) {
   make_ready({});
-  loop_.start();
+  const std::int64_t id = loop_.start();
   loop_.run_until_touches(3);
   relay_->pull();
-  loop_.run_until(State::kAborted);
-  loop_.leave_aborted();
-  const std::int64_t next = loop_.start();
+  loop_.run_until(State::kHeld);
+  const auto begins = count(MessageType::kBegin);
+  loop_.command(Command::kResume);
   loop_.run_until_over();
   EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
-  expect_touches_once(loop_, next, kShortTouchCount);
+  expect_touches_once(loop_, id, kShortTouchCount);
+  EXPECT_EQ(count(MessageType::kBegin), begins + 1);
   expect_begin_before_motion();
   EXPECT_GE(count(MessageType::kHello), 2);  // at first, behind the loss or the clear
 }

@@ -28,12 +28,17 @@ TEST(PlanRun, MakesEachTouchOfThePlanThatWasShownOnce) {
 
   const cell::Tokens tokens{"operate", "view"};
   const auto send = [&](const std::string& method, const std::string& path, const std::string& body) {
-    return cell::route({.method = method,
-                        .path = "/api/v1/" + path,
-                        .authorization = "Bearer operate",
-                        .content_type = "application/json",
-                        .body = body},
-                       loop.operation(), tokens);
+    std::optional<cell::HttpResponse> answer;
+    cell::HttpRequest request{.method = method,
+                              .path = "/api/v1/" + path,
+                              .authorization = "Bearer operate",
+                              .content_type = "application/json",
+                              .body = body};
+    boost::asio::co_spawn(
+        loop.io(), cell::route(std::move(request), loop.operation(), tokens),
+        [&answer](const std::exception_ptr&, cell::HttpResponse made) { answer = std::move(made); });
+    while (!answer) loop.io().run_one();
+    return *answer;
   };
   const cell::HttpResponse shown = send("POST", "plan", json{{"recipe", kShortRecipe}}.dump());
   ASSERT_EQ(shown.status, 200u) << shown.body;

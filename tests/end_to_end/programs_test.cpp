@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <chrono>
@@ -208,6 +209,17 @@ TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   EXPECT_THAT(printed_page.out, StartsWith("%PDF-"));
   EXPECT_EQ(cell.run({"report", "2"}).exit_code, cell::kExitUsage) << "no such run";
 
+  const Finished audit = cell.run({"audit", "--json"});
+  EXPECT_EQ(audit.exit_code, cell::kExitDone) << audit.err;
+  const auto rows = nlohmann::json::parse(audit.out).at("rows");
+  ASSERT_GE(rows.size(), 2U);
+  EXPECT_EQ(rows.back().at("outcome"), "asked") << "newest first";
+  EXPECT_THAT(cell.run({"audit"}).out, HasSubstr("POST /api/v1/runs"));
+  const Finished table = cell.run({"audit", "--csv", "--limit", "1"});
+  EXPECT_THAT(table.out, StartsWith("id,at,role,operator,remote,action,outcome,detail,hash\r\n"));
+  EXPECT_EQ(std::ranges::count(table.out, '\n'), 2) << table.out;
+  EXPECT_EQ(cell.run({"audit", "--csv", "--json"}).exit_code, cell::kExitUsage);
+
   cell.daemon().signal(SIGTERM);
   EXPECT_EQ(cell.daemon().wait().exit_code, 0);
   cell.controller().signal(SIGTERM);
@@ -225,11 +237,11 @@ TEST(Daemon, SaysThatTheControllerWasLostWhenItIsKilledInARun) {
   // Nothing was begun this time: a start whose preconditions are not met is refused.
   EXPECT_EQ(cell.run({"run", kRecipe}).exit_code, cell::kExitRefused);
   const auto status = cell.status();
-  EXPECT_EQ(status.at("state"), "ABORTED");
+  EXPECT_EQ(status.at("state"), "HELD");
   EXPECT_EQ(status.at("fault_code"), "link_lost");
-  EXPECT_EQ(status.at("verdict"), "incomplete");
+  EXPECT_EQ(status.at("verdict"), "none");
   EXPECT_GE(status.at("touches_done"), 3);
-  EXPECT_EQ(cell.run({"clear"}).exit_code, cell::kExitDone);
+  EXPECT_EQ(cell.run({"stop"}).exit_code, cell::kExitDone);
   cell.daemon().signal(SIGTERM);
   EXPECT_EQ(cell.daemon().wait().exit_code, 0);
 }

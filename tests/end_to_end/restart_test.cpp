@@ -48,7 +48,8 @@ class MortalDaemon {
     io_ = std::make_unique<boost::asio::io_context>(1);
     store_ = std::make_unique<cell::RunStore>(store_file());
     operation_ = std::make_unique<cell::CellOperation>(
-        io_->get_executor(), cell, *store_, cell::Endpoint{"127.0.0.1", server_->port()}, "restart",
+        io_->get_executor(), cell, cell::StoreQueue(*store_, io_->get_executor()),
+        cell::Endpoint{"127.0.0.1", server_->port()}, "restart",
         cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
     operation_->launch();
   }
@@ -78,14 +79,24 @@ class MortalDaemon {
   void command(Command command) {
     if (const auto refusal = operation_->command(command)) throw std::runtime_error(refusal->detail);
   }
+  std::variant<cell::Started, cell::CommandRefusal> ask_to_start(const cell::StartRequest& request) {
+    std::optional<std::variant<cell::Started, cell::CommandRefusal>> answer;
+    boost::asio::co_spawn(
+        *io_, operation_->start(request),
+        [&](const std::exception_ptr&, const std::variant<cell::Started, cell::CommandRefusal>& given) {
+          answer = given;
+        });
+    while (!answer) step();
+    return *answer;
+  }
   void start(const std::optional<cell::BlockTemperature>& temperature = {},
              std::optional<cell::StiffnessChoice> stiffness = {}) {
     run_until(State::kIdle);
-    if (const auto answer = operation_->start({.recipe = kFewTouches,
-                                               .idempotency_key = {},
-                                               .operator_name = {},
-                                               .block_temperature = temperature,
-                                               .stiffness = stiffness});
+    if (const auto answer = ask_to_start({.recipe = kFewTouches,
+                                          .idempotency_key = {},
+                                          .operator_name = {},
+                                          .block_temperature = temperature,
+                                          .stiffness = stiffness});
         const auto* refusal = std::get_if<cell::CommandRefusal>(&answer)) {
       throw std::runtime_error(refusal->detail);
     }
@@ -266,8 +277,7 @@ TEST(Restart, AnInterruptedRunThatIsStoppedStaysInterruptedAndTheNextOneCanStart
   daemon.start();
   daemon.run_until([](const cell::Status& status) { return status.touches_done >= 2; });
   ASSERT_EQ(daemon.restart().state, State::kHeld);
-  EXPECT_TRUE(
-      std::holds_alternative<cell::CommandRefusal>(daemon.operation().start({.recipe = kFewTouches})));
+  EXPECT_TRUE(std::holds_alternative<cell::CommandRefusal>(daemon.ask_to_start({.recipe = kFewTouches})));
   daemon.command(Command::kStop);
   daemon.run_until(State::kStopped);
   EXPECT_EQ(daemon.store().run(1)->outcome, cell::RunOutcome::kInterrupted);

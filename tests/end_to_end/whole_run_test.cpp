@@ -130,7 +130,7 @@ TEST(Conditions, AreKeptWithTheRunWhenItStarts) {
   loop.launch();
   loop.run_until(State::kIdle);
   const auto started = std::get<cell::Started>(
-      loop.operation().start({.recipe = kShortRecipe, .idempotency_key = {}, .operator_name = "A. Turing"}));
+      loop.ask_to_start({.recipe = kShortRecipe, .idempotency_key = {}, .operator_name = "A. Turing"}));
   const cell::StoredRun stored = loop.store().run(started.run_id).value();
   const auto kept = nlohmann::json::parse(stored.conditions_json.value());
   EXPECT_EQ(kept.at("operator"), "A. Turing");
@@ -150,10 +150,10 @@ TEST(Conditions, ATemperatureThatComesWithTheRunIsUsedInAllOfItAndForNoOther) {
   loop.run_until(State::kIdle);
   const auto now = std::chrono::system_clock::now();
   const auto started = std::get<cell::Started>(
-      loop.operation().start({.recipe = kShortRecipe,
-                              .idempotency_key = {},
-                              .operator_name = {},
-                              .block_temperature = cell::BlockTemperature{25.0, 0.5, now}}));
+      loop.ask_to_start({.recipe = kShortRecipe,
+                         .idempotency_key = {},
+                         .operator_name = {},
+                         .block_temperature = cell::BlockTemperature{25.0, 0.5, now}}));
   loop.run_until_over();
   EXPECT_EQ(loop.status().state, State::kComplete) << loop.fault_name();
   const auto result = nlohmann::json::parse(loop.operation().result_json().value());

@@ -1,7 +1,12 @@
 #pragma once
 
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <exception>
+#include <optional>
+#include <utility>
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/store/run_store.hpp"
@@ -16,6 +21,20 @@ class QuietCell {
   boost::asio::io_context& context() { return context_; }
   RunStore& store() { return store_; }
   CellOperation& operation() { return operation_; }
+  /// Runs the coroutine to its end; returns its result.
+  template <class Result>
+  Result run(boost::asio::awaitable<Result> work) {
+    std::optional<Result> result;
+    std::exception_ptr failure;
+    boost::asio::co_spawn(context_, std::move(work), [&](const std::exception_ptr& thrown, Result made) {
+      failure = thrown;
+      result = std::move(made);
+    });
+    context_.restart();
+    while (!result) context_.run_one();
+    if (failure) std::rethrow_exception(failure);
+    return *std::move(result);
+  }
 
  private:
   /// Where nobody listens: a port that is bound, so that nobody else can take it.
@@ -33,7 +52,7 @@ class QuietCell {
   CellOperation operation_{
       context_.get_executor(),
       edf(),
-      store_,
+      StoreQueue(store_, context_.get_executor()),
       nobody(),
       "instance",
       Clocks{[] { return std::chrono::system_clock::time_point{}; }, std::chrono::steady_clock::now}};

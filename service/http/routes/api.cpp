@@ -3,16 +3,20 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <boost/asio/bind_executor.hpp>
+#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <utility>
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/base/digest.hpp"
+#include "service/base/run_on.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/http/auth/access.hpp"
+#include "service/http/routes/internal/audit_routes.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
 #include "service/http/server/target.hpp"
@@ -27,8 +31,16 @@ namespace {
 /// Longest wait of a long poll; at most so many at once.
 constexpr std::int64_t kWaitSecondsMax = 60;
 constexpr std::size_t kLongPollsMax = 128;
-/// Requests on the worker and queued for it.
-constexpr int kAtWorkMax = 4;
+/// Requests at a desk and queued for it. One more is told that the daemon is busy (503).
+constexpr int kAtReaderMax = 64;
+constexpr int kAtWorkerMax = 4;
+/// Commands that wait for the store. None of them may be a stop, a pause or an abort.
+constexpr int kAtStoreMax = 16;
+/// Entries of the audit that wait to be written. One more is dropped and logged: only commands that halt,
+/// outcomes and refusals come to wait here, none of which may wait for a disk.
+constexpr int kUnwrittenMax = 1000;
+/// A larger body does not wait with its entry.
+constexpr std::size_t kToldBodyBytesMax = 4096;
 /// After so many wrong tokens from one address, each further answer is delayed.
 constexpr int kWrongTokensFree = 5;
 constexpr std::size_t kWrongAddressesMax = 1024;
@@ -45,16 +57,26 @@ HttpResponse busy(std::string detail, const char* retry_after_s) {
 
 bool is_command(const HttpRequest& request) { return request.method != "GET"; }
 
-/// The stored answer to a key, or its refusal; nothing for a new key. `must_go_on`: also where keys cannot be
-/// looked up.
+/// One more that waits, to the end of its scope.
+class Waiting {
+ public:
+  explicit Waiting(int& count) : count_(count) { ++count_; }
+  ~Waiting() { --count_; }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+
+ private:
+  int& count_;
+};
+
+/// The stored answer to a key, or its refusal; nothing for a new key.
 std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedRequest& keyed,
-                                          std::chrono::system_clock::time_point now, bool must_go_on) {
+                                          std::chrono::system_clock::time_point now) {
   KeyLookUp found;
   try {
     found = answers.take(keyed, format_utc(now - std::chrono::hours(AnswerStore::kKeptHours)));
   } catch (const std::exception& error) {
     spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
-    if (must_go_on) return std::nullopt;
     return to_response({.status = 503,
                         .kind = ProblemKind::kIdempotencyKey,
                         .detail = "earlier answers cannot be read; see the log"});
@@ -76,31 +98,58 @@ std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedReque
 
 }  // namespace
 
-Api::Api(asio::any_io_executor executor, CellOperation& operation, Tokens tokens)
-    : executor_(executor), services_(operation, std::move(tokens)) {
-  services_.feed.follow([this](const Status& status) { services_.metrics.follow(status); });
+struct Api::Desk {
+  Desk(const CellOperation& operation, int to_have_waiting, const char* to_say)
+      : waiting_max(to_have_waiting), when_full(to_say), reads(operation, operation.store().file()) {}
+  ~Desk() {
+    thread.stop();  // nobody waits for an answer any more
+    thread.join();
+  }
+  Desk(const Desk&) = delete;
+  Desk& operator=(const Desk&) = delete;
+
+  int waiting = 0;  // of the thread that serves, as the next two
+  int waiting_max;
+  const char* when_full;
+  Reads reads;  // of its own thread
+  boost::asio::thread_pool thread{1};
+};
+
+Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& operation, Tokens tokens)
+    : executor_(executor),
+      threads_(std::move(threads)),
+      services_(operation, std::move(tokens), operation.store().file()),
+      reader_(std::make_unique<Desk>(operation, kAtReaderMax, "other runs are being read; ask again")),
+      worker_(std::make_unique<Desk>(operation, kAtWorkerMax,
+                                     "other documents are being identified; ask again")) {
+  services_.feed.follow([this](const Status& status) { services_.metrics.follow(status); }, executor);
 }
 
-Api::~Api() { worker_.join(); }
+Api::Api(asio::any_io_executor executor, CellOperation& operation, Tokens tokens)
+    : Api(executor, {.operation = executor, .store = executor}, operation, std::move(tokens)) {}
 
-Services::Services(CellOperation& to_serve, Tokens to_ask_for)
+Api::~Api() = default;
+
+Services::Services(CellOperation& to_serve, Tokens to_ask_for,
+                   const std::optional<std::filesystem::path>& store_file)
     : operation(to_serve),
       tokens(std::move(to_ask_for)),
       feed(to_serve),
+      reads(store_file ? Reads(to_serve, *store_file) : Reads(to_serve)),
       answers(to_serve.store().database()),
       audit(to_serve.store().database()) {}
 
 HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
   services_.metrics.count_request("", "", problem.status);
   HttpResponse response = to_response(problem);
-  if (is_command(request)) write_audit(request, std::to_string(problem.status), false);
+  if (is_command(request)) write_audit_behind(request, std::to_string(problem.status));
   return response;
 }
 
 asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
   const auto outcome = admit(request, services_.tokens);
   if (const auto* refused = std::get_if<HttpResponse>(&outcome)) {
-    if (is_command(request)) write_audit(request, std::to_string(refused->status), false);
+    if (is_command(request)) write_audit_behind(request, std::to_string(refused->status));
     if (refused->status == 401) co_await delay_wrong_token(request);
     services_.metrics.count_request("", "", refused->status);
     co_return *refused;
@@ -143,31 +192,50 @@ bool Api::ignores_query(std::string_view method, std::string_view path) const {
 
 asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const Admitted& admitted) {
   const DispatchMode dispatch = admitted.route->dispatch;
-  if (dispatch == DispatchMode::kLongPoll) co_await wait_for_status(request, admitted);
-  if (dispatch == DispatchMode::kPlanning) co_await wait_for_plan(request);
+  if (dispatch == DispatchMode::kLongPoll) co_await wait_for_status(request);
+  if (dispatch == DispatchMode::kPlanning)
+    co_await asio::co_spawn(threads_.operation, wait_for_plan(request), asio::use_awaitable);
   if (dispatch == DispatchMode::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
     co_return busy("too many event streams are open; poll GET /api/v1/status", "15");
-  if (dispatch != DispatchMode::kWorker) co_return handle(admitted, request, services_);
-  HttpResponse response = co_await on_worker(request, admitted);
-  co_return response;
+  if (dispatch == DispatchMode::kStored || dispatch == DispatchMode::kWorker) {
+    Desk& desk = dispatch == DispatchMode::kStored ? *reader_ : *worker_;
+    HttpResponse response = co_await at_desk(desk, request, admitted);
+    co_return response;
+  }
+  Asked asked;
+  if (admitted.route->ask)
+    asked = co_await run_on(threads_.operation, [&] { return ask_operation(admitted, request, services_); });
+  if (asked.to_start)
+    asked = co_await asio::co_spawn(threads_.operation, answer_start(services_.operation, *asked.to_start),
+                                    asio::use_awaitable);
+  services_.reads.update();
+  co_return handle(admitted, request, services_, services_.reads, asked);
 }
 
-/// A command: recorded before it is executed, its outcome afterwards.
+/// A command: recorded before it is executed, its outcome afterwards. One that halts is recorded afterwards
+/// only: it never waits for the database to record it.
 asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, const Admitted& admitted) {
   HttpResponse response;
+  const bool halts = halts_only(*admitted.route);
   if (is_stop(*admitted.route)) {
-    response = handle(admitted, request, services_);
-  } else if (!write_audit(request, "asked", true) && !halts_only(*admitted.route)) {
-    response =
-        to_response({.status = 503,
-                     .kind = ProblemKind::kAudit,
-                     .detail = "the command was refused because it cannot be recorded; free space on "
-                               "the disk of the state directory. Stop, abort and pause are still executed"});
-    co_return response;
+    response = co_await make_answer(request, admitted);
   } else {
+    if (!halts && at_store_ >= kAtStoreMax) co_return busy("the disk does not answer; ask again", "2");
+    const Waiting waiting(at_store_);
+    bool is_recorded = halts;
+    if (!is_recorded)
+      is_recorded = co_await run_on(threads_.store, [&] { return write_audit(request, "asked", true); });
+    if (!is_recorded) {
+      response = to_response(
+          {.status = 503,
+           .kind = ProblemKind::kAudit,
+           .detail = "the command was refused because it cannot be recorded; free space on "
+                     "the disk of the state directory. Stop, abort and pause are still executed"});
+      co_return response;
+    }
     response = co_await execute_command_once(request, admitted);
   }
-  write_audit(request, std::to_string(response.status), false);
+  write_audit_behind(request, std::to_string(response.status), halts && !is_stop(*admitted.route));
   co_return response;
 }
 
@@ -175,42 +243,50 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
 asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& request,
                                                         const Admitted& admitted) {
   HttpResponse response;
-  if (!request.idempotency_key) {
+  // What halts does the same each time, and waits for no disk.
+  if (!request.idempotency_key || halts_only(*admitted.route)) {
     response = co_await make_answer(request, admitted);
     co_return response;
   }
   const KeyedRequest keyed{.key = *request.idempotency_key,
                            .request = request.method + " " + request.path,
                            .body_digest = sha256_hex(request.body)};
-  if (auto answered = answer_to_key(services_.answers, keyed, services_.operation.clocks().system(),
-                                    halts_only(*admitted.route)))
-    co_return *std::move(answered);
+  auto answered = co_await run_on(threads_.store, [&] {
+    return answer_to_key(services_.answers, keyed, services_.operation.clocks().system());
+  });
+  if (answered) co_return *std::move(answered);
   response = co_await make_answer(request, admitted);
-  if (response.status >= 300) {
-    services_.answers.give_up(keyed);
-    co_return response;
-  }
-  try {
-    services_.answers.keep(
-        keyed, {.status = response.status, .headers = response.headers, .body = response.body}, now_text());
-  } catch (const std::exception& error) {
-    services_.answers.give_up(keyed);
-    spdlog::error("the answer to an Idempotency-Key could not be stored: {}", error.what());
-  }
+  co_await run_on(threads_.store, [&] {
+    if (response.status >= 300) {
+      services_.answers.give_up(keyed);
+      return;
+    }
+    try {
+      services_.answers.keep(
+          keyed, {.status = response.status, .headers = response.headers, .body = response.body}, now_text());
+    } catch (const std::exception& error) {
+      services_.answers.give_up(keyed);
+      spdlog::error("the answer to an Idempotency-Key could not be stored: {}", error.what());
+    }
+  });
   co_return response;
 }
 
 std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
 
-bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bool at_once) {
+/// On the thread that writes.
+bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bool at_once, int left_out) {
   const Role role = role_of(request, services_.tokens);
   const AuditEntry entry{.at = now_text(),
                          .who = std::string(role_name(role)),
+                         .operator_name = role == Role::kOperate
+                                              ? operator_named_for(request, services_.operation.store())
+                                              : std::string(),
                          .remote = request.remote,
                          .action = (request.method + " " + request.path).substr(0, kActionBytesMax),
                          .outcome = outcome};
   try {
-    append_audit(entry, role, at_once);
+    append_audit(entry, role, at_once, left_out);
     return true;
   } catch (const std::exception& error) {
     spdlog::error("{} {} could not be recorded: {}", entry.action, outcome, error.what());
@@ -218,19 +294,44 @@ bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bo
   }
 }
 
-/// Strangers have a place and a rate of their own.
-void Api::append_audit(const AuditEntry& entry, Role role, bool at_once) {
+/// Strangers have a place of their own. `left_out`: of theirs that were not recorded since the last one.
+void Api::append_audit(const AuditEntry& entry, Role role, bool at_once, int left_out) {
   if (role == Role::kNone || role == Role::kWrongToken) {
-    const auto left_out = stranger_rate_.admit(services_.operation.clocks().steady());
-    if (!left_out) return;
     AuditEntry counted = entry;
-    if (*left_out > 0) counted.detail = std::to_string(*left_out) + " more before it were not recorded";
+    if (left_out > 0) counted.detail = std::to_string(left_out) + " more before it were not recorded";
     services_.audit.append_of_stranger(counted);
   } else if (at_once) {
     services_.audit.append_command(entry);
   } else {
     services_.audit.append_refusal(entry);
   }
+}
+
+/// Written on the thread for that, while the answer goes out. Strangers have a rate of their own.
+void Api::write_audit_behind(const HttpRequest& request, const std::string& outcome, bool at_once) {
+  int left_out = 0;
+  const Role role = role_of(request, services_.tokens);
+  if (role == Role::kNone || role == Role::kWrongToken) {
+    const auto since = stranger_rate_.admit(services_.operation.clocks().steady());
+    if (!since) return;
+    left_out = *since;
+  }
+  const bool is_full = unwritten_ >= kUnwrittenMax;
+  if (is_full && !was_full_)
+    spdlog::error("the disk is too slow: {} and what follows is not recorded", request.path);
+  was_full_ = is_full;
+  if (is_full) return;
+  ++unwritten_;
+  HttpRequest told{.method = request.method,
+                   .path = request.path,
+                   .authorization = request.authorization,
+                   .from_loopback = request.from_loopback,
+                   .remote = request.remote};
+  if (request.body.size() <= kToldBodyBytesMax) told.body = request.body;
+  asio::post(threads_.store, [this, told = std::move(told), outcome, at_once, left_out] {
+    write_audit(told, outcome, at_once, left_out);
+    --unwritten_;
+  });
 }
 
 asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
@@ -245,9 +346,10 @@ asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
   co_await timer.async_wait(asio::use_awaitable);
 }
 
-asio::awaitable<void> Api::wait_for_status(const HttpRequest& request, const Admitted& admitted) {
+asio::awaitable<void> Api::wait_for_status(const HttpRequest& request) {
   if (request.query.empty()) co_return;
-  const Call call{request, services_, services_.operation, admitted.id, services_.operation.cell()};
+  const Asked nothing;
+  const Call call{request, services_, "", services_.reads, nothing};
   const auto wait_s = call.number("wait_s");
   const auto after = call.number("after");
   if (!wait_s || !after || services_.feed.waiting_count() >= kLongPollsMax) co_return;
@@ -255,11 +357,12 @@ asio::awaitable<void> Api::wait_for_status(const HttpRequest& request, const Adm
                                std::chrono::seconds(std::min(*wait_s, kWaitSecondsMax)));
 }
 
+/// On the operation's thread.
 asio::awaitable<void> Api::wait_for_plan(const HttpRequest& request) {
   const auto recipe = recipe_to_plan(request, services_.operation);
   if (!recipe) co_return;
   // Another request may wait for the same plan, which is made once.
-  asio::steady_timer timer(executor_);
+  asio::steady_timer timer(co_await asio::this_coro::executor);
   while (services_.operation.is_planning()) {
     timer.expires_after(50ms);
     co_await timer.async_wait(asio::use_awaitable);
@@ -267,14 +370,27 @@ asio::awaitable<void> Api::wait_for_plan(const HttpRequest& request) {
   co_await services_.operation.plan_recipe(*recipe);
 }
 
-asio::awaitable<HttpResponse> Api::on_worker(const HttpRequest& request, const Admitted& admitted) {
-  if (at_work_ >= kAtWorkMax) co_return busy("other documents are being identified; ask again", "2");
-  ++at_work_;
-  const Cell cell = services_.operation.cell();
-  co_await asio::post(asio::bind_executor(worker_.get_executor(), asio::use_awaitable));
-  HttpResponse response = handle(admitted, request, services_, cell);
-  co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
-  --at_work_;
+/// A copy of the run under way if the request is about its result; its document is made elsewhere.
+asio::awaitable<std::shared_ptr<const ActiveRun>> Api::live_run(const Admitted& admitted) {
+  std::shared_ptr<const ActiveRun> copy;
+  const auto run_id = services_.feed.newest().run_id;
+  if (!admitted.route->tells_result || !run_id || admitted.id != std::to_string(*run_id)) co_return copy;
+  copy = co_await run_on(threads_.operation, [&] {
+    const ActiveRun* run = services_.operation.active_run();
+    return run ? std::make_shared<const ActiveRun>(*run) : nullptr;
+  });
+  co_return copy;
+}
+
+asio::awaitable<HttpResponse> Api::at_desk(Desk& desk, const HttpRequest& request, const Admitted& admitted) {
+  if (desk.waiting >= desk.waiting_max) co_return busy(desk.when_full, "2");
+  const Waiting waiting(desk.waiting);
+  const std::shared_ptr<const ActiveRun> live = co_await live_run(admitted);
+  HttpResponse response = co_await run_on(desk.thread.get_executor(), [&] {
+    const Asked nothing;
+    desk.reads.update(live);
+    return handle(admitted, request, services_, desk.reads, nothing);
+  });
   co_return response;
 }
 

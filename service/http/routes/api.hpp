@@ -1,10 +1,11 @@
 #pragma once
 
+#include <atomic>
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <map>
+#include <memory>
 #include <string>
 
 #include "service/http/auth/record_rate.hpp"
@@ -14,12 +15,23 @@
 
 namespace cell {
 
+/// The threads that an Api goes to from its own; each executor has one.
+struct ApiThreads {
+  boost::asio::any_io_executor operation;  // where the operation is asked and commanded
+  boost::asio::any_io_executor store;      // where the audit and the answers are written
+};
+
 /// Answers requests: waits where a route requires it (DispatchMode), repeats the first answer to an
 /// Idempotency-Key, and records every command and every refusal in the audit log. A command that cannot be
-/// recorded is refused, except one that halts.
+/// recorded is refused, except one that halts, which is recorded afterwards. It has the thread of `executor`,
+/// one that reads what is stored and one that identifies documents from outside; README.md of service/ says
+/// what waits for what.
 class Api final : public RequestHandler {
  public:
-  /// `operation` must outlive it; its clock also dates what is recorded here.
+  /// `operation` must outlive it; its clock also dates what is recorded here. Before it is destroyed all
+  /// threads must have ended.
+  Api(boost::asio::any_io_executor executor, ApiThreads threads, CellOperation& operation, Tokens tokens);
+  /// Everything on one thread, in order.
   Api(boost::asio::any_io_executor executor, CellOperation& operation, Tokens tokens);
   ~Api() override;
 
@@ -32,22 +44,32 @@ class Api final : public RequestHandler {
   [[nodiscard]] Services& services() { return services_; }
 
  private:
+  /// A thread that answers requests one after the other, and what it reads.
+  struct Desk;
+
   boost::asio::awaitable<HttpResponse> make_answer(const HttpRequest& request, const Admitted& admitted);
   boost::asio::awaitable<HttpResponse> execute_command(const HttpRequest& request, const Admitted& admitted);
   boost::asio::awaitable<HttpResponse> execute_command_once(const HttpRequest& request,
                                                             const Admitted& admitted);
   [[nodiscard]] std::string now_text() const;
-  bool write_audit(const HttpRequest& request, const std::string& outcome, bool at_once);
-  void append_audit(const AuditEntry& entry, Role role, bool at_once);
+  bool write_audit(const HttpRequest& request, const std::string& outcome, bool at_once, int left_out = 0);
+  void append_audit(const AuditEntry& entry, Role role, bool at_once, int left_out);
+  void write_audit_behind(const HttpRequest& request, const std::string& outcome, bool at_once = false);
   boost::asio::awaitable<void> delay_wrong_token(const HttpRequest& request);
-  boost::asio::awaitable<void> wait_for_status(const HttpRequest& request, const Admitted& admitted);
+  boost::asio::awaitable<void> wait_for_status(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_plan(const HttpRequest& request);
-  boost::asio::awaitable<HttpResponse> on_worker(const HttpRequest& request, const Admitted& admitted);
+  boost::asio::awaitable<HttpResponse> at_desk(Desk& desk, const HttpRequest& request,
+                                               const Admitted& admitted);
+  boost::asio::awaitable<std::shared_ptr<const ActiveRun>> live_run(const Admitted& admitted);
 
   boost::asio::any_io_executor executor_;
+  ApiThreads threads_;
   Services services_;
-  boost::asio::thread_pool worker_{1};
-  int at_work_ = 0;  // requests on the worker or queued for it
+  std::unique_ptr<Desk> reader_;   // of stored runs
+  std::unique_ptr<Desk> worker_;   // identifies
+  std::atomic<int> unwritten_{0};  // entries of the audit that wait for the thread that writes
+  bool was_full_ = false;
+  int at_store_ = 0;  // commands that wait for the store
   /// Consecutive wrong tokens of an address.
   struct WrongTokens {
     int count = 0;

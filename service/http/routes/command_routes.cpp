@@ -8,70 +8,86 @@
 namespace cell {
 namespace {
 
-HttpResponse give(const Call& call, Command command, std::optional<std::int64_t> run_id) {
-  if (const auto refusal = call.operation.command(command, run_id))
-    return refusal_response(*refusal, call.operation);
+Asked give(CellOperation& operation, Command command, std::optional<std::int64_t> run_id) {
+  Asked asked{.refusal = operation.command(command, run_id)};
+  if (asked.refusal) asked.exits = operation.exits();
+  return asked;
+}
+
+template <Command kCommand>
+Asked give_to_run(const Call& call, CellOperation& operation) {
+  const auto id = call.run_id();
+  if (!id) return {};  // there is no such run
+  return give(operation, kCommand, id);
+}
+
+template <Command kCommand>
+Asked give_to_cell(const Call&, CellOperation& operation) {
+  return give(operation, kCommand, std::nullopt);
+}
+
+HttpResponse answer_command(const Call& call) {
+  if (call.asked.refusal) return refusal_response(*call.asked.refusal, call.asked.exits);
   return json_response(202, call.services.feed.document());
 }
 
-/// The run under way is known without the database, which a pause or an abort must not need.
-bool has_run(const Call& call, std::int64_t id) {
-  return call.operation.status().run_id == id || call.operation.store().run(id);
-}
-
-template <Command kCommand>
-HttpResponse run_command(const Call& call) {
+/// A run that is under way takes its command without the database, which a pause or an abort must not need.
+HttpResponse answer_run_command(const Call& call) {
   const auto id = call.run_id();
-  if (!id || !has_run(call, *id)) return not_found(fmt::format("there is no run '{}'", call.id));
-  return give(call, kCommand, id);
+  const auto& refusal = call.asked.refusal;
+  const bool is_other = refusal && refusal->kind == CommandRefusal::Kind::kNotThisRun;
+  if (!id || (is_other && !call.reads.store().run(*id)))
+    return not_found(fmt::format("there is no run '{}'", call.id));
+  return answer_command(call);
 }
 
-template <Command kCommand>
-HttpResponse cell_command(const Call& call) {
-  return give(call, kCommand, std::nullopt);
-}
-
-Route command(std::string_view path, std::string_view summary, HttpResponse (*handle)(const Call&)) {
+Route command(std::string_view path, std::string_view summary, HttpResponse (*handle)(const Call&),
+              Asked (*ask)(const Call&, CellOperation&)) {
   return {.method = "POST",
           .path = path,
           .summary = summary,
           .access = Access::kOperate,
           .handle = handle,
+          .ask = ask,
           .answers = {{.status = 202, .schema = "Status"}}};
+}
+
+template <Command kCommand>
+Route run_command(std::string_view path, std::string_view summary) {
+  return command(path, summary, answer_run_command, give_to_run<kCommand>);
+}
+
+template <Command kCommand>
+Route cell_command(std::string_view path, std::string_view summary) {
+  return command(path, summary, answer_command, give_to_cell<kCommand>);
 }
 
 }  // namespace
 
 std::vector<Route> command_routes() {
   return {
-      command("/api/v1/runs/{id}/pause", "Holds the run after the touch under way",
-              run_command<Command::kPause>),
-      command("/api/v1/runs/{id}/resume", "Continues a run on hold", run_command<Command::kResume>),
-      command("/api/v1/runs/{id}/retry", "Repeats the touch that holds the run",
-              run_command<Command::kRetry>),
-      command("/api/v1/runs/{id}/skip", "Leaves out the touch that holds the run, which stays incomplete",
-              run_command<Command::kSkip>),
-      command("/api/v1/runs/{id}/abort", "Stops the arm where it is and ends the run",
-              run_command<Command::kAbort>),
-      command("/api/v1/cell/stop", "Stops the arm and ends the run; always taken",
-              cell_command<Command::kStop>),
-      command("/api/v1/cell/confirm", "Reports what to confirm at the cell, with the key there",
-              cell_command<Command::kConfirm>),
-      command("/api/v1/cell/touch-test", "Reports the state of the touch test of the stylus",
-              cell_command<Command::kTouchTest>),
-      command("/api/v1/cell/take", "Records the present contact of the stylus", cell_command<Command::kTake>),
-      command("/api/v1/cell/undo", "Discards the last touch made by hand", cell_command<Command::kUndo>),
-      command("/api/v1/cell/locate", "Locates the block by six guided touches",
-              cell_command<Command::kLocate>),
-      command("/api/v1/cell/acknowledge", "Acknowledges the fault", cell_command<Command::kAcknowledge>),
-      command("/api/v1/cell/clear", "Leaves ABORTED once the cause is removed",
-              cell_command<Command::kClear>),
-      command("/api/v1/cell/reset", "Connects to the controller and makes the cell ready",
-              cell_command<Command::kReset>),
+      run_command<Command::kPause>("/api/v1/runs/{id}/pause", "Holds the run after the touch under way"),
+      run_command<Command::kResume>("/api/v1/runs/{id}/resume", "Continues a run on hold"),
+      run_command<Command::kRetry>("/api/v1/runs/{id}/retry", "Repeats the touch that holds the run"),
+      run_command<Command::kSkip>("/api/v1/runs/{id}/skip",
+                                  "Leaves out the touch that holds the run, which stays incomplete"),
+      run_command<Command::kAbort>("/api/v1/runs/{id}/abort", "Stops the arm where it is and ends the run"),
+      cell_command<Command::kStop>("/api/v1/cell/stop", "Stops the arm and ends the run; always taken"),
+      cell_command<Command::kConfirm>("/api/v1/cell/confirm",
+                                      "Reports what to confirm at the cell, with the key there"),
+      cell_command<Command::kTouchTest>("/api/v1/cell/touch-test",
+                                        "Reports the state of the touch test of the stylus"),
+      cell_command<Command::kTake>("/api/v1/cell/take", "Records the present contact of the stylus"),
+      cell_command<Command::kUndo>("/api/v1/cell/undo", "Discards the last touch made by hand"),
+      cell_command<Command::kLocate>("/api/v1/cell/locate", "Locates the block by six guided touches"),
+      cell_command<Command::kAcknowledge>("/api/v1/cell/acknowledge", "Acknowledges the fault"),
+      cell_command<Command::kClear>("/api/v1/cell/clear", "Leaves ABORTED once the cause is removed"),
+      cell_command<Command::kReset>("/api/v1/cell/reset",
+                                    "Connects to the controller and makes the cell ready"),
   };
 }
 
-HttpResponse refusal_response(const CommandRefusal& refusal, const CellOperation& operation) {
+HttpResponse refusal_response(const CommandRefusal& refusal, const std::vector<Command>& exits) {
   Problem problem{.status = 409, .kind = ProblemKind::kState, .detail = refusal.detail};
   switch (refusal.kind) {
     case CommandRefusal::Kind::kState:
@@ -98,7 +114,7 @@ HttpResponse refusal_response(const CommandRefusal& refusal, const CellOperation
     for (const Unmet& unmet : refusal.unmet)
       problem.detail += (&unmet == refusal.unmet.data() ? "" : "; ") + unmet.detail;
   }
-  for (const Command command : operation.exits()) problem.exits.emplace_back(command_name(command));
+  for (const Command command : exits) problem.exits.emplace_back(command_name(command));
   return to_response(problem);
 }
 

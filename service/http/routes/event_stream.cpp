@@ -4,7 +4,6 @@
 
 #include <charconv>
 
-#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 
 namespace cell {
@@ -66,6 +65,7 @@ std::string EventStream::whole_status(const char* event) {
 
 std::string EventStream::due() {
   std::string text = std::exchange(first_, {});
+  services_.feed.newest();
   const StatusFeed& feed = services_.feed;
   if (!feed.remembers(seen_)) return text + whole_status("reset");
   while (text.size() < kDueBytesMax) {
@@ -83,7 +83,7 @@ std::string EventStream::end_of_run() {
   if (!run_id_) return {};
   const StatusFeed::Change& newest = services_.feed.newest();
   if (newest.run_id == run_id_ && newest.is_active) return {};
-  const auto run = services_.operation.store().run(*run_id_);
+  const auto run = services_.reads.store().run(*run_id_);
   if (!run || !run->ended_at) return {};
   ended_ = true;
   return event_text("run", id_of(seen_) + std::string(kEnd), run_document(*run));

@@ -30,10 +30,37 @@ HttpResponse refuse(const PlanRefusal& refusal) {
   return to_response(problem);
 }
 
-HttpResponse post_a_plan(const Call& call) { return post_plan(call.request, call.operation); }
+Asked ask_for_plan(const Call& call, CellOperation& operation) {
+  const auto named = named_text(call.request.body, kPlanKeys);
+  const auto* recipe = std::get_if<NamedText>(&named);
+  if (!recipe || !operation.cell().recipes.contains(recipe->text)) return {};
+  return {.plan = operation.planned(recipe->text)};
+}
+
+HttpResponse post_plan(const Call& call) {
+  const auto named = named_text(call.request.body, kPlanKeys);
+  if (const auto* problem = std::get_if<Problem>(&named)) return to_response(*problem);
+  const std::string& recipe = std::get<NamedText>(named).text;
+  if (!call.reads.cell().recipes.contains(recipe)) {
+    return to_response({.status = 422,
+                        .kind = ProblemKind::kUnknownRecipe,
+                        .detail = fmt::format("there is no recipe '{}'", recipe),
+                        .pointer = "/recipe"});
+  }
+  const auto& outcome = call.asked.plan;
+  if (!outcome) {
+    HttpResponse busy = to_response({.status = 503,
+                                     .kind = ProblemKind::kPlanning,
+                                     .detail = "another plan is being made; try again in a moment"});
+    busy.headers.emplace_back("Retry-After", kRetryAfterSeconds);
+    return busy;
+  }
+  if (const auto* refusal = std::get_if<PlanRefusal>(&*outcome)) return refuse(*refusal);
+  return {.status = 200, .body = std::get<std::shared_ptr<const Plan>>(*outcome)->document};
+}
 
 HttpResponse post_identify(const Call& call) {
-  const Cell& cell = call.cell;
+  const Cell& cell = call.reads.cell();
   const auto named = cell.recipes.find(call.text("recipe").value_or(cell.default_recipe));
   if (named == cell.recipes.end()) {
     return to_response({.status = 422,
@@ -61,8 +88,7 @@ HttpResponse post_identify(const Call& call) {
                           .kind = ProblemKind::kNotIdentifiable,
                           .detail = result.message,
                           .pointer = "/touches"});
-    const TipRegions regions(cell);  // those of the operation belong to the thread of the sockets
-    return {.body = result_document(regions, recipe, problem, result,
+    return {.body = result_document(call.reads.tip_regions(), recipe, problem, result,
                                     {.warnings = std::move(file.warnings), .conditions = {}})};
   } catch (const ConfigError& error) {
     return to_response({.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()});
@@ -70,28 +96,6 @@ HttpResponse post_identify(const Call& call) {
 }
 
 }  // namespace
-
-HttpResponse post_plan(const HttpRequest& request, const CellOperation& operation) {
-  const auto named = named_text(request.body, kPlanKeys);
-  if (const auto* problem = std::get_if<Problem>(&named)) return to_response(*problem);
-  const std::string& recipe = std::get<NamedText>(named).text;
-  if (!operation.cell().recipes.contains(recipe)) {
-    return to_response({.status = 422,
-                        .kind = ProblemKind::kUnknownRecipe,
-                        .detail = fmt::format("there is no recipe '{}'", recipe),
-                        .pointer = "/recipe"});
-  }
-  const auto outcome = operation.planned(recipe);
-  if (!outcome) {
-    HttpResponse busy = to_response({.status = 503,
-                                     .kind = ProblemKind::kPlanning,
-                                     .detail = "another plan is being made; try again in a moment"});
-    busy.headers.emplace_back("Retry-After", kRetryAfterSeconds);
-    return busy;
-  }
-  if (const auto* refusal = std::get_if<PlanRefusal>(&*outcome)) return refuse(*refusal);
-  return {.status = 200, .body = std::get<std::shared_ptr<const Plan>>(*outcome)->document};
-}
 
 std::optional<std::string> recipe_to_plan(const HttpRequest& request, const CellOperation& operation) {
   const auto named = named_text(request.body, kPlanKeys);
@@ -101,8 +105,8 @@ std::optional<std::string> recipe_to_plan(const HttpRequest& request, const Cell
   return recipe->text;
 }
 
-HttpResponse get_plan(const CellOperation& operation, std::int64_t id) {
-  if (auto document = operation.store().plan_json(id)) return {.status = 200, .body = *std::move(document)};
+HttpResponse get_plan(const Reads& reads, std::int64_t id) {
+  if (auto document = reads.store().plan_json(id)) return {.status = 200, .body = *std::move(document)};
   return to_response({.status = 409,
                       .kind = ProblemKind::kNoPlan,
                       .detail = fmt::format("run {} has no plan that was kept", id)});
@@ -114,7 +118,8 @@ std::vector<Route> plan_routes() {
        .path = "/api/v1/plan",
        .summary = "Plans a recipe's touches; takes seconds the first time",
        .access = Access::kOperate,
-       .handle = post_a_plan,
+       .handle = post_plan,
+       .ask = ask_for_plan,
        .answers = {{.schema = "Plan"}},
        .body_schema = "PlanRequest",
        .dispatch = DispatchMode::kPlanning},

@@ -10,14 +10,15 @@
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/services.hpp"
 #include "service/http/server/target.hpp"
+#include "service/store/damaged_store.hpp"
 
 namespace cell {
 namespace {
 
 std::vector<Route> all_routes() {
   std::vector<Route> all;
-  for (const auto topic :
-       {service_routes, status_routes, run_routes, command_routes, plan_routes, cell_routes, page_routes}) {
+  for (const auto topic : {service_routes, status_routes, run_routes, command_routes, plan_routes,
+                           cell_routes, audit_routes, page_routes}) {
     std::ranges::move(topic(), std::back_inserter(all));
   }
   return all;
@@ -92,7 +93,7 @@ std::optional<std::string_view> match(std::string_view pattern, std::string_view
   if (!path.starts_with(pattern.substr(0, before))) return std::nullopt;
   const std::string_view rest = path.substr(before);
   const std::string_view id = rest.substr(0, rest.find('/'));
-  if (rest.substr(id.size()) != behind) return std::nullopt;
+  if (id.empty() || rest.substr(id.size()) != behind) return std::nullopt;
   return id;
 }
 
@@ -126,31 +127,54 @@ std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tok
   return response;
 }
 
-HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services) {
-  return handle(admitted, request, services, services.operation.cell());
-}
-
-HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services,
-                    const Cell& cell) {
+Asked ask_operation(const Admitted& admitted, const HttpRequest& request, Services& services) {
+  if (!admitted.route->ask) return {};
+  const Asked nothing;
   try {
-    return admitted.route->handle({request, services, services.operation, admitted.id, cell});
+    return admitted.route->ask({request, services, admitted.id, services.reads, nothing}, services.operation);
   } catch (const std::exception& error) {
     spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
-    return to_response({.status = 500,
-                        .kind = ProblemKind::kInternal,
-                        .detail = "internal error; see the log of the daemon"});
+    return {.failed = true};
   }
 }
 
-HttpResponse route(const HttpRequest& request, Services& services) {
-  const auto admitted = admit(request, services.tokens);
-  if (const auto* refused = std::get_if<HttpResponse>(&admitted)) return *refused;
-  return handle(std::get<Admitted>(admitted), request, services);
+HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services,
+                    const Reads& reads, const Asked& asked) {
+  const Problem internal{
+      .status = 500, .kind = ProblemKind::kInternal, .detail = "internal error; see the log of the daemon"};
+  if (asked.failed) return to_response(internal);
+  try {
+    return admitted.route->handle({request, services, admitted.id, reads, asked});
+  } catch (const DamagedStore& damage) {
+    spdlog::error("{} {}: {}", request.method, request.path, damage.what());
+    return to_response({.status = 503, .kind = ProblemKind::kDamaged, .detail = damage.what()});
+  } catch (const std::exception& error) {
+    spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
+    return to_response(internal);
+  }
 }
 
-HttpResponse route(const HttpRequest& request, CellOperation& operation, const Tokens& tokens) {
-  Services services(operation, tokens);
-  return route(request, services);
+boost::asio::awaitable<Asked> answer_start(CellOperation& operation, StartRequest request) {
+  auto outcome = co_await operation.start(std::move(request));
+  Asked asked;
+  if (auto* refusal = std::get_if<CommandRefusal>(&outcome)) {
+    asked.refusal = std::move(*refusal);
+    asked.exits = operation.exits();
+  } else {
+    asked.started = std::get<Started>(outcome);
+  }
+  co_return asked;
+}
+
+boost::asio::awaitable<HttpResponse> route(HttpRequest request, CellOperation& operation, Tokens tokens) {
+  Services services(operation, std::move(tokens));
+  const auto outcome = admit(request, services.tokens);
+  if (const auto* refused = std::get_if<HttpResponse>(&outcome)) co_return *refused;
+  const Admitted& admitted = std::get<Admitted>(outcome);
+  Asked asked = ask_operation(admitted, request, services);
+  if (asked.to_start) asked = co_await answer_start(operation, *asked.to_start);
+  services.reads.update();
+  co_return handle(admitted, request, services, services.reads, asked);
 }
 
 std::optional<std::int64_t> Call::number(std::string_view name) const {

@@ -7,7 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
+#include "service/http/routes/reads.hpp"
 #include "service/http/routes/routes.hpp"
 #include "service/http/server/problem.hpp"
 
@@ -15,15 +17,29 @@
 /// document and the labels of metrics follow from it.
 namespace cell {
 
-struct Cell;
+struct Services;
 
-/// How a request is dispatched.
+/// How a request is dispatched. Without another word its handler is called on the thread that serves.
 enum class DispatchMode {
   kAtOnce,
   kLongPoll,  // answered at a status other than `after`, or after `wait_s`
   kPlanning,  // answered when the recipe has been planned
-  kWorker,    // on the worker thread: the handler may use only the request and Call::cell
+  kStored,    // on the reader's thread, since it takes time: it may use only the request and Call::reads
+  kWorker,    // on the worker's thread, since it takes long: it may use only the request and Call::reads
   kEvents,    // a stream of events follows the header
+};
+
+/// What the operation answers to a request, by value.
+struct Asked {
+  bool failed = false;                  // with an exception, which is logged
+  std::optional<Problem> problem = {};  // of the request
+  std::optional<CommandRefusal> refusal = {};
+  std::vector<Command> exits = {};            // with a refusal: the commands that the state allows
+  std::optional<StartRequest> to_start = {};  // answer_start() follows
+  std::optional<Started> started = {};
+  std::optional<PlanOutcome> plan = {};
+  std::vector<Unmet> unmet = {};
+  std::optional<cs8::State> controller_state = {};
 };
 
 /// A query parameter: a whole number or a string.
@@ -49,9 +65,9 @@ inline constexpr std::size_t kTouchesBytesMax = 1024 * 1024;
 struct Call {
   const HttpRequest& request;
   Services& services;
-  CellOperation& operation;
   std::string_view id;  // the segment at {id}
-  const Cell& cell;     // on the worker a copy: locating may change that of the operation
+  const Reads& reads;   // of the thread that the handler is called on
+  const Asked& asked;   // what Route::ask gave
 
   /// A query parameter of the route, checked against its bounds.
   [[nodiscard]] std::optional<std::int64_t> number(std::string_view name) const;
@@ -66,11 +82,15 @@ struct Route {
   std::string_view summary;
   Access access = Access::kView;
   HttpResponse (*handle)(const Call&) = nullptr;
+  /// What has to be asked of the operation first: a short question or a command. Called on its thread, with a
+  /// Call of which only the request and the id may be used.
+  Asked (*ask)(const Call&, CellOperation&) = nullptr;
   std::vector<Answer> answers;
   std::vector<QueryParameter> query = {};
   std::string_view body_schema = {};  // empty: the only body is {}
   std::size_t body_bytes_max = kBodyBytesMax;
   DispatchMode dispatch = DispatchMode::kAtOnce;
+  bool tells_result = false;  // its handler needs a copy of the run under way when it is about that one
 };
 
 /// Largest body where a route takes none but {}.
@@ -89,6 +109,7 @@ std::vector<Route> run_routes();
 std::vector<Route> command_routes();
 std::vector<Route> plan_routes();  // plan, identify
 std::vector<Route> cell_routes();  // what is configured
+std::vector<Route> audit_routes();
 std::vector<Route> page_routes();
 
 /// A stop is executed whatever the request holds, and whatever else fails.
@@ -112,11 +133,16 @@ const Route* find_route(std::string_view method, std::string_view path);
 /// The segment of `path` at {id}, empty for a pattern without {id}; nothing if the path does not match.
 std::optional<std::string_view> match(std::string_view pattern, std::string_view path);
 
-/// The answer to an admitted request. An exception becomes a 500 without details, which are logged.
-HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services);
-/// The same on the worker, with a copy of the cell.
+/// What the route has to ask of the operation, on its thread; nothing if it asks nothing.
+Asked ask_operation(const Admitted& admitted, const HttpRequest& request, Services& services);
+
+/// A start, which waits for the store; on the operation's thread.
+boost::asio::awaitable<Asked> answer_start(CellOperation& operation, StartRequest request);
+
+/// The answer to an admitted request, by what its thread reads and what was asked. Damage of the
+/// database becomes a 503 that names it, another exception a 500 without details, which are logged.
 HttpResponse handle(const Admitted& admitted, const HttpRequest& request, Services& services,
-                    const Cell& cell);
+                    const Reads& reads, const Asked& asked);
 
 HttpResponse json_response(unsigned status, std::string body);
 HttpResponse not_found(std::string detail);

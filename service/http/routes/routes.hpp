@@ -1,17 +1,16 @@
 #pragma once
 
+#include <boost/asio/awaitable.hpp>
+
 #include "service/http/auth/tokens.hpp"
 #include "service/http/server/http_message.hpp"
 
 namespace cell {
 
 class CellOperation;
-struct Services;
 
-/// Answers a request at once, by the routes of route_table.hpp. Requests that wait (DispatchMode) go through
-/// api.hpp.
-HttpResponse route(const HttpRequest& request, Services& services);
-/// The same with its own services.
-HttpResponse route(const HttpRequest& request, CellOperation& operation, const Tokens& tokens);
+/// Answers a request by the routes of route_table.hpp, on the thread of the operation. Requests that wait
+/// (DispatchMode) go through api.hpp.
+boost::asio::awaitable<HttpResponse> route(HttpRequest request, CellOperation& operation, Tokens tokens);
 
 }  // namespace cell

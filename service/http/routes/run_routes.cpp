@@ -17,7 +17,7 @@ constexpr std::int64_t kRunIdMax = std::int64_t{1} << 53;
 
 HttpResponse get_runs(const Call& call) {
   const int limit = static_cast<int>(call.number("limit").value_or(kRunsPageDefault));
-  auto runs = call.operation.store().runs(limit + 1, call.number("before"));
+  auto runs = call.reads.store().runs(limit + 1, call.number("before"));
   const bool more = runs.size() > static_cast<std::size_t>(limit);
   if (more) runs.pop_back();
   return json_response(200, runs_document(runs, more ? std::optional(runs.back().id) : std::nullopt));
@@ -28,35 +28,36 @@ HttpResponse run_view(const Call& call, const StoredRun& run) {
   return json_response(200, run_document(run));
 }
 HttpResponse touches_view(const Call& call, const StoredRun& run) {
-  const RunStore& store = call.operation.store();
-  return json_response(
-      200, touches_document(call.operation.cell(), store.touches(run.id), store.references(run.id)));
+  const RunStore& store = call.reads.store();
+  return json_response(200,
+                       touches_document(call.reads.cell(), store.touches(run.id), store.references(run.id)));
 }
-HttpResponse result_view(const Call& call, const StoredRun& run) {
-  return get_result(call.operation, run.id);
-}
-HttpResponse arm_view(const Call& call, const StoredRun& run) { return get_arm(call.operation, run.id); }
+HttpResponse result_view(const Call& call, const StoredRun& run) { return get_result(call.reads, run.id); }
+HttpResponse arm_view(const Call& call, const StoredRun& run) { return get_arm(call.reads, run.id); }
 HttpResponse report_view(const Call& call, const StoredRun& run) {
-  return get_report(call.operation, run, call.text("format").value_or("html"));
+  return get_report(call.reads, run, call.text("format").value_or("html"));
 }
-HttpResponse plan_view(const Call& call, const StoredRun& run) { return get_plan(call.operation, run.id); }
+HttpResponse plan_view(const Call& call, const StoredRun& run) { return get_plan(call.reads, run.id); }
 
 template <HttpResponse (*kView)(const Call&, const StoredRun&)>
 HttpResponse of_run(const Call& call) {
   const auto id = call.run_id();
-  const auto run = id ? call.operation.store().run(*id) : std::nullopt;
+  const auto run = id ? call.reads.store().run(*id) : std::nullopt;
   if (!run) return not_found(fmt::format("there is no run '{}'; GET /api/v1/runs lists them", call.id));
   return kView(call, *run);
 }
 
+Asked ask_to_start(const Call& call, CellOperation& operation) {
+  auto start = read_start(call.request, operation);
+  if (auto* problem = std::get_if<Problem>(&start)) return {.problem = std::move(*problem)};
+  return {.to_start = std::get<StartRequest>(std::move(start))};
+}
+
 HttpResponse post_runs(const Call& call) {
-  const auto start = read_start(call.request, call.operation);
-  if (const auto* problem = std::get_if<Problem>(&start)) return to_response(*problem);
-  const auto outcome = call.operation.start(std::get<StartRequest>(start));
-  if (const auto* refusal = std::get_if<CommandRefusal>(&outcome))
-    return refusal_response(*refusal, call.operation);
-  const std::int64_t id = std::get<Started>(outcome).run_id;
-  HttpResponse response = json_response(201, run_document(call.operation.store().run(id).value()));
+  if (call.asked.problem) return to_response(*call.asked.problem);
+  if (call.asked.refusal) return refusal_response(*call.asked.refusal, call.asked.exits);
+  const std::int64_t id = call.asked.started.value().run_id;
+  HttpResponse response = json_response(201, run_document(call.reads.store().run(id).value()));
   response.headers = {{"Location", fmt::format("/api/v1/runs/{}", id)}};
   return response;
 }
@@ -66,12 +67,22 @@ HttpResponse post_runs(const Call& call) {
 std::vector<Route> run_routes() {
   const auto read = [](std::string_view path, std::string_view summary, HttpResponse (*handle)(const Call&),
                        std::string_view schema) {
-    return Route{
-        .method = "GET", .path = path, .summary = summary, .handle = handle, .answers = {{.schema = schema}}};
+    return Route{.method = "GET",
+                 .path = path,
+                 .summary = summary,
+                 .handle = handle,
+                 .answers = {{.schema = schema}},
+                 .dispatch = DispatchMode::kStored};
   };
   Route list = read("/api/v1/runs", "The history, newest first, in pages", get_runs, "Runs");
   list.query = {{"limit", 1, kRunsPageMax, "runs on a page"},
                 {"before", 0, kRunIdMax, "only runs before this id: next_before of the page before"}};
+  Route result = read("/api/v1/runs/{id}/result", "The latest result; 409 before there is one",
+                      of_run<result_view>, "Result");
+  Route arm = read("/api/v1/runs/{id}/arm", "The calibrated arm as a file; 409 before there is a result",
+                   of_run<arm_view>, "Arm");
+  result.tells_result = true;
+  arm.tells_result = true;
   return {
       list,
       {.method = "POST",
@@ -79,22 +90,23 @@ std::vector<Route> run_routes() {
        .summary = "Starts a run; 409 names all unmet preconditions at once",
        .access = Access::kOperate,
        .handle = post_runs,
+       .ask = ask_to_start,
        .answers = {{.status = 201, .schema = "Run"}},
        .body_schema = "StartRequest"},
       read("/api/v1/runs/{id}", "One run", of_run<run_view>, "Run"),
       read("/api/v1/runs/{id}/touches", "The touches so far, as touchcal identify reads them",
            of_run<touches_view>, "Touches"),
-      read("/api/v1/runs/{id}/result", "The latest result; 409 before there is one", of_run<result_view>,
-           "Result"),
-      read("/api/v1/runs/{id}/arm", "The calibrated arm as a file; 409 before there is a result",
-           of_run<arm_view>, "Arm"),
+      result,
+      arm,
       read("/api/v1/runs/{id}/plan", "The plan of the run; 409 before it is made", of_run<plan_view>, "Plan"),
       {.method = "GET",
        .path = "/api/v1/runs/{id}/report",
        .summary = "The report of the run",
        .handle = of_run<report_view>,
        .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "Report"}},
-       .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true}}},
+       .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true}},
+       .dispatch = DispatchMode::kStored,
+       .tells_result = true},
   };
 }
 

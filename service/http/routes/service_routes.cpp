@@ -33,10 +33,14 @@ std::optional<Unmet> unmet_by_disk(const RunStore& store) {
 }
 
 /// A cell is ready if it accepts a run now, or executes one.
+Asked ask_readiness(const Call&, CellOperation& operation) {
+  return {.unmet = operation.unmet_preconditions()};
+}
+
 HttpResponse get_readiness(const Call& call) {
-  auto unmet = call.operation.unmet_preconditions();
-  if (auto one = unmet_by_state(call.operation.status().state)) unmet.push_back(*std::move(one));
-  if (auto one = unmet_by_disk(call.operation.store())) unmet.push_back(*std::move(one));
+  auto unmet = call.asked.unmet;
+  if (auto one = unmet_by_state(call.services.feed.status().state)) unmet.push_back(*std::move(one));
+  if (auto one = unmet_by_disk(call.reads.store())) unmet.push_back(*std::move(one));
   if (unmet.empty()) return json_response(200, R"({"status":"ready"})");
   Problem problem{.status = 503, .kind = ProblemKind::kNotReady, .detail = "a run cannot start"};
   for (const Unmet& one : unmet) problem.errors.emplace_back(one.code, one.detail);
@@ -45,7 +49,7 @@ HttpResponse get_readiness(const Call& call) {
 
 HttpResponse get_metrics(const Call& call) {
   return {.content_type = std::string(kPrometheusText),
-          .body = call.services.metrics.text(call.operation.status())};
+          .body = call.services.metrics.text(call.services.feed.status())};
 }
 
 HttpResponse get_openapi(const Call&) { return {.body = openapi_document()}; }
@@ -74,6 +78,7 @@ std::vector<Route> service_routes() {
        .path = "/readyz",
        .summary = "A run can start now; else 503 with the unmet preconditions",
        .handle = get_readiness,
+       .ask = ask_readiness,
        .answers = {{.schema = "Health"}}},
       {.method = "GET",
        .path = "/metrics",

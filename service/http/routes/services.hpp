@@ -1,9 +1,12 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "service/http/auth/tokens.hpp"
 #include "service/http/routes/metrics.hpp"
+#include "service/http/routes/reads.hpp"
 #include "service/http/routes/status_feed.hpp"
 #include "service/store/answer_store.hpp"
 #include "service/store/audit_log.hpp"
@@ -12,15 +15,18 @@ namespace cell {
 
 class CellOperation;
 
-/// What handlers use. `operation` must outlive it.
+/// What handlers use, on the thread that serves. `operation` must outlive it.
 struct Services {
-  Services(CellOperation& to_serve, Tokens to_ask_for);
+  /// `store_file`: where the operation has another thread; see Reads.
+  Services(CellOperation& to_serve, Tokens to_ask_for,
+           const std::optional<std::filesystem::path>& store_file = {});
 
-  CellOperation& operation;
+  CellOperation& operation;  // asked on its own thread: Route::ask
   Tokens tokens;
   StatusFeed feed;
   Metrics metrics;
-  AnswerStore answers;
+  Reads reads;
+  AnswerStore answers;  // these two on the thread that writes
   AuditLog audit;
   std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // event streams; a stream may outlive this
 };

@@ -58,11 +58,18 @@ std::optional<Problem> read_recipe(const json& body, const CellOperation& operat
   return std::nullopt;
 }
 
+/// On one line of a report, a list and the log.
+bool is_name(const std::string& text) {
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  return !text.empty() && text.size() <= kOperatorBytesMax && std::ranges::none_of(text, is_control);
+}
+
 std::optional<Problem> read_operator(const json& body, StartRequest& start) {
   if (const auto found = body.find("operator"); found != body.end()) {
-    if (!found->is_string() || found->get_ref<const std::string&>().empty() ||
-        found->get_ref<const std::string&>().size() > kOperatorBytesMax) {
-      return wrong("/operator", fmt::format("a name of at most {} bytes is required", kOperatorBytesMax));
+    if (!found->is_string() || !is_name(found->get_ref<const std::string&>())) {
+      return wrong("/operator",
+                   fmt::format("a name of at most {} bytes without control characters is required",
+                               kOperatorBytesMax));
     }
     start.operator_name = found->get<std::string>();
   }
@@ -178,6 +185,15 @@ std::variant<StartRequest, Problem> read_body(const json& body, const CellOperat
 }
 
 }  // namespace
+
+std::string operator_of_start(const HttpRequest& request) try {
+  const json body = parse_strict_json("request body", request.body, kBodyBytesMax);
+  StartRequest start;
+  if (!body.is_object() || read_operator(body, start)) return {};
+  return start.operator_name.value_or("");
+} catch (const ConfigError&) {
+  return {};
+}
 
 std::variant<StartRequest, Problem> read_start(const HttpRequest& request, const CellOperation& operation) {
   try {

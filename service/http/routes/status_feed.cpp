@@ -3,10 +3,13 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/use_awaitable.hpp>
+#include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
@@ -42,7 +45,28 @@ std::string StatusFeed::Change::document(std::optional<std::int64_t> age_ms) con
   return text;
 }
 
-StatusFeed::StatusFeed(CellOperation& operation) : operation_(operation) {
+/// Written by the thread of the operation, read by the one that serves.
+struct StatusFeed::Published {
+  std::mutex mutex;  // held to add one or to take all
+  std::deque<std::shared_ptr<const Status>> statuses;
+  bool is_told = false;  // the serving thread has been woken and has not come yet
+
+  /// True if the serving thread is to be woken.
+  bool add(std::shared_ptr<const Status> status) {
+    const std::lock_guard lock(mutex);
+    statuses.push_back(std::move(status));
+    if (statuses.size() > kChangesKept) statuses.pop_front();
+    return !std::exchange(is_told, true);
+  }
+  std::deque<std::shared_ptr<const Status>> take() {
+    const std::lock_guard lock(mutex);
+    is_told = false;
+    return std::exchange(statuses, {});
+  }
+};
+
+StatusFeed::StatusFeed(CellOperation& operation)
+    : operation_(operation), published_(std::make_shared<Published>()) {
   const Status status = operation.status();
   instance_id_ = status.instance_id;
   keep(status);
@@ -52,24 +76,50 @@ StatusFeed::~StatusFeed() {
   if (following_) operation_.on_change({});
 }
 
-void StatusFeed::follow(std::function<void(const Status&)> listener) {
+void StatusFeed::follow(std::function<void(const Status&)> listener, asio::any_io_executor executor) {
   following_ = true;
-  operation_.on_change([this, listener = std::move(listener)](const Status& status) {
-    keep(status);
-    listener(status);
-    for (asio::steady_timer* timer : waiting_) timer->cancel();
+  listener_ = std::move(listener);
+  operation_.on_change([this, executor = std::move(executor), published = published_](const Status& status) {
+    if (!published->add(std::make_shared<const Status>(status)) || !executor) return;
+    asio::post(executor, [this, alive = std::weak_ptr(published)] {
+      if (alive.lock()) take_in();
+    });
   });
 }
 
+/// A sequence that does not follow the one before: the queue was full, and nobody can go on across the gap.
+void StatusFeed::take_in() {
+  const auto statuses = published_->take();
+  for (const std::shared_ptr<const Status>& status : statuses) {
+    if (status->sequence != changes_.back().sequence + 1) changes_.clear();
+    keep(*status);
+    listener_(*status);
+  }
+  if (statuses.empty()) return;
+  for (asio::steady_timer* timer : waiting_) timer->cancel();
+}
+
 void StatusFeed::keep(const Status& status) {
+  status_ = status;
   changes_.push_back(change_of(status));
   if (changes_.size() > kChangesKept) changes_.pop_front();
   etag_ = fmt::format("\"{}-{}\"", instance_id_, status.sequence);
 }
 
 const StatusFeed::Change& StatusFeed::newest() {
-  if (changes_.back().sequence != operation_.sequence()) keep(operation_.status());
+  if (following_) {
+    take_in();
+  } else if (changes_.back().sequence != operation_.sequence()) {
+    keep(operation_.status());
+  }
   return changes_.back();
+}
+
+Status StatusFeed::status() {
+  newest();
+  Status status = status_;
+  status.data_age_ms = operation_.data_age_ms();
+  return status;
 }
 
 std::string StatusFeed::document() { return newest().document(operation_.data_age_ms()); }

@@ -8,6 +8,7 @@
 #include <deque>
 #include <functional>
 #include <list>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -20,7 +21,10 @@ class CellOperation;
 /// Number of changes that a client may miss and still receive one by one.
 inline constexpr std::size_t kChangesKept = 1024;
 
-/// The status document, written once per change, and the last kChangesKept changes for event streams.
+/// The status document, written once per change, and the last kChangesKept changes for event streams. Of the
+/// thread that serves; the operation publishes on its own and waits for nothing here. Changes that this
+/// thread has not taken in wait in a queue of kChangesKept: when it is full the oldest is dropped, and a
+/// stream that misses it begins again.
 class StatusFeed {
  public:
   struct Change {
@@ -40,11 +44,15 @@ class StatusFeed {
   StatusFeed(const StatusFeed&) = delete;
   StatusFeed& operator=(const StatusFeed&) = delete;
 
-  /// Records all changes from now on and passes them to `listener`. One feed per operation.
-  void follow(std::function<void(const Status&)> listener);
+  /// Records all changes from now on and passes them to `listener`. One feed per operation. Before the
+  /// threads of both run; `executor`: of the thread that serves, which is woken by a change. Without one,
+  /// whoever asks takes in what has changed.
+  void follow(std::function<void(const Status&)> listener, boost::asio::any_io_executor executor = {});
 
-  /// The status as it is.
+  /// The status as it was published last.
   const Change& newest();
+  /// The same as a value, with the age of its data.
+  [[nodiscard]] Status status();
   [[nodiscard]] std::string document();
   /// Strong entity tag of the document without its age: "INSTANCE-SEQUENCE", in quotes.
   const std::string& etag();
@@ -59,9 +67,14 @@ class StatusFeed {
   [[nodiscard]] std::size_t waiting_count() const { return waiting_.size(); }
 
  private:
+  struct Published;
+  void take_in();
   void keep(const Status& status);
 
   CellOperation& operation_;
+  std::shared_ptr<Published> published_;  // what the operation has told and this thread has not taken in
+  std::function<void(const Status&)> listener_;
+  Status status_;
   std::string instance_id_;
   std::string etag_;
   std::deque<Change> changes_;  // never empty; the newest is the last

@@ -21,7 +21,7 @@ HttpResponse get_status(const Call& call) {
 HttpResponse get_events(const Call& call) {
   if (!call.id.empty()) {
     const auto id = call.run_id();
-    if (!id || !call.operation.store().run(*id))
+    if (!id || !call.reads.store().run(*id))
       return not_found("there is no such run; GET /api/v1/runs lists them");
   }
   if (!call.id.empty() && EventStream::is_over(call.request.last_event_id)) return {.status = 204};

@@ -58,6 +58,8 @@ std::string_view problem_kind_name(ProblemKind kind) {
       return "content-length";
     case ProblemKind::kContentType:
       return "content-type";
+    case ProblemKind::kDamaged:
+      return "damaged";
     case ProblemKind::kExpect:
       return "expect";
     case ProblemKind::kHost:

@@ -17,6 +17,7 @@ enum class ProblemKind {
   kBusy,
   kContentLength,
   kContentType,
+  kDamaged,
   kExpect,
   kHost,
   kHttp,

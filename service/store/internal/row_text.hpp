@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +17,10 @@ inline const std::string kJointColumns =
 inline const std::string kTouchColumns = "number, plane, role, " + kJointColumns +
                                          ", source, overtravel_dmm, captured_at, session, sequence, "
                                          "aimed_with";
+
+/// "table touches, run 3, number 12".
+std::string place_of(std::string_view table, std::int64_t run_id, std::optional<int> number = {});
+inline const std::string kOtherChecksum = "the row is not as it was written (its checksum differs)";
 
 std::string_view plan_change_name(PlanChange::Kind kind);  // "put_off"
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "service/run/calibrated_arm.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
@@ -37,6 +38,13 @@ TEST_F(ActiveRunTest, OnlyACompleteRunIsJudged) {
   }
   EXPECT_NE(conclude(active, RunOutcome::kComplete, regions), Verdict::kIncomplete);
   EXPECT_TRUE(active.finished);
+}
+
+TEST_F(ActiveRunTest, TheArmOfARunIsThatOfItsLatestResult) {
+  EXPECT_FALSE(arm_json(planned_run(), cell_of_owners()));
+  const ActiveRun active = touched_run();
+  EXPECT_EQ(arm_json(active, cell_of_owners()),
+            calibrated_arm_document(cell_of_owners(), active.run.latest()));
 }
 
 TEST_F(ActiveRunTest, ARunWithATouchLeftOutOrWithoutAResultIsIncomplete) {

@@ -88,6 +88,7 @@ TEST_F(BlockLocationTest, TakesATouchByWordOnlyWhenTheProbeTouches) {
 TEST_F(BlockLocationTest, APlaceCountsOnceTheArmWentAroundTheBlockAndItIsStored) {
   const auto file = folder.path() / "place.json";
   EXPECT_FALSE(location_.keep_in(file)) << "there is none yet";
+  const auto before = location_.located_cell();
   touch_all_spots();
   ASSERT_EQ(location_.guide().value().step, HandStep::kPass) << location_.guide()->words;
   EXPECT_FALSE(location_.place());
@@ -101,6 +102,8 @@ TEST_F(BlockLocationTest, APlaceCountsOnceTheArmWentAroundTheBlockAndItIsStored)
   EXPECT_THAT(controller.asked, Contains("finish"));
   EXPECT_THAT(controller.asked, Not(Contains(StartsWith("touch"))));
   EXPECT_TRUE(location_.place());
+  EXPECT_TRUE(location_.located_cell()->place) << "so do other threads see it";
+  EXPECT_FALSE(before->place) << "what one of them has already stays as it was";
   EXPECT_FALSE(location_.is_locating());
   BlockLocation next_daemon(cell_of_owners(), session, status, wake, time.clocks());
   EXPECT_TRUE(next_daemon.keep_in(file));

@@ -1,7 +1,9 @@
 #include "service/acquisition/cell_operation.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 #include <spdlog/spdlog.h>
+#include <sqlite3.h>
 
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
@@ -42,14 +44,28 @@ class CellOperationTest : public ::testing::Test {
     tell_state();
   }
 
+  std::variant<Started, CommandRefusal> start(const StartRequest& request) {
+    std::optional<std::variant<Started, CommandRefusal>> answer;
+    boost::asio::co_spawn(io_, operation_.start(request),
+                          [&](const std::exception_ptr&, const std::variant<Started, CommandRefusal>& given) {
+                            answer = given;
+                          });
+    io_.restart();
+    while (!answer) io_.run_one();
+    return *answer;
+  }
+
   Folder folder_;
   RunStore store_{folder_.path() / "touchcal.sqlite"};
   boost::asio::io_context io_{1};
   MadeUpTime time_;
   ScriptedController* controller_ = new ScriptedController;  // the operation's
-  CellOperation operation_{
-      io_.get_executor(), cell_of_owners(), store_, std::unique_ptr<Controller>(controller_),
-      "instance",         time_.clocks()};
+  CellOperation operation_{io_.get_executor(),
+                           cell_of_owners(),
+                           StoreQueue(store_, io_.get_executor()),
+                           std::unique_ptr<Controller>(controller_),
+                           "instance",
+                           time_.clocks()};
 };
 
 TEST_F(CellOperationTest, FindsItsControllerAndIsIdleOnceNothingStandsInTheWay) {
@@ -70,20 +86,41 @@ TEST_F(CellOperationTest, AStartThatIsRefusedSaysWhy) {
   const auto kind = [](const std::variant<Started, CommandRefusal>& answer) {
     return std::get<CommandRefusal>(answer).kind;
   };
-  EXPECT_EQ(kind(operation_.start({.recipe = "none"})), CommandRefusal::Kind::kUnknownRecipe);
+  EXPECT_EQ(kind(start({.recipe = "none"})), CommandRefusal::Kind::kUnknownRecipe);
   controller_->state->flags &= ~static_cast<std::uint32_t>(cs8::kPowered);
-  EXPECT_EQ(kind(operation_.start({.recipe = "few"})), CommandRefusal::Kind::kPreconditions);
+  EXPECT_EQ(kind(start({.recipe = "few"})), CommandRefusal::Kind::kPreconditions);
   EXPECT_THAT(store_.runs(10), IsEmpty());
 }
 
 TEST_F(CellOperationTest, ARunIsStartedOnceForOneKeyAndNoOtherBesideIt) {
   launch();
-  const auto first = operation_.start({.recipe = "few", .idempotency_key = "key"});
-  const auto again = operation_.start({.recipe = "few", .idempotency_key = "key"});
+  const auto first = start({.recipe = "few", .idempotency_key = "key"});
+  const auto again = start({.recipe = "few", .idempotency_key = "key"});
   EXPECT_EQ(std::get<Started>(first).run_id, std::get<Started>(again).run_id);
   EXPECT_TRUE(std::get<Started>(again).repeated);
-  EXPECT_EQ(std::get<CommandRefusal>(operation_.start({.recipe = "few"})).code, FaultCode::kRunActive);
+  EXPECT_EQ(std::get<CommandRefusal>(start({.recipe = "few"})).code, FaultCode::kRunActive);
   EXPECT_EQ(operation_.status().state, State::kStarting);
+}
+
+TEST_F(CellOperationTest, AStopWhileTheStartIsStoredLeavesNoRunAndItsKeyIsNewAgain) {
+  launch();
+  sqlite3* const handle = store_.database()->getHandle();
+  sqlite3_commit_hook(
+      handle,
+      [](void* operation) {
+        static_cast<CellOperation*>(operation)->command(Command::kStop);
+        return 0;
+      },
+      &operation_);
+  const auto refused = start({.recipe = "few", .idempotency_key = "key"});
+  sqlite3_commit_hook(handle, nullptr, nullptr);
+  EXPECT_EQ(std::get<CommandRefusal>(refused).code, FaultCode::kNotInThisState);
+  EXPECT_EQ(operation_.status().state, State::kStopped);
+  EXPECT_THAT(store_.runs(10), IsEmpty());
+  EXPECT_FALSE(operation_.command(Command::kReset));
+  tell_state();
+  const auto again = start({.recipe = "few", .idempotency_key = "key"});
+  EXPECT_FALSE(std::get<Started>(again).repeated);
 }
 
 TEST_F(CellOperationTest, ACommandThatNamesAnotherRunIsRefused) {
@@ -111,7 +148,7 @@ TEST_F(CellOperationTest, EveryStopIsSentToTheControllerWhateverTheState) {
   EXPECT_EQ(sent_by(Command::kStop), 1) << "STOPPED";
   EXPECT_FALSE(operation_.command(Command::kReset));
   tell_state();
-  ASSERT_TRUE(std::holds_alternative<Started>(operation_.start({.recipe = "few"})));
+  ASSERT_TRUE(std::holds_alternative<Started>(start({.recipe = "few"})));
   EXPECT_EQ(sent_by(Command::kStop), 1) << "STARTING";
   ASSERT_EQ(operation_.status().state, State::kStopping);
   EXPECT_EQ(sent_by(Command::kStop), 1) << "STOPPING";
@@ -136,7 +173,7 @@ TEST_F(CellOperationTest, ALostLinkIsAFaultAndLookedForAgain) {
 TEST_F(CellOperationTest, AnErrorThatNobodyForesawEndsTheRunAndNotTheDaemon) {
   launch();
   controller_->on_begin = [](std::uint32_t) -> cs8::PermitReply { throw std::runtime_error("scripted"); };
-  ASSERT_TRUE(std::holds_alternative<Started>(operation_.start({.recipe = "few"})));
+  ASSERT_TRUE(std::holds_alternative<Started>(start({.recipe = "few"})));
   io_.restart();
   while (operation_.status().state != State::kAborted) io_.run_one();
   EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kInternalError);
@@ -194,6 +231,24 @@ TEST_F(ResumedOperationTest, DoesNotMoveWhereTheDaemonEndsWhileItsPermitIsAwaite
   shut_down();
   EXPECT_EQ(operation_.status().state, State::kStopped);
   EXPECT_THAT(controller_->asked, ::testing::Each(::testing::Not(::testing::StartsWith("touch"))));
+}
+
+TEST_F(ResumedOperationTest, IsConfirmedAgainBehindALongHoldOnly) {
+  const auto resume_and_pause = [this] {
+    EXPECT_FALSE(operation_.command(Command::kResume));
+    io_.restart();
+    while (operation_.status().state != State::kExecute) io_.run_one();
+    EXPECT_FALSE(operation_.command(Command::kPause));
+    while (operation_.status().state != State::kHeld) io_.run_one();
+    return std::ranges::count(controller_->asked, "begin " + std::to_string(id_));
+  };
+  EXPECT_EQ(resume_and_pause(), 1);
+  time_.pass(cell_of_owners().permit_lifetime - std::chrono::minutes(1));
+  EXPECT_EQ(resume_and_pause(), 1) << "a hold of 29 minutes";
+  EXPECT_THAT(controller_->asked, ::testing::Not(Contains("finish")));
+  time_.pass(cell_of_owners().permit_lifetime + std::chrono::minutes(1));
+  EXPECT_EQ(resume_and_pause(), 2) << "of 31 minutes";
+  EXPECT_THAT(controller_->asked, Contains("finish"));
 }
 
 TEST_F(ResumedOperationTest, IsNotResumedByADaemonThatEnds) {

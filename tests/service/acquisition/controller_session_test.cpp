@@ -115,6 +115,25 @@ TEST_F(ControllerSessionTest, ASearchThatWasBrokenOffIsLeftFirst) {
   EXPECT_THAT(controller.asked, ElementsAre("retract 1", "acknowledge 1"));
 }
 
+TEST_F(ControllerSessionTest, WhatTookThePermissionIsTold) {
+  controller.state->flags &= ~static_cast<std::uint32_t>(cs8::kCellClosed);
+  controller.state->permit = cs8::PermitState::kGranted;
+  controller.permit = cs8::Permit{.run = 7, .reason = cs8::PermitReason::kPermissionLost};
+  const Fault told = session.with_permission_told({FaultCode::kPermissionLost, "in the phase 'search'"});
+  EXPECT_EQ(
+      told.detail,
+      "in the phase 'search'; the controller tells an open cell; the permit ended by 'permission_lost'");
+  EXPECT_EQ(session.with_permission_told({FaultCode::kNoContact, "here"}).detail, "here");
+}
+
+TEST_F(ControllerSessionTest, AnArmThatStandsAtAFaceIsTold) {
+  EXPECT_EQ(session.view({}).retract_due, false);
+  controller.state->flags |= cs8::kRetractDue;
+  EXPECT_EQ(session.view({}).retract_due, true);
+  controller.is_connected = false;
+  EXPECT_EQ(session.view({}).retract_due, std::nullopt);
+}
+
 TEST_F(ControllerSessionTest, AnArmThatDoesNotComeToRestAbortsTheRun) {
   status.enter(State::kExecute);
   controller.state->flags &= ~static_cast<std::uint32_t>(cs8::kSettled);
@@ -241,6 +260,33 @@ TEST_F(ControllerSessionTest, LinksThatDieAtOnceAreTriedWithPausesAndFillNoTable
   EXPECT_GT(time.since_begin(), 25s);
   EXPECT_THAT(faults, ElementsAre("link_lost", "link_lost")) << "the first and the tenth";
   EXPECT_THAT(status.fault().value().message(), ::testing::HasSubstr("20 short links"));
+}
+
+TEST_F(ControllerSessionTest, WhyARunIsOnHoldStaysWhileTheLinkComesAndGoes) {
+  status.enter(State::kExecute);
+  session.on_link_lost({cs8::LinkErrorKind::kPeerClosed, "the connection ended"}, Event::kLinkDown);
+  EXPECT_EQ(status.state(), State::kHolding);
+  status.enter(State::kHeld);
+  int tried = 0;
+  controller.on_connect = [&]() -> cs8::ConnectReply {
+    if (++tried == 1) return cs8::LinkError{cs8::LinkErrorKind::kUnreachable, "nobody"};
+    return cs8::Welcome{};
+  };
+  run(session.connect(false));
+  session.on_link_lost({cs8::LinkErrorKind::kSilent, "nothing was heard"}, Event::kLinkDown);
+  EXPECT_EQ(status.state(), State::kHeld);
+  EXPECT_EQ(status.fault().value().detail, "the connection ended");
+  EXPECT_THAT(faults, ElementsAre("link_lost"));
+}
+
+TEST_F(ControllerSessionTest, AControllerThatMissedAnAcknowledgementIsMetAnew) {
+  status.enter(State::kUnholding);
+  controller.on_begin = [](std::uint32_t run) {
+    return refused(run, cs8::RejectReason::kResultUnacknowledged);
+  };
+  EXPECT_FALSE(run(session.obtain_permit(7)));
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_THAT(controller.asked, ElementsAre("begin 7", "close"));
 }
 
 TEST_F(ControllerSessionTest, ASearchThatTheControllerWillNotMakeIsNamedBeforeAnythingMoves) {

@@ -25,14 +25,15 @@ class ManualTouchingTest : public ::testing::Test, public OwnersBench {
     state.flags = (state.flags | cs8::kProbeTouched) & ~static_cast<std::uint32_t>(cs8::kProbeLoopClosed);
     state.joints = to_wire(joints);
     manual_.on_controller_state(&active_, state);
+    run(manual_.await_touch(active_));  // what was touched is stored
   }
   std::string problem() { return manual_.guide(status.state()).value().problem.value_or(""); }
   /// Where the first touch is asked for.
   calib::JointVector asked_for() { return manual_.guide(status.state()).value().about_joints.value(); }
 
   ActiveRun active_ = planned_run();
-  TouchExecutor touches_{cell_of_owners(), regions, store, session, preparation, status, wake, time.clocks()};
-  ManualTouching manual_{cell_of_owners(), store, session, preparation, touches_, status, wake};
+  TouchExecutor touches_{cell_of_owners(), regions, queue, session, preparation, status, wake, time.clocks()};
+  ManualTouching manual_{cell_of_owners(), queue, session, preparation, touches_, status, wake};
 };
 
 TEST_F(ManualTouchingTest, SaysWhichTouchComesNextAndKeepsTheOneThatIsMade) {
@@ -69,11 +70,39 @@ TEST_F(ManualTouchingTest, ATouchThatIsTakenBackIsAskedForAgain) {
   touch(first);
   run(manual_.await_touch(active_));
   manual_.undo(active_);
+  run(manual_.await_touch(active_));
   EXPECT_EQ(active_.run.touches_done(), 0);
   EXPECT_TRUE(store.touches(active_.run.id()).empty());
   EXPECT_EQ(preparation.aim().touch_count(), 0u);
   run(manual_.await_touch(active_));
   EXPECT_EQ(asked_for(), first);
+}
+
+TEST_F(ManualTouchingTest, TwoTouchesThatAreTakenBackAtOnceAreTwo) {
+  for (int made = 0; made < 3; ++made) {
+    touch(active_.run.next()->joints);
+    run(manual_.await_touch(active_));
+  }
+  ASSERT_EQ(active_.run.touches_done(), 3) << problem();
+  manual_.undo(active_);
+  manual_.undo(active_);
+  for (int step = 0; step < 3; ++step) run(manual_.await_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  EXPECT_EQ(store.touches(active_.run.id()).size(), 1u);
+}
+
+TEST_F(ManualTouchingTest, ATouchThatIsNotStoredYetIsTakenBackLikeAnyOther) {
+  const calib::JointVector first = asked_for();
+  cs8::State state = ScriptedController::ready_state();
+  state.joints = to_wire((first.array() + 1e-5).matrix());
+  manual_.on_controller_state(&active_, state);
+  state.flags = (state.flags | cs8::kProbeTouched) & ~static_cast<std::uint32_t>(cs8::kProbeLoopClosed);
+  state.joints = to_wire(first);
+  manual_.on_controller_state(&active_, state);
+  manual_.undo(active_);
+  run(manual_.await_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), 0);
+  EXPECT_TRUE(store.touches(active_.run.id()).empty());
 }
 
 TEST_F(ManualTouchingTest, NothingIsWatchedOutsideOfExecute) {
@@ -99,7 +128,10 @@ TEST_F(ManualTouchingTest, WithTheLastTouchTakenBackNothingIsIdentifiedAnyMore) 
   }
   active_.run.identify();
   ASSERT_EQ(active_.run.latest().status, calib::IdentificationStatus::kConverged);
-  while (active_.run.touches_done() > 0) manual_.undo(active_);
+  while (active_.run.touches_done() > 0) {
+    manual_.undo(active_);
+    run(manual_.await_touch(active_));
+  }
   active_.run.identify();
   EXPECT_NE(active_.run.latest().status, calib::IdentificationStatus::kConverged);
   EXPECT_FALSE(active_.run.predicted_tip_rms_m());

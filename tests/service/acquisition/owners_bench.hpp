@@ -10,6 +10,7 @@
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/published_status.hpp"
+#include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_preparation.hpp"
 #include "service/documents/plan.hpp"
 #include "tests/service/acquisition/made_up_time.hpp"
@@ -63,6 +64,7 @@ class OwnersBench {
   ControllerSession session;
   Folder folder;
   RunStore store;
+  StoreQueue queue{store, io.get_executor()};
   TipRegions regions;
   TouchPreparation preparation;
 

@@ -46,6 +46,17 @@ TEST_F(ReferenceMonitorTest, IsDueAtTheStartBehindEverySoManyTouchesAndAtTheEnd)
   EXPECT_TRUE(monitor_.is_due(7, kAllMade));
 }
 
+TEST_F(ReferenceMonitorTest, IsDueWheneverTheRunWasOutOfHands) {
+  touch(0.0, 1);
+  monitor_.make_due();
+  EXPECT_TRUE(monitor_.is_due(1, kMoreToMake));
+  touch(0.0, 1);
+  EXPECT_FALSE(monitor_.is_due(1, kMoreToMake));
+  monitor_.begin_run(5);
+  monitor_.make_due();
+  EXPECT_FALSE(monitor_.is_due(0, kMoreToMake)) << "there is no place yet";
+}
+
 TEST_F(ReferenceMonitorTest, ARecipeWithoutOneNeverWantsIt) {
   monitor_.begin_run(0);
   monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.0));

@@ -14,7 +14,7 @@ class RunPlanningTest : public ::testing::Test, public OwnersBench {
   ActiveRun active_ = begun_run();
   std::optional<BlockPose> place_;
   PlanCache plans_{io.get_executor(), cell_of_owners()};
-  RunPlanning planning_{cell_of_owners(), place_, store, plans_, preparation, status, wake};
+  RunPlanning planning_{cell_of_owners(), place_, queue, plans_, preparation, status, wake};
 };
 
 TEST_F(RunPlanningTest, TheRunTheStoreAndThePreparationFollowTheSamePlan) {

@@ -1,5 +1,6 @@
 #include "service/acquisition/run_recovery.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include "cs8_protocol/wire_units.hpp"
@@ -42,9 +43,9 @@ class RunRecoveryTest : public ::testing::Test, public OwnersBench {
 
   std::optional<BlockPose> nowhere_;
   PlanCache plans_{io.get_executor(), cell_of_owners()};
-  RunPlanning planning_{cell_of_owners(), nowhere_, store, plans_, preparation, status, wake};
-  TouchExecutor touches_{cell_of_owners(), regions, store, session, preparation, status, wake, time.clocks()};
-  RunRecovery recovery_{cell_of_owners(), regions,   store,    plans_, session,
+  RunPlanning planning_{cell_of_owners(), nowhere_, queue, plans_, preparation, status, wake};
+  TouchExecutor touches_{cell_of_owners(), regions, queue, session, preparation, status, wake, time.clocks()};
+  RunRecovery recovery_{cell_of_owners(), regions,   queue,    plans_, session,
                         preparation,      planning_, touches_, status, time.clocks()};
 };
 
@@ -67,6 +68,50 @@ TEST_F(RunRecoveryTest, ARunOfOtherFilesIsOverForGood) {
   EXPECT_FALSE(recovery_.restore());
   EXPECT_EQ(store.run(id).value().outcome, RunOutcome::kInterrupted);
   EXPECT_EQ(store.run(id).value().verdict, Verdict::kIncomplete);
+}
+
+TEST_F(RunRecoveryTest, ARunWithADamagedRowIsOverAndSaysWhich) {
+  const std::vector<std::string> damages{
+      "UPDATE touches SET plane = 99 WHERE number = 2", "UPDATE runs SET trace_json = 'no json'",
+      "UPDATE open_commands SET touch_json = '{}'", "UPDATE plan_changes SET place = 7"};
+  for (const std::string& damage : damages) {
+    const std::int64_t id = leave_run(3);
+    store.append_plan_change(id, {PlanChange::Kind::kDefer, 4});
+    store.set_open_command(id, {.session = 0, .sequence = 9, .touch_json = "{\"face\":1}"});
+    store.database()->exec(damage);
+    EXPECT_FALSE(recovery_.restore()) << damage;
+    EXPECT_TRUE(controller.asked.empty());
+    const auto outcome = store.database()
+                             ->execAndGet(
+                                 "SELECT outcome || coalesce(fault_message, '') FROM runs "
+                                 "ORDER BY id DESC")
+                             .getString();
+    EXPECT_THAT(outcome, ::testing::StartsWith("interrupted")) << damage;
+    if (damage.starts_with("UPDATE touches")) {
+      EXPECT_THAT(outcome, ::testing::HasSubstr("table touches, run 1, number 2"));
+    }
+    store.database()->exec("DELETE FROM open_commands");
+  }
+}
+
+TEST_F(RunRecoveryTest, ATouchOfNoPlaneOfTheBlockEndsTheRunAndIsNamed) {
+  const std::int64_t id = leave_run(3);
+  store.append_touch(id, {.number = 4, .plane = 99});
+  EXPECT_FALSE(recovery_.restore());
+  EXPECT_THAT(store.run(id).value().fault_message.value(), ::testing::HasSubstr("touch 4 is on plane 99"));
+}
+
+TEST_F(RunRecoveryTest, ATouchThatWasNotPlannedSoKeepsTheRunFromGoingOn) {
+  const std::int64_t id = leave_run(3);
+  const calib::PlannedTouch& other = plan_of_owners().touches.touches[9];
+  const calib::PlannedTouch& fourth = plan_of_owners().touches.touches[3];
+  store.append_touch(
+      id, {.number = 4, .plane = fourth.face + 1, .role = fourth.role, .joints = to_wire(other.joints)});
+  ActiveRun active = recovery_.restore().value();
+  hold(active);
+  EXPECT_FALSE(run(recovery_.make_resumable(active)));
+  EXPECT_EQ(status.state(), State::kAborting);
+  EXPECT_THAT(status.fault().value().message(), ::testing::HasSubstr("touch 4 is"));
 }
 
 TEST_F(RunRecoveryTest, WhyARunCannotBeResumedIsOneSentence) {

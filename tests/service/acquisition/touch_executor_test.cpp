@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
 namespace cell {
@@ -37,7 +38,7 @@ class TouchExecutorTest : public ::testing::Test, public OwnersBench {
   }
 
   ActiveRun active_ = planned_run();
-  TouchExecutor touches_{cell_of_owners(), regions, store, session, preparation, status, wake, time.clocks()};
+  TouchExecutor touches_{cell_of_owners(), regions, queue, session, preparation, status, wake, time.clocks()};
 };
 
 TEST_F(TouchExecutorTest, AContactIsStoredThenAddedThenAcknowledged) {
@@ -61,6 +62,56 @@ TEST_F(TouchExecutorTest, TheNextTouchIsReadyWhenTheArmComesBack) {
   for (int i = 0; i < 3; ++i) run(touches_.make_next_touch(active_));
   EXPECT_EQ(wake.wait_count, waits) << "where the arm stands is known, and the way from there";
   EXPECT_EQ(active_.run.touches_done(), 4);
+}
+
+TEST_F(TouchExecutorTest, AnAnswerThatWasLostIsAskedForAndItsTouchCountsOnce) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  const auto made = contact();
+  status.raise({FaultCode::kLinkLost, {}}, Event::kLinkDown);
+  ASSERT_TRUE(session.open_touch());
+  controller.on_query = [&](std::uint32_t) { return made; };
+  run(touches_.settle_open_command(&active_, session.sequence_to_settle()));
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  EXPECT_FALSE(session.open_touch());
+  status.enter(State::kExecute);
+  controller.on_touch = [this](const cs8::Touch&) { return contact(); };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), 2);
+}
+
+TEST_F(TouchExecutorTest, ACollisionThatIsToldOnceTheLinkIsBackEndsTheRun) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  status.raise({FaultCode::kLinkLost, {}}, Event::kLinkDown);
+  controller.on_query = [](std::uint32_t) {
+    cs8::TouchResult result;
+    result.outcome = cs8::Outcome::kCollision;
+    return result;
+  };
+  run(touches_.settle_open_command(&active_, session.sequence_to_settle()));
+  EXPECT_EQ(status.state(), State::kAborting);
+  EXPECT_THAT(faults, ElementsAre("link_lost", "collision"));
+  EXPECT_FALSE(session.open_touch());
+}
+
+TEST_F(TouchExecutorTest, AnArmThatCannotLeaveWhereItStandsHoldsTheRunUntilAPersonJogsIt) {
+  run(touches_.make_next_touch(active_));
+  // On hold somebody moved it to where its links are in the block.
+  controller.state->joints = to_wire(plan_of_owners().touches.touches[5].search_end_joints);
+  session.forget_standing();
+  controller.asked.clear();
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_THAT(faults, ElementsAre("no_safe_way"));
+  EXPECT_THAT(status.fault().value().detail, ::testing::HasSubstr("no room to leave"));
+  EXPECT_EQ(touches_.held_by(), HeldBy::kTouch);
+  EXPECT_THAT(controller.asked, ::testing::IsEmpty()) << "nothing was commanded";
+  EXPECT_THAT(active_.run.plan_changes(), ::testing::IsEmpty()) << "no touch of the plan is to blame";
+  controller.state->joints = to_wire(cell_of_owners().park_joints);
+  status.enter(State::kExecute);
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), 2);
 }
 
 TEST_F(TouchExecutorTest, WithoutATouchLeftTheStepIsDone) {
@@ -136,6 +187,7 @@ TEST_F(TouchExecutorTest, ATouchThatMeetsNothingHoldsTheRunAndIsForgottenByTheCo
   const std::size_t place = active_.run.touches_made();
   const int total = active_.run.touches_total();
   touches_.settle_hold(active_, Command::kSkip);
+  EXPECT_TRUE(run(touches_.store_answer(active_)));
   EXPECT_EQ(active_.run.skipped_count(), 1);
   ASSERT_EQ(store.plan_changes(active_.run.id()).size(), 1u) << "a person's word outlives the daemon at once";
   EXPECT_EQ(store.plan_changes(active_.run.id())[0].kind, PlanChange::Kind::kSkip);
@@ -207,11 +259,26 @@ TEST_F(TouchExecutorTest, AWordThatCannotBeStoredChangesNothing) {
   };
   run(touches_.make_next_touch(active_));
   break_store();
-  EXPECT_FALSE(touches_.settle_hold(active_, Command::kSkip));
+  touches_.settle_hold(active_, Command::kSkip);
+  EXPECT_FALSE(run(touches_.store_answer(active_)));
   mend_store();
   EXPECT_EQ(active_.run.skipped_count(), 0);
   EXPECT_EQ(touches_.held_by(), HeldBy::kTouch) << "it can be said again";
-  EXPECT_TRUE(touches_.settle_hold(active_, Command::kSkip));
+  touches_.settle_hold(active_, Command::kSkip);
+  EXPECT_TRUE(run(touches_.store_answer(active_)));
+  EXPECT_EQ(active_.run.skipped_count(), 1);
+}
+
+TEST_F(TouchExecutorTest, AStopWhileTheDiskIsWrittenKeepsTheCommandFromLeaving) {
+  const auto stop_behind_the_write = [this](RunStore&) { status.enter(State::kStopping); };
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  // One executor for all: what is queued here is done before the command's own write.
+  queue.behind(stop_behind_the_write);
+  run(touches_.make_next_touch(active_));
+  EXPECT_THAT(controller.asked, ElementsAre()) << "nothing was sent";
+  EXPECT_FALSE(store.open_command(active_.run.id())) << "the next command has its number";
+  EXPECT_FALSE(session.open_touch());
+  EXPECT_TRUE(faults.empty());
 }
 
 TEST_F(TouchExecutorTest, ALockOfAnotherProgramHoldsTheRunAndTheContactIsKeptOnceItIsGone) {

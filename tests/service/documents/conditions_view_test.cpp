@@ -72,6 +72,25 @@ TEST_F(ConditionsView, StoredConditionsSayWhetherTheBlockWasFound) {
   EXPECT_TRUE(names_place(conditions_document(read(), found)));
 }
 
+TEST_F(ConditionsView, StoredConditionsSayWhetherTheBlockStoodAtAPlace) {
+  RunConditions found;
+  found.place.emplace();
+  found.place->cell_from_block.setIdentity();
+  found.place->located_at = "2026-11-22T08:00:00.000Z";
+  const std::string there = conditions_document(read(), found), of_file = conditions_document(read(), {});
+  EXPECT_TRUE(stood_at(there, found.place));
+  EXPECT_FALSE(stood_at(there, std::nullopt));
+  EXPECT_FALSE(stood_at(of_file, found.place));
+  for (const std::optional<std::string>& none :
+       {std::optional(of_file), std::optional<std::string>("{}"), std::optional<std::string>()}) {
+    EXPECT_TRUE(stood_at(none, std::nullopt));
+    EXPECT_FALSE(stood_at(none, found.place));
+  }
+  BlockPose later = *found.place;
+  later.located_at = "2026-11-23T08:00:00.000Z";
+  EXPECT_FALSE(stood_at(there, later)) << "located again";
+}
+
 TEST_F(ConditionsView, ConditionsTellWhoToldTheTemperatureAndWhen) {
   const json of_file = conditions_json({});
   EXPECT_EQ(of_file.at("block_temperature_source"), "file");

@@ -35,6 +35,7 @@ const Shape kQuietStatus{{"state", "string"},
                          {"controller_touch_tested", "null"},
                          {"controller_permit", "null"},
                          {"probe", "null"},
+                         {"retract_due", "null"},
                          {"by_hand", "null"},
                          {"by_hand_step", "null"},
                          {"by_hand_plane", "null"},
@@ -83,6 +84,7 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.controller.touch_tested = true;
   busy.controller.permit = "awaited";
   busy.controller.probe = "free";
+  busy.controller.retract_due = false;
   busy.by_hand = HandGuide{.activity = HandActivity::kGuided,
                            .plane = 3,
                            .index = 1,

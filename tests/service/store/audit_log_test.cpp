@@ -3,6 +3,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include "service/store/maintenance.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/config/folder.hpp"
 
@@ -40,19 +41,20 @@ TEST_F(AuditLogTest, TheAuditIsReadInPages) {
 }
 
 TEST_F(AuditLogTest, AFloodOfStrangersDisplacesNoCommandAlsoOverARestart) {
-  constexpr int kKept = static_cast<int>(AuditLog::kOfStrangersKept);
+  constexpr int kKept = AuditLog::kOfStrangersKept;
   {
     AuditLog audit(store_.database());
     audit.append_command({.at = "t", .who = "operate", .outcome = "202"});
     for (int i = 0; i < kKept + 10; ++i) audit.append_of_stranger({.who = "none", .outcome = "401"});
-    EXPECT_EQ(audit.page(2 * kKept).size(), AuditLog::kOfStrangersKept + 1);
+    EXPECT_EQ(audit.page(2 * kKept).size(), static_cast<std::size_t>(kKept) + 1);
   }
   AuditLog audit(store_.database());
   for (int i = 0; i < 10; ++i) audit.append_of_stranger({.who = "wrong token", .outcome = "401"});
   const auto all = audit.page(2 * kKept);
-  EXPECT_EQ(all.size(), AuditLog::kOfStrangersKept + 1);
+  EXPECT_EQ(all.size(), static_cast<std::size_t>(kKept) + 1);
   EXPECT_EQ(all.front().who, "wrong token");
   EXPECT_EQ(all.back().who, "operate");
+  EXPECT_THAT(find_damage(file_), ::testing::IsEmpty()) << "the chain begins at the last deleted row";
 }
 
 TEST_F(AuditLogTest, TheOldestCommandsGoAndNoStrangerWithThem) {
@@ -60,9 +62,15 @@ TEST_F(AuditLogTest, TheOldestCommandsGoAndNoStrangerWithThem) {
                           std::to_string(AuditLog::kKept) +
                           ") INSERT INTO audit(at, who, remote, action, outcome, detail) SELECT 't', "
                           "'operate', '', '', i, '' FROM n");
+  {
+    SQLite::Transaction transaction(*store_.database());
+    chain_audit_rows(*store_.database());
+    transaction.commit();
+  }
   AuditLog audit(store_.database());
   audit.append_of_stranger({.who = "none", .outcome = "401"});
   audit.append_command({.at = "t", .who = "operate", .outcome = "new"});
+  EXPECT_THAT(find_damage(file_), ::testing::IsEmpty());
   const auto all = audit.page(AuditLog::kKept + 10);
   EXPECT_EQ(all.size(), static_cast<std::size_t>(AuditLog::kKept) + 1);
   EXPECT_EQ(all.back().outcome, "2");

@@ -1,9 +1,13 @@
 #include "service/store/maintenance.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fcntl.h>
 #include <gmock/gmock.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <functional>
 
 #include "service/store/run_store.hpp"
 #include "tests/config/folder.hpp"
@@ -11,6 +15,8 @@
 namespace cell {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -65,13 +71,84 @@ TEST_F(StoreMaintenance, ABackupNeverReplacesAFileAndLeavesNoHalfOne) {
   EXPECT_EQ(bytes_of(copy_), "mine");
 }
 
+/// Runs `check` in a process of its own that may not write; true when it holds there. As root, that takes
+/// another user.
+bool holds_without_rights(const std::function<bool()>& check) {
+  constexpr uid_t kNobody = 65534;
+  const pid_t child = fork();
+  if (child == 0) {
+    if (geteuid() == 0 && seteuid(kNobody) != 0) _exit(2);
+    _exit(check() ? 0 : 1);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+TEST(ReadOnlyStore, IsCheckedAsItIsAndALogThatIsNotInItYetIsNoDamage) {
+  namespace fs = std::filesystem;
+  const Folder folder;
+  const fs::path file = folder.path() / "touchcal.sqlite";
+  const auto forbid_writing = [&] {
+    for (const auto& entry : fs::directory_iterator(folder.path()))
+      fs::permissions(entry.path(), fs::perms(0444));
+    fs::permissions(folder.path(), fs::perms(0555));
+  };
+  { RunStore(file).begin_run({.recipe = "edf-25", .started_at = "start"}); }
+  forbid_writing();
+  EXPECT_TRUE(holds_without_rights([&] { return find_damage(file).empty(); }));
+  fs::permissions(folder.path(), fs::perms(0755));
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec("UPDATE runs SET recipe = 'quick'");
+  forbid_writing();
+  EXPECT_TRUE(holds_without_rights([&] { return find_damage(file).size() == 1; }));
+  fs::permissions(folder.path(), fs::perms(0755));
+  folder.write("touchcal.sqlite-wal", "commits of a daemon that was killed");
+  forbid_writing();
+  EXPECT_TRUE(holds_without_rights([&] {
+    try {
+      find_damage(file);
+    } catch (const StoreNotChecked& error) {
+      return std::string(error.what()).find("writable") != std::string::npos;
+    }
+    return false;
+  }));
+  fs::permissions(folder.path(), fs::perms(0755));
+}
+
+TEST(LostStore, IsNoticedInAStateDirectoryThatWasInUse) {
+  for (const bool empty : {false, true}) {
+    const Folder folder;
+    EXPECT_NO_THROW(refuse_lost_store(folder.path() / "none"));
+    if (empty) folder.write("touchcal.sqlite", "");
+    EXPECT_NO_THROW(refuse_lost_store(folder.path())) << "a first start, or one that was cut short";
+    folder.write("operate.token", "a");
+    EXPECT_NO_THROW(refuse_lost_store(folder.path())) << "a token of one's own";
+    folder.write("view.token", "b");
+    try {
+      refuse_lost_store(folder.path());
+      ADD_FAILURE() << "it would begin as if nothing had been";
+    } catch (const std::runtime_error& error) {
+      EXPECT_THAT(error.what(),
+                  AllOf(HasSubstr("touchcal.sqlite"), HasSubstr(empty ? "is empty" : "is missing"),
+                        HasSubstr("restore the last backup")));
+    }
+    std::filesystem::remove(folder.path() / "touchcal.sqlite");
+    const RunStore made(folder.path() / "touchcal.sqlite");
+    EXPECT_NO_THROW(refuse_lost_store(folder.path()));
+  }
+  const Folder folder;
+  folder.write("place.json", "{}");
+  EXPECT_THROW(refuse_lost_store(folder.path()), std::runtime_error);
+}
+
 TEST_F(StoreMaintenance, WhatIsNoTouchOrBelongsToNoRunIsTold) {
   const std::int64_t run = add_run("start", Verdict::kAccepted);
   EXPECT_THAT(find_damage(file_), IsEmpty());
   store_.append_touch(run, {.number = 2, .plane = 0, .captured_at = "t"});
   EXPECT_THAT(find_damage(file_), ElementsAre(HasSubstr("touch 2")));
   store_.database()->exec("PRAGMA foreign_keys = OFF; UPDATE touches SET run_id = 99 WHERE number = 1");
-  EXPECT_EQ(find_damage(file_).size(), 2u);
+  EXPECT_THAT(find_damage(file_), AllOf(Contains(HasSubstr("touch 2")), Contains(HasSubstr("belongs to no")),
+                                        Contains(HasSubstr("run 99, number 1"))));
 }
 
 TEST_F(StoreMaintenance, ADatabaseWithWrittenOverPagesIsTold) {

@@ -20,5 +20,10 @@ TEST(RowText, ATextThatNoVersionHasWrittenIsRefused) {
   EXPECT_THROW(row::verdict_named("good"), std::runtime_error);
 }
 
+TEST(RowText, ARowIsNamedByItsTableItsRunAndItsNumber) {
+  EXPECT_EQ(row::place_of("touches", 3, 12), "table touches, run 3, number 12");
+  EXPECT_EQ(row::place_of("runs", 3), "table runs, run 3");
+}
+
 }  // namespace
 }  // namespace cell

@@ -216,12 +216,25 @@ TEST_F(RunStoreTest, AFolderThatIsNotThereIsToldByName) {
   EXPECT_THAT(refusal(file), HasSubstr(file.string()));
 }
 
+TEST_F(RunStoreTest, NoCommandIsKeptInAFileThatWasMovedOrReplaced) {
+  const std::int64_t run = begin();
+  const OpenCommand command{.session = 1, .sequence = 1, .touch_json = "{}"};
+  const std::filesystem::path moved = file_.string() + ".moved";
+  std::filesystem::rename(file_, moved);
+  EXPECT_THROW(store_->set_open_command(run, command), std::runtime_error);
+  folder_.write("touchcal.sqlite", "another");
+  EXPECT_THROW(store_->set_open_command(run, command), std::runtime_error);
+  std::filesystem::rename(moved, file_);
+  EXPECT_NO_THROW(store_->set_open_command(run, command));
+}
+
 TEST_F(RunStoreTest, RunsThatFollowOnePlanKeepItOnce) {
+  const std::string kPlan = R"({"touches":[]})";
   const std::int64_t first = begin(), second = begin(), unplanned = begin();
-  store_->set_plan(first, 3, "id", "the plan");
-  store_->set_plan(second, 3, "id", "the plan");
-  EXPECT_EQ(store_->plan_json(first), "the plan");
-  EXPECT_EQ(store_->plan_json(second), "the plan");
+  store_->set_plan(first, 3, "id", kPlan);
+  store_->set_plan(second, 3, "id", kPlan);
+  EXPECT_EQ(store_->plan_json(first), kPlan);
+  EXPECT_EQ(store_->plan_json(second), kPlan);
   EXPECT_EQ(store_->plan_json(unplanned), std::nullopt);
   EXPECT_EQ(SQLite::Database(file_.string()).execAndGet("SELECT count(*) FROM plans").getInt(), 1);
 }

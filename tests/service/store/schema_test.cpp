@@ -3,6 +3,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include "service/store/internal/row_checksum.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/config/folder.hpp"
 
@@ -24,9 +25,14 @@ std::filesystem::path file_of_version(const Folder& folder, int version) {
   )sql");
   if (version >= 2) {
     database.exec(
-        "INSERT INTO plans VALUES('plan', '{}'); UPDATE runs SET plan_id = 'plan' WHERE recipe = 'quick'");
+        "INSERT INTO plans(id, document) VALUES('plan', '{}'); UPDATE runs SET plan_id = 'plan' WHERE recipe "
+        "= 'quick'");
   }
   if (version >= 3) database.exec("UPDATE runs SET block_temperature_c = 21.5 WHERE id = 1");
+  if (version >= static_cast<int>(kChecksumSchema)) {
+    row::add_checksum_function(database);
+    row::fill_checksums(database);
+  }
   database.exec("PRAGMA user_version = " + std::to_string(version));
   return file;
 }

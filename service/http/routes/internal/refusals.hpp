@@ -1,13 +1,15 @@
 #pragma once
 
+#include <vector>
+
 #include "service/http/server/problem.hpp"
+#include "service/run/packml_state.hpp"
 
 namespace cell {
 
-class CellOperation;
 struct CommandRefusal;
 
-/// A refused command as a problem document with the commands that the state allows.
-HttpResponse refusal_response(const CommandRefusal& refusal, const CellOperation& operation);
+/// A refused command as a problem document. `exits`: the commands that the state allows.
+HttpResponse refusal_response(const CommandRefusal& refusal, const std::vector<Command>& exits);
 
 }  // namespace cell

@@ -4,17 +4,20 @@
 #include <string>
 #include <string_view>
 
+#include "service/http/routes/reads.hpp"
 #include "service/http/routes/routes.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
 
-/// GET runs/{id}/result of a stored run: touchcal/result/1; 409 before there is a result.
-HttpResponse get_result(const CellOperation& operation, std::int64_t id);
+/// GET runs/{id}/result of a stored run: touchcal/result/1, as it was stored when the run ended. 409 before
+/// there is a result, and for a run without a stored one when the cell's files or the block's place are not
+/// those of the run.
+HttpResponse get_result(const Reads& reads, std::int64_t id);
 
-/// GET runs/{id}/arm: the calibrated arm as a file of schema touchcal/arm/2; 409 before there is a result, or
-/// if the cell has changed since the run.
-HttpResponse get_arm(const CellOperation& operation, std::int64_t id);
+/// GET runs/{id}/arm: the calibrated arm as a file of schema touchcal/arm/2; as for the
+/// result.
+HttpResponse get_arm(const Reads& reads, std::int64_t id);
 
 inline constexpr std::string_view kHtml = "text/html; charset=utf-8";
 inline constexpr std::string_view kCsv = "text/csv; charset=utf-8";
@@ -22,6 +25,6 @@ inline constexpr std::string_view kCsv = "text/csv; charset=utf-8";
 /// GET runs/{id}/report: touchcal/report/1 as a page for people ("html"), a table of touches ("csv") or
 /// itself
 /// ("json"); 400 for another format.
-HttpResponse get_report(const CellOperation& operation, const StoredRun& run, const std::string& format);
+HttpResponse get_report(const Reads& reads, const StoredRun& run, const std::string& format);
 
 }  // namespace cell

@@ -27,6 +27,7 @@ export interface Status {
   controller_touch_tested: boolean | null;
   controller_permit: string | null;
   probe: 'free' | 'touched' | 'fault' | null;
+  retract_due: boolean | null;
   reference_drift_mm: number | null;
   by_hand: 'locate' | 'guided' | null;  // what a person with the pendant is at
   by_hand_step: 'touch' | 'undo' | 'pass' | 'passing' | null;

@@ -39,6 +39,7 @@ function Figures({status}: {status: Status}) {
       <div class={status.probe === 'fault' ? 'abnormal' : ''}>
         <dt>{say('probe')}</dt><dd>{status.probe ? sayName(language, 'probe_', status.probe) : say('unknown')}</dd>
       </div>
+      {status.retract_due ? <div class="wide abnormal"><dt>{say('arm')}</dt><dd>{say('armAtFace')}</dd></div> : null}
       {status.more_would_bring
         ? <div class="wide"><dt>{say('moreWouldBring')}</dt><dd><OuterText text={moreText(status.more_would_bring, say)} /></dd></div>
         : null}

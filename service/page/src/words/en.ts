@@ -174,6 +174,8 @@ export const en = {
   limitHeld: 'within the limit',
   limitMissed: 'beyond the limit',
   drift: 'Reference drift',
+  arm: 'Arm',
+  armAtFace: 'at a face; it is taken back before anything else',
   probe: 'Probe',
   probe_free: 'free',
   probe_touched: 'touched',

@@ -8,6 +8,7 @@ const kStopped = 'le bras s’est arrêté et se tient où il était';
 const kAgain = 'puis touchcal retry pour refaire ce palpage, touchcal skip pour le laisser de côté, ou touchcal stop';
 const kAnew = 'puis touchcal clear, touchcal reset et un nouvel essai';
 const kResumeOrAnew = 'puis touchcal resume si un essai est en attente, sinon touchcal reset et un nouvel essai';
+const kResumeBroken = 'puis touchcal resume pour refaire le palpage interrompu, ou touchcal stop ; en ABORTED touchcal clear, puis touchcal reset';
 const kResumeTouch = 'puis touchcal resume pour reprendre ce palpage, ou touchcal stop';
 
 const words = (cause: string, robot_action: string, next_step: string): FaultWords => ({cause, robot_action, next_step});
@@ -32,7 +33,7 @@ export const kFaultsFr: Record<string, FaultWords> = {
     'lisez-le, supprimez sa cause, puis touchcal acknowledge'),
   not_in_this_state: words('l’état ne permet pas cette commande', 'le bras continue comme avant', 'donnez une des commandes permises'),
   answer_missing: words('la baie vit mais n’a pas répondu à temps à une commande', 'la liaison a été coupée, sur quoi le bras s’arrête de lui-même',
-    `regardez l’écran de la baie, ${kAnew}`),
+    `regardez l’écran de la baie, ${kResumeBroken}`),
   plan_invalid: words('un palpage du plan n’a pas de longueur, pas de vitesse ou pas de nombre', kStill,
     `corrigez les vitesses et la recette de la cellule, ${kAnew}`),
   probe_triggered: words('le palpeur se lit touché avant le début du palpage', 'le bras n’est pas parti et se tient à l’écart de la face',
@@ -73,14 +74,14 @@ export const kFaultsFr: Record<string, FaultWords> = {
   touches_left_out: words('des palpages du plan ont été laissés de côté : l’essai est incomplet', 'le bras a fini les autres palpages',
     'faites un nouvel essai pour un résultat complet'),
   controller_unreachable: words('la baie ne peut être jointe', 'rien : il n’y a pas de liaison',
-    'vérifiez que l’application de la baie tourne et que son adresse est juste ; le démon continue d’essayer'),
+    'vérifiez que l’application de la baie tourne et que son adresse est juste ; le démon continue d’essayer ; puis touchcal resume si un essai est en attente'),
   controller_incompatible: words('la baie n’est pas celle de cette cellule', 'rien : elle a été refusée avant tout mouvement',
     'installez l’application qui convient ou corrigez le fichier de la cellule ; le démon continue d’essayer'),
   protocol_error: words('la baie a envoyé quelque chose que le protocole ne connaît pas',
     'le bras s’arrête de lui-même sans liaison ; il se tient où il était',
-    'vérifiez ce qui écoute à l’adresse de la baie et qu’aucun autre ordinateur ne s’en sert ; après un essai touchcal clear et touchcal reset, sinon le démon continue d’essayer'),
+    'vérifiez ce qui écoute à l’adresse de la baie et qu’aucun autre ordinateur ne s’en sert ; le démon continue d’essayer ; puis touchcal resume si un essai est en attente, en ABORTED touchcal clear et touchcal reset'),
   link_lost: words('la liaison avec la baie a été perdue', 'le bras s’arrête de lui-même après le délai de surveillance et se tient où il était',
-    `regardez le câble et la baie, ${kAnew} ; il commence par un retrait`),
+    `regardez le câble et la baie ; le démon continue d’essayer ; ${kResumeBroken}`),
   recipe_unreachable: words('les palpages de la recette ne peuvent être planifiés dans cette cellule', kStill,
     'changez la place du bloc, la limite d’inclinaison ou la recette'),
   not_ready: words('la cellule n’a pas été préparée à temps', kStill, `préparez la cellule, ${kResumeOrAnew}`),
@@ -102,18 +103,18 @@ export const kFaultsFr: Record<string, FaultWords> = {
   overtravel: words('le bras s’est arrêté trop loin derrière le déclenchement', 'le bras s’est arrêté et s’est retiré',
     `vérifiez le stylet et baissez la vitesse de recherche, ${kAnew}`),
   permission_lost: words('puissance, mode, pause, arrêt d’urgence ou cellule ouverte ont retiré la permission de bouger', kStopped,
-    'remettez la puissance et le mode déporté, fermez la cellule, puis touchcal resume pour refaire le palpage interrompu, ou touchcal stop ; touchcal clear si l’essai a été abandonné, puis touchcal reset'),
+    `remettez la puissance et le mode déporté, fermez la cellule, ${kResumeBroken}`),
   collision: words('le bras a heurté quelque chose', 'les variateurs ont coupé ; le bras se tient où il était',
     `regardez le bras, le palpeur et le bloc, dégagez le bras à la main, ${kAnew}`),
   motion_error: words('la baie n’a pas pu exécuter un mouvement', kStopped, `cherchez le numéro d’erreur de la baie, ${kAnew}`),
   task_failed: words('une tâche de l’application de la baie s’est terminée', kStopped,
-    `notez le numéro d’erreur, arrêtez et relancez l’application au boîtier, ${kAnew}`),
+    `notez le numéro d’erreur, arrêtez et relancez l’application au boîtier et dégagez le bras du bloc, ${kResumeBroken}`),
   touch_deadline: words('un palpage a duré plus que son délai', 'le bras a été arrêté et se tient où il était',
     `vérifiez la pause et la vitesse moniteur, ${kAnew}`),
   implausible_touch: words('le contact rapporté ne peut être celui du palpage demandé', kClearUnrecorded,
     `vérifiez que le fichier du bras de la cellule est celui de ce bras, ${kAnew}`),
   no_safe_way: words('aucun chemin libre d’obstacles ne mène de la posture du bras à la suivante', kStill,
-    `amenez le bras au boîtier à sa posture de repos, ${kAnew}`),
+    'dégagez le bras du bloc au boîtier, de préférence jusqu’à sa posture de repos, puis touchcal resume pour continuer, touchcal skip pour laisser ce palpage de côté, ou touchcal stop ; en ABORTED touchcal clear, puis touchcal reset'),
   store_failed: words('un palpage n’a pas pu être enregistré', kClear,
     'libérez de la place sur le disque ou réparez les droits du dossier d’état, ' +
       'puis touchcal resume si l’essai est en attente, sinon touchcal clear et touchcal reset'),

@@ -176,6 +176,8 @@ export const fr: Words = {
   limitHeld: 'dans la limite',
   limitMissed: 'hors limite',
   drift: 'Dérive de la référence',
+  arm: 'Bras',
+  armAtFace: 'contre une face ; il en est retiré avant toute autre chose',
   probe: 'Palpeur',
   probe_free: 'libre',
   probe_touched: 'touché',

@@ -106,6 +106,22 @@ TEST_F(ApiTest, EveryCommandIsWrittenDownWithWhatCameOfIt) {
   EXPECT_EQ(last_audit().outcome, "409");
 }
 
+TEST_F(ApiTest, WhatHaltsIsWrittenDownOnceItIsExecuted) {
+  const std::int64_t run =
+      quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then", .operator_name = "M. Curie"});
+  for (const char* halt : {"/abort", "/pause"}) {
+    const std::size_t before = api_.services().audit.page(100).size();
+    send(post("/api/v1/runs/" + std::to_string(run) + halt));
+    EXPECT_EQ(api_.services().audit.page(100).size(), before + 1) << halt;
+    EXPECT_EQ(last_audit().outcome, "409");
+    EXPECT_EQ(last_audit().operator_name, "M. Curie");
+  }
+  HttpRequest stranger = post("/api/v1/runs/" + std::to_string(run) + "/abort");
+  stranger.authorization.reset();
+  send(stranger);
+  EXPECT_EQ(last_audit().operator_name, "") << "it is for a name that a token is needed";
+}
+
 TEST_F(ApiTest, EveryRefusalOfACommandIsWrittenDown) {
   HttpRequest request = post("/api/v1/cell/reset");
   request.authorization = "Bearer " + kTokens.view;
@@ -119,6 +135,8 @@ TEST_F(ApiTest, EveryRefusalOfACommandIsWrittenDown) {
   EXPECT_EQ(send(request).status, 401u);
   EXPECT_EQ(last_audit().who, "wrong token");
   api_.refuse({.status = 403, .kind = ProblemKind::kOrigin, .detail = "a page elsewhere"}, request);
+  quiet_.context().restart();
+  quiet_.context().run();
   EXPECT_EQ(last_audit().outcome, "403");
   const std::int64_t before = last_audit().id;
   EXPECT_EQ(send({.method = "GET", .path = "/nothing", .from_loopback = true}).status, 404u);

@@ -87,17 +87,17 @@ TEST(OpenApi, TheResultOfThePapersTouchesIsAsItsSchemaSays) {
                                  kTouchesBytesMax);
   request.query.emplace("recipe", "edf-23");
   const Tokens tokens{std::string(64, 'a'), std::string(64, 'b')};
-  const HttpResponse response = route(request, quiet.operation(), tokens);
+  const HttpResponse response = quiet.run(route(request, quiet.operation(), tokens));
   ASSERT_EQ(response.status, 200u) << response.body;
   expect_as_documented(request, response);
   EXPECT_EQ(json::parse(response.body).at("identifiable_count"), 23);
   request.query = {{"recipe", "none"}};
-  EXPECT_EQ(route(request, quiet.operation(), tokens).status, 422u);
+  EXPECT_EQ(quiet.run(route(request, quiet.operation(), tokens)).status, 422u);
   request.query.clear();
   for (const char* body : {"", "{}", "[]", R"({"schema":"touchcal/touches/1","arm":"tx90","touches":[]})",
                            R"({"schema":"touchcal/touches/1","arm":"other","touches":[]})"}) {
     request.body = body;
-    const HttpResponse refused = route(request, quiet.operation(), tokens);
+    const HttpResponse refused = quiet.run(route(request, quiet.operation(), tokens));
     EXPECT_THAT(refused.status, ::testing::AnyOf(400u, 422u)) << body;
     expect_as_documented(request, refused);
   }

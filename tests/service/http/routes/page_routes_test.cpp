@@ -23,8 +23,8 @@ class PageRoutesTest : public ::testing::Test {
  protected:
   /// As a browser elsewhere asks that has no token yet.
   HttpResponse get(const std::string& path, const std::optional<std::string>& known = {}) {
-    return route({.method = "GET", .path = path, .if_none_match = known}, cell_.operation(),
-                 Tokens{std::string(64, 'a'), std::string(64, 'b')});
+    return cell_.run(route({.method = "GET", .path = path, .if_none_match = known}, cell_.operation(),
+                           Tokens{std::string(64, 'a'), std::string(64, 'b')}));
   }
 
   QuietCell cell_;

@@ -34,7 +34,9 @@ class PlanRoutes : public ::testing::Test {
   static HttpRequest plan_request(const std::string& body = R"({"recipe":"edf-25"})") {
     return post("/api/v1/plan", body);
   }
-  HttpResponse send(const HttpRequest& request) { return route(request, cell_.operation(), kTokens); }
+  HttpResponse send(const HttpRequest& request) {
+    return cell_.run(route(request, cell_.operation(), kTokens));
+  }
   [[nodiscard]] std::optional<std::string> to_plan(const HttpRequest& request) {
     return recipe_to_plan(request, cell_.operation());
   }

@@ -27,7 +27,8 @@ class ResultRoutesTest : public ::testing::Test {
 
   Folder folder_;
   QuietCell cell_;
-  std::int64_t run_ = cell_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+  std::int64_t run_ = cell_.store().begin_run(
+      {.recipe = "edf-25", .started_at = "start", .config_digest = cell_.operation().config_digest()});
 };
 
 TEST_F(ResultRoutesTest, TheArmReadsBackToTheKinematicsThatWereIdentified) {
@@ -63,7 +64,8 @@ TEST_F(ResultRoutesTest, ARunIsIdentifiedAtItsOwnTemperature) {
   const std::int64_t warm = cell_.store().begin_run(
       {.recipe = "edf-25",
        .started_at = "start",
-       .block_temperature = StoredTemperature{.celsius = 40.0, .std_k = 0.5, .source = "run"}});
+       .block_temperature = StoredTemperature{.celsius = 40.0, .std_k = 0.5, .source = "run"},
+       .config_digest = cell_.operation().config_digest()});
   for (const StoredTouch& touch : cell_.store().touches(run_)) cell_.store().append_touch(warm, touch);
   const auto lengths = [&](std::int64_t run) {
     const json document = json::parse(get_result(cell_.operation(), run).body);
@@ -77,8 +79,10 @@ TEST_F(ResultRoutesTest, ARunIsIdentifiedAtItsOwnTemperature) {
 }
 
 TEST_F(ResultRoutesTest, ARunIsIdentifiedWithItsOwnChoiceOfStiffness) {
-  const std::int64_t elastic =
-      cell_.store().begin_run({.recipe = "edf-25", .started_at = "start", .stiffness = "on"});
+  const std::int64_t elastic = cell_.store().begin_run({.recipe = "edf-25",
+                                                        .started_at = "start",
+                                                        .stiffness = "on",
+                                                        .config_digest = cell_.operation().config_digest()});
   for (const StoredTouch& touch : cell_.store().touches(run_)) cell_.store().append_touch(elastic, touch);
   const auto model = [&](std::int64_t run) {
     return json::parse(get_result(cell_.operation(), run).body).at("model");
@@ -88,7 +92,8 @@ TEST_F(ResultRoutesTest, ARunIsIdentifiedWithItsOwnChoiceOfStiffness) {
 }
 
 TEST_F(ResultRoutesTest, WithoutATouchThereIsNeitherResultNorArm) {
-  const std::int64_t empty = cell_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+  const std::int64_t empty = cell_.store().begin_run(
+      {.recipe = "edf-25", .started_at = "start", .config_digest = cell_.operation().config_digest()});
   for (const HttpResponse& response :
        {get_result(cell_.operation(), empty), get_arm(cell_.operation(), empty)}) {
     EXPECT_EQ(response.status, 409u);
@@ -96,16 +101,42 @@ TEST_F(ResultRoutesTest, WithoutATouchThereIsNeitherResultNorArm) {
   }
 }
 
-TEST_F(ResultRoutesTest, TheArmOfARunMadeWithAnotherNominalArmIsRefused) {
-  json document = json::parse(get_result(cell_.operation(), run_).body);
-  cell_.store().set_result_json(run_, document.dump());
-  EXPECT_EQ(get_arm(cell_.operation(), run_).status, 200u);
-  json& nominal = document.at("parameters").at(1).at("nominal");
-  nominal = nominal.get<double>() + 0.001;
-  cell_.store().set_result_json(run_, document.dump());
-  const HttpResponse refused = get_arm(cell_.operation(), run_);
+TEST_F(ResultRoutesTest, WhatWasStoredAtTheEndIsToldWhateverTheFilesAreNow) {
+  const std::string result = R"({"schema":"touchcal/result/1"})", arm = R"({"schema":"touchcal/arm/2"})";
+  const std::int64_t old = cell_.store().begin_run(
+      {.recipe = "edf-25", .started_at = "start", .config_digest = "of files that are gone"});
+  cell_.store().finish_run(old, {.outcome = RunOutcome::kComplete, .result_json = result, .arm_json = arm});
+  EXPECT_EQ(get_result(cell_.operation(), old).body, result);
+  EXPECT_EQ(get_arm(cell_.operation(), old).body, arm);
+}
+
+TEST_F(ResultRoutesTest, ARunOfOtherFilesIsNotComputedAgain) {
+  for (const std::optional<std::string>& digest :
+       {std::optional<std::string>(), std::optional<std::string>("another")}) {
+    const std::int64_t other =
+        cell_.store().begin_run({.recipe = "edf-25", .started_at = "start", .config_digest = digest});
+    for (const StoredTouch& touch : cell_.store().touches(run_)) cell_.store().append_touch(other, touch);
+    for (const HttpResponse& response :
+         {get_result(cell_.operation(), other), get_arm(cell_.operation(), other)}) {
+      EXPECT_EQ(response.status, 409u);
+      EXPECT_THAT(response.body, HasSubstr("files are not those of this run"));
+    }
+    const StoredRun stored = cell_.store().run(other).value();
+    const json report = json::parse(get_report(cell_.operation(), stored, "json").body);
+    EXPECT_TRUE(report.at("result").is_null());
+  }
+}
+
+TEST_F(ResultRoutesTest, ARunWithTheBlockElsewhereIsNotComputedAgain) {
+  const std::int64_t moved =
+      cell_.store().begin_run({.recipe = "edf-25",
+                               .started_at = "start",
+                               .config_digest = cell_.operation().config_digest(),
+                               .conditions_json = R"({"place":{"shift_mm":[1,2,3]}})"});
+  for (const StoredTouch& touch : cell_.store().touches(run_)) cell_.store().append_touch(moved, touch);
+  const HttpResponse refused = get_arm(cell_.operation(), moved);
   EXPECT_EQ(refused.status, 409u);
-  EXPECT_THAT(refused.body, HasSubstr("differs from that of this run"));
+  EXPECT_THAT(refused.body, HasSubstr("where it stood in this run"));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ class RoutesTest : public ::testing::Test {
   }
 
   HttpResponse send(const HttpRequest& request) {
-    const HttpResponse response = route(request, cell_.operation(), kTokens);
+    const HttpResponse response = cell_.run(route(request, cell_.operation(), kTokens));
     expect_as_documented(request, response);
     return response;
   }

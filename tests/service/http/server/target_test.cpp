@@ -18,8 +18,9 @@ using ::testing::HasSubstr;
 HttpResponse get(const std::string& target) {
   QuietCell cell;
   const auto parsed = parse_target(target).value();
-  return route({.method = "GET", .path = parsed.first, .query = parsed.second, .from_loopback = true},
-               cell.operation(), kTokens);
+  return cell.run(
+      route({.method = "GET", .path = parsed.first, .query = parsed.second, .from_loopback = true},
+            cell.operation(), kTokens));
 }
 
 TEST(ParseTarget, TakesPathAndQueryApart) {

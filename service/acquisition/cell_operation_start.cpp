@@ -1,0 +1,155 @@
+// How a CellOperation starts a run. Each co_await stands alone in its statement, see cs8_controller.cpp.
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "service/acquisition/cell_operation.hpp"
+#include "service/acquisition/preconditions.hpp"
+#include "service/base/log_format.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/documents/conditions_view.hpp"
+#include "service/run/block_temperature.hpp"
+#include "service/run/run_conditions.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+
+std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request, const Earlier& earlier) const {
+  const auto outcome = plans_.planned(request.recipe, given_to(request, cell()));
+  const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
+  auto unmet = unmet_for_run(unmet_preconditions(), cell(), {request.block_temperature, clocks_.system()},
+                             status_.fault(), no_plan);
+  if (auto lost = unmet_by_lost_place(earlier.last, recovery_.config_digest(), place().has_value()))
+    unmet.push_back(*std::move(lost));
+  return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
+}
+
+/// The answer to a start whose Idempotency-Key was there before; nothing when it was not.
+std::optional<std::variant<Started, CommandRefusal>> CellOperation::repeated_start(
+    const StartRequest& request, const Earlier& earlier) {
+  const auto& same = earlier.with_key;
+  if (!same) return std::nullopt;
+  if (same->recipe == request.recipe) return Started{same->id, true};
+  return CommandRefusal{
+      .kind = CommandRefusal::Kind::kOtherKey,
+      .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'", same->id,
+                            same->recipe)};
+}
+
+std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& request,
+                                                          const Earlier& earlier) const {
+  if (!cell().recipes.contains(request.recipe)) {
+    std::string known;
+    for (const auto& [name, unused] : cell().recipes) known += (known.empty() ? "" : ", ") + name;
+    return CommandRefusal{
+        .kind = CommandRefusal::Kind::kUnknownRecipe,
+        .detail = fmt::format("there is no recipe '{}'; this cell has {}", request.recipe, known)};
+  }
+  if (status_.is_ending()) return CommandRefusal{.detail = "the daemon is ending"};
+  const State state = status_.state();
+  if (is_active(state)) {
+    return CommandRefusal{
+        .detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->run.id() : 0),
+        .code = FaultCode::kRunActive};
+  }
+  auto unmet = unmet_for(request, earlier);
+  if (!unmet.empty()) {
+    return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
+                          .detail = "the cell is not ready",
+                          .unmet = std::move(unmet)};
+  }
+  const bool waits_for_remote = request.guided && state == State::kResetting;
+  if (waits_for_remote && (session_.open_touch() || session_.sequence_to_settle() != 0))
+    return CommandRefusal{.detail = "a touch of the last run is still to be stored; then once more",
+                          .code = FaultCode::kNotInThisState};
+  if (!waits_for_remote && !after_command(state, Command::kStart)) {
+    return CommandRefusal{.detail = fmt::format("a run cannot start in the state {}", state_name(state)),
+                          .code = FaultCode::kNotInThisState};
+  }
+  return std::nullopt;
+}
+
+asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start(StartRequest request) {
+  std::variant<Started, CommandRefusal> answer =
+      CommandRefusal{.detail = "another start is under way", .code = FaultCode::kRunActive};
+  if (is_starting_) co_return answer;
+  is_starting_ = true;
+  std::optional<std::string> failure;
+  try {
+    answer = co_await start_alone(request);
+  } catch (const std::exception& error) {
+    failure = error.what();
+  }
+  is_starting_ = false;
+  loop_.ended.wake();  // the end of the daemon may wait for it
+  if (failure)
+    answer = CommandRefusal{
+        .kind = CommandRefusal::Kind::kPreconditions,
+        .detail = "the cell is not ready",
+        .unmet = {{"store_not_writable",
+                   fmt::format("free disk space or repair the state directory: {}", *failure)}}};
+  co_return answer;
+}
+
+/// Throws what the store throws.
+asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alone(
+    const StartRequest& request) {
+  const auto read = [key = request.idempotency_key](RunStore& store) {
+    return Earlier{.with_key = key ? store.run_with_key(*key) : std::nullopt, .last = store.runs(1)};
+  };
+  const Earlier earlier = co_await store_.run(read);
+  if (auto repeated = repeated_start(request, earlier)) co_return *std::move(repeated);
+  if (auto refusal = refuse_start(request, earlier)) co_return *std::move(refusal);
+  const NewRun begun = new_run(request);
+  const auto write = [begun](RunStore& store) { return store.begin_run(begun); };
+  const std::int64_t id = co_await store_.run(write);
+  // Meanwhile a person may have stopped the cell, or its link may have gone.
+  if (auto refusal = refuse_start(request, earlier)) {
+    co_await give_up(id);
+    co_return *std::move(refusal);
+  }
+  run_.emplace(ActiveRun{
+      .run = Run(id, tip_regions(), recipe_of(request, cell()), begun.started_at, request.block_temperature),
+      .conditions = begun.conditions_json.value_or(""),
+      .guided = request.guided,
+      .interruption = std::nullopt,
+      .place_check = std::nullopt});
+  set_logged_run(id);
+  touches_.begin_run(*run_);
+  manual_.begin_run();
+  status_.begin_run(id);
+  status_.enter(State::kStarting);
+  co_return Started{id, false};
+}
+
+NewRun CellOperation::new_run(const StartRequest& request) const {
+  std::string conditions = conditions_document(
+      with_block_temperature(cell(), request.block_temperature),
+      {.operator_name = request.operator_name,
+       .config_digest = recovery_.config_digest(),
+       .controller_application = session_.application(),
+       .controller_session = session_.number(),
+       .touch_mode = request.guided ? TouchMode::kGuided : TouchMode::kAutomatic,
+       .temperature_source = request.block_temperature ? TemperatureSource::kRun : TemperatureSource::kFile,
+       .arm_moving_min = request.arm_moving_min,
+       .place = place()});
+  return {.recipe = request.recipe,
+          .started_at = now_text(),
+          .idempotency_key = request.idempotency_key,
+          .operator_name = request.operator_name,
+          .block_temperature = temperature_to_store(cell(), request.block_temperature),
+          .stiffness = stiffness_to_store(request),
+          .config_digest = recovery_.config_digest(),
+          .conditions_json = std::move(conditions)};
+}
+
+/// A run that was begun in the store and nowhere else: the same key may start another one.
+asio::awaitable<void> CellOperation::give_up(std::int64_t run_id) {
+  const auto write = [run_id](RunStore& store) { store.withdraw_run(run_id); };
+  const auto failure = co_await store_.write(write);
+  if (failure) spdlog::error("run {} never began and is still stored: {}", run_id, *failure);
+}
+
+}  // namespace cell

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "service/run/packml_state.hpp"
+
+namespace cell {
+
+/// How long a run has stood still, on hold or suspended: a permit and a reference place do not keep their
+/// worth for ever. A pure value; the time is handed in.
+class HoldTime {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  /// Behind a longer one the reference place is touched first: the arm has cooled down meanwhile, and people
+  /// have passed.
+  static constexpr std::chrono::minutes kReferenceMax{10};
+
+  /// A resumption that does not succeed goes on with the hold.
+  void on_entered(State state, TimePoint now);
+  /// Longer than this, until now.
+  [[nodiscard]] bool exceeds(std::chrono::minutes limit, TimePoint now) const {
+    return since_ && now - *since_ > limit;
+  }
+
+ private:
+  std::optional<TimePoint> since_;
+};
+
+}  // namespace cell

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/awaitable.hpp>
+#include <concepts>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "service/base/run_on.hpp"
+#include "service/store/fault_log.hpp"
+#include "service/store/run_store.hpp"
+
+namespace cell {
+
+/// The store as the control thread sees it: what is to be written or read is done on the store's own thread,
+/// in the order in which it was asked for. So a slow disk makes the run wait, and neither the link nor a
+/// stop. What is asked for must refer to nothing that the control thread may change meanwhile: it holds
+/// values.
+class StoreQueue {
+ public:
+  /// At most so many are waited for by nobody. What comes on top is left out and logged: the disk has stood
+  /// still for minutes then.
+  static constexpr int kBehindMax = 64;
+
+  /// `store` must outlive the executor's work. A test gives its one executor.
+  StoreQueue(RunStore& store, boost::asio::any_io_executor executor)
+      : store_(store),
+        executor_(std::move(executor)),
+        faults_(std::make_shared<FaultLog>(store.database())) {}
+
+  /// Returns what `work(store)` returned or threw, when it is done. Each run has one loop, which waits: no
+  /// bound is needed.
+  template <std::invocable<RunStore&> Work>
+  boost::asio::awaitable<std::invoke_result_t<Work, RunStore&>> run(Work work) {
+    return run_on(executor_, [&store = store_, work = std::move(work)] { return work(store); });
+  }
+  /// The same for what only writes: why it failed, nothing when it is done.
+  boost::asio::awaitable<std::optional<std::string>> write(std::function<void(RunStore&)> work);
+  /// Nobody waits for it; what it throws is logged. False when it was left out.
+  bool behind(std::function<void(RunStore&)> work);
+
+  /// Nobody waits for a fault either. One that cannot be stored is stored behind a later write that works.
+  void append_fault(StoredFault fault);
+
+  /// For the thread that owns everything before the store's own begins, and in tests of one thread.
+  [[nodiscard]] RunStore& store() { return store_; }
+  [[nodiscard]] const RunStore& store() const { return store_; }
+
+ private:
+  RunStore& store_;
+  boost::asio::any_io_executor executor_;
+  std::shared_ptr<FaultLog> faults_;  // of the store's thread
+  std::shared_ptr<std::atomic<int>> behind_count_ = std::make_shared<std::atomic<int>>(0);
+};
+
+}  // namespace cell

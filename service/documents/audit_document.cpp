@@ -1,0 +1,34 @@
+#include "service/documents/audit_document.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "service/documents/internal/document_fields.hpp"
+
+namespace cell {
+
+AuditDocument audit_page(const std::vector<AuditEntry>& entries, std::optional<std::int64_t> next_before) {
+  AuditDocument page;
+  if (next_before) page.next_before = std::to_string(*next_before);
+  std::ranges::transform(entries, std::back_inserter(page.rows), [](const AuditEntry& entry) {
+    return AuditRow{
+        .id = std::to_string(entry.id),
+        .at = entry.at,
+        .role = entry.who,
+        .operator_name = entry.operator_name.empty() ? std::nullopt : std::optional(entry.operator_name),
+        .remote = entry.remote,
+        .action = entry.action,
+        .outcome = entry.outcome,
+        .detail = entry.detail,
+        .hash = entry.hash};
+  });
+  return page;
+}
+
+std::string document_text(const AuditDocument& document) { return written(document); }
+
+AuditDocument read_audit(std::string_view text) {
+  return document_from<AuditDocument>(text, Absent::kIsRefused);
+}
+
+}  // namespace cell

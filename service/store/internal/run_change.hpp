@@ -1,0 +1,43 @@
+#pragma once
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "service/store/internal/row_checksum.hpp"
+
+/// Changes of a row of runs, each inside the caller's transaction.
+namespace cell::row {
+
+/// Changes a row of runs inside the caller's transaction. One that was damaged before stays known as such.
+template <class Change>
+void change_run(SQLite::Database& database, std::int64_t run_id, Change&& change) {
+  SQLite::Statement query(database, "SELECT " + run_rows().is_whole() + " FROM runs WHERE id = ?");
+  query.bind(1, run_id);
+  const bool whole = query.executeStep() && query.getColumn(0).getInt() == 1;
+  query.reset();
+  std::forward<Change>(change)();
+  if (whole) seal(database, run_rows(), "id", run_id);
+}
+
+inline bool has_ended(SQLite::Database& database, std::int64_t run_id) {
+  SQLite::Statement query(database, "SELECT 1 FROM runs WHERE id = ? AND rows_kept IS NOT NULL");
+  query.bind(1, run_id);
+  return query.executeStep();
+}
+
+inline void count_rows_of(SQLite::Database& database, std::int64_t run_id) {
+  SQLite::Statement update(database, "UPDATE runs SET rows_kept = " + rows_of_run() + " WHERE id = ?");
+  update.bind(1, run_id);
+  update.exec();
+}
+
+/// What a run that ended has gained or lost since counts with it.
+inline void note_rows(SQLite::Database& database, std::int64_t run_id) {
+  if (!has_ended(database, run_id)) return;
+  change_run(database, run_id, [&] { count_rows_of(database, run_id); });
+}
+
+}  // namespace cell::row

@@ -1,0 +1,190 @@
+#include "service/store/internal/row_checksum.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+
+#include "service/store/internal/row_text.hpp"
+
+namespace cell::row {
+namespace {
+
+constexpr std::uint64_t kFnvOffset = 0xcbf29ce484222325U;
+constexpr std::uint64_t kFnvPrime = 0x100000001b3U;
+
+std::uint64_t mixed(std::uint64_t sum, const unsigned char* bytes, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) sum = (sum ^ bytes[i]) * kFnvPrime;
+  return sum;
+}
+
+std::uint64_t mixed(std::uint64_t sum, std::uint64_t value) {
+  const auto bytes = std::bit_cast<std::array<unsigned char, sizeof value>>(value);
+  return mixed(sum, bytes.data(), bytes.size());
+}
+
+void checksum_values(sqlite3_context* context, int count, sqlite3_value** values) {
+  std::uint64_t sum = kFnvOffset;
+  for (int i = 0; i < count; ++i) {
+    sqlite3_value* value = values[i];
+    const int type = sqlite3_value_type(value);
+    sum = mixed(sum, static_cast<std::uint64_t>(type));
+    if (type == SQLITE_INTEGER) {
+      sum = mixed(sum, static_cast<std::uint64_t>(sqlite3_value_int64(value)));
+    } else if (type == SQLITE_FLOAT) {
+      sum = mixed(sum, std::bit_cast<std::uint64_t>(sqlite3_value_double(value)));
+    } else if (type != SQLITE_NULL) {
+      const auto* bytes = static_cast<const unsigned char*>(sqlite3_value_blob(value));
+      const auto length = static_cast<std::size_t>(sqlite3_value_bytes(value));
+      sum = mixed(mixed(sum, length), bytes, length);
+    }
+  }
+  sqlite3_result_int64(context, static_cast<std::int64_t>(sum));
+}
+
+std::string count_of(const std::string& table) {
+  return "(SELECT count(*) FROM " + table + " WHERE run_id = runs.id)";
+}
+
+CheckedRows rows_of(const std::string& table, std::string columns, std::string number) {
+  return {.name = table,
+          .table = table,
+          .columns = std::move(columns),
+          .checksum = "checksum",
+          .run = "run_id",
+          .number = std::move(number),
+          .applies = "1"};
+}
+
+}  // namespace
+
+std::string CheckedRows::computed() const { return "row_checksum('" + name + "', " + columns + ")"; }
+
+std::string CheckedRows::is_whole() const {
+  return "(" + checksum + " IS CASE WHEN " + applies + " THEN " + computed() + " END)";
+}
+
+std::string CheckedRows::values(int count) const {
+  std::string parameters;
+  for (int i = 1; i <= count; ++i) parameters += (i > 1 ? ", ?" : "?") + std::to_string(i);
+  return " VALUES(" + parameters + ", row_checksum('" + name + "', " + parameters + "))";
+}
+
+const CheckedRows& touch_rows() {
+  static const CheckedRows rows = rows_of("touches", "run_id, " + kTouchColumns, "number");
+  return rows;
+}
+
+const CheckedRows& superseded_rows() {
+  static const CheckedRows rows =
+      rows_of("superseded_touches", "id, run_id, " + kTouchColumns + ", reason", "number");
+  return rows;
+}
+
+const CheckedRows& reference_rows() {
+  static const CheckedRows rows =
+      rows_of("reference_touches",
+              "run_id, number, touches_done, " + kJointColumns + ", drift_mm, captured_at", "number");
+  return rows;
+}
+
+const CheckedRows& plan_change_rows() {
+  static const CheckedRows rows = rows_of("plan_changes", "id, run_id, kind, place", "id");
+  return rows;
+}
+
+const CheckedRows& open_command_rows() {
+  static const CheckedRows rows =
+      rows_of("open_commands", "run_id, session, sequence, aimed_with, touch_json", "NULL");
+  return rows;
+}
+
+const CheckedRows& plan_rows() {
+  static const CheckedRows rows{.name = "plans",
+                                .table = "plans",
+                                .columns = "plans.id, plans.document",
+                                .checksum = "plans.checksum",
+                                .run = "NULL",
+                                .number = "id",
+                                .applies = "1"};
+  return rows;
+}
+
+const CheckedRows& run_rows() {
+  static const CheckedRows rows{
+      .name = "runs",
+      .table = "runs",
+      .columns =
+          "id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, "
+          "fault_message, idempotency_key, plan_id, operator_name, block_temperature_c, "
+          "config_digest, trace_json, std_block_temperature_k, block_temperature_at, "
+          "block_temperature_source, stiffness, rows_kept",
+      .checksum = "checksum",
+      .run = "id",
+      .number = "NULL",
+      .applies = "1"};
+  return rows;
+}
+
+const CheckedRows& result_rows() {
+  static const CheckedRows rows{.name = "results",
+                                .table = "runs",
+                                .columns = "id, result_json",
+                                .checksum = "result_checksum",
+                                .run = "id",
+                                .number = "NULL",
+                                .applies = "result_json IS NOT NULL"};
+  return rows;
+}
+
+const CheckedRows& arm_rows() {
+  static const CheckedRows rows = rows_of("arms", "run_id, document", "NULL");
+  return rows;
+}
+
+std::span<const CheckedRows* const> all_checked_rows() {
+  static const std::array all{&touch_rows(),       &superseded_rows(),   &reference_rows(),
+                              &plan_change_rows(), &open_command_rows(), &plan_rows(),
+                              &run_rows(),         &result_rows(),       &arm_rows()};
+  return all;
+}
+
+const std::string& rows_of_run() {
+  static const std::string counts = "(" + count_of("touches") + " || '/' || " +
+                                    count_of("superseded_touches") + " || '/' || " +
+                                    count_of("reference_touches") + " || '/' || " + count_of("plan_changes") +
+                                    " || '/' || " + count_of("arms") + ")";
+  return counts;
+}
+
+const std::string& has_its_rows() {
+  static const std::string has = "(rows_kept IS NULL OR rows_kept = " + rows_of_run() + ")";
+  return has;
+}
+
+void add_checksum_function(SQLite::Database& database) {
+  constexpr int kAnyCount = -1;
+  database.createFunction("row_checksum", kAnyCount, true, nullptr, checksum_values);
+}
+
+void fill_checksums(SQLite::Database& database) {
+  database.exec("UPDATE runs SET rows_kept = " + rows_of_run() +
+                " WHERE outcome <> 'running' AND checksum IS NULL");
+  for (const CheckedRows* rows : all_checked_rows()) {
+    const std::string column = rows->checksum.substr(rows->checksum.find('.') + 1);
+    database.exec("UPDATE " + rows->table + " SET " + column + " = " + rows->computed() + " WHERE " +
+                  rows->checksum + " IS NULL AND " + rows->applies);
+  }
+}
+
+void seal(SQLite::Database& database, const CheckedRows& rows, const std::string& condition,
+          std::int64_t key) {
+  SQLite::Statement update(database, "UPDATE " + rows.table + " SET " + rows.checksum + " = " +
+                                         rows.computed() + " WHERE " + condition + " = ?");
+  update.bind(1, key);
+  update.exec();
+}
+
+}  // namespace cell::row

@@ -1,0 +1,68 @@
+#include "service/acquisition/store_queue.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gtest/gtest.h>
+#include <sqlite3.h>
+
+#include <boost/asio/thread_pool.hpp>
+#include <future>
+#include <thread>
+
+#include "tests/service/acquisition/owners_bench.hpp"
+
+namespace cell {
+namespace {
+
+class StoreQueueTest : public ::testing::Test, public OwnersBench {
+ protected:
+  boost::asio::thread_pool disk_{1};
+  StoreQueue queue_{store, disk_.get_executor()};
+};
+
+TEST_F(StoreQueueTest, WorksOnItsOwnThreadInTheOrderOfTheQuestions) {
+  std::thread::id where;
+  queue_.behind([&where](RunStore& there) {
+    where = std::this_thread::get_id();
+    there.begin_run({.recipe = "first", .started_at = "start"});
+  });
+  const auto ask = [](RunStore& there) { return there.runs(10).size(); };
+  EXPECT_EQ(run(queue_.run(ask)), 1u) << "what was asked for before is done before";
+  EXPECT_NE(where, std::this_thread::get_id());
+}
+
+TEST_F(StoreQueueTest, WhatNobodyWaitsForIsLeftOutWhenTheDiskStandsStill) {
+  std::promise<void> disk_goes_on;
+  std::shared_future<void> stalled = disk_goes_on.get_future().share();
+  int done = 0;
+  queue_.behind([stalled](RunStore&) { stalled.wait(); });
+  int taken = 1;
+  while (taken <= StoreQueue::kBehindMax && queue_.behind([&done](RunStore&) { ++done; })) ++taken;
+  EXPECT_EQ(taken, StoreQueue::kBehindMax);
+  disk_goes_on.set_value();
+  const auto nothing = [](RunStore&) {};
+  run(queue_.run(nothing));
+  EXPECT_EQ(done, StoreQueue::kBehindMax - 1);
+  EXPECT_TRUE(queue_.behind([](RunStore&) {})) << "there is room again";
+}
+
+TEST_F(StoreQueueTest, AFailureThatNobodyWaitsForEndsNothing) {
+  queue_.behind([](RunStore&) { throw std::runtime_error("the disk is full"); });
+  const auto fail = [](RunStore&) -> int { throw std::runtime_error("the disk is full"); };
+  EXPECT_THROW(run(queue_.run(fail)), std::runtime_error);
+}
+
+TEST_F(StoreQueueTest, AFaultThatCouldNotBeStoredIsStoredBehindTheNextWrite) {
+  sqlite3_commit_hook(
+      store.database()->getHandle(), [](void*) { return 1; }, nullptr);
+  queue_.append_fault({.at = "t", .code = "link_lost", .message = "nothing was heard"});
+  const auto mend = [](RunStore& there) {
+    sqlite3_commit_hook(there.database()->getHandle(), nullptr, nullptr);
+    there.begin_run({.recipe = "next", .started_at = "start"});
+  };
+  EXPECT_FALSE(run(queue_.write(mend)));
+  const auto count = [](RunStore& there) { return FaultLog(there.database()).page(10).size(); };
+  EXPECT_EQ(run(queue_.run(count)), 1u);
+}
+
+}  // namespace
+}  // namespace cell
