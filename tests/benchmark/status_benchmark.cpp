@@ -39,7 +39,7 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr double kRatioMin = 0.65;
-constexpr double kSlowestMaxMs = 5.0;
+constexpr double kSlowestMaxMs = 10.0;
 constexpr int kRounds = 5;
 constexpr int kConnections = 8;
 constexpr int kPollers = 100;
