@@ -95,7 +95,7 @@ TEST(LinkFaults, AControllerThatClosesWhenItMayForgetAResultHasGivenItAlready) {
 TEST(LinkFaults, ASilentControllerHoldsTheRunAtAnyTouch) {
   for (const MessageType on : {MessageType::kTouch, MessageType::kTouchResult}) {
     meet_at_touches({Fault::kGoSilent, on, {"link_lost", "answer_missing"}, Reached::kUntold},
-                    {1, 17, kShortTouchCount});
+                    {1, kShortTouchCount});
   }
 }
 
