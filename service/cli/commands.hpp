@@ -21,12 +21,17 @@ struct TemperatureArguments {
 inline constexpr int kMonteCarloMin = 100;
 inline constexpr int kMonteCarloMax = 1'000'000;
 
-struct IdentifyArguments {
-  std::filesystem::path cell_file;
-  std::filesystem::path touches_file;
+/// The cell of a command that needs no daemon, and what the command line says in place of its files.
+struct CellArguments {
+  std::filesystem::path file;
   std::string recipe;     // the cell's default when empty
   std::string stiffness;  // "on", "off" or "auto"; the recipe's choice when empty
   TemperatureArguments block_temperature;
+};
+
+struct IdentifyArguments {
+  CellArguments cell;
+  std::filesystem::path touches_file;
   std::optional<int> monte_carlo_count;  // simulated calibrations, if any are wanted
   std::string arm_file;                  // where the calibrated arm is written, if anywhere
   std::string map_file;    // where the map of the predicted uncertainty is written as CSV, if anywhere
@@ -35,10 +40,9 @@ struct IdentifyArguments {
 ExitCode identify_command(const IdentifyArguments& arguments, bool json);
 
 struct ValidateArguments {
-  std::filesystem::path cell_file;
+  CellArguments cell;
   std::filesystem::path touches_file;
   std::string other_file;  // touches of another set; the held-out ones when empty
-  std::string recipe;      // the cell's default when empty
 };
 /// The paper's validations; kExitLimitsMissed when the same touches give another arm.
 ExitCode validate_command(const ValidateArguments& arguments, bool json);
@@ -48,8 +52,7 @@ inline constexpr int kFitCountMax = 2'000;
 inline constexpr int kPlaceCountMax = 1'000;
 
 struct PlanArguments {
-  std::filesystem::path cell_file;
-  std::string recipe;                    // the cell's default when empty
+  CellArguments cell;
   std::optional<int> fit_count;          // touches to fit over all planes, in place of the recipe's
   std::string criterion;                 // one of kCriterionNames; the recipe's when empty
   std::optional<double> tip_rms_max_mm;  // the fewest touches that reach it

@@ -6,10 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
-#include "config/read_config.hpp"
-#include "config/stiffness_choice.hpp"
 #include "config/touches_file.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
@@ -55,25 +52,6 @@ void write_files(const IdentifyArguments& arguments, const Cell& cell,
   print_warnings(export_warnings(cell.own_frames, document.verdict.accepted, document.verdict.reasons));
 }
 
-/// The recipe with the choice of the command line, where there is one.
-Recipe chosen_recipe(const Cell& cell, const IdentifyArguments& arguments) {
-  const Recipe& recipe = recipe_named(cell, arguments.recipe);
-  if (arguments.stiffness.empty()) return recipe;
-  return with_stiffness(recipe, stiffness_choice_named(arguments.stiffness).value(), cell);
-}
-
-/// The cell with its block at the temperature of the command line, if there is one.
-Cell at_temperature(const Cell& cell, const TemperatureArguments& given) {
-  if (!given.celsius || !given.std_k) return cell;
-  if (!cell.block.thermal_expansion_per_k) {
-    throw ConfigError(cell.block.file.string(), "/thermal_expansion_per_k",
-                      "is missing, without which a temperature says nothing of the block's size; add it, in "
-                      "a file of schema touchcal/block/2");
-  }
-  // When the touches were made nobody says, so the temperature has no time and no age either.
-  return with_block_temperature(cell, BlockTemperature{*given.celsius, *given.std_k, std::nullopt});
-}
-
 /// Sets what simulated calibrations tell, or the warning that there is nothing to draw from.
 void simulate(const TipRegions& regions, const Recipe& recipe, const calib::IdentificationProblem& problem,
               const calib::IdentificationResult& result, int count, ResultContext& context) {
@@ -98,10 +76,8 @@ void simulate(const TipRegions& regions, const Recipe& recipe, const calib::Iden
 ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (arguments.arm_file == "-" || arguments.map_file == "-")
     throw std::invalid_argument("standard output has the result; name a file");
-  const Cell cell =
-      at_temperature(read_cell(arguments.cell_file, stiffness_choice_named(arguments.stiffness)),
-                     arguments.block_temperature);
-  const Recipe recipe = chosen_recipe(cell, arguments);
+  const Cell cell = given_cell(arguments.cell);
+  const Recipe recipe = given_recipe(cell, arguments.cell);
   TouchesFile file = read_touches(arguments.touches_file, cell);
   if (auto warning = unknown_temperature_warning(cell)) file.warnings.push_back(*std::move(warning));
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
@@ -116,8 +92,8 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
       .warnings = file.warnings,
       .conditions = conditions_document(
           cell, {.config_digest = configuration_digest(cell),
-                 .temperature_source = arguments.block_temperature.celsius ? TemperatureSource::kRun
-                                                                           : TemperatureSource::kFile})};
+                 .temperature_source = arguments.cell.block_temperature.celsius ? TemperatureSource::kRun
+                                                                                : TemperatureSource::kFile})};
   if (arguments.monte_carlo_count)
     simulate(regions, recipe, problem, result, *arguments.monte_carlo_count, context);
   const ResultDocument document = result_of(regions, recipe, problem, result, context);

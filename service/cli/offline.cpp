@@ -8,8 +8,13 @@
 #include <stdexcept>
 
 #include "config/config_error.hpp"
+#include "config/read_config.hpp"
+#include "config/stiffness_choice.hpp"
+#include "service/cli/commands.hpp"
 
 namespace cell {
+
+namespace {
 
 const Recipe& recipe_named(const Cell& cell, const std::string& name) {
   const auto found = cell.recipes.find(name.empty() ? cell.default_recipe : name);
@@ -17,6 +22,27 @@ const Recipe& recipe_named(const Cell& cell, const std::string& name) {
   std::string known;
   for (const auto& [recipe, unused] : cell.recipes) known += (known.empty() ? "" : ", ") + recipe;
   throw ConfigError(cell.file.string(), "/recipes", "has no recipe " + in_quotes(name) + "; it has " + known);
+}
+
+}  // namespace
+
+Cell given_cell(const CellArguments& given) {
+  Cell cell = read_cell(given.file, stiffness_choice_named(given.stiffness));
+  const auto& [celsius, std_k] = given.block_temperature;
+  if (!celsius || !std_k) return cell;
+  if (!cell.block.thermal_expansion_per_k) {
+    throw ConfigError(cell.block.file.string(), "/thermal_expansion_per_k",
+                      "is missing, without which a temperature says nothing of the block's size; add it, in "
+                      "a file of schema touchcal/block/2");
+  }
+  // When the touches were made nobody says, so the temperature has no time and no age either.
+  return with_block_temperature(cell, BlockTemperature{*celsius, *std_k, std::nullopt});
+}
+
+Recipe given_recipe(const Cell& cell, const CellArguments& given) {
+  const Recipe& recipe = recipe_named(cell, given.recipe);
+  if (given.stiffness.empty()) return recipe;
+  return with_stiffness(recipe, stiffness_choice_named(given.stiffness).value(), cell);
 }
 
 ExitCode print_refusal(const std::filesystem::path& touches_file, const calib::IdentificationResult& result) {

@@ -11,8 +11,15 @@
 /// Shared by the commands that need no daemon.
 namespace cell {
 
-/// The recipe of this name; the cell's default one if `name` is empty. Throws ConfigError if there is none.
-const Recipe& recipe_named(const Cell& cell, const std::string& name);
+struct CellArguments;
+
+/// The cell of the command line, its block at the temperature that is given there. Throws ConfigError where a
+/// file is wrong, or where the block's file does not say how it grows.
+Cell given_cell(const CellArguments& given);
+
+/// The recipe that the command line names, the cell's default one without a name, with the choice of
+/// stiffness of the command line. Throws ConfigError if there is none, or if the arm cannot be taken so.
+Recipe given_recipe(const Cell& cell, const CellArguments& given);
 
 /// Prints on standard error, in one line, why the touches give no result; returns the exit code.
 ExitCode print_refusal(const std::filesystem::path& touches_file, const calib::IdentificationResult& result);

@@ -7,7 +7,6 @@
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
-#include "config/read_config.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
 #include "service/cli/plan_text.hpp"
@@ -37,7 +36,7 @@ void set_workspace_box(Cell& cell, const std::vector<double>& box_mm) {
 
 /// The recipe with what the command line says in place of its own words.
 Recipe wanted_recipe(const Cell& cell, const PlanArguments& arguments) {
-  Recipe recipe = recipe_named(cell, arguments.recipe);
+  Recipe recipe = given_recipe(cell, arguments.cell);
   const int faces = static_cast<int>(recipe.faces.size());
   const int own_count = recipe.fit_per_face > 0 ? recipe.fit_per_face * faces : recipe.goal.fit_count;
   if (arguments.fit_count || arguments.tip_rms_max_mm) {
@@ -118,7 +117,7 @@ ExitCode plan_touches(const Cell& cell, const Recipe& recipe, const PlanArgument
 ExitCode plan_command(const PlanArguments& arguments, bool json) {
   if (arguments.file == "-")
     throw std::invalid_argument("--out: standard output has the plan with --json; name a file");
-  Cell cell = read_cell(arguments.cell_file);
+  Cell cell = given_cell(arguments.cell);
   demand_revolute(cell);
   set_workspace_box(cell, arguments.workspace_box_mm);
   const Recipe recipe = wanted_recipe(cell, arguments);

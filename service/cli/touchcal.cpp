@@ -90,12 +90,8 @@ class CommandLine {
  private:
   void add_identify() {
     auto* identify = app_.add_subcommand("identify", "identify an arm from a file of touches (offline)");
-    identify->add_option("--cell", identify_.cell_file, "cell file")->required();
+    add_cell(*identify, identify_.cell, "recipe whose identification options apply");
     identify->add_option("--touches", identify_.touches_file, "touches, JSON or CSV")->required();
-    identify->add_option("--recipe", identify_.recipe,
-                         "recipe whose identification options apply; default: the cell's first");
-    add_stiffness(*identify, identify_.stiffness);
-    add_block_temperature(*identify, identify_.block_temperature);
     identify
         ->add_option("--monte-carlo", identify_.monte_carlo_count,
                      "check the uncertainty by this many simulated calibrations (GUM, Supplement 1)")
@@ -111,20 +107,17 @@ class CommandLine {
   void add_validate() {
     auto* validate = app_.add_subcommand(
         "validate", "identify again from the calibrated arm, and compare distances (offline)");
-    validate->add_option("--cell", validate_.cell_file, "cell file")->required();
+    add_cell(*validate, validate_.cell, "recipe whose identification options apply");
     validate->add_option("--touches", validate_.touches_file, "touches, JSON or CSV")->required();
     validate->add_option("--other", validate_.other_file,
                          "touches of another set; default: the held-out ones of --touches");
-    validate->add_option("--recipe", validate_.recipe,
-                         "recipe whose identification options apply; default: the cell's first");
     validate->add_flag("--json", json_, "one JSON document on standard output");
     validate->callback([this] { action_ = [this] { return cell::validate_command(validate_, json_); }; });
   }
 
   void add_plan() {
     auto* plan = app_.add_subcommand("plan", "plan touches and predict their result (offline)");
-    plan->add_option("--cell", plan_.cell_file, "cell file")->required();
-    plan->add_option("--recipe", plan_.recipe, "the recipe; default: the cell's first");
+    add_cell(*plan, plan_.cell, "the recipe");
     plan->add_option("--fit", plan_.fit_count, "touches to fit, over all planes, in place of the recipe's")
         ->check(CLI::Range(1, cell::kFitCountMax));
     std::vector<std::string> criteria;
@@ -181,6 +174,14 @@ class CommandLine {
                     "minutes that the arm has moved at working speed before: how warm it is")
         ->check(refuse_nan)
         ->check(CLI::Range(0.0, cell::kArmMovingMaxMin));
+  }
+
+  /// For commands that need no daemon.
+  static void add_cell(CLI::App& command, cell::CellArguments& given, const std::string& recipe_is) {
+    command.add_option("--cell", given.file, "cell file")->required();
+    command.add_option("--recipe", given.recipe, recipe_is + "; default: the cell's first");
+    add_stiffness(command, given.stiffness);
+    add_block_temperature(command, given.block_temperature);
   }
 
   static CLI::Option* add_stiffness(CLI::App& command, std::string& choice) {

@@ -4,7 +4,6 @@
 
 #include "calib_core/identification/validate.hpp"
 #include "config/identification_problem.hpp"
-#include "config/read_config.hpp"
 #include "config/touches_file.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
@@ -14,8 +13,8 @@
 namespace cell {
 
 ExitCode validate_command(const ValidateArguments& arguments, bool json) {
-  const Cell cell = read_cell(arguments.cell_file);
-  const Recipe& recipe = recipe_named(cell, arguments.recipe);
+  const Cell cell = given_cell(arguments.cell);
+  const Recipe recipe = given_recipe(cell, arguments.cell);
   const TouchesFile file = read_touches(arguments.touches_file, cell);
   TouchesFile other;
   if (!arguments.other_file.empty()) other = read_touches(arguments.other_file, cell);

@@ -150,6 +150,20 @@ TEST_F(OfflineCommands, ValidateTakesAnotherSetFromAFile) {
     EXPECT_THAT(text.out, HasSubstr(part));
 }
 
+TEST_F(OfflineCommands, ValidateTakesStiffnessAndTemperatureOfTheCommandLine) {
+  const auto plane = [](const Finished& finished) {
+    EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+    return json::parse(finished.out).at("planes").at(0);
+  };
+  const json as_written = plane(validate({"--json"}));
+  const json warm = plane(validate({"--json", "--block-temperature", "60", "--std-block-temperature", "1"}));
+  // A warmer block is larger, and the arm reads the same.
+  EXPECT_NE(warm.at("nominal_mean_mm"), as_written.at("nominal_mean_mm"));
+  const json bending = plane(validate({"--json", "--stiffness", "on"}));
+  EXPECT_NE(bending.at("calibrated_rms_mm"), as_written.at("calibrated_rms_mm"));
+  EXPECT_EQ(validate({"--stiffness", "maybe"}).exit_code, cell::kExitUsage);
+}
+
 TEST_F(OfflineCommands, ValidateTellsBadInputAsIdentifyDoes) {
   expect_one_line(validate({"--other", file("none.json")}), cell::kExitBadInput, "none.json");
   expect_one_line(validate({"--recipe", "edf-99"}), cell::kExitBadInput, "edf-99");

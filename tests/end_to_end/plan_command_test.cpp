@@ -52,6 +52,17 @@ class PlanCommand : public ::testing::Test {
   std::string cell_ = cell_file("edf");
 };
 
+TEST_F(PlanCommand, PredictsTheArmWithTheStiffnessOfTheCommandLine) {
+  const auto compliance_mm = [this](const char* stiffness) {
+    const json document = json::parse(plan({"--recipe", kRecipe, "--json", "--stiffness", stiffness}).out);
+    for (const json& source : document.at("limits").at("accuracy"))
+      if (source.at("source") == "compliance") return source.at("workspace_box_rms_mm").get<double>();
+    return 0.0;
+  };
+  EXPECT_LT(compliance_mm("on"), 0.5 * compliance_mm("off"));
+  EXPECT_EQ(plan({"--stiffness", "maybe"}).exit_code, cell::kExitUsage);
+}
+
 TEST_F(PlanCommand, GivesOneDocumentAndWritesTheSameToAFile) {
   const Finished finished = plan({"--recipe", kRecipe, "--json", "--out", file("plan.json")});
   EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
