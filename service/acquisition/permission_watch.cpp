@@ -8,16 +8,19 @@ namespace cell {
 
 std::string lost_permission(const cs8::State& state) {
   std::string lost;
-  const auto add_if = [&lost](bool is_lost, const std::string& words) {
-    if (is_lost) lost += (lost.empty() ? "" : ", ") + words;
+  const auto add_if = [&lost](bool is_lost, std::string_view words) {
+    if (is_lost) lost.append(lost.empty() ? "" : ", ").append(words);
   };
   add_if(state.emergency_stop != 0, "an emergency stop");
   add_if((state.flags & cs8::kCellClosed) == 0, "an open cell");
   add_if((state.flags & cs8::kPowered) == 0, "no power");
   add_if((state.flags & cs8::kHeld) != 0, "hold");
   add_if((state.flags & cs8::kArmCalibrated) == 0, "no joint references");
-  add_if(state.mode != cs8::WorkingMode::kRemote, fmt::format("the mode '{}'", cs8::name(state.mode)));
-  add_if(state.permit != cs8::PermitState::kGranted, fmt::format("the permit '{}'", cs8::name(state.permit)));
+  // Asked with each State: no text is made unless it is told.
+  if (state.mode != cs8::WorkingMode::kRemote)
+    add_if(true, fmt::format("the mode '{}'", cs8::name(state.mode)));
+  if (state.permit != cs8::PermitState::kGranted)
+    add_if(true, fmt::format("the permit '{}'", cs8::name(state.permit)));
   return lost.empty() ? lost : "the controller tells " + lost;
 }
 
