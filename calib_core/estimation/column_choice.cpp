@@ -18,16 +18,18 @@ namespace {
 constexpr double kSimilarTiltsRadians = 5.0 * kRadiansPerDegree;
 
 /// Rows and leading columns for choose_identifiable(): one row per touch, then one per certified length of an
-/// estimated face, in the same unit (metres).
+/// estimated face, in the same unit (metres). A touch is weighed by its noise_factor().
 struct ChoiceMatrix {
   Eigen::MatrixXd kinematic;
   Eigen::MatrixXd leading;
 };
 
 ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefact,
-                           std::vector<Touch> touches, Formulation formulation) {
+                           std::vector<Touch> touches, double declared_noise_m, Formulation formulation) {
   touches = moved_onto_planes(nominal, artefact.contact_planes, std::move(touches));
-  const Eigen::MatrixXd rows = observe(nominal, artefact.contact_planes, touches, formulation).matrix;
+  Observation observation = observe(nominal, artefact.contact_planes, touches, formulation);
+  weigh_rows(observation, touches, declared_noise_m);
+  const Eigen::MatrixXd rows = observation.matrix;
   const std::vector<int> free = parameters_without_prior(artefact);
   if (free.empty()) return {rows, {}};
 
@@ -44,7 +46,8 @@ ChoiceMatrix choice_matrix(const KinematicModel& nominal, const Artefact& artefa
       const Touch& touch = touches[static_cast<std::size_t>(row)];
       const auto face = static_cast<std::size_t>(touch.face);
       const Eigen::Vector3d tip_m = forward_kinematics(nominal, touch.joints).translation();
-      matrix.leading(row, j) = shifts[face].at(tip_m, normal_at(artefact.contact_planes[face], tip_m));
+      matrix.leading(row, j) = shifts[face].at(tip_m, normal_at(artefact.contact_planes[face], tip_m)) /
+                               noise_factor(touch, declared_noise_m);
     }
     for (Eigen::Index e = 0; e < equation_count; ++e) {
       for (const auto& [index, weight] : artefact.equations[static_cast<std::size_t>(e)].weights) {
@@ -107,7 +110,7 @@ double weak_std(const ErrorParameter& parameter) {
 IdentifiableSet attainable_set(const KinematicModel& nominal, const Artefact& artefact,
                                const IdentifiabilityOptions& options) {
   const ChoiceMatrix matrix =
-      choice_matrix(nominal, artefact, well_distributed_touches(artefact.contact_planes.size()),
+      choice_matrix(nominal, artefact, well_distributed_touches(artefact.contact_planes.size()), 0.0,
                     Formulation::kSignedDistance);
   return choose_identifiable(matrix.kinematic, options, {}, matrix.leading);
 }
@@ -128,8 +131,8 @@ Attainable attainable_parameters(const IdentificationProblem& problem,
 
 IdentifiableSet choose_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
                                const std::vector<std::size_t>& touches) {
-  const ChoiceMatrix matrix =
-      choice_matrix(problem.nominal, problem.artefact, pick(problem.touches, touches), options.formulation);
+  const ChoiceMatrix matrix = choice_matrix(problem.nominal, problem.artefact, pick(problem.touches, touches),
+                                            problem.touch_noise_m, options.formulation);
   WeakDiagonals weak{};
   if (options.hold_weak) weak = weak_diagonals(problem, touches, options.formulation);
   return choose_identifiable(matrix.kinematic, options.identifiability, weak, matrix.leading);
@@ -139,8 +142,8 @@ std::vector<double> choice_singular_values(const IdentificationProblem& problem,
                                            const IdentificationOptions& options,
                                            const std::vector<std::size_t>& touches) {
   if (touches.empty()) return {};
-  const ChoiceMatrix matrix =
-      choice_matrix(problem.nominal, problem.artefact, pick(problem.touches, touches), options.formulation);
+  const ChoiceMatrix matrix = choice_matrix(problem.nominal, problem.artefact, pick(problem.touches, touches),
+                                            problem.touch_noise_m, options.formulation);
   const std::vector<int>& excluded = options.identifiability.excluded;
   std::vector<int> columns;
   for (int column = 0; column < kErrorParameterCount; ++column) {

@@ -47,7 +47,8 @@ struct IdentificationProblem {
   KinematicModel nominal;
   Artefact artefact;
   std::vector<Touch> touches;  // those with role kFit are fitted
-  double touch_noise_m = 0.0;  // declared standard deviation along the normal; 0 is unknown
+  /// Declared standard deviation along the normal; 0 is unknown. Of the touches without one of their own.
+  double touch_noise_m = 0.0;
   /// From what was touched more than once; the declared noise is a prior for it.
   std::optional<TouchNoise> pure_error;
   ErrorTolerances
@@ -73,6 +74,13 @@ struct IdentificationProblem {
   ArmVector start = ArmVector::Zero();
 };
 
+/// Changes the noise of all touches: a touch with a deviation of its own keeps its weight against the others.
+inline void assume_noise(IdentificationProblem& problem, double noise_m) {
+  const double ratio = problem.touch_noise_m > 0.0 ? noise_m / problem.touch_noise_m : 1.0;
+  problem.touch_noise_m = noise_m;
+  for (Touch& touch : problem.touches) touch.deviation_m *= ratio;
+}
+
 enum class IdentificationStatus {
   kConverged,
   kNotConverged,      // iterations_max steps were not enough, or a step was not finite
@@ -87,7 +95,8 @@ enum class IdentificationStatus {
   kBadInput,  // a number that is not finite, a face that does not exist, eq. 6 on a face through the origin
 };
 
-/// One iteration: W and the residuals before its step, the size of the step (metres and radians).
+/// One iteration: W and the residuals before its step, the size of the step (metres and radians). The row of
+/// a touch with a deviation of its own counts as much less as it is less certain: noise_factor().
 struct Iteration {
   double condition_number = 0.0;         // eq. 16, of the identifiable columns of W, metres and radians
   double scaled_condition_number = 0.0;  // of the same columns scaled to unit norm

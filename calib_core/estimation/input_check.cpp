@@ -45,6 +45,23 @@ std::optional<InputRefusal> bad(std::string message) {
   return InputRefusal{IdentificationStatus::kBadInput, std::move(message)};
 }
 
+std::optional<InputRefusal> bad_deviation(const IdentificationProblem& problem, std::size_t index) {
+  const double deviation_m = problem.touches[index].deviation_m;
+  if (deviation_m == 0.0) return std::nullopt;
+  if (!(deviation_m >= kTouchDeviationMinMetres && deviation_m <= kTouchDeviationMaxMetres)) {
+    std::ostringstream value;
+    value << mm_from_metres(deviation_m);
+    return bad("the standard deviation of " + touch_name(index) + " is " + value.str() +
+               " mm; give one over 0 and up to " + millimetres(kTouchDeviationMaxMetres) + ", or none");
+  }
+  if (problem.touch_noise_m == 0.0) {
+    return bad(touch_name(index) +
+               " has a standard deviation of its own, which can only be weighed against a known noise of the "
+               "other touches; give touch_noise_mm");
+  }
+  return std::nullopt;
+}
+
 std::optional<InputRefusal> bad_touch(const IdentificationProblem& problem, Formulation formulation) {
   const auto& planes = problem.artefact.contact_planes;
   for (std::size_t i = 0; i < problem.touches.size(); ++i) {
@@ -57,6 +74,7 @@ std::optional<InputRefusal> bad_touch(const IdentificationProblem& problem, Form
       return bad(touch_name(i) + " is on plane " + std::to_string(touch.face + 1) + ", but there are " +
                  std::to_string(planes.size()) + " planes");
     }
+    if (auto refusal = bad_deviation(problem, i)) return refusal;
     if (planes[face].is_sphere() && formulation == Formulation::kPlaneCoefficients) {
       return bad(face_name(face) +
                  " is a sphere, which has no plane coefficients (eq. 6); use the formulation "

@@ -72,6 +72,7 @@ LeastSquares::LeastSquares(const LeastSquares& other, const IdentificationOption
       unit_columns_(other.unit_columns_),
       weights_differ_(other.weights_differ_),
       noise_unit_m_(other.noise_unit_m_),
+      noise_factors_(other.noise_factors_),
       weights_(other.weights_),
       precision_(prior_precision(problem_, arm_columns_, options.prior)),
       postures_(other.postures_) {
@@ -89,15 +90,18 @@ void LeastSquares::allocate_buffers() {
 
 void LeastSquares::set_weights(Formulation formulation) {
   weights_.resize(static_cast<Eigen::Index>(touches_.size()));
+  noise_factors_.resize(weights_.size());
   for (Eigen::Index row = 0; row < weights_.size(); ++row) {
     const Touch& touch = problem_.touches[touches_[static_cast<std::size_t>(row)]];
     weights_[row] = std::abs(
         row_factor(problem_.artefact.contact_planes[static_cast<std::size_t>(touch.face)], formulation));
+    noise_factors_[row] = noise_factor(touch, noise_unit_m_);
   }
   // The mean square weight is that of the declared noise, so that the priors keep their relative weight.
   const double mean_square =
       weights_.size() == 0 ? 1.0 : weights_.squaredNorm() / static_cast<double>(weights_.size());
   weights_ /= std::sqrt(mean_square) * noise_unit_m_;
+  weights_.array() /= noise_factors_.array();
   weights_differ_ = formulation != Formulation::kSignedDistance;
 }
 
@@ -218,7 +222,8 @@ Eigen::MatrixXd LeastSquares::gradient_covariance() const {
   if (!weights_differ_) return normal_.touch_information;
   Eigen::MatrixXd weighted = rows_.all;
   for (Eigen::Index row = 0; row < rows_.all.rows(); ++row) {
-    weighted.row(row) *= kept_[static_cast<std::size_t>(row)] ? weights_[row] * noise_unit_m_ : 0.0;
+    weighted.row(row) *=
+        kept_[static_cast<std::size_t>(row)] ? weights_[row] * noise_unit_m_ * noise_factors_[row] : 0.0;
   }
   return weighted.transpose() * weighted;
 }

@@ -24,8 +24,8 @@ Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information);
 
 /// The weighted least squares problem of an identification. Its buffers are reused from one iteration to the
 /// next. The unknowns are the given columns of the arm (indices into ArmVector), then all artefact
-/// parameters. Rows are divided by the declared noise (by 1 m when none is declared) and weighted by the
-/// formulation.
+/// parameters. Rows are divided by the declared noise (by 1 m when none is declared), by the noise_factor()
+/// of their touch, and weighted by the formulation.
 class LeastSquares {
  public:
   /// `touches` are indices into the touches of the problem; all are kept initially. Keeps a reference to the
@@ -66,6 +66,7 @@ class LeastSquares {
   [[nodiscard]] Eigen::VectorXd weighted_targets() const { return -rows_.weighted_residuals; }
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }  // of the rows, 1/m
   [[nodiscard]] double noise_unit_m() const { return noise_unit_m_; }
+  [[nodiscard]] const Eigen::VectorXd& noise_factors() const { return noise_factors_; }  // of the rows
 
   /// rows^T rows of the kept touches, without and with the priors.
   [[nodiscard]] const Eigen::MatrixXd& touch_information() const { return normal_.touch_information; }
@@ -111,6 +112,7 @@ class LeastSquares {
   bool unit_columns_ = true;
   bool weights_differ_ = false;
   double noise_unit_m_ = 1.0;
+  Eigen::VectorXd noise_factors_;       // one per row
   Eigen::VectorXd weights_;             // one per row, 1/m
   Eigen::VectorXd precision_;           // of the priors
   std::vector<PostureLanes> postures_;  // of the touches; the last one fills up its block

@@ -277,7 +277,7 @@ IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
     return declared;
   }
   IdentificationProblem reweighed = problem;
-  reweighed.touch_noise_m = declared.uncertainty->noise_m;
+  assume_noise(reweighed, declared.uncertainty->noise_m);
   const IdentificationOptions settled = settled_options(options, declared);
   IdentificationResult measured =
       solve_and_hold(reweighed, settled, problem.touch_noise_m, without(fitted, declared.rejected),
@@ -346,8 +346,10 @@ std::vector<double> nominal_singular_values(const IdentificationProblem& problem
                                             const std::vector<std::size_t>& fitted, int count) {
   std::vector<Touch> touches;
   for (const std::size_t index : fitted) touches.push_back(problem.touches[index]);
-  const Eigen::VectorXd sigma = largest_singular_values(
-      observe(problem.nominal, problem.artefact.contact_planes, touches, options.formulation).matrix, count);
+  Observation observation =
+      observe(problem.nominal, problem.artefact.contact_planes, touches, options.formulation);
+  weigh_rows(observation, touches, problem.touch_noise_m);
+  const Eigen::VectorXd sigma = largest_singular_values(observation.matrix, count);
   return {sigma.begin(), sigma.end()};
 }
 

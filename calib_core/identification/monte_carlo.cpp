@@ -114,10 +114,10 @@ MonteCarlo::MonteCarlo(const IdentificationProblem& problem, const Identificatio
       fitted_arm_(result.errors),
       fitted_artefact_(result.artefact_errors),
       noise_m_(result.uncertainty.value().noise_m) {
-  problem_.touch_noise_m = result.weight_noise_m;
   problem_.gear_std_rad *= std::sqrt(result.uncertainty->gear_share);
   problem_.touches.clear();
   for (const std::size_t touch : fitted) problem_.touches.push_back(problem.touches[touch]);
+  assume_noise(problem_, result.weight_noise_m);
   for (const Touch& touch : problem_.touches) {
     const Chain chain = forward_chain(result.calibrated, touch.joints);
     const Eigen::Vector3d outward = normal_at(
@@ -175,7 +175,7 @@ IdentificationProblem MonteCarlo::draw_problem(const Truth& truth, UniformChance
   for (std::size_t i = 0; i < drawn.touches.size(); ++i) {
     Touch& touch = drawn.touches[i];
     const ContactSurface& plane = planes[static_cast<std::size_t>(touch.face)];
-    const double off_m = noise_m_ * standard_normal(chance);
+    const double off_m = noise_m_ * noise_factor(touch, problem_.touch_noise_m) * standard_normal(chance);
     for (int step = 0; step < kTouchStepsMax; ++step) {
       const Eigen::Vector3d tip_m = forward_chain(arm, touch.joints).tip_in_block_m();
       const double beside_m = signed_distance_m(plane, tip_m) - off_m;

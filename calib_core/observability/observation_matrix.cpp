@@ -98,6 +98,15 @@ Observation observe(const KinematicModel& model, std::span<const ContactSurface>
   return observation;
 }
 
+void weigh_rows(Observation& observation, std::span<const Touch> touches, double declared_noise_m) {
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const double factor = noise_factor(touches[i], declared_noise_m);
+    observation.matrix.row(row) /= factor;
+    observation.output_error[row] /= factor;
+  }
+}
+
 Eigen::VectorXd signed_distances_m(const KinematicModel& model,
                                    std::span<const ContactSurface> contact_planes,
                                    std::span<const Touch> touches) {

@@ -33,6 +33,9 @@ struct Observation {
 Observation observe(const KinematicModel& model, std::span<const ContactSurface> contact_planes,
                     std::span<const Touch> touches, Formulation formulation);
 
+/// Divides the row of each touch by its noise_factor(); `touches` are those that were observed.
+void weigh_rows(Observation& observation, std::span<const Touch> touches, double declared_noise_m);
+
 /// Signed distance of the ball centre from its contact plane, one per touch; metres.
 Eigen::VectorXd signed_distances_m(const KinematicModel& model,
                                    std::span<const ContactSurface> contact_planes,

@@ -123,6 +123,7 @@ OnlineArmEstimate::OnlineArmEstimate(const PlanningProblem& problem)
 
 PredictedContact OnlineArmEstimate::add(const Touch& touch) {
   knowledge_.touches.push_back(touch);
+  knowledge_.touches.back().deviation_m = 0.0;  // kTouchNoiseMetres is wider than that of a touch by hand
   kept_.push_back(true);
   LeastSquares fit = fit_of(knowledge_, columns_);
   fit.keep(kept_);

@@ -44,7 +44,8 @@ double gear_variance_m2(const IdentificationProblem& problem, const std::vector<
     const Eigen::Vector3d normal = normal_at(
         problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.tip_in_block_m());
     const JointVector per_rad = tip_jacobian(problem.nominal, chain).transpose() * normal;
-    sum += per_rad.cwiseProduct(problem.gear_std_rad).squaredNorm();
+    const double factor = noise_factor(touch, problem.touch_noise_m);
+    sum += per_rad.cwiseProduct(problem.gear_std_rad).squaredNorm() / (factor * factor);
   }
   return sum / static_cast<double>(touches.size());
 }

@@ -266,7 +266,8 @@ std::string figure(double value, int digits) {
 /// The error of ball radius minus pre-travel that would cause this scale error, metres.
 double ball_error_for(const ArmVector& own, const LeastSquares& fit, double stretch) {
   const Eigen::MatrixXd arm_rows = fit.rows().leftCols(fit.arm_count());
-  const Eigen::VectorXd all_one = Eigen::VectorXd::Constant(arm_rows.rows(), 1.0 / fit.noise_unit_m());
+  const Eigen::VectorXd all_one =
+      Eigen::VectorXd::Constant(arm_rows.rows(), 1.0 / fit.noise_unit_m()).cwiseQuotient(fit.noise_factors());
   Eigen::MatrixXd information;
   gram_matrix(arm_rows, information);
   // The rows determine these columns, except those that have a prior.

@@ -148,7 +148,8 @@ Eigen::VectorXd studentized_residuals(LeastSquares& fit) {
     const bool kept = fit.kept()[static_cast<std::size_t>(row)];
     // The residual of a touch that alone determines a direction is always 0.
     const double remaining = std::max(kept ? 1.0 - leverages[row] : 1.0 + leverages[row], 1e-6);
-    result[row] = std::abs(fit.residuals_m()[row]) / fit.noise_unit_m() / std::sqrt(remaining);
+    result[row] = std::abs(fit.residuals_m()[row]) / fit.noise_unit_m() / fit.noise_factors()[row] /
+                  std::sqrt(remaining);
   }
   return result;
 }

@@ -30,7 +30,8 @@ inline constexpr double kFalseAlarmsPerSet = 0.002;
 inline constexpr double kScatterMinMetres = 1e-7;
 
 /// Residuals after solve(), divided by the standard deviation that noise and fit give them: a kept touch
-/// absorbs part of its own error, for a rejected one the error of the fit is added. Unit: the declared noise.
+/// absorbs part of its own error, for a rejected one the error of the fit is added. Unit: the declared noise,
+/// for a touch with a deviation of its own that one.
 Eigen::VectorXd studentized_residuals(LeastSquares& fit);
 
 /// Significance limit of the largest of `count` studentized residuals; degrees of freedom of the noise, or

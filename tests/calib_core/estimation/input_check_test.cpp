@@ -135,6 +135,20 @@ const std::vector<BadInput>& bad_inputs() {
        }},
       {"AJointThatIsNoNumber", Status::kBadInput, "touch 5 has a joint",
        [](Problem& problem, Options&) { problem.touches[4].joints[2] = kNaN; }},
+      {"ADeviationBelowZero", Status::kBadInput,
+       "the standard deviation of touch 6 is -0.02 mm; give one over",
+       [](Problem& problem, Options&) { problem.touches[5].deviation_m = -20e-6; }},
+      {"ADeviationThatIsNoNumber", Status::kBadInput, "the standard deviation of touch 6 is nan mm",
+       [](Problem& problem, Options&) { problem.touches[5].deviation_m = kNaN; }},
+      {"ADeviationThatIsNoTouch", Status::kBadInput, "touch 6 is 5.1 mm; give one over 0 and up to 5.0 mm",
+       [](Problem& problem, Options&) { problem.touches[5].deviation_m = 5.1e-3; }},
+      {"ADeviationSmallerThanAnyRounding", Status::kBadInput, "the standard deviation of touch 6 is 1e-11 mm",
+       [](Problem& problem, Options&) { problem.touches[5].deviation_m = 1e-14; }},
+      {"ADeviationBesideAnUnknownNoise", Status::kBadInput, "touch 6 has a standard deviation of its own",
+       [](Problem& problem, Options&) {
+         problem.touches[5].deviation_m = 50e-6;
+         problem.touch_noise_m = 0.0;
+       }},
       {"APlaneThatDoesNotExist", Status::kBadInput, "touch 8 is on plane 5, but there are 4 planes",
        [](Problem& problem, Options&) { problem.touches[7].face = 4; }},
       {"APlaneBeforeTheFirst", Status::kBadInput, "touch 8 is on plane 0",

@@ -98,6 +98,20 @@ TEST(MonteCarlo, AgreesWithTheLinearUncertaintyOfTheTouchNoise) {
   expect_linear_and_drawn_to_agree(made);
 }
 
+TEST(MonteCarlo, AgreesWithTheLinearUncertaintyOfTouchesOfUnlikeNoise) {
+  for (const Formulation formulation : {Formulation::kSignedDistance, Formulation::kPlaneCoefficients}) {
+    Case made = calibrated(drawn::certain_artefact(4), {.formulation = formulation});
+    made.problem.tolerances.fill(std::nullopt);  // only the noise
+    const double alike_m = made.simulation().linear_box_rms_m().value();
+    for (std::size_t i = 0; i < made.problem.touches.size(); i += 3)
+      made.problem.touches[i].deviation_m = 10.0 * made.problem.touch_noise_m;
+    made.result = identify(made.problem, made.options);
+    ASSERT_TRUE(made.result.uncertainty);
+    EXPECT_GT(made.simulation().linear_box_rms_m().value(), 1.1 * alike_m);
+    expect_linear_and_drawn_to_agree(made);
+  }
+}
+
 TEST(MonteCarlo, AgreesWithTheLinearUncertaintyOfBlockBallAndTemperature) {
   expect_linear_and_drawn_to_agree(calibrated(drawn::uncertain_artefact(5), {}, 0.1));
 }

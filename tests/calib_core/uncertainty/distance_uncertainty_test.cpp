@@ -56,6 +56,24 @@ TEST(MeanDistance, IsKnownTheBetterTheMoreTouchesWereFitted) {
   EXPECT_GT(first_std(calibrated(1, 40)), 1.2 * first_std(calibrated(1, 200)));
 }
 
+TEST(MeanDistance, HasTheNoiseThatItsTouchesHaveOfTheirOwn) {
+  const IdentificationOptions options{.robust = false, .measure_noise = false};
+  constexpr double kFactor = 10.0;
+  IdentificationProblem problem = touched(1, 60);
+  const IdentificationResult alike = identify(problem, options);
+  for (Touch& touch : problem.touches) {
+    if (touch.role == TouchRole::kHeldOut) touch.deviation_m = kFactor * problem.touch_noise_m;
+  }
+  const IdentificationResult unsure = identify(problem, options);
+  const double more = (kFactor * kFactor - 1.0) * std::pow(problem.touch_noise_m, 2) / kHeldOutOnAFace;
+  for (std::size_t i = 0; i < alike.distances.size(); ++i) {
+    if (alike.distances[i].role != TouchRole::kHeldOut) continue;
+    EXPECT_NEAR(std::pow(unsure.distances[i].calibrated_mean_std_m.value(), 2) -
+                    std::pow(alike.distances[i].calibrated_mean_std_m.value(), 2),
+                more, 1e-6 * more);
+  }
+}
+
 TEST(MeanDistance, OfFittedTouchesHasNone) {
   for (const FaceDistances& face : calibrated(1, 40).distances)
     EXPECT_EQ(face.calibrated_mean_std_m.has_value(), face.role != TouchRole::kFit);
