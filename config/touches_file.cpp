@@ -73,12 +73,17 @@ calib::TouchRole role_from_json(const JsonValue& value) {
   value.fail("is " + in_quotes(name) + R"(; give "fit", "held_out" or "proof")");
 }
 
+constexpr NumberRange kNoiseUm{.min = kPositive.min,
+                               .max = calib::um_from_metres(calib::kTouchDeviationMaxMetres)};
+
 calib::Touch touch_from_json(const JsonValue& value, int face_count, const calib::JointVector& units) {
-  const JsonObject object = value.object({"plane", "joints_deg", "role"});
+  const JsonObject object = value.object({"plane", "joints_deg", "role", "noise_um"});
   calib::Touch touch;
   touch.face = object.at("plane").integer(1, face_count) - 1;
   touch.joints = object.at("joints_deg").numbers<kJointCount>().cwiseProduct(units);
   if (const auto role = object.find("role")) touch.role = role_from_json(*role);
+  if (const auto noise = object.find("noise_um"))
+    touch.deviation_m = calib::metres_from_um(noise->number(kNoiseUm));
   return touch;
 }
 

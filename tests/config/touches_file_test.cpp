@@ -36,7 +36,7 @@ TEST(TouchesJson, IsReadAsTheContractShowsIt) {
   const TouchesFile file = from_json(document(R"({"plane":1,"joints_deg":[1.5,2.5,3.5,4.5,5.5,6.5]},
                   {"plane":4,"joints_deg":[0,0,0,0,0,0],"role":"held_out"},
                   {"plane":2,"joints_deg":[0,0,0,0,0,0],"role":"proof"},
-                  {"plane":2,"joints_deg":[0,0,0,0,0,0],"role":"fit"})"));
+                  {"plane":2,"joints_deg":[0,0,0,0,0,0],"role":"fit","noise_um":61.5})"));
   ASSERT_EQ(file.touches.size(), 4U);
   EXPECT_THAT(file.warnings, IsEmpty());
   EXPECT_EQ(file.touches[0].face, 0);
@@ -48,6 +48,8 @@ TEST(TouchesJson, IsReadAsTheContractShowsIt) {
   EXPECT_EQ(file.touches[1].role, calib::TouchRole::kHeldOut);
   EXPECT_EQ(file.touches[2].role, calib::TouchRole::kProof);
   EXPECT_EQ(file.touches[3].role, calib::TouchRole::kFit);
+  EXPECT_EQ(file.touches[0].deviation_m, 0.0);
+  EXPECT_DOUBLE_EQ(file.touches[3].deviation_m, 61.5e-6);
 }
 
 std::string with_references(const std::string& references) {
@@ -147,6 +149,14 @@ TEST(TouchesJson, WhatIsWrongIsSaidWithItsPlace) {
       {document(R"({"plane":1,"joints_deg":[1,2,1e400,4,5,6]})"), "too large"},
       {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6],"role":"fitted"})"),
        "/touches/0/role: is \"fitted\""},
+      {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6],"noise_um":-20})"),
+       "body: /touches/0/noise_um: is -20; give a number over 0, up to 5000"},
+      {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6],"noise_um":0})"),
+       "body: /touches/0/noise_um: is 0; give a number over 0, up to 5000"},
+      {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6],"noise_um":5000.1})"),
+       "/touches/0/noise_um: is 5000.1; give"},
+      {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6],"noise_um":null})"), "/touches/0/noise_um: is null"},
+      {document(R"({"plane":1,"joints_deg":[1,2,3,4,5,6],"noise_um":NaN})"), "not JSON near"},
       {document(R"({"plane":1,"joints_rad":[1,2,3,4,5,6]})"), "/touches/0/joints_rad: unknown key"},
       {with_references("7"), "body: /reference_touches: is a number"},
       {references({reference(), reference(1, 0.0, 2)}),
