@@ -46,7 +46,7 @@ void find_damaged_rows(SQLite::Database& database, std::vector<std::string>& dam
     return;
   }
   if (!has_checksums) return;
-  for (const row::CheckedRows* rows : row::all_checked_rows()) {
+  for (const row::CheckedRows* rows : row::all_checked_rows(version)) {
     SQLite::Statement query(database, "SELECT " + rows->run + ", " + rows->number + " FROM " + rows->table +
                                           " WHERE NOT " + rows->is_whole());
     while (query.executeStep()) {

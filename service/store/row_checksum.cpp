@@ -58,6 +58,29 @@ CheckedRows rows_of(const std::string& table, std::string columns, std::string n
           .applies = "1"};
 }
 
+CheckedRows touch_rows_of(const std::string& columns) {
+  return rows_of("touches", "run_id, " + columns, "number");
+}
+
+CheckedRows superseded_rows_of(const std::string& columns) {
+  return rows_of("superseded_touches", "id, run_id, " + columns + ", reason", "number");
+}
+
+const CheckedRows& touch_rows_without_noise() {
+  static const CheckedRows rows = touch_rows_of(kTouchColumnsWithoutNoise);
+  return rows;
+}
+
+const CheckedRows& superseded_rows_without_noise() {
+  static const CheckedRows rows = superseded_rows_of(kTouchColumnsWithoutNoise);
+  return rows;
+}
+
+void reseal(SQLite::Database& database, const CheckedRows& before, const CheckedRows& now) {
+  database.exec("UPDATE " + now.table + " SET " + now.checksum + " = " + now.computed() + " WHERE " +
+                before.is_whole());
+}
+
 }  // namespace
 
 std::string CheckedRows::computed() const { return "row_checksum('" + name + "', " + columns + ")"; }
@@ -73,13 +96,12 @@ std::string CheckedRows::values(int count) const {
 }
 
 const CheckedRows& touch_rows() {
-  static const CheckedRows rows = rows_of("touches", "run_id, " + kTouchColumns, "number");
+  static const CheckedRows rows = touch_rows_of(kTouchColumns);
   return rows;
 }
 
 const CheckedRows& superseded_rows() {
-  static const CheckedRows rows =
-      rows_of("superseded_touches", "id, run_id, " + kTouchColumns + ", reason", "number");
+  static const CheckedRows rows = superseded_rows_of(kTouchColumns);
   return rows;
 }
 
@@ -144,11 +166,14 @@ const CheckedRows& arm_rows() {
   return rows;
 }
 
-std::span<const CheckedRows* const> all_checked_rows() {
-  static const std::array all{&touch_rows(),       &superseded_rows(),   &reference_rows(),
-                              &plan_change_rows(), &open_command_rows(), &plan_rows(),
-                              &run_rows(),         &result_rows(),       &arm_rows()};
-  return all;
+std::span<const CheckedRows* const> all_checked_rows(std::size_t schema) {
+  static const auto with = [](const CheckedRows& touches, const CheckedRows& superseded) {
+    return std::array{&touches,     &superseded, &reference_rows(), &plan_change_rows(), &open_command_rows(),
+                      &plan_rows(), &run_rows(), &result_rows(),    &arm_rows()};
+  };
+  static const std::array all = with(touch_rows(), superseded_rows());
+  static const std::array without_noise = with(touch_rows_without_noise(), superseded_rows_without_noise());
+  return schema < kTouchNoiseSchema ? without_noise : all;
 }
 
 const std::string& rows_of_run() {
@@ -169,14 +194,19 @@ void add_checksum_function(SQLite::Database& database) {
   database.createFunction("row_checksum", kAnyCount, true, nullptr, checksum_values);
 }
 
-void fill_checksums(SQLite::Database& database) {
+void fill_checksums(SQLite::Database& database, std::size_t schema) {
   database.exec("UPDATE runs SET rows_kept = " + rows_of_run() +
                 " WHERE outcome <> 'running' AND checksum IS NULL");
-  for (const CheckedRows* rows : all_checked_rows()) {
+  for (const CheckedRows* rows : all_checked_rows(schema)) {
     const std::string column = rows->checksum.substr(rows->checksum.find('.') + 1);
     database.exec("UPDATE " + rows->table + " SET " + column + " = " + rows->computed() + " WHERE " +
                   rows->checksum + " IS NULL AND " + rows->applies);
   }
+}
+
+void reseal_touches(SQLite::Database& database) {
+  reseal(database, touch_rows_without_noise(), touch_rows());
+  reseal(database, superseded_rows_without_noise(), superseded_rows());
 }
 
 void seal(SQLite::Database& database, const CheckedRows& rows, const std::string& condition,

@@ -30,7 +30,7 @@ void bind_or_null(SQLite::Statement& statement, int index, const std::optional<V
 }
 
 /// The columns of a touch, in the order of both tables, from `index` on.
-int bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouch& touch) {
+void bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouch& touch) {
   int index = 0;
   insert.bind(++index, run_id);
   insert.bind(++index, touch.number);
@@ -43,7 +43,7 @@ int bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouch
   insert.bind(++index, touch.session);
   insert.bind(++index, touch.sequence);
   insert.bind(++index, touch.aimed_with);
-  return index;
+  bind_or_null(insert, ++index, touch.noise_um);
 }
 
 /// A damaged touch stays where it is: its copy would get a checksum that says it is whole.
@@ -136,7 +136,7 @@ void demand_file(const std::string& path, const std::optional<std::pair<dev_t, i
 }  // namespace
 
 struct RunStore::Statements {
-  static constexpr int kTouchParameters = 16;
+  static constexpr int kTouchParameters = 17;
 
   explicit Statements(SQLite::Database& database)
       : append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns + ", checksum)" +

@@ -27,6 +27,8 @@ struct StoredTouch {
   std::uint32_t session = 0;
   std::uint32_t sequence = 0;
   int aimed_with = 0;  // number of touches in the estimate that aimed it; kNominalMiss: none was used
+  /// One standard deviation along the normal, micrometres; nothing: that of any touch of the cell.
+  std::optional<double> noise_um;
 };
 inline constexpr int kNominalMiss = -1;
 

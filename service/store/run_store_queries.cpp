@@ -143,7 +143,8 @@ StoredTouch read_touch(SQLite::Statement& query) {
           .captured_at = query.getColumn(11).getString(),
           .session = query.getColumn(12).getUInt(),
           .sequence = query.getColumn(13).getUInt(),
-          .aimed_with = query.getColumn(14).getInt()};
+          .aimed_with = query.getColumn(14).getInt(),
+          .noise_um = number_or_nothing(query.getColumn(15))};
 }
 
 }  // namespace
@@ -205,7 +206,7 @@ std::vector<StoredTouch> RunStore::touches(std::int64_t run_id) const try {
   query.bind(1, run_id);
   std::vector<StoredTouch> found;
   while (query.executeStep()) {
-    demand_whole(*database_, query, 15, "touches", run_id, 0);
+    demand_whole(*database_, query, 16, "touches", run_id, 0);
     found.push_back(read_touch(query));
   }
   return found;
@@ -221,8 +222,8 @@ std::vector<SupersededTouch> RunStore::superseded_touches(std::int64_t run_id) c
   query.bind(1, run_id);
   std::vector<SupersededTouch> found;
   while (query.executeStep()) {
-    demand_whole(*database_, query, 16, "superseded_touches", run_id, 0);
-    found.push_back({read_touch(query), query.getColumn(15).getString()});
+    demand_whole(*database_, query, 17, "superseded_touches", run_id, 0);
+    found.push_back({read_touch(query), query.getColumn(16).getString()});
   }
   return found;
 } catch (const SQLite::Exception& error) {

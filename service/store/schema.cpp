@@ -172,8 +172,15 @@ CREATE INDEX audit_of_chain ON audit((who IN ('none', 'wrong token')), id);
 CREATE TABLE audit_chains(chain INTEGER PRIMARY KEY, anchor TEXT NOT NULL, newest TEXT NOT NULL) STRICT;
 )sql";
 
-constexpr std::array kMigrations{kRunsAndTouches, kPlans,     kDiary,       kTemperatures,
-                                 kStiffness,      kChecksums, kAuditChained};
+/// The noise of a touch that is not that of the cell's touches. Checksums cover it from here on:
+/// reseal_touches().
+constexpr const char* kTouchNoise = R"sql(
+ALTER TABLE touches ADD COLUMN noise_um REAL;
+ALTER TABLE superseded_touches ADD COLUMN noise_um REAL;
+)sql";
+
+constexpr std::array kMigrations{kRunsAndTouches, kPlans,     kDiary,        kTemperatures,
+                                 kStiffness,      kChecksums, kAuditChained, kTouchNoise};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.
@@ -199,8 +206,9 @@ void migrate(SQLite::Database& database, const std::filesystem::path& file) {
   for (int next = version; next < newest; ++next) {
     const char* migration = kMigrations[static_cast<std::size_t>(next)];
     database.exec(migration);
-    if (migration == kChecksums) row::fill_checksums(database);
+    if (migration == kChecksums) row::fill_checksums(database, kChecksumSchema);
     if (migration == kAuditChained) chain_audit_rows(database);
+    if (migration == kTouchNoise) row::reseal_touches(database);
   }
   database.exec("PRAGMA user_version = " + std::to_string(newest));
   transaction.commit();

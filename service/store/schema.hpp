@@ -21,6 +21,9 @@ std::span<const char* const> migrations();
 /// From this schema on rows have checksums.
 inline constexpr std::size_t kChecksumSchema = 6;
 
+/// From this schema on a touch may have a noise of its own, which its checksum covers.
+inline constexpr std::size_t kTouchNoiseSchema = 8;
+
 /// Opens or creates the file (WAL, synchronous FULL: a commit is durable on return) and migrates it to the
 /// newest schema, all or nothing. Throws std::runtime_error that names the file if that fails, also for a
 /// file of a newer schema, which is not changed.

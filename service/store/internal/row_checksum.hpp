@@ -37,7 +37,8 @@ const CheckedRows& plan_rows();
 const CheckedRows& run_rows();     // without the result
 const CheckedRows& result_rows();  // of the table of the runs
 const CheckedRows& arm_rows();
-std::span<const CheckedRows* const> all_checked_rows();
+/// Of a file of this schema, kChecksumSchema or later.
+std::span<const CheckedRows* const> all_checked_rows(std::size_t schema);
 
 /// Of a row of runs: how many rows it has in each table, as kept with a run that ended. A row that is gone
 /// shows in it.
@@ -49,8 +50,11 @@ const std::string& has_its_rows();
 /// tells types and lengths apart; it finds damage, it does not prevent forgery.
 void add_checksum_function(SQLite::Database& database);
 
-/// Writes the checksums of the rows that have none: those of an earlier schema.
-void fill_checksums(SQLite::Database& database);
+/// Writes the checksums of the rows that have none, as in a file of this schema.
+void fill_checksums(SQLite::Database& database, std::size_t schema);
+
+/// Brings the checksums of touches to kTouchNoiseSchema. A row that was damaged before stays known as such.
+void reseal_touches(SQLite::Database& database);
 
 /// Writes the checksum of the rows where `condition` (SQL) holds for `key`.
 void seal(SQLite::Database& database, const CheckedRows& rows, const std::string& condition,

@@ -13,10 +13,12 @@ namespace cell::row {
 inline const std::string kJointColumns =
     "j1_microdeg, j2_microdeg, j3_microdeg, j4_microdeg, j5_microdeg, j6_microdeg";
 
-/// Of touches and superseded_touches, after run_id.
-inline const std::string kTouchColumns = "number, plane, role, " + kJointColumns +
-                                         ", source, overtravel_dmm, captured_at, session, sequence, "
-                                         "aimed_with";
+/// Of touches and superseded_touches, after run_id; those up to the schema before kTouchNoiseSchema.
+inline const std::string kTouchColumnsWithoutNoise =
+    "number, plane, role, " + kJointColumns +
+    ", source, overtravel_dmm, captured_at, session, sequence, "
+    "aimed_with";
+inline const std::string kTouchColumns = kTouchColumnsWithoutNoise + ", noise_um";
 
 /// "table touches, run 3, number 12".
 std::string place_of(std::string_view table, std::int64_t run_id, std::optional<int> number = {});

@@ -15,7 +15,8 @@ namespace cell {
 static bool operator==(const StoredTouch& a, const StoredTouch& b) {
   return a.number == b.number && a.plane == b.plane && a.role == b.role && a.joints == b.joints &&
          a.source == b.source && a.overtravel_dmm == b.overtravel_dmm && a.captured_at == b.captured_at &&
-         a.session == b.session && a.sequence == b.sequence && a.aimed_with == b.aimed_with;
+         a.session == b.session && a.sequence == b.sequence && a.aimed_with == b.aimed_with &&
+         a.noise_um == b.noise_um;
 }
 
 namespace {
@@ -76,11 +77,23 @@ TEST_F(RunStoreTest, TouchesComeBackExactlyAndInTheirOrder) {
                             .joints = {kLowest, kHighest, 0, -1, 1, 123456789},
                             .source = cs8::CaptureSource::kPolled,
                             .overtravel_dmm = -7,
-                            .captured_at = "2026-01-31T08:15:30.250Z"};
+                            .captured_at = "2026-01-31T08:15:30.250Z",
+                            .noise_um = 61.1};
   store_->append_touch(run, extreme);
   store_->append_touch(run, touch(1));
   EXPECT_THAT(store_->touches(run), ElementsAre(touch(1), extreme));
   EXPECT_THAT(store_->touches(run + 1), IsEmpty());
+}
+
+TEST_F(RunStoreTest, ATouchKeepsItsNoiseWhenAnotherTakesItsPlace) {
+  const std::int64_t run = begin();
+  StoredTouch first = touch(1), again = touch(1);
+  first.noise_um = 28.4;
+  again.noise_um = 20.1;
+  store_->append_touch(run, first);
+  store_->replace_touch(run, again, "it contradicted the others");
+  EXPECT_THAT(store_->touches(run), ElementsAre(again));
+  EXPECT_EQ(store_->superseded_touches(run).at(0).touch, first);
 }
 
 TEST_F(RunStoreTest, AStoredTouchIsThereForAnotherConnectionAtOnce) {

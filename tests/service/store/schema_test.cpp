@@ -3,7 +3,9 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include "service/store/damaged_store.hpp"
 #include "service/store/internal/row_checksum.hpp"
+#include "service/store/maintenance.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/config/folder.hpp"
 
@@ -31,7 +33,7 @@ std::filesystem::path file_of_version(const Folder& folder, int version) {
   if (version >= 3) database.exec("UPDATE runs SET block_temperature_c = 21.5 WHERE id = 1");
   if (version >= static_cast<int>(kChecksumSchema)) {
     row::add_checksum_function(database);
-    row::fill_checksums(database);
+    row::fill_checksums(database, static_cast<std::size_t>(version));
   }
   database.exec("PRAGMA user_version = " + std::to_string(version));
   return file;
@@ -65,6 +67,8 @@ TEST_P(StoreSchema, AFileOfAnEarlierVersionIsTakenOverWithAllThatIsInIt) {
   EXPECT_EQ(touches[0].joints, (cs8::JointsMicrodeg{-1, 2, -3, 4, -5, 6}));
   EXPECT_EQ(touches[0].overtravel_dmm, 7);
   EXPECT_EQ(touches[0].sequence, 0u);
+  EXPECT_FALSE(touches[0].noise_um);
+  EXPECT_THAT(find_damage(file), ::testing::IsEmpty());
   EXPECT_EQ(store.result_json(1), "{\"a\":1}");
   EXPECT_EQ(store.last_accepted()->id, 1);
   EXPECT_EQ(store.run_with_key("key")->id, 2);
@@ -86,6 +90,29 @@ TEST_P(StoreSchema, AFileOfAnEarlierVersionGetsTheShapeOfANewOne) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Versions, StoreSchema, ::testing::Range(1, static_cast<int>(migrations().size())));
+
+TEST(StoreSchemaFile, ATouchThatWasDamagedBeforeItsChecksumCoversItsNoiseStaysKnownAsDamaged) {
+  const Folder folder;
+  const auto file = file_of_version(folder, static_cast<int>(kTouchNoiseSchema) - 1);
+  EXPECT_THAT(find_damage(file), ::testing::IsEmpty()) << "of a file of that schema";
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE touches SET plane = 2 WHERE run_id = 1 AND number = 2");
+  const auto damaged = ::testing::ElementsAre(::testing::HasSubstr("table touches, run 1, number 2"));
+  EXPECT_THAT(find_damage(file), damaged);
+  const RunStore store(file);
+  EXPECT_THAT(find_damage(file), damaged);
+  EXPECT_THROW(static_cast<void>(store.touches(1)), DamagedStore);
+}
+
+TEST(StoreSchemaFile, TheNoiseOfATouchIsInItsChecksum) {
+  const Folder folder;
+  const auto file = folder.path() / "store.sqlite";
+  RunStore store(file);
+  const std::int64_t run = store.begin_run({.recipe = "edf-25", .touches_total = 140, .started_at = "start"});
+  store.append_touch(run, {.number = 1, .plane = 1, .captured_at = "now", .noise_um = 61.1});
+  store.database()->exec("UPDATE touches SET noise_um = NULL");
+  EXPECT_THROW(static_cast<void>(store.touches(run)), DamagedStore);
+}
 
 TEST(StoreSchemaFile, AMigrationThatFailsLeavesTheFileAsItWas) {
   const Folder folder;
