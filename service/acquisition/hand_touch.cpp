@@ -1,8 +1,20 @@
 #include "service/acquisition/hand_touch.hpp"
 
+#include <cmath>
+
+#include "calib_core/geometry/units.hpp"
 #include "service/run/touch_command.hpp"
 
 namespace cell {
+
+std::optional<double> own_noise_um(const HandTouch& touch, double declared_noise_m) {
+  if (!touch.moved_m || !(declared_noise_m > 0.0)) return std::nullopt;
+  constexpr double kStepsPerUm = 10.0;
+  const double deviation_m = std::hypot(declared_noise_m, *touch.moved_m / std::sqrt(12.0));
+  const double noise_um = std::round(kStepsPerUm * calib::um_from_metres(deviation_m)) / kStepsPerUm;
+  if (calib::metres_from_um(noise_um) <= declared_noise_m) return std::nullopt;
+  return noise_um;
+}
 
 std::optional<HandTouch> HandTouchWatch::on_controller_state(const cs8::State& state) {
   const cs8::ProbeInputs probe = cs8::probe_inputs(state.flags);

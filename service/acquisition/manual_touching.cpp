@@ -140,14 +140,17 @@ std::optional<std::string> ManualTouching::take_touch(ActiveRun* active, const H
   result.source = cs8::CaptureSource::kPolled;
   result.contact = touch.wire_joints;
   result.edges = 1;
-  taken_ = Taken{.run_id = active->run.id(), .wanted = *planned, .result = result};
+  taken_ = Taken{.run_id = active->run.id(),
+                 .wanted = *planned,
+                 .result = result,
+                 .noise_um = own_noise_um(touch, active->run.problem().touch_noise_m)};
   wake_.wake();
   return std::nullopt;
 }
 
 asio::awaitable<void> ManualTouching::keep(ActiveRun& active, Taken taken) {
   is_storing_ = true;
-  const bool kept = co_await touches_.keep(active, taken.wanted, taken.result, std::nullopt);
+  const bool kept = co_await touches_.keep(active, taken.wanted, taken.result, std::nullopt, taken.noise_um);
   is_storing_ = false;
   if (!kept) co_return;
   if (active.place_check) {

@@ -40,6 +40,7 @@ class ManualTouching {
     std::int64_t run_id = 0;
     calib::PlannedTouch wanted;
     cs8::TouchResult result;
+    std::optional<double> noise_um;  // as StoredTouch::noise_um
   };
 
   boost::asio::awaitable<void> keep(ActiveRun& active, Taken taken);

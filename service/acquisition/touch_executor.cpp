@@ -281,7 +281,8 @@ void TouchExecutor::take_rejection(const cs8::Rejected& rejected, HeldBy held_by
 }
 
 asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch planned,
-                                          cs8::TouchResult result, std::optional<OpenTouch> answered) {
+                                          cs8::TouchResult result, std::optional<OpenTouch> answered,
+                                          std::optional<double> noise_um) {
   Run& run = active.run;
   const StoredTouch touch{.number = run.touches_done() + 1,
                           .plane = planned.face + 1,
@@ -292,7 +293,8 @@ asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch
                           .captured_at = format_utc(clocks_.system()),
                           .session = answered ? answered->session : 0,
                           .sequence = answered ? answered->sequence : 0,
-                          .aimed_with = answered ? answered->aimed_with : 0};
+                          .aimed_with = answered ? answered->aimed_with : 0,
+                          .noise_um = noise_um};
   const std::optional<int> total = total_is_due_ ? std::optional(run.touches_total()) : std::nullopt;
   bool total_stored = false;
   const auto write = [id = run.id(), touch, total, &total_stored](RunStore& store) {

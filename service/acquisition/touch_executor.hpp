@@ -50,9 +50,10 @@ class TouchExecutor {
   /// contradict is made again before anything else. The estimate must be that without it.
   void suspect_last(const ActiveRun& active);
   /// Stores a contact and adds it to the run; false when it could not be stored, which holds the run.
-  /// `answered` is the command that it answers; empty where none is known.
+  /// `answered` is the command that it answers; empty where none is known. `noise_um` as in StoredTouch.
   boost::asio::awaitable<bool> keep(ActiveRun& active, calib::PlannedTouch planned, cs8::TouchResult result,
-                                    std::optional<OpenTouch> answered);
+                                    std::optional<OpenTouch> answered,
+                                    std::optional<double> noise_um = std::nullopt);
   /// Settles a result that the controller still has, of a run that has ended or is on hold: a contact in it
   /// is stored with that run, then the controller may forget it. One that tells of a collision or the like
   /// ends a run on hold. `active`: null without a run.

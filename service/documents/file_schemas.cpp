@@ -14,7 +14,9 @@ constexpr std::string_view kTouches = R"({
   "touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},
     "role":{"enum":["fit","held_out","proof"]},
-    "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}},
+    "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
+    "noise_um":{"type":"number","exclusiveMinimum":0,"maximum":5000,
+      "description":"one standard deviation of this touch along the normal, where it is not the cell's touch_noise_mm"}}}},
   "reference_touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},
     "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}}}})";

@@ -1,6 +1,7 @@
 #include "service/documents/json_view.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -78,6 +79,11 @@ void set_faults(const Status& status, StatusDocument& document) {
   document.warning_message = status.warning->message();
 }
 
+/// But for the rounding of units.
+bool is_noise_of_cell(const Cell& cell, double noise_um) {
+  return std::abs(calib::metres_from_um(noise_um) - cell.touch_noise_m) < calib::kTouchDeviationMinMetres;
+}
+
 }  // namespace
 
 StatusDocument status_of(const Status& status) {
@@ -125,9 +131,10 @@ std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& t
                              const std::vector<ReferenceTouch>& references) {
   Json list = Json::array();
   for (const StoredTouch& touch : touches) {
-    list.push_back({{"plane", touch.plane},
-                    {"role", word_of(touch.role)},
-                    {"joints_deg", joints_deg_json(touch.joints)}});
+    Json& entry = list.emplace_back(Json{{"plane", touch.plane},
+                                         {"role", word_of(touch.role)},
+                                         {"joints_deg", joints_deg_json(touch.joints)}});
+    if (touch.noise_um && !is_noise_of_cell(cell, *touch.noise_um)) entry["noise_um"] = *touch.noise_um;
   }
   Json document{{"schema", "touchcal/touches/1"}, {"arm", cell.arm.name}, {"touches", list}};
   const auto place = std::ranges::find(touches, calib::TouchRole::kFit, &StoredTouch::role);

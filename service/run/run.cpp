@@ -12,7 +12,10 @@
 namespace cell {
 
 calib::Touch to_touch(const StoredTouch& stored) {
-  return {.face = stored.plane - 1, .joints = from_wire(stored.joints), .role = stored.role};
+  return {.face = stored.plane - 1,
+          .joints = from_wire(stored.joints),
+          .role = stored.role,
+          .deviation_m = calib::metres_from_um(stored.noise_um.value_or(0.0))};
 }
 
 std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& references,

@@ -52,7 +52,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/acquisition/controller_permit",
      "the permit of controller_session.cpp: acquisition/controller_session_test"},
     {"service/acquisition/cs8_controller", "passes calls on to cs8::Client: every run of tests/end_to_end"},
-    {"service/acquisition/hand_touch", "acquisition/locating_test"},
     {"service/acquisition/link_fault", "acquisition/controller_session_test and end_to_end/link_faults_test"},
     {"service/acquisition/touch_executor_beside_plan",
      "the second half of touch_executor.cpp: acquisition/touch_executor_test"},

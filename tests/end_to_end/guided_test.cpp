@@ -2,6 +2,8 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/end_to_end/pendant.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
 
@@ -56,8 +58,20 @@ TEST_F(GuidedRun, IdentifiesTheArmWithoutAMotionCommand) {
   ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
   EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
   EXPECT_LT(result.iterations.back().residual_rms_m, 0.05 * result.iterations.front().residual_rms_m);
-  for (const cell::StoredTouch& touch : loop_.store().touches(id))
-    EXPECT_EQ(touch.source, cs8::CaptureSource::kPolled);
+  const double declared_m = loop_.cell.touch_noise_m;
+  std::size_t unsure = 0;
+  const std::vector<cell::StoredTouch> touches = loop_.store().touches(id);
+  const std::vector<calib::Touch>& fitted = loop_.operation().run()->problem().touches;
+  ASSERT_EQ(touches.size(), fitted.size());
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    EXPECT_EQ(touches[i].source, cs8::CaptureSource::kPolled);
+    EXPECT_EQ(fitted[i].deviation_m, cell::to_touch(touches[i]).deviation_m);
+    if (!touches[i].noise_um) continue;  // the arm was slow enough
+    ++unsure;
+    EXPECT_GT(fitted[i].deviation_m, declared_m);
+    EXPECT_LT(fitted[i].deviation_m, std::hypot(declared_m, 2e-4 / std::sqrt(12.0)) + 1e-7);
+  }
+  EXPECT_GT(unsure, touches.size() / 2);
   EXPECT_EQ(loop_.server().report().active_sequence, 0U);
   EXPECT_EQ(loop_.status().controller.mode, "manual");
 }

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "calib_core/kinematics/kinematic_model.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
@@ -47,6 +50,23 @@ TEST_F(ManualTouchingTest, SaysWhichTouchComesNextAndKeepsTheOneThatIsMade) {
   EXPECT_TRUE(controller.asked.empty()) << "nothing is commanded";
   run(manual_.await_touch(active_));
   EXPECT_EQ(manual_.guide(status.state()).value().index, 2);
+}
+
+// The ball moves by some 0.1 mm between the states: the touch weighs less than one that was latched.
+TEST_F(ManualTouchingTest, ATouchHasTheNoiseOfTheWayOnWhichTheProbeTripped) {
+  const calib::JointVector joints = asked_for();
+  constexpr double kBeforeRad = 5e-5;
+  const auto ball_m = [](const calib::JointVector& at) -> Eigen::Vector3d {
+    return calib::forward_kinematics(cell_of_owners().arm.model, from_wire(to_wire(at))).translation();
+  };
+  const double moved_m = (ball_m(joints) - ball_m((joints.array() + kBeforeRad).matrix())).norm();
+  ASSERT_GT(moved_m, 2e-5);
+  touch(joints, kBeforeRad);
+  ASSERT_EQ(active_.run.touches_done(), 1) << problem();
+  const double declared_m = active_.run.problem().touch_noise_m;
+  const double expected_um = 1e6 * std::hypot(declared_m, moved_m / std::sqrt(12.0));
+  EXPECT_NEAR(store.touches(active_.run.id()).at(0).noise_um.value(), expected_um, 0.051);
+  EXPECT_NEAR(1e6 * active_.run.problem().touches.at(0).deviation_m, expected_um, 0.051);
 }
 
 TEST_F(ManualTouchingTest, ABallThatComesTooFastDoesNotCount) {

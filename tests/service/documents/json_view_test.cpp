@@ -5,6 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "calib_core/geometry/units.hpp"
+#include "service/run/run.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/document_shape.hpp"
 #include "tests/service/shipped_cell.hpp"
@@ -160,7 +162,8 @@ TEST(TouchesDocument, IsWhatIdentifyReadsBackToTheLastStep) {
        .plane = 4,
        .role = calib::TouchRole::kHeldOut,
        .joints = {1, -1, 7, 123456789, 0, -270000000}},
-      {.number = 3, .plane = 2, .role = calib::TouchRole::kProof}};
+      {.number = 3, .plane = 2, .role = calib::TouchRole::kProof, .noise_um = 61.1},
+      {.number = 4, .plane = 2, .noise_um = calib::um_from_metres(edf().touch_noise_m)}};
   const std::string document = touches_document(edf(), stored, {});
   const TouchesFile read = touches_from_json("document", document, document.size(), edf());
   ASSERT_EQ(read.touches.size(), stored.size());
@@ -168,7 +171,12 @@ TEST(TouchesDocument, IsWhatIdentifyReadsBackToTheLastStep) {
     EXPECT_EQ(read.touches[i].face + 1, stored[i].plane);
     EXPECT_EQ(read.touches[i].role, stored[i].role);
     EXPECT_EQ(to_wire(read.touches[i].joints), stored[i].joints) << i;
+    if (i == 3) continue;  // the declared noise, which is not written
+    EXPECT_EQ(read.touches[i].deviation_m, to_touch(stored[i]).deviation_m) << i;
   }
+  const json touches = json::parse(document).at("touches");
+  EXPECT_EQ(touches[2].at("noise_um"), 61.1);
+  for (const std::size_t i : {0u, 1u, 3u}) EXPECT_FALSE(touches[i].contains("noise_um")) << "the cell's";
 }
 
 }  // namespace
