@@ -43,7 +43,7 @@ constexpr const char* kNoTakeInRun =
     "then touch again, slowly";
 
 /// What the status says of a run.
-void describe_run(Status& status, const ActiveRun& active, std::chrono::system_clock::time_point now) {
+void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_clock::time_point now) {
   const Run& run = active.run;
   status.touches_done = run.touches_done();
   status.touches_total = run.touches_total();
@@ -135,7 +135,7 @@ void CellOperation::describe_to(Status& status) {
   status.touch_benefit.reset();
   status.eta_s.reset();
   status.plane.reset();
-  if (run_) describe_run(status, *run_, clocks_.system());
+  if (run_) describe_run(status, *run_, clocks_.steady());
   if (open) location_.leave();  // a run that begins ends the dialogue
   const auto guided = manual_.guide(status.state);
   const auto locating = location_.guide();
@@ -191,10 +191,12 @@ std::optional<CommandRefusal> CellOperation::refusal_reason(Command command) con
                                           : "no touch is awaited: touchcal locate asks for some"};
     case Command::kUndo:
       return refuse_undo();
+    case Command::kLocate:
+      if (!is_settling_) break;
+      return CommandRefusal{.detail = "a touch of the last run is being stored; then once more"};
     case Command::kStart:
     case Command::kPause:
     case Command::kResume:
-    case Command::kLocate:
     case Command::kStop:
     case Command::kAbort:
     case Command::kClear:
@@ -261,9 +263,17 @@ std::optional<CommandRefusal> CellOperation::undo() {
   return std::nullopt;
 }
 
+/// Whether a run can start that touches by itself. What its recipe asks for is told when it is refused.
+bool CellOperation::is_ready_to_start() const {
+  const auto& fault = status_.fault();
+  return unmet_preconditions().empty() && (!fault || is_link_fault(fault->code));
+}
+
 std::vector<Command> CellOperation::exits() const {
   std::vector<Command> commands = cell::exits(status_.state());
-  std::erase_if(commands, [this](Command command) { return refusal_reason(command).has_value(); });
+  std::erase_if(commands, [this](Command command) {
+    return refusal_reason(command).has_value() || (command == Command::kStart && !is_ready_to_start());
+  });
   return commands;
 }
 

@@ -123,6 +123,7 @@ class CellOperation {
   [[nodiscard]] std::optional<CommandRefusal> refusal_reason(Command command) const;
   [[nodiscard]] std::optional<CommandRefusal> refuse_answer_to_hold(Command command) const;
   [[nodiscard]] std::optional<CommandRefusal> refuse_undo() const;
+  [[nodiscard]] bool is_ready_to_start() const;
   void apply_command(Command command);
   std::optional<CommandRefusal> locate();
   std::optional<CommandRefusal> undo();
@@ -145,6 +146,7 @@ class CellOperation {
   boost::asio::awaitable<void> break_off(State state, std::string why);
   boost::asio::awaitable<void> reset();
   boost::asio::awaitable<void> connect();
+  boost::asio::awaitable<void> settle(std::uint32_t sequence);
   boost::asio::awaitable<void> start_run();
   boost::asio::awaitable<void> resume_run();
   [[nodiscard]] bool can_search();
@@ -183,6 +185,7 @@ class CellOperation {
   std::optional<ActiveRun> run_;
   Loop loop_;
   bool is_starting_ = false;  // a start waits for the store
+  bool is_settling_ = false;  // the run's last answer is asked for: it stays until that is stored
 };
 
 }  // namespace cell

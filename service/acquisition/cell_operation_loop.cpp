@@ -136,7 +136,7 @@ asio::awaitable<void> CellOperation::reset() {
     co_return;
   }
   if (session_.open_touch() || session_.sequence_to_settle() != 0) {
-    co_await touches_.settle_open_command(active(), session_.sequence_to_settle());
+    co_await settle(session_.sequence_to_settle());
   } else if (unmet_preconditions().empty()) {
     status_.apply(Event::kDone);
   } else {
@@ -146,7 +146,21 @@ asio::awaitable<void> CellOperation::reset() {
 
 asio::awaitable<void> CellOperation::connect() {
   const std::uint32_t sequence = co_await session_.connect(is_interrupted());
-  if (sequence != 0) co_await touches_.settle_open_command(active(), sequence);
+  if (sequence != 0) co_await settle(sequence);
+}
+
+/// The result that the controller still has, in whatever state: where a run has ended it is kept with that
+/// run, which stays as it ended.
+asio::awaitable<void> CellOperation::settle(std::uint32_t sequence) {
+  struct Settling {
+    explicit Settling(bool& is_set) : flag(is_set) { flag = true; }
+    ~Settling() { flag = false; }
+    Settling(const Settling&) = delete;
+    Settling& operator=(const Settling&) = delete;
+    bool& flag;
+  };
+  const Settling settling(is_settling_);
+  co_await touches_.settle_open_command(active(), sequence);
 }
 
 asio::awaitable<void> CellOperation::start_run() {
@@ -154,24 +168,24 @@ asio::awaitable<void> CellOperation::start_run() {
   const bool planned = co_await planning_.plan(*run_);
   if (!planned || status_.state() != State::kStarting || !can_search()) co_return;
   const bool permitted = co_await obtain_permit();
-  run_->began = clocks_.system();
+  run_->began = clocks_.steady();
   if (permitted) status_.apply(Event::kDone);
 }
 
 asio::awaitable<void> CellOperation::resume_run() {
   session_.forget_standing();  // on hold the arm may have been moved by hand
   const bool answer_stored = co_await touches_.store_answer(*run_);
-  const bool is_held_again = status_.state() != State::kUnholding && status_.state() != State::kUnsuspending;
+  const bool is_held_again = !is_going_on(status_.state());
   if (!answer_stored || is_held_again) co_return;
   const bool resumable = co_await recovery_.make_resumable(*run_);
-  const bool goes_on = status_.state() == State::kUnholding || status_.state() == State::kUnsuspending;
+  const bool goes_on = is_going_on(status_.state());
   if (!resumable || !goes_on || !can_search()) co_return;
   end_old_permit();
   // Whatever took the permission may have moved something too, and an arm that stood still has cooled.
   const bool looks = !has_permit() || hold_time_.exceeds(HoldTime::kReferenceMax, clocks_.steady());
   if (looks) touches_.look_at_reference();
   const bool permitted = co_await obtain_permit();
-  if (run_->run.touches_done() == 0) run_->began = clocks_.system();
+  if (run_->run.touches_done() == 0) run_->began = clocks_.steady();
   if (!permitted) co_return;
   tell_resumption(looks);
   status_.apply(Event::kDone);

@@ -61,7 +61,8 @@ std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& re
                           .unmet = std::move(unmet)};
   }
   const bool waits_for_remote = request.guided && state == State::kResetting;
-  if (waits_for_remote && (session_.open_touch() || session_.sequence_to_settle() != 0))
+  const bool has_open_touch = session_.open_touch() || session_.sequence_to_settle() != 0;
+  if (is_settling_ || (waits_for_remote && has_open_touch))
     return CommandRefusal{.detail = "a touch of the last run is still to be stored; then once more",
                           .code = FaultCode::kNotInThisState};
   if (!waits_for_remote && !after_command(state, Command::kStart)) {

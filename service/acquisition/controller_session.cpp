@@ -149,7 +149,7 @@ std::optional<std::int64_t> ControllerSession::data_age_ms() const {
 
 asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) {
   const State state = status_.state();
-  const bool waits_for_reset = state == State::kAborted || state == State::kStopped;
+  const bool is_over = has_ended(state);
   const cs8::ExpectedController expected{.arm = cell_.arm.name,
                                          .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
                                          .upper_limits = to_wire(cell_.arm.joint_ranges.upper)};
@@ -163,11 +163,11 @@ asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) 
     pause_.on_try(clocks_.steady(), std::holds_alternative<cs8::Welcome>(reply));
     if (const auto* welcome = std::get_if<cs8::Welcome>(&reply)) {
       on_welcome(*welcome, state, run_interrupted);
-      co_return waits_for_reset ? 0 : unsettled_sequence_;
+      co_return unsettled_sequence_;
     }
     const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
     const auto& there = status_.fault();
-    const bool keeps_fault = (waits_for_reset || (state == State::kHeld && !run_interrupted)) && there;
+    const bool keeps_fault = (is_over || (state == State::kHeld && !run_interrupted)) && there;
     if (!keeps_fault && (!there || there->message() != fault.message()))
       raise_link_fault(fault, run_interrupted ? Event::kNotReadyFault : Event::kLinkDown);
   }
@@ -186,7 +186,7 @@ void ControllerSession::on_link_lost(const cs8::LinkError& error, Event event) {
   if (pause_.short_links() == 0) told_faults_.clear();
   // A person reads why a run ended or is on hold, and how it ended, to the end.
   const State state = status_.state();
-  const bool is_over = state == State::kAborted || state == State::kStopped;
+  const bool is_over = has_ended(state);
   const bool is_held = state == State::kHolding || (state == State::kHeld && event == Event::kLinkDown);
   const auto& there = status_.fault();
   const bool is_told = there && there->code != FaultCode::kStateMissing;  // which this is the reason of

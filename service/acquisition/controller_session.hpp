@@ -144,7 +144,7 @@ class ControllerSession {
   std::uint32_t number_ = 0;
   std::optional<std::string> application_;
   std::optional<std::uint32_t> overruns_;  // of the controller's tasks, as reported
-  std::uint32_t unsettled_sequence_ = 0;   // an open command found in a state that does not settle it
+  std::uint32_t unsettled_sequence_ = 0;   // an open command that Welcome named, until it is settled
   std::optional<OpenTouch> open_touch_;
   std::optional<calib::JointVector> standing_;
   std::optional<std::chrono::steady_clock::time_point> state_at_;  // when the newest state was received

@@ -304,9 +304,14 @@ asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch
   const auto failure = co_await store_.write(write);
   if (total_stored) total_is_due_ = false;
   if (failure) {
-    // The controller keeps its answer until it is acknowledged: a run on hold stores it when it goes on.
-    status_.raise({FaultCode::kStoreFailed, *failure},
-                  status_.state() == State::kExecute ? Event::kHoldFault : Event::kNotReadyFault);
+    // The controller keeps its answer until it is acknowledged: a run on hold stores it when it goes on, one
+    // that has ended with its own fault when the cell is reset.
+    const Fault fault{FaultCode::kStoreFailed, *failure};
+    if (has_ended(status_.state())) {
+      status_.warn(fault);
+    } else {
+      status_.raise(fault, status_.state() == State::kExecute ? Event::kHoldFault : Event::kNotReadyFault);
+    }
     co_return false;
   }
   run.add(touch);
@@ -340,7 +345,8 @@ asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std:
                  active->run.touches_done() + 1);
     const bool kept = co_await keep_late_touch(*active, *open, *result);
     if (!kept) {
-      if (!active->open) status_.enter(State::kStopped);  // it waits there until it can be stored
+      // It waits there until it can be stored.
+      if (!active->open && !has_ended(status_.state())) status_.enter(State::kStopped);
       co_return;
     }
   }

@@ -281,6 +281,8 @@ std::vector<Command> exits(State state) {
     const auto next = after_command(state, command);
     if (next && *next != state) commands.push_back(command);
   }
+  // What ends by itself and nothing shortens: a stop is sent to the controller all the same.
+  if (commands.empty()) commands.push_back(Command::kStop);
   return commands;
 }
 
@@ -308,5 +310,14 @@ bool is_active(State state) {
   }
   return false;
 }
+
+bool has_ended(State state) { return state == State::kStopped || state == State::kAborted; }
+
+bool stands_still(State state) {
+  return state == State::kHolding || state == State::kHeld || state == State::kSuspending ||
+         state == State::kSuspended;
+}
+
+bool is_going_on(State state) { return state == State::kUnholding || state == State::kUnsuspending; }
 
 }  // namespace cell

@@ -68,10 +68,20 @@ std::optional<State> after_command(State state, Command command);
 /// The state an event leads to.
 State after_event(State state, Event event);
 
-/// Commands that lead out of a state; every state has one. Each is a route of the API: start is POST /runs.
+/// Commands that lead out of a state; stop in one that only ends by itself. Each is a route of the API: start
+/// is POST /runs.
 std::vector<Command> exits(State state);
 
 /// True during a run: the arm may move, and no other run may start.
 bool is_active(State state);
+
+/// True where a run that was stopped or aborted is over, and with its end waits for a person.
+bool has_ended(State state);
+
+/// True where a run stands still or is about to, and may go on.
+bool stands_still(State state);
+
+/// True where a run that stood still is about to go on.
+bool is_going_on(State state);
 
 }  // namespace cell

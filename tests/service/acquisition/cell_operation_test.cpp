@@ -8,7 +8,9 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 
+#include "cs8_protocol/wire_units.hpp"
 #include "service/documents/configuration_digest.hpp"
+#include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
 
 namespace cell {
@@ -137,6 +139,19 @@ TEST_F(CellOperationTest, NoStateIsADeadEndAndNoExitIsRefused) {
   EXPECT_THAT(operation_.exits(), Contains(Command::kReset));
 }
 
+TEST_F(CellOperationTest, AStartIsNamedAsAnExitOnlyWhereItIsTaken) {
+  launch();
+  ASSERT_EQ(operation_.status().state, State::kIdle);
+  controller_->state->flags &= ~static_cast<std::uint32_t>(cs8::kPowered);
+  tell_state();
+  ASSERT_EQ(operation_.status().state, State::kIdle);
+  EXPECT_THAT(operation_.exits(), ::testing::Not(Contains(Command::kStart)));
+  EXPECT_THAT(operation_.exits(), Contains(Command::kStop));
+  controller_->state->flags |= cs8::kPowered;
+  tell_state();
+  EXPECT_THAT(operation_.exits(), Contains(Command::kStart));
+}
+
 TEST_F(CellOperationTest, EveryStopIsSentToTheControllerWhateverTheState) {
   launch();
   const auto sent_by = [this](Command command) {
@@ -154,6 +169,7 @@ TEST_F(CellOperationTest, EveryStopIsSentToTheControllerWhateverTheState) {
   EXPECT_EQ(sent_by(Command::kStop), 1) << "STOPPING";
   EXPECT_EQ(sent_by(Command::kAbort), 1);
   ASSERT_EQ(operation_.status().state, State::kAborting);
+  EXPECT_THAT(operation_.exits(), ::testing::ElementsAre(Command::kStop));
   EXPECT_EQ(sent_by(Command::kStop), 1) << "ABORTING";
 }
 
@@ -255,6 +271,117 @@ TEST_F(ResumedOperationTest, IsNotResumedByADaemonThatEnds) {
   shut_down();
   EXPECT_TRUE(operation_.command(Command::kResume));
   expect_left_for_the_next_daemon();
+}
+
+/// A run that a person ends while its first touch has been commanded and the link is lost: the controller is
+/// there again soon, and has the answer still.
+class EndedRunTest : public CellOperationTest {
+ protected:
+  EndedRunTest() {
+    controller_->state->joints = to_wire(cell_of_owners().park_joints);
+    controller_->state->permit = cs8::PermitState::kGranted;
+    controller_->on_touch = [this](const cs8::Touch&) {
+      controller_->is_connected = false;
+      controller_->hooks.on_loss(ScriptedController::lost());
+      EXPECT_FALSE(operation_.command(ends_by_));
+      on_ended_();
+      return ScriptedController::lost();
+    };
+    controller_->on_query = [](std::uint32_t) { return first_contact(); };
+    launch();
+    controller_->on_connect = [this] {
+      state_before_ = operation_.status().state;
+      fault_before_ = fault();
+      cs8::Welcome welcome;
+      welcome.open_sequence = 1;
+      return welcome;
+    };
+  }
+  ~EndedRunTest() override { controller_->on_connect = ScriptedController::lost; }
+  /// The contact of an arm without errors at the first touch of the plan.
+  static cs8::TouchResult first_contact() {
+    cs8::TouchResult result;
+    result.outcome = cs8::Outcome::kContact;
+    result.source = cs8::CaptureSource::kLatched;
+    result.contact = to_wire(plan_of_owners().touches.touches.front().joints);
+    result.first_source = result.source;
+    result.first_contact = result.contact;
+    result.search_speed_um_s = cs8::um_s_from_metres_per_second(cell_of_owners().speeds.contact_m_s());
+    result.monitor_speed_percent = 100;
+    result.edges = 1;
+    return result;
+  }
+  /// The controller tells its state all the time.
+  void run_until(const std::function<bool()>& condition) {
+    while (!condition()) {
+      time_.pass(std::chrono::milliseconds(10));
+      if (controller_->is_connected) controller_->hooks.on_state(*controller_->state);
+      io_.restart();
+      io_.run_one();
+    }
+    io_.poll();
+  }
+  void run_until_asked(const std::string& what) {
+    run_until([&] { return std::ranges::find(controller_->asked, what) != controller_->asked.end(); });
+  }
+  std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run_id; }
+  [[nodiscard]] std::string fault() const { return operation_.status().fault.value_or(Fault{}).message(); }
+
+  Command ends_by_ = Command::kAbort;
+  std::function<void()> on_ended_ = [] {};
+  State state_before_ = State::kExecute;
+  std::string fault_before_;
+};
+
+TEST_F(EndedRunTest, TakesTheAnswerThatTheControllerStillHasAndStaysAsItEnded) {
+  const std::int64_t id = start_few();
+  run_until_asked("acknowledge 1");
+  EXPECT_EQ(state_before_, State::kAborted);
+  EXPECT_EQ(operation_.status().state, State::kAborted);
+  EXPECT_THAT(fault_before_, ::testing::HasSubstr("scripted"));
+  EXPECT_EQ(fault(), fault_before_);
+  EXPECT_EQ(store_.touches(id).size(), 1u);
+  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kAborted);
+  EXPECT_EQ(operation_.status().verdict, Verdict::kIncomplete);
+}
+
+TEST_F(EndedRunTest, TakesItAlsoWhereItWasStopped) {
+  ends_by_ = Command::kStop;
+  const std::int64_t id = start_few();
+  run_until_asked("acknowledge 1");
+  EXPECT_EQ(operation_.status().state, State::kStopped);
+  EXPECT_EQ(store_.touches(id).size(), 1u);
+}
+
+TEST_F(EndedRunTest, AnAnswerThatCannotBeStoredIsKeptByTheControllerUntilItCan) {
+  on_ended_ = [this] {
+    store_.database()->exec(
+        "CREATE TRIGGER broken BEFORE INSERT ON touches BEGIN SELECT RAISE(ABORT, 'scripted'); END");
+  };
+  const std::int64_t id = start_few();
+  run_until_asked("query 1");
+  EXPECT_EQ(operation_.status().state, State::kAborted);
+  EXPECT_EQ(fault(), fault_before_) << "why it ended stays to be read";
+  EXPECT_EQ(operation_.status().warning.value().code, FaultCode::kStoreFailed);
+  EXPECT_TRUE(store_.touches(id).empty());
+  EXPECT_THAT(controller_->asked, ::testing::Not(Contains("acknowledge 1")));
+  store_.database()->exec("DROP TRIGGER broken");
+  EXPECT_FALSE(operation_.command(Command::kClear));
+  run_until_asked("acknowledge 1");
+  EXPECT_EQ(operation_.status().state, State::kStopped);
+  EXPECT_EQ(store_.touches(id).size(), 1u);
+}
+
+TEST_F(EndedRunTest, ARunOnHoldTakesItTooAndTheTimeThatIsLeftIsNotThatOfTheWallClock) {
+  ends_by_ = Command::kPause;
+  start_few();
+  run_until_asked("acknowledge 1");
+  const double left_s = operation_.status().eta_s.value();
+  time_.set_wall_clock(std::chrono::hours(1));
+  controller_->state->flags &= ~static_cast<std::uint32_t>(cs8::kPowered);
+  tell_state();
+  ASSERT_EQ(operation_.status().controller.powered, false) << "the status is made anew";
+  EXPECT_EQ(operation_.status().eta_s, left_s);
 }
 
 TEST_F(CellOperationTest, ChangesAreToldAtOnceAndNumbered) {

@@ -36,15 +36,17 @@ TEST_F(ControllerSessionTest, LooksForTheControllerWithGrowingPausesUpToTwoSecon
   EXPECT_FALSE(status.fault()) << "it ended with the link";
 }
 
-TEST_F(ControllerSessionTest, AnOpenCommandIsToBeSettledAtOnceButForAStateThatWaitsForReset) {
+TEST_F(ControllerSessionTest, AnOpenCommandIsToBeSettledAtOnceAlsoWhereARunHasEnded) {
   cs8::Welcome welcome;
   welcome.open_sequence = 9;
   controller.on_connect = [&] { return welcome; };
   status.enter(State::kResetting);
   EXPECT_EQ(run(session.connect(false)), 9u);
-  status.enter(State::kAborted);
-  EXPECT_EQ(run(session.connect(false)), 0u);
-  EXPECT_EQ(session.sequence_to_settle(), 9u) << "later";
+  for (const State ended : {State::kAborted, State::kStopped, State::kComplete, State::kHeld}) {
+    status.enter(ended);
+    EXPECT_EQ(run(session.connect(false)), 9u) << state_name(ended);
+  }
+  EXPECT_EQ(session.sequence_to_settle(), 9u) << "until it is acknowledged";
   session.acknowledge(9);
   EXPECT_EQ(session.sequence_to_settle(), 0u);
 }

@@ -5,7 +5,7 @@
 namespace cell {
 
 Clocks MadeUpTime::clocks() {
-  return {[this] { return std::chrono::system_clock::time_point{} + since_begin_; },
+  return {[this] { return std::chrono::system_clock::time_point{} + since_begin_ + wall_ahead_; },
           [this] { return std::chrono::steady_clock::time_point{} + since_begin_; }};
 }
 

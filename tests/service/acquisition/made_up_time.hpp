@@ -13,10 +13,13 @@ class MadeUpTime {
  public:
   [[nodiscard]] Clocks clocks();
   void pass(std::chrono::milliseconds time) { since_begin_ += time; }
+  /// Somebody sets the machine's clock; nothing passes.
+  void set_wall_clock(std::chrono::milliseconds ahead) { wall_ahead_ = ahead; }
   [[nodiscard]] std::chrono::milliseconds since_begin() const { return since_begin_; }
 
  private:
   std::chrono::milliseconds since_begin_{0};
+  std::chrono::milliseconds wall_ahead_{0};
 };
 
 /// Whoever waits waits no time: the made-up one passes. `on_wait` may let something happen meanwhile.

@@ -160,9 +160,13 @@ TEST(StateMachine, FromEveryStateCommandsLeadBackToIdle) {
   }
 }
 
-TEST(StateMachine, AStateThatWaitsNamesTheCommandsThatLeadOut) {
+TEST(StateMachine, AStateNamesTheCommandsThatLeadOutAndWhereNoneDoesTheStop) {
   for (const Row& row : kTable) {
     const std::vector<Command> out = exits(row.state);
+    if (row.state == kAborting || row.state == kClearing) {
+      EXPECT_THAT(out, ::testing::ElementsAre(Command::kStop)) << state_name(row.state);
+      continue;
+    }
     for (std::size_t i = 0; i < kCommands.size(); ++i) {
       const bool leads_out = row.after_command[i] && *row.after_command[i] != row.state;
       EXPECT_EQ(std::ranges::find(out, kCommands[i]) != out.end(), leads_out)
@@ -170,6 +174,20 @@ TEST(StateMachine, AStateThatWaitsNamesTheCommandsThatLeadOut) {
     }
     const bool ends_by_itself = after_event(row.state, Event::kDone) != row.state;
     EXPECT_TRUE(ends_by_itself || !out.empty()) << state_name(row.state);
+  }
+}
+
+TEST(StateMachine, AStandstillIsLeftByGoingOnOrByAnEnd) {
+  for (const Row& row : kTable) {
+    const State state = row.state;
+    const bool may_stand = after_event(state, Event::kDone) != state && is_active(state);
+    EXPECT_FALSE(stands_still(state) && !is_active(state)) << state_name(state);
+    EXPECT_FALSE(stands_still(state) && is_going_on(state)) << state_name(state);
+    EXPECT_FALSE(is_going_on(state) && !may_stand) << state_name(state);
+    EXPECT_FALSE(has_ended(state) && is_active(state)) << state_name(state);
+    const auto resumed = after_command(state, Command::kResume);
+    EXPECT_FALSE(resumed && *resumed != state && !(stands_still(state) && is_going_on(*resumed)))
+        << state_name(state);
   }
 }
 
