@@ -42,7 +42,10 @@ ExitCode page_command(const ApiClient& reached, bool json_only) {
 
 ExitCode runs_command(const ApiClient& daemon, bool json_only) {
   const ApiReply reply = daemon.get("/api/v1/runs");
-  fmt::print("{}", json_only ? reply.body + "\n" : runs_text(read_reply(reply, read_runs).runs));
+  const RunsDocument page = read_reply(reply, read_runs);
+  fmt::print("{}", json_only ? reply.body + "\n" : runs_text(page.runs));
+  for (const DamagedRunDocument& run : page.damaged)
+    fmt::print(stderr, "run {} is damaged: {}\n", run.id, run.detail);
   return kExitDone;
 }
 

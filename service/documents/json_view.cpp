@@ -121,9 +121,10 @@ std::string run_document(const StoredRun& run) {
   return document_text(document);
 }
 
-std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std::int64_t> next_before) {
-  RunsDocument document{.runs = {}, .next_before = id_text(next_before)};
-  std::ranges::transform(runs, std::back_inserter(document.runs), summary_of);
+std::string runs_document(const RunPage& page) {
+  RunsDocument document{.runs = {}, .damaged = {}, .next_before = id_text(page.next_before)};
+  std::ranges::transform(page.runs, std::back_inserter(document.runs), summary_of);
+  for (const DamagedRun& run : page.damaged) document.damaged.push_back({std::to_string(run.id), run.what});
   return document_text(document);
 }
 

@@ -7,7 +7,7 @@
 #include "config/cell.hpp"
 #include "service/documents/status_document.hpp"
 #include "service/run/status.hpp"
-#include "service/store/run_store.hpp"
+#include "service/store/run_page.hpp"
 
 /// Documents of status, runs and touches. Field names of the API and of files are defined in
 /// service/documents only. Every function returns one JSON document as text.
@@ -19,8 +19,8 @@ std::string status_document(const Status& status);
 
 std::string run_document(const StoredRun& run);
 
-/// A page of the history; `next_before` is the id to request the next page with, absent on the last.
-std::string runs_document(const std::vector<StoredRun>& runs, std::optional<std::int64_t> next_before);
+/// A page of the history.
+std::string runs_document(const RunPage& page);
 
 /// touchcal/touches/1: what `touchcal identify` reads back. `references`: of the same run.
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,

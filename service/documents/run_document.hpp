@@ -51,14 +51,28 @@ struct RunDocument : RunSummary {
   }
 };
 
+/// A run of which only the number can be told: its row in the database is damaged.
+struct DamagedRunDocument {
+  std::string id;
+  std::string detail;  // file, table, run and remedy
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("id", self.id);
+    fields("detail", self.detail);
+  }
+};
+
 /// A page of the history.
 struct RunsDocument {
   std::vector<RunSummary> runs;
+  std::vector<DamagedRunDocument> damaged;
   std::optional<std::string> next_before;
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     fields("runs", self.runs);
+    fields("damaged", self.damaged);
     fields("next_before", self.next_before);
   }
 };

@@ -86,9 +86,13 @@ constexpr std::string_view kRun = R"({
 
 constexpr std::string_view kRuns = R"({
 "type":"object",
-"required":["runs","next_before"],
+"required":["runs","damaged","next_before"],
 "properties":{
   "runs":{"type":"array","items":{"$ref":"#/components/schemas/Run"}},
+  "damaged":{"type":"array","description":"runs of this page whose rows in the database are damaged, so that nothing else is told of them",
+    "items":{"type":"object","required":["id","detail"],"properties":{
+      "id":{"type":"string"},
+      "detail":{"type":"string","description":"file, table, run and remedy"}}}},
   "next_before":{"type":["string","null"],"description":"ask for the next page with before; null on the last"}}})";
 
 constexpr std::string_view kStartRequest = R"({

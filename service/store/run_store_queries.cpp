@@ -8,6 +8,7 @@
 #include "service/store/damaged_store.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
+#include "service/store/run_page.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
@@ -158,6 +159,32 @@ std::vector<StoredRun> RunStore::runs(int limit, std::optional<std::int64_t> bef
   return found;
 } catch (const SQLite::Exception& error) {
   rethrow(*database_, error);
+}
+
+RunPage run_page(const RunStore& store, int limit, std::optional<std::int64_t> before_id) {
+  const auto database = store.database();
+  try {
+    SQLite::Statement query(*database, run_columns() + "WHERE id < ? ORDER BY id DESC LIMIT ?");
+    query.bind(1, before_id.value_or(INT64_MAX));
+    query.bind(2, limit + 1);
+    RunPage page;
+    std::int64_t last_id = 0;
+    for (int count = 0; query.executeStep(); ++count) {
+      if (count == limit) {
+        page.next_before = last_id;
+        break;
+      }
+      last_id = query.getColumn(0).getInt64();
+      try {
+        page.runs.push_back(read_run(*database, query));
+      } catch (const DamagedStore& damage) {
+        page.damaged.push_back({last_id, damage.what()});
+      }
+    }
+    return page;
+  } catch (const SQLite::Exception& error) {
+    rethrow(*database, error);
+  }
 }
 
 std::optional<StoredRun> RunStore::run(std::int64_t id) const try {

@@ -1,4 +1,5 @@
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
@@ -7,6 +8,7 @@
 #include "service/http/routes/internal/result_routes.hpp"
 #include "service/http/routes/internal/start_body.hpp"
 #include "service/http/routes/route_table.hpp"
+#include "service/store/run_page.hpp"
 
 namespace cell {
 namespace {
@@ -17,10 +19,9 @@ constexpr std::int64_t kRunIdMax = std::int64_t{1} << 53;
 
 HttpResponse get_runs(const Call& call) {
   const int limit = static_cast<int>(call.number("limit").value_or(kRunsPageDefault));
-  auto runs = call.reads.store().runs(limit + 1, call.number("before"));
-  const bool more = runs.size() > static_cast<std::size_t>(limit);
-  if (more) runs.pop_back();
-  return json_response(200, runs_document(runs, more ? std::optional(runs.back().id) : std::nullopt));
+  const RunPage page = run_page(call.reads.store(), limit, call.number("before"));
+  for (const DamagedRun& run : page.damaged) spdlog::error("{}", run.what);
+  return json_response(200, runs_document(page));
 }
 
 HttpResponse run_view(const Call& call, const StoredRun& run) {

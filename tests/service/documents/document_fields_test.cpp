@@ -102,10 +102,13 @@ TEST(StatusDocument, AWordOfNoStateIsRefused) {
 TEST(RunDocument, IsWrittenAsItWasRead) {
   const StoredRun run{
       .id = 2, .recipe = "edf-25", .conditions_json = R"({"touching":"guided","later":[1.50]})"};
-  const std::string text = run_document(run), page = runs_document({run, {}}, 2);
+  const std::string text = run_document(run),
+                    page =
+                        runs_document({.runs = {run, {}}, .damaged = {{1, "table runs"}}, .next_before = 1});
   EXPECT_EQ(document_text(read_run(text)), text);
   EXPECT_EQ(read_run(text).touch_mode, "guided");
   EXPECT_EQ(document_text(read_runs(page)), page);
+  EXPECT_EQ(read_runs(page).damaged.at(0).detail, "table runs");
 }
 
 TEST(StartDocument, HoldsOnlyWhatIsAskedFor) {

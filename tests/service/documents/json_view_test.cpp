@@ -133,7 +133,7 @@ TEST(RunsDocument, HasEachRunsFieldsAndWhereTheNextPageBegins) {
                           .started_at = "start",
                           .outcome = RunOutcome::kRunning,
                           .verdict = Verdict::kNone};
-  const json page = json::parse(runs_document({running}, 2));
+  const json page = json::parse(runs_document({.runs = {running}, .damaged = {}, .next_before = 2}));
   EXPECT_EQ(page.at("next_before"), "2");
   ASSERT_EQ(page.at("runs").size(), 1u);
   json alone = json::parse(run_document(running));
@@ -151,8 +151,8 @@ TEST(RunsDocument, HasEachRunsFieldsAndWhereTheNextPageBegins) {
                                                  {"ended_at", "null"},
                                                  {"fault_code", "null"},
                                                  {"fault_message", "null"}}));
-  const json last = json::parse(runs_document({}, std::nullopt));
-  EXPECT_EQ(last, (json{{"runs", json::array()}, {"next_before", nullptr}}));
+  const json last = json::parse(runs_document({}));
+  EXPECT_EQ(last, (json{{"runs", json::array()}, {"damaged", json::array()}, {"next_before", nullptr}}));
 }
 
 TEST(TouchesDocument, IsWhatIdentifyReadsBackToTheLastStep) {

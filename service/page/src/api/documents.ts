@@ -121,7 +121,8 @@ export interface Run {
   fault_code: string | null;
   fault_message: string | null;
 }
-export interface Runs { runs: Run[]; next_before: string | null }
+export interface DamagedRun { id: string; detail: string }
+export interface Runs { runs: Run[]; damaged: DamagedRun[]; next_before: string | null }
 
 export type TouchRole = 'fit' | 'held_out' | 'proof';
 export interface Touch { plane: number; role: TouchRole; joints_deg: number[] }

@@ -145,8 +145,8 @@ export class Desk {
 
   async loadRuns(before: string | null = null): Promise<void> {
     const path = before ? `/api/v1/runs?limit=50&before=${encodeURIComponent(before)}` : '/api/v1/runs?limit=50';
-    await this.load<Runs>(path, ({runs, next_before}) => {
-      this.store.dispatch({type: 'runs', runs, nextBefore: next_before, isMore: before !== null});
+    await this.load<Runs>(path, ({runs, damaged, next_before}) => {
+      this.store.dispatch({type: 'runs', runs, damaged: damaged ?? [], nextBefore: next_before, isMore: before !== null});
     });
   }
 

@@ -1,4 +1,4 @@
-import type {Cell, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet} from '../api/documents.ts';
+import type {Cell, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
 import {addToSeries, kNoSeries, type Series} from './series.ts';
 import {isActive, type Command} from './states.ts';
@@ -34,6 +34,7 @@ export interface PageState {
   recipe: string | null;                // chosen for the next run
   plans: Record<string, PlanState>;     // by recipe
   runs: Run[];
+  damagedRuns: DamagedRun[];            // of the same pages
   nextBefore: string | null;            // of the history's next page
   shownRun: string | null;              // chosen in the history; null: the newest
   compared: string[];                   // at most two runs
@@ -48,7 +49,7 @@ export interface PageState {
 
 export const kFirstState: PageState = {
   link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], unmet: null, role: null, hasToken: false,
-  view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], nextBefore: null,
+  view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], damagedRuns: [], nextBefore: null,
   shownRun: null, compared: [], results: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
   busy: null,
 };
@@ -61,7 +62,7 @@ export type Action =
   | {type: 'plan'; recipe: string; plan: PlanState}
   | {type: 'result'; run_id: string; result: Result}
   | {type: 'missing'; run_id: string; why: string}
-  | {type: 'runs'; runs: Run[]; nextBefore: string | null; isMore: boolean}
+  | {type: 'runs'; runs: Run[]; damaged: DamagedRun[]; nextBefore: string | null; isMore: boolean}
   | {type: 'noted'; key: string}
   | {type: 'acknowledged'; key: string | null}
   | {type: 'compare'; run_id: string};
@@ -86,7 +87,11 @@ export function reduce(state: PageState, action: Action): PageState {
     case 'missing':
       return {...state, missing: {...state.missing, [action.run_id]: action.why}};
     case 'runs':
-      return {...state, runs: action.isMore ? [...state.runs, ...action.runs] : action.runs, nextBefore: action.nextBefore};
+      return {
+        ...state, nextBefore: action.nextBefore,
+        runs: action.isMore ? [...state.runs, ...action.runs] : action.runs,
+        damagedRuns: action.isMore ? [...state.damagedRuns, ...action.damaged] : action.damaged,
+      };
     case 'noted':
       return {...state, faults: dropFault(state.faults, action.key)};
     case 'acknowledged':

@@ -15,7 +15,7 @@ import {OuterText, useLanguage, useSay} from './texts.tsx';
 /** All runs, how their figures went, and two of them side by side. */
 export function HistoryView({state, desk}: {state: PageState; desk: Desk}) {
   const say = useSay();
-  if (state.runs.length === 0) return <p class="empty">{say('noRuns')}</p>;
+  if (state.runs.length === 0 && state.damagedRuns.length === 0) return <p class="empty">{say('noRuns')}</p>;
   return (
     <div class="history-view">
       <RunsTable state={state} desk={desk} />
@@ -46,6 +46,9 @@ function RunsTable({state, desk}: {state: PageState; desk: Desk}) {
           <tbody>{state.runs.map((run) => <RunRow key={run.id} run={run} state={state} desk={desk} />)}</tbody>
         </table>
       </Scroll>
+      {state.damagedRuns.map(({id, detail}) => (
+        <p class="note" key={id}>{say('damagedRun', {run: id})} <OuterText text={detail} isEnglish /></p>
+      ))}
       {state.nextBefore && <button type="button" onClick={() => void desk.loadRuns(state.nextBefore)}>{say('more')}</button>}
     </section>
   );

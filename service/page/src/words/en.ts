@@ -263,6 +263,7 @@ export const en = {
   compareHint: 'Choose two runs to compare.',
   difference: 'Difference',
   differenceSignificant: 'more than its uncertainty',
+  damagedRun: 'Run {run} cannot be read:',
   more: 'Older runs',
   trends: 'Trend over the runs',
   trendOf: 'Trend of',

@@ -265,6 +265,7 @@ export const fr: Words = {
   compareHint: 'Choisissez deux essais à comparer.',
   difference: 'Différence',
   differenceSignificant: 'plus que son incertitude',
+  damagedRun: 'L’essai {run} ne peut pas être lu :',
   more: 'Essais plus anciens',
   trends: 'Tendance au fil des essais',
   trendOf: 'Tendance de',

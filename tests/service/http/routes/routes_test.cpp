@@ -98,8 +98,35 @@ TEST_F(RoutesTest, DamageOfTheDatabaseIsAProblemThatNamesIt) {
                 ::testing::AllOf(HasSubstr("table touches"), HasSubstr("number 1"), HasSubstr("backup")));
   }
   cell_.store().database()->exec("UPDATE runs SET trace_json = '{'");
-  for (const std::string& target : {std::string("/api/v1/runs"), path_of(run)})
-    EXPECT_EQ(problem(get(target)).at("status"), 503) << target;
+  EXPECT_EQ(problem(get(path_of(run))).at("status"), 503);
+}
+
+TEST_F(RoutesTest, ADamagedRunHidesNoOtherOfItsPage) {
+  std::vector<std::string> ids;
+  for (int i = 0; i < 4; ++i) ids.push_back(std::to_string(stored_run()));
+  cell_.store().database()->exec("UPDATE runs SET recipe = 'other' WHERE id IN (" + ids[1] + ", " + ids[2] +
+                                 ")");
+  const auto page = [this](const std::string& query) {
+    return json::parse(get("/api/v1/runs" + query).body);
+  };
+  const json whole = page("");
+  ASSERT_EQ(whole.at("runs").size(), 2u);
+  EXPECT_EQ(whole.at("runs")[0].at("id"), ids[3]);
+  EXPECT_EQ(whole.at("runs")[1].at("id"), ids[0]);
+  ASSERT_EQ(whole.at("damaged").size(), 2u);
+  EXPECT_EQ(whole.at("damaged")[0].at("id"), ids[2]);
+  EXPECT_THAT(whole.at("damaged")[0].at("detail").get<std::string>(),
+              ::testing::AllOf(HasSubstr("table runs"), HasSubstr("run " + ids[2]), HasSubstr("backup")));
+  EXPECT_TRUE(whole.at("next_before").is_null());
+
+  const json first = page("?limit=2");
+  EXPECT_EQ(first.at("runs").size(), 1u);
+  EXPECT_EQ(first.at("damaged").size(), 1u);
+  EXPECT_EQ(first.at("next_before"), ids[2]) << "also where the last of the page is damaged";
+  const json second = page("?limit=2&before=" + ids[2]);
+  EXPECT_EQ(second.at("damaged")[0].at("id"), ids[1]);
+  EXPECT_EQ(second.at("runs")[0].at("id"), ids[0]);
+  EXPECT_TRUE(second.at("next_before").is_null());
 }
 
 TEST_F(RoutesTest, AReportComesInThreeForms) {
