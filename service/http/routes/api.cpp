@@ -48,11 +48,13 @@ constexpr std::size_t kWrongAddressesMax = 1024;
 constexpr auto kWrongTokensKept = 10min;
 constexpr std::size_t kActionBytesMax = 200;
 
-HttpResponse busy(std::string detail, const char* retry_after_s) {
-  HttpResponse response =
-      to_response({.status = 503, .kind = ProblemKind::kBusy, .detail = std::move(detail)});
-  response.headers.emplace_back("Retry-After", retry_after_s);
-  return response;
+constexpr int kRetrySeconds = 2;  // what is waited for behind a full queue takes about so long
+
+HttpResponse busy(std::string detail, int retry_after_s = kRetrySeconds) {
+  return to_response({.status = 503,
+                      .kind = ProblemKind::kBusy,
+                      .detail = std::move(detail),
+                      .retry_after_s = retry_after_s});
 }
 
 bool is_command(const HttpRequest& request) { return request.method != "GET"; }
@@ -79,7 +81,8 @@ std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedReque
     spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
     return to_response({.status = 503,
                         .kind = ProblemKind::kIdempotencyKey,
-                        .detail = "earlier answers cannot be read; see the log"});
+                        .detail = "earlier answers cannot be read; see the log",
+                        .retry_after_s = kRetrySeconds});
   }
   if (const auto* answer = std::get_if<StoredAnswer>(&found))
     return HttpResponse{.status = answer->status, .body = answer->body, .headers = answer->headers};
@@ -196,7 +199,7 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
   if (dispatch == DispatchMode::kPlanning)
     co_await asio::co_spawn(threads_.operation, wait_for_plan(request), asio::use_awaitable);
   if (dispatch == DispatchMode::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
-    co_return busy("too many event streams are open; poll GET /api/v1/status", "15");
+    co_return busy("too many event streams are open; poll GET /api/v1/status", 15);
   if (dispatch == DispatchMode::kStored || dispatch == DispatchMode::kWorker) {
     Desk& desk = dispatch == DispatchMode::kStored ? *reader_ : *worker_;
     HttpResponse response = co_await at_desk(desk, request, admitted);
@@ -220,7 +223,7 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
   if (is_stop(*admitted.route)) {
     response = co_await make_answer(request, admitted);
   } else {
-    if (!halts && at_store_ >= kAtStoreMax) co_return busy("the disk does not answer; ask again", "2");
+    if (!halts && at_store_ >= kAtStoreMax) co_return busy("the disk does not answer; ask again");
     const Waiting waiting(at_store_);
     bool is_recorded = halts;
     if (!is_recorded)
@@ -383,7 +386,7 @@ asio::awaitable<std::shared_ptr<const ActiveRun>> Api::live_run(const Admitted& 
 }
 
 asio::awaitable<HttpResponse> Api::at_desk(Desk& desk, const HttpRequest& request, const Admitted& admitted) {
-  if (desk.waiting >= desk.waiting_max) co_return busy(desk.when_full, "2");
+  if (desk.waiting >= desk.waiting_max) co_return busy(desk.when_full);
   const Waiting waiting(desk.waiting);
   const std::shared_ptr<const ActiveRun> live = co_await live_run(admitted);
   HttpResponse response = co_await run_on(desk.thread.get_executor(), [&] {

@@ -21,7 +21,7 @@ namespace {
 constexpr std::array<std::string_view, 1> kPlanKeys{"recipe"};
 
 /// A plan takes a few seconds.
-constexpr const char* kRetryAfterSeconds = "5";
+constexpr int kPlanRetrySeconds = 5;
 
 HttpResponse refuse(const PlanRefusal& refusal) {
   Problem problem{
@@ -49,11 +49,10 @@ HttpResponse post_plan(const Call& call) {
   }
   const auto& outcome = call.asked.plan;
   if (!outcome) {
-    HttpResponse busy = to_response({.status = 503,
-                                     .kind = ProblemKind::kPlanning,
-                                     .detail = "another plan is being made; try again in a moment"});
-    busy.headers.emplace_back("Retry-After", kRetryAfterSeconds);
-    return busy;
+    return to_response({.status = 503,
+                        .kind = ProblemKind::kPlanning,
+                        .detail = "another plan is being made; try again in a moment",
+                        .retry_after_s = kPlanRetrySeconds});
   }
   if (const auto* refusal = std::get_if<PlanRefusal>(&*outcome)) return refuse(*refusal);
   return {.status = 200, .body = std::get<std::shared_ptr<const Plan>>(*outcome)->document};

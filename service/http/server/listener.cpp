@@ -80,7 +80,8 @@ void HttpListener::tell_full(tcp::socket socket, const asio::ip::address& client
                      .kind = ProblemKind::kBusy,
                      .detail =
                          "all connections are in use by clients with a token; close some, or use the "
-                         "Unix socket in the state directory"};
+                         "Unix socket in the state directory",
+                     .retry_after_s = 5};
   const HttpRequest unread{.method = "GET", .remote = client.to_string()};
   std::string text = response_text(handler_.refuse(full, unread), 1, false, false);
   ++turned_away_;

@@ -122,7 +122,11 @@ HttpResponse to_response(const Problem& problem) {
   for (const auto& [code, detail] : problem.errors)
     document["errors"].push_back({{"code", code}, {"detail", detail}});
   if (!problem.exits.empty()) document["exits"] = problem.exits;
-  return {.status = problem.status, .content_type = "application/problem+json", .body = text_of(document)};
+  HttpResponse response{
+      .status = problem.status, .content_type = "application/problem+json", .body = text_of(document)};
+  if (problem.retry_after_s)
+    response.headers.emplace_back("Retry-After", std::to_string(*problem.retry_after_s));
+  return response;
 }
 
 }  // namespace cell

@@ -55,6 +55,7 @@ struct Problem {
   std::vector<std::pair<std::string, std::string>> errors;  // code and detail of each unmet precondition
   std::vector<std::string> exits;                           // commands that the state allows
   std::optional<std::string> parameter;
+  std::optional<int> retry_after_s = {};  // when the same request may be taken, of what passes by itself
 };
 
 HttpResponse to_response(const Problem& problem);

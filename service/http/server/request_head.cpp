@@ -91,8 +91,6 @@ std::optional<Problem> find_http_fault(const RequestHead& head, const Ends& ends
     if (head.count(once) > 1)
       return Problem{.kind = ProblemKind::kHttp, .detail = std::string(once) + " is given twice"};
   }
-  if (head.count("Expect") > 0)
-    return Problem{.status = 417, .kind = ProblemKind::kExpect, .detail = "Expect is not supported"};
   if (const auto origin = head.field("Origin"); origin && !ends.is_our_origin(*origin)) {
     return Problem{
         .status = 403, .kind = ProblemKind::kOrigin, .detail = "requests from other origins are refused"};

@@ -55,6 +55,10 @@ Problem too_large() {
   return {.status = 413, .kind = ProblemKind::kTooLarge, .detail = "the body is too large"};
 }
 
+Problem expectation_failed() {
+  return {.status = 417, .kind = ProblemKind::kExpect, .detail = "Expect is not supported"};
+}
+
 /// The answer to bytes that are not a request; nothing if nobody can read one.
 std::optional<Problem> problem_of(const boost::system::error_code& failure) {
   if (failure == http::error::body_limit) return too_large();
@@ -194,7 +198,8 @@ asio::awaitable<std::optional<Problem>> Session<Stream>::read_body(Parser& parse
     if (!claim.grow_to(parser.get().body().size())) {
       co_return Problem{.status = 503,
                         .kind = ProblemKind::kBusy,
-                        .detail = "too many bodies are being received; send it again later"};
+                        .detail = "too many bodies are being received; send it again later",
+                        .retry_after_s = 2};
     }
     if (parser.is_done()) co_return std::nullopt;
     if (buffer_.size() > limits_.header_bytes_max)
@@ -286,6 +291,8 @@ asio::awaitable<bool> Session<Stream>::serve_one() {
   const HeaderDecision decision = handler_.decide(request);
   connection_->has_requested = true;
   connection_->has_token = connection_->has_token || decision.has_token;
+  const bool expects = head.count("Expect") > 0;
+  if (expects && decision.takes_body) co_return co_await refuse(expectation_failed(), head);
   BodyClaim claim(bodies_);
   std::uint64_t unread = 0;
   if (request.announces_body && decision.takes_body) {
@@ -294,7 +301,8 @@ asio::awaitable<bool> Session<Stream>::serve_one() {
     request.body = std::move(parser.get().body());
   } else if (request.announces_body) {
     unread = parser.content_length().value_or(limits_.body_bytes_max + 1);
-    keep_alive = keep_alive && unread <= limits_.body_bytes_max;
+    // Who expects to be asked for the body may keep it back: what follows cannot be told apart then.
+    keep_alive = keep_alive && !expects && unread <= limits_.body_bytes_max;
   }
   const bool goes_on = co_await answer(request, head, keep_alive);
   if (goes_on && unread > 0) co_await skip(unread);

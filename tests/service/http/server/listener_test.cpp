@@ -141,6 +141,7 @@ TEST_F(CrowdedListenerTest, WhereAllConnectionsHaveATokenANewOneIsToldSo) {
   third.send(get("/healthz"));
   const RawAnswer answer = third.receive();
   EXPECT_EQ(answer.status, 503u);
+  EXPECT_EQ(answer.header.at("retry-after"), "5");
   EXPECT_THAT(json::parse(answer.body).at("detail"), HasSubstr("all connections are in use"));
   third.send_no_more();
   EXPECT_TRUE(third.closed());

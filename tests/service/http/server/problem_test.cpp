@@ -20,6 +20,14 @@ TEST(ProblemDocument, HasTheMembersOfRfc9457AndOursWhereTheyAreGiven) {
   EXPECT_EQ(document.at("detail"), "no way");
   EXPECT_EQ(document.at("pointer"), "/recipe");
   EXPECT_FALSE(document.contains("errors"));
+  EXPECT_TRUE(response.headers.empty());
+}
+
+TEST(ProblemDocument, OfWhatPassesByItselfSaysWhenToAskAgain) {
+  const HttpResponse response =
+      to_response({.status = 503, .kind = ProblemKind::kBusy, .detail = "full", .retry_after_s = 5});
+  ASSERT_EQ(response.headers.size(), 1U);
+  EXPECT_EQ(response.headers.front(), (std::pair<std::string, std::string>("Retry-After", "5")));
 }
 
 TEST(ProblemDocument, EveryKindHasANameOfItsOwn) {

@@ -218,8 +218,22 @@ TEST_F(SessionTest, ABodyThatIsTooLongIs413AndTheAnswerArrives) {
 }
 
 TEST_F(SessionTest, WhoeverExpectsIsToldBeforeTheBody) {
-  expect_refused(417, post("/api/v1/cell/stop", "Expect: 100-continue\r\nContent-Length: 2\r\n", ""));
-  expect_refused(417, post("/api/v1/cell/stop", "Expect: 100-continue\r\nContent-Length: 2\r\n", "{}"));
+  expect_refused(417, post("/api/v1/runs", "Expect: 100-continue\r\nContent-Length: 2\r\n", ""));
+  expect_refused(417, post("/api/v1/runs", "Expect: 100-continue\r\nContent-Length: 2\r\n", "{}"));
+}
+
+TEST_F(SessionTest, AStopIsExecutedWhateverItExpects) {
+  for (const std::string expected : {"100-continue", "100-Continue", "something else", ""}) {
+    for (const char* body : {"", "{}"}) {
+      RawClient client = connect();
+      client.send(post("/api/v1/cell/stop", "Expect: " + expected + "\r\nContent-Length: 2\r\n", body));
+      RawAnswer answer = client.receive();
+      EXPECT_EQ(answer.status, 202u) << expected << " with " << body;
+      EXPECT_EQ(answer.header["connection"], "close") << "whether a body follows is not known";
+      EXPECT_TRUE(client.closed());
+    }
+    expect_served(202, post("/api/v1/cell/stop", "Expect: " + expected + "\r\n", ""));
+  }
 }
 
 TEST_F(SessionTest, ARefusalByTheHeaderDoesNotWaitForTheBody) {
