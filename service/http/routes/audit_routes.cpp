@@ -26,10 +26,7 @@ HttpResponse get_audit(const Call& call) {
 std::optional<std::int64_t> run_of(const HttpRequest& request) {
   const Route* route = find_route(request.method, request.path);
   if (!route || !route->path.starts_with("/api/v1/runs/{id}/")) return std::nullopt;
-  const std::string id(match(route->path, request.path).value_or(""));
-  if (id.empty() || id.size() > 18 || id.find_first_not_of("0123456789") != std::string::npos)
-    return std::nullopt;
-  return std::stoll(id);
+  return run_id_of(match(route->path, request.path).value_or(""));
 }
 
 }  // namespace

@@ -187,7 +187,9 @@ std::optional<std::string> Call::text(std::string_view name) const {
   return found == request.query.end() ? std::nullopt : std::optional(found->second);
 }
 
-std::optional<std::int64_t> Call::run_id() const { return integer(id); }
+std::optional<std::int64_t> run_id_of(std::string_view segment) { return integer(segment); }
+
+std::optional<std::int64_t> Call::run_id() const { return run_id_of(id); }
 
 HttpResponse json_response(unsigned status, std::string body) {
   return {.status = status, .body = std::move(body)};

@@ -133,6 +133,9 @@ const Route* find_route(std::string_view method, std::string_view path);
 /// The segment of `path` at {id}, empty for a pattern without {id}; nothing if the path does not match.
 std::optional<std::string_view> match(std::string_view pattern, std::string_view path);
 
+/// The number of a run that a segment of a path names, if it is a number.
+std::optional<std::int64_t> run_id_of(std::string_view segment);
+
 /// What the route has to ask of the operation, on its thread; nothing if it asks nothing.
 Asked ask_operation(const Admitted& admitted, const HttpRequest& request, Services& services);
 
