@@ -7,18 +7,50 @@
 
 namespace cell {
 
+namespace {
+
+std::optional<std::string> failure_of(const std::function<void(RunStore&)>& work, RunStore& store) {
+  try {
+    work(store);
+    return std::nullopt;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+}  // namespace
+
 boost::asio::awaitable<std::optional<std::string>> StoreQueue::write(std::function<void(RunStore&)> work) {
-  const auto try_it = [work = std::move(work),
-                       faults = faults_](RunStore& store) -> std::optional<std::string> {
-    try {
-      work(store);
-      faults->store_waiting();
-      return std::nullopt;
-    } catch (const std::exception& error) {
-      return error.what();
-    }
+  const auto try_it = [work = std::move(work), faults = faults_](RunStore& store) {
+    auto failure = failure_of(work, store);
+    if (!failure) faults->store_waiting();
+    return failure;
   };
   co_return co_await run(try_it);
+}
+
+StoreQueue::Begun StoreQueue::begin(std::function<void(RunStore&)> work) {
+  Begun begun;
+  boost::asio::post(executor_, [&store = store_, failure = begun.failure_, work = std::move(work)] {
+    *failure = failure_of(work, store);
+  });
+  return begun;
+}
+
+boost::asio::awaitable<std::optional<std::string>> StoreQueue::finish(Begun begun,
+                                                                      std::function<void(RunStore&)> behind) {
+  const auto go_on = [failure = begun.failure_, behind = std::move(behind),
+                      faults = faults_](RunStore& store) -> std::optional<std::string> {
+    if (*failure) return *failure;
+    if (behind) {
+      if (const auto left_out = failure_of(behind, store))
+        spdlog::error("something could not be stored: {}", *left_out);
+    }
+    faults->store_waiting();
+    return std::nullopt;
+  };
+  const auto failure = co_await run(go_on);
+  co_return failure;
 }
 
 void StoreQueue::append_fault(StoredFault fault) {

@@ -41,6 +41,23 @@ class StoreQueue {
   }
   /// The same for what only writes: why it failed, nothing when it is done.
   boost::asio::awaitable<std::optional<std::string>> write(std::function<void(RunStore&)> work);
+  /// A write that is under way.
+  class Begun {
+   public:
+    Begun() = default;
+
+   private:
+    friend class StoreQueue;
+    /// Why it failed; of the store's thread.
+    std::shared_ptr<std::optional<std::string>> failure_ = std::make_shared<std::optional<std::string>>();
+  };
+  /// Begins a write and returns at once, so that something is computed meanwhile; finish() has to follow.
+  /// What it refers to must live until then.
+  Begun begin(std::function<void(RunStore&)> work);
+  /// Waits for a write that was begun: why it failed, nothing when it is done. `behind` is done on the same
+  /// way, unless the write failed; what it throws is logged, so it says itself that it was done.
+  boost::asio::awaitable<std::optional<std::string>> finish(Begun begun,
+                                                            std::function<void(RunStore&)> behind = {});
   /// Nobody waits for it; what it throws is logged. False when it was left out.
   bool behind(std::function<void(RunStore&)> work);
 

@@ -5,7 +5,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "cs8_protocol/names.hpp"
@@ -35,6 +35,29 @@ bool store_total(RunStore& store, std::int64_t run_id, int touches_total) {
   }
 }
 
+/// What was stored of a command, of the store's thread until its write is over.
+struct StoredCommand {
+  std::size_t changes = 0;  // of the plan: what is stored before one fails is not stored again
+  bool whole = false;
+};
+
+/// Stores what is needed to know the answer of a command again after a restart. `stored` must outlive it.
+std::function<void(RunStore&)> storing_of(const ActiveRun& active, const OpenTouch& open,
+                                          const std::vector<calib::JointVector>& path,
+                                          StoredCommand& stored) {
+  OpenCommand command{.session = open.session,
+                      .sequence = open.sequence,
+                      .aimed_with = open.aimed_with,
+                      .touch_json = command_text(open.planned, path)};
+  return [id = open.run_id, changes = active.changes_to_store(), command = std::move(command),
+          &stored](RunStore& store) {
+    for (; stored.changes < changes.size(); ++stored.changes)
+      store.append_plan_change(id, changes[stored.changes]);
+    store.set_open_command(id, command);
+    stored.whole = true;
+  };
+}
+
 }  // namespace
 
 TouchExecutor::TouchExecutor(const Cell& cell, const TipRegions& regions, StoreQueue& store,
@@ -54,6 +77,8 @@ void TouchExecutor::begin_run(const ActiveRun& active) {
   history_ = {};
   outlier_.settle();
   if (beside_plan_) settle_beside_plan();  // of a run that was stopped before it could be stored
+  stored_ahead_.reset();
+  reference_ahead_.reset();
   total_is_due_ = false;
   leaves_out_.reset();
   stylus_allowed_ = false;
@@ -61,35 +86,10 @@ void TouchExecutor::begin_run(const ActiveRun& active) {
   false_trigger_count_ = 0;
 }
 
-asio::awaitable<void> TouchExecutor::restore_reference(ActiveRun& active) {
-  Run& run = active.run;
-  reference_.begin_run(run.recipe().reference_every);
-  const std::vector<StoredTouch>& made = run.touches();
-  const auto first = std::ranges::find(made, calib::TouchRole::kFit, &StoredTouch::role);
-  if (first == made.end() || run.recipe().reference_every == 0) co_return;
-  const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(first->number - 1));
-  if (!planned) co_return;
-  const auto read = [id = run.id()](RunStore& store) { return store.references(id); };
-  const std::vector<ReferenceTouch> there = co_await store_.run(read);
-  run.note_references(there);
-  const auto reference = there.empty() ? std::nullopt : std::optional(from_wire(there.front().joints));
-  reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
-}
-
-void TouchExecutor::suspect_last(const ActiveRun& active) {
-  const Run& run = active.run;
-  const calib::PlannedTouch* planned = run.touches_made() > 0 ? run.planned(run.touches_made() - 1) : nullptr;
-  if (!planned) return;
-  calib::OnlineArmEstimate with = preparation_.aim();
-  if (!with.add(run.problem().touches.back()).contradicts) return;
-  auto made = preparation_.aim_or_nominal(*planned);
-  if (auto* aimed = std::get_if<calib::AimedTouch>(&made))
-    outlier_.begin(std::move(*aimed), preparation_.aim());
-}
-
 asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   held_by_ = HeldBy::kNothing;
   Run& run = active.run;
+  const bool is_stored = take_stored_ahead(run);
   if (outlier_.is_due()) {
     co_await retest_outlier(active);
     co_return;
@@ -107,8 +107,12 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   const OutgoingTouch outgoing = preparation_.send_next();
   const OpenTouch open{session_.number(), session_.next_sequence(), outgoing.touch, outgoing.aimed_with,
                        active.run.id()};
-  const bool kept = co_await keep_open_command(active, open);
-  if (!kept) co_return;
+  if (is_stored) {
+    session_.set_open_touch(open);
+  } else {
+    const bool kept = co_await keep_open_command(active, open);
+    if (!kept) co_return;
+  }
   session_.forget_standing();
   auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
   work_ahead(active);
@@ -133,7 +137,6 @@ asio::awaitable<bool> TouchExecutor::prepare(ActiveRun& active) {
   Run& run = active.run;
   // An aimed touch is kept after a hold or a restart; only the path to it is planned again.
   if (preparation_.reroute_from(*from, *run.next())) co_return true;
-  identify(active);
   preparation_.add_contacts(run);
   if (preparation_.prepare_next(run, *from)) co_return true;
   const int plane = run.next()->face + 1;
@@ -153,29 +156,51 @@ void TouchExecutor::hold_without_way(const calib::JointVector& from, const std::
 /// cannot be kept, or the state has changed meanwhile, or the arm has been moved: then the command must not
 /// leave.
 asio::awaitable<bool> TouchExecutor::keep_open_command(ActiveRun& active, OpenTouch open) {
-  const Run& run = active.run;
   session_.set_open_touch(open);
   const bool stood = session_.standing().has_value();
-  const OpenCommand command{.session = open.session,
-                            .sequence = open.sequence,
-                            .aimed_with = open.aimed_with,
-                            .touch_json = command_text(open.planned, preparation_.made_path())};
-  std::size_t stored = 0;  // of the changes: what is stored before one fails is not stored again
-  const auto write = [id = run.id(), changes = active.changes_to_store(), command, &stored](RunStore& store) {
-    for (; stored < changes.size(); ++stored) store.append_plan_change(id, changes[stored]);
-    store.set_open_command(id, command);
-  };
+  StoredCommand stored;
+  const auto write = storing_of(active, open, preparation_.made_path(), stored);
   const auto failure = co_await store_.write(write);
-  active.stored_changes += stored;
+  active.stored_changes += stored.changes;
   const bool has_moved = stood && !session_.standing();
   if (!failure && status_.state() == State::kExecute && !has_moved) co_return true;
   session_.drop_open_touch();
   if (failure) {
     status_.raise({FaultCode::kStoreFailed, *failure}, Event::kHoldFault);
-  } else {  // its sequence number belongs to the command that leaves next
-    store_.behind([id = run.id()](RunStore& store) { store.forget_open_command(id); });
+  } else {
+    forget_stored_command(open.run_id);
   }
   co_return false;
+}
+
+/// Its sequence number belongs to the command that leaves next.
+void TouchExecutor::forget_stored_command(std::int64_t run_id) {
+  store_.behind([run_id](RunStore& store) { store.forget_open_command(run_id); });
+}
+
+/// The command that follows a contact which is being stored; nothing where something else comes first, or
+/// where it is not ready.
+std::optional<OpenTouch> TouchExecutor::command_behind(const ActiveRun& active, bool contradicted) const {
+  const Run& run = active.run;
+  const bool all_made = !run.planned(run.touches_made() + 1);
+  if (contradicted || all_made || reference_.is_due(run.touches_done() + 1, all_made)) return std::nullopt;
+  if (status_.state() != State::kExecute || !session_.connected()) return std::nullopt;
+  if (!preparation_.is_ready_from(preparation_.made()->touch.clear_joints)) return std::nullopt;
+  const PreparedTouch& next = *preparation_.next();
+  return OpenTouch{session_.number(), session_.next_sequence(), next.aimed.touch, next.aimed_with, run.id()};
+}
+
+/// True when the next touch was stored with the contact before it and nothing has come between.
+bool TouchExecutor::take_stored_ahead(const Run& run) {
+  const std::optional<OpenTouch> ahead = std::exchange(stored_ahead_, std::nullopt);
+  if (!ahead) return false;
+  const bool comes_next = !outlier_.is_due() && !reference_.is_due(run.touches_done(), !run.next());
+  const bool is_its_number =
+      ahead->session == session_.number() && ahead->sequence == session_.next_sequence();
+  if (comes_next && is_its_number && session_.standing() && preparation_.is_ready_from(*session_.standing()))
+    return true;
+  forget_stored_command(run.id());
+  return false;
 }
 
 /// While the arm moves.
@@ -185,7 +210,17 @@ void TouchExecutor::work_ahead(ActiveRun& active) {
   preparation_.add_contacts(active.run);
   const std::size_t behind = active.run.touches_made() + 1;
   stop_when_good_enough(active, behind);
+  look_ahead(active);
+}
+
+/// What comes behind the touch under way, from its clear posture.
+void TouchExecutor::look_ahead(ActiveRun& active) {
+  const std::size_t behind = active.run.touches_made() + 1;
   preparation_.look_ahead(active.run, behind);
+  reference_ahead_.reset();
+  const bool is_due = reference_.is_due(active.run.touches_done() + 1, !active.run.planned(behind));
+  if (is_due && reference_.aimed())
+    reference_ahead_ = preparation_.prepare(*reference_.aimed(), preparation_.made()->touch.clear_joints);
 }
 
 void TouchExecutor::identify(ActiveRun& active) {
@@ -209,18 +244,54 @@ asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch o
   if (!accept(active, touch, open.sequence, result, HeldBy::kTouch)) co_return;
   const calib::JointVector contact = from_wire(result.contact);
   if (const calib::PlannedTouch* of_plan = active.run.next()) reference_.note_fitted(*of_plan, contact);
-  const bool kept = co_await keep(active, touch, result, open);
-  if (!kept) co_return;
+  const Storing storing = begin_storing(active.run, touch, result, open);
+  calib::OnlineArmEstimate without = preparation_.aim();
+  bool contradicted = false;
+  std::optional<OpenTouch> next;
+  std::exception_ptr unforeseen;  // what is stored counts all the same
+  try {
+    contradicted = aim_ahead(active, storing.touch, contact);
+    next = command_behind(active, contradicted);
+  } catch (...) {
+    unforeseen = std::current_exception();
+  }
+  StoredCommand stored;
+  std::function<void(RunStore&)> behind;
+  if (next) behind = storing_of(active, *next, path_of(*preparation_.next()), stored);
+  const bool kept = co_await finish_storing(active, storing, result.edges, behind);
+  active.stored_changes += stored.changes;
+  if (!kept) {
+    preparation_.set_aim(std::move(without));
+    co_return;
+  }
   session_.acknowledge(open.sequence);
-  preparation_.set_missed(false);
   session_.set_standing(touch.clear_joints);
   if (active.place_check) {
     if (const auto moved = active.place_check->check(active.run.problem().touches.back()))
       status_.raise(*moved, Event::kHoldFault);
   }
-  // What comes next was aimed before this was known; it is aimed again first.
-  if (preparation_.is_surprise(contact)) preparation_.drop_next();
-  watch_fit(active);
+  if (contradicted) outlier_.begin(*preparation_.made(), std::move(without));
+  if (unforeseen) std::rethrow_exception(unforeseen);
+  if (!stored.whole) co_return;
+  if (status_.state() == State::kExecute) {
+    stored_ahead_ = next;
+  } else {
+    forget_stored_command(active.run.id());
+  }
+}
+
+/// While the contact is stored: the aim knows it, and what comes next, which was aimed before it was known,
+/// is aimed again where it has to be. True for a contact that the others contradict: it is made again while
+/// the arm is there.
+bool TouchExecutor::aim_ahead(ActiveRun& active, const StoredTouch& touch,
+                              const calib::JointVector& contact) {
+  preparation_.set_missed(false);
+  const bool contradicted = preparation_.add_ahead(active.run, to_touch(touch));
+  if (!preparation_.is_surprise(contact)) return contradicted;
+  preparation_.drop_next();
+  reference_ahead_.reset();
+  if (!contradicted) look_ahead(active);
+  return contradicted;
 }
 
 /// True when the answer is a measurement, which the caller keeps and acknowledges; else the answer is dealt
@@ -273,17 +344,17 @@ void TouchExecutor::take_no_measurement(const ActiveRun& active, const calib::Pl
                 judged.event);
 }
 
-void TouchExecutor::take_rejection(const cs8::Rejected& rejected, HeldBy held_by) {
-  const OutcomeFault refused = fault_of(rejected);
-  held_by_ = held_by;
-  status_.raise(refused.fault, refused.event());
-  session_.meet_anew_after(rejected);
-}
-
 asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch planned,
                                           cs8::TouchResult result, std::optional<OpenTouch> answered,
                                           std::optional<double> noise_um) {
-  Run& run = active.run;
+  const Storing storing = begin_storing(active.run, planned, result, answered, noise_um);
+  const bool kept = co_await finish_storing(active, storing, result.edges, {});
+  co_return kept;
+}
+
+TouchExecutor::Storing TouchExecutor::begin_storing(const Run& run, const calib::PlannedTouch& planned,
+                                                    const cs8::TouchResult& result,
+                                                    const std::optional<OpenTouch>& answered) {
   const StoredTouch touch{.number = run.touches_done() + 1,
                           .plane = planned.face + 1,
                           .role = planned.role,
@@ -296,13 +367,21 @@ asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch
                           .aimed_with = answered ? answered->aimed_with : 0,
                           .noise_um = noise_um};
   const std::optional<int> total = total_is_due_ ? std::optional(run.touches_total()) : std::nullopt;
-  bool total_stored = false;
-  const auto write = [id = run.id(), touch, total, &total_stored](RunStore& store) {
+  auto total_stored = std::make_shared<bool>(false);
+  const auto write = [id = run.id(), touch, total, total_stored](RunStore& store) {
     store.append_touch(id, touch);
-    total_stored = total && store_total(store, id, *total);
+    *total_stored = total && store_total(store, id, *total);
   };
-  const auto failure = co_await store_.write(write);
-  if (total_stored) total_is_due_ = false;
+  return {touch, store_.begin(write), total_stored};
+}
+
+/// As keep(); `behind` is stored on the same way, unless the contact could not be.
+asio::awaitable<bool> TouchExecutor::finish_storing(ActiveRun& active, Storing storing, int edges,
+                                                    std::function<void(RunStore&)> behind) {
+  Run& run = active.run;
+  const StoredTouch& touch = storing.touch;
+  const auto failure = co_await store_.finish(storing.begun, std::move(behind));
+  if (*storing.total_stored) total_is_due_ = false;
   if (failure) {
     // The controller keeps its answer until it is acknowledged: a run on hold stores it when it goes on, one
     // that has ended with its own fault when the cell is reset.
@@ -315,70 +394,13 @@ asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch
     co_return false;
   }
   run.add(touch);
-  const bool polled = result.source == cs8::CaptureSource::kPolled;
+  const bool polled = touch.source == cs8::CaptureSource::kPolled;
   spdlog::log(polled ? spdlog::level::warn : spdlog::level::info,
               "run {} touch {} on plane {}: {}{}, {} edge(s), overtravel {:.3f} mm", run.id(),
-              run.touches_done(), planned.face + 1, cs8::name(result.source),
-              polled ? ", late by up to 4 ms of its speed: check the latch" : "", result.edges,
-              cs8::metres_from_dmm(result.overtravel_dmm) * 1e3);
+              run.touches_done(), touch.plane, cs8::name(touch.source),
+              polled ? ", late by up to 4 ms of its speed: check the latch" : "", edges,
+              cs8::metres_from_dmm(touch.overtravel_dmm) * 1e3);
   co_return true;
-}
-
-/// The newest touch is known to the aim at once; one that the others contradict is made again while the arm
-/// is there.
-void TouchExecutor::watch_fit(const ActiveRun& active) {
-  calib::OnlineArmEstimate without = preparation_.aim();
-  if (preparation_.add_contacts(active.run)) outlier_.begin(*preparation_.made(), std::move(without));
-}
-
-asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std::uint32_t sequence) {
-  const cs8::QueryReply reply = co_await session_.query(sequence);
-  if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
-  const auto* result = std::get_if<cs8::TouchResult>(&reply);
-  const std::optional<OpenTouch> open = session_.open_touch();
-  const bool ours = active && open && open->run_id == active->run.id() &&
-                    open->session == session_.number() && open->sequence == sequence;
-  std::optional<TouchJudgement> judged;
-  if (result && ours) judged = judge_touch(cell_, open->planned, *result, {});
-  if (judged && judged->next == TouchJudgement::Next::kKeep) {
-    spdlog::info("run {}: touch {} had been made when the run was broken off", active->run.id(),
-                 active->run.touches_done() + 1);
-    const bool kept = co_await keep_late_touch(*active, *open, *result);
-    if (!kept) {
-      // It waits there until it can be stored.
-      if (!active->open && !has_ended(status_.state())) status_.enter(State::kStopped);
-      co_return;
-    }
-  }
-  session_.acknowledge(sequence);
-  if (judged && judged->next == TouchJudgement::Next::kFault && judged->event == Event::kAbortFault &&
-      active->open)
-    status_.raise(judged->fault, judged->event);
-}
-
-/// A contact of a run that is over or on hold: its stored result follows, its verdict does not change.
-asio::awaitable<bool> TouchExecutor::keep_late_touch(ActiveRun& active, OpenTouch open,
-                                                     cs8::TouchResult result) {
-  const calib::PlannedTouch* of_plan = active.run.next();
-  const bool goes_on = active.open && !active.interruption && !active.guided;
-  const calib::JointVector contact = from_wire(result.contact);
-  if (goes_on && of_plan) reference_.note_fitted(*of_plan, contact);
-  const bool kept = co_await keep(active, open.planned, result, open);
-  if (!kept) co_return false;
-  identify(active);
-  if (goes_on) aim_behind_late_touch(active, contact);
-  if (const auto document = result_json(active, regions_)) {
-    store_.behind([id = active.run.id(), json = *document, arm = arm_json(active, cell_)](RunStore& store) {
-      store.set_result_json(id, json, arm);
-    });
-  }
-  status_.publish();
-  co_return true;
-}
-
-void TouchExecutor::aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact) {
-  if (preparation_.made() && preparation_.is_surprise(contact)) preparation_.drop_next();
-  suspect_last(active);
 }
 
 }  // namespace cell

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
+#include <functional>
+#include <memory>
 #include <optional>
 
 #include "calib_core/planning/aimed_touch.hpp"
@@ -24,7 +26,9 @@ enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus };
 ///   prepare -> command -> answer -> judge -> keep (store, then Run::add) -> acknowledge
 ///
 /// A contact counts when it is stored; only then may the controller forget it. The arm does not wait for
-/// arithmetic: the estimate from the last touch and the path to the next are computed while it moves. Called
+/// arithmetic: the estimate from the last touch and the path to the next are computed while it moves, and
+/// what a contact changes in them while the disk writes it. Behind the contact, on the same way to the disk,
+/// goes the command that follows, which leaves when both are stored and nothing has come between. Called
 /// by the cell's loop in EXECUTE. Failures are raised at the status and end the step; a lost link ends the
 /// step without a fault, which the controller's hook raises.
 class TouchExecutor {
@@ -73,15 +77,30 @@ class TouchExecutor {
   boost::asio::awaitable<bool> prepare(ActiveRun& active);
   void hold_without_way(const calib::JointVector& from, const std::string& to, HeldBy held_by);
   boost::asio::awaitable<bool> keep_open_command(ActiveRun& active, OpenTouch open);
+  std::optional<OpenTouch> command_behind(const ActiveRun& active, bool contradicted) const;
+  bool take_stored_ahead(const Run& run);
+  void forget_stored_command(std::int64_t run_id);
   void work_ahead(ActiveRun& active);
+  void look_ahead(ActiveRun& active);
   void stop_when_good_enough(ActiveRun& active, std::size_t first);
   boost::asio::awaitable<void> take_contact(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
+  /// A contact on its way to the store.
+  struct Storing {
+    StoredTouch touch;
+    StoreQueue::Begun begun;
+    std::shared_ptr<bool> total_stored;
+  };
+  Storing begin_storing(const Run& run, const calib::PlannedTouch& planned, const cs8::TouchResult& result,
+                        const std::optional<OpenTouch>& answered,
+                        std::optional<double> noise_um = std::nullopt);
+  boost::asio::awaitable<bool> finish_storing(ActiveRun& active, Storing storing, int edges,
+                                              std::function<void(RunStore&)> behind);
+  bool aim_ahead(ActiveRun& active, const StoredTouch& touch, const calib::JointVector& contact);
   bool accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
               const cs8::TouchResult& result, HeldBy held_by);
   void take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
                            const TouchJudgement& judged, HeldBy held_by);
   void take_rejection(const cs8::Rejected& rejected, HeldBy held_by);
-  void watch_fit(const ActiveRun& active);
   boost::asio::awaitable<bool> keep_late_touch(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
   void aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact);
 
@@ -90,6 +109,7 @@ class TouchExecutor {
   void settle_beside_plan();
   boost::asio::awaitable<void> touch_reference(ActiveRun& active);
   bool aim_at_reference();
+  void look_ahead_from_reference(Run& run, const calib::JointVector& from);
   void judge_reference(const ActiveRun& active, const calib::JointVector& contact);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
   boost::asio::awaitable<bool> replace_last(ActiveRun& active, OutlierRetest::Replaced replaced);
@@ -113,6 +133,8 @@ class TouchExecutor {
     cs8::TouchResult result;
   };
   std::optional<BesidePlan> beside_plan_;
+  std::optional<OpenTouch> stored_ahead_;         // the command that leaves next, when it is stored already
+  std::optional<PreparedTouch> reference_ahead_;  // the way to the reference place, when it is touched next
   bool total_is_due_ = false;  // the run's number of touches has changed and is not stored yet
   int false_trigger_count_ = 0;
   bool stylus_allowed_ = false;  // by a person

@@ -1,8 +1,10 @@
 // What a TouchExecutor touches beside the plan: the reference place, and a touch that does not fit the
-// others; and a person's word on them. Each co_await stands alone in its statement, see cs8_controller.cpp.
+// others; answers that come late or say no; and a person's word on them. Each co_await stands alone in its
+// statement, see cs8_controller.cpp.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -17,6 +19,32 @@ namespace cell {
 namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
+asio::awaitable<void> TouchExecutor::restore_reference(ActiveRun& active) {
+  Run& run = active.run;
+  reference_.begin_run(run.recipe().reference_every);
+  const std::vector<StoredTouch>& made = run.touches();
+  const auto first = std::ranges::find(made, calib::TouchRole::kFit, &StoredTouch::role);
+  if (first == made.end() || run.recipe().reference_every == 0) co_return;
+  const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(first->number - 1));
+  if (!planned) co_return;
+  const auto read = [id = run.id()](RunStore& store) { return store.references(id); };
+  const std::vector<ReferenceTouch> there = co_await store_.run(read);
+  run.note_references(there);
+  const auto reference = there.empty() ? std::nullopt : std::optional(from_wire(there.front().joints));
+  reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
+}
+
+void TouchExecutor::suspect_last(const ActiveRun& active) {
+  const Run& run = active.run;
+  const calib::PlannedTouch* planned = run.touches_made() > 0 ? run.planned(run.touches_made() - 1) : nullptr;
+  if (!planned) return;
+  calib::OnlineArmEstimate with = preparation_.aim();
+  if (!with.add(run.problem().touches.back()).contradicts) return;
+  auto made = preparation_.aim_or_nominal(*planned);
+  if (auto* aimed = std::get_if<calib::AimedTouch>(&made))
+    outlier_.begin(std::move(*aimed), preparation_.aim());
+}
+
 /// Makes a touch as it is given, unless the contact of the last one is still to be stored; false when there
 /// is no measurement. The controller keeps the contact until settle_beside_plan().
 asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib::AimedTouch aimed,
@@ -28,7 +56,9 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
     co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     co_return false;
   }
-  auto ready = preparation_.prepare(std::move(aimed), *from);
+  std::optional<PreparedTouch> ready = std::exchange(reference_ahead_, std::nullopt);
+  if (!ready || held_by != HeldBy::kReference || ready->from != *from)
+    ready = preparation_.prepare(std::move(aimed), *from);
   if (!ready) {
     hold_without_way(*from, "to a place that was touched before", held_by);
     co_return false;
@@ -38,6 +68,7 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
   history_.last_contact.reset();  // this touch repeats an earlier place on purpose
   auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
   identify(active);
+  if (held_by == HeldBy::kReference) look_ahead_from_reference(active.run, outgoing.touch.clear_joints);
   const cs8::TouchReply reply = co_await std::move(answer);
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     take_rejection(*rejected, held_by);
@@ -68,6 +99,12 @@ bool TouchExecutor::aim_at_reference() {
   }
   reference_.set_aimed(std::get<calib::AimedTouch>(std::move(made)));
   return true;
+}
+
+/// While the arm moves to the reference place: the way from there to the next touch of the plan.
+void TouchExecutor::look_ahead_from_reference(Run& run, const calib::JointVector& from) {
+  const calib::PlannedTouch* next = run.next();
+  if (next && !preparation_.reroute_from(from, *next)) preparation_.prepare_next(run, from);
 }
 
 asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
@@ -101,8 +138,7 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
   reference_ = std::move(with_contact);
   if (reading.told_m) status_.set_reference_drift(*reading.told_m);
   spdlog::info("run {} reference touch {}: drift {:.3f} mm", run.id(), reading.number, drift_mm);
-  active.run.note_references(there);
-  active.run.identify();
+  active.run.note_references(there);  // identified while the arm moves on
   status_.publish();
   judge_reference(active, contact);
 }
@@ -171,6 +207,63 @@ asio::awaitable<bool> TouchExecutor::replace_last(ActiveRun& active, OutlierRete
   outlier_.settle();
   status_.publish();
   co_return true;
+}
+
+void TouchExecutor::take_rejection(const cs8::Rejected& rejected, HeldBy held_by) {
+  const OutcomeFault refused = fault_of(rejected);
+  held_by_ = held_by;
+  status_.raise(refused.fault, refused.event());
+  session_.meet_anew_after(rejected);
+}
+
+asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std::uint32_t sequence) {
+  const cs8::QueryReply reply = co_await session_.query(sequence);
+  if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
+  const auto* result = std::get_if<cs8::TouchResult>(&reply);
+  const std::optional<OpenTouch> open = session_.open_touch();
+  const bool ours = active && open && open->run_id == active->run.id() &&
+                    open->session == session_.number() && open->sequence == sequence;
+  std::optional<TouchJudgement> judged;
+  if (result && ours) judged = judge_touch(cell_, open->planned, *result, {});
+  if (judged && judged->next == TouchJudgement::Next::kKeep) {
+    spdlog::info("run {}: touch {} had been made when the run was broken off", active->run.id(),
+                 active->run.touches_done() + 1);
+    const bool kept = co_await keep_late_touch(*active, *open, *result);
+    if (!kept) {
+      // It waits there until it can be stored.
+      if (!active->open && !has_ended(status_.state())) status_.enter(State::kStopped);
+      co_return;
+    }
+  }
+  session_.acknowledge(sequence);
+  if (judged && judged->next == TouchJudgement::Next::kFault && judged->event == Event::kAbortFault &&
+      active->open)
+    status_.raise(judged->fault, judged->event);
+}
+
+/// A contact of a run that is over or on hold: its stored result follows, its verdict does not change.
+asio::awaitable<bool> TouchExecutor::keep_late_touch(ActiveRun& active, OpenTouch open,
+                                                     cs8::TouchResult result) {
+  const calib::PlannedTouch* of_plan = active.run.next();
+  const bool goes_on = active.open && !active.interruption && !active.guided;
+  const calib::JointVector contact = from_wire(result.contact);
+  if (goes_on && of_plan) reference_.note_fitted(*of_plan, contact);
+  const bool kept = co_await keep(active, open.planned, result, open);
+  if (!kept) co_return false;
+  identify(active);
+  if (goes_on) aim_behind_late_touch(active, contact);
+  if (const auto document = result_json(active, regions_)) {
+    store_.behind([id = active.run.id(), json = *document, arm = arm_json(active, cell_)](RunStore& store) {
+      store.set_result_json(id, json, arm);
+    });
+  }
+  status_.publish();
+  co_return true;
+}
+
+void TouchExecutor::aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact) {
+  if (preparation_.made() && preparation_.is_surprise(contact)) preparation_.drop_next();
+  suspect_last(active);
 }
 
 void TouchExecutor::settle_hold(ActiveRun& active, Command command) {

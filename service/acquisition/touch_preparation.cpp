@@ -38,6 +38,13 @@ double off_m(const calib::PlanningProblem& planning, int face, const Eigen::Vect
 
 }  // namespace
 
+std::vector<calib::JointVector> path_of(const PreparedTouch& prepared) {
+  const calib::PlannedTouch& touch = prepared.aimed.touch;
+  std::vector<calib::JointVector> path = calib::whole_path(prepared.from, prepared.via, touch.clear_joints);
+  path.insert(path.end(), {touch.approach_joints, touch.search_end_joints});
+  return path;
+}
+
 void TouchPreparation::begin(calib::PlanningProblem problem) {
   planning_ = std::move(problem);
   aim_.emplace(planning_);
@@ -55,16 +62,19 @@ void TouchPreparation::forget_all() {
 bool TouchPreparation::add_contacts(const Run& run) {
   const std::vector<calib::Touch>& touches = run.problem().touches;
   bool contradicted = false;
-  while (aim_ && aim_->touch_count() < touches.size()) {
-    const calib::PredictedContact contact = aim_->add(touches[aim_->touch_count()]);
-    spdlog::log(contact.contradicts ? spdlog::level::warn : spdlog::level::info,
-                "run {} touch {} was {:.2f} mm from where it was expected, {:.2f} mm predicted{}", run.id(),
-                aim_->touch_count(), calib::mm_from_metres(contact.position_error_m),
-                calib::mm_from_metres(contact.predicted_position_error_m),
-                contact.contradicts ? ": the other touches contradict it, it is not used for aiming" : "");
-    contradicted = contact.contradicts;
-  }
+  while (aim_ && aim_->touch_count() < touches.size())
+    contradicted = add_ahead(run, touches[aim_->touch_count()]);
   return contradicted;
+}
+
+bool TouchPreparation::add_ahead(const Run& run, const calib::Touch& touch) {
+  const calib::PredictedContact contact = aim_->add(touch);
+  spdlog::log(contact.contradicts ? spdlog::level::warn : spdlog::level::info,
+              "run {} touch {} was {:.2f} mm from where it was expected, {:.2f} mm predicted{}", run.id(),
+              aim_->touch_count(), calib::mm_from_metres(contact.position_error_m),
+              calib::mm_from_metres(contact.predicted_position_error_m),
+              contact.contradicts ? ": the other touches contradict it, it is not used for aiming" : "");
+  return contact.contradicts;
 }
 
 double TouchPreparation::height_m(int face, const calib::JointVector& joints) const {
@@ -125,12 +135,10 @@ OutgoingTouch TouchPreparation::send_next() {
 }
 
 OutgoingTouch TouchPreparation::send(PreparedTouch prepared) {
+  made_path_ = path_of(prepared);
   before_ = std::move(made_);
   made_ = std::move(prepared.aimed);
-  const calib::PlannedTouch& touch = made_->touch;
-  made_path_ = calib::whole_path(prepared.from, prepared.via, touch.clear_joints);
-  made_path_.insert(made_path_.end(), {touch.approach_joints, touch.search_end_joints});
-  return {.touch = touch, .via = std::move(prepared.via), .aimed_with = prepared.aimed_with};
+  return {.touch = made_->touch, .via = std::move(prepared.via), .aimed_with = prepared.aimed_with};
 }
 
 void TouchPreparation::forget_made() {

@@ -22,6 +22,9 @@ struct PreparedTouch {
   calib::JointVector planned = calib::JointVector::Zero();  // the joints of the planned touch: which it is
 };
 
+/// From where the arm stands to the end of the search.
+std::vector<calib::JointVector> path_of(const PreparedTouch& prepared);
+
 /// A touch to send to the controller.
 struct OutgoingTouch {
   calib::PlannedTouch touch;            // as it is aimed
@@ -44,6 +47,9 @@ class TouchPreparation {
 
   /// Adds the run's new touches to the estimate; true when the others contradict the last of them.
   bool add_contacts(const Run& run);
+  /// Adds the contact that becomes the run's next touch once it is stored; true when the others contradict
+  /// it. Where it is not stored after all, set_aim() puts the estimate back.
+  bool add_ahead(const Run& run, const calib::Touch& touch);
   [[nodiscard]] const calib::PlanningProblem& problem() const { return planning_; }
   /// The run's estimate; there must be a run.
   [[nodiscard]] const calib::OnlineArmEstimate& aim() const { return *aim_; }
@@ -56,6 +62,8 @@ class TouchPreparation {
 
   /// True when the next touch was prepared from here.
   [[nodiscard]] bool is_ready_from(const calib::JointVector& joints) const;
+  /// The prepared touch; nothing when there is none.
+  [[nodiscard]] const std::optional<PreparedTouch>& next() const { return next_; }
   /// Gives the prepared touch a path from here, when it is `next`. True when there is one.
   bool reroute_from(const calib::JointVector& joints, const calib::PlannedTouch& next);
   /// Prepares the run's next touch from here. A touch that cannot be made as aimed is made with the nominal

@@ -51,6 +51,22 @@ TEST_F(StoreQueueTest, AFailureThatNobodyWaitsForEndsNothing) {
   EXPECT_THROW(run(queue_.run(fail)), std::runtime_error);
 }
 
+TEST_F(StoreQueueTest, WhatIsBehindAWriteIsDoneOnTheSameWayUnlessTheWriteFailed) {
+  std::string done;
+  const auto begun = queue_.begin([&done](RunStore&) { done += "write "; });
+  EXPECT_FALSE(run(queue_.finish(begun, [&done](RunStore&) { done += "behind"; })));
+  EXPECT_EQ(done, "write behind");
+  const auto failed = queue_.begin([](RunStore&) { throw std::runtime_error("the disk is full"); });
+  done.clear();
+  EXPECT_EQ(run(queue_.finish(failed, [&done](RunStore&) { done += "behind"; })), "the disk is full");
+  EXPECT_EQ(done, "");
+}
+
+TEST_F(StoreQueueTest, AFailureBehindAWriteLeavesTheWriteAsItIs) {
+  const auto begun = queue_.begin([](RunStore&) {});
+  EXPECT_FALSE(run(queue_.finish(begun, [](RunStore&) { throw std::runtime_error("the disk is full"); })));
+}
+
 TEST_F(StoreQueueTest, AFaultThatCouldNotBeStoredIsStoredBehindTheNextWrite) {
   sqlite3_commit_hook(
       store.database()->getHandle(), [](void*) { return 1; }, nullptr);

@@ -52,8 +52,43 @@ TEST_F(TouchExecutorTest, AContactIsStoredThenAddedThenAcknowledged) {
   const StoredTouch stored = store.touches(active_.run.id()).at(0);
   EXPECT_EQ(stored.sequence, 1u);
   EXPECT_EQ(stored.plane, plan_of_owners().touches.touches[0].face + 1);
-  EXPECT_FALSE(store.open_command(active_.run.id())) << "its answer is stored";
   EXPECT_FALSE(session.open_touch());
+}
+
+TEST_F(TouchExecutorTest, TheNextCommandIsStoredOnTheWayOfTheContactBeforeIt) {
+  run(touches_.make_next_touch(active_));
+  const auto next = store.open_command(active_.run.id());
+  ASSERT_TRUE(next);
+  EXPECT_EQ(next->sequence, 2u);
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "acknowledge 1")) << "it leaves in its turn";
+  break_store();  // what leaves now must have been stored before
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  mend_store();
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "acknowledge 1", "touch 2"));
+  EXPECT_EQ(session.open_touch().value().sequence, 2u);
+}
+
+TEST_F(TouchExecutorTest, AStopWhileAContactIsStoredKeepsTheCommandBehindItFromLeaving) {
+  controller.on_touch = [this](const cs8::Touch&) {
+    queue.behind([this](RunStore&) { status.enter(State::kStopping); });
+    return contact();
+  };
+  run(touches_.make_next_touch(active_));
+  expect_run_is_as_stored();
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "acknowledge 1"));
+  EXPECT_FALSE(store.open_command(active_.run.id())) << "the next command has its number";
+}
+
+TEST_F(TouchExecutorTest, AnArmThatIsMovedIsNotCommandedFromWhereItStood) {
+  run(touches_.make_next_touch(active_));
+  session.forget_standing();
+  controller.state->joints = to_wire(cell_of_owners().park_joints);
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), 2);
+  EXPECT_EQ(store.open_command(active_.run.id()).value().sequence, 3u);
+  expect_run_is_as_stored();
 }
 
 TEST_F(TouchExecutorTest, TheNextTouchIsReadyWhenTheArmComesBack) {
@@ -291,6 +326,8 @@ TEST_F(TouchExecutorTest, ALockOfAnotherProgramHoldsTheRunAndTheContactIsKeptOnc
   EXPECT_EQ(status.state(), State::kHolding);
   EXPECT_THAT(faults, ElementsAre("store_failed"));
   EXPECT_EQ(acknowledged_count(), 0) << "the controller keeps it";
+  EXPECT_EQ(preparation.aim().touch_count(), 0u) << "it does not count";
+  EXPECT_EQ(store.open_command(active_.run.id()).value().sequence, 1u) << "no command went along";
   other.exec("ROLLBACK");
   status.enter(State::kHeld);
   status.enter(State::kUnholding);
