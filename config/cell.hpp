@@ -151,7 +151,8 @@ struct Cell {
   std::map<std::string, Recipe> recipes;
   std::string default_recipe;
   calib::JointVector park_joints;
-  double nominal_position_error_m = 0.0;
+  double nominal_position_error_m = 0.0;  // of the tip of the uncalibrated arm
+  double place_error_m = 0.0;  // 3 sigma of a located block at the corners of its faces; 0: not located
   PlaceTolerance unknown_place_std;
   double stylus_tilt_max_rad = 0.0;
   std::chrono::minutes block_temperature_age_max = std::chrono::hours(8);  // older ones say nothing of today
@@ -167,6 +168,10 @@ struct Cell {
 
   /// All that may collide: the arm's and the probe's bodies, the block's solids and the keep-out boxes.
   [[nodiscard]] calib::CollisionScene collision_scene() const;
+  /// How far, in metres and in any direction, the true faces may be from where a plan of the uncalibrated arm
+  /// has them: what every path keeps from them, and what a search reaches to either side. The larger of
+  /// nominal_position_error_m and place_error_m.
+  [[nodiscard]] double face_error_m() const;
 };
 
 /// The cell with its block at this temperature, which outranks that of the block's file; as it is without

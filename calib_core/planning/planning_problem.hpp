@@ -46,8 +46,10 @@ struct PlanningProblem {
   CollisionScene scene;
   std::vector<TouchRequest> requests;
   PlanGoal goal;
-  JointVector park_joints;                  // a run begins and ends here; clear of obstacles
-  double nominal_position_error_m = 0.012;  // bound on the tip error of `nominal`: sizes clearance and search
+  JointVector park_joints;  // a run begins and ends here; clear of obstacles
+  /// Bound on the tip error of `nominal` against the faces, by the arm and by their place: sizes clearance
+  /// and search.
+  double nominal_position_error_m = 0.012;
   /// A search begins at least this far before its face and ends at least this far behind it.
   double standoff_min_m = 0.015;
   double tilt_max_rad = 0.0;

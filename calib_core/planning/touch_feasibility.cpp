@@ -12,6 +12,8 @@ namespace {
 constexpr double kRangeMarginRad = 1.0 * kRadiansPerDegree;
 constexpr double kLineStepMetres = 0.010;
 constexpr double kSamePlaneMetres = 1e-6;
+/// What a search begins and ends beyond the position error: the ball is off the face, and the face in reach.
+constexpr double kStandoffSpareMetres = 0.003;
 /// How often `clear` is moved away from obstacles, and how far from its initial position in total.
 constexpr int kClearMovesMax = 4;
 constexpr double kClearMoveMaxMetres = 0.100;
@@ -98,7 +100,8 @@ std::string describe(const PlanningProblem& problem, const TouchInfeasibility& i
     case TouchInfeasibility::Cause::kSmallSphere:
       return "the sphere with the stylus ball is less than twice as wide as the " +
              std::to_string(std::lround(mm_from_metres(problem.nominal_position_error_m))) +
-             " mm to either side that the arm may miss it by (nominal_miss_mm)";
+             " mm to either side that the arm may miss it by (nominal_miss_mm, more where the block was "
+             "located no better)";
     case TouchInfeasibility::Cause::kNoPath:
       return "no clear way from the park posture";
   }
@@ -106,10 +109,11 @@ std::string describe(const PlanningProblem& problem, const TouchInfeasibility& i
 }
 
 TouchHeights touch_heights(double nominal_position_error_m, double standoff_min_m) {
-  // 3 mm more than the position error: the ball is off the face at the start, and the face within reach.
-  const double standoff_m = std::max(nominal_position_error_m + 0.003, standoff_min_m);
+  const double standoff_m = std::max(nominal_position_error_m + kStandoffSpareMetres, standoff_min_m);
   return {.approach_m = standoff_m, .clear_m = standoff_m + kSlowZoneMetres, .search_end_m = -standoff_m};
 }
+
+double position_error_max_m(double search_length_m) { return search_length_m / 2.0 - kStandoffSpareMetres; }
 
 TouchTarget find_target(const PlanningProblem& problem, int face) {
   const Face& wanted = problem.faces[static_cast<std::size_t>(face)];

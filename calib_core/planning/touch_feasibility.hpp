@@ -22,6 +22,8 @@ struct TouchHeights {
   double search_end_m = 0.0;  // negative: end of a search without contact
 };
 TouchHeights touch_heights(double nominal_position_error_m, double standoff_min_m);
+/// The largest nominal position error with which the search of a touch of a flat face is no longer than this.
+double position_error_max_m(double search_length_m);
 
 /// The face to touch and the obstacles around it.
 struct TouchTarget {

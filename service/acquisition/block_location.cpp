@@ -4,13 +4,12 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/motion/transfer_path.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
 #include "service/acquisition/block_pass.hpp"
 #include "service/acquisition/link_fault.hpp"
 #include "service/acquisition/preconditions.hpp"
@@ -35,29 +34,24 @@ BlockPose located(const std::optional<BlockPose>& before, const Locating& locati
   return place;
 }
 
-/// So many standard deviations of the place must be within the distance that the arm passes it at.
-constexpr double kPassSigmas = 3.0;
-
-/// The largest standard deviation, in any direction, of a corner of the faces. `covariance` of shift above
-/// turn.
-double std_farthest_m(const Eigen::Matrix<double, 6, 6>& covariance, const std::vector<calib::Face>& faces) {
-  double most_m2 = 0.0;
-  for (const calib::Face& face : faces) {
-    for (const double u : {-1.0, 1.0}) {
-      for (const double v : {-1.0, 1.0}) {
-        const Eigen::Vector3d corner_m = face.center_m + u * face.half_extent_m.x() * face.edge_u +
-                                         v * face.half_extent_m.y() * face.edge_v();
-        Eigen::Matrix<double, 3, 6> moves = Eigen::Matrix<double, 3, 6>::Zero();
-        moves.leftCols<3>().setIdentity();
-        for (int axis = 0; axis < 3; ++axis)
-          moves.col(3 + axis) = Eigen::Vector3d::Unit(axis).cross(corner_m);
-        const Eigen::Matrix3d of_corner = moves * covariance * moves.transpose();
-        most_m2 =
-            std::max(most_m2, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(of_corner).eigenvalues()[2]);
-      }
-    }
+/// Why nothing can be planned around a block whose place is known no better than `there` has it: every path
+/// keeps that far from the faces, and every search reaches that far to either side.
+std::optional<std::string> why_too_vague(const Cell& there, std::optional<double> search_length_max_m) {
+  std::string limited_by = "the arm passes the faces at that distance";
+  double limit_m = kPassMetres;
+  if (search_length_max_m && calib::position_error_max_m(*search_length_max_m) < limit_m) {
+    limit_m = calib::position_error_max_m(*search_length_max_m);
+    limited_by = fmt::format("the controller searches over {:.0f} mm",
+                             calib::mm_from_metres(search_length_max_m.value()));
   }
-  return std::sqrt(most_m2);
+  if (there.place_error_m <= std::max(limit_m, there.nominal_position_error_m)) return std::nullopt;
+  return fmt::format(
+      "these touches determine the block's place to {:.0f} mm only (3 sigma at the corners of its faces), "
+      "and "
+      "{:.0f} mm is the limit, as {}: take touches back (touchcal undo) and make them again where they are "
+      "asked for, far apart, by jogging until the probe trips (not by touchcal take), with the hand turned "
+      "as little as possible between them",
+      calib::mm_from_metres(there.place_error_m), calib::mm_from_metres(limit_m), limited_by);
 }
 
 }  // namespace
@@ -157,15 +151,10 @@ std::optional<CommandRefusal> BlockLocation::prepare_pass() {
   if (status_.fault() && !is_link_fault(status_.fault()->code))
     return CommandRefusal{.detail = "a fault is there to be read first: " + status_.fault()->message(),
                           .code = FaultCode::kFaultUnacknowledged};
-  const double known_m = kPassSigmas * std_farthest_m(locating_->fit()->covariance, configured_.block.faces);
-  if (known_m > kPassMetres)
-    return CommandRefusal{
-        .detail = fmt::format(
-            "these touches determine the block's place to {:.0f} mm only, and the arm passes it at {:.0f}: "
-            "take touches back (touchcal undo) and make them nearer to where they are asked for",
-            calib::mm_from_metres(known_m), calib::mm_from_metres(kPassMetres))};
-  auto postures =
-      pass_postures(cell_with_block_pose(configured_, located(place_, *locating_)), locating_->touches());
+  const Cell there = cell_with_block_pose(configured_, located(place_, *locating_));
+  if (auto why = why_too_vague(there, session_.search_length_max_m()))
+    return CommandRefusal{.detail = *std::move(why)};
+  auto postures = pass_postures(there, locating_->touches());
   if (auto* why = std::get_if<std::string>(&postures)) return CommandRefusal{.detail = std::move(*why)};
   pass_stops_ = std::get<std::vector<calib::JointVector>>(std::move(postures));
   passing_ = true;
@@ -200,7 +189,7 @@ asio::awaitable<bool> BlockLocation::go_around_block() {
   Cell there = cell_with_block_pose(configured_, located(place_, *locating_));
   there.speeds.travel_m_s *= kPassSpeedShare;
   const calib::TransferSpace space(there.arm.model, there.collision_scene(), there.park_joints,
-                                   there.nominal_position_error_m);
+                                   there.face_error_m());
   std::vector<calib::JointVector> stops = pass_stops_;
   stops.push_back(there.park_joints);
   calib::JointVector at = *from;
@@ -245,10 +234,12 @@ void BlockLocation::use(BlockPose place) {
   }
   const Eigen::Vector3d shift_m = place_->cell_from_block.translation();
   spdlog::info(
-      "the block stands {:.1f} {:.1f} {:.1f} mm and {:.2f} degrees from where the cell's file has it",
+      "the block stands {:.1f} {:.1f} {:.1f} mm and {:.2f} degrees from where the cell's file has it; paths "
+      "keep {:.0f} mm from its faces",
       calib::mm_from_metres(shift_m.x()), calib::mm_from_metres(shift_m.y()),
       calib::mm_from_metres(shift_m.z()),
-      calib::degrees_from_radians(Eigen::AngleAxisd(place_->cell_from_block.linear()).angle()));
+      calib::degrees_from_radians(Eigen::AngleAxisd(place_->cell_from_block.linear()).angle()),
+      calib::mm_from_metres(cell_.face_error_m()));
 }
 
 }  // namespace cell

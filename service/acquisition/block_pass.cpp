@@ -70,8 +70,7 @@ class Pass {
  private:
   [[nodiscard]] bool is_clear(const calib::JointVector& joints) const {
     return cell_.arm.joint_ranges.contains(joints) &&
-           !calib::find_clash(scene_, calib::forward_chain(cell_.arm.model, joints),
-                              cell_.nominal_position_error_m);
+           !calib::find_clash(scene_, calib::forward_chain(cell_.arm.model, joints), cell_.face_error_m());
   }
 
   const Cell& cell_;

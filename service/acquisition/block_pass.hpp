@@ -14,9 +14,9 @@ inline constexpr double kPassMetres = 0.030;
 inline constexpr double kPassSpeedShare = 0.1;
 
 /// A posture over each of the touches that found the block, with the ball kPassMetres off the face, clear by
-/// the nominal miss, in the touch's orientation where that is possible; in `cell` the block stands where it
-/// was found. Touches for which there is none are left out as long as each of their faces keeps one; else it
-/// is said which face has none.
+/// Cell::face_error_m(), in the touch's orientation where that is possible; in `cell` the block stands where
+/// it was found. Touches for which there is none are left out as long as each of their faces keeps one; else
+/// it is said which face has none.
 std::variant<std::vector<calib::JointVector>, std::string> pass_postures(
     const Cell& cell, const std::vector<calib::RegistrationTouch>& touches);
 

@@ -95,15 +95,20 @@ std::optional<Fault> ControllerSession::search_fault(std::span<const calib::Plan
                  fmt::format("searches at {} um/s, and the controller takes {} at most", speed_um_s,
                              search_speed_max_um_s_)};
   }
-  if (search_length_max_dmm_ <= 0) return std::nullopt;
+  if (!search_length_max_m()) return std::nullopt;
   for (std::size_t i = 0; i < touches.size(); ++i) {
     if (cs8::dmm_from_metres(touches[i].search_length_m) <= search_length_max_dmm_) continue;
     return Fault{FaultCode::kPlanInvalid,
                  fmt::format("touch {} searches over {:.1f} mm, and the controller takes {:.1f} at most",
                              i + 1, calib::mm_from_metres(touches[i].search_length_m),
-                             calib::mm_from_metres(cs8::metres_from_dmm(search_length_max_dmm_)))};
+                             calib::mm_from_metres(*search_length_max_m()))};
   }
   return std::nullopt;
+}
+
+std::optional<double> ControllerSession::search_length_max_m() const {
+  if (search_length_max_dmm_ <= 0) return std::nullopt;
+  return cs8::metres_from_dmm(search_length_max_dmm_);
 }
 
 void ControllerSession::check_task(const cs8::State& state, Event event) {

@@ -88,6 +88,8 @@ class ControllerSession {
   /// Why the controller will not make one of these touches: what it said in its Welcome of the searches that
   /// it takes.
   [[nodiscard]] std::optional<Fault> search_fault(std::span<const calib::PlannedTouch> touches) const;
+  /// The longest search that it takes, metres; empty before it said so.
+  [[nodiscard]] std::optional<double> search_length_max_m() const;
 
   // The command that is open at the controller.
   [[nodiscard]] const std::optional<OpenTouch>& open_touch() const { return open_touch_; }

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
+#include "service/run/block_pose.hpp"
 
 namespace cell {
 namespace {
@@ -152,10 +153,11 @@ HandGuide Locating::guide() const {
   guide.plane = spot.face + 1;
   if (fit_) {
     guide.step = HandStep::kPass;
-    guide.words =
-        "the place is found: jog the arm clear of the block, then touchcal locate once more to go once "
-        "around "
-        "it 30 mm off its faces, at 10 % speed and without a touch; after that the place counts";
+    guide.words = fmt::format(
+        "the place is found to {:.0f} mm (3 sigma at the corners of its faces): jog the arm clear of the "
+        "block, then touchcal locate once more to go once around it 30 mm off its faces, at 10 % speed and "
+        "without a touch; after that the place counts",
+        calib::mm_from_metres(place_error_m(fit_->covariance, problem_of_place_.faces)));
   } else if (made == total) {
     guide.step = HandStep::kUndo;
     guide.words =

@@ -172,11 +172,11 @@ std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::
   const Eigen::Vector3d ball_m =
       calib::forward_kinematics(preparation_.aim().model(), touch.joints).translation();
   const double off_m = calib::signed_distance_m(calib::contact_plane(face, problem.stylus), ball_m);
-  if (std::abs(off_m) > cell_.nominal_position_error_m) {
+  if (std::abs(off_m) > cell_.face_error_m()) {
     return fmt::format("the ball was {:.0f} mm off plane {}: touch that one", calib::mm_from_metres(off_m),
                        planned.face + 1);
   }
-  if (!is_over(face, ball_m, cell_.nominal_position_error_m))
+  if (!is_over(face, ball_m, cell_.face_error_m()))
     return fmt::format("the ball was beside plane {}: touch that one", planned.face + 1);
   for (const calib::Touch& made : run.problem().touches) {
     if (is_same_posture(made, planned.face, touch.joints))

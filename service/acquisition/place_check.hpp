@@ -14,7 +14,7 @@ namespace cell {
 /// touches that found the pose. One per run, without I/O. It ends when every such face has been touched.
 class PlaceCheck {
  public:
-  /// `problem` is that of the run.
+  /// `problem` is that of the run, with the nominal position error of the arm alone.
   PlaceCheck(calib::PlanningProblem problem, const BlockPose& place);
 
   /// Checks a contact of the run; returns the fault to hold on when it is not on the located face.

@@ -16,7 +16,7 @@ double reach_m(const Cell& cell, const calib::PlannedTouch& planned) {
     return calib::forward_kinematics(cell.arm.model, joints).translation();
   };
   const double search_m = (tip_m(planned.search_end_joints) - tip_m(planned.approach_joints)).norm();
-  return search_m + cell.nominal_position_error_m;
+  return search_m + cell.face_error_m();
 }
 
 std::optional<std::string> why_beside(const Cell& cell, const calib::PlannedTouch& planned,

@@ -1,6 +1,8 @@
 // Each co_await stands alone in its statement, see cs8_controller.cpp.
 #include "service/acquisition/run_planning.hpp"
 
+#include <utility>
+
 #include "service/acquisition/touch_judgement.hpp"
 #include "service/run/planning_problem.hpp"
 
@@ -71,7 +73,12 @@ void RunPlanning::begin_touches(ActiveRun& active) {
   const Cell cell = with_block_temperature(cell_, active.run.block_temperature());
   preparation_.begin(planning_problem(cell, active.run.recipe()));
   active.place_check.reset();
-  if (place_) active.place_check.emplace(preparation_.problem(), *place_);
+  if (!place_) return;
+  // The check knows the touches that found the place, so the place's uncertainty is none of its own: with it,
+  // a block that was moved by as much would pass.
+  calib::PlanningProblem of_arm = preparation_.problem();
+  of_arm.nominal_position_error_m = cell_.nominal_position_error_m;
+  active.place_check.emplace(std::move(of_arm), *place_);
 }
 
 }  // namespace cell

@@ -354,7 +354,8 @@ asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch
 
 TouchExecutor::Storing TouchExecutor::begin_storing(const Run& run, const calib::PlannedTouch& planned,
                                                     const cs8::TouchResult& result,
-                                                    const std::optional<OpenTouch>& answered) {
+                                                    const std::optional<OpenTouch>& answered,
+                                                    std::optional<double> noise_um) {
   const StoredTouch touch{.number = run.touches_done() + 1,
                           .plane = planned.face + 1,
                           .role = planned.role,
@@ -383,14 +384,7 @@ asio::awaitable<bool> TouchExecutor::finish_storing(ActiveRun& active, Storing s
   const auto failure = co_await store_.finish(storing.begun, std::move(behind));
   if (*storing.total_stored) total_is_due_ = false;
   if (failure) {
-    // The controller keeps its answer until it is acknowledged: a run on hold stores it when it goes on, one
-    // that has ended with its own fault when the cell is reset.
-    const Fault fault{FaultCode::kStoreFailed, *failure};
-    if (has_ended(status_.state())) {
-      status_.warn(fault);
-    } else {
-      status_.raise(fault, status_.state() == State::kExecute ? Event::kHoldFault : Event::kNotReadyFault);
-    }
+    tell_unstored(*failure);
     co_return false;
   }
   run.add(touch);

@@ -84,6 +84,7 @@ class TouchExecutor {
   void look_ahead(ActiveRun& active);
   void stop_when_good_enough(ActiveRun& active, std::size_t first);
   boost::asio::awaitable<void> take_contact(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
+  void tell_unstored(const std::string& failure);
   /// A contact on its way to the store.
   struct Storing {
     StoredTouch touch;

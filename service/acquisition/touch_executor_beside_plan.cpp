@@ -216,6 +216,14 @@ void TouchExecutor::take_rejection(const cs8::Rejected& rejected, HeldBy held_by
   session_.meet_anew_after(rejected);
 }
 
+/// The controller keeps its answer until it is acknowledged: a run on hold stores it when it goes on, one
+/// that has ended with its own fault when the cell is reset.
+void TouchExecutor::tell_unstored(const std::string& failure) {
+  const Fault fault{FaultCode::kStoreFailed, failure};
+  if (has_ended(status_.state())) return status_.warn(fault);
+  status_.raise(fault, status_.state() == State::kExecute ? Event::kHoldFault : Event::kNotReadyFault);
+}
+
 asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std::uint32_t sequence) {
   const cs8::QueryReply reply = co_await session_.query(sequence);
   if (std::holds_alternative<cs8::LinkError>(reply)) co_return;

@@ -23,6 +23,10 @@ struct BlockPose {
 /// belongs to another cell.
 std::string block_pose_digest(const Cell& cell);
 
+/// 3 sigma, in any direction, of that corner of the faces which the place says least of; metres.
+/// `covariance`: as in BlockPose.
+double place_error_m(const Eigen::Matrix<double, 6, 6>& covariance, const std::vector<calib::Face>& faces);
+
 /// The cell with its block at this pose and with the uncertainty of this pose: what runs are planned with.
 Cell cell_with_block_pose(const Cell& cell, const BlockPose& place);
 

@@ -47,7 +47,7 @@ calib::PlanningProblem planning_problem(const Cell& cell, const Recipe& recipe) 
                                  .stylus = cell.probe.stylus,
                                  .scene = cell.collision_scene(),
                                  .park_joints = cell.park_joints,
-                                 .nominal_position_error_m = cell.nominal_position_error_m,
+                                 .nominal_position_error_m = cell.face_error_m(),
                                  .tilt_max_rad = cell.stylus_tilt_max_rad,
                                  .candidate_count = recipe.candidate_count,
                                  .knowledge = identification_problem(cell, recipe),

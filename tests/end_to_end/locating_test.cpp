@@ -3,6 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "calib_core/geometry/units.hpp"
 #include "service/documents/place_search.hpp"
 #include "service/run/moved_cell.hpp"
@@ -23,9 +28,10 @@ Eigen::Isometry3d moved_block() {
 
 class BlockElsewhere : public ::testing::Test {
  protected:
+  explicit BlockElsewhere(std::string name = "edf") : name_(std::move(name)), loop_(name_) {}
   void serve_block_at(const Eigen::Isometry3d& place) {
     there_ = cell::with_block_moved(loop_.cell, place);
-    plant_ = sim::make_plant(there_, shipped_truth("edf"));
+    plant_ = sim::make_plant(there_, shipped_truth(name_));
     loop_.serve(plant_, {.controller = {.speed = sim::kSpeedMax}, .faults = {}});
   }
   void move_block(const Eigen::Isometry3d& place) {
@@ -64,6 +70,7 @@ class BlockElsewhere : public ::testing::Test {
     loop_.run_until([](const cell::Status& status) { return !cell::is_active(status.state); });
   }
 
+  const std::string name_;
   LoopbackCell loop_;
   Folder folder_;
   cell::Cell there_;
@@ -98,6 +105,27 @@ TEST_F(BlockElsewhere, IsFoundBySixTouchesAndCalibratesTheArmThere) {
   ASSERT_EQ(result.status, calib::IdentificationStatus::kConverged) << result.message;
   EXPECT_EQ(result.identifiable.columns.size(), static_cast<std::size_t>(kRank));
   EXPECT_NE(loop_.store().run(id)->conditions_json->find("shift_mm"), std::string::npos);
+}
+
+class DemoBlockElsewhere : public BlockElsewhere {
+ protected:
+  DemoBlockElsewhere() : BlockElsewhere("demo") {}
+};
+
+TEST_F(DemoBlockElsewhere, IsRunAtWithPathsAsWideAsItsPlaceIsUncertain) {
+  serve_block_at(moved_block());
+  launch();
+  locate_by_hand();
+  go_around();
+  ASSERT_TRUE(loop_.operation().place()) << loop_.fault_name();
+  const double error_m = loop_.operation().cell().face_error_m();
+  EXPECT_GT(error_m, loop_.cell.nominal_position_error_m) << "else this cell shows nothing";
+  loop_.run_until(State::kIdle);
+  loop_.start();
+  loop_.run_until_over();
+  ASSERT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
+  EXPECT_EQ(loop_.status().touches_done, kShortTouchCount);
+  EXPECT_EQ(loop_.operation().run()->planned(0)->predicted_position_error_m, error_m);
 }
 
 TEST_F(BlockElsewhere, ATouchTakenBackIsMadeAgainAndTheDialogueCanBeLeft) {
@@ -154,7 +182,13 @@ TEST_F(BlockElsewhere, ARunOnAnOldPlaceIsHeldByItsFirstTouches) {
   loop_.start();
   loop_.run_until_over();
   EXPECT_EQ(loop_.fault_name(), "block_moved");
-  EXPECT_LE(loop_.status().touches_done, kPlaneCount);
+  const std::vector<cell::StoredTouch>& made = loop_.operation().run()->touches();
+  ASSERT_FALSE(made.empty());
+  const auto is_of_last_face = [&](const cell::StoredTouch& touch) {
+    return touch.plane == made.back().plane;
+  };
+  EXPECT_EQ(std::ranges::count_if(made, is_of_last_face), 1) << "the first on a face that is elsewhere";
+  EXPECT_LE(made.size(), 2U * kPlaneCount);
 }
 
 }  // namespace

@@ -1,8 +1,11 @@
 #include "tests/end_to_end/pendant.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "calib_core/geometry/rotation.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
@@ -66,9 +69,11 @@ void Pendant::go(const calib::JointVector& joints) {
   jog({.joints = joints, .move_m = {}, .speed_m_s = kFastMetresPerSecond});
 }
 
-void Pendant::touch(int face_index, const Eigen::Vector3d& point_m) {
-  const calib::Face& face = there_.block.faces[static_cast<std::size_t>(face_index)];
-  std::string why = "out of reach";
+/// The postures in which the ball is at a point of a face, the one nearest to where the arm is first: a hand
+/// that is turned little keeps the arm's own errors alike from touch to touch.
+std::vector<Pendant::Way> Pendant::ways_to(const calib::Face& face, const Eigen::Vector3d& point_m) const {
+  const calib::JointVector here = cell::from_wire(loop_.server().report().joints);
+  std::vector<Way> ways;
   for (const double lean_rad : {0.6, 0.3, 0.0}) {
     for (const Eigen::Vector3d& side :
          {face.edge_u, Eigen::Vector3d(-face.edge_u), face.edge_v(), Eigen::Vector3d(-face.edge_v())}) {
@@ -78,16 +83,23 @@ void Pendant::touch(int face_index, const Eigen::Vector3d& point_m) {
         Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
         pose.linear() = (stylus * Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ())).toRotationMatrix();
         pose.translation() = point_m;
-        for (const auto& joints :
-             calib::inverse_kinematics(there_.arm.model, there_.arm.joint_ranges, pose)) {
-          try {
-            touch_in(face_index, pose, joints);
-            return;
-          } catch (const std::runtime_error& error) {
-            why = error.what();  // this posture is in the way of something
-          }
-        }
+        for (const auto& joints : calib::inverse_kinematics(there_.arm.model, there_.arm.joint_ranges, pose))
+          ways.push_back({pose, joints});
       }
+    }
+  }
+  std::ranges::stable_sort(ways, {}, [&](const Way& way) { return (way.joints - here).norm(); });
+  return ways;
+}
+
+void Pendant::touch(int face_index, const Eigen::Vector3d& point_m) {
+  std::string why = "out of reach";
+  for (const Way& way : ways_to(there_.block.faces[static_cast<std::size_t>(face_index)], point_m)) {
+    try {
+      touch_in(face_index, way.pose, way.joints);
+      return;
+    } catch (const std::runtime_error& error) {
+      why = error.what();  // this posture is in the way of something
     }
   }
   throw std::runtime_error("a person cannot touch there: " + why);

@@ -23,6 +23,11 @@ class Pendant {
   void touch_near(int face, const calib::JointVector& joints);
 
  private:
+  struct Way {
+    Eigen::Isometry3d pose;
+    calib::JointVector joints;
+  };
+  [[nodiscard]] std::vector<Way> ways_to(const calib::Face& face, const Eigen::Vector3d& point_m) const;
   void jog(const cell::JogOrder& order);
   void go(const calib::JointVector& joints);
   void touch_in(int face, const Eigen::Isometry3d& true_pose, const calib::JointVector& near);

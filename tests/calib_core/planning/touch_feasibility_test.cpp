@@ -117,6 +117,12 @@ TEST(TouchOnASphere, IsRefusedWhereTheArmMayMissIt) {
   EXPECT_FALSE(touches_on_ball(problem).empty());
 }
 
+TEST(TouchHeights, AreThoseOfTheLargestErrorThatASearchReaches) {
+  const TouchHeights heights = touch_heights(position_error_max_m(0.060), 0.015);
+  EXPECT_NEAR(heights.approach_m - heights.search_end_m, 0.060, 1e-12);
+  EXPECT_GT(heights.approach_m, position_error_max_m(0.060)) << "the ball is off the face at the start";
+}
+
 TEST(TouchCandidate, ChanceIsTheStandardsGenerator) {
   // [rand.predef]: the 10000th value of a default-constructed mt19937_64, whose seed is 5489.
   UniformChance chance(5489);

@@ -14,6 +14,7 @@ namespace cell {
 namespace {
 
 using ::testing::Contains;
+using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
@@ -108,6 +109,25 @@ TEST_F(BlockLocationTest, APlaceCountsOnceTheArmWentAroundTheBlockAndItIsStored)
   BlockLocation next_daemon(cell_of_owners(), session, status, wake, time.clocks());
   EXPECT_TRUE(next_daemon.keep_in(file));
   EXPECT_TRUE(next_daemon.place());
+}
+
+TEST_F(BlockLocationTest, APlaceThatNoSearchOfTheControllerReachesIsRefusedWithTheRemedy) {
+  const auto takes_searches_of = [&](std::int32_t length_dmm) {
+    cs8::Welcome welcome;
+    welcome.search_length_max_dmm = length_dmm;
+    controller.on_connect = [welcome] { return welcome; };
+    run(session.connect(false));
+  };
+  touch_all_spots();
+  takes_searches_of(340'000);
+  const std::string why = location_.locate().value().detail;
+  EXPECT_THAT(why, StartsWith("these touches determine the block's place to 2"));
+  EXPECT_THAT(why, HasSubstr("14 mm is the limit, as the controller searches over 34 mm: "));
+  EXPECT_THAT(why, HasSubstr("touchcal undo"));
+  EXPECT_FALSE(location_.is_passing());
+  takes_searches_of(600'000);
+  EXPECT_FALSE(location_.locate());
+  EXPECT_TRUE(location_.is_passing());
 }
 
 TEST_F(BlockLocationTest, AnArmThatMeetsSomethingOnItsWayForgetsThePlace) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,6 +11,7 @@
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/config_error.hpp"
 #include "config/read_config.hpp"
+#include "config/truth.hpp"
 #include "service/acquisition/block_pass.hpp"
 #include "service/documents/block_pose_file.hpp"
 #include "service/run/block_pose.hpp"
@@ -30,7 +32,8 @@ Eigen::Isometry3d true_move() {
 /// A person who jogs the ball of an arm before a moved block onto the spots that are asked for.
 class Person {
  public:
-  explicit Person(const Cell& cell) : arm_(cell.arm.model), cell_(cell), spots_(place_spots(cell)) {
+  explicit Person(const Cell& cell, const calib::ErrorVector& of_arm = calib::ErrorVector::Zero())
+      : arm_(calib::apply(cell.arm.model, of_arm)), cell_(cell), spots_(place_spots(cell)) {
     calib::set_block_pose(arm_, true_move().inverse() * calib::block_pose_of(arm_));
   }
 
@@ -54,8 +57,10 @@ class Person {
     return {to_wire(joints), joints, 1e-4};
   }
 
+  [[nodiscard]] const calib::KinematicModel& arm() const { return arm_; }
+
  private:
-  calib::KinematicModel arm_;
+  calib::KinematicModel arm_;  // as it really is
   const Cell& cell_;
   std::vector<PlaceSpot> spots_;
 };
@@ -151,7 +156,9 @@ TEST_F(LocatingTheBlock, ATouchTakenByWordSaysLess) {
 TEST_F(LocatingTheBlock, ThePassLeavesItsDistanceOverEveryFace) {
   take_all();
   const Cell there = cell_with_block_pose(cell_, {.cell_from_block = locating_.fit()->old_from_new,
+                                                  .covariance = locating_.fit()->covariance,
                                                   .std_block_pose = locating_.fit()->std_block_pose});
+  EXPECT_GT(there.face_error_m(), cell_.nominal_position_error_m);
   const auto postures = pass_postures(there, locating_.touches());
   ASSERT_TRUE(std::holds_alternative<std::vector<calib::JointVector>>(postures))
       << std::get<std::string>(postures);
@@ -165,6 +172,43 @@ TEST_F(LocatingTheBlock, ThePassLeavesItsDistanceOverEveryFace) {
     }
   }
   EXPECT_EQ(met, (std::set<int>{0, 1, 2}));
+}
+
+/// The farthest that a touch of a face, planned for the cell's arm with its block at the found place, is from
+/// where this arm makes it.
+double worst_miss_m(const Cell& there, const calib::KinematicModel& of_person) {
+  double worst_m = 0.0;
+  for (const PlaceSpot& spot : place_spots(there)) {
+    const calib::Face& face = there.block.faces[static_cast<std::size_t>(spot.face)];
+    for (double turn = 0.0; turn < 6.3; turn += 0.3) {
+      Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+      pose.translation() = face.center_m + there.probe.stylus.radius_m * face.plane.outward;
+      pose.linear() =
+          (calib::shortest_rotation(Eigen::Vector3d::UnitZ(), Eigen::Vector3d(-face.plane.outward)) *
+           Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()))
+              .toRotationMatrix();
+      for (const auto& joints : calib::inverse_kinematics(there.arm.model, there.arm.joint_ranges, pose))
+        worst_m = std::max(
+            worst_m,
+            (calib::forward_kinematics(of_person, joints).translation() - pose.translation()).norm());
+    }
+  }
+  return worst_m;
+}
+
+TEST(LocatedFaces, AreWithinTheClearancesOfAnArmAsFarOffAsTheShippedOnes) {
+  for (const std::string name : {"demo", "edf"}) {
+    const Cell cell = shipped_cell(name);
+    const Person person(cell, read_truth(kSourceDir / "config/cells" / name / "truth.json").errors);
+    Locating locating(cell);
+    for (std::size_t i = 0; i < 6; ++i) locating.take(person.touches(i));
+    ASSERT_TRUE(locating.fit()) << name << locating.guide().problem.value_or("");
+    const Cell there = cell_with_block_pose(
+        cell, {.cell_from_block = locating.fit()->old_from_new, .covariance = locating.fit()->covariance});
+    const double miss_m = worst_miss_m(there, person.arm());
+    EXPECT_GT(miss_m, 0.2 * there.face_error_m()) << name << ": else this shows nothing";
+    EXPECT_LT(miss_m, there.face_error_m()) << name;
+  }
 }
 
 TEST_F(LocatingTheBlock, APlaceIsReadBackAsItWasWritten) {
