@@ -348,8 +348,7 @@ asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch
                                           cs8::TouchResult result, std::optional<OpenTouch> answered,
                                           std::optional<double> noise_um) {
   const Storing storing = begin_storing(active.run, planned, result, answered, noise_um);
-  const bool kept = co_await finish_storing(active, storing, result.edges, {});
-  co_return kept;
+  co_return co_await finish_storing(active, storing, result.edges, {});
 }
 
 TouchExecutor::Storing TouchExecutor::begin_storing(const Run& run, const calib::PlannedTouch& planned,
