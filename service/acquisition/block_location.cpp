@@ -56,9 +56,10 @@ std::optional<std::string> why_too_vague(const Cell& there, std::optional<double
 
 }  // namespace
 
-BlockLocation::BlockLocation(const Cell& configured, ControllerSession& session, PublishedStatus& status,
-                             Wake& wake, Clocks clocks)
+BlockLocation::BlockLocation(const Cell& configured, StoreQueue& store, ControllerSession& session,
+                             PublishedStatus& status, Wake& wake, Clocks clocks)
     : configured_(configured),
+      store_(store),
       session_(session),
       status_(status),
       wake_(wake),
@@ -167,17 +168,23 @@ asio::awaitable<bool> BlockLocation::pass() {
     co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     co_return false;
   }
+  bool found = false;
+  if (passed) {
+    session_.give_permit_back();
+    const bool kept = co_await keep_found_place();
+    found = kept;
+  }
   passing_ = false;
+  if (found) {
+    leave();
+    co_return true;
+  }
   const auto& fault = status_.fault();
   const bool met_something =
       fault && (fault->code == FaultCode::kUnexpectedContact || fault->code == FaultCode::kCollision);
   if (!passed && met_something) leave();  // the block is not where the touches say, or not alone
-  if (!passed) {
-    status_.publish();
-    co_return false;
-  }
-  session_.give_permit_back();
-  co_return keep_found_place();
+  status_.publish();
+  co_return false;
 }
 
 asio::awaitable<bool> BlockLocation::go_around_block() {
@@ -208,19 +215,21 @@ asio::awaitable<bool> BlockLocation::go_around_block() {
   co_return true;
 }
 
-bool BlockLocation::keep_found_place() {
+/// On the store's thread: a disk may take seconds, and the link and a stop do not wait for it.
+asio::awaitable<bool> BlockLocation::keep_found_place() {
   BlockPose place = located(place_, *locating_);
   place.located_at = format_utc(clocks_.system());
   place.digest = block_pose_digest(configured_);
-  try {
-    if (!file_.empty()) write_block_pose(file_, place);
-  } catch (const std::exception& error) {
-    status_.raise({FaultCode::kStoreFailed, error.what()}, Event::kAbortFault);
-    return false;
+  if (!file_.empty()) {
+    const auto write = [file = file_, place](RunStore&) { write_block_pose(file, place); };
+    const auto failure = co_await store_.write(write);
+    if (failure) {
+      status_.raise({FaultCode::kStoreFailed, *failure}, Event::kAbortFault);
+      co_return false;
+    }
   }
-  leave();
   use(std::move(place));
-  return true;
+  co_return true;
 }
 
 void BlockLocation::use(BlockPose place) {

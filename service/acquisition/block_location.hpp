@@ -14,6 +14,7 @@
 #include "service/acquisition/hand_touch.hpp"
 #include "service/acquisition/locating.hpp"
 #include "service/acquisition/published_status.hpp"
+#include "service/acquisition/store_queue.hpp"
 #include "service/base/clocks.hpp"
 #include "service/run/block_pose.hpp"
 #include "service/run/tip_prediction.hpp"
@@ -32,8 +33,8 @@ struct LocatedCell {
 class BlockLocation {
  public:
   /// All must outlive it; `configured` is the cell as its file has it.
-  BlockLocation(const Cell& configured, ControllerSession& session, PublishedStatus& status, Wake& wake,
-                Clocks clocks);
+  BlockLocation(const Cell& configured, StoreQueue& store, ControllerSession& session,
+                PublishedStatus& status, Wake& wake, Clocks clocks);
 
   /// Sets the file of the block's pose; call it before the cell operates. A pose in the file is used, unless
   /// it is of another cell. Returns whether one is used. Throws when the file cannot be read.
@@ -70,18 +71,20 @@ class BlockLocation {
   /// True from the time the pass is ready until it ends.
   [[nodiscard]] bool is_passing() const { return passing_; }
   /// Past every face at 30 mm, where any contact is a fault; then to the park posture. True when the block
-  /// was found: its place is kept and used, and all that was planned before holds no more. Else it is still
-  /// to be found, or another state was entered.
+  /// was found: its place is on the disk and used, and all that was planned before holds no more; a stop that
+  /// came while it was written changes nothing of that. Else it is still to be found, or another state was
+  /// entered.
   boost::asio::awaitable<bool> pass();
 
  private:
   std::optional<CommandRefusal> prepare_pass();
   boost::asio::awaitable<bool> go_around_block();
   std::optional<std::string> take_touch(const HandTouch& touch);
-  bool keep_found_place();
+  boost::asio::awaitable<bool> keep_found_place();
   void use(BlockPose place);
 
   const Cell& configured_;
+  StoreQueue& store_;
   ControllerSession& session_;
   PublishedStatus& status_;
   Wake& wake_;

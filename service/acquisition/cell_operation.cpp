@@ -83,7 +83,7 @@ CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, S
                                      const std::string& message) { store_fault(name, message); }}),
       controller_(std::move(controller)),
       session_(cell, *controller_, status_, wake_, clocks_),
-      location_(cell, session_, status_, wake_, clocks_),
+      location_(cell, store_, session_, status_, wake_, clocks_),
       plans_(executor, location_.cell()),
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
       touches_(location_.cell(), location_.regions(), store_, session_, preparation_, status_, wake_,

@@ -262,7 +262,8 @@ asio::awaitable<void> CellOperation::pass_block() {
   const bool found = co_await location_.pass();
   if (!found) co_return;
   forget_plans();
-  status_.enter(State::kIdle);
+  // A stop or a lost link may have come while the place was written.
+  if (status_.state() == State::kStarting) status_.enter(State::kIdle);
 }
 
 asio::awaitable<void> CellOperation::complete_run() {

@@ -2,6 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include <boost/asio/co_spawn.hpp>
+#include <exception>
+#include <filesystem>
+#include <optional>
 #include <stdexcept>
 
 #include "calib_core/kinematics/inverse_kinematics.hpp"
@@ -23,12 +27,13 @@ class BlockLocationTest : public ::testing::Test, public OwnersBench {
   BlockLocationTest() { status.enter(State::kIdle); }
 
   /// One touch by hand, at this posture.
-  void touch(const calib::JointVector& joints) {
+  void touch(const calib::JointVector& joints) { touch(location_, joints); }
+  static void touch(BlockLocation& location, const calib::JointVector& joints) {
     cs8::State state = ScriptedController::ready_state();
     state.joints = to_wire(joints);
-    location_.on_controller_state(state);
+    location.on_controller_state(state);
     state.flags = (state.flags | cs8::kProbeTouched) & ~static_cast<std::uint32_t>(cs8::kProbeLoopClosed);
-    location_.on_controller_state(state);
+    location.on_controller_state(state);
   }
   /// The ball at the spot, in the orientation of a planned touch of that face over which the arm can come
   /// from its park posture and leave again.
@@ -50,12 +55,13 @@ class BlockLocationTest : public ::testing::Test, public OwnersBench {
     throw std::runtime_error("nobody can touch there");
   }
   /// The whole dialogue, with the block where the cell's file has it.
-  void touch_all_spots() {
-    ASSERT_FALSE(location_.locate());
-    for (const PlaceSpot& spot : place_spots(cell_of_owners())) touch(at(spot));
+  void touch_all_spots() { touch_all_spots(location_); }
+  static void touch_all_spots(BlockLocation& location) {
+    ASSERT_FALSE(location.locate());
+    for (const PlaceSpot& spot : place_spots(cell_of_owners())) touch(location, at(spot));
   }
 
-  BlockLocation location_{cell_of_owners(), session, status, wake, time.clocks()};
+  BlockLocation location_{cell_of_owners(), queue, session, status, wake, time.clocks()};
 };
 
 TEST_F(BlockLocationTest, WithoutALinkThereIsNoDialogue) {
@@ -106,7 +112,7 @@ TEST_F(BlockLocationTest, APlaceCountsOnceTheArmWentAroundTheBlockAndItIsStored)
   EXPECT_TRUE(location_.located_cell()->place) << "so do other threads see it";
   EXPECT_FALSE(before->place) << "what one of them has already stays as it was";
   EXPECT_FALSE(location_.is_locating());
-  BlockLocation next_daemon(cell_of_owners(), session, status, wake, time.clocks());
+  BlockLocation next_daemon(cell_of_owners(), queue, session, status, wake, time.clocks());
   EXPECT_TRUE(next_daemon.keep_in(file));
   EXPECT_TRUE(next_daemon.place());
 }
@@ -143,6 +149,43 @@ TEST_F(BlockLocationTest, AnArmThatMeetsSomethingOnItsWayForgetsThePlace) {
   EXPECT_FALSE(run(location_.pass()));
   EXPECT_THAT(faults, Contains("unexpected_contact"));
   EXPECT_FALSE(location_.is_locating() || location_.is_passing() || location_.place());
+}
+
+TEST_F(BlockLocationTest, APassEndsOnceThePlaceIsOnTheDiskAndHoldsUpNothingUntilThen) {
+  boost::asio::io_context disk{1};
+  StoreQueue slow{store, disk.get_executor()};
+  BlockLocation location(cell_of_owners(), slow, session, status, wake, time.clocks());
+  const auto file = folder.path() / "place.json";
+  location.keep_in(file);
+  touch_all_spots(location);
+  ASSERT_FALSE(location.locate());
+  status.enter(State::kStarting);
+  std::optional<bool> found;
+  boost::asio::co_spawn(io, location.pass(),
+                        [&found](const std::exception_ptr&, bool was_found) { found = was_found; });
+  io.restart();
+  io.poll();
+  EXPECT_THAT(controller.asked, Contains("finish")) << "the arm has been around";
+  EXPECT_FALSE(found || location.place());
+  EXPECT_TRUE(location.is_passing());
+  status.enter(State::kStopping);  // a stop is not held up; the place is proven, and counts
+  disk.run();
+  EXPECT_TRUE(std::filesystem::exists(file));
+  io.poll();
+  EXPECT_EQ(found, true);
+  EXPECT_TRUE(location.place());
+  EXPECT_FALSE(location.is_passing() || location.is_locating());
+}
+
+TEST_F(BlockLocationTest, APlaceThatCannotBeStoredIsNotUsed) {
+  location_.keep_in(folder.path() / "no such folder" / "place.json");
+  touch_all_spots();
+  ASSERT_FALSE(location_.locate());
+  status.enter(State::kStarting);
+  EXPECT_FALSE(run(location_.pass()));
+  EXPECT_THAT(faults, Contains("store_failed"));
+  EXPECT_FALSE(location_.place() || location_.is_passing());
+  EXPECT_TRUE(location_.is_locating()) << "it can be tried again";
 }
 
 TEST_F(BlockLocationTest, APassWaitsUntilWhatIsOpenAtTheControllerIsSettled) {
