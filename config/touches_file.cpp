@@ -76,14 +76,18 @@ calib::TouchRole role_from_json(const JsonValue& value) {
 constexpr NumberRange kNoiseUm{.min = kPositive.min,
                                .max = calib::um_from_metres(calib::kTouchDeviationMaxMetres)};
 
-calib::Touch touch_from_json(const JsonValue& value, int face_count, const calib::JointVector& units) {
+calib::Touch touch_from_json(const JsonValue& value, bool is_first_schema, int face_count,
+                             const calib::JointVector& units) {
   const JsonObject object = value.object({"plane", "joints_deg", "role", "noise_um"});
   calib::Touch touch;
   touch.face = object.at("plane").integer(1, face_count) - 1;
   touch.joints = object.at("joints_deg").numbers<kJointCount>().cwiseProduct(units);
   if (const auto role = object.find("role")) touch.role = role_from_json(*role);
-  if (const auto noise = object.find("noise_um"))
-    touch.deviation_m = calib::metres_from_um(noise->number(kNoiseUm));
+  const auto noise = object.find("noise_um");
+  if (!noise) return touch;
+  if (is_first_schema)
+    noise->fail(R"(unknown key "noise_um" in a touches document of version 1; raise "schema" to 2)");
+  touch.deviation_m = calib::metres_from_um(noise->number(kNoiseUm));
   return touch;
 }
 
@@ -269,8 +273,10 @@ class CsvLine {
 TouchesFile touches_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes,
                               const Cell& cell) {
   const nlohmann::json document = parse_strict_json(source, bytes, size_max_bytes);
-  const JsonObject object =
-      JsonValue(source, document).document(kTouchesSchema, {"schema", "arm", "touches", "reference_touches"});
+  const bool is_first_schema = has_schema(document, kFirstTouchesSchema);
+  const JsonObject object = JsonValue(source, document)
+                                .document(is_first_schema ? kFirstTouchesSchema : kTouchesSchema,
+                                          {"schema", "arm", "touches", "reference_touches"});
   const JsonValue arm = object.at("arm");
   if (const std::string name = arm.text(); name != cell.arm.name) {
     arm.fail("is " + in_quotes(name) + " but the cell's arm is " + in_quotes(cell.arm.name) +
@@ -280,7 +286,7 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
   const int face_count = static_cast<int>(cell.block.faces.size());
   const calib::JointVector units = joint_units(cell.arm.model);
   for (const JsonValue& item : object.at("touches").items(0, kTouchCountMax)) {
-    result.touches.push_back(touch_from_json(item, face_count, units));
+    result.touches.push_back(touch_from_json(item, is_first_schema, face_count, units));
   }
   if (const auto references = object.find("reference_touches"))
     result.references = references_from_json(*references, cell);

@@ -10,7 +10,7 @@ namespace cell {
 std::optional<double> own_noise_um(const HandTouch& touch, double declared_noise_m) {
   if (!touch.moved_m || !(declared_noise_m > 0.0)) return std::nullopt;
   constexpr double kStepsPerUm = 10.0;
-  const double deviation_m = std::hypot(declared_noise_m, *touch.moved_m / std::sqrt(12.0));
+  const double deviation_m = std::hypot(declared_noise_m, *touch.moved_m / std::sqrt(3.0));
   const double noise_um = std::round(kStepsPerUm * calib::um_from_metres(deviation_m)) / kStepsPerUm;
   if (calib::metres_from_um(noise_um) <= declared_noise_m) return std::nullopt;
   return noise_um;

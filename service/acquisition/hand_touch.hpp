@@ -21,9 +21,8 @@ struct HandTouch {
 
 /// Standard deviation of such a touch along the normal, micrometres to a tenth, where it is more than that of
 /// a touch whose joints were latched: `declared_noise_m`. Nothing where it is not, or one of both is unknown
-/// (0). The probe tripped anywhere between the two readings, with equal probability on all of the way: that
-/// scatters by moved / sqrt(12), independent of the noise of a trip. What all of these touches share, that
-/// the reading is behind the trip, is like a longer pre-travel and not in it.
+/// (0). The probe tripped anywhere between the two readings, with equal probability on all of the way, and
+/// the later reading counts: its error is moved / sqrt(3) rms, independent of the noise of a trip.
 std::optional<double> own_noise_um(const HandTouch& touch, double declared_noise_m);
 
 /// Watches the controller's states for a probe that trips while a person jogs. Reads no clock.

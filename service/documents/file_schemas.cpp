@@ -9,7 +9,7 @@ constexpr std::string_view kTouches = R"({
 "type":"object",
 "required":["schema","arm","touches"],
 "properties":{
-  "schema":{"const":"touchcal/touches/1"},
+  "schema":{"enum":["touchcal/touches/1","touchcal/touches/2"]},
   "arm":{"type":"string"},
   "touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},

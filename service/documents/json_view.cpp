@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/touches_file.hpp"
 #include "service/base/json_figures.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/figures.hpp"
@@ -131,13 +132,16 @@ std::string runs_document(const RunPage& page) {
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
                              const std::vector<ReferenceTouch>& references) {
   Json list = Json::array();
+  std::string_view schema = kFirstTouchesSchema;  // older programs read it
   for (const StoredTouch& touch : touches) {
     Json& entry = list.emplace_back(Json{{"plane", touch.plane},
                                          {"role", word_of(touch.role)},
                                          {"joints_deg", joints_deg_json(touch.joints)}});
-    if (touch.noise_um && !is_noise_of_cell(cell, *touch.noise_um)) entry["noise_um"] = *touch.noise_um;
+    if (!touch.noise_um || is_noise_of_cell(cell, *touch.noise_um)) continue;
+    entry["noise_um"] = *touch.noise_um;
+    schema = kTouchesSchema;
   }
-  Json document{{"schema", "touchcal/touches/1"}, {"arm", cell.arm.name}, {"touches", list}};
+  Json document{{"schema", schema}, {"arm", cell.arm.name}, {"touches", list}};
   const auto place = std::ranges::find(touches, calib::TouchRole::kFit, &StoredTouch::role);
   if (references.empty() || place == touches.end()) return text_of(document);
   Json& again = document["reference_touches"] = Json::array();

@@ -29,7 +29,7 @@ TouchesFile from_csv(const std::string& lines) {
 }
 
 std::string document(const std::string& touches) {
-  return R"({"schema":"touchcal/touches/1","arm":"tx90","touches":[)" + touches + "]}";
+  return R"({"schema":"touchcal/touches/2","arm":"tx90","touches":[)" + touches + "]}";
 }
 
 TEST(TouchesJson, IsReadAsTheContractShowsIt) {
@@ -166,11 +166,13 @@ TEST(TouchesJson, WhatIsWrongIsSaidWithItsPlace) {
       {document("7"), "body: /touches/0: is a number; give an object"},
       {R"({"schema":"touchcal/touches/1","arm":"tx60","touches":[]})",
        "body: /arm: is \"tx60\" but the cell's arm is \"tx90\""},
-      {R"({"schema":"touchcal/touches/2","arm":"tx90","touches":[]})",
-       "this program reads \"touchcal/touches/1\""},
+      {R"({"schema":"touchcal/touches/3","arm":"tx90","touches":[]})",
+       "this program reads \"touchcal/touches/2\""},
+      {R"({"schema":"touchcal/touches/1","arm":"tx90","touches":[{"plane":1,"joints_deg":[1,2,3,4,5,6],"noise_um":61}]})",
+       R"(/touches/0/noise_um: unknown key "noise_um" in a touches document of version 1; raise)"},
       {R"({"schema":"touchcal/touches/1","touches":[]})", "body: \"arm\" is missing; add it"},
       {R"({"schema":"touchcal/touches/1","arm":"tx90"})", "body: \"touches\" is missing; add it"},
-      {"[]", "give an object with \"schema\":\"touchcal/touches/1\""},
+      {"[]", "give an object with \"schema\":\"touchcal/touches/2\""},
   };
   for (const RefusedTouches& refused : cases) {
     EXPECT_THAT(error_of([&] { from_json(refused.bytes); }).what(), HasSubstr(refused.what)) << refused.bytes;

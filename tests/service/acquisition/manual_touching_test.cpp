@@ -64,7 +64,7 @@ TEST_F(ManualTouchingTest, ATouchHasTheNoiseOfTheWayOnWhichTheProbeTripped) {
   touch(joints, kBeforeRad);
   ASSERT_EQ(active_.run.touches_done(), 1) << problem();
   const double declared_m = active_.run.problem().touch_noise_m;
-  const double expected_um = 1e6 * std::hypot(declared_m, moved_m / std::sqrt(12.0));
+  const double expected_um = 1e6 * std::hypot(declared_m, moved_m / std::sqrt(3.0));
   EXPECT_NEAR(store.touches(active_.run.id()).at(0).noise_um.value(), expected_um, 0.051);
   EXPECT_NEAR(1e6 * active_.run.problem().touches.at(0).deviation_m, expected_um, 0.051);
 }
