@@ -69,7 +69,7 @@ TEST_F(GuidedRun, IdentifiesTheArmWithoutAMotionCommand) {
     if (!touches[i].noise_um) continue;  // the arm was slow enough
     ++unsure;
     EXPECT_GT(fitted[i].deviation_m, declared_m);
-    EXPECT_LT(fitted[i].deviation_m, std::hypot(declared_m, 2e-4 / std::sqrt(12.0)) + 1e-7);
+    EXPECT_LT(fitted[i].deviation_m, std::hypot(declared_m, 2e-4 / std::sqrt(3.0)) + 1e-7);
   }
   EXPECT_GT(unsure, touches.size() / 2);
   EXPECT_EQ(loop_.server().report().active_sequence, 0U);
