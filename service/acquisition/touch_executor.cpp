@@ -119,6 +119,7 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   const cs8::TouchReply reply = co_await std::move(answer);
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     session_.drop_open_touch();
+    forget_stored_command(run.id());
     take_rejection(*rejected, HeldBy::kTouch);
   } else if (const auto* result = std::get_if<cs8::TouchResult>(&reply.answer)) {
     co_await take_contact(active, open, *result);
@@ -171,11 +172,6 @@ asio::awaitable<bool> TouchExecutor::keep_open_command(ActiveRun& active, OpenTo
     forget_stored_command(open.run_id);
   }
   co_return false;
-}
-
-/// Its sequence number belongs to the command that leaves next.
-void TouchExecutor::forget_stored_command(std::int64_t run_id) {
-  store_.behind([run_id](RunStore& store) { store.forget_open_command(run_id); });
 }
 
 /// The command that follows a contact which is being stored; nothing where something else comes first, or
@@ -258,14 +254,15 @@ asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch o
   StoredCommand stored;
   std::function<void(RunStore&)> behind;
   if (next) behind = storing_of(active, *next, path_of(*preparation_.next()), stored);
+  session_.set_standing(touch.clear_joints);  // a State that tells otherwise meanwhile forgets it
   const bool kept = co_await finish_storing(active, storing, result.edges, behind);
   active.stored_changes += stored.changes;
   if (!kept) {
+    session_.forget_standing();
     preparation_.set_aim(std::move(without));
     co_return;
   }
   session_.acknowledge(open.sequence);
-  session_.set_standing(touch.clear_joints);
   if (active.place_check) {
     if (const auto moved = active.place_check->check(active.run.problem().touches.back()))
       status_.raise(*moved, Event::kHoldFault);
@@ -376,7 +373,7 @@ TouchExecutor::Storing TouchExecutor::begin_storing(const Run& run, const calib:
 }
 
 /// As keep(); `behind` is stored on the same way, unless the contact could not be.
-asio::awaitable<bool> TouchExecutor::finish_storing(ActiveRun& active, Storing storing, int edges,
+asio::awaitable<bool> TouchExecutor::finish_storing(ActiveRun& active, Storing storing, std::uint32_t edges,
                                                     std::function<void(RunStore&)> behind) {
   Run& run = active.run;
   const StoredTouch& touch = storing.touch;

@@ -94,7 +94,7 @@ class TouchExecutor {
   Storing begin_storing(const Run& run, const calib::PlannedTouch& planned, const cs8::TouchResult& result,
                         const std::optional<OpenTouch>& answered,
                         std::optional<double> noise_um = std::nullopt);
-  boost::asio::awaitable<bool> finish_storing(ActiveRun& active, Storing storing, int edges,
+  boost::asio::awaitable<bool> finish_storing(ActiveRun& active, Storing storing, std::uint32_t edges,
                                               std::function<void(RunStore&)> behind);
   bool aim_ahead(ActiveRun& active, const StoredTouch& touch, const calib::JointVector& contact);
   bool accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,

@@ -104,7 +104,9 @@ bool TouchExecutor::aim_at_reference() {
 /// While the arm moves to the reference place: the way from there to the next touch of the plan.
 void TouchExecutor::look_ahead_from_reference(Run& run, const calib::JointVector& from) {
   const calib::PlannedTouch* next = run.next();
-  if (next && !preparation_.reroute_from(from, *next)) preparation_.prepare_next(run, from);
+  if (!next || preparation_.reroute_from(from, *next)) return;
+  preparation_.add_contacts(run);  // one that was kept late may be why there is nothing to take up
+  preparation_.prepare_next(run, from);
 }
 
 asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
@@ -224,6 +226,11 @@ void TouchExecutor::tell_unstored(const std::string& failure) {
   status_.raise(fault, status_.state() == State::kExecute ? Event::kHoldFault : Event::kNotReadyFault);
 }
 
+/// It did not leave or was not taken: its sequence number belongs to the command that leaves next.
+void TouchExecutor::forget_stored_command(std::int64_t run_id) {
+  store_.behind([run_id](RunStore& store) { store.forget_open_command(run_id); });
+}
+
 asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std::uint32_t sequence) {
   const cs8::QueryReply reply = co_await session_.query(sequence);
   if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
@@ -239,9 +246,12 @@ asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std:
     const bool kept = co_await keep_late_touch(*active, *open, *result);
     if (!kept) {
       // It waits there until it can be stored.
-      if (!active->open && !has_ended(status_.state())) status_.enter(State::kStopped);
+      const bool is_left = has_ended(status_.state()) || status_.state() == State::kClearing;
+      if (!active->open && !is_left) status_.enter(State::kStopped);
       co_return;
     }
+  } else if (open) {
+    forget_stored_command(open->run_id);
   }
   session_.acknowledge(sequence);
   if (judged && judged->next == TouchJudgement::Next::kFault && judged->event == Event::kAbortFault &&

@@ -16,7 +16,7 @@ constexpr std::string_view kTouches = R"({
     "role":{"enum":["fit","held_out","proof"]},
     "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
     "noise_um":{"type":"number","exclusiveMinimum":0,"maximum":5000,
-      "description":"one standard deviation of this touch along the normal, where it is not the cell's touch_noise_mm"}}}},
+      "description":"one standard deviation of this touch along the normal, where it is not the cell's touch_noise_mm; version 2 only"}}}},
   "reference_touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},
     "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}}}})";

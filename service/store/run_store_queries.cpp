@@ -162,7 +162,7 @@ std::vector<StoredRun> RunStore::runs(int limit, std::optional<std::int64_t> bef
 }
 
 RunPage run_page(const RunStore& store, int limit, std::optional<std::int64_t> before_id) {
-  const auto database = store.database();
+  const auto& database = store.database();
   try {
     SQLite::Statement query(*database, run_columns() + "WHERE id < ? ORDER BY id DESC LIMIT ?");
     query.bind(1, before_id.value_or(INT64_MAX));

@@ -53,8 +53,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
      "the permit of controller_session.cpp: acquisition/controller_session_test"},
     {"service/acquisition/cs8_controller", "passes calls on to cs8::Client: every run of tests/end_to_end"},
     {"service/acquisition/link_fault", "acquisition/controller_session_test and end_to_end/link_faults_test"},
-    {"service/acquisition/touch_executor_beside_plan",
-     "the second half of touch_executor.cpp: acquisition/touch_executor_test"},
     {"service/acquisition/wake", "acquisition/controller_session_test waits by it"},
     {"service/base/asio_ssl", "compiles Asio's sources"},
     {"service/cli/api_client",

@@ -5,41 +5,18 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "service/run/touch_command.hpp"
-#include "tests/service/acquisition/owners_bench.hpp"
+#include "tests/service/acquisition/executor_bench.hpp"
 
 namespace cell {
 namespace {
 
 using ::testing::ElementsAre;
 
-class TouchExecutorTest : public ::testing::Test, public OwnersBench {
- protected:
-  TouchExecutorTest() {
-    controller.on_touch = [this](const cs8::Touch&) { return contact(); };
-    touches_.begin_run(active_);
-    status.enter(State::kExecute);
-  }
-  /// Nothing that was stored is missing from the run, nor the other way about.
-  void expect_run_is_as_stored() {
-    const std::vector<StoredTouch> stored = store.touches(active_.run.id());
-    EXPECT_EQ(static_cast<int>(stored.size()), active_.run.touches_done());
-  }
-  /// From here on every commit fails.
-  void break_store() {
-    sqlite3_commit_hook(
-        store.database()->getHandle(), [](void*) { return 1; }, nullptr);
-  }
-  void mend_store() { sqlite3_commit_hook(store.database()->getHandle(), nullptr, nullptr); }
-  [[nodiscard]] long acknowledged_count() const {
-    return std::ranges::count_if(controller.asked,
-                                 [](const std::string& one) { return one.starts_with("acknowledge"); });
-  }
-
-  ActiveRun active_ = planned_run();
-  TouchExecutor touches_{cell_of_owners(), regions, queue, session, preparation, status, wake, time.clocks()};
-};
+using TouchExecutorTest = ExecutorBench;
 
 TEST_F(TouchExecutorTest, AContactIsStoredThenAddedThenAcknowledged) {
   controller.on_touch = [this](const cs8::Touch&) {
@@ -91,43 +68,38 @@ TEST_F(TouchExecutorTest, AnArmThatIsMovedIsNotCommandedFromWhereItStood) {
   expect_run_is_as_stored();
 }
 
+// While the contact is committed, a State tells that the arm is elsewhere.
+TEST_F(TouchExecutorTest, AnArmThatIsMovedWhileTheDiskIsWrittenIsNotCommandedFromWhereItStood) {
+  bool is_answered = false;
+  controller.on_touch = [&](const cs8::Touch&) {
+    is_answered = true;
+    return contact();
+  };
+  std::function<void()> move = [&] {
+    if (!std::exchange(is_answered, false)) return;
+    controller.state->joints = to_wire(cell_of_owners().park_joints);
+    tell_state();
+  };
+  sqlite3_commit_hook(
+      store.database()->getHandle(),
+      [](void* moves) {
+        (*static_cast<std::function<void()>*>(moves))();
+        return 0;
+      },
+      &move);
+  run(touches_.make_next_touch(active_));
+  mend_store();
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  EXPECT_FALSE(session.standing());
+  EXPECT_EQ(status.latest().warning.value().code, FaultCode::kArmMoved);
+}
+
 TEST_F(TouchExecutorTest, TheNextTouchIsReadyWhenTheArmComesBack) {
   run(touches_.make_next_touch(active_));
   const int waits = wake.wait_count;
   for (int i = 0; i < 3; ++i) run(touches_.make_next_touch(active_));
   EXPECT_EQ(wake.wait_count, waits) << "where the arm stands is known, and the way from there";
   EXPECT_EQ(active_.run.touches_done(), 4);
-}
-
-TEST_F(TouchExecutorTest, AnAnswerThatWasLostIsAskedForAndItsTouchCountsOnce) {
-  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
-  run(touches_.make_next_touch(active_));
-  const auto made = contact();
-  status.raise({FaultCode::kLinkLost, {}}, Event::kLinkDown);
-  ASSERT_TRUE(session.open_touch());
-  controller.on_query = [&](std::uint32_t) { return made; };
-  run(touches_.settle_open_command(&active_, session.sequence_to_settle()));
-  EXPECT_EQ(active_.run.touches_done(), 1);
-  EXPECT_FALSE(session.open_touch());
-  status.enter(State::kExecute);
-  controller.on_touch = [this](const cs8::Touch&) { return contact(); };
-  run(touches_.make_next_touch(active_));
-  EXPECT_EQ(active_.run.touches_done(), 2);
-}
-
-TEST_F(TouchExecutorTest, ACollisionThatIsToldOnceTheLinkIsBackEndsTheRun) {
-  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
-  run(touches_.make_next_touch(active_));
-  status.raise({FaultCode::kLinkLost, {}}, Event::kLinkDown);
-  controller.on_query = [](std::uint32_t) {
-    cs8::TouchResult result;
-    result.outcome = cs8::Outcome::kCollision;
-    return result;
-  };
-  run(touches_.settle_open_command(&active_, session.sequence_to_settle()));
-  EXPECT_EQ(status.state(), State::kAborting);
-  EXPECT_THAT(faults, ElementsAre("link_lost", "collision"));
-  EXPECT_FALSE(session.open_touch());
 }
 
 TEST_F(TouchExecutorTest, AnArmThatCannotLeaveWhereItStandsHoldsTheRunUntilAPersonJogsIt) {
@@ -239,29 +211,11 @@ TEST_F(TouchExecutorTest, ARejectionHoldsOrEndsTheRunByItsReason) {
   run(touches_.make_next_touch(active_));
   EXPECT_EQ(status.state(), State::kHolding);
   EXPECT_FALSE(session.open_touch());
+  EXPECT_FALSE(store.open_command(active_.run.id())) << "the next command has its number";
   status.enter(State::kExecute);
   controller.on_touch = [](const cs8::Touch&) { return cs8::Rejected{cs8::RejectReason::kBadField, 0}; };
   run(touches_.make_next_touch(active_));
   EXPECT_EQ(status.state(), State::kAborting);
-}
-
-TEST_F(TouchExecutorTest, AfterALostLinkTheTouchIsOpenUntilItsAnswerIsKept) {
-  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
-  run(touches_.make_next_touch(active_));
-  ASSERT_TRUE(session.open_touch());
-  EXPECT_EQ(active_.run.touches_done(), 0);
-  EXPECT_TRUE(faults.empty()) << "the controller's hook tells it";
-  controller.on_query = [this](std::uint32_t) { return contact(); };
-  run(touches_.settle_open_command(&active_, 1));
-  EXPECT_EQ(active_.run.touches_done(), 1);
-  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "query 1", "acknowledge 1"));
-}
-
-TEST_F(TouchExecutorTest, AnOpenCommandThatIsNotOursIsForgottenUnread) {
-  controller.on_query = [this](std::uint32_t) { return cs8::TouchResult{}; };
-  run(touches_.settle_open_command(nullptr, 5));
-  EXPECT_THAT(controller.asked, ElementsAre("query 5", "acknowledge 5"));
-  EXPECT_EQ(active_.run.touches_done(), 0);
 }
 
 TEST_F(TouchExecutorTest, ATouchThatTheOthersContradictIsMadeAgainAndReplaced) {
@@ -336,57 +290,6 @@ TEST_F(TouchExecutorTest, ALockOfAnotherProgramHoldsTheRunAndTheContactIsKeptOnc
   EXPECT_EQ(active_.run.touches_done(), 1);
   expect_run_is_as_stored();
   EXPECT_EQ(acknowledged_count(), 1);
-}
-
-TEST_F(TouchExecutorTest, ALateTouchOfAnotherRunIsNotKeptByThisOne) {
-  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
-  run(touches_.make_next_touch(active_));
-  ASSERT_TRUE(session.open_touch());
-  ActiveRun next = planned_run();
-  controller.on_query = [this](std::uint32_t) { return contact(); };
-  run(touches_.settle_open_command(&next, 1));
-  EXPECT_EQ(next.run.touches_done(), 0);
-  EXPECT_TRUE(store.touches(next.run.id()).empty());
-}
-
-TEST_F(TouchExecutorTest, AContactAtTheReferencePlaceIsAcknowledgedOnceItIsStored) {
-  ActiveRun active = begun_run("edf-25");
-  active.run.set_plan(plan_of_owners().touches);
-  touches_.begin_run(active);
-  while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
-  const long before = acknowledged_count();
-  const auto touches_sent = [this] {
-    return std::ranges::count_if(controller.asked,
-                                 [](const std::string& one) { return one.starts_with("touch"); });
-  };
-  const long sent = touches_sent();
-  break_store();
-  run(touches_.make_next_touch(active));
-  mend_store();
-  EXPECT_EQ(status.state(), State::kHolding);
-  EXPECT_EQ(touches_sent(), sent + 1);
-  EXPECT_EQ(acknowledged_count(), before);
-  EXPECT_TRUE(store.references(active.run.id()).empty());
-  status.enter(State::kExecute);
-  run(touches_.make_next_touch(active));
-  EXPECT_EQ(touches_sent(), sent + 1) << "it is not touched twice";
-  EXPECT_EQ(acknowledged_count(), before + 1);
-  ASSERT_EQ(store.references(active.run.id()).size(), 1u);
-  EXPECT_EQ(store.references(active.run.id())[0].number, 1);
-}
-
-TEST_F(TouchExecutorTest, TheReferencePlaceIsTouchedBesideThePlan) {
-  ActiveRun active = begun_run("edf-25");
-  ASSERT_GT(active.run.recipe().reference_every, 0);
-  active.run.set_plan(plan_of_owners().touches);
-  touches_.begin_run(active);
-  while (active.run.touches_done() == 0 || store.references(active.run.id()).empty())
-    run(touches_.make_next_touch(active));
-  const int done = active.run.touches_done();
-  EXPECT_EQ(static_cast<int>(store.touches(active.run.id()).size()), done);
-  EXPECT_EQ(store.references(active.run.id()).at(0).touches_done, done);
-  EXPECT_FALSE(status.latest().reference_drift_m) << "drift counts from the first";
-  EXPECT_EQ(acknowledged_count(), done + 1);
 }
 
 }  // namespace

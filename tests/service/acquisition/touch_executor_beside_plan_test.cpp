@@ -1,0 +1,147 @@
+// What touch_executor_beside_plan.cpp does: late answers, the reference place.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "service/acquisition/touch_executor.hpp"
+#include "tests/service/acquisition/executor_bench.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+
+using TouchesBesidePlan = ExecutorBench;
+
+TEST_F(TouchesBesidePlan, AnAnswerThatWasLostIsAskedForAndItsTouchCountsOnce) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  const auto made = contact();
+  status.raise({FaultCode::kLinkLost, {}}, Event::kLinkDown);
+  ASSERT_TRUE(session.open_touch());
+  controller.on_query = [&](std::uint32_t) { return made; };
+  run(touches_.settle_open_command(&active_, session.sequence_to_settle()));
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  EXPECT_FALSE(session.open_touch());
+  status.enter(State::kExecute);
+  controller.on_touch = [this](const cs8::Touch&) { return contact(); };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), 2);
+}
+
+TEST_F(TouchesBesidePlan, ACollisionThatIsToldOnceTheLinkIsBackEndsTheRun) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  status.raise({FaultCode::kLinkLost, {}}, Event::kLinkDown);
+  controller.on_query = [](std::uint32_t) {
+    cs8::TouchResult result;
+    result.outcome = cs8::Outcome::kCollision;
+    return result;
+  };
+  run(touches_.settle_open_command(&active_, session.sequence_to_settle()));
+  EXPECT_EQ(status.state(), State::kAborting);
+  EXPECT_THAT(faults, ElementsAre("link_lost", "collision"));
+  EXPECT_FALSE(session.open_touch());
+}
+
+TEST_F(TouchesBesidePlan, AfterALostLinkTheTouchIsOpenUntilItsAnswerIsKept) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  ASSERT_TRUE(session.open_touch());
+  EXPECT_EQ(active_.run.touches_done(), 0);
+  EXPECT_TRUE(faults.empty()) << "the controller's hook tells it";
+  controller.on_query = [this](std::uint32_t) { return contact(); };
+  run(touches_.settle_open_command(&active_, 1));
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "query 1", "acknowledge 1"));
+}
+
+TEST_F(TouchesBesidePlan, AnOpenCommandThatIsNotOursIsForgottenUnread) {
+  controller.on_query = [this](std::uint32_t) { return cs8::TouchResult{}; };
+  run(touches_.settle_open_command(nullptr, 5));
+  EXPECT_THAT(controller.asked, ElementsAre("query 5", "acknowledge 5"));
+  EXPECT_EQ(active_.run.touches_done(), 0);
+}
+
+TEST_F(TouchesBesidePlan, ALateTouchOfAnotherRunIsNotKeptByThisOne) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  ASSERT_TRUE(session.open_touch());
+  ActiveRun next = planned_run();
+  controller.on_query = [this](std::uint32_t) { return contact(); };
+  run(touches_.settle_open_command(&next, 1));
+  EXPECT_EQ(next.run.touches_done(), 0);
+  EXPECT_TRUE(store.touches(next.run.id()).empty());
+}
+
+TEST_F(TouchesBesidePlan, ACommandThatWasNeverTakenLeavesItsNumberToTheNext) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  ASSERT_TRUE(store.open_command(active_.run.id()));
+  controller.on_query = [](std::uint32_t) { return cs8::ResultUnknown{}; };
+  run(touches_.settle_open_command(&active_, 1));
+  EXPECT_FALSE(session.open_touch());
+  EXPECT_FALSE(store.open_command(active_.run.id()));
+}
+
+TEST_F(TouchesBesidePlan, TheWayFromTheReferencePlaceKnowsAContactThatWasKeptLate) {
+  ActiveRun active = begun_run("edf-25");
+  active.run.set_plan(plan_of_owners().touches);
+  touches_.begin_run(active);
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active));
+  const auto made = contact();
+  controller.on_query = [&](std::uint32_t) { return made; };
+  run(touches_.settle_open_command(&active, session.open_touch().value().sequence));
+  ASSERT_EQ(active.run.touches_done(), 1);
+  preparation.drop_next();  // as behind a contact that was a surprise
+  status.enter(State::kExecute);
+  controller.on_touch = [this](const cs8::Touch&) { return contact(); };
+  run(touches_.make_next_touch(active));
+  ASSERT_EQ(store.references(active.run.id()).size(), 1U);
+  EXPECT_EQ(preparation.aim().touch_count(), 1U);
+  EXPECT_EQ(preparation.next()->aimed_with, 1);
+}
+
+TEST_F(TouchesBesidePlan, AContactAtTheReferencePlaceIsAcknowledgedOnceItIsStored) {
+  ActiveRun active = begun_run("edf-25");
+  active.run.set_plan(plan_of_owners().touches);
+  touches_.begin_run(active);
+  while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
+  const long before = acknowledged_count();
+  const auto touches_sent = [this] {
+    return std::ranges::count_if(controller.asked,
+                                 [](const std::string& one) { return one.starts_with("touch"); });
+  };
+  const long sent = touches_sent();
+  break_store();
+  run(touches_.make_next_touch(active));
+  mend_store();
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_EQ(touches_sent(), sent + 1);
+  EXPECT_EQ(acknowledged_count(), before);
+  EXPECT_TRUE(store.references(active.run.id()).empty());
+  status.enter(State::kExecute);
+  run(touches_.make_next_touch(active));
+  EXPECT_EQ(touches_sent(), sent + 1) << "it is not touched twice";
+  EXPECT_EQ(acknowledged_count(), before + 1);
+  ASSERT_EQ(store.references(active.run.id()).size(), 1u);
+  EXPECT_EQ(store.references(active.run.id())[0].number, 1);
+}
+
+TEST_F(TouchesBesidePlan, TheReferencePlaceIsTouchedBesideThePlan) {
+  ActiveRun active = begun_run("edf-25");
+  ASSERT_GT(active.run.recipe().reference_every, 0);
+  active.run.set_plan(plan_of_owners().touches);
+  touches_.begin_run(active);
+  while (active.run.touches_done() == 0 || store.references(active.run.id()).empty())
+    run(touches_.make_next_touch(active));
+  const int done = active.run.touches_done();
+  EXPECT_EQ(static_cast<int>(store.touches(active.run.id()).size()), done);
+  EXPECT_EQ(store.references(active.run.id()).at(0).touches_done, done);
+  EXPECT_FALSE(status.latest().reference_drift_m) << "drift counts from the first";
+  EXPECT_EQ(acknowledged_count(), done + 1);
+}
+
+}  // namespace
+}  // namespace cell
