@@ -41,6 +41,14 @@ std::optional<std::string> result_json(const ActiveRun& active, const TipRegions
 /// The calibrated arm that goes with it, as a file; nothing before there is a result.
 std::optional<std::string> arm_json(const ActiveRun& active, const Cell& cell);
 
+/// How a run ended, with what is stored of it.
+struct Conclusion {
+  Verdict verdict = Verdict::kIncomplete;
+  bool finished = false;  // as ActiveRun::finished
+  std::optional<std::string> result_json;
+  std::optional<std::string> arm_json;
+};
+
 /// What a run that ends by `outcome` is worth: complete with every touch made and a result, it is judged by
 /// the rule of the regions' cell; else it is incomplete. Sets `finished`.
 Verdict conclude(ActiveRun& active, RunOutcome outcome, const TipRegions& regions);

@@ -65,17 +65,17 @@ void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_c
 
 }  // namespace
 
-CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, StoreQueue store,
-                             Endpoint controller, std::string instance_id, Clocks clocks)
-    : CellOperation(executor, cell, std::move(store),
-                    std::make_unique<Cs8Controller>(executor, cell.deadlines, std::move(controller)),
+CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueue store, Endpoint controller,
+                             std::string instance_id, Clocks clocks)
+    : CellOperation(threads, cell, std::move(store),
+                    std::make_unique<Cs8Controller>(threads.operation, cell.deadlines, std::move(controller)),
                     std::move(instance_id), std::move(clocks)) {}
 
-CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, StoreQueue store,
+CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueue store,
                              std::unique_ptr<Controller> controller, std::string instance_id, Clocks clocks)
     : store_(std::move(store)),
       clocks_(std::move(clocks)),
-      wake_(executor),
+      wake_(threads.operation),
       status_(clocks_, wake_, std::move(instance_id),
               {.describe = [this](Status& status) { describe_to(status); },
                .on_entered = [this](State state) { on_entered(state); },
@@ -84,14 +84,14 @@ CellOperation::CellOperation(asio::any_io_executor executor, const Cell& cell, S
       controller_(std::move(controller)),
       session_(cell, *controller_, status_, wake_, clocks_),
       location_(cell, store_, session_, status_, wake_, clocks_),
-      plans_(executor, location_.cell()),
+      plans_(threads.operation, location_.cell()),
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
-      touches_(location_.cell(), location_.regions(), store_, session_, preparation_, status_, wake_,
-               clocks_),
+      computation_(threads.computation, location_.cell(), location_.regions()),
+      touches_(location_.cell(), computation_, store_, session_, preparation_, status_, wake_, clocks_),
       manual_(location_.cell(), store_, session_, preparation_, touches_, status_, wake_),
       recovery_(location_.cell(), location_.regions(), store_, plans_, session_, preparation_, planning_,
                 touches_, status_, clocks_),
-      loop_{.executor = executor, .ended = TimerWake(executor)} {
+      loop_{.executor = threads.operation, .ended = TimerWake(threads.operation)} {
   controller_->listen({.on_state = [this](const cs8::State& state) { on_controller_state(state); },
                        .on_permit = [this](const cs8::Permit& permit) { session_.on_permit(permit); },
                        .on_heartbeat = [this] { session_.on_heartbeat(); },

@@ -20,6 +20,7 @@
 #include "service/acquisition/manual_touching.hpp"
 #include "service/acquisition/plan_cache.hpp"
 #include "service/acquisition/published_status.hpp"
+#include "service/acquisition/run_computation.hpp"
 #include "service/acquisition/run_planning.hpp"
 #include "service/acquisition/run_recovery.hpp"
 #include "service/acquisition/start_request.hpp"
@@ -37,15 +38,21 @@ struct Started {
 
 /// The cell in operation: the state and the run. Commands act at once on the state (run/packml_state.hpp);
 /// one loop does what the state asks for, a step at a time, by the owners of what the step needs. One thread,
-/// that of the executor, but for what says that it is for any.
+/// Threads::operation, but for what says that it is for any.
 class CellOperation {
  public:
-  /// `cell` and the store must outlive the operation, and the store's executor must have ended its work when
-  /// the operation is destroyed.
-  CellOperation(boost::asio::any_io_executor executor, const Cell& cell, StoreQueue store,
-                Endpoint controller, std::string instance_id, Clocks clocks);
+  /// Where it works: its own thread, and that of a run's arithmetic (RunComputation).
+  struct Threads {
+    boost::asio::any_io_executor operation;
+    boost::asio::any_io_executor computation;
+  };
+
+  /// `cell` and the store must outlive the operation; the store's executor and that of the computation must
+  /// have ended their work when the operation is destroyed.
+  CellOperation(const Threads& threads, const Cell& cell, StoreQueue store, Endpoint controller,
+                std::string instance_id, Clocks clocks);
   /// With a controller of any kind.
-  CellOperation(boost::asio::any_io_executor executor, const Cell& cell, StoreQueue store,
+  CellOperation(const Threads& threads, const Cell& cell, StoreQueue store,
                 std::unique_ptr<Controller> controller, std::string instance_id, Clocks clocks);
   CellOperation(const CellOperation&) = delete;
   CellOperation& operator=(const CellOperation&) = delete;
@@ -142,6 +149,7 @@ class CellOperation {
 
   // what the states do (cell_operation_loop.cpp)
   boost::asio::awaitable<void> act_on_states();
+  boost::asio::awaitable<void> identify_run();
   boost::asio::awaitable<void> act_on(State state);
   boost::asio::awaitable<void> break_off(State state, std::string why);
   boost::asio::awaitable<void> reset();
@@ -179,6 +187,7 @@ class CellOperation {
   PlanCache plans_;
   TouchPreparation preparation_;
   RunPlanning planning_;
+  RunComputation computation_;
   TouchExecutor touches_;
   ManualTouching manual_;
   RunRecovery recovery_;

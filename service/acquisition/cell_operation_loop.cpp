@@ -37,16 +37,24 @@ asio::awaitable<void> CellOperation::act_on_states() {
   // At the end an interrupted run stays on hold: the next daemon takes it up.
   const auto is_left = [this] { return !is_active(status_.state()) || status_.state() == State::kHeld; };
   while (!status_.is_ending() || !is_left()) {
-    const State state = status_.state();
+    State state = status_.state();
     std::optional<std::string> failure;
     try {
-      if (state != State::kExecute && run_) touches_.identify(*run_);
+      if (state != State::kExecute) co_await identify_run();
+      state = status_.state();
       co_await act_on(state);
     } catch (const std::exception& error) {
       failure = error.what();
     }
     if (failure) co_await break_off(state, *failure);
   }
+}
+
+/// Where a command begins another run meanwhile, the result is that of none.
+asio::awaitable<void> CellOperation::identify_run() {
+  if (!run_ || !run_->run.identification_is_due()) co_return;
+  const Run identified = co_await computation_.identified(run_->run);
+  if (run_ && run_->run.take_latest(identified)) status_.publish();
 }
 
 /// What nobody foresaw ends the run, never the daemon with its STOP.
@@ -311,18 +319,17 @@ asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
   if (!run_ || !run_->open) co_return;
   const Run& run = run_->run;
   run_->open = false;
-  const Verdict verdict = conclude(*run_, outcome, tip_regions());
+  const Conclusion concluded = co_await computation_.conclude(*run_, outcome);
   RunEnd end{.outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
-             .verdict = verdict,
+             .verdict = concluded.verdict,
              .ended_at = now_text(),
-             .result_json = result_json(),
-             .arm_json = arm_json(*run_, cell())};
+             .result_json = concluded.result_json,
+             .arm_json = concluded.arm_json};
   if (const auto& fault = status_.fault()) {
     end.fault_code = std::string(describe(fault->code).name);
     end.fault_message = fault->message();
   }
   run_->interruption.reset();
-  const bool finished = std::exchange(run_->finished, false);  // what is not on the disk is not accepted
   const auto write = [id = run.id(), end](RunStore& store) { store.finish_run(id, end); };
   const auto failure = co_await store_.write(write);
   if (failure) {
@@ -330,9 +337,9 @@ asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
     status_.set_fault({FaultCode::kStoreFailed, *failure});
     spdlog::error("run {}: its end could not be stored: {}", run.id(), *failure);
   } else {
-    run_->finished = finished;
-    status_.set_verdict(verdict);
-    if (verdict == Verdict::kAccepted) status_.set_last_accepted(run.id(), end.ended_at);
+    run_->finished = concluded.finished;  // what is not on the disk is not accepted
+    status_.set_verdict(concluded.verdict);
+    if (concluded.verdict == Verdict::kAccepted) status_.set_last_accepted(run.id(), end.ended_at);
   }
   spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome),
                verdict_name(end.verdict), run.touches_done(), run.touches_total());

@@ -82,7 +82,7 @@ asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
     status_.apply(Event::kDone);
     co_return;
   }
-  touches_.identify(active);
+  co_await touches_.identify(active);
   const bool contradicts = preparation_.add_contacts(run);
   HandGuide guide = guide_to(run);
   if (guide_ && guide_->index == guide.index) guide.problem = guide_->problem;

@@ -5,6 +5,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <exception>
 #include <utility>
 
@@ -60,11 +61,11 @@ std::function<void(RunStore&)> storing_of(const ActiveRun& active, const OpenTou
 
 }  // namespace
 
-TouchExecutor::TouchExecutor(const Cell& cell, const TipRegions& regions, StoreQueue& store,
+TouchExecutor::TouchExecutor(const Cell& cell, RunComputation& computation, StoreQueue& store,
                              ControllerSession& session, TouchPreparation& preparation,
                              PublishedStatus& status, Wake& wake, Clocks clocks)
     : cell_(cell),
-      regions_(regions),
+      computation_(computation),
       store_(store),
       session_(session),
       preparation_(preparation),
@@ -115,8 +116,9 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   }
   session_.forget_standing();
   auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
-  work_ahead(active);
-  const cs8::TouchReply reply = co_await std::move(answer);
+  using asio::experimental::awaitable_operators::operator&&;  // both at once
+  auto answered = std::move(answer) && work_ahead(active);
+  const cs8::TouchReply reply = co_await std::move(answered);
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     session_.drop_open_touch();
     forget_stored_command(run.id());
@@ -200,9 +202,9 @@ bool TouchExecutor::take_stored_ahead(const Run& run) {
 }
 
 /// While the arm moves.
-void TouchExecutor::work_ahead(ActiveRun& active) {
+asio::awaitable<void> TouchExecutor::work_ahead(ActiveRun& active) {
   store_.behind([id = active.run.id()](RunStore& store) { store.make_durable(id); });
-  identify(active);
+  co_await identify(active);
   preparation_.add_contacts(active.run);
   const std::size_t behind = active.run.touches_made() + 1;
   stop_when_good_enough(active, behind);
@@ -219,8 +221,10 @@ void TouchExecutor::look_ahead(ActiveRun& active) {
     reference_ahead_ = preparation_.prepare(*reference_.aimed(), preparation_.made()->touch.clear_joints);
 }
 
-void TouchExecutor::identify(ActiveRun& active) {
-  if (active.run.identify()) status_.publish();
+asio::awaitable<void> TouchExecutor::identify(ActiveRun& active) {
+  if (!active.run.identification_is_due()) co_return;
+  const Run identified = co_await computation_.identified(active.run);
+  if (active.run.take_latest(identified)) status_.publish();
 }
 
 /// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.

@@ -11,6 +11,7 @@
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/outlier_retest.hpp"
 #include "service/acquisition/reference_monitor.hpp"
+#include "service/acquisition/run_computation.hpp"
 #include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_judgement.hpp"
 #include "service/acquisition/touch_preparation.hpp"
@@ -34,7 +35,7 @@ enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus };
 class TouchExecutor {
  public:
   /// All must outlive it.
-  TouchExecutor(const Cell& cell, const TipRegions& regions, StoreQueue& store, ControllerSession& session,
+  TouchExecutor(const Cell& cell, RunComputation& computation, StoreQueue& store, ControllerSession& session,
                 TouchPreparation& preparation, PublishedStatus& status, Wake& wake, Clocks clocks);
 
   /// Begins a run, without a hold or a suspect.
@@ -49,7 +50,7 @@ class TouchExecutor {
   /// (Event::kDone) when no touch is left.
   boost::asio::awaitable<void> make_next_touch(ActiveRun& active);
   /// Computes the result of all touches so far, unless it exists.
-  void identify(ActiveRun& active);
+  boost::asio::awaitable<void> identify(ActiveRun& active);
   /// When a run continues after a restart, or a contact was kept late: a last touch that the others
   /// contradict is made again before anything else. The estimate must be that without it.
   void suspect_last(const ActiveRun& active);
@@ -80,7 +81,7 @@ class TouchExecutor {
   std::optional<OpenTouch> command_behind(const ActiveRun& active, bool contradicted) const;
   bool take_stored_ahead(const Run& run);
   void forget_stored_command(std::int64_t run_id);
-  void work_ahead(ActiveRun& active);
+  boost::asio::awaitable<void> work_ahead(ActiveRun& active);
   void look_ahead(ActiveRun& active);
   void stop_when_good_enough(ActiveRun& active, std::size_t first);
   boost::asio::awaitable<void> take_contact(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
@@ -107,6 +108,7 @@ class TouchExecutor {
 
   // Beside the plan (touch_executor_beside_plan.cpp).
   boost::asio::awaitable<bool> touch_beside_plan(ActiveRun& active, calib::AimedTouch aimed, HeldBy held_by);
+  boost::asio::awaitable<void> work_beside_plan(ActiveRun& active, HeldBy held_by, calib::JointVector from);
   void settle_beside_plan();
   boost::asio::awaitable<void> touch_reference(ActiveRun& active);
   bool aim_at_reference();
@@ -117,7 +119,7 @@ class TouchExecutor {
   boost::asio::awaitable<bool> leave_out(ActiveRun& active, bool outlier);
 
   const Cell& cell_;
-  const TipRegions& regions_;  // of the cell
+  RunComputation& computation_;
   StoreQueue& store_;
   ControllerSession& session_;
   TouchPreparation& preparation_;

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <boost/asio/experimental/awaitable_operators.hpp>
 #include <cmath>
 #include <utility>
 
@@ -67,9 +68,10 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
   session_.forget_standing();
   history_.last_contact.reset();  // this touch repeats an earlier place on purpose
   auto answer = session_.touch(touch_command(cell_, outgoing.touch, outgoing.via));
-  identify(active);
-  if (held_by == HeldBy::kReference) look_ahead_from_reference(active.run, outgoing.touch.clear_joints);
-  const cs8::TouchReply reply = co_await std::move(answer);
+  const calib::JointVector& leaves_from = outgoing.touch.clear_joints;
+  using asio::experimental::awaitable_operators::operator&&;  // both at once
+  auto answered = std::move(answer) && work_beside_plan(active, held_by, leaves_from);
+  const cs8::TouchReply reply = co_await std::move(answered);
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     take_rejection(*rejected, held_by);
     co_return false;
@@ -81,6 +83,13 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
   preparation_.set_missed(false);
   session_.set_standing(outgoing.touch.clear_joints);
   co_return true;
+}
+
+/// While the arm moves.
+asio::awaitable<void> TouchExecutor::work_beside_plan(ActiveRun& active, HeldBy held_by,
+                                                      calib::JointVector from) {
+  co_await identify(active);
+  if (held_by == HeldBy::kReference) look_ahead_from_reference(active.run, from);
 }
 
 /// What the contact says is stored, or there is nothing to store: the controller may forget it.
@@ -268,10 +277,11 @@ asio::awaitable<bool> TouchExecutor::keep_late_touch(ActiveRun& active, OpenTouc
   if (goes_on && of_plan) reference_.note_fitted(*of_plan, contact);
   const bool kept = co_await keep(active, open.planned, result, open);
   if (!kept) co_return false;
-  identify(active);
+  co_await identify(active);
   if (goes_on) aim_behind_late_touch(active, contact);
-  if (const auto document = result_json(active, regions_)) {
-    store_.behind([id = active.run.id(), json = *document, arm = arm_json(active, cell_)](RunStore& store) {
+  const Conclusion told = co_await computation_.conclude(active, std::nullopt);
+  if (told.result_json) {
+    store_.behind([id = active.run.id(), json = *told.result_json, arm = told.arm_json](RunStore& store) {
       store.set_result_json(id, json, arm);
     });
   }

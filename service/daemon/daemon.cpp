@@ -108,16 +108,16 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
   }
 }
 
-/// At its end all that was to be written is written: it refers to coroutines that are destroyed next.
+/// At its end what another thread was asked for is done: it refers to coroutines that are destroyed next.
 class WorkDone {
  public:
-  explicit WorkDone(asio::thread_pool& disk) : disk_(disk) {}
-  ~WorkDone() { disk_.join(); }
+  explicit WorkDone(asio::thread_pool& thread) : thread_(thread) {}
+  ~WorkDone() { thread_.join(); }
   WorkDone(const WorkDone&) = delete;
   WorkDone& operator=(const WorkDone&) = delete;
 
  private:
-  asio::thread_pool& disk_;
+  asio::thread_pool& thread_;
 };
 
 /// The thread that serves, until its end. What nobody foresaw there ends a connection and no run.
@@ -164,7 +164,9 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   asio::io_context http(1);
   asio::io_context context(1);
   asio::thread_pool disk(1);
-  CellOperation operation(context.get_executor(), cell, StoreQueue(store, disk.get_executor()),
+  asio::thread_pool arithmetic(1);
+  CellOperation operation({context.get_executor(), arithmetic.get_executor()}, cell,
+                          StoreQueue(store, disk.get_executor()),
                           options.controller.value_or(cell.controller), random_hex(8), clocks);
   operation.keep_place_in(options.state_directory / kBlockPoseFile);
   if (options.retain_days) {
@@ -205,6 +207,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   std::fflush(stdout);
   supervision.notify_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
   const WorkDone written(disk);
+  const WorkDone computed(arithmetic);
   const HttpThread http_thread(http);
   context.run();
 }

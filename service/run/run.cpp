@@ -41,6 +41,7 @@ void Run::restore(const std::vector<StoredTouch>& touches, int touches_total) {
   touches_ = touches;
   for (const StoredTouch& touch : touches_) problem_.touches.push_back(to_touch(touch));
   restored_total_ = touches_total;
+  ++revision_;
 }
 
 void Run::change_plan(const PlanChange& change) {
@@ -122,18 +123,19 @@ int Run::drop_fit_touches(std::size_t first) {
 void Run::add(const StoredTouch& touch) {
   touches_.push_back(touch);
   problem_.touches.push_back(to_touch(touch));
+  ++revision_;
 }
 
 void Run::replace_last(const StoredTouch& again) {
   touches_.back() = again;
   problem_.touches.back() = to_touch(again);
-  identified_count_ = 0;
+  ++revision_;
 }
 
 void Run::withdraw_last() {
   touches_.pop_back();
   problem_.touches.pop_back();
-  identified_count_ = 0;
+  ++revision_;
   if (!touches_.empty()) return;
   latest_ = {};  // without a touch there is nothing to identify from
   predicted_tip_rms_m_.reset();
@@ -142,12 +144,12 @@ void Run::withdraw_last() {
 
 void Run::note_references(const std::vector<ReferenceTouch>& references) {
   cell::note_references(to_touches(references, touches_), problem_);
-  identified_count_ = 0;
+  ++revision_;
 }
 
 bool Run::identify() {
-  if (identified_count_ == touches_.size()) return false;
-  identified_count_ = touches_.size();
+  if (!identification_is_due()) return false;
+  identified_revision_ = revision_;
   latest_ = calib::identify(problem_, recipe_.identification);
   predicted_tip_rms_m_.reset();
   touch_benefit_.reset();
@@ -155,6 +157,16 @@ bool Run::identify() {
     predicted_tip_rms_m_ = predicted_rms_m(regions_.tip().workspace_box, *latest_.uncertainty);
     touch_benefit_ = estimate_touch_benefit();
   }
+  return true;
+}
+
+bool Run::take_latest(const Run& identified) {
+  const bool is_of_this = identified.id_ == id_ && identified.identified_revision_ == revision_;
+  if (!is_of_this || !identification_is_due()) return false;
+  identified_revision_ = revision_;
+  latest_ = identified.latest_;
+  predicted_tip_rms_m_ = identified.predicted_tip_rms_m_;
+  touch_benefit_ = identified.touch_benefit_;
   return true;
 }
 

@@ -77,6 +77,13 @@ class Run {
   void note_references(const std::vector<ReferenceTouch>& references);
   /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
+  /// Whether latest() is not that of all touches.
+  [[nodiscard]] bool identification_is_due() const {
+    return !touches_.empty() && identified_revision_ != revision_;
+  }
+  /// Takes over latest() from a copy of this run for which identify() was called, on another thread say.
+  /// False when it is a copy of another run, or what it was computed from has changed since.
+  bool take_latest(const Run& identified);
 
   [[nodiscard]] const std::vector<StoredTouch>& touches() const { return touches_; }
   /// The input of identify().
@@ -108,7 +115,8 @@ class Run {
   int restored_total_ = 0;  // while there is no plan
   std::vector<StoredTouch> touches_;
   calib::IdentificationProblem problem_;
-  std::size_t identified_count_ = 0;  // of the touches
+  std::size_t revision_ = 0;             // of the touches and references: counts their changes
+  std::size_t identified_revision_ = 0;  // from which latest_ is
   calib::IdentificationResult latest_;
   std::optional<double> predicted_tip_rms_m_;
   std::optional<std::string> touch_benefit_;

@@ -83,7 +83,8 @@ void LoopbackCell::inject(const std::string& line) {
 }
 
 void LoopbackCell::launch(std::optional<std::uint16_t> port) {
-  operation_.emplace(io_.get_executor(), cell, cell::StoreQueue(store_, io_.get_executor()),
+  operation_.emplace(cell::CellOperation::Threads{io_.get_executor(), computation_.get_executor()}, cell,
+                     cell::StoreQueue(store_, io_.get_executor()),
                      cell::Endpoint{"127.0.0.1", port.value_or(port_)}, "end-to-end",
                      cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
   if (!place_file.empty()) operation_->keep_place_in(place_file);

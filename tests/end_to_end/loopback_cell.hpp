@@ -2,6 +2,7 @@
 
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -89,6 +90,7 @@ class LoopbackCell {
   std::unique_ptr<sim::Server> server_;
   std::uint16_t port_ = 0;
   std::optional<cell::CellOperation> operation_;
+  boost::asio::thread_pool computation_{1};  // ends before the operation
 };
 
 }  // namespace touchcal::testing

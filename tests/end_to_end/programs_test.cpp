@@ -157,6 +157,13 @@ class RunningCell {
     }
   }
 
+  void wait_for_state(const std::string& state) const {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    for (auto now = status(); now.at("state") != state; now = status()) {
+      if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(now.dump());
+    }
+  }
+
   [[nodiscard]] const Folder& folder() const { return folder_; }
   Process& controller() { return controller_; }
   Process& daemon() { return *daemon_; }
@@ -282,6 +289,7 @@ TEST(Daemon, ThatWasKilledFindsItsRunAndResumesItOrRunsAgain) {
   cell.daemon().wait();
   cell.start_daemon();
   EXPECT_EQ(cell.run({"stop"}).exit_code, cell::kExitDone);
+  cell.wait_for_state("STOPPED");  // the run's end is stored by then
   const auto history = nlohmann::json::parse(cell.run({"runs", "--json"}).out).at("runs");
   ASSERT_EQ(history.size(), 1U);
   EXPECT_EQ(history[0].at("outcome"), "interrupted");

@@ -48,9 +48,9 @@ class MortalDaemon {
     io_ = std::make_unique<boost::asio::io_context>(1);
     store_ = std::make_unique<cell::RunStore>(store_file());
     operation_ = std::make_unique<cell::CellOperation>(
-        io_->get_executor(), cell, cell::StoreQueue(*store_, io_->get_executor()),
-        cell::Endpoint{"127.0.0.1", server_->port()}, "restart",
-        cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
+        cell::CellOperation::Threads{io_->get_executor(), io_->get_executor()}, cell,
+        cell::StoreQueue(*store_, io_->get_executor()), cell::Endpoint{"127.0.0.1", server_->port()},
+        "restart", cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
     operation_->launch();
   }
   /// Nothing of the daemon gets to act any more.

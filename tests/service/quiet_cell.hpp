@@ -50,7 +50,7 @@ class QuietCell {
   boost::asio::io_context context_{1};
   boost::asio::ip::tcp::socket held_port_{context_};
   CellOperation operation_{
-      context_.get_executor(),
+      {context_.get_executor(), context_.get_executor()},
       edf(),
       StoreQueue(store_, context_.get_executor()),
       nobody(),

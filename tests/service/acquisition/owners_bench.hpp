@@ -10,6 +10,7 @@
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/published_status.hpp"
+#include "service/acquisition/run_computation.hpp"
 #include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_preparation.hpp"
 #include "service/documents/plan.hpp"
@@ -66,6 +67,7 @@ class OwnersBench {
   RunStore store;
   StoreQueue queue{store, io.get_executor()};
   TipRegions regions;
+  RunComputation computation{io.get_executor(), cell_of_owners(), regions};
   TouchPreparation preparation;
 
  private:

@@ -76,7 +76,7 @@ TEST_F(TouchExecutorTest, AnArmThatIsMovedWhileTheDiskIsWrittenIsNotCommandedFro
     return contact();
   };
   std::function<void()> move = [&] {
-    if (!std::exchange(is_answered, false)) return;
+    if (!session.standing() || !std::exchange(is_answered, false)) return;  // the contact is not stored yet
     controller.state->joints = to_wire(cell_of_owners().park_joints);
     tell_state();
   };

@@ -84,6 +84,23 @@ TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
   EXPECT_EQ(store_.touches(run_.id()).size(), 1u);
 }
 
+TEST_F(RunTest, AResultFromACopyCountsWhileTheTouchesAreThoseItIsOf) {
+  keep(run_, stored(1, table3_touches()[0]));
+  cell::Run copy = run_;
+  EXPECT_FALSE(run_.take_latest(copy)) << "nothing was computed";
+  copy.identify();
+  EXPECT_TRUE(run_.take_latest(copy));
+  EXPECT_EQ(run_.latest().fitted_touch_count, 1);
+  EXPECT_FALSE(run_.take_latest(copy)) << "it has it";
+  EXPECT_FALSE(run_.identify());
+  cell::Run other(store_.begin_run({.recipe = "edf-25"}), regions_, edf().recipes.at("edf-25"), "start");
+  keep(other, stored(1, table3_touches()[0]));
+  EXPECT_FALSE(other.take_latest(copy)) << "of another run";
+  keep(run_, stored(2, table3_touches()[1]));
+  EXPECT_FALSE(run_.take_latest(copy)) << "a touch came meanwhile";
+  EXPECT_TRUE(run_.identification_is_due());
+}
+
 TEST_F(RunTest, ATouchThatIsPutOffComesBehindTheOthersOfItsRoleOnce) {
   const std::size_t count = static_cast<std::size_t>(run_.touches_total());
   const calib::JointVector put_off = run_.planned(3)->joints;
