@@ -26,10 +26,17 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string audit_csv(const AuditDocument& audit) {
-  std::string lines = "id,at,role,operator,remote,action,outcome,detail,hash\r\n";
+  std::string lines = "id,at,role,token,operator,remote,action,outcome,detail,hash\r\n";
   for (const AuditRow& row : audit.rows) {
-    const std::array fields{row.id,     row.at,     row.role,    row.operator_name.value_or(""),
-                            row.remote, row.action, row.outcome, row.detail,
+    const std::array fields{row.id,
+                            row.at,
+                            row.role,
+                            row.token_name.value_or(""),
+                            row.operator_name.value_or(""),
+                            row.remote,
+                            row.action,
+                            row.outcome,
+                            row.detail,
                             row.hash};
     for (const std::string& field : fields) lines += (&field == fields.data() ? "" : ",") + csv_field(field);
     lines += "\r\n";
@@ -38,12 +45,12 @@ std::string audit_csv(const AuditDocument& audit) {
 }
 
 std::string audit_text(const AuditDocument& audit) {
-  std::string lines = fmt::format("{:<26}{:<13}{:<18}{:<18}{:<10}{}\n", "at", "role", "operator", "from",
-                                  "outcome", "action");
+  std::string lines = fmt::format("{:<26}{:<13}{:<11} {:<17} {:<18}{:<10}{}\n", "at", "role", "token",
+                                  "operator", "from", "outcome", "action");
   for (const AuditRow& row : audit.rows) {
-    lines += fmt::format("{:<26}{:<13}{:<18}{:<18}{:<10}{}{}{}\n", row.at, row.role,
-                         row.operator_name.value_or("-"), row.remote, row.outcome, row.action,
-                         row.detail.empty() ? "" : "; ", row.detail);
+    lines += fmt::format("{:<26}{:<13}{:<11} {:<17} {:<18}{:<10}{}{}{}\n", row.at, row.role,
+                         row.token_name.value_or("-"), row.operator_name.value_or("-"), row.remote,
+                         row.outcome, row.action, row.detail.empty() ? "" : "; ", row.detail);
   }
   // Names come from requests: what would steer a terminal is not printed.
   std::ranges::replace_if(

@@ -15,6 +15,7 @@ struct AuditRow {
   std::string id;
   std::string at;                            // RFC 3339
   std::string role;                          // operate, view, none, wrong token
+  std::optional<std::string> token_name;     // of the token, where it has one
   std::optional<std::string> operator_name;  // of the run that the request is for
   std::string remote;
   std::string action;
@@ -27,6 +28,7 @@ struct AuditRow {
     fields("id", self.id);
     fields("at", self.at);
     fields("role", self.role);
+    fields("token", self.token_name);
     fields("operator", self.operator_name);
     fields("remote", self.remote);
     fields("action", self.action);

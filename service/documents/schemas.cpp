@@ -225,11 +225,12 @@ constexpr std::string_view kAudit = R"({
 "properties":{
   "rows":{"type":"array","items":{
     "type":"object",
-    "required":["id","at","role","operator","remote","action","outcome","detail","hash"],
+    "required":["id","at","role","token","operator","remote","action","outcome","detail","hash"],
     "properties":{
       "id":{"type":"string"},
       "at":{"type":"string"},
       "role":{"enum":["operate","view","none","wrong token"]},
+      "token":{"type":["string","null"],"description":"the name of the token, where it has one"},
       "operator":{"type":["string","null"],"description":"of the run that the request is for"},
       "remote":{"type":"string"},
       "action":{"type":"string"},

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "service/base/digest.hpp"
+#include "service/store/internal/audit_row.hpp"
 
 namespace cell {
 namespace {
@@ -14,24 +15,12 @@ constexpr std::array kAuditChains{AuditChain::kOfTokens, AuditChain::kOfStranger
 
 /// The rows of a chain, oldest first.
 SQLite::Statement rows_of(SQLite::Database& database, AuditChain chain) {
-  SQLite::Statement rows(
-      database, std::string("SELECT id, at, who, operator_name, remote, action, outcome, detail, hash FROM "
-                            "audit WHERE ") +
-                    kAuditChainSql + " = ? ORDER BY id");
+  const bool has_names = row::audit_has_column(database, "token_name");
+  SQLite::Statement rows(database, std::string("SELECT ") +
+                                       (has_names ? row::kAuditColumns : row::kAuditColumnsWithoutTokenName) +
+                                       " FROM audit WHERE " + kAuditChainSql + " = ? ORDER BY id");
   rows.bind(1, static_cast<int>(chain));
   return rows;
-}
-
-AuditEntry entry_in(SQLite::Statement& row) {
-  return {.id = row.getColumn(0).getInt64(),
-          .at = row.getColumn(1).getString(),
-          .who = row.getColumn(2).getString(),
-          .operator_name = row.getColumn(3).getString(),
-          .remote = row.getColumn(4).getString(),
-          .action = row.getColumn(5).getString(),
-          .outcome = row.getColumn(6).getString(),
-          .detail = row.getColumn(7).getString(),
-          .hash = row.getColumn(8).getString()};
 }
 
 std::optional<std::string> first_break(SQLite::Database& database, AuditChain chain) {
@@ -40,7 +29,7 @@ std::optional<std::string> first_break(SQLite::Database& database, AuditChain ch
   std::string place = "the audit's first row";
   SQLite::Statement rows = rows_of(database, chain);
   while (rows.executeStep()) {
-    const AuditEntry entry = entry_in(rows);
+    const AuditEntry entry = row::audit_entry_in(rows);
     place = "audit, row " + std::to_string(entry.id);
     if (entry.hash != audit_hash(before, entry))
       return place + ": it was changed or put in, or a row before it was taken out";
@@ -73,9 +62,11 @@ void write_chain_ends(SQLite::Database& database, AuditChain chain, const AuditC
 
 std::string audit_hash(const std::string& hash_before, const AuditEntry& entry) {
   std::string text = hash_before;
+  const auto add = [&](const std::string& field) { text += std::to_string(field.size()) + ":" + field; };
   for (const std::string* field : {&entry.at, &entry.who, &entry.operator_name, &entry.remote, &entry.action,
                                    &entry.outcome, &entry.detail})
-    text += std::to_string(field->size()) + ":" + *field;
+    add(*field);
+  if (!entry.token_name.empty()) add(entry.token_name);
   return sha256_hex(text);
 }
 
@@ -85,7 +76,7 @@ void chain_audit_rows(SQLite::Database& database) {
     AuditChainEnds ends;
     SQLite::Statement rows = rows_of(database, chain);
     while (rows.executeStep()) {
-      const AuditEntry entry = entry_in(rows);
+      const AuditEntry entry = row::audit_entry_in(rows);
       ends.newest = audit_hash(ends.newest, entry);
       set.bind(1, ends.newest);
       set.bind(2, entry.id);
@@ -98,9 +89,7 @@ void chain_audit_rows(SQLite::Database& database) {
 
 std::vector<std::string> find_audit_damage(SQLite::Database& database) {
   std::vector<std::string> damage;
-  const bool is_chained =
-      database.execAndGet("SELECT count(*) FROM pragma_table_info('audit') WHERE name = 'hash'").getInt() > 0;
-  if (!is_chained) return damage;
+  if (!row::audit_has_column(database, "hash")) return damage;
   for (const AuditChain chain : kAuditChains)
     if (auto found = first_break(database, chain)) damage.push_back(*std::move(found));
   return damage;

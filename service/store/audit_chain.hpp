@@ -15,6 +15,7 @@ struct AuditEntry {
   std::int64_t id = 0;        // given by AuditLog
   std::string at;             // RFC 3339
   std::string who;            // the token's role: "operate", "view"; "none" or "wrong token" for a stranger
+  std::string token_name;     // of the token; empty where it has none
   std::string operator_name;  // of the run that the request is for; empty where nobody was named
   std::string remote;         // address
   std::string action;         // "POST /api/v1/runs"
@@ -43,7 +44,8 @@ AuditChainEnds read_chain_ends(SQLite::Database& database, AuditChain chain);
 void write_chain_ends(SQLite::Database& database, AuditChain chain, const AuditChainEnds& ends);
 
 /// SHA-256, in hexadecimal, of the hash of the row before and then of at, who, operator_name, remote, action,
-/// outcome and detail, each as its length in bytes, a colon and its text.
+/// outcome, detail and, where there is one, token_name, each as its length in bytes, a colon and its text. So
+/// the rows of a daemon whose tokens had no names keep their hashes.
 std::string audit_hash(const std::string& hash_before, const AuditEntry& entry);
 
 /// Chains the rows that an older daemon wrote. Within a transaction of the caller.

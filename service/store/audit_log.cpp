@@ -4,22 +4,24 @@
 
 #include <algorithm>
 
+#include "service/store/internal/audit_row.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
 
 namespace cell {
 
 void AuditLog::insert(const AuditEntry& entry) {
   SQLite::Statement insert(*database_,
-                           "INSERT INTO audit(at, who, operator_name, remote, action, outcome, detail, hash) "
-                           "VALUES(?, ?, ?, ?, ?, ?, ?, ?)");
+                           "INSERT INTO audit(at, who, token_name, operator_name, remote, action, outcome, "
+                           "detail, hash) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, entry.at);
   insert.bind(2, entry.who);
-  insert.bind(3, entry.operator_name);
-  insert.bind(4, entry.remote);
-  insert.bind(5, entry.action);
-  insert.bind(6, entry.outcome);
-  insert.bind(7, entry.detail);
-  insert.bind(8, entry.hash);
+  insert.bind(3, entry.token_name);
+  insert.bind(4, entry.operator_name);
+  insert.bind(5, entry.remote);
+  insert.bind(6, entry.action);
+  insert.bind(7, entry.outcome);
+  insert.bind(8, entry.detail);
+  insert.bind(9, entry.hash);
   insert.exec();
 }
 
@@ -66,23 +68,12 @@ void AuditLog::append(AuditEntry entry, bool at_once) {
 }
 
 std::vector<AuditEntry> AuditLog::page(int limit, std::optional<std::int64_t> before_id) const {
-  SQLite::Statement query(*database_,
-                          "SELECT id, at, who, operator_name, remote, action, outcome, detail, hash FROM "
-                          "audit WHERE id < ? ORDER BY id DESC LIMIT ?");
+  SQLite::Statement query(*database_, std::string("SELECT ") + row::kAuditColumns +
+                                          " FROM audit WHERE id < ? ORDER BY id DESC LIMIT ?");
   query.bind(1, before_id.value_or(INT64_MAX));
   query.bind(2, limit);
   std::vector<AuditEntry> found;
-  while (query.executeStep()) {
-    found.push_back({.id = query.getColumn(0).getInt64(),
-                     .at = query.getColumn(1).getString(),
-                     .who = query.getColumn(2).getString(),
-                     .operator_name = query.getColumn(3).getString(),
-                     .remote = query.getColumn(4).getString(),
-                     .action = query.getColumn(5).getString(),
-                     .outcome = query.getColumn(6).getString(),
-                     .detail = query.getColumn(7).getString(),
-                     .hash = query.getColumn(8).getString()});
-  }
+  while (query.executeStep()) found.push_back(row::audit_entry_in(query));
   return found;
 }
 

@@ -179,8 +179,11 @@ ALTER TABLE touches ADD COLUMN noise_um REAL;
 ALTER TABLE superseded_touches ADD COLUMN noise_um REAL;
 )sql";
 
-constexpr std::array kMigrations{kRunsAndTouches, kPlans,     kDiary,        kTemperatures,
-                                 kStiffness,      kChecksums, kAuditChained, kTouchNoise};
+/// Whose token a command came with. The hash of a row has it only where there is one.
+constexpr const char* kAuditTokenNames = "ALTER TABLE audit ADD COLUMN token_name TEXT NOT NULL DEFAULT '';";
+
+constexpr std::array kMigrations{kRunsAndTouches, kPlans,        kDiary,      kTemperatures,   kStiffness,
+                                 kChecksums,      kAuditChained, kTouchNoise, kAuditTokenNames};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

@@ -223,7 +223,7 @@ TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   EXPECT_EQ(rows.back().at("outcome"), "asked") << "newest first";
   EXPECT_THAT(cell.run({"audit"}).out, HasSubstr("POST /api/v1/runs"));
   const Finished table = cell.run({"audit", "--csv", "--limit", "1"});
-  EXPECT_THAT(table.out, StartsWith("id,at,role,operator,remote,action,outcome,detail,hash\r\n"));
+  EXPECT_THAT(table.out, StartsWith("id,at,role,token,operator,remote,action,outcome,detail,hash\r\n"));
   EXPECT_EQ(std::ranges::count(table.out, '\n'), 2) << table.out;
   EXPECT_EQ(cell.run({"audit", "--csv", "--json"}).exit_code, cell::kExitUsage);
 

@@ -28,6 +28,7 @@ class AuditChainTest : public ::testing::Test {
     for (int i = 1; i <= 3; ++i) {
       audit.append_command({.at = "t" + std::to_string(i),
                             .who = "operate",
+                            .token_name = i == 1 ? "anna" : "",
                             .operator_name = "M. Curie",
                             .remote = "127.0.0.1",
                             .action = "POST /api/v1/runs",
@@ -46,7 +47,8 @@ class AuditChainTest : public ::testing::Test {
 TEST_F(AuditChainTest, AnUntouchedAuditIsWhole) { EXPECT_THAT(damage(), IsEmpty()); }
 
 TEST_F(AuditChainTest, AChangeOfAnyFieldNamesItsRow) {
-  for (const char* field : {"at", "operator_name", "remote", "action", "outcome", "detail", "hash"}) {
+  for (const char* field :
+       {"at", "token_name", "operator_name", "remote", "action", "outcome", "detail", "hash"}) {
     const std::string name = field;
     const std::string was = database_->execAndGet("SELECT " + name + " FROM audit WHERE id = 3").getString();
     edit("UPDATE audit SET " + name + " = 'other' WHERE id = 3");
@@ -94,24 +96,31 @@ TEST_F(AuditChainTest, AHashIsOfTheOneBeforeAndOfEachFieldWithItsLength) {
                          .outcome = "403",
                          .detail = "d"};
   EXPECT_EQ(audit_hash("before", entry), sha256_hex("before1:t4:view0:3:::16:POST /3:4031:d"));
+  AuditEntry named = entry;
+  named.token_name = "anna";
+  EXPECT_EQ(audit_hash("before", named), sha256_hex("before1:t4:view0:3:::16:POST /3:4031:d4:anna"));
+}
+
+/// A file of the schema before the migration that adds `column`.
+void make_file_before(const std::filesystem::path& file, std::string_view column) {
+  SQLite::Database old(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  int version = 0;
+  for (const char* migration : migrations()) {
+    if (std::string_view(migration).find(column) != std::string_view::npos) break;
+    old.exec(migration);
+    ++version;
+  }
+  old.exec("PRAGMA user_version = " + std::to_string(version));
 }
 
 TEST(AuditChainOfAnOldFile, RowsThatAreThereAreChained) {
   const Folder folder;
   const auto file = folder.path() / "old.sqlite";
-  {
-    SQLite::Database old(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-    int version = 0;
-    for (const char* migration : migrations()) {
-      if (std::string_view(migration).find("audit_chains") != std::string_view::npos) break;
-      old.exec(migration);
-      ++version;
-    }
-    for (const std::string who : {"operate", "none", "view", "wrong token"})
-      old.exec("INSERT INTO audit(at, who, remote, action, outcome, detail) VALUES('t', '" + who +
-               "', '', '', '401', '')");
-    old.exec("PRAGMA user_version = " + std::to_string(version));
-  }
+  make_file_before(file, "audit_chains");
+  for (const std::string who : {"operate", "none", "view", "wrong token"})
+    SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+        .exec("INSERT INTO audit(at, who, remote, action, outcome, detail) VALUES('t', '" + who +
+              "', '', '', '401', '')");
   EXPECT_THAT(find_damage(file), IsEmpty()) << "nothing is chained yet";
   const SharedDatabase database = open_database(file);
   EXPECT_THAT(find_damage(file), IsEmpty());
@@ -120,6 +129,26 @@ TEST(AuditChainOfAnOldFile, RowsThatAreThereAreChained) {
   EXPECT_THAT(find_damage(file), IsEmpty());
   database->exec("DELETE FROM audit WHERE who = 'view'");
   EXPECT_THAT(find_damage(file), ElementsAre(HasSubstr("row 5")));
+}
+
+TEST(AuditChainOfAnOldFile, RowsWithoutANameOfTheTokenKeepTheirHashes) {
+  const Folder folder;
+  const auto file = folder.path() / "old.sqlite";
+  make_file_before(file, "token_name");
+  const std::string hash = sha256_hex("1:t7:operate8:M. Curie0:0:3:2020:");
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+      .exec(
+          "INSERT INTO audit(at, who, operator_name, remote, action, outcome, detail, hash) VALUES('t', "
+          "'operate', 'M. Curie', '', '', '202', '', '" +
+          hash + "'); INSERT INTO audit_chains VALUES(0, '', '" + hash + "')");
+  EXPECT_THAT(find_damage(file), IsEmpty()) << "as the older daemon left it";
+  const SharedDatabase database = open_database(file);
+  EXPECT_THAT(find_damage(file), IsEmpty());
+  AuditLog(database).append_command({.at = "t", .who = "operate", .token_name = "anna", .outcome = "202"});
+  EXPECT_THAT(find_damage(file), IsEmpty());
+  EXPECT_EQ(AuditLog(database).page(2).at(1).hash, hash);
+  database->exec("UPDATE audit SET token_name = 'bert' WHERE id = 1");
+  EXPECT_THAT(find_damage(file), ElementsAre(HasSubstr("row 1"))) << "a name put in later";
 }
 
 }  // namespace
