@@ -9,6 +9,7 @@ namespace cell {
 inline constexpr std::string_view kStoreFile = "touchcal.sqlite";
 inline constexpr std::string_view kOperateTokenFile = "operate.token";
 inline constexpr std::string_view kViewTokenFile = "view.token";
+inline constexpr std::string_view kOperatorsDirectory = "operators";  // a file for each named token
 inline constexpr std::string_view kBlockPoseFile = "place.json";
 inline constexpr std::string_view kSocketFile = "touchcald.sock";
 inline constexpr std::string_view kLockFile = "touchcald.lock";

@@ -9,8 +9,8 @@
 #include "config/read_config.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/daemon/listen_address.hpp"
+#include "service/http/auth/operator_tokens.hpp"
 #include "service/http/auth/token_file.hpp"
-#include "service/http/auth/tokens.hpp"
 #include "service/store/maintenance.hpp"
 
 namespace cell {
@@ -73,6 +73,7 @@ SelfCheck check_daemon(const fs::path& cell_file, const DaemonOptions& options) 
       [&] { refuse_lost_store(options.state_directory); },
       [&] { read_token(options.state_directory / kOperateTokenFile); },
       [&] { read_token(options.state_directory / kViewTokenFile); },
+      [&] { read_operator_tokens(options.state_directory); },
       [&] { check_address(options); },
       [&] { tls_context(options); }};
   for (const auto& part : others) {

@@ -38,12 +38,18 @@ std::string_view role_name(Role role) {
   return "";
 }
 
-Role role_of(const HttpRequest& request, const Tokens& tokens) {
+/// Each token is compared, whichever it is: the time does not tell which of them a guess came near.
+Caller caller_of(const HttpRequest& request, const Tokens& tokens) {
   const std::string_view token = token_of(request);
-  if (same_token(tokens.operate, token)) return Role::kOperate;
-  if (same_token(tokens.view, token)) return Role::kView;
-  return request.authorization ? Role::kWrongToken : Role::kNone;
+  Caller caller{.role = request.authorization ? Role::kWrongToken : Role::kNone};
+  if (same_token(tokens.view, token)) caller = {.role = Role::kView};
+  for (const NamedToken& named : tokens.operators)
+    if (same_token(named.token, token)) caller = {.role = Role::kOperate, .token_name = named.name};
+  if (same_token(tokens.operate, token)) caller = {.role = Role::kOperate};
+  return caller;
 }
+
+Role role_of(const HttpRequest& request, const Tokens& tokens) { return caller_of(request, tokens).role; }
 
 std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access access, const Tokens& tokens) {
   if (access == Access::kOpen || (access == Access::kView && request.from_loopback)) return std::nullopt;

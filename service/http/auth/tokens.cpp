@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "service/base/state_directory.hpp"
@@ -55,7 +56,9 @@ std::string random_hex(std::size_t bytes) {
 }
 
 Tokens load_or_make_tokens(const std::filesystem::path& state_directory) {
-  return {load_or_make(state_directory / kOperateTokenFile), load_or_make(state_directory / kViewTokenFile)};
+  std::string operate = load_or_make(state_directory / kOperateTokenFile);
+  std::string view = load_or_make(state_directory / kViewTokenFile);
+  return {std::move(operate), std::move(view), read_operator_tokens(state_directory)};
 }
 
 bool same_token(std::string_view expected, std::string_view presented) {

@@ -4,21 +4,25 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "service/http/auth/operator_tokens.hpp"
 
 namespace cell {
 
-/// The two tokens of a daemon. Reading on loopback needs none.
+/// The tokens of a daemon. Reading on loopback needs none.
 struct Tokens {
-  std::string operate;  // may operate and read
-  std::string view;     // may read
+  std::string operate;                     // may operate and read; has no name
+  std::string view;                        // may read
+  std::vector<NamedToken> operators = {};  // may operate and read, and the audit names them
 };
 
 /// `bytes` random bytes as hexadecimal text. Throws std::runtime_error if none are available.
 std::string random_hex(std::size_t bytes);
 
-/// Reads both tokens from the state directory, or creates them at the first start: 256 random bits in
-/// hexadecimal, files of mode 0600; files with wider permissions are refused. Throws std::runtime_error that
-/// names the file.
+/// Reads the tokens from the state directory. The two without a name are created at the first start: 256
+/// random bits in hexadecimal, files of mode 0600; files with wider permissions are refused. Throws
+/// std::runtime_error that names the file.
 Tokens load_or_make_tokens(const std::filesystem::path& state_directory);
 
 /// Compares in constant time, against timing attacks.

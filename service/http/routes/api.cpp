@@ -47,7 +47,6 @@ constexpr std::size_t kWrongAddressesMax = 1024;
 /// After so long without another one they are forgotten.
 constexpr auto kWrongTokensKept = 10min;
 constexpr std::size_t kActionBytesMax = 200;
-
 constexpr int kRetrySeconds = 2;  // what is waited for behind a full queue takes about so long
 
 HttpResponse busy(std::string detail, int retry_after_s = kRetrySeconds) {
@@ -279,17 +278,18 @@ std::string Api::now_text() const { return format_utc(services_.operation.clocks
 
 /// On the thread that writes.
 bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bool at_once, int left_out) {
-  const Role role = role_of(request, services_.tokens);
+  const Caller caller = caller_of(request, services_.tokens);
   const AuditEntry entry{.at = now_text(),
-                         .who = std::string(role_name(role)),
-                         .operator_name = role == Role::kOperate
+                         .who = std::string(role_name(caller.role)),
+                         .token_name = std::string(caller.token_name),
+                         .operator_name = caller.role == Role::kOperate
                                               ? operator_named_for(request, services_.operation.store())
                                               : std::string(),
                          .remote = request.remote,
                          .action = (request.method + " " + request.path).substr(0, kActionBytesMax),
                          .outcome = outcome};
   try {
-    append_audit(entry, role, at_once, left_out);
+    append_audit(entry, caller.role, at_once, left_out);
     return true;
   } catch (const std::exception& error) {
     spdlog::error("{} {} could not be recorded: {}", entry.action, outcome, error.what());

@@ -18,6 +18,17 @@ TEST(Access, ATokenHasOneRole) {
   EXPECT_EQ(role_of({}, kTokens), Role::kNone);
 }
 
+TEST(Access, ATokenWithANameOperatesUnderItsName) {
+  for (const NamedToken& named : kTokens.operators) {
+    const Caller caller = caller_of(with_token(named.token), kTokens);
+    EXPECT_EQ(caller.role, Role::kOperate);
+    EXPECT_EQ(caller.token_name, named.name);
+    EXPECT_FALSE(refuse_access(with_token(named.token), Access::kOperate, kTokens));
+  }
+  for (const std::string& token : {kTokens.operate, kTokens.view, std::string("anna"), std::string()})
+    EXPECT_EQ(caller_of(with_token(token), kTokens).token_name, "") << token;
+}
+
 TEST(Access, TheNameOfTheSchemeMayBeInAnyCase) {
   for (const char* scheme : {"bearer ", "BEARER ", "Bearer "})
     EXPECT_EQ(role_of({.authorization = scheme + kTokens.operate}, kTokens), Role::kOperate) << scheme;

@@ -106,6 +106,29 @@ TEST_F(ApiTest, EveryCommandIsWrittenDownWithWhatCameOfIt) {
   EXPECT_EQ(last_audit().outcome, "409");
 }
 
+TEST_F(ApiTest, TheAuditTellsWhoseTokenACommandCameWith) {
+  HttpRequest request = post("/api/v1/cell/reset");
+  const auto newest = [&](const std::string& token, unsigned status) {
+    request.authorization = "Bearer " + token;
+    EXPECT_EQ(send(request).status, status);
+    return last_audit();
+  };
+  for (const NamedToken& named : kTokens.operators) {
+    request.path = "/api/v1/cell/reset";
+    const AuditEntry taken = newest(named.token, 202);
+    EXPECT_EQ(taken.token_name, named.name);
+    EXPECT_EQ(taken.who, "operate");
+    EXPECT_EQ(api_.services().audit.page(2).at(1).token_name, named.name) << "also before it is taken";
+    request.path = "/api/v1/cell/clear";
+    EXPECT_EQ(newest(named.token, 409).token_name, named.name) << "also of a refusal";
+    request.path = "/api/v1/cell/stop";
+    EXPECT_EQ(newest(named.token, 202).token_name, named.name) << "also of a stop";
+  }
+  EXPECT_EQ(newest(kTokens.operate, 202).token_name, "");
+  EXPECT_EQ(newest(kTokens.view, 403).token_name, "");
+  EXPECT_EQ(newest(std::string(64, 'x'), 401).token_name, "");
+}
+
 TEST_F(ApiTest, WhatHaltsIsWrittenDownOnceItIsExecuted) {
   const std::int64_t run =
       quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then", .operator_name = "M. Curie"});

@@ -20,6 +20,7 @@ class AuditRoutesTest : public RoutesTest {
     for (int i = 1; i <= count; ++i)
       audit.append_command({.at = "t",
                             .who = "operate",
+                            .token_name = i == 1 ? "anna" : "",
                             .operator_name = i == 1 ? "M. Curie" : "",
                             .remote = "127.0.0.1",
                             .action = "POST /api/v1/runs",
@@ -42,10 +43,11 @@ TEST_F(AuditRoutesTest, PagesLeadThroughAllRowsNewestFirst) {
   ASSERT_THAT(first.rows, SizeIs(2));
   EXPECT_EQ(first.rows[0].outcome, "3");
   EXPECT_THAT(first.rows[0].hash, SizeIs(64));
-  EXPECT_FALSE(first.rows[0].operator_name);
+  EXPECT_FALSE(first.rows[0].operator_name || first.rows[0].token_name);
   const AuditDocument second = page("?limit=2&before=" + first.next_before.value());
   ASSERT_THAT(second.rows, SizeIs(1));
   EXPECT_EQ(second.rows[0].operator_name, "M. Curie");
+  EXPECT_EQ(second.rows[0].token_name, "anna");
   EXPECT_FALSE(second.next_before);
   EXPECT_FALSE(page("?limit=3").next_before);
   EXPECT_THAT(page("").rows, SizeIs(3));
@@ -59,6 +61,7 @@ TEST_F(AuditRoutesTest, ItIsReadWithTheOperateTokenOnlyAlsoOnLoopback) {
   EXPECT_EQ(get_with("/api/v1/audit", "").status, 401u);
   EXPECT_EQ(get_with("/api/v1/audit", kTokens.view).status, 403u);
   EXPECT_EQ(get_with("/api/v1/audit", kTokens.operate).status, 200u);
+  EXPECT_EQ(get_with("/api/v1/audit", kTokens.operators[1].token).status, 200u);
 }
 
 TEST_F(AuditRoutesTest, ACommandNamesTheOperatorOfItsRun) {

@@ -1,0 +1,98 @@
+#include "service/http/auth/operator_tokens.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+
+#include "service/base/state_directory.hpp"
+#include "service/http/auth/token_file.hpp"
+
+namespace cell {
+namespace {
+
+constexpr std::string_view kWrittenByHand = "write a new one into it ('openssl rand -hex 32') or remove it";
+
+bool is_token_name(std::string_view name) {
+  const auto is_taken = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+  };
+  return name.size() <= kTokenNameBytesMax && std::ranges::all_of(name, is_taken);
+}
+
+[[noreturn]] void refuse_place(const std::filesystem::path& place, std::string_view what) {
+  throw std::runtime_error(fmt::format("{}: {}", place.string(), what));
+}
+
+/// By name, however the file system lists them.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& directory) {
+  constexpr auto kOthersWrite = std::filesystem::perms::group_write | std::filesystem::perms::others_write;
+  std::error_code failure;
+  const auto status = std::filesystem::status(directory, failure);
+  if (status.type() == std::filesystem::file_type::not_found) return {};
+  if (!failure && status.type() != std::filesystem::file_type::directory)
+    refuse_place(directory, "is not a directory; remove it, or make a directory with a file for each token");
+  if (!failure && (status.permissions() & kOthersWrite) != std::filesystem::perms::none)
+    refuse_place(directory, fmt::format("others than its owner may put tokens into it; look at what is "
+                                        "there, then chmod 700 {}",
+                                        directory.string()));
+  std::vector<std::filesystem::path> files;
+  std::filesystem::directory_iterator entry(directory, failure);
+  for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure)) {
+    if (files.size() == kOperatorTokensMax)
+      refuse_place(directory, fmt::format("holds more than {} tokens; remove those that nobody uses",
+                                          kOperatorTokensMax));
+    files.push_back(entry->path());
+  }
+  if (failure)
+    refuse_place(directory, fmt::format("cannot be read: {}; make it this user's own", failure.message()));
+  std::ranges::sort(files);
+  return files;
+}
+
+NamedToken read_named_token(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  if (!is_token_name(name))
+    refuse_place(file, fmt::format("the name of a token is of at most {} letters, digits, '-' and '_'; "
+                                   "rename the file or remove it",
+                                   kTokenNameBytesMax));
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) refuse_place(file, "is not a file; remove it");
+  auto token = read_token(file, kWrittenByHand);
+  if (!token) refuse_place(file, "went while it was read; start again");
+  return {.name = name, .token = *std::move(token)};
+}
+
+/// Nothing also where it is refused, which who reads it for its own sake tells.
+std::optional<std::string> token_without_name(const std::filesystem::path& file) try {
+  return read_token(file);
+} catch (const std::runtime_error&) {
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<NamedToken> read_operator_tokens(const std::filesystem::path& state_directory) {
+  struct Held {
+    std::filesystem::path place;
+    std::string token;
+  };
+  std::vector<Held> all;
+  for (const std::string_view file : {kOperateTokenFile, kViewTokenFile})
+    if (auto token = token_without_name(state_directory / file))
+      all.push_back({state_directory / file, *std::move(token)});
+  std::vector<NamedToken> tokens;
+  for (const std::filesystem::path& file : files_in(state_directory / kOperatorsDirectory)) {
+    NamedToken read = read_named_token(file);
+    const auto same = std::ranges::find(all, read.token, &Held::token);
+    if (same != all.end())
+      refuse_place(file, fmt::format("holds the token of {} too; {}", same->place.string(), kWrittenByHand));
+    all.push_back({file, read.token});
+    tokens.push_back(std::move(read));
+  }
+  return tokens;
+}
+
+}  // namespace cell
