@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
 #include <boost/asio/thread_pool.hpp>
@@ -16,7 +15,6 @@
 #include "service/base/run_on.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/http/auth/access.hpp"
-#include "service/http/routes/internal/audit_routes.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
 #include "service/http/server/target.hpp"
@@ -36,17 +34,12 @@ constexpr int kAtReaderMax = 64;
 constexpr int kAtWorkerMax = 4;
 /// Commands that wait for the store. None of them may be a stop, a pause or an abort.
 constexpr int kAtStoreMax = 16;
-/// Entries of the audit that wait to be written. One more is dropped and logged: only commands that halt,
-/// outcomes and refusals come to wait here, none of which may wait for a disk.
-constexpr int kUnwrittenMax = 1000;
-/// A larger body does not wait with its entry.
-constexpr std::size_t kToldBodyBytesMax = 4096;
 /// After so many wrong tokens from one address, each further answer is delayed.
 constexpr int kWrongTokensFree = 5;
 constexpr std::size_t kWrongAddressesMax = 1024;
 /// After so long without another one they are forgotten.
 constexpr auto kWrongTokensKept = 10min;
-constexpr std::size_t kActionBytesMax = 200;
+
 constexpr int kRetrySeconds = 2;  // what is waited for behind a full queue takes about so long
 
 HttpResponse busy(std::string detail, int retry_after_s = kRetrySeconds) {
@@ -121,6 +114,7 @@ Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& oper
     : executor_(executor),
       threads_(std::move(threads)),
       services_(operation, std::move(tokens), operation.store().file()),
+      audit_(threads_.store, services_),
       reader_(std::make_unique<Desk>(operation, kAtReaderMax, "other runs are being read; ask again")),
       worker_(std::make_unique<Desk>(operation, kAtWorkerMax,
                                      "other documents are being identified; ask again")) {
@@ -144,14 +138,14 @@ Services::Services(CellOperation& to_serve, Tokens to_ask_for,
 HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
   services_.metrics.count_request("", "", problem.status);
   HttpResponse response = to_response(problem);
-  if (is_command(request)) write_audit_behind(request, std::to_string(problem.status));
+  if (is_command(request)) audit_.record(request, nullptr, problem.status);
   return response;
 }
 
 asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
   const auto outcome = admit(request, services_.tokens);
   if (const auto* refused = std::get_if<HttpResponse>(&outcome)) {
-    if (is_command(request)) write_audit_behind(request, std::to_string(refused->status));
+    if (is_command(request)) audit_.record(request, nullptr, refused->status);
     if (refused->status == 401) co_await delay_wrong_token(request);
     services_.metrics.count_request("", "", refused->status);
     co_return *refused;
@@ -225,8 +219,7 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
     if (!halts && at_store_ >= kAtStoreMax) co_return busy("the disk does not answer; ask again");
     const Waiting waiting(at_store_);
     bool is_recorded = halts;
-    if (!is_recorded)
-      is_recorded = co_await run_on(threads_.store, [&] { return write_audit(request, "asked", true); });
+    if (!is_recorded) is_recorded = co_await audit_.record_asked(request, admitted.start.get());
     if (!is_recorded) {
       response = to_response(
           {.status = 503,
@@ -237,7 +230,7 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
     }
     response = co_await execute_command_once(request, admitted);
   }
-  write_audit_behind(request, std::to_string(response.status), halts && !is_stop(*admitted.route));
+  audit_.record(request, admitted.start.get(), response.status, halts && !is_stop(*admitted.route));
   co_return response;
 }
 
@@ -275,67 +268,6 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
 }
 
 std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
-
-/// On the thread that writes.
-bool Api::write_audit(const HttpRequest& request, const std::string& outcome, bool at_once, int left_out) {
-  const Caller caller = caller_of(request, services_.tokens);
-  const AuditEntry entry{.at = now_text(),
-                         .who = std::string(role_name(caller.role)),
-                         .token_name = std::string(caller.token_name),
-                         .operator_name = caller.role == Role::kOperate
-                                              ? operator_named_for(request, services_.operation.store())
-                                              : std::string(),
-                         .remote = request.remote,
-                         .action = (request.method + " " + request.path).substr(0, kActionBytesMax),
-                         .outcome = outcome};
-  try {
-    append_audit(entry, caller.role, at_once, left_out);
-    return true;
-  } catch (const std::exception& error) {
-    spdlog::error("{} {} could not be recorded: {}", entry.action, outcome, error.what());
-    return false;
-  }
-}
-
-/// Strangers have a place of their own. `left_out`: of theirs that were not recorded since the last one.
-void Api::append_audit(const AuditEntry& entry, Role role, bool at_once, int left_out) {
-  if (role == Role::kNone || role == Role::kWrongToken) {
-    AuditEntry counted = entry;
-    if (left_out > 0) counted.detail = std::to_string(left_out) + " more before it were not recorded";
-    services_.audit.append_of_stranger(counted);
-  } else if (at_once) {
-    services_.audit.append_command(entry);
-  } else {
-    services_.audit.append_refusal(entry);
-  }
-}
-
-/// Written on the thread for that, while the answer goes out. Strangers have a rate of their own.
-void Api::write_audit_behind(const HttpRequest& request, const std::string& outcome, bool at_once) {
-  int left_out = 0;
-  const Role role = role_of(request, services_.tokens);
-  if (role == Role::kNone || role == Role::kWrongToken) {
-    const auto since = stranger_rate_.admit(services_.operation.clocks().steady());
-    if (!since) return;
-    left_out = *since;
-  }
-  const bool is_full = unwritten_ >= kUnwrittenMax;
-  if (is_full && !was_full_)
-    spdlog::error("the disk is too slow: {} and what follows is not recorded", request.path);
-  was_full_ = is_full;
-  if (is_full) return;
-  ++unwritten_;
-  HttpRequest told{.method = request.method,
-                   .path = request.path,
-                   .authorization = request.authorization,
-                   .from_loopback = request.from_loopback,
-                   .remote = request.remote};
-  if (request.body.size() <= kToldBodyBytesMax) told.body = request.body;
-  asio::post(threads_.store, [this, told = std::move(told), outcome, at_once, left_out] {
-    write_audit(told, outcome, at_once, left_out);
-    --unwritten_;
-  });
-}
 
 asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
   if (!request.authorization) co_return;

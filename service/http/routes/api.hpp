@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <chrono>
@@ -8,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "service/http/auth/record_rate.hpp"
+#include "service/http/routes/request_audit.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 #include "service/http/server/request_handler.hpp"
@@ -52,9 +51,6 @@ class Api final : public RequestHandler {
   boost::asio::awaitable<HttpResponse> execute_command_once(const HttpRequest& request,
                                                             const Admitted& admitted);
   [[nodiscard]] std::string now_text() const;
-  bool write_audit(const HttpRequest& request, const std::string& outcome, bool at_once, int left_out = 0);
-  void append_audit(const AuditEntry& entry, Role role, bool at_once, int left_out);
-  void write_audit_behind(const HttpRequest& request, const std::string& outcome, bool at_once = false);
   boost::asio::awaitable<void> delay_wrong_token(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_status(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_plan(const HttpRequest& request);
@@ -65,18 +61,16 @@ class Api final : public RequestHandler {
   boost::asio::any_io_executor executor_;
   ApiThreads threads_;
   Services services_;
-  std::unique_ptr<Desk> reader_;   // of stored runs
-  std::unique_ptr<Desk> worker_;   // identifies
-  std::atomic<int> unwritten_{0};  // entries of the audit that wait for the thread that writes
-  bool was_full_ = false;
-  int at_store_ = 0;  // commands that wait for the store
+  RequestAudit audit_;
+  std::unique_ptr<Desk> reader_;  // of stored runs
+  std::unique_ptr<Desk> worker_;  // identifies
+  int at_store_ = 0;              // commands that wait for the store
   /// Consecutive wrong tokens of an address.
   struct WrongTokens {
     int count = 0;
     std::chrono::steady_clock::time_point latest;
   };
   std::map<std::string, WrongTokens> wrong_tokens_;
-  RecordRate stranger_rate_{50, std::chrono::seconds(1)};
 };
 
 }  // namespace cell

@@ -1,9 +1,4 @@
-#include "service/http/routes/internal/audit_routes.hpp"
-
-#include <spdlog/spdlog.h>
-
 #include "service/documents/audit_document.hpp"
-#include "service/http/routes/internal/start_body.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/store/audit_log.hpp"
 
@@ -23,23 +18,7 @@ HttpResponse get_audit(const Call& call) {
       200, document_text(audit_page(entries, more ? std::optional(entries.back().id) : std::nullopt)));
 }
 
-std::optional<std::int64_t> run_of(const HttpRequest& request) {
-  const Route* route = find_route(request.method, request.path);
-  if (!route || !route->path.starts_with("/api/v1/runs/{id}/")) return std::nullopt;
-  return run_id_of(match(route->path, request.path).value_or(""));
-}
-
 }  // namespace
-
-std::string operator_named_for(const HttpRequest& request, const RunStore& store) try {
-  if (request.path == "/api/v1/runs") return operator_of_start(request);
-  const auto id = run_of(request);
-  const auto run = id ? store.run(*id) : std::nullopt;
-  return run ? run->operator_name.value_or("") : "";
-} catch (const std::exception& error) {
-  spdlog::error("the operator of {} {} is not known: {}", request.method, request.path, error.what());
-  return {};
-}
 
 std::vector<Route> audit_routes() {
   return {

@@ -8,6 +8,7 @@
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/http/auth/access.hpp"
+#include "service/http/routes/internal/start_body.hpp"
 #include "service/http/routes/services.hpp"
 #include "service/http/server/target.hpp"
 #include "service/store/damaged_store.hpp"
@@ -118,7 +119,8 @@ std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tok
     if (auto refused = refuse_query(candidate, request.query)) return *std::move(refused);
     if (auto refused = refuse_body(candidate, request)) return *std::move(refused);
     if (auto refused = refuse_key(request)) return *std::move(refused);
-    return Admitted{&candidate, decode_segment(*id)};
+    return Admitted{&candidate, decode_segment(*id),
+                    candidate.starts_run ? parse_start(request.body) : nullptr};
   }
   if (allowed.empty()) return not_found(fmt::format("there is nothing at {}", request.path));
   HttpResponse response =
@@ -131,7 +133,8 @@ Asked ask_operation(const Admitted& admitted, const HttpRequest& request, Servic
   if (!admitted.route->ask) return {};
   const Asked nothing;
   try {
-    return admitted.route->ask({request, services, admitted.id, services.reads, nothing}, services.operation);
+    return admitted.route->ask(
+        {request, services, admitted.id, services.reads, nothing, admitted.start.get()}, services.operation);
   } catch (const std::exception& error) {
     spdlog::error("{} {} failed: {}", request.method, request.path, error.what());
     return {.failed = true};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -18,6 +19,7 @@
 namespace cell {
 
 struct Services;
+struct StartBody;
 
 /// How a request is dispatched. Without another word its handler is called on the thread that serves.
 enum class DispatchMode {
@@ -65,9 +67,10 @@ inline constexpr std::size_t kTouchesBytesMax = 1024 * 1024;
 struct Call {
   const HttpRequest& request;
   Services& services;
-  std::string_view id;  // the segment at {id}
-  const Reads& reads;   // of the thread that the handler is called on
-  const Asked& asked;   // what Route::ask gave
+  std::string_view id;               // the segment at {id}
+  const Reads& reads;                // of the thread that the handler is called on
+  const Asked& asked;                // what Route::ask gave
+  const StartBody* start = nullptr;  // Admitted::start
 
   /// A query parameter of the route, checked against its bounds.
   [[nodiscard]] std::optional<std::int64_t> number(std::string_view name) const;
@@ -90,6 +93,7 @@ struct Route {
   std::string_view body_schema = {};  // empty: the only body is {}
   std::size_t body_bytes_max = kBodyBytesMax;
   DispatchMode dispatch = DispatchMode::kAtOnce;
+  bool starts_run = false;    // its body is parsed with its admission: Admitted::start
   bool tells_result = false;  // its handler needs a copy of the run under way when it is about that one
 };
 
@@ -120,7 +124,8 @@ bool halts_only(const Route& route);
 
 struct Admitted {
   const Route* route = nullptr;
-  std::string id;  // the segment at {id}, decoded
+  std::string id;                               // the segment at {id}, decoded
+  std::shared_ptr<const StartBody> start = {};  // of a route that starts a run
 };
 
 /// The route of a request, or its refusal: 404, 405, 401, 403, 400, 413, 415. For a request without its body,

@@ -49,9 +49,11 @@ HttpResponse of_run(const Call& call) {
 }
 
 Asked ask_to_start(const Call& call, CellOperation& operation) {
-  auto start = read_start(call.request, operation);
-  if (auto* problem = std::get_if<Problem>(&start)) return {.problem = std::move(*problem)};
-  return {.to_start = std::get<StartRequest>(std::move(start))};
+  auto read = read_start(*call.start, operation);
+  if (auto* problem = std::get_if<Problem>(&read)) return {.problem = std::move(*problem)};
+  StartRequest start = std::get<StartRequest>(std::move(read));
+  start.idempotency_key = call.request.idempotency_key;
+  return {.to_start = std::move(start)};
 }
 
 HttpResponse post_runs(const Call& call) {
@@ -93,7 +95,8 @@ std::vector<Route> run_routes() {
        .handle = post_runs,
        .ask = ask_to_start,
        .answers = {{.status = 201, .schema = "Run"}},
-       .body_schema = "StartRequest"},
+       .body_schema = "StartRequest",
+       .starts_run = true},
       read("/api/v1/runs/{id}", "One run", of_run<run_view>, "Run"),
       read("/api/v1/runs/{id}/touches", "The touches so far, as touchcal identify reads them",
            of_run<touches_view>, "Touches"),

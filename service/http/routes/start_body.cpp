@@ -15,6 +15,12 @@
 #include "service/run/run_conditions.hpp"
 
 namespace cell {
+
+struct StartBody {
+  nlohmann::json json = {};
+  std::optional<Problem> problem = {};  // of a text that is no JSON
+};
+
 namespace {
 
 using nlohmann::json;
@@ -186,23 +192,22 @@ std::variant<StartRequest, Problem> read_body(const json& body, const CellOperat
 
 }  // namespace
 
-std::string operator_of_start(const HttpRequest& request) try {
-  const json body = parse_strict_json("request body", request.body, kBodyBytesMax);
-  StartRequest start;
-  if (!body.is_object() || read_operator(body, start)) return {};
-  return start.operator_name.value_or("");
-} catch (const ConfigError&) {
-  return {};
+std::shared_ptr<const StartBody> parse_start(const std::string& text) try {
+  return std::make_shared<const StartBody>(
+      StartBody{.json = parse_strict_json("request body", text, kBodyBytesMax)});
+} catch (const ConfigError& error) {
+  return std::make_shared<const StartBody>(StartBody{.problem = wrong(error.pointer(), error.what())});
 }
 
-std::variant<StartRequest, Problem> read_start(const HttpRequest& request, const CellOperation& operation) {
-  try {
-    auto read = read_body(parse_strict_json("request body", request.body, kBodyBytesMax), operation);
-    if (auto* start = std::get_if<StartRequest>(&read)) start->idempotency_key = request.idempotency_key;
-    return read;
-  } catch (const ConfigError& error) {
-    return wrong(error.pointer(), error.what());
-  }
+std::variant<StartRequest, Problem> read_start(const StartBody& body, const CellOperation& operation) {
+  if (body.problem) return *body.problem;
+  return read_body(body.json, operation);
+}
+
+std::string operator_of(const StartBody& body) {
+  StartRequest start;
+  if (!body.json.is_object() || read_operator(body.json, start)) return {};
+  return start.operator_name.value_or("");
 }
 
 }  // namespace cell

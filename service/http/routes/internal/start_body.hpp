@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <variant>
 
@@ -8,13 +9,16 @@
 
 namespace cell {
 
-/// Reads the body of POST runs: a recipe, or a plan of one; optionally the operator, who makes the touches,
-/// whether the compliance is estimated and the block's temperature, measured now unless it says when. The age
-/// of that is a precondition.
-std::variant<StartRequest, Problem> read_start(const HttpRequest& request, const CellOperation& operation);
+/// The body of POST runs: parsed once, for the start and for the audit.
+struct StartBody;
+std::shared_ptr<const StartBody> parse_start(const std::string& text);
 
-/// The operator whom the body of POST runs names; empty where it names nobody or cannot be read. On any
-/// thread.
-std::string operator_of_start(const HttpRequest& request);
+/// Reads a recipe, or a plan of one; optionally the operator, who makes the touches, whether the compliance
+/// is estimated and the block's temperature, measured now unless it says when. The age of that is a
+/// precondition.
+std::variant<StartRequest, Problem> read_start(const StartBody& body, const CellOperation& operation);
+
+/// The operator whom the body names; empty where it names nobody or cannot be read.
+std::string operator_of(const StartBody& body);
 
 }  // namespace cell

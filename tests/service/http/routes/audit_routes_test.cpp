@@ -1,7 +1,3 @@
-#include "service/http/routes/internal/audit_routes.hpp"
-
-#include <SQLiteCpp/SQLiteCpp.h>
-
 #include "service/documents/audit_document.hpp"
 #include "service/store/audit_log.hpp"
 #include "tests/service/http/routes/routes_bench.hpp"
@@ -9,8 +5,6 @@
 namespace cell {
 namespace {
 
-using nlohmann::json;
-using ::testing::ElementsAre;
 using ::testing::SizeIs;
 
 class AuditRoutesTest : public RoutesTest {
@@ -62,27 +56,6 @@ TEST_F(AuditRoutesTest, ItIsReadWithTheOperateTokenOnlyAlsoOnLoopback) {
   EXPECT_EQ(get_with("/api/v1/audit", kTokens.view).status, 403u);
   EXPECT_EQ(get_with("/api/v1/audit", kTokens.operate).status, 200u);
   EXPECT_EQ(get_with("/api/v1/audit", kTokens.operators[1].token).status, 200u);
-}
-
-TEST_F(AuditRoutesTest, ACommandNamesTheOperatorOfItsRun) {
-  const std::int64_t named =
-      cell_.store().begin_run({.recipe = "edf-25", .started_at = "start", .operator_name = "M. Curie"});
-  const auto name = [&](const std::string& path, const std::string& body = "") {
-    HttpRequest request = made("POST", path);
-    request.body = body;
-    return operator_named_for(request, cell_.operation().store());
-  };
-  EXPECT_EQ(name(path_of(named) + "/pause"), "M. Curie");
-  EXPECT_EQ(name(path_of(stored_run()) + "/pause"), "") << "nobody was named";
-  EXPECT_EQ(name("/api/v1/runs/99/pause"), "");
-  EXPECT_EQ(name("/api/v1/runs/99999999999999999999/pause"), "");
-  EXPECT_EQ(name("/api/v1/runs/x/pause"), "");
-  EXPECT_EQ(name("/api/v1/cell/reset"), "");
-  EXPECT_EQ(name("/api/v1/runs", R"({"recipe":"edf-25","operator":"É. du Châtelet"})"), "É. du Châtelet");
-  EXPECT_EQ(name("/api/v1/runs", R"({"recipe":"edf-25","operator":7})"), "");
-  EXPECT_EQ(name("/api/v1/runs", "{"), "");
-  cell_.store().database()->exec("ALTER TABLE runs RENAME TO gone");
-  EXPECT_EQ(name(path_of(named) + "/abort"), "") << "a command does not fail by it";
 }
 
 }  // namespace
