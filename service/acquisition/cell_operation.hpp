@@ -59,8 +59,8 @@ class CellOperation {
 
   /// Begins to look for the controller and to act on commands. Nothing moves before start().
   void launch();
-  /// Stops a running motion and closes the run as stopped. Waits a few seconds for the controller's answer,
-  /// then closes the link, on which the controller stops the arm.
+  /// Stops a running motion and leaves the run on hold in the store, where the next daemon takes it up. Waits
+  /// a few seconds for the controller's answer, then closes the link, on which the controller stops the arm.
   boost::asio::awaitable<void> shut_down();
 
   boost::asio::awaitable<std::variant<Started, CommandRefusal>> start(StartRequest request);
@@ -167,6 +167,11 @@ class CellOperation {
   boost::asio::awaitable<void> complete_run();
   boost::asio::awaitable<bool> park();
   boost::asio::awaitable<void> close_run(RunOutcome outcome);
+
+  // the end with the daemon (cell_operation_end.cpp)
+  void break_off_for_end();
+  boost::asio::awaitable<void> leave_for_next_daemon();
+  boost::asio::awaitable<void> leave_face_once();
   boost::asio::awaitable<void> wait_for_end(std::chrono::milliseconds at_most);
 
   /// Where the coroutine runs, and its end.
@@ -174,6 +179,7 @@ class CellOperation {
     boost::asio::any_io_executor executor;
     TimerWake ended;
     bool runs = false;
+    bool left_face = false;  // or tried to, at the end
   };
 
   StoreQueue store_;

@@ -18,11 +18,6 @@ using namespace std::chrono_literals;
 
 namespace {
 
-/// How long the end waits for the controller's last answer, and for what that leaves to be stored.
-constexpr std::chrono::milliseconds kStopPatience{3000};
-constexpr std::chrono::milliseconds kRetractPatience{10'000};  // as long as the arm still moves then
-constexpr std::chrono::milliseconds kClosePatience{1000};
-
 /// How often a run on hold looks whether its permit has lasted long enough.
 constexpr std::chrono::milliseconds kPermitLook{10'000};
 
@@ -101,7 +96,7 @@ asio::awaitable<void> CellOperation::act_on(State state) {
       co_await resume_run();
       break;
     case State::kStopping:
-      if (status_.is_ending()) co_await session_.leave_face();
+      if (status_.is_ending()) co_await leave_face_once();
       session_.give_permit_back();
       co_await close_run(RunOutcome::kStopped);
       status_.apply(Event::kDone);
@@ -113,7 +108,8 @@ asio::awaitable<void> CellOperation::act_on(State state) {
       break;
     case State::kSuspending:
     case State::kHolding:
-      status_.apply(Event::kDone);
+      if (status_.is_ending()) co_await leave_for_next_daemon();
+      if (status_.state() == state) status_.apply(Event::kDone);  // a person may have stopped it meanwhile
       break;
     case State::kClearing:
       // Whatever stopped the arm, the session starts again before the next run.
@@ -343,27 +339,6 @@ asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
   }
   spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome),
                verdict_name(end.verdict), run.touches_done(), run.touches_total());
-}
-
-asio::awaitable<void> CellOperation::shut_down() {
-  status_.end();
-  if (is_starting_) co_await loop_.ended.wait(kStopPatience);  // it is refused now, and leaves no run behind
-  const State state = status_.state();
-  if (is_interrupted()) {
-    if (state == State::kUnholding) status_.enter(State::kHolding);  // whatever its resumption waits for
-  } else if (is_active(state) && state != State::kAborting) {
-    status_.enter(State::kStopping);
-  }
-  wake_.wake();
-  co_await wait_for_end(kStopPatience);
-  const auto told = session_.latest_state();
-  if (told && told->active_sequence != 0) co_await wait_for_end(kRetractPatience);
-  session_.close();  // what still waits for the controller ends now
-  co_await wait_for_end(kClosePatience);
-}
-
-asio::awaitable<void> CellOperation::wait_for_end(std::chrono::milliseconds at_most) {
-  if (loop_.runs) co_await loop_.ended.wait(at_most);
 }
 
 }  // namespace cell

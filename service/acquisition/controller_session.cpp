@@ -83,8 +83,7 @@ void ControllerSession::hold_without_permission() {
   auto fault = permission_.fault(clocks_.steady());
   if (!fault) return;
   is_doubted_ = true;
-  stop_sent_ = true;
-  controller_.stop();
+  stop_motion();
   status_.raise(with_permission_told(*std::move(fault)), Event::kHoldFault);
 }
 
@@ -118,6 +117,11 @@ void ControllerSession::check_task(const cs8::State& state, Event event) {
 
 void ControllerSession::stop() {
   ++stop_count_;
+  controller_.stop();
+}
+
+void ControllerSession::stop_motion() {
+  stop_sent_ = true;
   controller_.stop();
 }
 

@@ -50,6 +50,8 @@ class ControllerSession {
   void on_heartbeat();
   /// A person's stop: sent at once, whenever there is a link.
   void stop();
+  /// A stop that nobody asked for: the motion under way ends, and its answer `stopped` is no fault.
+  void stop_motion();
   /// A new state of the cell: stops the arm where the state asks for it and returns a requested permit.
   void on_entered(State state);
 

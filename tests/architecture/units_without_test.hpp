@@ -44,6 +44,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"cs8_protocol/link", "behind the client: client_test, link_loss_test"},
     {"cs8_protocol/names", "each name with its row of the page: protocol_page_test"},
     {"service/acquisition/block_pass", "end_to_end/locating_test follows the arm around the block"},
+    {"service/acquisition/cell_operation_end", "what a daemon's end leaves: end_to_end/daemon_end_test"},
     {"service/acquisition/cell_operation_link",
      "what the controller tells, of cell_operation.cpp: acquisition/cell_operation_test"},
     {"service/acquisition/cell_operation_start", "starts, refused ones too: acquisition/cell_operation_test"},

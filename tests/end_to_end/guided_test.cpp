@@ -1,5 +1,4 @@
 // A run whose touches a person makes with the pendant: same protocol, same core, same store, same result.
-#include <SQLiteCpp/SQLiteCpp.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -137,15 +136,6 @@ TEST_F(GuidedRun, GoesOnByHandWhenTheDaemonWasStartedAnew) {
         [done](const cell::Status& status) { return status.by_hand && status.by_hand->index == done + 2; });
   }
   const cell::HandGuide third = loop_.status().by_hand.value();
-  SQLite::Database& database = *loop_.store().database();
-  const std::string checksum = database.execAndGet("SELECT checksum FROM runs").getString();
-  loop_.command(Command::kStop);
-  loop_.run_until(State::kStopped);
-  // As a daemon that was killed leaves it.
-  database.exec(
-      "UPDATE runs SET outcome = 'running', verdict = 'none', ended_at = NULL, fault_code = NULL, "
-      "fault_message = NULL, rows_kept = NULL, checksum = " +
-      checksum);
   loop_.relaunch();
   EXPECT_EQ(loop_.status().state, State::kHeld);
   loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
