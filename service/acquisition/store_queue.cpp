@@ -20,6 +20,11 @@ std::optional<std::string> failure_of(const std::function<void(RunStore&)>& work
 
 }  // namespace
 
+std::shared_ptr<void> StoreQueue::count_one() const {
+  ++*waiting_count_;
+  return {nullptr, [count = waiting_count_](void*) { --*count; }};
+}
+
 boost::asio::awaitable<std::optional<std::string>> StoreQueue::write(std::function<void(RunStore&)> work) {
   const auto try_it = [work = std::move(work), faults = faults_](RunStore& store) {
     auto failure = failure_of(work, store);
@@ -31,9 +36,8 @@ boost::asio::awaitable<std::optional<std::string>> StoreQueue::write(std::functi
 
 StoreQueue::Begun StoreQueue::begin(std::function<void(RunStore&)> work) {
   Begun begun;
-  boost::asio::post(executor_, [&store = store_, failure = begun.failure_, work = std::move(work)] {
-    *failure = failure_of(work, store);
-  });
+  boost::asio::post(executor_, [&store = store_, waits = count_one(), failure = begun.failure_,
+                                work = std::move(work)] { *failure = failure_of(work, store); });
   return begun;
 }
 
@@ -65,14 +69,15 @@ bool StoreQueue::behind(std::function<void(RunStore&)> work) {
     return false;
   }
   ++*behind_count_;
-  boost::asio::post(executor_, [&store = store_, count = behind_count_, work = std::move(work)] {
-    try {
-      work(store);
-    } catch (const std::exception& error) {
-      spdlog::error("something could not be stored: {}", error.what());
-    }
-    --*count;
-  });
+  boost::asio::post(executor_,
+                    [&store = store_, waits = count_one(), count = behind_count_, work = std::move(work)] {
+                      try {
+                        work(store);
+                      } catch (const std::exception& error) {
+                        spdlog::error("something could not be stored: {}", error.what());
+                      }
+                      --*count;
+                    });
   return true;
 }
 

@@ -37,7 +37,10 @@ class StoreQueue {
   /// bound is needed.
   template <std::invocable<RunStore&> Work>
   boost::asio::awaitable<std::invoke_result_t<Work, RunStore&>> run(Work work) {
-    return run_on(executor_, [&store = store_, work = std::move(work)] { return work(store); });
+    return run_on(executor_, [&store = store_, waits = count_one(), work = std::move(work)]() mutable {
+      const auto until_done = std::move(waits);
+      return work(store);
+    });
   }
   /// The same for what only writes: why it failed, nothing when it is done.
   boost::asio::awaitable<std::optional<std::string>> write(std::function<void(RunStore&)> work);
@@ -64,15 +67,22 @@ class StoreQueue {
   /// Nobody waits for a fault either. One that cannot be stored is stored behind a later write that works.
   void append_fault(StoredFault fault);
 
+  /// How much was asked for and is not done; of any thread, and also when the queue has gone.
+  [[nodiscard]] std::shared_ptr<const std::atomic<int>> waiting_count() const { return waiting_count_; }
+
   /// For the thread that owns everything before the store's own begins, and in tests of one thread.
   [[nodiscard]] RunStore& store() { return store_; }
   [[nodiscard]] const RunStore& store() const { return store_; }
 
  private:
+  /// Counts as waiting until its last copy has gone.
+  [[nodiscard]] std::shared_ptr<void> count_one() const;
+
   RunStore& store_;
   boost::asio::any_io_executor executor_;
   std::shared_ptr<FaultLog> faults_;  // of the store's thread
   std::shared_ptr<std::atomic<int>> behind_count_ = std::make_shared<std::atomic<int>>(0);
+  std::shared_ptr<std::atomic<int>> waiting_count_ = std::make_shared<std::atomic<int>>(0);
 };
 
 }  // namespace cell

@@ -7,6 +7,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/io_context.hpp>
@@ -18,13 +19,17 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
+#include <memory>
 #include <stdexcept>
 #include <thread>
 
 #include "service/acquisition/cell_operation.hpp"
+#include "service/base/exit_code.hpp"
 #include "service/base/run_on.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/base/utc_time.hpp"
+#include "service/daemon/end_watch.hpp"
 #include "service/daemon/listen_address.hpp"
 #include "service/daemon/supervision.hpp"
 #include "service/http/auth/tokens.hpp"
@@ -108,16 +113,57 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
   }
 }
 
-/// At its end what another thread was asked for is done: it refers to coroutines that are destroyed next.
+/// How long the end waits for the disk. After a second signal just long enough for one that answers.
+constexpr std::chrono::milliseconds kDiskPatience{10'000};
+constexpr std::chrono::milliseconds kHurriedDiskPatience{1'000};
+
+/// At its end all that was to be computed and written is done: it refers to coroutines that are destroyed
+/// next. The arithmetic ends by itself, a disk may not.
 class WorkDone {
  public:
-  explicit WorkDone(asio::thread_pool& thread) : thread_(thread) {}
-  ~WorkDone() { thread_.join(); }
+  /// All must outlive it; `is_hurried` is looked at then. `waiting_count` is that of the acquisition's
+  /// StoreQueue.
+  WorkDone(asio::thread_pool& arithmetic, asio::thread_pool& disk, EndWatch& watch,
+           const CellOperation& operation, std::shared_ptr<const std::atomic<int>> waiting_count,
+           const bool& is_hurried)
+      : arithmetic_(arithmetic),
+        disk_(disk),
+        watch_(watch),
+        operation_(operation),
+        waiting_count_(std::move(waiting_count)),
+        is_hurried_(is_hurried) {}
+  ~WorkDone() {
+    arithmetic_.join();
+    watch_.begin(is_hurried_ ? kHurriedDiskPatience : kDiskPatience, end_without_disk());
+    disk_.join();
+  }
   WorkDone(const WorkDone&) = delete;
   WorkDone& operator=(const WorkDone&) = delete;
 
  private:
-  asio::thread_pool& thread_;
+  /// Nothing is destroyed: the disk's thread may still use it. What the disk has not taken is as after a
+  /// power cut, and an answer that is not stored stays at the controller, which is asked again.
+  [[nodiscard]] EndWatch::GiveUp end_without_disk() const {
+    const Run* run = operation_.run();
+    const std::string of_run = run ? fmt::format(", of run {} with {} of {} touches", run->id(),
+                                                 run->touches_done(), run->touches_total())
+                                   : "";
+    return [of_run, waiting_count = waiting_count_](const std::string& why) {
+      spdlog::error(
+          "{}: the daemon ends without it. Not on the disk: {} writes of the acquisition{}, and what "
+          "was to be recorded of requests since. The controller keeps a touch that is not stored",
+          why, waiting_count->load(), of_run);
+      spdlog::shutdown();
+      std::_Exit(kExitFailed);
+    };
+  }
+
+  asio::thread_pool& arithmetic_;
+  asio::thread_pool& disk_;
+  EndWatch& watch_;
+  const CellOperation& operation_;
+  std::shared_ptr<const std::atomic<int>> waiting_count_;
+  const bool& is_hurried_;
 };
 
 /// The thread that serves, until its end. What nobody foresaw there ends a connection and no run.
@@ -154,6 +200,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   if (std::filesystem::create_directories(options.state_directory)) {
     std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
   }
+  EndWatch end_watch;  // to the very end, which closes the store
   const DirectoryLock lock(options.state_directory);
   refuse_lost_store(options.state_directory);
   RunStore store(options.state_directory / kStoreFile);
@@ -165,8 +212,8 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   asio::io_context context(1);
   asio::thread_pool disk(1);
   asio::thread_pool arithmetic(1);
-  CellOperation operation({context.get_executor(), arithmetic.get_executor()}, cell,
-                          StoreQueue(store, disk.get_executor()),
+  const StoreQueue store_queue(store, disk.get_executor());
+  CellOperation operation({context.get_executor(), arithmetic.get_executor()}, cell, store_queue,
                           options.controller.value_or(cell.controller), random_hex(8), clocks);
   operation.keep_place_in(options.state_directory / kBlockPoseFile);
   if (options.retain_days) {
@@ -188,6 +235,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   std::optional<LocalListener> socket;
   open_socket(socket, http, api, options);
   Supervision supervision(context.get_executor());
+  bool is_hurried = false;
   asio::signal_set signals(context, SIGINT, SIGTERM, SIGHUP);
   signals.async_wait([&](const boost::system::error_code& failure, int signal) {
     if (failure) return;
@@ -195,8 +243,10 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     supervision.notify_stopping();
     // A stop is taken until the arm has been drawn back: the listeners close with the end.
     asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
-    signals.async_wait(
-        [&](const boost::system::error_code&, int) { context.stop(); });  // a second signal: at once
+    signals.async_wait([&](const boost::system::error_code&, int) {  // a second signal: at once
+      is_hurried = true;
+      context.stop();
+    });
   });
   operation.launch();
   listener->launch();
@@ -206,8 +256,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   fmt::print("listening on {}:{}\n", options.listen.host, address.port());
   std::fflush(stdout);
   supervision.notify_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
-  const WorkDone written(disk);
-  const WorkDone computed(arithmetic);
+  const WorkDone done(arithmetic, disk, end_watch, operation, store_queue.waiting_count(), is_hurried);
   const HttpThread http_thread(http);
   context.run();
 }

@@ -24,7 +24,8 @@ struct DaemonOptions {
 inline constexpr int kRetainDaysMax = 36'500;
 
 /// Serves one cell, on the address and on a Unix socket in the state directory, until SIGINT, SIGTERM or
-/// SIGHUP, which stop a motion under way and leave a run on hold. Prints "listening on HOST:PORT" on standard output when ready.
+/// SIGHUP, which stop a motion under way and leave a run on hold. Where the disk does not answer at the end,
+/// the process ends with kExitFailed. Prints "listening on HOST:PORT" on standard output when ready.
 /// Throws std::exception if it cannot start (address in use, state directory not writable).
 void run_daemon(const Cell& cell, const DaemonOptions& options);
 

@@ -1,5 +1,6 @@
 // Preloaded into a daemon: a disk that stalls. As long as the file $TOUCHCAL_STALL_FILE is there, the next
-// fsync or fdatasync removes it and takes a second; all others take what they take.
+// fsync or fdatasync removes it and takes a second, or for ever where $TOUCHCAL_STALL_FOR_EVER is set; all
+// others take what they take.
 #include <dlfcn.h>
 #include <poll.h>
 #include <stdlib.h>
@@ -11,7 +12,10 @@ constexpr int kStallMs = 1000;
 
 void stall_if_told() {
   static const char* const file = ::getenv("TOUCHCAL_STALL_FILE");
-  if (file != nullptr && ::unlink(file) == 0) ::poll(nullptr, 0, kStallMs);
+  if (file == nullptr || ::unlink(file) != 0) return;
+  do {
+    ::poll(nullptr, 0, kStallMs);
+  } while (::getenv("TOUCHCAL_STALL_FOR_EVER") != nullptr);
 }
 
 using Sync = int (*)(int);

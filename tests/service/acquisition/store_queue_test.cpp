@@ -45,6 +45,19 @@ TEST_F(StoreQueueTest, WhatNobodyWaitsForIsLeftOutWhenTheDiskStandsStill) {
   EXPECT_TRUE(queue_.behind([](RunStore&) {})) << "there is room again";
 }
 
+TEST_F(StoreQueueTest, SaysHowMuchADiskThatStandsStillHasNotDone) {
+  std::promise<void> disk_goes_on;
+  std::shared_future<void> stalled = disk_goes_on.get_future().share();
+  const auto waiting_count = queue_.waiting_count();
+  EXPECT_EQ(*waiting_count, 0);
+  queue_.behind([stalled](RunStore&) { stalled.wait(); });
+  const auto begun = queue_.begin([](RunStore&) {});
+  EXPECT_EQ(*waiting_count, 2);
+  disk_goes_on.set_value();
+  EXPECT_FALSE(run(queue_.finish(begun)));
+  EXPECT_EQ(*waiting_count, 0);
+}
+
 TEST_F(StoreQueueTest, AFailureThatNobodyWaitsForEndsNothing) {
   queue_.behind([](RunStore&) { throw std::runtime_error("the disk is full"); });
   const auto fail = [](RunStore&) -> int { throw std::runtime_error("the disk is full"); };
