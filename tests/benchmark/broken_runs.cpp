@@ -1,8 +1,9 @@
-// Runs that are broken again and again: touchcald killed (SIGKILL) at random moments, the link cut, the door
-// opened, the emergency stop pressed, the power lost, the controller restarted in each phase of a touch. What
-// the controller answered on the wire is compared with the store, the result with that of an undisturbed run.
-//   broken_runs [CAUSE [COUNT [SEED]]]      CAUSE: all, kill, link, door, emergency_stop, power, restart; 100
-//   each
+// Runs that are broken again and again: touchcald killed (SIGKILL) or told to end (SIGTERM) at random
+// moments, the link cut, the door opened, the emergency stop pressed, the power lost, the controller
+// restarted in each phase of a touch. What the controller answered on the wire is compared with the store,
+// the result with that of an undisturbed run.
+//   broken_runs [CAUSE [COUNT [SEED]]]      CAUSE: all, kill, end, link, door, emergency_stop, power,
+//   restart; 100 each
 #include <algorithm>
 #include <array>
 #include <condition_variable>
@@ -87,12 +88,13 @@ class BrokenRuns {
     std::fflush(stdout);
   }
 
-  Tally kill(int count) {
+  /// touchcald goes at random moments, `in_order` or not.
+  Tally kill(int count, bool in_order) {
     Tally tally;
     while (tally.broken < count) {
       start();
       for (int kills = 0; kills < kKillsInARun && tally.broken < count; ++kills) {
-        kill_once();
+        kill_once(in_order);
         ++tally.broken;
         restart(tally);
         if (cell_.status().at("state") != "HELD") break;  // the run was over
@@ -142,8 +144,8 @@ class BrokenRuns {
     run_ = cell_.command("/api/v1/runs", R"({"recipe":"short"})").at("id");
   }
 
-  /// Waits for a frame by lot and a little longer, and kills.
-  void kill_once() {
+  /// Waits for a frame by lot and a little longer; then the daemon goes.
+  void kill_once(bool in_order) {
     const int done = seen_frames();
     const int left = std::max(1, frames_in_a_run_ - done);
     const int wanted = done + std::uniform_int_distribution(0, left)(chance_);
@@ -153,7 +155,11 @@ class BrokenRuns {
       const bool came = seen_.wait_for(lock, kFramePatience, [&] { return frames_ >= wanted; });
       if (came) seen_.wait_for(lock, more, [] { return false; });
     }
-    cell_.kill_daemon();
+    if (in_order) {
+      cell_.end_daemon();
+    } else {
+      cell_.kill_daemon();
+    }
   }
 
   /// The next daemon, until it tells what became of the run, and until it has its link as well.
@@ -311,8 +317,12 @@ bool print(const std::string& cause, const Tally& tally) {
 
 bool break_runs(const std::string& wanted, int count, std::uint64_t seed) {
   BrokenRuns runs(seed);
-  bool met = true, known = wanted == "all" || wanted == "kill";
-  if (known) met = print("kill", runs.kill(count));
+  bool met = true, known = false;
+  for (const char* name : {"kill", "end"}) {
+    if (wanted != "all" && wanted != name) continue;
+    known = true;
+    met = print(name, runs.kill(count, name == std::string("end"))) && met;
+  }
   for (const Cause& cause : kCauses) {
     if (wanted != "all" && wanted != cause.name) continue;
     known = true;
