@@ -136,13 +136,30 @@ PredictedContact OnlineArmEstimate::add(const Touch& touch) {
       .predicted_position_error_m = clamp_error_m(kSigmas * std_m * inflation(), nominal_position_error_m_)};
   standardised_errors_.push_back(std::abs(contact.position_error_m) / std_m);
 
+  const std::vector<bool> consistent = settle(fit);
+  contact.contradicts = !consistent.back();
+  return contact;
+}
+
+bool OnlineArmEstimate::replace(std::size_t index, const Touch& touch) {
+  knowledge_.touches.at(index) = touch;
+  knowledge_.touches[index].deviation_m = 0.0;  // as in add()
+  kept_[index] = true;
+  LeastSquares fit = fit_of(knowledge_, columns_);
+  fit.keep(kept_);
+  fit.linearise(estimate_);
+  return settle(fit)[index];
+}
+
+/// Returns which touches the estimate was made from; those near enough to it are taken up behind it.
+std::vector<bool> OnlineArmEstimate::settle(LeastSquares& fit) {
   solve(fit);
   while (reject_worst(fit)) solve(fit);
-  contact.contradicts = !kept_.back();
+  std::vector<bool> consistent = kept_;
   covariance_ = inverse_information(fit.information());
   readmit(fit);
   model_ = apply(knowledge_.nominal, estimate_.arm);
-  return contact;
+  return consistent;
 }
 
 void OnlineArmEstimate::solve(LeastSquares& fit) {
@@ -184,6 +201,14 @@ void OnlineArmEstimate::readmit(const LeastSquares& fit) {
     const double std_m = fit.noise_unit_m() * std::sqrt(1.0 + row.dot(covariance_ * row));
     kept_[i] = std::abs(fit.residuals_m()[index]) < kReadmitSigmas * std_m;
   }
+}
+
+std::vector<std::size_t> OnlineArmEstimate::contradicted() const {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < kept_.size(); ++i) {
+    if (!kept_[i]) indices.push_back(i);
+  }
+  return indices;
 }
 
 double OnlineArmEstimate::inflation() const {

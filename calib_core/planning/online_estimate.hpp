@@ -44,8 +44,13 @@ class OnlineArmEstimate {
   /// Adds a contact of any role. It is ignored when it is more than 5 standard deviations off the prediction
   /// of the others; of several such touches the worst is removed first.
   PredictedContact add(const Touch& touch);
+  /// Puts a touch that was made again in the place of the first one, by its index. False when the others
+  /// contradict it as well: it is ignored.
+  bool replace(std::size_t index, const Touch& touch);
 
   [[nodiscard]] std::size_t touch_count() const { return knowledge_.touches.size(); }
+  /// Indices of the touches that are ignored now, in the order in which they were added.
+  [[nodiscard]] std::vector<std::size_t> contradicted() const;
   /// The nominal arm with the estimated errors.
   [[nodiscard]] const KinematicModel& model() const { return model_; }
 
@@ -66,6 +71,7 @@ class OnlineArmEstimate {
   [[nodiscard]] double face_shift_m(int face, const Eigen::Vector3d& point_m) const;
 
  private:
+  std::vector<bool> settle(LeastSquares& fit);
   void solve(LeastSquares& fit);
   bool reject_worst(LeastSquares& fit);
   void readmit(const LeastSquares& fit);

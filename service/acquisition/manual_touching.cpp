@@ -79,6 +79,7 @@ asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
     co_return;
   }
   if (!run.next()) {
+    touches_.warn_of_outliers(active);
     status_.apply(Event::kDone);
     co_return;
   }

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
+#include <vector>
 
+#include "calib_core/identification/identification_result.hpp"
 #include "calib_core/planning/aimed_touch.hpp"
 #include "calib_core/planning/online_estimate.hpp"
 #include "service/run/fault_table.hpp"
@@ -11,11 +14,22 @@
 
 namespace cell {
 
-/// Repeats the last touch in the same way when the others contradict it. Pure steps: it judges the
-/// repetition; the touch executor makes the touch and acts on the finding.
+/// Numbers of the touches that do not fit what is known of all of them: those that the result leaves out, the
+/// farthest off first, then those that the estimate of the run ignores.
+std::vector<int> suspects_of(const calib::IdentificationResult& result, const calib::OnlineArmEstimate& aim);
+
+/// Repeats a touch in the same way when the others contradict it: the last one at once, an earlier one when
+/// all are made, since little was known when it came. Pure steps: it judges the repetition; the touch
+/// executor makes the touch and acts on the finding.
 class OutlierRetest {
  public:
-  /// Both touches agree: the first one stays, with a warning.
+  struct Suspect {
+    int number = 0;                    // of the touch
+    calib::AimedTouch aimed;           // how it is made
+    calib::OnlineArmEstimate without;  // the estimate without it; at the end that of all touches
+    bool at_end = false;               // all touches are made
+  };
+  /// Both touches agree, or neither fits at the end: the first one stays, with a warning.
   struct Confirmed {
     Fault warning;
   };
@@ -30,14 +44,16 @@ class OutlierRetest {
   };
   using Finding = std::variant<Confirmed, Replaced, Held>;
 
-  /// The touch just made contradicts the others: how it was aimed, and the estimate without it.
-  void begin(calib::AimedTouch aimed, calib::OnlineArmEstimate without) {
-    suspect_ = {std::move(aimed), std::move(without)};
-  }
+  /// Begins a run: no touch of it was made again.
+  void begin_run();
+  void begin(Suspect suspect);
   [[nodiscard]] bool is_due() const { return suspect_.has_value(); }
-  /// Of the suspect: it must be due.
-  [[nodiscard]] const calib::AimedTouch& aimed() const { return suspect_->aimed; }
-  [[nodiscard]] const calib::OnlineArmEstimate& without() const { return suspect_->without; }
+  /// It must be due.
+  [[nodiscard]] const Suspect& suspect() const { return *suspect_; }
+  /// Each touch is made again once.
+  [[nodiscard]] bool was_made_again(int number) const { return made_again_.contains(number); }
+  /// What a person reads of the suspects that are left when none is made again.
+  [[nodiscard]] Fault warning_of(const std::vector<int>& suspects) const;
 
   /// `first` is the touch as it is stored, `again` the same with what its repetition gave; `apart_m` lies
   /// between both along the face's normal and `agreement_m` is the most of two touches of one place.
@@ -46,12 +62,8 @@ class OutlierRetest {
   void settle() { suspect_.reset(); }
 
  private:
-  struct Suspect {
-    calib::AimedTouch aimed;
-    calib::OnlineArmEstimate without;
-  };
-
   std::optional<Suspect> suspect_;
+  std::set<int> made_again_;  // by number
 };
 
 }  // namespace cell

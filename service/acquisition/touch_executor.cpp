@@ -76,7 +76,7 @@ TouchExecutor::TouchExecutor(const Cell& cell, RunComputation& computation, Stor
 void TouchExecutor::begin_run(const ActiveRun& active) {
   held_by_ = HeldBy::kNothing;
   history_ = {};
-  outlier_.settle();
+  outlier_.begin_run();
   if (beside_plan_) settle_beside_plan();  // of a run that was stopped before it could be stored
   stored_ahead_.reset();
   reference_ahead_.reset();
@@ -100,7 +100,7 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
     co_return;
   }
   if (!run.next()) {
-    status_.apply(Event::kDone);
+    end_touches(active);
     co_return;
   }
   const bool ready = co_await prepare(active);
@@ -271,7 +271,7 @@ asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch o
     if (const auto moved = active.place_check->check(active.run.problem().touches.back()))
       status_.raise(*moved, Event::kHoldFault);
   }
-  if (contradicted) outlier_.begin(*preparation_.made(), std::move(without));
+  if (contradicted) outlier_.begin({storing.touch.number, *preparation_.made(), std::move(without)});
   if (unforeseen) std::rethrow_exception(unforeseen);
   if (!stored.whole) co_return;
   if (status_.state() == State::kExecute) {

@@ -47,13 +47,15 @@ class TouchExecutor {
   void look_at_reference() { reference_.make_due(); }
 
   /// Makes one touch: the retest of an outlier, the reference place or the next of the plan. Ends the step
-  /// (Event::kDone) when no touch is left.
+  /// (Event::kDone) when no touch is left and none is to be made again.
   boost::asio::awaitable<void> make_next_touch(ActiveRun& active);
   /// Computes the result of all touches so far, unless it exists.
   boost::asio::awaitable<void> identify(ActiveRun& active);
   /// When a run continues after a restart, or a contact was kept late: a last touch that the others
   /// contradict is made again before anything else. The estimate must be that without it.
   void suspect_last(const ActiveRun& active);
+  /// Tells which of all touches do not fit the others.
+  void warn_of_outliers(ActiveRun& active);
   /// Stores a contact and adds it to the run; false when it could not be stored, which holds the run.
   /// `answered` is the command that it answers; empty where none is known. `noise_um` as in StoredTouch.
   boost::asio::awaitable<bool> keep(ActiveRun& active, calib::PlannedTouch planned, cs8::TouchResult result,
@@ -115,8 +117,13 @@ class TouchExecutor {
   void look_ahead_from_reference(Run& run, const calib::JointVector& from);
   void judge_reference(const ActiveRun& active, const calib::JointVector& contact);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
-  boost::asio::awaitable<bool> replace_last(ActiveRun& active, OutlierRetest::Replaced replaced);
+  boost::asio::awaitable<bool> replace(ActiveRun& active, OutlierRetest::Replaced replaced);
   boost::asio::awaitable<bool> leave_out(ActiveRun& active, bool outlier);
+
+  // When all touches of the plan are made (touch_executor_at_end.cpp).
+  void end_touches(ActiveRun& active);
+  std::vector<int> suspects(ActiveRun& active);
+  bool suspect_one(const Run& run, const std::vector<int>& suspects);
 
   const Cell& cell_;
   RunComputation& computation_;

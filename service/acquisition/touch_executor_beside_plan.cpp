@@ -43,7 +43,7 @@ void TouchExecutor::suspect_last(const ActiveRun& active) {
   if (!with.add(run.problem().touches.back()).contradicts) return;
   auto made = preparation_.aim_or_nominal(*planned);
   if (auto* aimed = std::get_if<calib::AimedTouch>(&made))
-    outlier_.begin(std::move(*aimed), preparation_.aim());
+    outlier_.begin({run.touches_done(), std::move(*aimed), preparation_.aim()});
 }
 
 /// Makes a touch as it is given, unless the contact of the last one is still to be stored; false when there
@@ -173,11 +173,11 @@ void TouchExecutor::judge_reference(const ActiveRun& active, const calib::JointV
 }
 
 asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
-  const bool touched = co_await touch_beside_plan(active, outlier_.aimed(), HeldBy::kOutlier);
+  const bool touched = co_await touch_beside_plan(active, outlier_.suspect().aimed, HeldBy::kOutlier);
   if (!touched) co_return;
   const cs8::TouchResult& result = beside_plan_->result;
-  const int face = outlier_.aimed().touch.face;
-  const StoredTouch& first = active.run.touches().back();
+  const int face = outlier_.suspect().aimed.touch.face;
+  const StoredTouch& first = active.run.touches().at(static_cast<std::size_t>(outlier_.suspect().number - 1));
   StoredTouch again = first;
   again.joints = result.contact;
   again.source = result.source;
@@ -188,7 +188,7 @@ asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
                                   preparation_.height_m(face, from_wire(first.joints)));
   auto finding = outlier_.judge(first, again, apart_m, agreement_max_m(cell_));
   if (auto* replaced = std::get_if<OutlierRetest::Replaced>(&finding)) {
-    const bool stored = co_await replace_last(active, std::move(*replaced));
+    const bool stored = co_await replace(active, std::move(*replaced));
     if (!stored) co_return;
   }
   settle_beside_plan();
@@ -201,7 +201,7 @@ asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
   }
 }
 
-asio::awaitable<bool> TouchExecutor::replace_last(ActiveRun& active, OutlierRetest::Replaced replaced) {
+asio::awaitable<bool> TouchExecutor::replace(ActiveRun& active, OutlierRetest::Replaced replaced) {
   const StoredTouch& again = replaced.again;
   const auto write = [id = active.run.id(), again](RunStore& store) {
     store.replace_touch(id, again, "it did not fit the others, its repetition does");
@@ -211,7 +211,7 @@ asio::awaitable<bool> TouchExecutor::replace_last(ActiveRun& active, OutlierRete
     status_.raise({FaultCode::kStoreFailed, *failure}, Event::kHoldFault);
     co_return false;
   }
-  active.run.replace_last(again);
+  active.run.replace(again);
   spdlog::warn("run {} touch {} is replaced by its repetition, which fits the others", active.run.id(),
                again.number);
   preparation_.set_aim(std::move(replaced.aim));
@@ -296,7 +296,10 @@ void TouchExecutor::aim_behind_late_touch(const ActiveRun& active, const calib::
 
 void TouchExecutor::settle_hold(ActiveRun& active, Command command) {
   const bool retry = command == Command::kRetry, skip = command == Command::kSkip;
-  if (skip && (held_by_ == HeldBy::kTouch || held_by_ == HeldBy::kOutlier)) leaves_out_ = held_by_;
+  // One that is made again at the end stays as it was: the result leaves it out.
+  const bool only_again = held_by_ == HeldBy::kOutlier && outlier_.is_due() && outlier_.suspect().at_end;
+  if (skip && !only_again && (held_by_ == HeldBy::kTouch || held_by_ == HeldBy::kOutlier))
+    leaves_out_ = held_by_;
   answer_ = command;
   const HeldBy held_by = std::exchange(held_by_, retry ? held_by_ : HeldBy::kNothing);
   if (held_by == HeldBy::kDrift && retry) reference_.look_again();
@@ -306,8 +309,9 @@ void TouchExecutor::settle_hold(ActiveRun& active, Command command) {
   }
   if (held_by == HeldBy::kReference && skip) reference_.skip(active.run.touches_done());
   if (held_by == HeldBy::kStylus) stylus_allowed_ = !retry;
+  if (only_again && skip) outlier_.settle();
   if (held_by == HeldBy::kOutlier && command == Command::kResume) {
-    status_.warn({FaultCode::kTouchOutlier, fmt::format("touch {}", active.run.touches_done())});
+    status_.warn(outlier_.warning_of({outlier_.suspect().number}));
     outlier_.settle();
   }
 }
@@ -341,7 +345,7 @@ asio::awaitable<bool> TouchExecutor::leave_out(ActiveRun& active, bool outlier) 
   }
   if (outlier) {
     run.withdraw_last();
-    preparation_.set_aim(outlier_.without());
+    preparation_.set_aim(outlier_.suspect().without);
     outlier_.settle();
   }
   spdlog::warn("run {}: touch {} of the plan is left out, the run stays incomplete", run.id(), place + 1);

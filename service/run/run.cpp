@@ -126,9 +126,10 @@ void Run::add(const StoredTouch& touch) {
   ++revision_;
 }
 
-void Run::replace_last(const StoredTouch& again) {
-  touches_.back() = again;
-  problem_.touches.back() = to_touch(again);
+void Run::replace(const StoredTouch& again) {
+  const auto index = static_cast<std::size_t>(again.number - 1);
+  touches_.at(index) = again;
+  problem_.touches.at(index) = to_touch(again);
   ++revision_;
 }
 

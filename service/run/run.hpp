@@ -69,8 +69,8 @@ class Run {
 
   /// Adds a touch that has been stored: what does not outlive the daemon does not count.
   void add(const StoredTouch& touch);
-  /// Replaces the last touch; the store has replaced it before.
-  void replace_last(const StoredTouch& again);
+  /// Replaces the touch of the same number; the store has replaced it before.
+  void replace(const StoredTouch& again);
   /// Removes the last touch, which becomes next(); the store has withdrawn it before.
   void withdraw_last();
   /// What the reference place says so far: it counts in latest() from the next identify() on.

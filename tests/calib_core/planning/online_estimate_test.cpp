@@ -121,6 +121,19 @@ TEST_F(OnlineEstimate, AnEarlyWrongTriggerIsFoundOutByTheTouchesThatFollow) {
   EXPECT_LT(position_error_m(estimate, elsewhere_), kPredictedPositionErrorMinMetres);
 }
 
+TEST_F(OnlineEstimate, ATouchThatIsMadeAgainTakesThePlaceOfTheFirstOne) {
+  OnlineArmEstimate estimate(problem_);
+  Touch wrong = touches_[1];
+  wrong.joints[2] += 0.02;
+  for (std::size_t i = 0; i < touches_.size(); ++i) estimate.add(i == 1 ? wrong : touches_[i]);
+  EXPECT_EQ(estimate.contradicted(), std::vector<std::size_t>{1});
+  EXPECT_FALSE(estimate.replace(1, wrong)) << "it fits no better";
+  EXPECT_EQ(estimate.contradicted(), std::vector<std::size_t>{1});
+  EXPECT_TRUE(estimate.replace(1, touches_[1]));
+  EXPECT_TRUE(estimate.contradicted().empty());
+  EXPECT_EQ(estimate.touch_count(), touches_.size());
+}
+
 TEST_F(OnlineEstimate, AnArmThatIsPushedMissesByMoreAndSoThePredictionGrows) {
   OnlineArmEstimate estimate(problem_);
   for (const Touch& touch : touches_) estimate.add(touch);

@@ -31,7 +31,7 @@ class OutlierRetestTest : public ::testing::Test {
     const calib::PlannedTouch touch{
         table3_touches()[kKnown].face, calib::TouchRole::kFit, joints, joints, joints, joints,
         Eigen::Vector3d::UnitX()};
-    retest_.begin({touch, problem}, known);
+    retest_.begin({kKnown + 1, {touch, problem}, known});
   }
   static StoredTouch good() { return stored(kKnown + 1, table3_touches()[kKnown]); }
   /// Tens of millimetres beside.
@@ -55,12 +55,53 @@ TEST_F(OutlierRetestTest, ARepetitionThatFitsTakesTheTouchsPlaceAndAims) {
   const auto& replaced = std::get<OutlierRetest::Replaced>(found);
   EXPECT_EQ(replaced.again.joints, good().joints);
   EXPECT_EQ(replaced.aim.touch_count(), kKnown + 1);
-  EXPECT_EQ(retest_.without().touch_count(), kKnown) << "what was known without it stays known";
+  EXPECT_EQ(retest_.suspect().without.touch_count(), kKnown) << "what was known without it stays known";
 }
 
 TEST_F(OutlierRetestTest, WhenNeitherFitsAPersonIsAsked) {
   const auto found = retest_.judge(good(), wrong(), 0.02, kAgreementMetres);
   EXPECT_EQ(std::get<OutlierRetest::Held>(found).fault.code, FaultCode::kTouchDoesNotFit);
+}
+
+/// The forty touches, of which the first lies beside, and the suspicion against it at their end.
+class OutlierAtEnd : public OutlierRetestTest {
+ protected:
+  OutlierAtEnd() {
+    OutlierRetest::Suspect before = retest_.suspect();
+    calib::Touch beside = table3_touches()[0];
+    beside.joints[1] += 0.05;
+    calib::OnlineArmEstimate aim(before.aimed.problem);
+    aim.add(beside);
+    for (std::size_t i = 1; i < kKnown; ++i) aim.add(table3_touches()[i]);
+    retest_.begin({1, std::move(before.aimed), std::move(aim), true});
+  }
+  StoredTouch first_ = stored(1, table3_touches()[0]);
+};
+
+TEST_F(OutlierAtEnd, ARepetitionThatFitsTakesThePlaceOfTheEarlyTouch) {
+  EXPECT_EQ(retest_.suspect().without.contradicted(), std::vector<std::size_t>{0});
+  const auto found = retest_.judge(first_, first_, 0.02, kAgreementMetres);
+  const auto& replaced = std::get<OutlierRetest::Replaced>(found);
+  EXPECT_EQ(replaced.aim.touch_count(), kKnown);
+  EXPECT_TRUE(replaced.aim.contradicted().empty());
+}
+
+TEST_F(OutlierAtEnd, WhenNeitherFitsTheResultLeavesItOutWithAWarning) {
+  StoredTouch again = wrong();
+  again.number = 1;
+  again.plane = first_.plane;
+  const auto found = retest_.judge(first_, again, 0.02, kAgreementMetres);
+  EXPECT_EQ(std::get<OutlierRetest::Confirmed>(found).warning.code, FaultCode::kTouchOutlier);
+}
+
+TEST_F(OutlierAtEnd, SuspectsAreThoseOfTheResultTheWorstFirstAndThenThoseOfTheEstimate) {
+  calib::IdentificationResult result;
+  result.rejected = {{4, 0.001, calib::RejectionReason::kOutlier},
+                     {7, -0.003, calib::RejectionReason::kOutlier}};
+  const std::vector<int> suspects = suspects_of(result, retest_.suspect().without);
+  EXPECT_EQ(suspects, (std::vector<int>{8, 5, 1}));
+  EXPECT_EQ(retest_.warning_of(suspects).detail,
+            "touch 8 (not made again), touch 5 (not made again), touch 1");
 }
 
 TEST_F(OutlierRetestTest, IsDueUntilItIsSettled) {

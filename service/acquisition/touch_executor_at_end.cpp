@@ -1,0 +1,44 @@
+// When all touches of the plan are made: each of them is held against what is known now.
+#include <utility>
+
+#include "service/acquisition/touch_executor.hpp"
+#include "service/run/decision_rule.hpp"
+
+namespace cell {
+
+/// A touch that came when little was known is contradicted only by those after it: it is made again, one at a
+/// time and the worst first, since one bad touch can make others look bad.
+void TouchExecutor::end_touches(ActiveRun& active) {
+  if (suspect_one(active.run, suspects(active))) return;
+  warn_of_outliers(active);
+  status_.apply(Event::kDone);
+}
+
+void TouchExecutor::warn_of_outliers(ActiveRun& active) {
+  const std::vector<int> left = suspects(active);
+  if (!left.empty()) status_.warn(outlier_.warning_of(left));
+}
+
+std::vector<int> TouchExecutor::suspects(ActiveRun& active) {
+  identify(active);
+  preparation_.add_contacts(active.run);
+  return suspects_of(active.run.latest(), preparation_.aim());
+}
+
+/// Begins to make one of them again; false when there is none, or so many that no touch is to be trusted:
+/// then the verdict says so.
+bool TouchExecutor::suspect_one(const Run& run, const std::vector<int>& suspects) {
+  if (static_cast<double>(suspects.size()) > kRejectedShareMax * run.touches_done()) return false;
+  for (const int number : suspects) {
+    const calib::PlannedTouch* planned = run.planned(static_cast<std::size_t>(number - 1));
+    if (!planned || outlier_.was_made_again(number)) continue;
+    auto made = preparation_.aim_or_nominal(*planned);
+    auto* aimed = std::get_if<calib::AimedTouch>(&made);
+    if (!aimed) continue;
+    outlier_.begin({number, std::move(*aimed), preparation_.aim(), true});
+    return true;
+  }
+  return false;
+}
+
+}  // namespace cell
