@@ -28,6 +28,7 @@
 #include "service/acquisition/touch_executor.hpp"
 #include "service/acquisition/touch_preparation.hpp"
 #include "service/base/clocks.hpp"
+#include "service/store/run_page.hpp"
 
 namespace cell {
 
@@ -117,7 +118,7 @@ class CellOperation {
   /// What the store knows before a start.
   struct Earlier {
     std::optional<StoredRun> with_key;  // that the same Idempotency-Key started
-    std::vector<StoredRun> last;        // one, where there was any
+    RunPage last;                       // one, where there was any
   };
   [[nodiscard]] static std::optional<std::variant<Started, CommandRefusal>> repeated_start(
       const StartRequest& request, const Earlier& earlier);

@@ -98,11 +98,13 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start(Star
 asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alone(
     const StartRequest& request) {
   const auto read = [key = request.idempotency_key](RunStore& store) {
-    return Earlier{.with_key = key ? store.run_with_key(*key) : std::nullopt, .last = store.runs(1)};
+    return Earlier{.with_key = key ? store.run_with_key(*key) : std::nullopt, .last = run_page(store, 1, {})};
   };
   const Earlier earlier = co_await store_.run(read);
   if (auto repeated = repeated_start(request, earlier)) co_return *std::move(repeated);
   if (auto refusal = refuse_start(request, earlier)) co_return *std::move(refusal);
+  // An ended run that cannot be read forbids no other: nothing of it is needed any more.
+  for (const DamagedRun& run : earlier.last.damaged) spdlog::error("beside a damaged run: {}", run.what);
   const NewRun begun = new_run(request);
   const auto write = [begun](RunStore& store) { return store.begin_run(begun); };
   const std::int64_t id = co_await store_.run(write);

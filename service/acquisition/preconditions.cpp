@@ -64,11 +64,20 @@ std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& c
   return found;
 }
 
-std::optional<Unmet> unmet_by_lost_place(const std::vector<StoredRun>& runs,
-                                         const std::optional<std::string>& config_digest,
+std::optional<Unmet> unmet_by_lost_place(const RunPage& runs, const std::optional<std::string>& config_digest,
                                          bool place_is_known) {
-  if (place_is_known || runs.empty()) return std::nullopt;
-  const StoredRun& last = runs.front();
+  if (place_is_known) return std::nullopt;
+  const std::int64_t newest = runs.runs.empty() ? 0 : runs.runs.front().id;
+  if (!runs.damaged.empty() && runs.damaged.front().id > newest) {
+    const DamagedRun& damaged = runs.damaged.front();
+    return Unmet{
+        "place_lost",
+        fmt::format("find the block with touchcal locate, or mend the state directory (whether run {} "
+                    "had it at a place that was found by touches cannot be read: {})",
+                    damaged.id, damaged.what)};
+  }
+  if (runs.runs.empty()) return std::nullopt;
+  const StoredRun& last = runs.runs.front();
   if (last.config_digest != config_digest || !names_place(last.conditions_json)) return std::nullopt;
   return Unmet{
       "place_lost",

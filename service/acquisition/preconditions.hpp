@@ -9,7 +9,7 @@
 #include "cs8_protocol/messages.hpp"
 #include "service/acquisition/command_refusal.hpp"
 #include "service/documents/plan.hpp"
-#include "service/store/run_store.hpp"
+#include "service/store/run_page.hpp"
 
 /// The preconditions of a start, all checked at once before anything moves. Pure functions.
 namespace cell {
@@ -33,8 +33,8 @@ std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& c
 
 /// The place where the last run of these files (`config_digest`) had its block, when none is loaded now:
 /// without it the arm would pass the block where the files have it. `runs`: newest first, one is enough.
-std::optional<Unmet> unmet_by_lost_place(const std::vector<StoredRun>& runs,
-                                         const std::optional<std::string>& config_digest,
+/// Where that one is damaged, nobody can tell whether it had such a place, and one has to be loaded.
+std::optional<Unmet> unmet_by_lost_place(const RunPage& runs, const std::optional<std::string>& config_digest,
                                          bool place_is_known);
 
 /// Those of a guided run: without the preconditions that only commanded motion needs.

@@ -73,13 +73,28 @@ TEST(Preconditions, ATemperatureThatIsTooOldIsOneOfThem) {
 TEST(Preconditions, APlaceThatTheLastRunHadAndNobodyHasNowIsOneOfThem) {
   const StoredRun at_place{
       .id = 7, .config_digest = "digest", .conditions_json = R"({"place":{"shift_mm":[1]}})"};
-  EXPECT_EQ(unmet_by_lost_place({at_place}, "digest", false).value().code, "place_lost");
-  EXPECT_FALSE(unmet_by_lost_place({at_place}, "digest", true));
-  EXPECT_FALSE(unmet_by_lost_place({at_place}, "another", false))
+  EXPECT_EQ(unmet_by_lost_place({.runs = {at_place}}, "digest", false).value().code, "place_lost");
+  EXPECT_FALSE(unmet_by_lost_place({.runs = {at_place}}, "digest", true));
+  EXPECT_FALSE(unmet_by_lost_place({.runs = {at_place}}, "another", false))
       << "the files say where the block stands now";
   EXPECT_FALSE(unmet_by_lost_place({}, "digest", false));
   const StoredRun at_files{.id = 8, .config_digest = "digest", .conditions_json = R"({"place":null})"};
-  EXPECT_FALSE(unmet_by_lost_place({at_files, at_place}, "digest", false));
+  EXPECT_FALSE(unmet_by_lost_place({.runs = {at_files, at_place}}, "digest", false));
+}
+
+TEST(Preconditions, ALastRunThatCannotBeReadCallsForAPlaceUnlessThereIsOne) {
+  const DamagedRun damaged{9, "the file: table runs, run 9: not what was written"};
+  const StoredRun at_files{.id = 8, .config_digest = "digest", .conditions_json = R"({"place":null})"};
+  const RunPage newest{.runs = {at_files}, .damaged = {damaged}};
+  EXPECT_FALSE(unmet_by_lost_place(newest, "digest", true));
+  const Unmet unmet = unmet_by_lost_place(newest, "digest", false).value();
+  EXPECT_EQ(unmet.code, "place_lost");
+  EXPECT_THAT(unmet.detail, ::testing::AllOf(::testing::HasSubstr("touchcal locate"),
+                                             ::testing::HasSubstr("table runs, run 9")));
+  StoredRun behind = at_files;
+  behind.id = 10;
+  EXPECT_FALSE(unmet_by_lost_place({.runs = {behind}, .damaged = {damaged}}, "digest", false))
+      << "it is not the last one any more";
 }
 
 TEST(Preconditions, ARunByHandNeedsNothingThatOnlyMotionNeeds) {
