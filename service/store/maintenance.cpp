@@ -16,6 +16,7 @@
 #include "service/store/audit_chain.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
+#include "service/store/log_damage.hpp"
 
 namespace cell {
 namespace {
@@ -133,6 +134,7 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
   std::vector<std::string> damage;
   try {
     SQLite::Database database = open_to_check(database_file);
+    if (auto lost = find_log_damage(database_file)) damage.push_back(*std::move(lost));
     SQLite::Statement integrity(database, "PRAGMA integrity_check");
     while (integrity.executeStep()) {
       if (const std::string line = integrity.getColumn(0).getString(); line != "ok") damage.push_back(line);

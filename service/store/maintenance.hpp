@@ -25,9 +25,9 @@ class StoreNotChecked : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Damage of a database file, one line each; empty if there is none. Checks pages, indices, foreign keys, the
-/// checksum of every row that a run rests on, that no row of an ended run is gone, plane, role and source
-/// of every touch, and the chains of the audit. Read-only, also on a disk that cannot be written;
+/// Damage of a database file, one line each; empty if there is none. Checks the log, pages, indices, foreign
+/// keys, the checksum of every row that a run rests on, that no row of an ended run is gone, plane, role and
+/// source of every touch, and the chains of the audit. Read-only, also on a disk that cannot be written;
 /// StoreNotChecked where a log lies beside the file there, which only a writer can put into it.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
 

@@ -1,6 +1,7 @@
 #include "service/store/schema.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <spdlog/spdlog.h>
 
 #include <array>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include "service/store/audit_chain.hpp"
 #include "service/store/damaged_store.hpp"
 #include "service/store/internal/row_checksum.hpp"
+#include "service/store/log_damage.hpp"
 
 namespace cell {
 namespace {
@@ -228,6 +230,13 @@ void refuse_damaged_pages(SQLite::Database& database, const std::filesystem::pat
 std::span<const char* const> migrations() { return kMigrations; }
 
 SharedDatabase open_database(const std::filesystem::path& file) try {
+  // The next commit would overwrite what shows it.
+  if (const auto lost = find_log_damage(file))
+    spdlog::error(
+        "{}: touches, commands or the end of a run may be missing; look at the newest run, and restore the "
+        "last "
+        "backup where the disk is not to be trusted",
+        *lost);
   auto database =
       std::make_shared<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   database->setBusyTimeout(kBusyMilliseconds);
