@@ -32,11 +32,13 @@ asio::awaitable<void> CellOperation::act_on_states() {
   // At the end an interrupted run stays on hold: the next daemon takes it up.
   const auto is_left = [this] { return !is_active(status_.state()) || status_.state() == State::kHeld; };
   while (!status_.is_ending() || !is_left()) {
-    State state = status_.state();
+    const State state = status_.state();
     std::optional<std::string> failure;
     try {
-      if (state != State::kExecute) co_await identify_run();
-      state = status_.state();
+      if (state != State::kExecute && run_ && run_->run.identification_is_due()) {
+        co_await identify_run();
+        continue;  // nobody waited for a command meanwhile: what there was is looked at now
+      }
       co_await act_on(state);
     } catch (const std::exception& error) {
       failure = error.what();
@@ -47,8 +49,7 @@ asio::awaitable<void> CellOperation::act_on_states() {
 
 /// Where a command begins another run meanwhile, the result is that of none.
 asio::awaitable<void> CellOperation::identify_run() {
-  if (!run_ || !run_->run.identification_is_due()) co_return;
-  const Run identified = co_await computation_.identified(run_->run);
+  const Run identified = co_await computation_.identified(run_->run.copy_to_identify());
   if (run_ && run_->run.take_latest(identified)) status_.publish();
 }
 

@@ -78,12 +78,15 @@ asio::awaitable<void> ManualTouching::await_touch(ActiveRun& active) {
     co_await withdraw_last(active);
     co_return;
   }
+  if (run.identification_is_due()) {
+    co_await touches_.identify(active);
+    co_return;  // nobody waited for a touch meanwhile: what there was is looked at now
+  }
   if (!run.next()) {
     touches_.warn_of_outliers(active);
     status_.apply(Event::kDone);
     co_return;
   }
-  co_await touches_.identify(active);
   const bool contradicts = preparation_.add_contacts(run);
   HandGuide guide = guide_to(run);
   if (guide_ && guide_->index == guide.index) guide.problem = guide_->problem;

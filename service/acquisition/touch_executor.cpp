@@ -100,7 +100,7 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
     co_return;
   }
   if (!run.next()) {
-    end_touches(active);
+    co_await end_touches(active);
     co_return;
   }
   const bool ready = co_await prepare(active);
@@ -223,7 +223,7 @@ void TouchExecutor::look_ahead(ActiveRun& active) {
 
 asio::awaitable<void> TouchExecutor::identify(ActiveRun& active) {
   if (!active.run.identification_is_due()) co_return;
-  const Run identified = co_await computation_.identified(active.run);
+  const Run identified = co_await computation_.identified(active.run.copy_to_identify());
   if (active.run.take_latest(identified)) status_.publish();
 }
 

@@ -54,7 +54,7 @@ class TouchExecutor {
   /// When a run continues after a restart, or a contact was kept late: a last touch that the others
   /// contradict is made again before anything else. The estimate must be that without it.
   void suspect_last(const ActiveRun& active);
-  /// Tells which of all touches do not fit the others.
+  /// Tells which of all touches do not fit the others, by the result of all: identify() before.
   void warn_of_outliers(ActiveRun& active);
   /// Stores a contact and adds it to the run; false when it could not be stored, which holds the run.
   /// `answered` is the command that it answers; empty where none is known. `noise_um` as in StoredTouch.
@@ -121,7 +121,7 @@ class TouchExecutor {
   boost::asio::awaitable<bool> leave_out(ActiveRun& active, bool outlier);
 
   // When all touches of the plan are made (touch_executor_at_end.cpp).
-  void end_touches(ActiveRun& active);
+  boost::asio::awaitable<void> end_touches(ActiveRun& active);
   std::vector<int> suspects(ActiveRun& active);
   bool suspect_one(const Run& run, const std::vector<int>& suspects);
 

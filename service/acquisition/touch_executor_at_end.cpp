@@ -6,10 +6,14 @@
 
 namespace cell {
 
+namespace asio = boost::asio;
+
 /// A touch that came when little was known is contradicted only by those after it: it is made again, one at a
 /// time and the worst first, since one bad touch can make others look bad.
-void TouchExecutor::end_touches(ActiveRun& active) {
-  if (suspect_one(active.run, suspects(active))) return;
+asio::awaitable<void> TouchExecutor::end_touches(ActiveRun& active) {
+  co_await identify(active);
+  if (status_.state() != State::kExecute) co_return;
+  if (suspect_one(active.run, suspects(active))) co_return;
   warn_of_outliers(active);
   status_.apply(Event::kDone);
 }
@@ -20,7 +24,6 @@ void TouchExecutor::warn_of_outliers(ActiveRun& active) {
 }
 
 std::vector<int> TouchExecutor::suspects(ActiveRun& active) {
-  identify(active);
   preparation_.add_contacts(active.run);
   return suspects_of(active.run.latest(), preparation_.aim());
 }

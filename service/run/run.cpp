@@ -161,10 +161,14 @@ bool Run::identify() {
   return true;
 }
 
-bool Run::take_latest(const Run& identified) {
-  const bool is_of_this = identified.id_ == id_ && identified.identified_revision_ == revision_;
-  if (!is_of_this || !identification_is_due()) return false;
+Run Run::copy_to_identify() {
+  Run copy = *this;
   identified_revision_ = revision_;
+  return copy;
+}
+
+bool Run::take_latest(const Run& identified) {
+  if (identified.id_ != id_ || identified.identified_revision_ != revision_) return false;
   latest_ = identified.latest_;
   predicted_tip_rms_m_ = identified.predicted_tip_rms_m_;
   touch_benefit_ = identified.touch_benefit_;

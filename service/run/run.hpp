@@ -81,8 +81,11 @@ class Run {
   [[nodiscard]] bool identification_is_due() const {
     return !touches_.empty() && identified_revision_ != revision_;
   }
-  /// Takes over latest() from a copy of this run for which identify() was called, on another thread say.
-  /// False when it is a copy of another run, or what it was computed from has changed since.
+  /// A copy to call identify() for, on another thread say. From here on latest() counts as that of all
+  /// touches, also where the copy is never identified.
+  [[nodiscard]] Run copy_to_identify();
+  /// Takes over latest() from such a copy. False when it is one of another run, when nothing was computed, or
+  /// what it was computed from has changed since.
   bool take_latest(const Run& identified);
 
   [[nodiscard]] const std::vector<StoredTouch>& touches() const { return touches_; }
