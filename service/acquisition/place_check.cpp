@@ -9,7 +9,9 @@
 
 namespace cell {
 
-PlaceCheck::PlaceCheck(calib::PlanningProblem problem, const BlockPose& place) {
+PlaceCheck::PlaceCheck(calib::PlanningProblem problem, const BlockPose& place)
+    : arm_error_m_(problem.nominal_position_error_m),
+      face_error_m_(std::max(arm_error_m_, place_error_m(place.covariance, problem.faces))) {
   for (const calib::RegistrationTouch& touch : place.touches)
     problem.knowledge.touch_noise_m = std::max(problem.knowledge.touch_noise_m, touch.std_m);
   aim_.emplace(problem);
@@ -23,11 +25,13 @@ std::optional<Fault> PlaceCheck::check(const calib::Touch& touch) {
   if (!aim_ || !faces_met_.insert(touch.face).second) return std::nullopt;
   const calib::PredictedContact contact = aim_->add(touch);
   if (std::ranges::includes(faces_met_, faces_)) aim_.reset();
-  if (std::abs(contact.position_error_m) <= contact.predicted_position_error_m) return std::nullopt;
+  const bool is_known = contact.predicted_position_error_m < arm_error_m_;
+  const double expected_m = is_known ? contact.predicted_position_error_m : face_error_m_;
+  if (std::abs(contact.position_error_m) <= expected_m) return std::nullopt;
   return Fault{FaultCode::kBlockMoved,
                fmt::format("contact {1:.1f} mm off the located plane {0}; {2:.1f} mm at most were expected",
                            touch.face + 1, calib::mm_from_metres(contact.position_error_m),
-                           calib::mm_from_metres(contact.predicted_position_error_m))};
+                           calib::mm_from_metres(expected_m))};
 }
 
 Fault PlaceCheck::explain(Fault fault, int face) const {
