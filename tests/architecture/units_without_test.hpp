@@ -47,7 +47,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/acquisition/cell_operation_end", "what a daemon's end leaves: end_to_end/daemon_end_test"},
     {"service/acquisition/cell_operation_link",
      "what the controller tells, of cell_operation.cpp: acquisition/cell_operation_test"},
-    {"service/acquisition/cell_operation_start", "starts, refused ones too: acquisition/cell_operation_test"},
     {"service/acquisition/cell_operation_loop",
      "the second half of cell_operation.cpp: acquisition/cell_operation_test"},
     {"service/acquisition/controller_permit",
