@@ -55,12 +55,9 @@ class StartBehindADamagedRun : public ::testing::Test {
   boost::asio::io_context io_{1};
   MadeUpTime time_;
   ScriptedController* controller_ = new ScriptedController;  // the operation's
-  CellOperation operation_{io_.get_executor(),
-                           cell_of_owners(),
-                           StoreQueue(store_, io_.get_executor()),
-                           std::unique_ptr<Controller>(controller_),
-                           "instance",
-                           time_.clocks()};
+  CellOperation operation_{
+      {io_.get_executor(), io_.get_executor()}, cell_of_owners(), StoreQueue(store_, io_.get_executor()),
+      std::unique_ptr<Controller>(controller_), "instance",       time_.clocks()};
 };
 
 TEST_F(StartBehindADamagedRun, IsRefusedWhereNobodyCanTellWhetherThatRunHadAPlace) {
