@@ -145,6 +145,7 @@ bool OnlineArmEstimate::replace(std::size_t index, const Touch& touch) {
   knowledge_.touches.at(index) = touch;
   knowledge_.touches[index].deviation_m = 0.0;  // as in add()
   kept_[index] = true;
+  standardised_errors_[index] = 0.0;  // nobody predicted it: no evidence about the estimate
   LeastSquares fit = fit_of(knowledge_, columns_);
   fit.keep(kept_);
   fit.linearise(estimate_);

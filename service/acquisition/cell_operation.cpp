@@ -152,7 +152,7 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
                           .detail = fmt::format("run {} is over", *run_id)};
   }
   const bool stops = command == Command::kStop || command == Command::kAbort;
-  if (status_.is_ending() && !stops) return CommandRefusal{.detail = "the daemon is ending"};
+  if (status_.is_ending() && !stops) return refusal_at_the_end();
   const State state = status_.state();
   const auto next = after_command(state, command);
   if (!next) {

@@ -122,6 +122,7 @@ class CellOperation {
   };
   [[nodiscard]] static std::optional<std::variant<Started, CommandRefusal>> repeated_start(
       const StartRequest& request, const Earlier& earlier);
+  [[nodiscard]] static CommandRefusal refusal_at_the_end();
   [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request,
                                                            const Earlier& earlier) const;
   [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request, const Earlier& earlier) const;

@@ -21,9 +21,13 @@ constexpr std::chrono::milliseconds kClosePatience{1000};
 
 asio::awaitable<void> CellOperation::shut_down() {
   status_.end();
-  if (is_starting_) co_await loop_.ended.wait(kStopPatience);  // it is refused now, and leaves no run behind
   break_off_for_end();
   wake_.wake();
+  if (is_starting_) {
+    co_await loop_.ended.wait(kStopPatience);  // it is refused now, and leaves no run behind
+    break_off_for_end();
+    wake_.wake();
+  }
   co_await wait_for_end(kStopPatience);
   const auto told = session_.latest_state();
   if (told && told->active_sequence != 0) co_await wait_for_end(kRetractPatience);
@@ -38,13 +42,13 @@ void CellOperation::break_off_for_end() {
   if (!is_active(state) || state == State::kStopping || state == State::kAborting) return;
   if (!run_) {
     status_.enter(State::kStopping);
-  } else if (state != State::kHeld) {
+  } else if (state != State::kHeld && state != State::kHolding) {
     session_.stop_motion();
     status_.enter(State::kHolding);  // whatever it waits for, or its resumption
   }
 }
 
-/// Where the permit is still there for it. A stop on this way is the last word.
+/// Where the permit is still there for it. A stop that came before, or on this way, is the last word.
 asio::awaitable<void> CellOperation::leave_face_once() {
   const bool is_tried = std::exchange(loop_.left_face, true);
   if (is_tried || (run_ && run_->guided)) co_return;  // by hand: the person does

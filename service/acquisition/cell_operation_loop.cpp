@@ -97,7 +97,8 @@ asio::awaitable<void> CellOperation::act_on(State state) {
       co_await resume_run();
       break;
     case State::kStopping:
-      if (status_.is_ending()) co_await leave_face_once();
+      if (status_.is_ending() && !run_)
+        co_await leave_face_once();  // a run is stopped by a person's word only
       session_.give_permit_back();
       co_await close_run(RunOutcome::kStopped);
       status_.apply(Event::kDone);
@@ -316,7 +317,12 @@ asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
   if (!run_ || !run_->open) co_return;
   const Run& run = run_->run;
   run_->open = false;
-  const Conclusion concluded = co_await computation_.conclude(*run_, outcome);
+  Conclusion concluded;
+  try {
+    concluded = co_await computation_.conclude(*run_, outcome);
+  } catch (const std::exception& error) {  // its end is stored all the same
+    status_.set_fault({FaultCode::kInternalError, error.what()});
+  }
   RunEnd end{.outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
              .verdict = concluded.verdict,
              .ended_at = now_text(),

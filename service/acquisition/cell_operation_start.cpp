@@ -38,6 +38,8 @@ std::optional<std::variant<Started, CommandRefusal>> CellOperation::repeated_sta
                             same->recipe)};
 }
 
+CommandRefusal CellOperation::refusal_at_the_end() { return {.detail = "the daemon is ending"}; }
+
 std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& request,
                                                           const Earlier& earlier) const {
   if (!cell().recipes.contains(request.recipe)) {
@@ -47,7 +49,7 @@ std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& re
         .kind = CommandRefusal::Kind::kUnknownRecipe,
         .detail = fmt::format("there is no recipe '{}'; this cell has {}", request.recipe, known)};
   }
-  if (status_.is_ending()) return CommandRefusal{.detail = "the daemon is ending"};
+  if (status_.is_ending()) return refusal_at_the_end();
   const State state = status_.state();
   if (is_active(state)) {
     return CommandRefusal{
@@ -76,6 +78,7 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start(Star
   std::variant<Started, CommandRefusal> answer =
       CommandRefusal{.detail = "another start is under way", .code = FaultCode::kRunActive};
   if (is_starting_) co_return answer;
+  if (status_.is_ending()) co_return refusal_at_the_end();  // the end waits for none that comes now
   is_starting_ = true;
   std::optional<std::string> failure;
   try {

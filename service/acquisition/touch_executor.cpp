@@ -203,6 +203,8 @@ bool TouchExecutor::take_stored_ahead(const Run& run) {
 
 /// While the arm moves.
 asio::awaitable<void> TouchExecutor::work_ahead(ActiveRun& active) {
+  // Where the answer fails, this is not broken off on the thread of the arithmetic.
+  co_await asio::this_coro::reset_cancellation_state(asio::disable_cancellation());
   store_.behind([id = active.run.id()](RunStore& store) { store.make_durable(id); });
   co_await identify(active);
   preparation_.add_contacts(active.run);

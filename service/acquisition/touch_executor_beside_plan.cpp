@@ -88,6 +88,7 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
 /// While the arm moves.
 asio::awaitable<void> TouchExecutor::work_beside_plan(ActiveRun& active, HeldBy held_by,
                                                       calib::JointVector from) {
+  co_await asio::this_coro::reset_cancellation_state(asio::disable_cancellation());  // as work_ahead()
   co_await identify(active);
   if (held_by == HeldBy::kReference) look_ahead_from_reference(active.run, from);
 }

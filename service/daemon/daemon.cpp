@@ -113,9 +113,8 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
   }
 }
 
-/// How long the end waits for the disk. After a second signal just long enough for one that answers.
+/// How long the end waits for the disk.
 constexpr std::chrono::milliseconds kDiskPatience{10'000};
-constexpr std::chrono::milliseconds kHurriedDiskPatience{1'000};
 
 /// At its end all that was to be computed and written is done: it refers to coroutines that are destroyed
 /// next. The arithmetic ends by itself, a disk may not.
@@ -134,7 +133,7 @@ class WorkDone {
         is_hurried_(is_hurried) {}
   ~WorkDone() {
     arithmetic_.join();
-    watch_.begin(is_hurried_ ? kHurriedDiskPatience : kDiskPatience, end_without_disk());
+    watch_.begin(is_hurried_ ? EndWatch::kHurriedPatience : kDiskPatience, end_without_disk());
     disk_.join();
   }
   WorkDone(const WorkDone&) = delete;

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/chrono.h>
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <csignal>
 
@@ -23,13 +24,20 @@ void EndWatch::begin(std::chrono::milliseconds patience, GiveUp give_up) {
 }
 
 void EndWatch::watch(std::chrono::milliseconds patience, const GiveUp& give_up) {
-  std::string why = fmt::format("the disk has not answered for {}", patience);
+  std::string why =
+      fmt::format("the end has not come within {}: the disk does not answer, it seems", patience);
+  bool is_hurried = false;
   signals_->async_wait([&](const boost::system::error_code& failure, int signal) {
     if (failure) return;
-    why = fmt::format("signal {} while the disk does not answer", signal);
+    is_hurried = true;
+    why = fmt::format("signal {} while the end waits for the disk", signal);
     context_.stop();
   });
   context_.run_for(patience);
+  if (is_hurried && !came_in_time_) {  // one that answers is waited for all the same
+    context_.restart();
+    context_.run_for(std::min(patience, kHurriedPatience));
+  }
   if (!came_in_time_) give_up(why);
 }
 

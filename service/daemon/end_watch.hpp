@@ -14,6 +14,9 @@ namespace cell {
 /// not answer any more. On a thread of its own, since who waits for a disk looks at no clock.
 class EndWatch {
  public:
+  /// After a signal: just long enough for a disk that answers.
+  static constexpr std::chrono::milliseconds kHurriedPatience{1'000};
+
   /// Called on the watch's thread, with the reason in words, when the end is waited for no longer.
   using GiveUp = std::function<void(const std::string& why)>;
 
@@ -23,8 +26,8 @@ class EndWatch {
   EndWatch(const EndWatch&) = delete;
   EndWatch& operator=(const EndWatch&) = delete;
 
-  /// From here on the end may take `patience`. SIGINT, SIGTERM or SIGHUP, or the time that has passed, gives
-  /// it up. Once.
+  /// From here on the end may take `patience`, then it is given up. SIGINT, SIGTERM or SIGHUP leave it
+  /// kHurriedPatience. Once.
   void begin(std::chrono::milliseconds patience, GiveUp give_up);
 
  private:

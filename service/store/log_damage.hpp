@@ -13,7 +13,7 @@ inline constexpr int kUnsyncedCommitsMax = 11;
 
 /// SQLite reads its write-ahead log up to the first frame that is not whole and drops the others without a
 /// word. That is right behind a break-off; but where more commits than kUnsyncedCommitsMax stand whole behind
-/// such a frame, they were on the disk, and what they say was told to others: one line that says so. Nothing
+/// such a frame, more is missing than a run is ever ahead of the disk: one line that says so. Nothing
 /// for a log that is whole, broken off, or not there. Ask before SQLite opens the database to write. Reads
 /// the log only: to close the database file would end the locks that SQLite has on it in this process.
 std::optional<std::string> find_log_damage(const std::filesystem::path& database_file);

@@ -193,6 +193,7 @@ TEST(DaemonEnd, AStopThatComesMeanwhileEndsTheRun) {
   EXPECT_TRUE(stopped);
   EXPECT_EQ(loop.status().state, State::kStopped);
   EXPECT_EQ(loop.store().run(id)->outcome, RunOutcome::kStopped);
+  EXPECT_NE(loop.server().report().flags & cs8::kRetractDue, 0U) << "nothing moves behind a stop";
 }
 
 }  // namespace

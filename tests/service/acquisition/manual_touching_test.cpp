@@ -49,6 +49,7 @@ TEST_F(ManualTouchingTest, SaysWhichTouchComesNextAndKeepsTheOneThatIsMade) {
   EXPECT_EQ(active_.run.touches_done(), 1) << problem();
   EXPECT_EQ(store.touches(active_.run.id()).size(), 1u);
   EXPECT_TRUE(controller.asked.empty()) << "nothing is commanded";
+  run(manual_.await_touch(active_));  // the result with it
   run(manual_.await_touch(active_));
   EXPECT_EQ(manual_.guide(status.state()).value().index, 2);
 }

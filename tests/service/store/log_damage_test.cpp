@@ -66,7 +66,7 @@ class BrokenOffLog : public ::testing::Test {
 };
 
 TEST_F(BrokenOffLog, IsWholeAlsoWithWhatIsLeftOverBehindIt) {
-  EXPECT_GE(frames_, static_cast<std::size_t>(3 * kStored));
+  EXPECT_GE(frames_, static_cast<std::size_t>(2 * kStored));
   EXPECT_GT(log_.size(), in_frame(frames_ + 10, 0));
   EXPECT_EQ(damage_of(log_), std::nullopt);
   EXPECT_EQ(damage_of(""), std::nullopt);
