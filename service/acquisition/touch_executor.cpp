@@ -229,17 +229,6 @@ asio::awaitable<void> TouchExecutor::identify(ActiveRun& active) {
   if (active.run.take_latest(identified)) status_.publish();
 }
 
-/// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.
-void TouchExecutor::stop_when_good_enough(ActiveRun& active, std::size_t first) {
-  Run& run = active.run;
-  if (!run.meets_accuracy_goal()) return;
-  const int dropped = run.drop_fit_touches(first);
-  if (dropped == 0) return;
-  spdlog::info("run {} is accurate enough: {} touches are left out", run.id(), dropped);
-  total_is_due_ = true;
-  status_.publish();
-}
-
 asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch open,
                                                   cs8::TouchResult result) {
   const calib::PlannedTouch& touch = open.planned;

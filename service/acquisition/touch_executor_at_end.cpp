@@ -1,4 +1,7 @@
-// When all touches of the plan are made: each of them is held against what is known now.
+// When all touches of the plan are made, or as many as the run needs: each of them is held against what is
+// known now.
+#include <spdlog/spdlog.h>
+
 #include <utility>
 
 #include "service/acquisition/touch_executor.hpp"
@@ -7,6 +10,17 @@
 namespace cell {
 
 namespace asio = boost::asio;
+
+/// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.
+void TouchExecutor::stop_when_good_enough(ActiveRun& active, std::size_t first) {
+  Run& run = active.run;
+  if (!run.meets_accuracy_goal()) return;
+  const int dropped = run.drop_fit_touches(first);
+  if (dropped == 0) return;
+  spdlog::info("run {} is accurate enough: {} touches are left out", run.id(), dropped);
+  total_is_due_ = true;
+  status_.publish();
+}
 
 /// A touch that came when little was known is contradicted only by those after it: it is made again, one at a
 /// time and the worst first, since one bad touch can make others look bad.

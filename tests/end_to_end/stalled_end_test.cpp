@@ -68,15 +68,14 @@ TEST_F(StalledEnd, ASignalEndsTheDaemonAllTheSame) {
   EXPECT_THAT(finished.err, ::testing::HasSubstr("Not on the disk"));
 }
 
-TEST_F(StalledEnd, MoreSignalsEndItAtOnce) {
+TEST_F(StalledEnd, MoreSignalsKeepItFromNothing) {
   stall();
   EXPECT_EQ(stop(), 202U);
-  // They may come while it stops, or while it waits for the disk.
+  // They may come while it stops, or while it waits for the disk; how long it waits then: end_watch_test.
   for (int i = 0; i < 3; ++i) daemon_->signal(i % 2 == 0 ? SIGTERM : SIGINT);
   const Finished finished = daemon_->wait();
   EXPECT_EQ(finished.exit_code, cell::kExitFailed);
   EXPECT_THAT(finished.err, ::testing::HasSubstr("Not on the disk"));
-  EXPECT_THAT(finished.err, ::testing::Not(::testing::HasSubstr("within 10")));
 }
 
 TEST_F(StalledEnd, WithADiskThatAnswersItEndsInOrder) {
