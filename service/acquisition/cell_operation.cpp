@@ -88,7 +88,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
       computation_(threads.computation, location_.cell(), location_.regions()),
       touches_(location_.cell(), computation_, store_, session_, preparation_, status_, wake_, clocks_),
-      manual_(location_.cell(), store_, session_, preparation_, touches_, status_, wake_),
+      manual_(location_.cell(), store_, preparation_, touches_, status_, wake_),
       recovery_(location_.cell(), location_.regions(), store_, plans_, session_, preparation_, planning_,
                 touches_, status_, clocks_),
       loop_{.executor = threads.operation, .ended = TimerWake(threads.operation)} {

@@ -47,12 +47,10 @@ bool is_over(const calib::Face& face, const Eigen::Vector3d& ball_m, double miss
 
 }  // namespace
 
-ManualTouching::ManualTouching(const Cell& cell, StoreQueue& store, ControllerSession& session,
-                               TouchPreparation& preparation, TouchExecutor& touches, PublishedStatus& status,
-                               Wake& wake)
+ManualTouching::ManualTouching(const Cell& cell, StoreQueue& store, TouchPreparation& preparation,
+                               TouchExecutor& touches, PublishedStatus& status, Wake& wake)
     : cell_(cell),
       store_(store),
-      session_(session),
       preparation_(preparation),
       touches_(touches),
       status_(status),

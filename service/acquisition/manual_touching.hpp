@@ -18,8 +18,8 @@ namespace cell {
 class ManualTouching {
  public:
   /// All must outlive it.
-  ManualTouching(const Cell& cell, StoreQueue& store, ControllerSession& session,
-                 TouchPreparation& preparation, TouchExecutor& touches, PublishedStatus& status, Wake& wake);
+  ManualTouching(const Cell& cell, StoreQueue& store, TouchPreparation& preparation, TouchExecutor& touches,
+                 PublishedStatus& status, Wake& wake);
 
   /// A run begins: nothing of the one before is to be stored or taken back.
   void begin_run();
@@ -52,7 +52,6 @@ class ManualTouching {
 
   const Cell& cell_;
   StoreQueue& store_;
-  ControllerSession& session_;
   TouchPreparation& preparation_;
   TouchExecutor& touches_;
   PublishedStatus& status_;
