@@ -27,8 +27,9 @@ void TouchExecutor::stop_when_good_enough(ActiveRun& active, std::size_t first) 
 asio::awaitable<void> TouchExecutor::end_touches(ActiveRun& active) {
   co_await identify(active);
   if (status_.state() != State::kExecute) co_return;
-  if (suspect_one(active.run, suspects(active))) co_return;
-  warn_of_outliers(active);
+  const std::vector<int> left = suspects(active);
+  if (suspect_one(active.run, left)) co_return;
+  if (!left.empty()) status_.warn(outlier_.warning_of(left));
   status_.apply(Event::kDone);
 }
 

@@ -1,7 +1,6 @@
 #include "tests/benchmark/measured_cell.hpp"
 
 #include <poll.h>
-#include <stdlib.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -11,10 +10,13 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "tests/end_to_end/environment.hpp"
+
 namespace bench {
 namespace {
 
 using nlohmann::json;
+using touchcal::testing::Environment;
 
 constexpr int kPollMs = 5;
 
@@ -48,18 +50,6 @@ std::string copied_cell(const std::filesystem::path& folder, const MeasuredCellO
   }
   return (here / "cell.json").string();
 }
-
-/// Set for the programs that start while it lives.
-class Environment {
- public:
-  Environment(const char* name, const std::string& value) : name_(name) { ::setenv(name, value.c_str(), 1); }
-  ~Environment() { ::unsetenv(name_); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-
- private:
-  const char* name_;
-};
 
 }  // namespace
 

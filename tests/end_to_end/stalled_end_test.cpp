@@ -1,30 +1,18 @@
 // A daemon whose disk answers no more ends all the same, and says what is not on it.
 #include <gmock/gmock.h>
-#include <stdlib.h>
 
 #include <boost/asio/ip/tcp.hpp>
 #include <csignal>
 #include <fstream>
 
 #include "service/base/exit_code.hpp"
+#include "tests/end_to_end/environment.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
 #include "tests/service/raw_http.hpp"
 
 namespace touchcal::testing {
 namespace {
-
-/// For the programs that are started as long as it lives.
-class Environment {
- public:
-  Environment(const char* name, const std::string& value) : name_(name) { ::setenv(name, value.c_str(), 1); }
-  ~Environment() { ::unsetenv(name_); }
-  Environment(const Environment&) = delete;
-  Environment& operator=(const Environment&) = delete;
-
- private:
-  const char* name_;
-};
 
 /// touchcald without a controller, whose disk stalls for ever once it is told to.
 class StalledEnd : public ::testing::Test {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <stdlib.h>
+
+#include <string>
+
+namespace touchcal::testing {
+
+/// A variable of the environment, set for the programs that start while it lives.
+class Environment {
+ public:
+  Environment(const char* name, const std::string& value) : name_(name) { ::setenv(name, value.c_str(), 1); }
+  ~Environment() { ::unsetenv(name_); }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+};
+
+}  // namespace touchcal::testing
