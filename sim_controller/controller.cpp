@@ -51,6 +51,7 @@ class Step {
   void operator()(const cs8::Message& message) {
     state_.last_heard = now_;
     advance();
+    if (!state_.connected) return;  // it was cut before this came: nobody reads an answer
     const cs8::MessageType type = cs8::type_of(message);
     if (!state_.greeted && type != cs8::MessageType::kHello) return fault(cs8::FaultCode::kNoHandshake, 0);
     if (cs8::is_from_controller(type))
@@ -269,8 +270,7 @@ class Step {
       cabinet.jogged = false;
       state_.motion.retract_path.clear();
     }
-    // A collision takes the power too: the command ends with the cause before anybody looks at the
-    // permission.
+    // A collision takes the power too: its command ends with that cause before the permission is looked at.
     const auto carry_out = [&] {
       if (running() && step(plant_, cabinet, state_.motion, seen, at)) finish();
     };

@@ -237,6 +237,15 @@ TEST_F(Interruption, AnEdgeInATravelIsLeftByTheOperator) {
   bench.answer<cs8::Accepted>(2, touch());
 }
 
+TEST_F(Interruption, AMessageBehindTheCutOfItsConnectionIsNotAnswered) {
+  Bench bench = Bench::ready(plant());
+  bench.state.plan.add({.what = LinkFault{Fault::kCloseSocket}});
+  bench.now += milliseconds(20);
+  EXPECT_TRUE(bench.send(0, cs8::Heartbeat{}).empty());
+  ASSERT_EQ(bench.last.link_faults.size(), 1U);
+  EXPECT_EQ(bench.last.link_faults.front().kind, Fault::kCloseSocket);
+}
+
 TEST_F(Interruption, ACollisionTakesPowerAwayUntilTheOperatorFreesTheArmForTheNextHost) {
   Plant narrow = plant();
   const Eigen::Vector3d holder =
