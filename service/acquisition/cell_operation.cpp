@@ -86,7 +86,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       location_(cell, store_, session_, status_, wake_, clocks_),
       plans_(threads.operation, location_.cell()),
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
-      computation_(threads.computation, location_.cell(), location_.regions()),
+      computation_(threads.computation, location_.cell()),
       touches_(location_.cell(), computation_, store_, session_, preparation_, status_, wake_, clocks_),
       manual_(location_.cell(), store_, preparation_, touches_, status_, wake_),
       recovery_(location_.cell(), location_.regions(), store_, plans_, session_, preparation_, planning_,
@@ -285,10 +285,6 @@ Status CellOperation::status() const {
   Status status = status_.latest();
   status.data_age_ms = data_age_ms();
   return status;
-}
-
-std::optional<std::string> CellOperation::result_json() const {
-  return run_ ? cell::result_json(*run_, tip_regions()) : std::nullopt;
 }
 
 }  // namespace cell

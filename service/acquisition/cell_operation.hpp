@@ -89,8 +89,6 @@ class CellOperation {
   [[nodiscard]] const Run* run() const { return run_ ? &run_->run : nullptr; }
   /// The same with what belongs to it.
   [[nodiscard]] const ActiveRun* active_run() const { return run_ ? &*run_ : nullptr; }
-  /// The result document of run(), as json text; nothing before there is a result.
-  [[nodiscard]] std::optional<std::string> result_json() const;
   /// The cell with its block at the last found pose.
   [[nodiscard]] const Cell& cell() const { return location_.cell(); }
   /// The same with place(), from any thread: a value that does not change.

@@ -8,7 +8,6 @@ namespace cell {
 namespace asio = boost::asio;
 
 asio::awaitable<Run> RunComputation::identified(Run run) {
-  (void)regions_.tip();  // made here: the other thread only reads it
   const auto identify = [copy = std::move(run)]() mutable {
     copy.identify();
     return std::move(copy);

@@ -14,10 +14,9 @@ namespace cell {
 /// copies; what a copy gave counts in the run unless that has changed meanwhile (Run::take_latest()).
 class RunComputation {
  public:
-  /// `cell` and `regions`, that of the runs and its own, must outlive the executor's work. A test gives its
-  /// one executor.
-  RunComputation(boost::asio::any_io_executor executor, const Cell& cell, const TipRegions& regions)
-      : executor_(std::move(executor)), cell_(cell), regions_(regions) {}
+  /// `cell` must outlive the executor's work. A test gives its one executor.
+  RunComputation(boost::asio::any_io_executor executor, const Cell& cell)
+      : executor_(std::move(executor)), cell_(cell) {}
 
   /// The same run with the result of all its touches.
   boost::asio::awaitable<Run> identified(Run run);
@@ -27,7 +26,6 @@ class RunComputation {
  private:
   boost::asio::any_io_executor executor_;
   const Cell& cell_;
-  const TipRegions& regions_;
 };
 
 }  // namespace cell

@@ -86,22 +86,22 @@ std::optional<double> predicted_rms_m(const calib::TipRegion& region,
   return region.rms_m(uncertainty.covariance());
 }
 
-const TipRegions::Regions& TipRegions::tip() const {
-  if (!tip_) {
-    tip_ = {.workspace_box = box_postures().region(),
-            .joint_ranges = calib::region_over_joint_ranges(cell_.arm.model, cell_.arm.joint_ranges)};
-  }
+const TipRegions::Tip& TipRegions::made_tip() const {
+  std::call_once(tip_made_, [this] {
+    const auto box_postures = calib::derive_at_postures(
+        cell_.arm.model,
+        calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box));
+    tip_ = {.box_postures = box_postures,
+            .regions = {
+                .workspace_box = box_postures.region(),
+                .joint_ranges = calib::region_over_joint_ranges(cell_.arm.model, cell_.arm.joint_ranges)}};
+  });
   return *tip_;
 }
 
-const calib::TipPostures& TipRegions::box_postures() const {
-  if (!box_postures_) {
-    box_postures_ = calib::derive_at_postures(
-        cell_.arm.model,
-        calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box));
-  }
-  return *box_postures_;
-}
+const TipRegions::Regions& TipRegions::tip() const { return made_tip().regions; }
+
+const calib::TipPostures& TipRegions::box_postures() const { return made_tip().box_postures; }
 
 const std::map<std::string, TipRegions::Regions>& TipRegions::tools() const {
   if (!tools_) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,7 +30,8 @@ std::optional<double> predicted_rms_m(const calib::TipRegion& region,
                                       const calib::UncertaintyBudget& uncertainty);
 
 /// The regions in which a cell predicts the error of its tip: postures of the nominal arm. Each region is
-/// computed on first use (milliseconds; the map about a tenth of a second) and cached. Not thread-safe.
+/// computed on first use (milliseconds; the map about a tenth of a second) and cached. tip() and
+/// box_postures() may be called from several threads, the others from one.
 class TipRegions {
  public:
   /// For the stylus tip or a named tool centre point.
@@ -50,9 +52,16 @@ class TipRegions {
   [[nodiscard]] const calib::TipMap& map() const;
 
  private:
+  struct Tip {
+    calib::TipPostures box_postures;
+    Regions regions;
+  };
+
+  const Tip& made_tip() const;
+
   const Cell& cell_;
-  mutable std::optional<Regions> tip_;
-  mutable std::optional<calib::TipPostures> box_postures_;
+  mutable std::once_flag tip_made_;
+  mutable std::optional<Tip> tip_;
   mutable std::optional<std::map<std::string, Regions>> tools_;
   mutable std::optional<calib::TipMap> map_;
 };

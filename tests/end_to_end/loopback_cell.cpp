@@ -117,8 +117,11 @@ void LoopbackCell::run_until_over() {
 
 std::int64_t LoopbackCell::start(const std::string& recipe) {
   const auto answer = ask_to_start(cell::StartRequest{.recipe = recipe});
-  if (const auto* refusal = std::get_if<cell::CommandRefusal>(&answer))
-    throw std::runtime_error(refusal->detail);
+  if (const auto* refusal = std::get_if<cell::CommandRefusal>(&answer)) {
+    std::string why = refusal->detail;
+    for (const cell::Unmet& unmet : refusal->unmet) why += "; " + unmet.code;
+    throw std::runtime_error(why);
+  }
   return std::get<cell::Started>(answer).run_id;
 }
 

@@ -67,7 +67,7 @@ class OwnersBench {
   RunStore store;
   StoreQueue queue{store, io.get_executor()};
   TipRegions regions;
-  RunComputation computation{io.get_executor(), cell_of_owners(), regions};
+  RunComputation computation{io.get_executor(), cell_of_owners()};
   TouchPreparation preparation;
 
  private:

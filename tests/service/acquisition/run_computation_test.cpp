@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 class RunComputationTest : public ExecutorBench {
  protected:
   boost::asio::io_context arithmetic_{1};
-  RunComputation withheld_{arithmetic_.get_executor(), cell_of_owners(), regions};
+  RunComputation withheld_{arithmetic_.get_executor(), cell_of_owners()};
   TouchExecutor beside_{cell_of_owners(), withheld_, queue, session,
                         preparation,      status,    wake,  time.clocks()};
 };
