@@ -5,6 +5,7 @@
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <nlohmann/json.hpp>
 
 #include "service/acquisition/cell_operation.hpp"
@@ -46,15 +47,17 @@ class MortalDaemon {
 
   void launch() {
     io_ = std::make_unique<boost::asio::io_context>(1);
+    computation_ = std::make_unique<boost::asio::thread_pool>(1);
     store_ = std::make_unique<cell::RunStore>(store_file());
     operation_ = std::make_unique<cell::CellOperation>(
-        cell::CellOperation::Threads{io_->get_executor(), io_->get_executor()}, cell,
+        cell::CellOperation::Threads{io_->get_executor(), computation_->get_executor()}, cell,
         cell::StoreQueue(*store_, io_->get_executor()), cell::Endpoint{"127.0.0.1", server_->port()},
         "restart", cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
     operation_->launch();
   }
   /// Nothing of the daemon gets to act any more.
   void kill() {
+    computation_.reset();  // waits for what it is at, of which nobody hears
     operation_.reset();
     io_.reset();
     store_.reset();
@@ -129,6 +132,7 @@ class MortalDaemon {
   boost::asio::io_context controller_io_{1};
   std::optional<sim::Server> server_;
   std::unique_ptr<boost::asio::io_context> io_;
+  std::unique_ptr<boost::asio::thread_pool> computation_;
   std::unique_ptr<cell::RunStore> store_;
   std::unique_ptr<cell::CellOperation> operation_;
   long steps_ = 0;
