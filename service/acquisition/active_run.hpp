@@ -1,10 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "service/acquisition/hold_time.hpp"
 #include "service/acquisition/place_check.hpp"
 #include "service/run/run.hpp"
 #include "service/run/verdict.hpp"
@@ -22,14 +22,14 @@ struct Interruption {
 /// handed it.
 struct ActiveRun {
   Run run;
-  std::string conditions;                         // as kept with it
-  bool guided = false;                            // its touches are made by hand
-  bool open = true;                               // begun in the store, not finished there
-  bool finished = false;                          // complete, and stored as such
-  std::size_t stored_changes = 0;                 // of its plan
-  std::chrono::steady_clock::time_point began{};  // to touch
-  std::optional<Interruption> interruption;       // until somebody resumes it
-  std::optional<PlaceCheck> place_check;          // once it is planned, where the block was located
+  std::string conditions;                    // as kept with it
+  bool guided = false;                       // its touches are made by hand
+  bool open = true;                          // begun in the store, not finished there
+  bool finished = false;                     // complete, and stored as such
+  std::size_t stored_changes = 0;            // of its plan
+  WorkTime worked;                           // before its first touch on the way to it
+  std::optional<Interruption> interruption;  // until somebody resumes it
+  std::optional<PlaceCheck> place_check;     // once it is planned, where the block was located
 
   /// The changes of its plan behind the stored ones.
   [[nodiscard]] std::vector<PlanChange> changes_to_store() const;

@@ -59,8 +59,7 @@ void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_c
   if (!is_active(status.state)) return;
   if (const calib::PlannedTouch* next = run.next()) status.plane = next->face + 1;
   if (run.touches_done() == 0) return;
-  const std::chrono::duration<double> elapsed = now - active.began;
-  status.eta_s = run.remaining_s(elapsed.count());
+  status.eta_s = run.remaining_s(active.worked.until(now).count());
 }
 
 }  // namespace

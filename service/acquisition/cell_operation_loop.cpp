@@ -25,7 +25,9 @@ constexpr std::chrono::milliseconds kPermitLook{10'000};
 
 void CellOperation::on_entered(State state) {
   session_.on_entered(state);
-  hold_time_.on_entered(state, clocks_.steady());
+  const auto now = clocks_.steady();
+  hold_time_.on_entered(state, now);
+  if (run_) run_->worked.on_entered(state, now);
 }
 
 asio::awaitable<void> CellOperation::act_on_states() {
@@ -174,7 +176,6 @@ asio::awaitable<void> CellOperation::start_run() {
   const bool planned = co_await planning_.plan(*run_);
   if (!planned || status_.state() != State::kStarting || !can_search()) co_return;
   const bool permitted = co_await obtain_permit();
-  run_->began = clocks_.steady();
   if (permitted) status_.apply(Event::kDone);
 }
 
@@ -191,7 +192,6 @@ asio::awaitable<void> CellOperation::resume_run() {
   const bool looks = !has_permit() || hold_time_.exceeds(HoldTime::kReferenceMax, clocks_.steady());
   if (looks) touches_.look_at_reference();
   const bool permitted = co_await obtain_permit();
-  if (run_->run.touches_done() == 0) run_->began = clocks_.steady();
   if (!permitted) co_return;
   tell_resumption(looks);
   status_.apply(Event::kDone);

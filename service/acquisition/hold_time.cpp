@@ -10,4 +10,11 @@ void HoldTime::on_entered(State state, TimePoint now) {
   }
 }
 
+void WorkTime::on_entered(State state, TimePoint now) {
+  const bool works = state == State::kExecute || state == State::kCompleting;
+  if (works == since_.has_value()) return;
+  before_ = until(now);
+  since_ = works ? std::optional(now) : std::nullopt;
+}
+
 }  // namespace cell

@@ -28,4 +28,24 @@ class HoldTime {
   std::optional<TimePoint> since_;
 };
 
+/// How long a run has made touches, without its holds: what is left takes as long in proportion. A pure
+/// value; the time is handed in.
+class WorkTime {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  WorkTime() = default;
+  /// Goes on behind what an earlier daemon worked.
+  explicit WorkTime(std::chrono::duration<double> before) : before_(before) {}
+
+  void on_entered(State state, TimePoint now);
+  [[nodiscard]] std::chrono::duration<double> until(TimePoint now) const {
+    return before_ + (since_ ? now - *since_ : TimePoint::duration::zero());
+  }
+
+ private:
+  std::chrono::duration<double> before_{};
+  std::optional<TimePoint> since_;
+};
+
 }  // namespace cell

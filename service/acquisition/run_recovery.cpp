@@ -187,8 +187,7 @@ asio::awaitable<bool> RunRecovery::resume(ActiveRun& active) {
   double made_s = 0.0;
   for (std::size_t i = 0; i < run.touches_made() && run.planned(i); ++i)
     made_s += run.planned(i)->travel_s + run.planned(i)->touch_s;
-  active.began = clocks_.steady() -
-                 std::chrono::duration_cast<std::chrono::seconds>(std::chrono::duration<double>(made_s));
+  active.worked = WorkTime(std::chrono::duration<double>(made_s));
   status_.publish();
   co_return true;
 }

@@ -368,12 +368,13 @@ TEST_F(EndedRunTest, AnAnswerThatCannotBeStoredIsKeptByTheControllerUntilItCan) 
   EXPECT_EQ(store_.touches(id).size(), 1u);
 }
 
-TEST_F(EndedRunTest, ARunOnHoldTakesItTooAndTheTimeThatIsLeftIsNotThatOfTheWallClock) {
+TEST_F(EndedRunTest, ARunOnHoldTakesItTooAndTheTimeThatIsLeftIsThatOfItsWork) {
   ends_by_ = Command::kPause;
   start_few();
   run_until_asked("acknowledge 1");
   const double left_s = operation_.status().eta_s.value();
   time_.set_wall_clock(std::chrono::hours(1));
+  time_.pass(std::chrono::hours(1));  // on hold
   controller_->state->flags &= ~static_cast<std::uint32_t>(cs8::kPowered);
   tell_state();
   ASSERT_EQ(operation_.status().controller.powered, false) << "the status is made anew";

@@ -37,5 +37,19 @@ TEST(HoldTime, ARunThatIsOverHasNone) {
   EXPECT_FALSE(hold.exceeds(0min, kBegin + 1h));
 }
 
+TEST(WorkTime, IsThatOfTouchingWithoutTheHolds) {
+  WorkTime worked(10s);
+  worked.on_entered(State::kHeld, kBegin);
+  EXPECT_EQ(worked.until(kBegin + 1h), 10s);
+  worked.on_entered(State::kUnholding, kBegin + 1h);
+  worked.on_entered(State::kExecute, kBegin + 1h + 5s);
+  EXPECT_EQ(worked.until(kBegin + 1h + 8s), 13s);
+  worked.on_entered(State::kHolding, kBegin + 1h + 9s);
+  worked.on_entered(State::kHeld, kBegin + 1h + 10s);
+  worked.on_entered(State::kExecute, kBegin + 3h);
+  worked.on_entered(State::kCompleting, kBegin + 3h + 1s);
+  EXPECT_EQ(worked.until(kBegin + 3h + 2s), 16s);
+}
+
 }  // namespace
 }  // namespace cell
