@@ -226,8 +226,10 @@ std::optional<CommandRefusal> CellOperation::refuse_undo() const {
 void CellOperation::apply_command(Command command) {
   const bool answers_hold =
       command == Command::kResume || command == Command::kRetry || command == Command::kSkip;
-  const bool settles_fault = answers_hold || command == Command::kAcknowledge || command == Command::kClear ||
-                             command == Command::kReset;
+  // Why a run stands stays to be read until somebody answers it.
+  const bool acknowledges = command == Command::kAcknowledge && !stands_still(status_.state());
+  const bool settles_fault =
+      answers_hold || acknowledges || command == Command::kClear || command == Command::kReset;
   if (settles_fault && status_.fault()) {
     status_.clear_fault();
     status_.publish();

@@ -83,6 +83,8 @@ TEST(CellFaults, SearchesThatMeetNothingHoldTheRunAndCountNothing) {
   loop.run_until_over();
   EXPECT_EQ(loop.status().state, State::kHeld);
   EXPECT_EQ(loop.fault_name(), "no_contact");
+  loop.command(Command::kAcknowledge);
+  EXPECT_EQ(loop.fault_name(), "no_contact") << "why it stands stays to be read";
   loop.command(Command::kResume);
   EXPECT_TRUE(loop.fault_name().empty());
   loop.run_until_over();
