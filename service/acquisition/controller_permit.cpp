@@ -91,7 +91,8 @@ asio::awaitable<void> ControllerSession::take_refused_permit(const cs8::Permit& 
                                                              std::optional<cs8::State> told,
                                                              std::chrono::steady_clock::time_point ready_by) {
   const State state = status_.state();
-  const cs8::Rejected refused{static_cast<cs8::RejectReason>(permit.detail)};
+  cs8::Rejected refused{static_cast<cs8::RejectReason>(permit.detail)};
+  if (told && refused.reason == cs8::RejectReason::kTaskFailed) refused.detail = told->task_error;
   const AwaitedAction* awaited = awaited_after_rejection(refused.reason, told ? told->flags : 0);
   if (!awaited) {
     const OutcomeFault failed = fault_of(refused);

@@ -140,7 +140,8 @@ ControllerView ControllerSession::view(const std::optional<std::string>& probe) 
   view.cell_closed = (state->flags & cs8::kCellClosed) != 0;
   view.touch_tested = (state->flags & cs8::kTouchTested) != 0;
   view.permit = std::string(cs8::name(state->permit));
-  view.retract_due = (state->flags & cs8::kRetractDue) != 0;
+  // The controller says so through all of a touch: it is due where a command has ended without it.
+  view.retract_due = (state->flags & cs8::kRetractDue) != 0 && state->active_sequence == 0;
   const cs8::ProbeInputs inputs = cs8::probe_inputs(state->flags);
   if (inputs.agree()) {
     view.probe = inputs.free() ? "free" : "touched";

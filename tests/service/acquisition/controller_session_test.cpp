@@ -132,6 +132,8 @@ TEST_F(ControllerSessionTest, AnArmThatStandsAtAFaceIsTold) {
   EXPECT_EQ(session.view({}).retract_due, false);
   controller.state->flags |= cs8::kRetractDue;
   EXPECT_EQ(session.view({}).retract_due, true);
+  controller.state->active_sequence = 1;
+  EXPECT_EQ(session.view({}).retract_due, false) << "in every touch that goes well";
   controller.is_connected = false;
   EXPECT_EQ(session.view({}).retract_due, std::nullopt);
 }
@@ -289,6 +291,15 @@ TEST_F(ControllerSessionTest, AControllerThatMissedAnAcknowledgementIsMetAnew) {
   EXPECT_FALSE(run(session.obtain_permit(7)));
   EXPECT_EQ(status.state(), State::kHolding);
   EXPECT_THAT(controller.asked, ElementsAre("begin 7", "close"));
+}
+
+TEST_F(ControllerSessionTest, ATaskThatFailedIsToldWithTheNumberThatStateHasOfIt) {
+  status.enter(State::kUnholding);
+  controller.state->task_error = 60;
+  controller.on_begin = [](std::uint32_t run) { return refused(run, cs8::RejectReason::kTaskFailed); };
+  EXPECT_FALSE(run(session.obtain_permit(7)));
+  EXPECT_THAT(faults, ElementsAre("task_failed"));
+  EXPECT_EQ(status.fault().value().detail, "run-time error 60");
 }
 
 TEST_F(ControllerSessionTest, ASearchThatTheControllerWillNotMakeIsNamedBeforeAnythingMoves) {
