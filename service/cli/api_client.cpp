@@ -163,7 +163,7 @@ bool is_this_machine(const std::string& host) {
 std::string unreached_remedy(const boost::system::error_code& code) {
   if (is_about_the_certificate(code)) return "name the certificate that signed the daemon's with --ca FILE";
   if (code == asio::error::eof || code == asio::error::connection_reset || code == beast::error::timeout)
-    return "it took the connection and did not answer: it may have too many, try again";
+    return "it took the connection and did not answer: it has ended, or has too many connections; try again";
   return "start it, or name it with --daemon URL";
 }
 
@@ -234,15 +234,17 @@ ApiReply ApiClient::request(bool post, const std::string& target, const std::str
     message.body() = body;
     message.prepare_payload();
   }
+  std::string place = options_.socket.string();
   try {
     if (!options_.socket.empty()) {
       if (auto reply = reply_of(ask_local(options_.socket, message, deadline))) return *std::move(reply);
     }
+    place = url();
     if (!is_secure_) return reply_of(ask(host_, port_, std::move(message), deadline));
     ssl::context trusted = trusted_by(options_.ca_file);
     return reply_of(ask_secure(host_, port_, std::move(message), deadline, trusted));
   } catch (const boost::system::system_error& error) {
-    throw DaemonUnreachable("no touchcald answers at " + url() + " (" + error.code().message() + "); " +
+    throw DaemonUnreachable("no touchcald answers at " + place + " (" + error.code().message() + "); " +
                             unreached_remedy(error.code()));
   }
 }

@@ -264,8 +264,8 @@ constexpr std::array kTable{
                "touchcal skip to leave this touch out, or touchcal stop; in ABORTED touchcal clear, then "
                "touchcal reset",
                FaultKind::kHeld},
-    FaultEntry{FaultCode::kStoreFailed, "store_failed", "a touch could not be stored",
-               "the arm finished the touch and stands clear of the face",
+    FaultEntry{FaultCode::kStoreFailed, "store_failed", "the state directory could not be written",
+               "the arm finished a touch that was under way and stands clear of the face",
                "free disk space or repair the state directory's "
                "rights, then touchcal resume if the run is on hold, else touchcal clear and touchcal reset",
                FaultKind::kHeld, "P39"},
@@ -274,7 +274,9 @@ constexpr std::array kTable{
                "look at the result's message; change the recipe and start a new run", FaultKind::kWarning},
     FaultEntry{
         FaultCode::kDaemonRestarted, "daemon_restarted", "the daemon was restarted during the run",
-        "the arm stopped by itself when the link was gone and stands where it was",
+        "the arm stands where the end of the last daemon left it: taken back by it, or stopped by itself "
+        "when "
+        "the link was gone",
         "touchcal resume to go on with the touch behind the last one that is stored, or touchcal stop to "
         "end the run as it is; in ABORTED it cannot go on: touchcal clear, then touchcal reset",
         FaultKind::kHeld, "P41"},

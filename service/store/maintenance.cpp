@@ -159,11 +159,11 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
   return damage;
 }
 
-std::uintmax_t disk_room_bytes(const SharedDatabase& database) {
+std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database) {
   std::error_code unknown;
   const auto space =
       std::filesystem::space(std::filesystem::path(database->getFilename()).parent_path(), unknown);
-  return unknown ? 0 : space.available;  // a directory that is no longer there has no room
+  return unknown ? std::nullopt : std::optional(space.available);
 }
 
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest) {

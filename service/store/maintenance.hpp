@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -31,8 +32,8 @@ class StoreNotChecked : public std::runtime_error {
 /// StoreNotChecked where a log lies beside the file there, which only a writer can put into it.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
 
-/// Free bytes on the disk of the database; the largest number where that is unknown.
-std::uintmax_t disk_room_bytes(const SharedDatabase& database);
+/// Free bytes on the disk of the database; nothing where its directory is no longer there.
+std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database);
 
 /// So many of the last runs stay however old they are.
 inline constexpr int kLastRunsKept = 10;

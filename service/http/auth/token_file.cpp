@@ -24,7 +24,7 @@ std::optional<std::string> read_token(const std::filesystem::path& file, std::st
   std::string token;
   std::getline(existing, token);
   const bool is_visible = std::ranges::all_of(token, [](char c) { return c > ' ' && c <= '~'; });
-  if (token.size() < 2 * kTokenBytes || !is_visible) {
+  if (token.size() < 2 * kTokenBytes || token.size() > kTokenCharactersMax || !is_visible) {
     throw std::runtime_error(fmt::format("{}: does not hold a token; {}", file.string(), replacement));
   }
   return token;

@@ -28,7 +28,10 @@ std::optional<Unmet> unmet_by_state(State state) {
 /// Without room to record it, a start is refused.
 std::optional<Unmet> unmet_by_disk(const RunStore& store) {
   constexpr std::uintmax_t kRoomBytes = 1024 * 1024;
-  if (disk_room_bytes(store.database()) >= kRoomBytes) return std::nullopt;
+  const auto room_bytes = disk_room_bytes(store.database());
+  if (!room_bytes)
+    return Unmet{"store_not_writable", "the state directory is no longer there: a run could not be recorded"};
+  if (*room_bytes >= kRoomBytes) return std::nullopt;
   return Unmet{"disk_full", "the disk of the state directory is full: a run could not be recorded"};
 }
 

@@ -183,15 +183,15 @@ TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRun
 
 TEST_F(StoreMaintenance, TheRoomOnTheDiskOfTheDatabaseIsTold) {
   constexpr double kOthersWriteBytes = 1e9;
-  EXPECT_NEAR(static_cast<double>(disk_room_bytes(store_.database())),
+  EXPECT_NEAR(static_cast<double>(disk_room_bytes(store_.database()).value()),
               static_cast<double>(std::filesystem::space(folder_.path()).available), kOthersWriteBytes);
 }
 
-TEST_F(StoreMaintenance, ADirectoryThatWasMovedAwayHasNoRoom) {
+TEST_F(StoreMaintenance, OfADirectoryThatWasMovedAwayNoRoomIsTold) {
   std::filesystem::path moved = folder_.path();
   moved += ".moved";
   std::filesystem::rename(folder_.path(), moved);
-  EXPECT_EQ(disk_room_bytes(store_.database()), 0U);
+  EXPECT_FALSE(disk_room_bytes(store_.database()));
   std::filesystem::rename(moved, folder_.path());
 }
 

@@ -80,7 +80,8 @@ TEST_F(OperatorTokens, ANameHasItsLettersAndItsLength) {
 
 TEST_F(OperatorTokens, AFileIsHeldToTheRulesOfTheOtherTokens) {
   const auto file = directory_ / "anna";
-  for (const std::string& bytes : {std::string(), std::string(63, '1'), std::string(64, ' ')}) {
+  for (const std::string& bytes :
+       {std::string(), std::string(63, '1'), std::string(1025, '1'), std::string(64, ' ')}) {
     write(file, bytes);
     EXPECT_THAT(refusal(), AllOf(HasSubstr(file.string() + ": does not hold a token"),
                                  HasSubstr("openssl rand -hex 32")));
