@@ -27,7 +27,7 @@ struct ActiveRun {
   bool open = true;                          // begun in the store, not finished there
   bool finished = false;                     // complete, and stored as such
   std::size_t stored_changes = 0;            // of its plan
-  WorkTime worked;                           // before its first touch on the way to it
+  WorkTime worked;                           // on its touches and the ways to them
   std::optional<Interruption> interruption;  // until somebody resumes it
   std::optional<PlaceCheck> place_check;     // once it is planned, where the block was located
 

@@ -58,7 +58,7 @@ void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_c
   status.touch_benefit = run.touch_benefit();
   if (!is_active(status.state)) return;
   if (const calib::PlannedTouch* next = run.next()) status.plane = next->face + 1;
-  if (run.touches_done() == 0) return;
+  if (run.touches_done() == 0 || active.interruption) return;  // an earlier daemon's plan is not read yet
   status.eta_s = run.remaining_s(active.worked.until(now).count());
 }
 

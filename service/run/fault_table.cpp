@@ -274,9 +274,7 @@ constexpr std::array kTable{
                "look at the result's message; change the recipe and start a new run", FaultKind::kWarning},
     FaultEntry{
         FaultCode::kDaemonRestarted, "daemon_restarted", "the daemon was restarted during the run",
-        "the arm stands where the end of the last daemon left it: taken back by it, or stopped by itself "
-        "when "
-        "the link was gone",
+        "the arm stands where the last daemon's end left it: taken back by it, or stopped when the link went",
         "touchcal resume to go on with the touch behind the last one that is stored, or touchcal stop to "
         "end the run as it is; in ABORTED it cannot go on: touchcal clear, then touchcal reset",
         FaultKind::kHeld, "P41"},

@@ -88,13 +88,12 @@ std::optional<double> predicted_rms_m(const calib::TipRegion& region,
 
 const TipRegions::Tip& TipRegions::made_tip() const {
   std::call_once(tip_made_, [this] {
-    const auto box_postures = calib::derive_at_postures(
+    auto box_postures = calib::derive_at_postures(
         cell_.arm.model,
         calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box));
-    tip_ = {.box_postures = box_postures,
-            .regions = {
-                .workspace_box = box_postures.region(),
-                .joint_ranges = calib::region_over_joint_ranges(cell_.arm.model, cell_.arm.joint_ranges)}};
+    Regions regions{.workspace_box = box_postures.region(),
+                    .joint_ranges = calib::region_over_joint_ranges(cell_.arm.model, cell_.arm.joint_ranges)};
+    tip_ = {.box_postures = std::move(box_postures), .regions = std::move(regions)};
   });
   return *tip_;
 }

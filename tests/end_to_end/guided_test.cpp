@@ -138,6 +138,7 @@ TEST_F(GuidedRun, GoesOnByHandWhenTheDaemonWasStartedAnew) {
   const cell::HandGuide third = loop_.status().by_hand.value();
   loop_.relaunch();
   EXPECT_EQ(loop_.status().state, State::kHeld);
+  EXPECT_EQ(loop_.status().eta_s, std::nullopt) << "how much is left is not known before the plan is";
   loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
   loop_.command(Command::kResume);
   loop_.run_until([](const cell::Status& status) { return status.by_hand.has_value(); });
