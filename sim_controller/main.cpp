@@ -135,7 +135,10 @@ int main(int argc, char** argv) {
                  "takes faults while it runs, a line of JSON each; port 0 takes a free one")
       ->type_name("HOST:PORT")
       ->check(check_listen);
-  app.add_option("--seed", arguments.seed, "of the touch noise")->type_name("N")->capture_default_str();
+  app.add_option("--seed", arguments.seed, "of the touch noise")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   app.add_option("--speed", arguments.speed, "simulated against wall time; max: motions take no time")
       ->type_name("X|max")
       ->check(check_speed)

@@ -153,6 +153,7 @@ class CellOperation {
   boost::asio::awaitable<void> act_on(State state);
   boost::asio::awaitable<void> break_off(State state, std::string why);
   boost::asio::awaitable<void> reset();
+  boost::asio::awaitable<void> await_readiness();
   boost::asio::awaitable<void> connect();
   boost::asio::awaitable<void> settle(std::uint32_t sequence);
   boost::asio::awaitable<void> start_run();

@@ -133,7 +133,7 @@ asio::awaitable<void> CellOperation::act_on(State state) {
       }
       break;
     case State::kIdle:
-      co_await wake_.wait(1h);
+      co_await await_readiness();
       break;
   }
 }
@@ -148,8 +148,16 @@ asio::awaitable<void> CellOperation::reset() {
   } else if (unmet_preconditions().empty()) {
     status_.apply(Event::kDone);
   } else {
-    co_await wake_.wait(1h);  // each state of the controller wakes
+    co_await await_readiness();
   }
+}
+
+/// Each state of the controller that changes it wakes. A dialogue asks for what it needs itself.
+asio::awaitable<void> CellOperation::await_readiness() {
+  const AwaitedAction* missing = nullptr;
+  if (!location_.is_locating()) missing = awaited_before_start(unmet_preconditions());
+  session_.wait_for(missing);
+  co_await wake_.wait(1h);
 }
 
 asio::awaitable<void> CellOperation::connect() {

@@ -48,7 +48,8 @@ void ControllerSession::on_controller_state(const cs8::State& state) {
   const ControllerView& shown = status_.latest().controller;
   if (shown != view(shown.probe)) status_.publish();
   const bool watched = status_.state() == State::kResetting || status_.state() == State::kSuspended;
-  if (watched || status_.latest().waiting_for) wake_.wake();
+  const bool other_readiness = std::exchange(readiness_, readiness_of(state)) != readiness_of(state);
+  if (watched || other_readiness || status_.latest().waiting_for) wake_.wake();
   if (is_active(status_.state()) && overruns_ && state.overruns > *overruns_)
     status_.warn({FaultCode::kControllerOverruns, fmt::format("{} since its start", state.overruns)});
   overruns_ = state.overruns;

@@ -120,6 +120,8 @@ class ControllerSession {
   [[nodiscard]] const std::optional<calib::JointVector>& standing() const { return standing_; }
   void set_standing(const calib::JointVector& joints) { standing_ = joints; }
   void forget_standing() { standing_.reset(); }
+  /// Says what a person at the cell is waited for; null when for nothing.
+  void wait_for(const AwaitedAction* awaited);
   /// The arm's joints, clear of the faces: after an interrupted search the arm first goes back along the
   /// search line. Empty when that failed, the link is lost or another state was entered.
   boost::asio::awaitable<std::optional<calib::JointVector>> standing_joints();
@@ -128,7 +130,6 @@ class ControllerSession {
   boost::asio::awaitable<void> leave_face();
 
  private:
-  void wait_for(const AwaitedAction* awaited);
   boost::asio::awaitable<void> take_refused_permit(const cs8::Permit& permit, std::optional<cs8::State> told,
                                                    std::chrono::steady_clock::time_point ready_by);
   boost::asio::awaitable<void> wait_until_readier(std::optional<cs8::State> told,
@@ -148,6 +149,7 @@ class ControllerSession {
   std::uint32_t number_ = 0;
   std::optional<std::string> application_;
   std::optional<std::uint32_t> overruns_;  // of the controller's tasks, as reported
+  std::optional<Readiness> readiness_;     // as reported last
   std::uint32_t unsettled_sequence_ = 0;   // an open command that Welcome named, until it is settled
   std::optional<OpenTouch> open_touch_;
   std::optional<calib::JointVector> standing_;

@@ -49,6 +49,13 @@ std::vector<Unmet> unmet_by_controller(bool connected, const std::optional<cs8::
   return unmet_by(*state);
 }
 
+const AwaitedAction* awaited_before_start(const std::vector<Unmet>& unmet) {
+  for (const Unmet& one : unmet) {
+    if (const AwaitedAction* awaited = awaited_by_precondition(one.code)) return awaited;
+  }
+  return nullptr;
+}
+
 std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& cell,
                                  const StartConditions& start, const std::optional<Fault>& fault,
                                  const PlanRefusal* no_plan) {

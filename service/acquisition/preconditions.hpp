@@ -9,6 +9,7 @@
 #include "cs8_protocol/messages.hpp"
 #include "service/acquisition/command_refusal.hpp"
 #include "service/documents/plan.hpp"
+#include "service/run/readiness.hpp"
 #include "service/store/run_page.hpp"
 
 /// The preconditions of a start, all checked at once before anything moves. Pure functions.
@@ -18,6 +19,9 @@ namespace cell {
 /// link.
 std::vector<Unmet> unmet_by_controller(bool connected, const std::optional<cs8::State>& state,
                                        const std::optional<Fault>& fault);
+
+/// What a person at the cell does about the first of them that a person can meet; null where there is none.
+const AwaitedAction* awaited_before_start(const std::vector<Unmet>& unmet);
 
 /// What of a request counts: the temperature of the block that it gives, if it gives one, and its time.
 struct StartConditions {

@@ -18,6 +18,7 @@ void PublishedStatus::enter(State state) {
   spdlog::info("{} -> {}{}", state_name(status_.state), state_name(state),
                status_.run_id ? fmt::format(" (run {})", *status_.run_id) : "");
   status_.state = state;
+  status_.waiting_for.reset();
   status_.since = format_utc(clocks_.system());
   hooks_.on_entered(state);
   publish();

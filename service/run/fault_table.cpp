@@ -169,8 +169,9 @@ constexpr std::array kTable{
     FaultEntry{
         FaultCode::kLinkLost, "link_lost", "the link to the controller was lost",
         "the arm stops by itself after the heartbeat time-out and stands where it was",
-        "look at cable and controller; the daemon keeps trying; then touchcal resume to go on with the "
-        "touch that was broken off, or touchcal stop; in ABORTED touchcal clear, then touchcal reset",
+        "look at cable and controller; the daemon keeps trying; where a run is on hold touchcal resume, to "
+        "go on with the touch that was broken off, or touchcal stop; in STOPPED touchcal reset; in ABORTED "
+        "touchcal clear, then touchcal reset",
         FaultKind::kHeld, "P22"},
     FaultEntry{FaultCode::kRecipeUnreachable, "recipe_unreachable",
                "the recipe's touches cannot be planned in this cell", "nothing moved",

@@ -11,22 +11,35 @@ using cs8::RejectReason;
 
 struct Remedy {
   RejectReason refusal;
+  FaultCode precondition;  // of a start, that is not met for the same reason
   AwaitedAction awaited;
 };
 
 constexpr std::array kRemedies{
     Remedy{RejectReason::kTouchTestMissing,
+           FaultCode::kTouchTestMissing,
            {"touch_test", "touch the stylus by hand, in manual mode or with power off"}},
-    Remedy{RejectReason::kCellOpen, {"cell_closed", "leave and close the cell"}},
-    Remedy{RejectReason::kNotRemote, {"remote_mode", "turn the controller to remote mode"}},
-    Remedy{RejectReason::kNotPowered, {"power", "switch the arm's power on"}},
-    Remedy{RejectReason::kHold, {"hold_released", "release the hold on the pendant"}},
+    Remedy{RejectReason::kCellOpen, FaultCode::kCellOpen, {"cell_closed", "leave and close the cell"}},
+    Remedy{RejectReason::kNotRemote,
+           FaultCode::kNotRemote,
+           {"remote_mode", "turn the controller to remote mode"}},
+    Remedy{RejectReason::kNotPowered, FaultCode::kNotPowered, {"power", "switch the arm's power on"}},
+    Remedy{RejectReason::kHold, FaultCode::kHold, {"hold_released", "release the hold on the pendant"}},
     Remedy{RejectReason::kEmergencyStop,
+           FaultCode::kEmergencyStop,
            {"emergency_stop_released", "release and acknowledge the emergency stop"}},
-    Remedy{RejectReason::kNotCalibrated, {"arm_referenced", "let the controller find its joint references"}},
-    Remedy{RejectReason::kMonitorSpeed, {"monitor_speed", "set the monitor speed to 100 %"}},
-    Remedy{RejectReason::kProbeTriggered, {"probe_free", "free the probe: it reads touched"}},
-    Remedy{RejectReason::kProbeInputs, {"probe_inputs", "check the probe's cable: its two inputs disagree"}},
+    Remedy{RejectReason::kNotCalibrated,
+           FaultCode::kNotCalibrated,
+           {"arm_referenced", "let the controller find its joint references"}},
+    Remedy{RejectReason::kMonitorSpeed,
+           FaultCode::kMonitorSpeed,
+           {"monitor_speed", "set the monitor speed to 100 %"}},
+    Remedy{RejectReason::kProbeTriggered,
+           FaultCode::kProbeTouched,
+           {"probe_free", "free the probe: it reads touched"}},
+    Remedy{RejectReason::kProbeInputs,
+           FaultCode::kProbeFault,
+           {"probe_inputs", "check the probe's cable: its two inputs disagree"}},
 };
 
 constexpr AwaitedAction kConfirmation{"confirmation", "press the confirmation key at the cell"};
@@ -42,6 +55,12 @@ const AwaitedAction* awaited_after_rejection(RejectReason refusal, std::uint32_t
   const bool untested = (flags & cs8::kTouchTested) == 0;
   return &remedy_of(untested && refusal != RejectReason::kProbeInputs ? RejectReason::kTouchTestMissing
                                                                       : refusal);
+}
+
+const AwaitedAction* awaited_by_precondition(std::string_view name) {
+  const auto found = std::ranges::find_if(
+      kRemedies, [name](const Remedy& remedy) { return describe(remedy.precondition).name == name; });
+  return found == kRemedies.end() ? nullptr : &found->awaited;
 }
 
 const AwaitedAction& awaited_confirmation() { return kConfirmation; }

@@ -20,6 +20,10 @@ struct AwaitedAction {
 /// the probe disagree. `flags` are those of State.
 const AwaitedAction* awaited_after_rejection(cs8::RejectReason refusal, std::uint32_t flags);
 
+/// What a start waits for whose precondition of this name (a code of the fault table) is not met; null if no
+/// person at the cell can meet it.
+const AwaitedAction* awaited_by_precondition(std::string_view name);
+
 /// What an accepted Begin waits for.
 const AwaitedAction& awaited_confirmation();
 

@@ -74,10 +74,15 @@ TEST_F(CellOperationTest, FindsItsControllerAndIsIdleOnceNothingStandsInTheWay) 
   EXPECT_THAT(controller_->asked, Contains("connect"));
   EXPECT_EQ(operation_.status().state, State::kResetting);
   EXPECT_EQ(operation_.unmet_preconditions().size(), 1u);
+  EXPECT_EQ(operation_.status().waiting_for, "remote_mode");
   controller_->state->mode = cs8::WorkingMode::kRemote;
   tell_state();
   EXPECT_EQ(operation_.status().state, State::kIdle);
   EXPECT_THAT(operation_.unmet_preconditions(), IsEmpty());
+  EXPECT_EQ(operation_.status().waiting_for, std::nullopt);
+  controller_->state->monitor_speed_percent = 50;
+  tell_state();
+  EXPECT_EQ(operation_.status().waiting_for, "monitor_speed");
 }
 
 TEST_F(CellOperationTest, AStartThatIsRefusedSaysWhy) {

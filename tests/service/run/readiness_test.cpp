@@ -57,6 +57,17 @@ TEST(Readiness, TheTouchTestComesFirstAsItIsMadeWithoutPowerOrRemoteMode) {
   EXPECT_EQ(name_after(RejectReason::kTaskFailed, untested), "");
 }
 
+TEST(Readiness, APreconditionOfAStartIsAwaitedAsTheRefusalForTheSameReasonIs) {
+  EXPECT_EQ(awaited_by_precondition("not_remote"),
+            awaited_after_rejection(RejectReason::kNotRemote, kTested));
+  EXPECT_EQ(awaited_by_precondition("emergency_stop"),
+            awaited_after_rejection(RejectReason::kEmergencyStop, kTested));
+  EXPECT_EQ(awaited_by_precondition("probe_touched"),
+            awaited_after_rejection(RejectReason::kProbeTriggered, kTested));
+  EXPECT_EQ(awaited_by_precondition("controller_not_connected"), nullptr);
+  EXPECT_EQ(awaited_by_precondition("task_error"), nullptr);
+}
+
 TEST(Readiness, EachWaitInVainEndsInAFaultThatSaysResumeAndReset) {
   std::set<FaultCode> codes;
   for (const RejectReason reason : all_reasons()) {
