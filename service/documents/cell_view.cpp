@@ -39,7 +39,8 @@ Json limits_json(const AcceptanceLimits& limits) {
           {"held_out_rms_max_mm", mm_from_metres(limits.held_out_rms_max_m)},
           {"condition_number_max", limits.condition_number_max},
           {"lack_of_fit_p_min", limits.lack_of_fit_p_min},
-          {"tip_box_rms_max_mm", number_mm(limits.tip_box_rms_max_m)}};
+          {"tip_box_rms_max_mm", number_mm(limits.tip_box_rms_max_m)},
+          {"tip_box_max_mm", number_mm(limits.tip_box_max_m)}};
 }
 
 }  // namespace

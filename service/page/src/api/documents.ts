@@ -69,6 +69,7 @@ export interface Face {
   center_mm: Vector;
   edge_u: Vector;
   half_extent_mm: [number, number];
+  sphere?: {center_mm: Vector; radius_mm: number};  // the rest is the plane that touches it at its pole
 }
 /** Where the block was located, against the cell's file. */
 export interface Place { located_at: string; shift_mm: number[]; turn_deg: number[] }
@@ -87,6 +88,7 @@ export interface Cell {
     held_out_rms_max_mm: number;
     condition_number_max: number;
     tip_box_rms_max_mm: number | null;
+    tip_box_max_mm: number | null;
   };
   scene: {
     frames: Frame[];

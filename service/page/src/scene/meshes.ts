@@ -58,9 +58,25 @@ export function capsuleMesh({from_mm, to_mm, radius_mm}: Pick<Capsule, 'from_mm'
   return new Float32Array(out);
 }
 
-/** The part of a face that may be touched, lifted a little off the block so that it shows. */
-export function faceMesh({outward, center_mm, edge_u, half_extent_mm}: Face): Mesh {
-  const kLift_mm = 0.8;
+const ballMesh = (center_mm: Vector, radius_mm: number): Mesh => capsuleMesh({from_mm: center_mm, to_mm: center_mm, radius_mm});
+
+/** The solids of a block. Of a ball the cell tells the cube around it: in its place is the ball. */
+export function blockMeshes(solids: Box[], faces: Face[]): Mesh[] {
+  const balls = faces.flatMap(({sphere}) => sphere ?? []);
+  const isAround = ({min_mm, max_mm}: Box): boolean => balls.some(({center_mm, radius_mm}) =>
+      center_mm.every((middle, axis) =>
+          Math.abs(min_mm[axis]! - middle + radius_mm) < 1e-6 && Math.abs(max_mm[axis]! - middle - radius_mm) < 1e-6));
+  return [
+    ...solids.filter((box) => !isAround(box)).map(boxMesh),
+    ...balls.map(({center_mm, radius_mm}) => ballMesh(center_mm, radius_mm)),
+  ];
+}
+
+const kLift_mm = 0.8;
+
+/** The part of a face that may be touched, of a ball the whole, lifted a little off the block so that it shows. */
+export function faceMesh({outward, center_mm, edge_u, half_extent_mm, sphere}: Face): Mesh {
+  if (sphere) return ballMesh(sphere.center_mm, sphere.radius_mm + kLift_mm);
   const edge_v = cross(outward, edge_u);
   const out: number[] = [];
   for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, -1], [1, 1], [-1, 1]] as const) {

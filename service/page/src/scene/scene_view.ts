@@ -2,7 +2,7 @@ import type {Cell, Vector} from '../api/documents.ts';
 import {forwardChain, kIdentity} from '../model/kinematics.ts';
 import {afterKey, eyeOf, kFirstCamera, matrixOf, nearer, turned, type Camera} from './camera.ts';
 import {ofPose, subtract, unit} from './matrix.ts';
-import {boxMesh, capsuleMesh, faceMesh} from './meshes.ts';
+import {blockMeshes, boxMesh, capsuleMesh, faceMesh} from './meshes.ts';
 import {Painter, type Body, type Color} from './painter.ts';
 
 interface Part { body: Body; frame: number | null; kind: Kind }
@@ -54,7 +54,7 @@ export class SceneView {
     const capsules = (kind: Kind, list: typeof scene.arm_bodies): Part[] =>
         list.map((capsule) => ({body: painter.load(capsuleMesh(capsule)), frame: capsule.frame, kind}));
     this.parts = [
-      ...scene.solids.map((box): Part => ({body: painter.load(boxMesh(box)), frame: null, kind: 'block'})),
+      ...blockMeshes(scene.solids, block.faces).map((mesh): Part => ({body: painter.load(mesh), frame: null, kind: 'block'})),
       ...keep_out_boxes.map((box): Part => ({body: painter.load(boxMesh(box)), frame: null, kind: 'table'})),
       ...capsules('arm', scene.arm_bodies),
       ...capsules('probe', scene.probe_bodies),
