@@ -29,6 +29,10 @@ constexpr double kUnitVectorError = 1e-6;
 /// Of a joint's drive, radians.
 constexpr NumberRange kGearAngles{.min = 0.0, .max = 0.01};
 constexpr NumberRange kHarmonics{.min = -0.01, .max = 0.01};
+/// Of ripple, a turn of the joint: one period is the first harmonic.
+constexpr NumberRange kGearPeriods{.min = 2.0, .max = 10'000.0};
+/// A ripple's steepest share of the joint's own motion; with more a joint would all but stand still.
+constexpr double kGearSlopeMax = 0.1;
 constexpr NumberRange kMassShares{.min = kPositive.min, .max = 1.0};
 
 /// Joints that a list of two compliances is for: those that carry the weight of an arm on the floor.
@@ -215,19 +219,81 @@ calib::JointVector gear_angles(const JsonObject& object, std::string_view key) {
   return angles;
 }
 
-void read_gears(const JsonValue& value, Arm& arm) {
+std::array<calib::CosSin, kJointCount> cosines_and_sines(const JsonValue& value) {
+  std::array<calib::CosSin, kJointCount> pairs;
+  const auto items = value.items(kJointCount, kJointCount);
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    const auto pair = items[joint].items(2, 2);
+    pairs[joint] = {pair[0].number(kHarmonics), pair[1].number(kHarmonics)};
+  }
+  return pairs;
+}
+
+/// The period of one joint's ripple, with the deviation of its cosine and sine from the amplitude.
+void read_period(const JsonValue& value, int joint, Arm& arm) {
+  const auto index = static_cast<std::size_t>(joint);
+  if (arm.model.joint_types[index] == calib::JointType::kPrismatic)
+    value.fail("joint " + std::to_string(joint + 1) + " is prismatic and has no turn; give null");
+  const double periods = value.number(kAnyNumber);
+  if (!(periods >= kGearPeriods.min && periods <= kGearPeriods.max)) {
+    value.fail(
+        "is " + plain_number(periods) + "; give " + plain_number(kGearPeriods.min) + " to " +
+        plain_number(kGearPeriods.max) +
+        R"( (one period a turn is the first harmonic, "std_harmonic_rad"), or null where it is unknown)");
+  }
+  const double amplitude_rad = arm.gears.ripple_rad[joint];
+  if (amplitude_rad == 0.0) {
+    value.fail("has no amplitude; give /gears/ripple_rad/" + std::to_string(joint) +
+               " over 0, or null for the period");
+  }
+  if (amplitude_rad * periods > kGearSlopeMax) {
+    value.fail("times the amplitude in /gears/ripple_rad/" + std::to_string(joint) + " is over " +
+               plain_number(kGearSlopeMax) + "; no gear is as uneven, correct one of them");
+  }
+  arm.model.ripple_periods_per_turn[index] = periods;
+  const auto cosine = static_cast<std::size_t>(calib::ripple_position(joint));
+  arm.nongeometric_std[cosine] = arm.nongeometric_std[cosine + 1] = amplitude_rad / std::sqrt(2.0);
+}
+
+/// After the amplitudes.
+void read_ripple(const JsonObject& object, Arm& arm) {
+  const auto periods = object.find("ripple_periods_per_turn");
+  if (periods) {
+    const auto items = periods->items(kJointCount, kJointCount);
+    for (int joint = 0; joint < kJointCount; ++joint) {
+      const JsonValue& item = items[static_cast<std::size_t>(joint)];
+      if (!item.is_null()) read_period(item, joint, arm);
+    }
+  }
+  const auto known = object.find("ripples_rad");
+  if (!known) return;
+  const auto pairs = cosines_and_sines(*known);
+  const auto items = known->items(kJointCount, kJointCount);
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    const bool is_even = pairs[joint].cos == 0.0 && pairs[joint].sin == 0.0;
+    if (!is_even && arm.model.ripple_periods_per_turn[joint] == 0.0)
+      items[joint].fail("has no period; give it in /gears/ripple_periods_per_turn, or 0, 0");
+    const double slope =
+        std::hypot(pairs[joint].cos, pairs[joint].sin) * arm.model.ripple_periods_per_turn[joint];
+    if (slope > kGearSlopeMax)
+      items[joint].fail("times its period is over " + plain_number(kGearSlopeMax) + "; no gear is as uneven");
+  }
+  arm.model.ripples_rad = pairs;
+}
+
+void read_gears(const JsonValue& value, bool has_periods, Arm& arm) {
   const JsonObject object =
-      value.object({"harmonics_rad", "std_harmonic_rad", "ripple_rad", "backlash_rad", "repeatability_rad"});
+      has_periods
+          ? value.object({"harmonics_rad", "std_harmonic_rad", "ripple_rad", "ripple_periods_per_turn",
+                          "ripples_rad", "backlash_rad", "repeatability_rad"})
+          : value.object(
+                {"harmonics_rad", "std_harmonic_rad", "ripple_rad", "backlash_rad", "repeatability_rad"});
   arm.gears = {.ripple_rad = gear_angles(object, "ripple_rad"),
                .backlash_rad = gear_angles(object, "backlash_rad"),
                .repeatability_rad = gear_angles(object, "repeatability_rad")};
-  if (const auto harmonics = object.find("harmonics_rad")) {
-    const auto items = harmonics->items(kJointCount, kJointCount);
-    for (std::size_t joint = 0; joint < kJointCount; ++joint) {
-      const auto pair = items[joint].items(2, 2);
-      arm.model.harmonics_rad[joint] = {pair[0].number(kHarmonics), pair[1].number(kHarmonics)};
-    }
-  }
+  if (has_periods) read_ripple(object, arm);
+  if (const auto harmonics = object.find("harmonics_rad"))
+    arm.model.harmonics_rad = cosines_and_sines(*harmonics);
   if (const auto std = object.find("std_harmonic_rad")) {
     for (int joint = 0; joint < kJointCount; ++joint) {
       if (arm.model.joint_types[static_cast<std::size_t>(joint)] == calib::JointType::kPrismatic) continue;
@@ -273,11 +339,12 @@ Arm read_arm(const std::filesystem::path& file) {
   const nlohmann::json document = read_json_file(file);
   const JsonValue value(source, document);
   const bool is_first_schema = has_schema(document, kFirstArmSchema);
+  const bool is_second_schema = has_schema(document, kSecondArmSchema);
   const JsonObject object =
-      is_first_schema
-          ? value.document(kFirstArmSchema, {"schema", "name", "frames", "joint_limits_deg",
-                                             "joint_max_speeds_deg_s", "gravity", "bodies"})
-          : value.document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg",
+      is_first_schema ? value.document(kFirstArmSchema, {"schema", "name", "frames", "joint_limits_deg",
+                                                         "joint_max_speeds_deg_s", "gravity", "bodies"})
+                      : value.document(is_second_schema ? kSecondArmSchema : kArmSchema,
+                                       {"schema", "name", "frames", "joint_limits_deg",
                                         "joint_max_speeds_deg_s", "gravity", "gears", "warming", "bodies"});
   Arm arm;
   arm.name = object.at("name").text();
@@ -293,7 +360,7 @@ Arm read_arm(const std::filesystem::path& file) {
   read_joint_ranges(object, arm);
   if (const auto gravity = object.find("gravity")) read_gravity(*gravity, is_first_schema, arm);
   if (!is_first_schema) {
-    if (const auto gears = object.find("gears")) read_gears(*gears, arm);
+    if (const auto gears = object.find("gears")) read_gears(*gears, !is_second_schema, arm);
     if (const auto warming = object.find("warming")) arm.growth = growth_from_json(*warming);
   }
   arm.bodies = capsules_from_json(object.at("bodies"));

@@ -8,8 +8,9 @@
 
 namespace cell {
 
-inline constexpr std::string_view kArmSchema = "touchcal/arm/2";
-inline constexpr std::string_view kFirstArmSchema = "touchcal/arm/1";  // without gears and std_mass_share
+inline constexpr std::string_view kArmSchema = "touchcal/arm/3";
+inline constexpr std::string_view kSecondArmSchema = "touchcal/arm/2";  // without the periods of ripple
+inline constexpr std::string_view kFirstArmSchema = "touchcal/arm/1";   // without gears and std_mass_share
 
 /// Joint ranges, speeds, frames, bodies of an arm. ConfigError.
 Arm read_arm(const std::filesystem::path& file);

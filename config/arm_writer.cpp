@@ -125,19 +125,33 @@ Json gravity_json(const Arm& arm) {
   return json;
 }
 
+Json pairs_json(const std::array<calib::CosSin, kJointCount>& pairs) {
+  Json json = Json::array();
+  for (const calib::CosSin& pair : pairs) json.push_back({finite(pair.cos), finite(pair.sin)});
+  return json;
+}
+
+/// The known ripple, where a period is known.
+void add_ripple(const calib::KinematicModel& model, Json& gears) {
+  const auto& periods = model.ripple_periods_per_turn;
+  if (std::ranges::all_of(periods, [](double p) { return p == 0.0; })) return;
+  Json json = Json::array();
+  for (const double p : periods) json.push_back(p == 0.0 ? Json(nullptr) : Json(finite(p)));
+  gears["ripple_periods_per_turn"] = std::move(json);
+  gears["ripples_rad"] = pairs_json(model.ripples_rad);
+}
+
 Json gears_json(const Arm& arm) {
   const auto six = [](const calib::JointVector& values) {
     Json json = Json::array();
     for (const double value : values) json.push_back(finite(value));
     return json;
   };
-  Json harmonics = Json::array();
-  for (const calib::CosSin& harmonic : arm.model.harmonics_rad)
-    harmonics.push_back({finite(harmonic.cos), finite(harmonic.sin)});
-  Json json{{"harmonics_rad", std::move(harmonics)},
+  Json json{{"harmonics_rad", pairs_json(arm.model.harmonics_rad)},
             {"ripple_rad", six(arm.gears.ripple_rad)},
             {"backlash_rad", six(arm.gears.backlash_rad)},
             {"repeatability_rad", six(arm.gears.repeatability_rad)}};
+  add_ripple(arm.model, json);
   for (int joint = 0; joint < kJointCount; ++joint) {
     if (const auto std = std_of(arm, calib::harmonic_position(joint)))
       json["std_harmonic_rad"] = finite(*std);

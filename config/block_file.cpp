@@ -4,8 +4,10 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/bore_face.hpp"
 #include "config/certificate.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
@@ -19,16 +21,8 @@ namespace {
 constexpr std::size_t kFaceCountMax = 100;
 /// With a less known centre the clearances around a sphere would not hold.
 constexpr double kSphereCenterStdMaxMm = 1.0;
-/// Twice what find_one_sided_sphere() wants of the touches themselves.
+/// Twice what find_one_sided_face() wants of the touches themselves.
 constexpr double kEstimatedCapMinDegrees = 30.0;
-
-Eigen::Vector3d unit_vector(const JsonValue& value) {
-  const Eigen::Vector3d direction = value.numbers<3>();
-  if (std::abs(direction.norm() - 1.0) > kDirectionErrorMax) {
-    value.fail("has length " + plain_number(direction.norm()) + "; give a unit vector");
-  }
-  return direction.normalized();
-}
 
 calib::Face face_from_json(const JsonObject& object) {
   calib::Face face;
@@ -101,37 +95,64 @@ void add_sphere(const JsonObject& object, int number, Block& block) {
                           .round_m = surface_of(face).radius_m()});
 }
 
+enum class FaceShape { kPlane, kSphere, kBore };
+
 /// "plane" where it is not given.
-bool has_sphere_shape(const JsonValue& item, bool is_first_schema) {
+FaceShape shape_of(const JsonValue& item, bool is_first_schema) {
   for (const auto& [key, value] : item.members()) {
     if (key != "shape") continue;
     if (is_first_schema) value.fail(R"(unknown key "shape" in a block of version 1; raise "schema" to 2)");
     const std::string shape = value.text();
-    if (shape != "plane" && shape != "sphere")
-      value.fail("is " + in_quotes(shape) + R"(; "plane" and "sphere" can be touched, bores cannot)");
-    return shape == "sphere";
+    if (shape == "plane") return FaceShape::kPlane;
+    if (shape == "sphere") return FaceShape::kSphere;
+    if (shape == "bore") return FaceShape::kBore;
+    value.fail("is " + in_quotes(shape) + R"(; "plane", "sphere" and "bore" can be touched)");
   }
-  return false;
+  return FaceShape::kPlane;
+}
+
+JsonObject face_object(const JsonValue& item, FaceShape shape) {
+  switch (shape) {
+    case FaceShape::kPlane:
+      return item.object({"plane", "shape", "outward", "offset_mm", "std_offset_mm", "std_tilt_rad",
+                          "center_mm", "edge_u", "half_extent_mm", "place"});
+    case FaceShape::kSphere:
+      return item.object({"plane", "shape", "center_mm", "std_center_mm", "radius_mm", "std_radius_mm",
+                          "cap_axis", "cap_half_angle_deg", "place"});
+    case FaceShape::kBore:
+      return bore_object(item);
+  }
+  throw std::logic_error("face_object: no such shape");
 }
 
 void read_faces(const JsonValue& value, bool is_first_schema, Block& block) {
   for (const JsonValue& item : value.items(1, kFaceCountMax)) {
-    const bool is_sphere = has_sphere_shape(item, is_first_schema);
-    const JsonObject object =
-        is_sphere ? item.object({"plane", "shape", "center_mm", "std_center_mm", "radius_mm", "std_radius_mm",
-                                 "cap_axis", "cap_half_angle_deg", "place"})
-                  : item.object({"plane", "shape", "outward", "offset_mm", "std_offset_mm", "std_tilt_rad",
-                                 "center_mm", "edge_u", "half_extent_mm", "place"});
+    const FaceShape shape = shape_of(item, is_first_schema);
+    const JsonObject object = face_object(item, shape);
     const int plane = static_cast<int>(block.faces.size()) + 1;
     const JsonValue given = object.at("plane");
     if (given.number() != plane)
       given.fail("is not " + std::to_string(plane) + "; number the planes 1, 2, 3, ... in order");
-    if (is_sphere) {
-      add_sphere(object, plane, block);
-      continue;
+    switch (shape) {
+      case FaceShape::kSphere:
+        add_sphere(object, plane, block);
+        break;
+      case FaceShape::kBore:
+        add_bore(object, is_estimated(object), block);
+        break;
+      case FaceShape::kPlane:
+        block.faces.push_back(face_from_json(object));
+        block.face_uncertainties.push_back(uncertainty_from_json(object));
+        break;
     }
-    block.faces.push_back(face_from_json(object));
-    block.face_uncertainties.push_back(uncertainty_from_json(object));
+  }
+}
+
+void cut_bores(const JsonValue& faces, Block& block) {
+  const auto items = faces.items(1, kFaceCountMax);
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const calib::Face face = block.faces[i];
+    if (face.bore) cut_bore(bore_object(items[i]), face, block);
   }
 }
 
@@ -174,8 +195,10 @@ calib::KnownLength length_from_json(const JsonValue& value, const Block& block) 
   const auto& first = faces[static_cast<std::size_t>(length.faces[0])];
   const auto& second = faces[static_cast<std::size_t>(length.faces[1])];
   for (std::size_t i = 0; i < pair.size(); ++i) {
-    if (faces[static_cast<std::size_t>(length.faces[i])].cap)
-      pair[i].fail("is a sphere; a length lies between two flat faces");
+    const calib::Face& face = faces[static_cast<std::size_t>(length.faces[i])];
+    if (!face.is_flat())
+      pair[i].fail(std::string("is a ") + (face.bore ? "bore" : "sphere") +
+                   "; a length lies between two flat faces");
   }
   if (length.faces[0] == length.faces[1]) planes.fail("names one plane twice; a length lies between two");
   if (first.plane.outward.cross(second.plane.outward).norm() > kDirectionErrorMax) {
@@ -263,6 +286,7 @@ Block read_block(const std::filesystem::path& file) {
   }
   const std::vector<calib::Box> boxes = boxes_from_json(object.at("solids"));
   block.solids.insert(block.solids.begin(), boxes.begin(), boxes.end());  // before the balls
+  cut_bores(object.at("faces"), block);
   return block;
 }
 

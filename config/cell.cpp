@@ -13,6 +13,11 @@ calib::CollisionScene Cell::collision_scene() const {
   return scene;
 }
 
+std::optional<double> AcceptanceLimits::tip_box_max_of_m(const std::string& recipe) const {
+  const auto own = tip_box_max_by_recipe_m.find(recipe);
+  return own == tip_box_max_by_recipe_m.end() ? tip_box_max_m : own->second;
+}
+
 double Cell::face_error_m() const {
   // The larger one and no sum: the uncalibrated arm that misses the faces is the one that located them, and
   // the place's covariance has its errors already, wider than they are. Each is taken for a sixth of the
@@ -40,6 +45,8 @@ calib::ArtefactKnowledge artefact_knowledge(const Cell& cell) {
           .stylus = cell.probe.stylus,
           .std_radius_m = cell.probe.std_stylus_radius_m,
           .std_pretravel_m = cell.probe.std_pretravel_m,
+          .std_pretravel_tilt_m = cell.probe.std_pretravel_tilt_m,
+          .std_lobes_m = cell.probe.std_lobes_m,
           .warmer_than_20_c_k = block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius,
           .std_temperature_k = block.std_temperature_k,
           .thermal_expansion_per_k = block.thermal_expansion_per_k.value_or(0.0)};

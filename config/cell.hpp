@@ -87,6 +87,8 @@ struct Probe {
   bool tip_is_contact_point = false;  // no ball: stylus is all zero
   double std_stylus_radius_m = 0.0;
   double std_pretravel_m = 0.0;
+  double std_pretravel_tilt_m = 0.0;
+  double std_lobes_m = 0.0;
   double overtravel_m = 0.0;
   double calibration_speed_m_s = 0.0;  // of a contact; the pre-travel holds at this speed only
   std::vector<calib::Capsule>
@@ -101,13 +103,17 @@ struct AcceptanceLimits {
   double lack_of_fit_p_min = 0.001;         // residuals less likely than this are not touch noise
   std::optional<double> tip_box_rms_max_m;  // predicted tip uncertainty over the workspace box
   std::optional<double> tip_box_max_m;      // expanded tip uncertainty, k = 2, where it is worst in the box
-  std::map<std::string, double> tool_box_rms_max_m;  // as tip_box_rms_max_m, by the name of a tool
+  std::map<std::string, double> tip_box_max_by_recipe_m;  // in place of tip_box_max_m, by a recipe's name
+  std::map<std::string, double> tool_box_rms_max_m;       // as tip_box_rms_max_m, by the name of a tool
   /// A limit is kept only when the value and its expanded uncertainty are within it (ISO 14253-1); else when
   /// the value is.
   bool guarded = false;
   /// How far the reference place may seem to move during a run; reference_drift_max_m() of
   /// touch_judgement.hpp when absent.
   std::optional<double> reference_drift_max_m;
+
+  /// Of a run of this recipe; nothing where neither the recipe nor all have a limit.
+  [[nodiscard]] std::optional<double> tip_box_max_of_m(const std::string& recipe) const;
 };
 
 /// One standard deviation of the errors of the block's place where the arm's file gives none.

@@ -11,7 +11,8 @@ calib::IdentificationProblem identification_problem(const Cell& cell, const Reci
                                        .tolerances = prior_tolerances(cell),
                                        .nongeometric_std = cell.arm.nongeometric_std,
                                        .gear_std_rad = cell.arm.gears.std_rad(),
-                                       .gear_lag_std_rad = cell.arm.gears.lag_std_rad()};
+                                       .gear_lag_std_rad = cell.arm.gears.lag_std_rad(),
+                                       .stop_std_rad = cell.arm.gears.repeatability_rad};
   problem.attainable = calib::attainable_parameters(problem, recipe.identification.identifiability);
   return problem;
 }

@@ -144,6 +144,8 @@ bool JsonValue::boolean() const {
   return value_->get<bool>();
 }
 
+bool JsonValue::is_null() const { return value_->is_null(); }
+
 bool JsonValue::is_text() const { return value_->is_string(); }
 
 std::string JsonValue::text() const {

@@ -53,6 +53,7 @@ class JsonValue {
   [[nodiscard]] bool boolean() const;
   [[nodiscard]] std::string text() const;  // not empty, no control characters
   [[nodiscard]] bool is_text() const;      // for what may be a text or something else
+  [[nodiscard]] bool is_null() const;      // for what may be unknown
 
   /// An array of exactly Count numbers, each at most kNumberMax in size.
   template <int Count>

@@ -1,14 +1,60 @@
 #include "config/probe_file.hpp"
 
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
 #include "config/shapes.hpp"
 
 namespace cell {
 namespace {
+
+/// No probe's pre-travel depends more on the direction of the push (mm); more is a typo.
+constexpr NumberRange kSidewaysMm{-1.0, 1.0};
+constexpr NumberRange kSidewaysStdMm{0.0, 1.0};
+constexpr std::array kSidewaysKeys{"pretravel_tilt_mm", "std_pretravel_tilt_mm", "lobes_mm",
+                                   "std_lobes_mm",      "lobe_direction_deg",    "lobe_direction_rad"};
+
+void read_sideways(const JsonObject& object, Probe& probe) {
+  calib::SidewaysPretravel& sideways = probe.stylus.sideways;
+  sideways.tilt_m = object.find_metres("pretravel_tilt", kSidewaysMm).value_or(0.0);
+  probe.std_pretravel_tilt_m = object.find_metres("std_pretravel_tilt", kSidewaysStdMm).value_or(0.0);
+  sideways.lobes_m = object.find_metres("lobes", kSidewaysMm).value_or(0.0);
+  probe.std_lobes_m = object.find_metres("std_lobes", kSidewaysStdMm).value_or(0.0);
+  const auto direction_rad = object.find_radians("lobe_direction");
+  sideways.lobe_direction_rad = direction_rad.value_or(0.0);
+  if (sideways.lobes_m != 0.0 && !direction_rad) {
+    object.at("lobes_mm")
+        .fail(
+            R"(lobes have a direction; add "lobe_direction_deg", or give only "std_lobes_mm" where it is not known)");
+  }
+  if (direction_rad && sideways.lobes_m == 0.0) {
+    object.at(object.has("lobe_direction_deg") ? "lobe_direction_deg" : "lobe_direction_rad")
+        .fail(
+            R"(there are no lobes that this could be the direction of; add "lobes_mm" over 0 or remove it)");
+  }
+  const double least_m = probe.stylus.pretravel_m + sideways.tilt_m - std::abs(sideways.lobes_m);
+  const double most_m = probe.stylus.pretravel_m + sideways.tilt_m + std::abs(sideways.lobes_m);
+  if (least_m < 0.0 || most_m > probe.overtravel_m) {
+    object.fail(
+        "\"pretravel_mm\", \"pretravel_tilt_mm\" and \"lobes_mm\" together let a push from the side trip the "
+        "probe " +
+        std::string(least_m < 0.0 ? "before it touches" : "beyond \"overtravel_mm\"") +
+        "; check these figures, lengths are in mm");
+  }
+}
+
+void refuse_in_first(const JsonObject& object) {
+  for (const char* key : kSidewaysKeys) {
+    if (const auto value = object.find(key))
+      value->fail("unknown key " + in_quotes(key) + R"( in a probe of version 1; raise "schema" to 2)");
+  }
+}
 
 void read_stylus(const JsonObject& object, Probe& probe) {
   for (const char* key : {"stylus_radius_mm", "pretravel_mm"}) {
@@ -22,16 +68,20 @@ void read_stylus(const JsonObject& object, Probe& probe) {
   probe.stylus.pretravel_m = object.metres("pretravel", kNotNegative);
   probe.std_stylus_radius_m = object.find_metres("std_stylus_radius", kNotNegative).value_or(0.0);
   probe.std_pretravel_m = object.find_metres("std_pretravel", kNotNegative).value_or(0.0);
+  read_sideways(object, probe);
 }
 
 void refuse_stylus(const JsonObject& object) {
-  for (const char* key : {"stylus_radius_mm", "std_stylus_radius_mm", "pretravel_mm", "std_pretravel_mm"}) {
+  const auto refuse = [&object](const char* key) {
     if (const auto value = object.find(key)) {
       value->fail(
           "a tip that is the contact point has no ball and no pre-travel; remove this or "
           "tip_is_contact_point");
     }
-  }
+  };
+  for (const char* key : {"stylus_radius_mm", "std_stylus_radius_mm", "pretravel_mm", "std_pretravel_mm"})
+    refuse(key);
+  for (const char* key : kSidewaysKeys) refuse(key);
 }
 
 }  // namespace
@@ -39,11 +89,15 @@ void refuse_stylus(const JsonObject& object) {
 Probe read_probe(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
+  const bool is_first_schema = has_schema(document, kFirstProbeSchema);
   const JsonObject object =
       JsonValue(source, document)
-          .document(kProbeSchema, {"schema", "name", "tip_is_contact_point", "stylus_radius_mm",
-                                   "std_stylus_radius_mm", "pretravel_mm", "std_pretravel_mm",
-                                   "overtravel_mm", "calibration_speed_mm_s", "bodies", "certificate"});
+          .document(is_first_schema ? kFirstProbeSchema : kProbeSchema,
+                    {"schema", "name", "tip_is_contact_point", "stylus_radius_mm", "std_stylus_radius_mm",
+                     "pretravel_mm", "std_pretravel_mm", "pretravel_tilt_mm", "std_pretravel_tilt_mm",
+                     "lobes_mm", "std_lobes_mm", "lobe_direction_deg", "lobe_direction_rad", "overtravel_mm",
+                     "calibration_speed_mm_s", "bodies", "certificate"});
+  if (is_first_schema) refuse_in_first(object);
   Probe probe;
   probe.name = object.at("name").text();
   if (const auto certificate = object.find("certificate")) {
@@ -51,12 +105,12 @@ Probe read_probe(const std::filesystem::path& file) {
   }
   if (const auto declared = object.find("tip_is_contact_point"))
     probe.tip_is_contact_point = declared->boolean();
+  probe.overtravel_m = object.metres("overtravel", kPositive);
   if (probe.tip_is_contact_point) {
     refuse_stylus(object);
   } else {
     read_stylus(object, probe);
   }
-  probe.overtravel_m = object.metres("overtravel", kPositive);
   probe.calibration_speed_m_s = calib::metres_from_mm(object.at("calibration_speed_mm_s").number(kPositive));
   probe.bodies = capsules_from_json(object.at("bodies"), calib::kFrameCount - 1);
   return probe;

@@ -1,5 +1,6 @@
 #include "config/read_config.hpp"
 
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -65,11 +66,22 @@ void read_recipes(const JsonObject& object, std::optional<StiffnessChoice> stiff
   }
 }
 
-/// A key that came with the second schema of a cell.
-std::optional<JsonValue> find_in_second(const JsonObject& object, const char* key, bool is_first_schema) {
+constexpr std::array kCellSchemas{kFirstCellSchema, kSecondCellSchema, kCellSchema};
+
+/// The number of the schema of a cell's document; the newest for one that is none of them.
+int version_of(const nlohmann::json& document) {
+  for (std::size_t i = 0; i < kCellSchemas.size(); ++i)
+    if (has_schema(document, kCellSchemas[i])) return static_cast<int>(i) + 1;
+  return static_cast<int>(kCellSchemas.size());
+}
+
+/// A key that came with a later schema of a cell than the first.
+std::optional<JsonValue> find_since(int since, const JsonObject& object, const char* key, int version) {
   auto value = object.find(key);
-  if (value && is_first_schema)
-    value->fail("unknown key " + in_quotes(key) + R"( in a cell of version 1; raise "schema" to 2)");
+  if (value && version < since) {
+    value->fail("unknown key " + in_quotes(key) + " in a cell of version " + std::to_string(version) +
+                R"(; raise "schema" to )" + std::to_string(since));
+  }
   return value;
 }
 
@@ -85,11 +97,11 @@ Eigen::Isometry3d tool_from_json(const JsonObject& object) {
   return wrist_from_tool;
 }
 
-void read_tools(const JsonValue& tools, bool is_first_schema, Cell& cell) {
+void read_tools(const JsonValue& tools, int version, Cell& cell) {
   for (const auto& [name, value] : tools.members()) {
     const JsonObject object = value.object({"position_mm", "rotation_deg", "tip_box_rms_max_mm"});
     cell.tools.emplace(name, tool_from_json(object));
-    if (const auto limit = find_in_second(object, "tip_box_rms_max_mm", is_first_schema))
+    if (const auto limit = find_since(2, object, "tip_box_rms_max_mm", version))
       cell.acceptance.tool_box_rms_max_m[name] = calib::kMetresPerMillimetre * limit->number(kPositive);
   }
 }
@@ -119,24 +131,36 @@ void read_touch_conditions(const JsonObject& object, Cell& cell) {
 }
 
 /// How old a temperature of the block may be; came with the second schema.
-void read_temperature_age(const JsonObject& object, bool is_first_schema, Cell& cell) {
+void read_temperature_age(const JsonObject& object, int version, Cell& cell) {
   constexpr NumberRange kHours{.min = 0.1, .max = 8760.0};  // six minutes to a year
-  const auto age = find_in_second(object, "block_temperature_age_max_h", is_first_schema);
+  const auto age = find_since(2, object, "block_temperature_age_max_h", version);
   if (!age) return;
   cell.block_temperature_age_max = std::chrono::round<std::chrono::minutes>(
       std::chrono::duration<double, std::chrono::hours::period>(age->number(kHours)));
 }
 
-void read_permit_lifetime(const JsonObject& object, bool is_first_schema, Cell& cell) {
+void read_permit_lifetime(const JsonObject& object, int version, Cell& cell) {
   constexpr int kShiftMinutes = 480;
-  if (const auto minutes = find_in_second(object, "permit_minutes", is_first_schema))
+  if (const auto minutes = find_since(2, object, "permit_minutes", version))
     cell.permit_lifetime = std::chrono::minutes(minutes->integer(1, kShiftMinutes));
 }
 
-AcceptanceLimits acceptance_from_json(const JsonValue& value, bool is_first_schema) {
-  const JsonObject object = value.object({"held_out_mean_max_mm", "held_out_rms_max_mm",
-                                          "condition_number_max", "lack_of_fit_p_min", "tip_box_rms_max_mm",
-                                          "tip_box_max_mm", "reference_drift_max_mm", "decision"});
+/// Limits by the name of a recipe of this cell.
+std::map<std::string, double> limits_by_recipe_m(const JsonValue& value, const Cell& cell) {
+  std::map<std::string, double> limits_m;
+  for (const auto& [name, limit] : value.members()) {
+    if (!cell.recipes.contains(name))
+      limit.fail("no recipe of this cell is called " + in_quotes(name) + "; name one of /recipes");
+    limits_m[name] = calib::kMetresPerMillimetre * limit.number(kPositive);
+  }
+  return limits_m;
+}
+
+AcceptanceLimits acceptance_from_json(const JsonValue& value, int version, const Cell& cell) {
+  const JsonObject object =
+      value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max",
+                    "lack_of_fit_p_min", "tip_box_rms_max_mm", "tip_box_max_mm", "tip_box_max_by_recipe_mm",
+                    "reference_drift_max_mm", "decision"});
   constexpr NumberRange kConditionNumbers{.min = 1.0, .max = 1e16};
   constexpr NumberRange kProbabilities{.min = 0.0, .max = 0.5};
   AcceptanceLimits limits{
@@ -146,8 +170,10 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value, bool is_first_sche
   if (const auto least = object.find("lack_of_fit_p_min"))
     limits.lack_of_fit_p_min = least->number(kProbabilities);
   limits.tip_box_rms_max_m = object.find_metres("tip_box_rms_max", kPositive);
-  if (const auto limit = find_in_second(object, "tip_box_max_mm", is_first_schema))
+  if (const auto limit = find_since(2, object, "tip_box_max_mm", version))
     limits.tip_box_max_m = calib::kMetresPerMillimetre * limit->number(kPositive);
+  if (const auto by_recipe = find_since(3, object, "tip_box_max_by_recipe_mm", version))
+    limits.tip_box_max_by_recipe_m = limits_by_recipe_m(*by_recipe, cell);
   if (const auto decision = object.find("decision")) {
     const std::string rule = decision->text();
     if (rule != "simple" && rule != "guarded")
@@ -234,31 +260,31 @@ Endpoint endpoint_from_json(const JsonValue& value) {
 Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice> stiffness) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const bool is_first_schema = has_schema(document, kFirstCellSchema);
+  const int version = version_of(document);
   const JsonObject object =
       JsonValue(source, document)
-          .document(is_first_schema ? kFirstCellSchema : kCellSchema, {"schema",
-                                                                       "name",
-                                                                       "arm",
-                                                                       "frames",
-                                                                       "block",
-                                                                       "probe",
-                                                                       "recipes",
-                                                                       "default_recipe",
-                                                                       "tools",
-                                                                       "workspace_box",
-                                                                       "keep_out_boxes",
-                                                                       "park_joints_deg",
-                                                                       "nominal_miss_mm",
-                                                                       "stylus_tilt_max_deg",
-                                                                       "touch_noise_mm",
-                                                                       "unknown_place_std",
-                                                                       "block_temperature_age_max_h",
-                                                                       "permit_minutes",
-                                                                       "acceptance",
-                                                                       "speeds",
-                                                                       "deadlines",
-                                                                       "controller"});
+          .document(kCellSchemas[static_cast<std::size_t>(version) - 1], {"schema",
+                                                                          "name",
+                                                                          "arm",
+                                                                          "frames",
+                                                                          "block",
+                                                                          "probe",
+                                                                          "recipes",
+                                                                          "default_recipe",
+                                                                          "tools",
+                                                                          "workspace_box",
+                                                                          "keep_out_boxes",
+                                                                          "park_joints_deg",
+                                                                          "nominal_miss_mm",
+                                                                          "stylus_tilt_max_deg",
+                                                                          "touch_noise_mm",
+                                                                          "unknown_place_std",
+                                                                          "block_temperature_age_max_h",
+                                                                          "permit_minutes",
+                                                                          "acceptance",
+                                                                          "speeds",
+                                                                          "deadlines",
+                                                                          "controller"});
   Cell cell;
   cell.name = object.at("name").text();
   cell.file = file;
@@ -270,10 +296,10 @@ Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice>
   read_recipes(object, stiffness, cell);
   read_space(object, cell);
   read_touch_conditions(object, cell);
-  read_temperature_age(object, is_first_schema, cell);
-  read_permit_lifetime(object, is_first_schema, cell);
-  cell.acceptance = acceptance_from_json(object.at("acceptance"), is_first_schema);
-  if (const auto tools = object.find("tools")) read_tools(*tools, is_first_schema, cell);
+  read_temperature_age(object, version, cell);
+  read_permit_lifetime(object, version, cell);
+  cell.acceptance = acceptance_from_json(object.at("acceptance"), version, cell);
+  if (const auto tools = object.find("tools")) read_tools(*tools, version, cell);
   cell.speeds = speeds_from_json(object.at("speeds"), cell.probe);
   cell.deadlines = deadlines_from_json(object.at("deadlines"));
   cell.controller = endpoint_from_json(object.at("controller"));

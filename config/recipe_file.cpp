@@ -129,12 +129,24 @@ calib::Harmonics harmonics_from_json(const std::optional<JsonValue>& value, bool
   value->fail("is " + in_quotes(value->text()) + R"(; give "auto" or "off")");
 }
 
+/// Likewise; "auto" in the second schema, which does not have the key.
+calib::Ripple ripple_from_json(const std::optional<JsonValue>& value, bool is_first_schema,
+                               bool is_second_schema) {
+  if (is_first_schema || is_second_schema) {
+    if (value) value->fail(R"(unknown key "ripple" in a recipe of version 1 or 2; raise "schema" to 3)");
+    return is_first_schema ? calib::Ripple::kLeaveOut : calib::Ripple::kWhenShown;
+  }
+  if (!value || value->text() == "auto") return calib::Ripple::kWhenShown;
+  if (value->text() == "off") return calib::Ripple::kLeaveOut;
+  value->fail("is " + in_quotes(value->text()) + R"(; give "auto" or "off")");
+}
+
 calib::IdentificationOptions identification_from_json(const JsonValue& value, bool is_first_schema,
-                                                      const Arm& arm,
+                                                      bool is_second_schema, const Arm& arm,
                                                       std::optional<StiffnessChoice> stiffness) {
   const JsonObject object =
       value.object({"formulation", "qr_tolerance", "tried_last", "excluded", "weights", "robust", "prior",
-                    "stiffness", "harmonics", "hold_weak", "iterations_max"});
+                    "stiffness", "harmonics", "ripple", "hold_weak", "iterations_max"});
   calib::IdentificationOptions options;
   if (const auto formulation = object.find("formulation"))
     options.formulation = formulation_from_json(*formulation);
@@ -151,21 +163,24 @@ calib::IdentificationOptions identification_from_json(const JsonValue& value, bo
   options.stiffness =
       is_estimated(stiffness_from_json(object.find("stiffness"), is_first_schema, arm, stiffness), arm);
   options.harmonics = harmonics_from_json(object.find("harmonics"), is_first_schema);
+  options.ripple = ripple_from_json(object.find("ripple"), is_first_schema, is_second_schema);
   if (const auto hold_weak = object.find("hold_weak")) options.hold_weak = hold_weak->boolean();
   if (const auto count = object.find("iterations_max"))
     options.iterations_max = count->integer(1, kIterationsMax);
   return options;
 }
 
-/// Eq. 6 has no form for a sphere.
+/// Eq. 6 has no form for a sphere or bore.
 void demand_planes_for_coefficients(const JsonObject& object, const Block& block, const Recipe& recipe) {
   if (recipe.identification.formulation != calib::Formulation::kPlaneCoefficients) return;
   for (const int face : recipe.faces) {
-    if (!block.faces[static_cast<std::size_t>(face)].cap) continue;
+    const calib::Face& touched = block.faces[static_cast<std::size_t>(face)];
+    if (touched.is_flat()) continue;
     for (const auto& [key, value] : object.at("identification").members()) {
       if (key != "formulation") continue;
-      value.fail("plane " + std::to_string(face + 1) +
-                 " of the block is a sphere, which has no plane coefficients; give \"signed_distance\", or "
+      value.fail("plane " + std::to_string(face + 1) + " of the block is a " +
+                 (touched.bore ? "bore" : "sphere") +
+                 ", which has no plane coefficients; give \"signed_distance\", or "
                  "leave it out of /touches/planes");
     }
   }
@@ -178,9 +193,12 @@ Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Bloc
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
   const bool is_first_schema = has_schema(document, kFirstRecipeSchema);
+  const bool is_second_schema = has_schema(document, kSecondRecipeSchema);
   const JsonObject object =
       JsonValue(source, document)
-          .document(is_first_schema ? kFirstRecipeSchema : kRecipeSchema,
+          .document(is_first_schema    ? kFirstRecipeSchema
+                    : is_second_schema ? kSecondRecipeSchema
+                                       : kRecipeSchema,
                     {"schema", "name", "description", "touches", "reference_every", "identification"});
   Recipe recipe;
   recipe.name = object.at("name").text();
@@ -188,8 +206,8 @@ Recipe read_recipe(const std::filesystem::path& file, const Arm& arm, const Bloc
   read_touch_counts(object.at("touches"), static_cast<int>(block.faces.size()), recipe);
   if (const auto every = object.find("reference_every"))
     recipe.reference_every = every->integer(0, kTouchesMax);
-  recipe.identification =
-      identification_from_json(object.at("identification"), is_first_schema, arm, stiffness);
+  recipe.identification = identification_from_json(object.at("identification"), is_first_schema,
+                                                   is_second_schema, arm, stiffness);
   demand_planes_for_coefficients(object, block, recipe);
   return recipe;
 }

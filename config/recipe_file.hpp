@@ -9,8 +9,9 @@
 
 namespace cell {
 
-inline constexpr std::string_view kRecipeSchema = "touchcal/recipe/2";
-inline constexpr std::string_view kFirstRecipeSchema = "touchcal/recipe/1";  // stiffness true or false
+inline constexpr std::string_view kRecipeSchema = "touchcal/recipe/3";
+inline constexpr std::string_view kSecondRecipeSchema = "touchcal/recipe/2";  // without ripple
+inline constexpr std::string_view kFirstRecipeSchema = "touchcal/recipe/1";   // stiffness true or false
 
 /// A recipe for an arm and a block. A plane that the block does not have is a ConfigError, as is a parameter
 /// name that does not exist, or stiffness of an arm that says nothing of its masses. `stiffness`: in place of

@@ -13,6 +13,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
+#include "config/internal/repeat_reader.hpp"
 #include "config/joint_units.hpp"
 #include "config/json_value.hpp"
 #include "config/strict_json.hpp"
@@ -23,6 +24,17 @@ namespace {
 using calib::kJointCount;
 
 constexpr std::size_t kWarningCountMax = 100;
+
+/// From version 1 on.
+constexpr std::array kSchemas{kFirstTouchesSchema, kSecondTouchesSchema, kTouchesSchema};
+
+/// The newest where the document names none of them.
+int version_of(const nlohmann::json& document) {
+  int version = static_cast<int>(kSchemas.size());
+  while (version > 1 && !has_schema(document, kSchemas[static_cast<std::size_t>(version - 1)])) --version;
+  if (version == 1 && !has_schema(document, kFirstTouchesSchema)) return static_cast<int>(kSchemas.size());
+  return version;
+}
 
 std::string rounded(double number) {
   constexpr double kShown = 1e6;  // what a controller resolves; hides the conversion's rounding
@@ -76,18 +88,34 @@ calib::TouchRole role_from_json(const JsonValue& value) {
 constexpr NumberRange kNoiseUm{.min = kPositive.min,
                                .max = calib::um_from_metres(calib::kTouchDeviationMaxMetres)};
 
-calib::Touch touch_from_json(const JsonValue& value, bool is_first_schema, int face_count,
-                             const calib::JointVector& units) {
-  const JsonObject object = value.object({"plane", "joints_deg", "role", "noise_um"});
+/// Seconds since the first touch; a run does not take a year.
+constexpr NumberRange kTimesS{.min = 0.0, .max = 3e7};
+
+/// Which version of the document has a key of a touch first.
+void demand_version(const JsonObject& object, const char* key, int version, int since) {
+  if (version >= since) return;
+  if (const auto value = object.find(key)) {
+    value->fail("unknown key \"" + std::string(key) + "\" in a touches document of version " +
+                std::to_string(version) + "; raise \"schema\" to " + std::to_string(since));
+  }
+}
+
+calib::Touch touch_from_json(const JsonValue& value, int version, int face_count,
+                             const calib::JointVector& units, RepeatReader& repeats) {
+  const JsonObject object = value.object(
+      {"plane", "joints_deg", "role", "noise_um", "at_s", "first_joints_deg", "again_joints_deg"});
+  demand_version(object, "noise_um", version, 2);
+  for (const char* key : {"at_s", "first_joints_deg", "again_joints_deg"})
+    demand_version(object, key, version, 3);
   calib::Touch touch;
+  repeats.demand_second(object);
   touch.face = object.at("plane").integer(1, face_count) - 1;
   touch.joints = object.at("joints_deg").numbers<kJointCount>().cwiseProduct(units);
   if (const auto role = object.find("role")) touch.role = role_from_json(*role);
-  const auto noise = object.find("noise_um");
-  if (!noise) return touch;
-  if (is_first_schema)
-    noise->fail(R"(unknown key "noise_um" in a touches document of version 1; raise "schema" to 2)");
-  touch.deviation_m = calib::metres_from_um(noise->number(kNoiseUm));
+  if (const auto at = object.find("at_s")) static_cast<void>(at->number(kTimesS));
+  if (const auto noise = object.find("noise_um"))
+    touch.deviation_m = calib::metres_from_um(noise->number(kNoiseUm));
+  repeats.add(object, touch);
   return touch;
 }
 
@@ -153,14 +181,40 @@ class ReferencePosture {
   Eigen::Vector3d first_tip_m_ = Eigen::Vector3d::Zero();
 };
 
+/// Of the reference touches, while each so far has one.
+class ReferenceTimes {
+ public:
+  void add(const JsonObject& reference) {
+    const auto at = reference.find("at_s");
+    all_known_ = all_known_ && at;
+    if (!at) return;
+    const double time_s = at->number(kTimesS);
+    if (!times_s_.empty() && time_s < times_s_.back()) {
+      at->fail("is " + plain_number(time_s) + " but an earlier reference touch was made at " +
+               plain_number(times_s_.back()) + "; give the reference touches in the order of their making");
+    }
+    times_s_.push_back(time_s);
+  }
+  [[nodiscard]] std::vector<double> take() {
+    if (!all_known_) times_s_.clear();
+    return std::move(times_s_);
+  }
+
+ private:
+  std::vector<double> times_s_;
+  bool all_known_ = true;
+};
+
 /// All of one place: on one plane, in one posture.
-std::vector<calib::Touch> references_from_json(const JsonValue& value, const Cell& cell) {
+void read_references(const JsonValue& value, int version, const Cell& cell, calib::Repeats& repeats) {
   const int face_count = static_cast<int>(cell.block.faces.size());
   const calib::JointVector units = joint_units(cell.arm.model);
   ReferencePosture posture(cell);
-  std::vector<calib::Touch> references;
+  std::vector<calib::Touch>& references = repeats.references;
+  ReferenceTimes times;
   for (const JsonValue& item : value.items(0, kTouchCountMax)) {
-    const JsonObject object = item.object({"plane", "joints_deg"});
+    const JsonObject object = item.object({"plane", "joints_deg", "at_s"});
+    demand_version(object, "at_s", version, 3);
     const JsonValue plane = object.at("plane");
     const JsonValue joints = object.at("joints_deg");
     const calib::Touch touch{.face = plane.integer(1, face_count) - 1,
@@ -170,9 +224,10 @@ std::vector<calib::Touch> references_from_json(const JsonValue& value, const Cel
                  std::to_string(references.front().face + 1) + "; give the touches of one place");
     }
     posture.demand(touch, joints);
+    times.add(object);
     references.push_back(touch);
   }
-  return references;
+  repeats.reference_times_s = times.take();
 }
 
 /// Reference touches that say nothing, or less than their number promises.
@@ -273,9 +328,9 @@ class CsvLine {
 TouchesFile touches_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes,
                               const Cell& cell) {
   const nlohmann::json document = parse_strict_json(source, bytes, size_max_bytes);
-  const bool is_first_schema = has_schema(document, kFirstTouchesSchema);
+  const int version = version_of(document);
   const JsonObject object = JsonValue(source, document)
-                                .document(is_first_schema ? kFirstTouchesSchema : kTouchesSchema,
+                                .document(kSchemas[static_cast<std::size_t>(version - 1)],
                                           {"schema", "arm", "touches", "reference_touches"});
   const JsonValue arm = object.at("arm");
   if (const std::string name = arm.text(); name != cell.arm.name) {
@@ -285,13 +340,14 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
   TouchesFile result;
   const int face_count = static_cast<int>(cell.block.faces.size());
   const calib::JointVector units = joint_units(cell.arm.model);
+  RepeatReader repeats(cell, result.repeats);
   for (const JsonValue& item : object.at("touches").items(0, kTouchCountMax)) {
-    result.touches.push_back(touch_from_json(item, is_first_schema, face_count, units));
+    result.touches.push_back(touch_from_json(item, version, face_count, units, repeats));
   }
   if (const auto references = object.find("reference_touches"))
-    result.references = references_from_json(*references, cell);
+    read_references(*references, version, cell, result.repeats);
   warn_of_ranges("touch", result.touches, cell.arm, result.warnings);
-  warn_of_references(result.references, cell.arm, result.warnings);
+  warn_of_references(result.repeats.references, cell.arm, result.warnings);
   return result;
 }
 

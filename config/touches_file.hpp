@@ -6,13 +6,16 @@
 #include <string_view>
 #include <vector>
 
+#include "calib_core/estimation/repeat_sources.hpp"
 #include "calib_core/geometry/touch.hpp"
 #include "config/cell.hpp"
 
 namespace cell {
 
-inline constexpr std::string_view kTouchesSchema = "touchcal/touches/2";
+inline constexpr std::string_view kTouchesSchema = "touchcal/touches/3";
 inline constexpr std::string_view kFirstTouchesSchema = "touchcal/touches/1";  // no touch has a noise_um
+inline constexpr std::string_view kSecondTouchesSchema =
+    "touchcal/touches/2";  // no times, no second contacts
 inline constexpr std::string_view kTouchesCsvHeader = "plane,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg";
 inline constexpr std::size_t kTouchCountMax = 100'000;
 /// Room for kTouchCountMax touches with every number on a line of its own.
@@ -20,7 +23,7 @@ inline constexpr std::size_t kTouchesSizeMax = 64U << 20U;
 
 struct TouchesFile {
   std::vector<calib::Touch> touches;
-  std::vector<calib::Touch> references;  // of one place in one posture, in the order of their making
+  calib::Repeats repeats;  // the reference touches are of one place in one posture
   /// A sentence a touch with joints outside their ranges; touches count from 1. And what makes reference
   /// touches say nothing: too few, or copies of each other.
   std::vector<std::string> warnings;
@@ -28,7 +31,8 @@ struct TouchesFile {
 
 /// JSON, or CSV when the file's name ends in .csv or its first line is kTouchesCsvHeader. ConfigError: what
 /// is not as config/FILES.md says, another arm's touches, a plane the block does not have, reference touches
-/// of more than one place; a CSV error names its line.
+/// of more than one place or whose times run backwards, a first contact or a repetition of another place; a
+/// CSV error names its line.
 TouchesFile read_touches(const std::filesystem::path& file, const Cell& cell);
 
 /// The same from memory. `source` is how messages call the bytes.

@@ -1,9 +1,11 @@
 #include "config/truth.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
@@ -15,7 +17,7 @@ namespace {
 
 /// Joints 2 and 3 of a file.
 constexpr std::size_t kDroopingJoints = 2;
-constexpr NumberRange kCompliances{.min = 0.0, .max = 1e-4};
+constexpr NumberRange kDroopCompliances{.min = 0.0, .max = 1e-4};
 constexpr NumberRange kSmallAngles{.min = 0.0, .max = 0.01};
 constexpr NumberRange kPeriods{.min = 0.0, .max = 10'000.0};
 /// A ripple's steepest share of the joint's own motion; with more a joint would all but stand still.
@@ -25,9 +27,10 @@ constexpr NumberRange kKelvins{-50.0, 50.0};
 constexpr NumberRange kTimeConstants{1.0, 1e6};
 constexpr NumberRange kFaceOffsetsMm{-10.0, 10.0};
 constexpr double kSphereShiftMaxMm = 10.0;
+constexpr double kBoreTurnMaxRadians = 0.05;
 constexpr NumberRange kProbePartsMm{-1.0, 1.0};
 constexpr NumberRange kNoiseMm{0.0, 1.0};
-constexpr std::size_t kFaceCountMax = 100;
+constexpr std::size_t kOffsetCountMax = 100;
 /// A face belongs to the side of a solid that it lies on to this much.
 constexpr double kSameSideMetres = 1e-6;
 
@@ -69,7 +72,7 @@ void read_droop(const JsonObject& object, Truth& truth) {
   Droop& droop = truth.droop.emplace();
   const auto compliances = object.at("compliance_rad_per_nm").items(kDroopingJoints, kDroopingJoints);
   for (std::size_t i = 0; i < kDroopingJoints; ++i)
-    droop.compliance_rad_per_nm[i + 1] = compliances[i].number(kCompliances);
+    droop.compliance_rad_per_nm[i + 1] = compliances[i].number(kDroopCompliances);
 }
 
 void read_ripple(const JsonObject& object, Truth& truth) {
@@ -99,16 +102,24 @@ void read_thermal(const JsonObject& object, Truth& truth) {
 }
 
 void read_block_offsets(const JsonObject& object, Truth& truth) {
-  for (const JsonValue& item : object.at("offsets_mm").items(1, kFaceCountMax))
+  for (const JsonValue& item : object.at("offsets_mm").items(1, kOffsetCountMax))
     truth.face_offsets_m.push_back(calib::metres_from_mm(item.number(kFaceOffsetsMm)));
-  const auto shifts = object.find("sphere_shifts_mm");
-  if (!shifts) return;
-  for (const JsonValue& item : shifts->items(1, kFaceCountMax)) {
-    const Eigen::Vector3d shift_mm = item.numbers<3>();
-    if (shift_mm.cwiseAbs().maxCoeff() > kSphereShiftMaxMm)
-      item.fail("is over " + plain_number(kSphereShiftMaxMm) + " mm; give where the sphere nearly is");
-    truth.sphere_shifts_m.emplace_back(shift_mm * calib::kMetresPerMillimetre);
-  }
+  const auto read_vectors = [&](const char* key, double most, double factor, const char* remedy,
+                                std::vector<Eigen::Vector3d>& vectors) {
+    const auto given = object.find(key);
+    if (!given) return;
+    for (const JsonValue& item : given->items(1, kOffsetCountMax)) {
+      const Eigen::Vector3d vector = item.numbers<3>();
+      if (vector.cwiseAbs().maxCoeff() > most) item.fail("is over " + plain_number(most) + remedy);
+      vectors.emplace_back(vector * factor);
+    }
+  };
+  read_vectors("sphere_shifts_mm", kSphereShiftMaxMm, calib::kMetresPerMillimetre,
+               " mm; give where the sphere nearly is", truth.sphere_shifts_m);
+  read_vectors("bore_shifts_mm", kSphereShiftMaxMm, calib::kMetresPerMillimetre,
+               " mm; give where the bore nearly is", truth.bore_shifts_m);
+  read_vectors("bore_turns_rad", kBoreTurnMaxRadians, 1.0, " rad; give how the bore nearly lies",
+               truth.bore_turns_rad);
 }
 
 void read_true_probe(const JsonObject& object, Truth& truth) {
@@ -150,7 +161,8 @@ void read_effects(const JsonObject& object, Truth& truth) {
   read_effect(object, "thermal",
               {"on", "arm_expansion_per_k", "arm_rise_k", "arm_time_constant_s", "block_warmer_k"},
               read_thermal, truth);
-  read_effect(object, "block", {"on", "offsets_mm", "sphere_shifts_mm"}, read_block_offsets, truth);
+  read_effect(object, "block", {"on", "offsets_mm", "sphere_shifts_mm", "bore_shifts_mm", "bore_turns_rad"},
+              read_block_offsets, truth);
   read_effect(object, "probe",
               {"on", "stylus_radius_mm", "pretravel_mm", "pretravel_tilt_mm", "lobes_mm",
                "lobe_direction_deg", "lobe_direction_rad", "noise_mm"},
@@ -167,10 +179,24 @@ calib::Box& ball_of(const calib::Face& sphere, std::vector<calib::Box>& solids) 
   return *std::ranges::find_if(solids, is_it);
 }
 
-/// Moves the side of a solid that the face lies on, or grows the ball; false when there is none.
+/// The hole of a bore: read_block() puts it into its solid.
+calib::Hole& hole_of(const calib::Face& bore, std::vector<calib::Box>& solids) {
+  for (calib::Box& solid : solids) {
+    for (calib::Hole& hole : solid.holes)
+      if ((hole.center_m - bore.bore->center_m).norm() < kSameSideMetres) return hole;
+  }
+  throw std::logic_error("hole_of: the bore is in no solid of its block");
+}
+
+/// Moves the side of a solid that the face lies on, or grows the ball, or narrows the hole; false when there
+/// is none.
 bool move_side(const calib::Face& face, double offset_m, std::vector<calib::Box>& solids) {
   if (face.cap) {
     ball_of(face, solids).round_m += offset_m;
+    return true;
+  }
+  if (face.bore) {
+    hole_of(face, solids).radius_m -= offset_m;
     return true;
   }
   int axis = 0;
@@ -186,20 +212,39 @@ bool move_side(const calib::Face& face, double offset_m, std::vector<calib::Box>
   return false;
 }
 
+/// One of the vectors for each of the things, or none at all.
+void demand_one_each(const Truth& truth, const char* key, std::size_t given, const char* of_what,
+                     std::size_t things) {
+  if (given == 0 || given == things) return;
+  throw ConfigError(truth.file.string(), std::string("/block/") + key,
+                    "has " + std::to_string(given) + " shifts, the block has " + std::to_string(things) +
+                        " " + of_what + "s; give one a " + of_what);
+}
+
 void move_spheres(const Truth& truth, const Block& block, std::vector<calib::Box>& solids) {
-  if (truth.sphere_shifts_m.empty()) return;
   std::vector<calib::Box*> balls;
   for (const calib::Face& face : block.faces)
     if (face.cap) balls.push_back(&ball_of(face, solids));
-  if (balls.size() != truth.sphere_shifts_m.size()) {
-    throw ConfigError(truth.file.string(), "/block/sphere_shifts_mm",
-                      "has " + std::to_string(truth.sphere_shifts_m.size()) + " shifts, the block has " +
-                          std::to_string(balls.size()) + " spheres; give one a sphere");
-  }
-  for (std::size_t i = 0; i < balls.size(); ++i) {
+  demand_one_each(truth, "sphere_shifts_mm", truth.sphere_shifts_m.size(), "sphere", balls.size());
+  for (std::size_t i = 0; i < truth.sphere_shifts_m.size(); ++i) {
     balls[i]->min_m += truth.sphere_shifts_m[i];
     balls[i]->max_m += truth.sphere_shifts_m[i];
   }
+}
+
+/// Each about the middle of its wall.
+void move_bores(const Truth& truth, const Block& block, std::vector<calib::Box>& solids) {
+  std::vector<calib::Hole*> holes;
+  for (const calib::Face& face : block.faces)
+    if (face.bore) holes.push_back(&hole_of(face, solids));
+  demand_one_each(truth, "bore_shifts_mm", truth.bore_shifts_m.size(), "bore", holes.size());
+  demand_one_each(truth, "bore_turns_rad", truth.bore_turns_rad.size(), "bore", holes.size());
+  for (std::size_t i = 0; i < truth.bore_turns_rad.size(); ++i) {
+    const Eigen::Vector3d& turn_rad = truth.bore_turns_rad[i];
+    if (turn_rad.isZero(0.0)) continue;
+    holes[i]->axis = Eigen::AngleAxisd(turn_rad.norm(), turn_rad.normalized()) * holes[i]->axis;
+  }
+  for (std::size_t i = 0; i < truth.bore_shifts_m.size(); ++i) holes[i]->center_m += truth.bore_shifts_m[i];
 }
 
 }  // namespace
@@ -235,6 +280,7 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
         "plane " + std::to_string(i + 1) + " lies on no side of the block's solids; leave \"block\" out");
   }
   move_spheres(truth, block, solids);
+  move_bores(truth, block, solids);
   constexpr double kReferenceCelsius = 20.0;
   const double rise_k =
       block.temperature_c.value_or(kReferenceCelsius) - kReferenceCelsius + truth.warming.block_warmer_k;
@@ -243,6 +289,10 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
     solid.min_m *= growth;
     solid.max_m *= growth;
     solid.round_m *= growth;
+    for (calib::Hole& hole : solid.holes) {
+      hole.center_m *= growth;
+      hole.radius_m *= growth;
+    }
   }
   return solids;
 }
@@ -250,6 +300,8 @@ std::vector<calib::Box> true_solids(const Truth& truth, const Block& block) {
 calib::KinematicModel true_model(const Truth& truth, const Arm& arm) {
   calib::KinematicModel model = calib::apply(arm.model, truth.errors);
   if (truth.harmonics_rad) model.harmonics_rad = *truth.harmonics_rad;
+  for (std::size_t joint = 0; joint < calib::kJointCount; ++joint)  // in place of the arm file's
+    if (truth.ripple[joint].amplitude_rad > 0.0) model.ripples_rad[joint] = {0.0, 0.0};
   if (!truth.droop) return model;
   const auto has_mass = [](const calib::PointMass& mass) { return mass.mass_kg != 0.0; };
   if (std::ranges::none_of(model.masses, has_mass)) {

@@ -60,6 +60,8 @@ struct Truth {
   Warming warming;
   std::vector<double> face_offsets_m;  // of each plane outwards, against the block's file; empty: none
   std::vector<Eigen::Vector3d> sphere_shifts_m;  // of each sphere's centre, likewise
+  std::vector<Eigen::Vector3d> bore_shifts_m;    // of each bore's axis
+  std::vector<Eigen::Vector3d> bore_turns_rad;   // of its direction, a rotation about the middle of its wall
   TrueProbe probe;
   calib::JointVector repeatability_rad = calib::JointVector::Zero();  // one standard deviation of a stop
   double encoder_step_rad = 0.0;

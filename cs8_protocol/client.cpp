@@ -154,7 +154,7 @@ void Client::close() {
   if (link_) link_->close();
 }
 
-bool Client::connected() const { return link_ && link_->is_up(); }
+bool Client::connected() const { return link_ && link_->is_held_up(); }
 
 std::optional<State> Client::latest_state() const { return link_ ? link_->latest_state() : std::nullopt; }
 

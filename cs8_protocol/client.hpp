@@ -100,6 +100,8 @@ class Client {
                                                ExpectedController expected);
   /// Ends the connection; a call that waits ends with kClosed. Nothing is called back afterwards.
   void close();
+  /// Until on_loss has told the end: an owner that connects anew as soon as this is false knows why it has
+  /// to.
   [[nodiscard]] bool connected() const;
 
   /// Asks for a run. The reply's state is kGranted once a person confirmed at the cell, else kNone with the

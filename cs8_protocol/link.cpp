@@ -219,7 +219,9 @@ void Link::fail(LinkErrorKind kind, std::string text) {
   heartbeat_timer_.cancel();
   silence_timer_.cancel();
   if (established_) {
+    loss_is_due_ = true;
     asio::post(executor_, [self = shared_from_this()] {
+      self->loss_is_due_ = false;
       const auto on_loss =
           self->hooks_.on_loss;  // a copy: the hook may destroy the client and with it the original
       if (on_loss) on_loss(*self->error_);
@@ -233,6 +235,7 @@ void Link::fail(LinkErrorKind kind, std::string text) {
 void Link::close() {
   hooks_ = {};
   fail(LinkErrorKind::kClosed, "closed by this side");
+  loss_is_due_ = false;
 }
 
 // ---- reading ----

@@ -51,6 +51,8 @@ class Link : public std::enable_shared_from_this<Link> {
   void close();
 
   [[nodiscard]] bool is_up() const { return established_ && !error_; }
+  /// Whether the owner takes it to be up: also while its loss is still to be told.
+  [[nodiscard]] bool is_held_up() const { return is_up() || loss_is_due_; }
   [[nodiscard]] std::uint32_t last_sequence() const { return last_sequence_; }
   [[nodiscard]] const std::optional<State>& latest_state() const { return latest_state_; }
   [[nodiscard]] const std::optional<Permit>& latest_permit() const { return latest_permit_; }
@@ -132,6 +134,7 @@ class Link : public std::enable_shared_from_this<Link> {
   std::vector<std::uint8_t> in_flight_;  // whole frames being written
   bool established_ = false;
   std::optional<LinkError> error_;
+  bool loss_is_due_ = false;  // on_loss is posted
   Welcome welcome_;
   std::uint32_t last_sequence_ = 0;
   std::uint32_t last_answered_ = 0;

@@ -8,7 +8,7 @@ namespace sim {
 namespace {
 
 /// Unit vector from the box's nearest point to a point outside; inside, out through the nearest side.
-Eigen::Vector3d outward(const calib::Box& box, const Eigen::Vector3d& point_m) {
+Eigen::Vector3d out_of_box(const calib::Box& box, const Eigen::Vector3d& point_m) {
   const Eigen::Vector3d way = point_m - point_m.cwiseMax(box.min_m).cwiseMin(box.max_m);
   if (!way.isZero(0.0)) return way.normalized();
   const Eigen::Vector3d below = box.min_m - point_m, above = point_m - box.max_m;
@@ -16,6 +16,36 @@ Eigen::Vector3d outward(const calib::Box& box, const Eigen::Vector3d& point_m) {
   below.cwiseMax(above).maxCoeff(&axis);
   return above[axis] > below[axis] ? Eigen::Vector3d::Unit(axis).eval()
                                    : (-Eigen::Vector3d::Unit(axis)).eval();
+}
+
+double whole_box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m) {
+  const Eigen::Vector3d outside = (box.min_m - point_m).cwiseMax(point_m - box.max_m);
+  const double deepest = outside.maxCoeff();
+  return (deepest <= 0.0 ? deepest : outside.cwiseMax(0.0).norm()) - box.round_m;
+}
+
+/// The nearest surface of a solid: the distance from it, negative inside, and the direction out of it. In
+/// front of the mouth of a hole the nearest point is on its rim.
+struct NearSurface {
+  double distance_m = 0.0;
+  Eigen::Vector3d outward;
+};
+
+NearSurface near_surface(const calib::Box& box, const Eigen::Vector3d& point_m) {
+  NearSurface near{whole_box_distance_m(box, point_m), out_of_box(box, point_m)};
+  for (const calib::Hole& hole : box.holes) {
+    const Eigen::Vector3d off_m = hole.off_axis_m(point_m);
+    const double far_m = off_m.norm(), from_wall_m = hole.radius_m - far_m;
+    const Eigen::Vector3d to_axis =
+        far_m > 0.0 ? Eigen::Vector3d(-off_m / far_m) : hole.axis.unitOrthogonal();
+    if (near.distance_m > 0.0 && from_wall_m > 0.0) {
+      const Eigen::Vector3d from_rim_m = near.distance_m * near.outward + from_wall_m * to_axis;
+      near = {from_rim_m.norm(), from_rim_m.normalized()};
+    } else if (from_wall_m > near.distance_m) {
+      near = {from_wall_m, to_axis};
+    }
+  }
+  return near;
 }
 
 /// Pre-travel beside that of a push along the stylus; `push` on the ball in R_7, a unit vector.
@@ -30,9 +60,7 @@ double sideways_pretravel_m(const cell::TrueProbe& probe, const Eigen::Vector3d&
 }  // namespace
 
 double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m) {
-  const Eigen::Vector3d outside = (box.min_m - point_m).cwiseMax(point_m - box.max_m);
-  const double deepest = outside.maxCoeff();
-  return (deepest <= 0.0 ? deepest : outside.cwiseMax(0.0).norm()) - box.round_m;
+  return near_surface(box, point_m).distance_m;
 }
 
 double trip_distance_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool,
@@ -45,8 +73,8 @@ double trip_gap_m(const Plant& plant, const Eigen::Isometry3d& block_from_tool, 
   const Eigen::Vector3d ball = block_from_tool.translation();
   double gap_m = std::numeric_limits<double>::infinity();
   for (const calib::Box& box : plant.scene.obstacles) {
-    gap_m = std::min(gap_m, box_distance_m(box, ball) -
-                                trip_distance_m(plant, block_from_tool, outward(box, ball), noise_m));
+    const NearSurface near = near_surface(box, ball);
+    gap_m = std::min(gap_m, near.distance_m - trip_distance_m(plant, block_from_tool, near.outward, noise_m));
   }
   return gap_m;
 }

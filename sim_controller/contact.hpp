@@ -8,7 +8,7 @@
 
 namespace sim {
 
-/// Euclidean distance of a point from a box's surface, negative inside.
+/// Euclidean distance of a point from a box's surface, negative inside; in a hole, that from its wall.
 double box_distance_m(const calib::Box& box, const Eigen::Vector3d& point_m);
 
 /// Distance of the ball's centre from a surface with this outward normal at which the probe trips: radius -

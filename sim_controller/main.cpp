@@ -11,7 +11,9 @@
 #include <csignal>
 #include <iostream>
 
+#include "config/decimal_text.hpp"
 #include "config/fault_file.hpp"
+#include "config/option_text.hpp"
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
 #include "sim_controller/control.hpp"
@@ -46,6 +48,7 @@ std::optional<double> parse_speed(const std::string& text) {
 }
 
 std::string check_listen(const std::string& text) {
+  if (std::string refusal = cell::refuse_empty(text); !refusal.empty()) return refusal;
   return cell::parse_endpoint(text) ? "" : "'" + text + "' is not HOST:PORT";
 }
 
@@ -121,23 +124,28 @@ int main(int argc, char** argv) {
   CLI::App app("cs8sim: a simulated CS8 controller with a TX90, a touch probe and a block", "cs8sim");
   Arguments arguments;
   app.set_version_flag("--version", "cs8sim " TOUCHCAL_VERSION);
-  app.add_option("--cell", arguments.cell_file, "cell file")->required()->type_name("FILE");
+  app.add_option("--cell", arguments.cell_file, "cell file")
+      ->required()
+      ->type_name("FILE")
+      ->check(cell::refuse_empty);
   app.add_option("--listen", arguments.listen,
                  "default: the cell's controller endpoint; port 0 takes a free one")
       ->type_name("HOST:PORT")
       ->check(check_listen);
   app.add_option("--truth", arguments.truth_file,
                  "what the cell hides; default: truth.json beside the cell file")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(cell::refuse_empty);
   app.add_option("--faults", arguments.faults_file, "what goes wrong, and what the operator leaves undone")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(cell::refuse_empty);
   app.add_option("--control", arguments.control,
                  "takes faults while it runs, a line of JSON each; port 0 takes a free one")
       ->type_name("HOST:PORT")
       ->check(check_listen);
   app.add_option("--seed", arguments.seed, "of the touch noise")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber)
+      ->check(cell::refuse_count64)
       ->capture_default_str();
   app.add_option("--speed", arguments.speed, "simulated against wall time; max: motions take no time")
       ->type_name("X|max")

@@ -39,6 +39,8 @@ Shift tilt_about(const Face& face, const Eigen::Vector3d& edge) {
   return {-turned.dot(face.center_m), turned, Eigen::Vector3d::Zero()};
 }
 
+Shift even(double constant) { return {constant, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
+
 /// Centre and radius of a sphere.
 void add_sphere(const ArtefactKnowledge& knowledge, std::size_t index, std::vector<ArtefactParameter>& all) {
   const Face& face = knowledge.faces[index];
@@ -58,11 +60,38 @@ void add_sphere(const ArtefactKnowledge& knowledge, std::size_t index, std::vect
   all.back().std = known.std_offset_m;
 }
 
+/// Place of the axis and its tilts about the middle of the wall's depths, then the radius.
+void add_bore(const ArtefactKnowledge& knowledge, std::size_t index, std::vector<ArtefactParameter>& all) {
+  const Face& face = knowledge.faces[index];
+  const FaceUncertainty known = uncertainty_of(knowledge, index);
+  const Eigen::Vector3d u = -face.plane.outward, v = face.bore->axis.cross(u);
+  for (const auto& [what, way] : {std::pair("axis_u", u), std::pair("axis_v", v)}) {
+    if (!known.estimated && known.std_center_m <= 0.0) break;
+    all.push_back(of_face(knowledge, index, what, ArtefactKind::kBoreAxis, face.bore->center_m.dot(way),
+                          {0.0, Eigen::Vector3d::Zero(), way}));
+    if (!known.estimated) all.back().std = known.std_center_m;
+  }
+  for (const auto& [what, edge] : {std::pair("tilt_u", u), std::pair("tilt_v", v)}) {
+    if (known.std_tilt_rad <= 0.0) break;
+    all.push_back(of_face(knowledge, index, what, ArtefactKind::kBoreTilt, 0.0,
+                          {0.0, Eigen::Vector3d::Zero(), -edge.cross(face.bore->center_m), edge}));
+    all.back().std = known.std_tilt_rad;
+  }
+  if (known.std_offset_m <= 0.0) return;
+  all.push_back(
+      of_face(knowledge, index, "radius", ArtefactKind::kBoreRadius, surface_of(face).radius_m(), even(1.0)));
+  all.back().std = known.std_offset_m;
+}
+
 void add_face(const ArtefactKnowledge& knowledge, std::size_t index, std::vector<ArtefactParameter>& all) {
   const Face& face = knowledge.faces[index];
   const FaceUncertainty known = uncertainty_of(knowledge, index);
   if (face.cap) {
     add_sphere(knowledge, index, all);
+    return;
+  }
+  if (face.bore) {
+    add_bore(knowledge, index, all);
     return;
   }
   const auto prior = [&](double std) { return known.estimated ? std::nullopt : std::optional(std); };
@@ -79,12 +108,14 @@ void add_face(const ArtefactKnowledge& knowledge, std::size_t index, std::vector
   }
 }
 
-Shift even(double constant) { return {constant, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()}; }
-
-/// The block grows about the origin of R_-1: a plane moves away from it; a sphere moves and swells.
+/// The block grows about the origin of R_-1: a plane moves away from it; a sphere moves and swells, and so
+/// does a bore, whose wall then is farther from the ball.
 Shift growth_per_k(const ArtefactKnowledge& knowledge, const Face& face) {
   const double expansion = knowledge.thermal_expansion_per_k;
-  if (!face.cap) return even(-expansion * face.plane.offset_m);
+  if (face.is_flat()) return even(-expansion * face.plane.offset_m);
+  if (face.bore)
+    return {expansion * surface_of(face).radius_m(), Eigen::Vector3d::Zero(),
+            expansion * face.bore->center_m};
   return {-expansion * surface_of(face).radius_m(), Eigen::Vector3d::Zero(), expansion * face.cap->center_m};
 }
 
@@ -190,6 +221,7 @@ Artefact make_artefact(const ArtefactKnowledge& knowledge) {
     Face warm = knowledge.faces[face];
     warm.plane.offset_m *= growth(knowledge);
     if (warm.cap) warm.cap->center_m *= growth(knowledge);
+    if (warm.bore) warm.bore->center_m *= growth(knowledge);
     artefact.contact_planes.push_back(contact_plane(warm, knowledge.stylus));
     add_face(knowledge, face, artefact.parameters);
   }
@@ -204,6 +236,7 @@ Artefact make_artefact(const ArtefactKnowledge& knowledge) {
       knowledge.thermal_expansion_per_k == 0.0 ? 0.0 : knowledge.std_temperature_k,
       [&](const Face& face) { return growth_per_k(knowledge, face); }, artefact.parameters);
   artefact.equations = new_equations(knowledge, artefact.parameters);
+  artefact.std_sideways_m = {knowledge.std_pretravel_tilt_m, knowledge.std_lobes_m, knowledge.std_lobes_m};
   return artefact;
 }
 
@@ -246,15 +279,20 @@ void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& err
     for (std::size_t face = 0; face < planes.size(); ++face) {
       ContactSurface& surface = planes[face];
       surface.offset_m -= errors[k] * shifts[face].constant;
-      if (!surface.center_m) {
+      if (surface.is_flat()) {
         surface.outward += errors[k] * shifts[face].per_metre;
         continue;
       }
-      const Eigen::Vector3d moved_m = errors[k] * shifts[face].center;
+      const ContactSurface& nominal = artefact.contact_planes[face];
+      const Eigen::Vector3d& turn = shifts[face].turn;
+      const Eigen::Vector3d moved_m = errors[k] * (shifts[face].center + turn.cross(*nominal.center_m));
       *surface.center_m += moved_m;
       surface.offset_m += surface.outward.dot(moved_m);  // the radius stays
+      if (surface.axis) *surface.axis += errors[k] * turn.cross(*nominal.axis);
     }
   }
+  for (ContactSurface& surface : planes)
+    if (surface.axis) surface.axis->normalize();
 }
 
 }  // namespace calib

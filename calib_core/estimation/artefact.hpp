@@ -13,13 +13,15 @@
 namespace calib {
 
 /// How well one face is known: standard deviations, 0 is exactly known. An estimated face is known from its
-/// drawing only: its offset and tilts have no prior, nor does the centre of a sphere; its radius keeps its
-/// own, as a ball is certified without its place.
+/// drawing only: its offset and tilts have no prior, nor do the centre of a sphere and the place of the axis
+/// of a bore; the radius keeps its own, as a ball or a ring is certified without its place, and so do the
+/// tilts of the axis, which the short way that a ball goes into a bore shows only poorly.
 struct FaceUncertainty {
-  double std_offset_m = 0.0;  // of a sphere, of its radius
-  double std_tilt_rad = 0.0;  // about each of the face's two edges
+  double std_offset_m = 0.0;  // of a sphere or bore, of its radius
+  double std_tilt_rad = 0.0;  // about each of the face's two edges; of the axis of a bore about outward and
+                              // across
   bool estimated = false;
-  double std_center_m = 0.0;  // of a sphere, of each coordinate of its centre
+  double std_center_m = 0.0;  // of each coordinate of a sphere's centre, of a bore's axis across it
 };
 
 /// The certified distance of two parallel faces at 20 degrees C. It is of the same certificate as the offsets
@@ -40,6 +42,8 @@ struct ArtefactKnowledge {
   Stylus stylus;
   double std_radius_m = 0.0;
   double std_pretravel_m = 0.0;
+  double std_pretravel_tilt_m = 0.0;
+  double std_lobes_m = 0.0;  // of the lobes' size, and of that of lobes turned by 30 degrees beside them
   double warmer_than_20_c_k = 0.0;  // temperature of the block minus 20 degrees C
   double std_temperature_k = 0.0;
   double thermal_expansion_per_k = 0.0;
@@ -50,6 +54,9 @@ enum class ArtefactKind {
   kFaceTilt,
   kSphereCenter,
   kSphereRadius,
+  kBoreAxis,  // its place across it
+  kBoreTilt,
+  kBoreRadius,
   kStylusRadius,
   kPretravel,
   kTemperature
@@ -57,24 +64,35 @@ enum class ArtefactKind {
 
 /// One of these quantities as a parameter of the identification; its value is the error of the quantity. It
 /// changes the signed distance of a ball centre P from face f by value * (constant[f] + per_metre[f] . P -
-/// center[f] . n), n the normal of face f at P; only a sphere has a `center`, only a plane a `per_metre`.
+/// (center[f] + turn[f] x P) . n), n the normal of face f at P; only a sphere or bore has a `center`, only a
+/// bore a `turn`, only a plane a `per_metre`.
 struct ArtefactParameter {
   struct Shift {
     double constant = 0.0;
     Eigen::Vector3d per_metre = Eigen::Vector3d::Zero();
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();  // of the sphere, per unit of the parameter
+    Eigen::Vector3d center = Eigen::Vector3d::Zero();  // motion of the surface at the origin, per unit
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();    // its rotation about the origin, per unit
 
     [[nodiscard]] double at(const Eigen::Vector3d& point_m, const Eigen::Vector3d& normal) const {
-      return constant + per_metre.dot(point_m) - center.dot(normal);
+      // The cross product is the same for all parameters of a touch; (turn x P) . n is turn . (P x n).
+      return constant + per_metre.dot(point_m) - center.dot(normal) - turn.dot(point_m.cross(normal));
     }
   };
 
-  std::string name;  // "stylus_radius", "plane3_offset", "plane3_tilt_u", "plane6_center_x", "plane6_radius"
+  /// "stylus_radius", "plane3_offset", "plane3_tilt_u", "plane6_center_x", "plane6_radius"; of a bore
+  /// "plane6_axis_u", "plane6_tilt_u", u from the axis to the middle of the wall and v the bore's axis x u.
+  std::string name;
   ArtefactKind kind = ArtefactKind::kFaceOffset;
   double nominal = 0.0;       // the given value: metres, radians or degrees C
   std::optional<double> std;  // of its error; nothing for a face that is estimated in place
   std::vector<Shift> shifts;  // one per face
 };
+
+/// Whether it is of the place of a sphere or bore and has no prior: the touches have to go around.
+inline bool is_free_round_place(const ArtefactParameter& parameter) {
+  return (parameter.kind == ArtefactKind::kSphereCenter || parameter.kind == ArtefactKind::kBoreAxis) &&
+         !parameter.std;
+}
 
 /// What the certified lengths say beyond the offsets, as an equation between artefact parameters: sum of
 /// weight * parameter = value. Its deviation is so much larger than the certified one that with the priors of
@@ -89,10 +107,14 @@ struct Artefact {
   std::vector<ContactSurface> contact_planes;  // one per face, nominal: of the ball centre at the trigger
   std::vector<ArtefactParameter> parameters;   // of quantities that are not exactly known
   std::vector<ArtefactEquation> equations;
+  /// One standard deviation of what is known of the pre-travel of a push from the side, by the shapes of
+  /// sideways_shapes(). Never estimated: the touches do not show it.
+  Eigen::Vector3d std_sideways_m = Eigen::Vector3d::Zero();
 };
 
 /// Sets `planes` to the contact planes with these errors of the artefact parameters. Allocates no memory when
-/// the capacity of `planes` suffices. The normals are not normalised again: their length is 1 to first order.
+/// the capacity of `planes` suffices. The normals of planes are not normalised again: their length is 1 to
+/// first order.
 void correct_contact_planes(const Artefact& artefact, const Eigen::VectorXd& errors,
                             std::vector<ContactSurface>& planes);
 

@@ -87,7 +87,8 @@ class RegistrationFit {
       const Eigen::Vector3d point_m = ball_m(i);
       const Eigen::Vector3d normal = normal_at(planes_[i], point_m);
       rows_.row(row) << weight * normal.transpose(), weight * point_m.cross(normal).transpose();
-      residuals_[row] = weight * signed_distance_m(planes_[i], point_m);
+      residuals_[row] = weight * signed_distance_m(planes_[i], old_from_new_.inverse() *
+                                                                   chains_[i].block_from_frame.back());
     }
   }
 

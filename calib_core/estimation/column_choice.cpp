@@ -166,6 +166,10 @@ std::vector<int> estimated_columns(const IdentificationProblem& problem, const I
       }
     }
   }
+  if (options.nongeometric) {
+    for (const int position : *options.nongeometric) columns.push_back(nongeometric_index(position));
+    return columns;
+  }
   const NongeometricDeviations& std = problem.nongeometric_std;
   if (options.stiffness) {
     for (const int position : estimable_compliances(std)) columns.push_back(nongeometric_index(position));

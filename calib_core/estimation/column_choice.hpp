@@ -38,8 +38,8 @@ std::vector<double> choice_singular_values(const IdentificationProblem& problem,
 
 /// Indices into ArmVector of the estimated parameters: the chosen columns, or with the prior all that are not
 /// excluded; with stiffness also the compliances of joints 1 to 3 that have a prior, with
-/// Harmonics::kEstimate the harmonics that have one. The compliances of the wrist are never estimated:
-/// touches do not show them.
+/// Harmonics::kEstimate the harmonics that have one; or those that the options name. The compliances of the
+/// wrist are never estimated: touches do not show them.
 std::vector<int> estimated_columns(const IdentificationProblem& problem, const IdentificationOptions& options,
                                    const IdentifiableSet& chosen);
 

@@ -7,6 +7,7 @@
 
 #include "calib_core/estimation/artefact.hpp"
 #include "calib_core/estimation/pure_error.hpp"
+#include "calib_core/estimation/repeat_sources.hpp"
 #include "calib_core/geometry/touch.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
@@ -23,6 +24,9 @@ enum class ColumnScaling { kUnitNorm, kUnits };
 /// show it (identification/model_selection.hpp).
 enum class Harmonics { kLeaveOut, kWhenShown, kEstimate };
 
+/// What becomes of the ripple of each gear at its known period: likewise.
+enum class Ripple { kLeaveOut, kWhenShown };
+
 struct IdentificationOptions {
   Formulation formulation = Formulation::kSignedDistance;
   IdentifiabilityOptions identifiability;
@@ -31,6 +35,10 @@ struct IdentificationOptions {
   bool prior = false;      // maximum a posteriori with the maker's tolerances, without a choice of columns
   bool stiffness = false;  // estimate the compliance of joints 1 to 3 where it has a prior
   Harmonics harmonics = Harmonics::kLeaveOut;
+  Ripple ripple = Ripple::kLeaveOut;
+  /// Exactly these of nongeometric_parameters(), positions in ascending order, in place of what the last
+  /// three would choose.
+  std::optional<std::vector<int>> nongeometric = std::nullopt;
   bool hold_weak = true;      // keep parameters at nominal that the declared noise would make meaningless
   bool measure_noise = true;  // correct the declared noise by the residuals; else it is taken as it is
   int iterations_max = 20;
@@ -51,6 +59,10 @@ struct IdentificationProblem {
   double touch_noise_m = 0.0;
   /// From what was touched more than once; the declared noise is a prior for it.
   std::optional<TouchNoise> pure_error;
+  /// The same where it is too small to be noise (is_implausibly_small()): it is not used, and warned of.
+  std::optional<TouchNoise> doubted_error;
+  /// What that is made of. Only told, never counted a second time.
+  RepeatSources repeat_sources;
   ErrorTolerances
       tolerances{};  // the maker's: the prior, and the size of errors that touches do not determine
   /// The maker's figures for what the arm does beside rigid kinematics: the prior where it is estimated, a
@@ -63,9 +75,14 @@ struct IdentificationProblem {
   /// same in every touch: half the play of the gears; radians. In gear_std_rad as well, which is for motions
   /// of any direction.
   JointVector gear_lag_std_rad = JointVector::Zero();
+  /// One standard deviation of a joint's stop by the maker's figures, radians; in gear_std_rad as well. The
+  /// least that touches scatter follows from it.
+  JointVector stop_std_rad = JointVector::Zero();
   /// How far one place seemed to move against the arm while the touches were made (warming, a block that
   /// moves): the result is of the middle of that, and afterwards the tip is off by up to half of it.
   double drift_m = 0.0;
+  /// Of that, whether it is shown or not: what the scatter of the place's touches leaves open.
+  TouchNoise drift_uncertainty;
   /// Depends on arm, faces and options only. Set it when many identifications share these; else each call
   /// computes it.
   std::optional<Attainable> attainable;

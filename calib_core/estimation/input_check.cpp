@@ -45,6 +45,9 @@ std::optional<InputRefusal> bad(std::string message) {
   return InputRefusal{IdentificationStatus::kBadInput, std::move(message)};
 }
 
+/// Of what is not flat.
+std::string round_shape(const ContactSurface& surface) { return surface.is_bore() ? "bore" : "sphere"; }
+
 std::optional<InputRefusal> bad_deviation(const IdentificationProblem& problem, std::size_t index) {
   const double deviation_m = problem.touches[index].deviation_m;
   if (deviation_m == 0.0) return std::nullopt;
@@ -75,9 +78,9 @@ std::optional<InputRefusal> bad_touch(const IdentificationProblem& problem, Form
                  std::to_string(planes.size()) + " planes");
     }
     if (auto refusal = bad_deviation(problem, i)) return refusal;
-    if (planes[face].is_sphere() && formulation == Formulation::kPlaneCoefficients) {
-      return bad(face_name(face) +
-                 " is a sphere, which has no plane coefficients (eq. 6); use the formulation "
+    if (!planes[face].is_flat() && formulation == Formulation::kPlaneCoefficients) {
+      return bad(face_name(face) + " is a " + round_shape(planes[face]) +
+                 ", which has no plane coefficients (eq. 6); use the formulation "
                  "signed_distance, or leave its touches out");
     }
     if (planes[face].offset_m == 0.0 && formulation == Formulation::kPlaneCoefficients) {
@@ -101,16 +104,19 @@ std::optional<InputRefusal> bad_arm(const IdentificationProblem& problem) {
 
 /// How far two surfaces are apart when they are alike; nothing when they are not.
 std::optional<double> apart_m(const ContactSurface& a, const ContactSurface& b) {
-  if (a.is_sphere() != b.is_sphere()) return std::nullopt;
-  const bool alike = a.is_sphere() ? (*a.center_m - *b.center_m).norm() < kSamePlane
-                                   : (a.outward - b.outward).norm() < kSamePlane;
-  if (!alike) return std::nullopt;
-  return std::abs(a.is_sphere() ? a.radius_m() - b.radius_m() : a.offset_m - b.offset_m);
+  if (a.is_sphere() != b.is_sphere() || a.is_bore() != b.is_bore()) return std::nullopt;
+  const auto alike = [&] {
+    if (a.is_flat()) return (a.outward - b.outward).norm() < kSamePlane;
+    if (a.is_bore() && a.axis->cross(*b.axis).norm() >= kSamePlane) return false;
+    return from_middle_m(a, *b.center_m).norm() < kSamePlane;
+  };
+  if (!alike()) return std::nullopt;
+  return std::abs(a.is_flat() ? a.offset_m - b.offset_m : a.radius_m() - b.radius_m());
 }
 
 bool is_finite(const ContactSurface& surface) {
   return surface.outward.allFinite() && std::isfinite(surface.offset_m) &&
-         (!surface.is_sphere() || surface.center_m->allFinite());
+         (surface.is_flat() || surface.center_m->allFinite()) && (!surface.axis || surface.axis->allFinite());
 }
 
 std::optional<InputRefusal> bad_planes(const std::vector<ContactSurface>& planes) {
@@ -120,6 +126,10 @@ std::optional<InputRefusal> bad_planes(const std::vector<ContactSurface>& planes
     }
     if (planes[a].is_sphere() && !(planes[a].radius_m() > 0.0)) {
       return bad(face_name(a) + " is a sphere without a radius; give its radius");
+    }
+    if (planes[a].is_bore() && !(planes[a].radius_m() > 0.0)) {
+      return bad(face_name(a) +
+                 " is a bore that is no wider than the stylus ball; correct one of both radii");
     }
     for (std::size_t b = a + 1; b < planes.size(); ++b) {
       const auto apart = apart_m(planes[a], planes[b]);
@@ -202,16 +212,16 @@ bool all_one_posture(const IdentificationProblem& problem, const std::vector<std
   });
 }
 
-/// Whether the centre of this sphere is found by the touches alone.
+/// Whether the centre of this sphere or the axis of this bore is found by the touches alone.
 bool has_free_center(const Artefact& artefact, std::size_t face) {
   return std::ranges::any_of(artefact.parameters, [&](const ArtefactParameter& parameter) {
-    return parameter.kind == ArtefactKind::kSphereCenter && !parameter.std &&
-           !parameter.shifts[face].center.isZero(0.0);
+    return is_free_round_place(parameter) && !parameter.shifts[face].center.isZero(0.0);
   });
 }
 
 /// The directions from which a sphere was touched, root mean square along the axis that they show least: 0
-/// when all lie in a plane through the centre.
+/// when all lie in a plane through the centre. Of a bore, likewise across its axis: 0 when all lie on one
+/// line through it.
 double shown_least(const IdentificationProblem& problem, const PreparedModel& start, std::size_t face,
                    const std::vector<std::size_t>& touches) {
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
@@ -223,7 +233,8 @@ double shown_least(const IdentificationProblem& problem, const PreparedModel& st
   }
   const auto values =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments, Eigen::EigenvaluesOnly).eigenvalues();
-  return std::sqrt(std::max(0.0, values[0]));
+  // Along the axis of a bore nothing is shown: that is the least, and not wanted.
+  return std::sqrt(std::max(0.0, values[problem.artefact.contact_planes[face].is_bore() ? 1 : 0]));
 }
 
 }  // namespace
@@ -320,8 +331,8 @@ std::optional<InputRefusal> find_insufficient_data(const IdentificationProblem& 
   return std::nullopt;
 }
 
-std::optional<InputRefusal> find_one_sided_sphere(const IdentificationProblem& problem,
-                                                  const std::vector<std::size_t>& fitted) {
+std::optional<InputRefusal> find_one_sided_face(const IdentificationProblem& problem,
+                                                const std::vector<std::size_t>& fitted) {
   const PreparedModel start = prepare(apply(problem.nominal, problem.start));
   for (std::size_t face = 0; face < problem.artefact.contact_planes.size(); ++face) {
     if (!has_free_center(problem.artefact, face)) continue;
@@ -332,17 +343,20 @@ std::optional<InputRefusal> find_one_sided_sphere(const IdentificationProblem& p
     if (touches.empty()) continue;  // find_unconstrained() names it
     const double shown = shown_least(problem, start, face, touches);
     if (shown >= kSphereSidesMin) continue;
+    const bool is_bore = problem.artefact.contact_planes[face].is_bore();
     std::ostringstream angle;
     angle << std::lround(degrees_from_radians(std::asin(std::min(1.0, shown))));
-    return InputRefusal{
-        IdentificationStatus::kUnobservable,
-        "the " + std::to_string(touches.size()) + " touches on " + face_name(face) +
-            ", a sphere, are from one side only (" + angle.str() +
-            " degrees about their middle in one direction, " +
-            std::to_string(std::lround(degrees_from_radians(std::asin(kSphereSidesMin)))) +
-            " are needed), so that its centre cannot be told from the arm; touch it from other sides, or "
-            "give /faces/" +
-            std::to_string(face) + R"(/place "known" with std_center_mm in the block's file)"};
+    return InputRefusal{IdentificationStatus::kUnobservable,
+                        "the " + std::to_string(touches.size()) + " touches on " + face_name(face) + ", a " +
+                            round_shape(problem.artefact.contact_planes[face]) + ", are " +
+                            (is_bore ? "on one side of it only (" : "from one side only (") + angle.str() +
+                            " degrees about their middle in one direction, " +
+                            std::to_string(std::lround(degrees_from_radians(std::asin(kSphereSidesMin)))) +
+                            " are needed), so that its " + (is_bore ? "axis" : "centre") +
+                            " cannot be told from the arm; touch it " + (is_bore ? "on" : "from") +
+                            " other sides, or give /faces/" + std::to_string(face) +
+                            "/place \"known\" with " + (is_bore ? "std_axis_mm" : "std_center_mm") +
+                            " in the block's file"};
   }
   return std::nullopt;
 }

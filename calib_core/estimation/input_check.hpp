@@ -35,12 +35,13 @@ std::optional<InputRefusal> find_insufficient_data(const IdentificationProblem& 
 
 /// A sphere whose centre is to be found in place is touched from directions whose components along any axis
 /// through it are at least this, root mean square: the sine of 10 degrees. With less its centre and the arm
-/// look alike.
+/// look alike. Of a bore whose axis is to be found the same holds for any direction across the axis.
 inline constexpr double kSphereSidesMin = 0.17364817766693033;
 
-/// A sphere without a prior on its centre that was touched from one side only, or in one plane.
-std::optional<InputRefusal> find_one_sided_sphere(const IdentificationProblem& problem,
-                                                  const std::vector<std::size_t>& fitted);
+/// A sphere without a prior on its centre that was touched from one side only, or in one plane; a bore
+/// without one on the place of its axis that was touched on one side of it only.
+std::optional<InputRefusal> find_one_sided_face(const IdentificationProblem& problem,
+                                                const std::vector<std::size_t>& fitted);
 
 /// Unknowns that neither a prior nor the touches constrain, by name. Columns that were chosen as identifiable
 /// need no prior. Linearises the fit at the estimate.

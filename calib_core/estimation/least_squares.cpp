@@ -36,7 +36,8 @@ Eigen::VectorXd prior_precision(const IdentificationProblem& problem, const std:
 }
 
 bool has_priors(const IdentificationProblem& problem, const IdentificationOptions& options) {
-  return options.prior || options.stiffness || !problem.artefact.parameters.empty();
+  const bool has_named = options.nongeometric && !options.nongeometric->empty();
+  return options.prior || options.stiffness || has_named || !problem.artefact.parameters.empty();
 }
 
 Eigen::MatrixXd inverse_information(const Eigen::MatrixXd& information) {
@@ -123,18 +124,30 @@ void LeastSquares::fill_rows(std::size_t block, const PreparedModel& model) {
     normals.set(lane, normal_at(planes_[face_of(lane)], chains.tip_in_block_m(lane)));
   ArmRowLanes slopes;
   lane_arithmetic().distance_derivatives(model, chains, normals, slopes);
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    const auto row = static_cast<Eigen::Index>(first + lane);
-    const Eigen::Vector3d tip = chains.tip_in_block_m(lane);
-    const double weight = weights_[row];
-    rows_.residuals_m[row] = signed_distance_m(planes_[face_of(lane)], tip);
-    rows_.weighted_residuals[row] = weight * rows_.residuals_m[row];
-    Eigen::Index column = 0;
-    for (const int arm_column : arm_columns_)
-      rows_.all(row, column++) = weight * slopes[static_cast<std::size_t>(arm_column)].of[lane];
-    for (const ArtefactParameter& parameter : problem_.artefact.parameters) {
-      rows_.all(row, column++) = weight * parameter.shifts[face_of(lane)].at(tip, normals.of(lane));
+  const auto row = static_cast<Eigen::Index>(first);
+  const auto rows = static_cast<Eigen::Index>(count);
+  const Eigen::VectorXd::SegmentReturnType weights = weights_.segment(row, rows);
+  for (std::size_t lane = 0; lane < count; ++lane)
+    rows_.residuals_m[row + static_cast<Eigen::Index>(lane)] =
+        signed_distance_m(planes_[face_of(lane)], chains, lane);
+  rows_.weighted_residuals.segment(row, rows) = weights.cwiseProduct(rows_.residuals_m.segment(row, rows));
+  Eigen::Index column = 0;
+  for (const int arm_column : arm_columns_) {
+    const Eigen::Map<const Eigen::Vector4d> slope(slopes[static_cast<std::size_t>(arm_column)].of.data());
+    if (count == kLaneCount) {
+      rows_.all.col(column++).segment<kLaneCount>(row) = weights.head<kLaneCount>().cwiseProduct(slope);
+    } else {
+      rows_.all.col(column++).segment(row, rows) = weights.cwiseProduct(slope.head(rows));
     }
+  }
+  const Eigen::Index first_of_artefact = column;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    const auto here = row + static_cast<Eigen::Index>(lane);
+    const std::size_t face = face_of(lane);
+    const Eigen::Vector3d tip_m = chains.tip_in_block_m(lane), normal = normals.of(lane);
+    column = first_of_artefact;
+    for (const ArtefactParameter& parameter : problem_.artefact.parameters)
+      rows_.all(here, column++) = weights_[here] * parameter.shifts[face].at(tip_m, normal);
   }
 }
 

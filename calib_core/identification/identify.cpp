@@ -11,6 +11,7 @@
 #include "calib_core/estimation/outlier_rejection.hpp"
 #include "calib_core/identification/face_distances.hpp"
 #include "calib_core/identification/model_selection.hpp"
+#include "calib_core/identification/model_trial.hpp"
 #include "calib_core/identification/result_warnings.hpp"
 #include "calib_core/numerics/condition_number.hpp"
 #include "calib_core/uncertainty/distance_uncertainty.hpp"
@@ -73,7 +74,7 @@ bool may_hold(const IdentificationProblem& problem, const IdentificationOptions&
 bool is_followed(const IdentificationProblem& problem, const IdentificationOptions& options,
                  const IdentificationResult& result) {
   return (may_hold(problem, options) && weakest(result)) || tries_harmonics(problem, options, result) ||
-         is_reweighed(problem, options, result);
+         tries_ripple(problem, options, result) || is_reweighed(problem, options, result);
 }
 
 /// kFit: what decides between solutions: goodness of fit, measured noise, uncertainty of what was fitted.
@@ -106,7 +107,11 @@ void evaluate(const IdentificationProblem& problem, const IdentificationOptions&
   result.uncertainty = fitted_uncertainty(problem, options, fit, covariance, noise);
   if (extent == Extent::kFit && is_followed(problem, options, result)) return;
   result.distances = face_distances(problem, result);
-  const FullLinearisation whole = linearise_all_parameters(problem, options, fit, estimate, covariance);
+  FullLinearisation whole = linearise_all_parameters(problem, options, fit, estimate, covariance);
+  bound_second_harmonics({.squares = fit.chi_square(estimate),
+                          .degrees = static_cast<double>(fit.degrees_of_freedom()),
+                          .otherwise = std::pow(noise.std_m / fit.noise_unit_m(), 2)},
+                         whole);
   if (result.lack_of_fit) result.lack_of_fit->droop = test_droop(problem, fit, whole, result.residual_sum);
   result.uncertainty->gear_share = gear_share;
   add_unfitted(problem, result.identifiable, fit, whole, *result.uncertainty);
@@ -123,6 +128,8 @@ void evaluate(const IdentificationProblem& problem, const IdentificationOptions&
 void solve(const IdentificationProblem& problem, const IdentificationOptions& options,
            double declared_noise_m, const std::vector<std::size_t>& fitted, IdentificationResult& result) {
   LeastSquares fit(problem, options, estimated_columns(problem, options, result.identifiable), fitted);
+  if (const JointVector beside = gear_std_beside(problem, fit.arm_columns()); beside != problem.gear_std_rad)
+    result.gear_variance_m2 = gear_variance_m2(problem, beside, fitted);
   GaussNewton iteration(problem, options, fit, result.identifiable.columns);
   Estimate estimate = iteration.start();
   if (auto refusal = find_unconstrained(problem, options, fit, estimate)) {
@@ -224,24 +231,17 @@ IdentificationResult solve_and_hold(const IdentificationProblem& problem,
   return result;
 }
 
-/// solve_and_hold(), and where harmonics are to be tried the same touches with them: what the residuals ask
-/// for is taken.
+/// solve_and_hold(), and what is to be tried beside it by the same touches.
 IdentificationResult solve_and_select(const IdentificationProblem& problem,
                                       const IdentificationOptions& options,
                                       const std::vector<std::size_t>& fitted,
                                       const IdentificationResult& before) {
-  IdentificationResult smaller = solve_and_hold(problem, options, problem.touch_noise_m, fitted, before);
-  if (!tries_harmonics(problem, options, smaller)) return smaller;
-  IdentificationOptions with_harmonics = options;
-  with_harmonics.harmonics = Harmonics::kEstimate;
-  with_harmonics.robust = false;  // the outliers are known
-  IdentificationResult larger =
-      solve_and_hold(problem, with_harmonics, problem.touch_noise_m, without(fitted, smaller.rejected),
-                     before_another(before, smaller));
-  const ModelChoice choice = choose_harmonics(smaller, larger);
-  IdentificationResult taken = std::move(choice.take_larger ? larger : smaller);
-  taken.model_reason = choice.reason;
-  return taken;
+  const auto solve_again = [&](const IdentificationOptions& with_more, const IdentificationResult& first) {
+    return solve_and_hold(problem, with_more, problem.touch_noise_m, without(fitted, first.rejected),
+                          before_another(before, first));
+  };
+  return select_model(problem, options, fitted,
+                      solve_and_hold(problem, options, problem.touch_noise_m, fitted, before), solve_again);
 }
 
 /// Evaluates as a whole a solution that is taken although it was followed by another.
@@ -296,6 +296,7 @@ IdentificationResult solve_and_weigh(const IdentificationProblem& problem,
   complete(reweighed, settled, problem.touch_noise_m, fitted, measured);
   keep_test(declared, measured);
   measured.model_reason = declared.model_reason;
+  measured.warnings = declared.warnings;
   return measured;
 }
 
@@ -371,7 +372,7 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
   }
   choose(problem, options, sorted.fitted, result);
   auto refusal = find_deficit(problem, options, sorted, result);
-  if (!refusal) refusal = find_one_sided_sphere(problem, sorted.fitted);
+  if (!refusal) refusal = find_one_sided_face(problem, sorted.fitted);
   if (refusal) {
     refuse(result, std::move(*refusal));
     return result;
@@ -380,7 +381,7 @@ IdentificationResult identify(const IdentificationProblem& problem, const Identi
   const std::size_t chosen_count = result.identifiable.columns.size();
   result.singular_values =
       nominal_singular_values(problem, options, sorted.fitted, static_cast<int>(chosen_count));
-  result.gear_variance_m2 = gear_variance_m2(problem, sorted.fitted);
+  result.gear_variance_m2 = gear_variance_m2(problem, problem.gear_std_rad, sorted.fitted);
   result = solve_and_weigh(problem, options, sorted.fitted, result);
   add_warnings(problem, options, result);
   if (!problem.columns && result.identifiable.columns.size() < chosen_count) {

@@ -24,7 +24,7 @@ constexpr double kLastStepNorm = 1e-6;
 /// A touch is moved onto its plane with the slope of the fitted arm: each step leaves about the share of the
 /// distance that it moved the arm relative to its size. Two steps for 0.5 mm, four for 10 mm.
 constexpr int kTouchStepsMax = 8;
-constexpr double kOnPlaneMetres = 1e-8;
+constexpr double kOnFaceMetres = 1e-8;
 constexpr double kSlopeMin = 1e-12;
 constexpr double kQuantile = 0.95;
 
@@ -114,16 +114,21 @@ MonteCarlo::MonteCarlo(const IdentificationProblem& problem, const Identificatio
       fitted_arm_(result.errors),
       fitted_artefact_(result.artefact_errors),
       noise_m_(result.uncertainty.value().noise_m) {
-  problem_.gear_std_rad *= std::sqrt(result.uncertainty->gear_share);
+  problem_.gear_std_rad = std::sqrt(result.uncertainty->gear_share) * gear_std_beside(problem, columns_);
+  second_harmonic_std_rad_ = result.uncertainty->second_harmonic_std_rad;
   problem_.touches.clear();
   for (const std::size_t touch : fitted) problem_.touches.push_back(problem.touches[touch]);
   assume_noise(problem_, result.weight_noise_m);
-  for (const Touch& touch : problem_.touches) {
+  sideways_shapes_.resize(std::ssize(problem_.touches), 3);
+  for (std::size_t i = 0; i < problem_.touches.size(); ++i) {
+    const Touch& touch = problem_.touches[i];
     const Chain chain = forward_chain(result.calibrated, touch.joints);
     const Eigen::Vector3d outward = normal_at(
         problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.tip_in_block_m());
     joints_per_metre_.push_back(joints_per_metre(result.calibrated, chain, outward));
     search_directions_.push_back(search_directions(result.calibrated, chain, outward));
+    const Eigen::Vector3d push = chain.block_from_frame.back().linear().transpose() * outward;
+    sideways_shapes_.row(static_cast<Eigen::Index>(i)) = sideways_shapes(push).transpose();
   }
   const Eigen::VectorXd precision = prior_precision(problem, columns_, options_.prior);
   prior_std_ = (precision.array() > 0.0).select(precision.cwiseSqrt().cwiseInverse(), 0.0);
@@ -143,7 +148,23 @@ MonteCarlo::Truth MonteCarlo::draw_truth(UniformChance& chance) const {
   Truth truth{fitted_arm_, fitted_artefact_, JointVector::Zero()};
   for (int joint = 0; joint < kJointCount; ++joint)
     truth.lag_rad[joint] = problem_.gear_lag_std_rad[joint] * standard_normal(chance);
+  if (has_second_harmonics()) {
+    for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+      const double std_rad = second_harmonic_std_rad_[static_cast<Eigen::Index>(joint)];
+      truth.second_harmonics_rad[joint] = {std_rad * standard_normal(chance),
+                                           std_rad * standard_normal(chance)};
+    }
+  }
+  for (Eigen::Index k = 0; k < truth.sideways_m.size(); ++k) {
+    const double std_m = problem_.artefact.std_sideways_m[k];
+    if (std_m > 0.0) truth.sideways_m[k] = std_m * standard_normal(chance);
+  }
   for (const auto& [column, std] : not_estimated_) truth.arm[column] = std * standard_normal(chance);
+  // Half of what the place moved in the run, as the budget has it, in any direction.
+  for (const double moved_m : {problem_.drift_m, problem_.drift_uncertainty.std_m}) {
+    if (moved_m == 0.0) continue;
+    for (double& along_m : truth.drifted_m) along_m += moved_m / 2.0 * standard_normal(chance);
+  }
   return truth;
 }
 
@@ -175,31 +196,52 @@ IdentificationProblem MonteCarlo::draw_problem(const Truth& truth, UniformChance
   for (std::size_t i = 0; i < drawn.touches.size(); ++i) {
     Touch& touch = drawn.touches[i];
     const ContactSurface& plane = planes[static_cast<std::size_t>(touch.face)];
-    const double off_m = noise_m_ * noise_factor(touch, problem_.touch_noise_m) * standard_normal(chance);
+    const double off_m = noise_m_ * noise_factor(touch, problem_.touch_noise_m) * standard_normal(chance) -
+                         sideways_shapes_.row(static_cast<Eigen::Index>(i)).dot(truth.sideways_m);
     for (int step = 0; step < kTouchStepsMax; ++step) {
-      const Eigen::Vector3d tip_m = forward_chain(arm, touch.joints).tip_in_block_m();
-      const double beside_m = signed_distance_m(plane, tip_m) - off_m;
-      if (std::abs(beside_m) < kOnPlaneMetres) break;
+      const double beside_m =
+          signed_distance_m(plane, forward_chain(arm, touch.joints).block_from_frame.back()) - off_m;
+      if (std::abs(beside_m) < kOnFaceMetres) break;
       touch.joints -= beside_m * joints_per_metre_[i];
     }
     touch.joints += truth.lag_rad.cwiseProduct(search_directions_[i]);  // the drive is ahead
+    if (has_second_harmonics())
+      touch.joints -= second_harmonics_at(truth, prepare(problem_.nominal.gains, touch.joints));
   }
   return drawn;
 }
 
-std::vector<double> MonteCarlo::tip_errors_m(const Region& region, const PreparedModel& truth,
-                                             const PreparedModel& calibrated, UniformChance& chance) const {
-  const bool has_gears = !problem_.gear_std_rad.isZero(0.0);
+bool MonteCarlo::has_second_harmonics() const { return !second_harmonic_std_rad_.isZero(0.0); }
+
+JointVector MonteCarlo::second_harmonics_at(const Truth& truth, const PreparedJoints& joints) {
+  JointVector off_rad;
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    const CosSin phase = twice_a_turn(joints.turned[joint]);
+    const CosSin& harmonic = truth.second_harmonics_rad[joint];
+    off_rad[static_cast<Eigen::Index>(joint)] = harmonic.cos * phase.cos + harmonic.sin * phase.sin;
+  }
+  return off_rad;
+}
+
+std::vector<double> MonteCarlo::tip_errors_m(const Region& region, const Truth& truth,
+                                             const PreparedModel& true_arm, const PreparedModel& calibrated,
+                                             UniformChance& chance) const {
+  const bool has_gears = !problem_.gear_std_rad.isZero(0.0), is_uneven = has_second_harmonics();
   std::vector<double> errors_m;
   errors_m.reserve(region.postures.size());
   Eigen::Index row = 0;
   for (const PreparedJoints& joints : region.postures) {
-    Eigen::Vector3d off_m =
-        forward_chain(truth, joints).tip_in_block_m() - forward_chain(calibrated, joints).tip_in_block_m();
-    for (int joint = 0; has_gears && joint < kJointCount; ++joint) {
-      off_m +=
-          problem_.gear_std_rad[joint] * standard_normal(chance) * region.by_joint.row(row++).transpose();
+    Eigen::Vector3d off_m = truth.drifted_m + forward_chain(true_arm, joints).tip_in_block_m() -
+                            forward_chain(calibrated, joints).tip_in_block_m();
+    JointVector off_rad = JointVector::Zero();
+    if (is_uneven) {
+      const Eigen::Map<const JointVector> gains(problem_.nominal.gains.data());
+      off_rad = gains.cwiseProduct(second_harmonics_at(truth, joints));
     }
+    for (int joint = 0; has_gears && joint < kJointCount; ++joint)
+      off_rad[joint] += problem_.gear_std_rad[joint] * standard_normal(chance);
+    if (has_gears || is_uneven) off_m += region.by_joint.middleRows<kJointCount>(row).transpose() * off_rad;
+    row += kJointCount;
     errors_m.push_back(off_m.norm());
   }
   return errors_m;
@@ -213,8 +255,8 @@ MonteCarloDraw MonteCarlo::draw(std::uint64_t number) const {
   if (!fitted.converged) return {};
   const PreparedModel true_arm = prepare(apply(problem_.nominal, truth.arm));
   const PreparedModel calibrated = prepare(apply(drawn.nominal, fitted.estimate.arm));
-  const std::vector<double> in_box_m = tip_errors_m(box_, true_arm, calibrated, chance);
-  const std::vector<double> over_ranges_m = tip_errors_m(joint_ranges_, true_arm, calibrated, chance);
+  const std::vector<double> in_box_m = tip_errors_m(box_, truth, true_arm, calibrated, chance);
+  const std::vector<double> over_ranges_m = tip_errors_m(joint_ranges_, truth, true_arm, calibrated, chance);
   return {.converged = true,
           .box_mean_square_m2 = mean_square(in_box_m),
           .joint_ranges_mean_square_m2 = mean_square(over_ranges_m),

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -37,7 +38,10 @@ struct MonteCarloDraw {
 ///   error;
 /// - what was not estimated (held, without effect, grouped, masses, a compliance, harmonics) is off by its
 ///   tolerance in the true arm and nominal in the fit; without a known tolerance it stays nominal;
-/// - each joint lags behind its drive by as much in every touch;
+/// - each joint has a second harmonic that the residuals leave it, in the touches and at the tip;
+/// - each joint lags behind its drive by as much in every touch, and the pre-travel of a push from the side
+/// is
+///   off by what is not known of it;
 /// - the true arm touches the true faces at the fitted postures with the noise of a touch that the budget
 ///   uses, and the arm is identified from them: the same columns and weights, no search for outliers, no
 ///   choice of a model, Gauss-Newton to its end;
@@ -62,6 +66,9 @@ class MonteCarlo {
     ArmVector arm;             // errors against the nominal arm
     Eigen::VectorXd artefact;  // errors against the nominal artefact
     JointVector lag_rad;       // of each joint behind its drive
+    std::array<CosSin, kJointCount> second_harmonics_rad{};
+    Eigen::Vector3d sideways_m = Eigen::Vector3d::Zero();  // error of the pre-travel, by sideways_shapes()
+    Eigen::Vector3d drifted_m = Eigen::Vector3d::Zero();   // of the tip, by the drift of the run
   };
   [[nodiscard]] Truth draw_truth(UniformChance& chance) const;
   [[nodiscard]] IdentificationProblem draw_problem(const Truth& truth, UniformChance& chance) const;
@@ -70,9 +77,13 @@ class MonteCarlo {
     std::vector<PreparedJoints> postures;
     Eigen::MatrixX3d by_joint;  // d tip / d joint, transposed: six rows a posture
   };
-  [[nodiscard]] std::vector<double> tip_errors_m(const Region& region, const PreparedModel& truth,
+  [[nodiscard]] std::vector<double> tip_errors_m(const Region& region, const Truth& truth,
+                                                 const PreparedModel& true_arm,
                                                  const PreparedModel& calibrated,
                                                  UniformChance& chance) const;
+  [[nodiscard]] bool has_second_harmonics() const;
+  /// By how much each joint is ahead of its drive.
+  static JointVector second_harmonics_at(const Truth& truth, const PreparedJoints& joints);
 
   IdentificationProblem problem_;  // with the fitted touches alone
   IdentificationOptions options_;
@@ -82,8 +93,10 @@ class MonteCarlo {
   Eigen::VectorXd prior_std_;  // of the columns, then of the artefact parameters; 0 where there is no prior
   std::vector<std::pair<int, double>> not_estimated_;  // index into ArmVector, standard deviation
   double noise_m_ = 0.0;
+  JointVector second_harmonic_std_rad_;
   std::vector<JointVector> joints_per_metre_;   // of each touch, along the outward normal
   std::vector<JointVector> search_directions_;  // of each touch
+  Eigen::MatrixX3d sideways_shapes_;            // of each touch, a row
   Region box_, joint_ranges_;
   std::optional<double> linear_box_rms_m_;
 };

@@ -105,6 +105,26 @@ void warn_of_declared_noise(const IdentificationProblem& problem, Identification
       " were used. Write \"touch_noise_mm\" in the cell's file as small as the touches are");
 }
 
+void warn_of_doubted_repeats(const IdentificationProblem& problem, IdentificationResult& result) {
+  if (!problem.doubted_error) return;
+  const auto micrometres = [](double metres) {
+    std::ostringstream text;
+    text.precision(2);
+    text << std::fixed << 1e6 * metres << " um";
+    return text.str();
+  };
+  const auto readings = std::lround(problem.doubted_error->degrees_of_freedom) + 2;
+  result.warnings.push_back("the " + std::to_string(readings) +
+                            " touches of the reference place scatter by " +
+                            micrometres(problem.doubted_error->std_m) +
+                            " only, less than any probe on an arm: they are of another plane, or were not "
+                            "made one by one. They say " +
+                            (problem.pure_error ? std::string("nothing of the noise")
+                                                : "nothing of the noise, for which the declared " +
+                                                      micrometres(problem.touch_noise_m) + " stand") +
+                            "; check plane and joints of \"reference_touches\"");
+}
+
 }  // namespace
 
 void add_warnings(const IdentificationProblem& problem, const IdentificationOptions& options,
@@ -114,6 +134,7 @@ void add_warnings(const IdentificationProblem& problem, const IdentificationOpti
     warn_of_droop(problem, result);
     if (options.measure_noise) warn_of_declared_noise(problem, result);
     warn_of_drift(problem, result);
+    warn_of_doubted_repeats(problem, result);
     warn_of_shown_droop(result);
     warn_of_temperature(problem, result);
     warn_of_lost_faces(problem, result);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "calib_core/identification/face_distances.hpp"
+#include "calib_core/identification/model_selection.hpp"
 
 namespace calib {
 namespace {
@@ -76,8 +77,8 @@ Validation validate(const IdentificationProblem& problem, const IdentificationOp
   IdentificationResult& result = validation.result;
   if (result.status != IdentificationStatus::kConverged) return validation;
 
-  IdentificationOptions all_kept = options;  // the outliers are known
-  all_kept.robust = false;
+  // Outliers and model are known; the held-out touches, which may have chosen it, are not among these.
+  const IdentificationOptions all_kept = settled_options(options, result);
   validation.same_touches =
       repeat(from_calibrated(problem, result, kept_touches(problem, result, TouchRole::kFit)), all_kept);
   validation.same_touches.std_new_errors.setZero();

@@ -114,6 +114,14 @@ ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, cons
     row[nongeometric_index(harmonic_position(joint))] = by_joint[joint] * chain.turned[index].cos;
     row[nongeometric_index(harmonic_position(joint)) + 1] = by_joint[joint] * chain.turned[index].sin;
   }
+  if (prepared.has_periods) {
+    const auto phases = ripple_phases(prepared.model, chain.commanded);
+    for (int joint = 0; joint < kJointCount; ++joint) {
+      const CosSin& phase = phases[static_cast<std::size_t>(joint)];
+      row[nongeometric_index(ripple_position(joint))] = by_joint[joint] * phase.cos;
+      row[nongeometric_index(ripple_position(joint)) + 1] = by_joint[joint] * phase.sin;
+    }
+  }
   row.segment<kJointCount>(nongeometric_index(compliance_position(0))) =
       by_joint.cwiseProduct(deflections.by_compliance);
   if (deflections.is_compliant) {
@@ -186,6 +194,8 @@ KinematicModel apply(const KinematicModel& model, const ArmVector& errors) {
     changed.compliance_rad_per_nm[joint] += errors[nongeometric_index(compliance_position(number))];
     changed.harmonics_rad[joint].cos += errors[nongeometric_index(harmonic_position(number))];
     changed.harmonics_rad[joint].sin += errors[nongeometric_index(harmonic_position(number)) + 1];
+    changed.ripples_rad[joint].cos += errors[nongeometric_index(ripple_position(number))];
+    changed.ripples_rad[joint].sin += errors[nongeometric_index(ripple_position(number)) + 1];
   }
   for (int frame = 1; frame < kFrameCount; ++frame) {
     changed.masses[static_cast<std::size_t>(frame)].mass_kg *=

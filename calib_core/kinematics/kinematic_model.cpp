@@ -84,6 +84,8 @@ PreparedModel prepare(const KinematicModel& model) {
   prepared.is_compliant = std::ranges::any_of(model.compliance_rad_per_nm, [](double c) { return c != 0.0; });
   prepared.has_harmonics =
       std::ranges::any_of(model.harmonics_rad, [](const CosSin& h) { return h.cos != 0.0 || h.sin != 0.0; });
+  prepared.has_periods =
+      std::ranges::any_of(model.ripple_periods_per_turn, [](double p) { return p != 0.0; });
   prepared.down_in_frame_0 = frame_transform(model.links[1]).linear() * model.down_in_frame_1;
   return prepared;
 }
@@ -96,11 +98,22 @@ PreparedJoints prepare(const std::array<double, kJointCount>& gains, const Joint
   return prepared;
 }
 
+std::array<CosSin, kJointCount> ripple_phases(const KinematicModel& model, const JointVector& joints) {
+  std::array<CosSin, kJointCount> phases = kEvenJoints;
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    const double periods = model.ripple_periods_per_turn[joint];
+    if (periods == 0.0 || model.joint_types[joint] == JointType::kPrismatic) continue;
+    phases[joint] = cos_sin(periods * model.gains[joint] * joints[static_cast<Eigen::Index>(joint)]);
+  }
+  return phases;
+}
+
 Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints) {
   Chain chain;
   compute_rigid_chain(prepared, joints, chain);
   chain.turned = joints.turned;
-  if (!prepared.is_compliant && !prepared.has_harmonics) return chain;
+  chain.commanded = joints.joints;
+  if (!prepared.is_compliant && !prepared.has_harmonics && !prepared.has_periods) return chain;
   JointVector moved = JointVector::Zero();
   if (prepared.is_compliant) {
     const Eigen::Map<const JointVector> compliance(prepared.model.compliance_rad_per_nm.data());
@@ -111,6 +124,14 @@ Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints)
     const CosSin& harmonic = prepared.model.harmonics_rad[joint];
     moved[static_cast<Eigen::Index>(joint)] +=
         harmonic.cos * joints.turned[joint].cos + harmonic.sin * joints.turned[joint].sin;
+  }
+  if (prepared.has_periods) {
+    const auto phases = ripple_phases(prepared.model, joints.joints);
+    for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+      const CosSin& ripple = prepared.model.ripples_rad[joint];
+      moved[static_cast<Eigen::Index>(joint)] +=
+          ripple.cos * phases[joint].cos + ripple.sin * phases[joint].sin;
+    }
   }
   compute_rigid_chain(prepared, prepare(prepared.model.gains, joints.joints + moved), chain);
   return chain;

@@ -35,6 +35,12 @@ struct PointMass {
   Eigen::Vector3d center_in_frame_m = Eigen::Vector3d::Zero();
 };
 
+inline constexpr std::array<CosSin, kJointCount> kEvenJoints = [] {
+  std::array<CosSin, kJointCount> none{};
+  none.fill({0.0, 0.0});
+  return none;
+}();
+
 struct KinematicModel {
   std::array<LinkParameters, kFrameCount> links{};
   std::array<JointType, kJointCount> joint_types{};                     // of frames 1 to 6
@@ -47,17 +53,18 @@ struct KinematicModel {
   Eigen::Vector3d down_in_frame_1{0.0, 0.0, -1.0};
   /// First harmonic of each joint's transmission: a revolute joint stands cos * cos(gain * position) + sin *
   /// sin(gain * position) too far (radians).
-  std::array<CosSin, kJointCount> harmonics_rad = [] {
-    std::array<CosSin, kJointCount> none;
-    none.fill({0.0, 0.0});
-    return none;
-  }();
+  std::array<CosSin, kJointCount> harmonics_rad = kEvenJoints;
+  /// Ripple of each joint's gear: with p periods a turn of the joint a revolute joint stands cos * cos(p *
+  /// gain * position) + sin * sin(p * gain * position) too far (radians). No periods: they are not known.
+  std::array<double, kJointCount> ripple_periods_per_turn{};
+  std::array<CosSin, kJointCount> ripples_rad = kEvenJoints;
 };
 
 /// The pose of every frame of the arm in the block's frame R_-1.
 struct Chain {
   std::array<Eigen::Isometry3d, kFrameCount> block_from_frame;
   std::array<CosSin, kJointCount> turned;  // of gain * commanded position
+  JointVector commanded = JointVector::Zero();
 
   [[nodiscard]] Eigen::Vector3d tip_in_block_m() const { return block_from_frame.back().translation(); }
 };
@@ -75,12 +82,13 @@ struct PreparedModel {
   bool has_masses = false;
   bool is_compliant = false;
   bool has_harmonics = false;
+  bool has_periods = false;  // of ripple; without them there is none
 };
 
 PreparedModel prepare(const KinematicModel& model);
 
 /// All frames at a joint vector. A compliant joint is deflected by the torque that gravity exerts on the
-/// undeflected chain, a joint with a harmonic by that.
+/// undeflected chain, a joint with a harmonic or a ripple by that of its commanded position.
 Chain forward_chain(const PreparedModel& prepared, const JointVector& joints);
 Chain forward_chain(const KinematicModel& model, const JointVector& joints);
 
@@ -92,6 +100,10 @@ struct PreparedJoints {
 };
 
 PreparedJoints prepare(const std::array<double, kJointCount>& gains, const JointVector& joints);
+
+/// Cosine and sine of the phase of each joint's ripple at commanded joints; 0 for a joint without periods and
+/// for a prismatic one.
+std::array<CosSin, kJointCount> ripple_phases(const KinematicModel& model, const JointVector& joints);
 
 /// As above; `joints` must have been prepared with the gains of the model.
 Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints);

@@ -14,6 +14,8 @@ std::array<NongeometricParameter, kNongeometricCount> list_nongeometric() {
     at(compliance_position(joint)) = {NongeometricKind::kCompliance, joint + 1};
     at(harmonic_position(joint)) = {NongeometricKind::kHarmonicCos, joint + 1};
     at(harmonic_position(joint) + 1) = {NongeometricKind::kHarmonicSin, joint + 1};
+    at(ripple_position(joint)) = {NongeometricKind::kRippleCos, joint + 1};
+    at(ripple_position(joint) + 1) = {NongeometricKind::kRippleSin, joint + 1};
   }
   for (int frame = 1; frame <= kMassCount; ++frame)
     at(mass_position(frame)) = {NongeometricKind::kMass, frame};
@@ -32,6 +34,10 @@ std::string NongeometricParameter::name() const {
       return "harmonic_sin" + std::to_string(number);
     case NongeometricKind::kMass:
       return "mass" + std::to_string(number);
+    case NongeometricKind::kRippleCos:
+      return "ripple_cos" + std::to_string(number);
+    case NongeometricKind::kRippleSin:
+      return "ripple_sin" + std::to_string(number);
   }
   throw std::logic_error("NongeometricParameter: no such kind");
 }
@@ -42,6 +48,8 @@ std::string NongeometricParameter::unit() const {
       return "rad/Nm";
     case NongeometricKind::kHarmonicCos:
     case NongeometricKind::kHarmonicSin:
+    case NongeometricKind::kRippleCos:
+    case NongeometricKind::kRippleSin:
       return "rad";
     case NongeometricKind::kMass:
       return "1";

@@ -189,11 +189,26 @@ constexpr double kTurnMaxRadians = 1e3;
   }
 }
 
+/// ripple_phases()
+[[gnu::always_inline]] inline void set_ripple_phases(const PreparedModel& model, const PostureLanes& postures,
+                                                     ChainLanes& chains) {
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    const double periods = model.model.ripple_periods_per_turn[joint];
+    if (periods == 0.0 || model.model.joint_types[joint] == JointType::kPrismatic) {
+      chains.ripple_phases[joint] = {};
+      continue;
+    }
+    store_turn(periods * model.model.gains[joint] * load(postures.joints[joint]),
+               chains.ripple_phases[joint]);
+  }
+}
+
 [[gnu::always_inline]] inline void chains_of(const PreparedModel& model, const PostureLanes& postures,
                                              ChainLanes& chains) {
   rigid_chains(model, postures, chains);
   chains.turned = postures.turned;
-  if (!model.is_compliant && !model.has_harmonics) return;
+  if (model.has_periods) set_ripple_phases(model, postures, chains);
+  if (!model.is_compliant && !model.has_harmonics && !model.has_periods) return;
   PostureLanes moved = postures;
   std::array<Lanes, kJointCount> torques{};
   if (model.is_compliant) torques_nm(model, chains, torques);
@@ -203,6 +218,11 @@ constexpr double kTurnMaxRadians = 1e3;
       const CosSin& harmonic = model.model.harmonics_rad[joint];
       by_rad +=
           harmonic.cos * load(postures.turned[joint].cos) + harmonic.sin * load(postures.turned[joint].sin);
+    }
+    if (model.has_periods) {
+      const CosSin& ripple = model.model.ripples_rad[joint];
+      const CosSinLanes& phases = chains.ripple_phases[joint];
+      by_rad += ripple.cos * load(phases.cos) + ripple.sin * load(phases.sin);
     }
     store(load(postures.joints[joint]) + by_rad, moved.joints[joint]);
   }
@@ -243,6 +263,23 @@ constexpr double kTurnMaxRadians = 1e3;
   }
 }
 
+/// Of the cosines and sines of ripple.
+[[gnu::always_inline]] inline void ripple_derivatives(const PreparedModel& model, const ChainLanes& chains,
+                                                      const std::array<Number, kJointCount>& by_joint,
+                                                      ArmRowLanes& rows) {
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
+    const auto cosine =
+        static_cast<std::size_t>(nongeometric_index(ripple_position(static_cast<int>(joint))));
+    if (!model.has_periods) {
+      rows[cosine] = rows[cosine + 1] = {};
+      continue;
+    }
+    const CosSinLanes& phases = chains.ripple_phases[joint];
+    store(by_joint[joint] * load(phases.cos), rows[cosine]);
+    store(by_joint[joint] * load(phases.sin), rows[cosine + 1]);
+  }
+}
+
 /// derivatives_along() of error_parameters.cpp, which says why.
 [[gnu::always_inline]] inline void derivatives_of(const PreparedModel& model, const ChainLanes& chains,
                                                   const VectorLanes& outward, ArmRowLanes& rows) {
@@ -273,6 +310,7 @@ constexpr double kTurnMaxRadians = 1e3;
     store(by_joint[joint] * load(chains.turned[joint].cos), rows[cosine]);
     store(by_joint[joint] * load(chains.turned[joint].sin), rows[cosine + 1]);
   }
+  ripple_derivatives(model, chains, by_joint, rows);
   gravity_derivatives(model, chains, by_joint, rows);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "calib_core/geometry/contact_surface.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
 
@@ -51,11 +52,25 @@ struct ChainLanes {
   };
   std::array<Frame, kFrameCount> frames;
   std::array<CosSinLanes, kJointCount> turned;
+  std::array<CosSinLanes, kJointCount> ripple_phases;  // set only of an arm with periods
 
   [[nodiscard]] Eigen::Vector3d tip_in_block_m(std::size_t lane) const {
     return frames.back().origin_m.of(lane);
   }
+  [[nodiscard]] Eigen::Isometry3d block_from_tip(std::size_t lane) const {
+    const Frame& frame = frames.back();
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.linear() << frame.x.of(lane), frame.y.of(lane), frame.z.of(lane);
+    pose.translation() = frame.origin_m.of(lane);
+    return pose;
+  }
 };
+
+/// Of a touch: as signed_distance_m() of the tip's pose.
+inline double signed_distance_m(const ContactSurface& surface, const ChainLanes& chains, std::size_t lane) {
+  if (surface.sideways.is_zero()) return signed_distance_m(surface, chains.tip_in_block_m(lane));
+  return signed_distance_m(surface, chains.block_from_tip(lane));
+}
 
 /// Derivatives of each posture's distance, as ArmRow.
 using ArmRowLanes = std::array<Lanes, kArmParameterCount>;

@@ -11,7 +11,61 @@ Segment axis_in_block(const Capsule& body, const Chain& chain) {
   return {block_from_frame * body.from_m, block_from_frame * body.to_m};
 }
 
-Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box) {
+Part part_near(const Segment& segment, const Box& box, double margin_m) {
+  const Eigen::Vector3d span = segment.to_m - segment.from_m;
+  Part part;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low_m = box.min_m[axis] - margin_m - segment.from_m[axis];
+    const double high_m = box.max_m[axis] + margin_m - segment.from_m[axis];
+    if (span[axis] == 0.0) {
+      if (low_m >= 0.0 || high_m <= 0.0) return {1.0, 0.0};
+      continue;
+    }
+    part.from = std::max(part.from, std::min(low_m / span[axis], high_m / span[axis]));
+    part.to = std::min(part.to, std::max(low_m / span[axis], high_m / span[axis]));
+  }
+  return part;
+}
+
+namespace {
+
+/// From the axis of the hole to the farthest point of the part of the segment beside the box: that is one of
+/// its ends, as the distance from a line is convex. Nothing when no part of it is less than `margin_m` from
+/// the box.
+std::optional<Eigen::Vector3d> farthest_off_axis_m(const Segment& segment, const Box& box, const Hole& hole,
+                                                   double margin_m) {
+  const Part part = part_near(segment, box, margin_m);
+  if (part.is_empty()) return std::nullopt;
+  const Eigen::Vector3d span = segment.to_m - segment.from_m;
+  const Eigen::Vector3d from_m = hole.off_axis_m(segment.from_m + part.from * span);
+  const Eigen::Vector3d to_m = hole.off_axis_m(segment.from_m + part.to * span);
+  return from_m.squaredNorm() > to_m.squaredNorm() ? from_m : to_m;
+}
+
+/// Whether every point of the segment is `distance_m` from the box along some axis or from the wall of the
+/// hole: the material is in the box and outside the hole.
+bool is_apart_in_hole(const Segment& segment, const Box& box, const Hole& hole, double distance_m) {
+  const auto farthest_m = farthest_off_axis_m(segment, box, hole, distance_m);
+  return !farthest_m || farthest_m->norm() <= hole.radius_m - distance_m;
+}
+
+/// The largest distance for which is_apart_in_hole() holds, as a gap; zero where that is no more than
+/// `known_m`.
+Eigen::Vector3d gap_in_hole_m(const Segment& segment, const Box& box, const Hole& hole, double known_m) {
+  if (!(known_m < hole.radius_m) || !is_apart_in_hole(segment, box, hole, known_m))
+    return Eigen::Vector3d::Zero();
+  constexpr int kHalvings = 40;
+  double apart_m = known_m, near_m = hole.radius_m;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle_m = 0.5 * (apart_m + near_m);
+    (is_apart_in_hole(segment, box, hole, middle_m) ? apart_m : near_m) = middle_m;
+  }
+  const auto farthest_m = farthest_off_axis_m(segment, box, hole, near_m);
+  if (!farthest_m || farthest_m->isZero(0.0)) return apart_m * hole.axis.unitOrthogonal();
+  return -apart_m * farthest_m->normalized();
+}
+
+Eigen::Vector3d segment_whole_box_gap_m(const Segment& segment, const Box& box) {
   const Eigen::Vector3d span = segment.to_m - segment.from_m;
   // Vector from the box to a point of the segment.
   const auto outside = [&](double t) -> Eigen::Vector3d {
@@ -40,6 +94,18 @@ Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box) {
   return outside(nearest);
 }
 
+}  // namespace
+
+Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box) {
+  Eigen::Vector3d gap_m = segment_whole_box_gap_m(segment, box);
+  for (const Hole& hole : box.holes) {
+    const double known_m = gap_m.norm();
+    const Eigen::Vector3d in_hole_m = gap_in_hole_m(segment, box, hole, known_m);
+    if (in_hole_m.norm() > known_m) gap_m = in_hole_m;
+  }
+  return gap_m;
+}
+
 double segment_box_distance_m(const Segment& segment, const Box& box) {
   return std::max(segment_box_gap_m(segment, box).norm() - box.round_m, 0.0);
 }
@@ -49,7 +115,9 @@ bool is_apart(const Segment& segment, const Box& box, double distance_m) {
   const auto before = segment.from_m.cwiseMax(segment.to_m) - box.min_m;  // negative: entirely before the box
   const auto behind = segment.from_m.cwiseMin(segment.to_m) - box.max_m;
   if (std::max(behind.maxCoeff(), -before.minCoeff()) >= from_core_m) return true;
-  return segment_box_gap_m(segment, box).norm() >= from_core_m;
+  if (segment_whole_box_gap_m(segment, box).norm() >= from_core_m) return true;
+  return std::ranges::any_of(
+      box.holes, [&](const Hole& hole) { return is_apart_in_hole(segment, box, hole, distance_m); });
 }
 
 double capsule_box_distance_m(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, double radius_m,

@@ -59,11 +59,24 @@ inline bool are_neighbours(const Capsule& a, const Capsule& b) {
   return std::abs(a.frame - b.frame) <= kNeighbourFrames;
 }
 
+/// A part of a segment, as shares of its length.
+struct Part {
+  double from = 0.0;
+  double to = 1.0;
+  [[nodiscard]] bool is_empty() const { return !(from <= to); }
+};
+
+/// The part of a segment that is less than `margin_m` from a box along every axis; without round_m and holes.
+Part part_near(const Segment& segment, const Box& box, double margin_m);
+
 /// Vector from a box without its round_m to the nearest point of a segment, zero when they intersect. Exact
-/// up to rounding.
+/// up to rounding. Of a box with holes its length is a bound that the distance does not fall below, and that
+/// no motion by less can bring to zero: inside a hole that from the wall, above it at least that from the
+/// plane of its mouth, and the same inside the rim. It then points out of the wall that is nearest.
 Eigen::Vector3d segment_box_gap_m(const Segment& segment, const Box& box);
 
-/// Shortest distance between a segment and a box, 0 when they intersect. Exact up to rounding.
+/// Shortest distance between a segment and a box, 0 when they intersect. Exact up to rounding, of a box with
+/// holes the bound of segment_box_gap_m().
 double segment_box_distance_m(const Segment& segment, const Box& box);
 
 /// segment_box_distance_m() >= distance_m, mostly without computing it; false for NaN.

@@ -154,7 +154,8 @@ std::optional<Clash> SweptCollision::find_clash(const JointVector& from, const J
         if (!(spare_m >= 0.0)) return clash(pair, apart_m);  // NaN is not clear either
         const double approach_m = pair.levers_m.dot(motion.moved);
         double step = spare_m / approach_m;
-        if (pair.is_obstacle && apart_m > 0.0) {
+        // A box with holes does not lie behind such a plane.
+        if (pair.is_obstacle && apart_m > 0.0 && scene_.obstacles[pair.other].holes.empty()) {
           step = std::max(step, safe_step(pair, motion, body, box_gap_m));
         }
         due[i] = share + std::max(step, kStepMinMetres / approach_m);

@@ -17,7 +17,7 @@ using column_loops::dot_product;
 
 /// About six are needed, as the method converges with the third order; more where eigenvalues coincide: then
 /// a third of what is left goes with each.
-constexpr int kStepsMax = 200;
+constexpr int kRootStepsMax = 200;
 constexpr double kStepRelative = 4.0 * std::numeric_limits<double>::epsilon();
 
 /// A symmetric matrix of which both halves are stored: its columns are contiguous.
@@ -73,7 +73,7 @@ CALIB_FOR_WIDE_REGISTERS void tridiagonalise_wide(const Square& matrix, double* 
 std::optional<double> smallest_from(double x, double sign, const Eigen::VectorXd& diagonal,
                                     const Eigen::VectorXd& squares_beside) {
   const auto count = static_cast<double>(diagonal.size());
-  for (int step = 0; step < kStepsMax; ++step) {
+  for (int step = 0; step < kRootStepsMax; ++step) {
     // The pivots of T - x and their derivatives by x: first and second derivative of log det(T - x), which
     // are minus the sums of 1 / (eigenvalue - x) and of its square.
     double inverse = 0.0, first = 0.0, second = 0.0, sum = 0.0, sum_of_squares = 0.0;

@@ -28,7 +28,7 @@ struct TouchBlock {
     }
   }
   [[nodiscard]] double distance_m(const ChainLanes& chains, std::size_t lane) const {
-    return signed_distance_m(*surfaces[lane], chains.tip_in_block_m(lane));
+    return signed_distance_m(*surfaces[lane], chains, lane);
   }
   [[nodiscard]] VectorLanes normals(const ChainLanes& chains) const {
     VectorLanes normals;
@@ -145,7 +145,7 @@ Touch moved_onto_plane(const PreparedModel& model, const ContactSurface& contact
   for (int step = 0; step < kMoveStepsMax; ++step) {
     const Chain chain = forward_chain(model, moved.joints);
     const Eigen::Vector3d tip_m = chain.tip_in_block_m();
-    const double distance = signed_distance_m(contact_plane, tip_m);
+    const double distance = signed_distance_m(contact_plane, chain.block_from_frame.back());
     if (std::abs(distance) < kOnPlaneMetres) break;
     const Eigen::Matrix<double, 1, kJointCount> slope =
         normal_at(contact_plane, tip_m).transpose() * tip_jacobian(model.model, chain);

@@ -25,8 +25,8 @@ constexpr std::size_t kRecentTouches = 8;
 /// Three of these are half of the smallest clearance, kPredictedPositionErrorMinMetres.
 constexpr double kAimedSphereStdMetres = kPredictedPositionErrorMinMetres / 6.0;
 
-constexpr int kStepsMax = 4;
-constexpr double kStepSmall = 1e-4;  // metres and radians; the remaining error is its square
+constexpr int kUpdatesMax = 4;
+constexpr double kUpdateSmall = 1e-4;  // metres and radians; the remaining error is its square
 
 double prior_std(const ErrorParameter& parameter, double nominal_position_error_m) {
   if (parameter.group() != ParameterGroup::kBlockPose) return kErrorShare * nominal_position_error_m;
@@ -97,12 +97,15 @@ double position_error_bound_m(const PreparedModel& prepared, const Chain& chain,
 }
 
 /// The solid behind a face that is estimated in place is as uncertain as the face, and is not moved with the
-/// estimate: all touches keep the nominal position error. So do those beside a sphere whose centre is known
-/// less well than the clearances of aimed touches allow.
+/// estimate: all touches keep the nominal position error. So do those beside a sphere or bore whose centre,
+/// axis or radius is known less well than the clearances of aimed touches allow.
 bool has_estimated_face(const PlanningProblem& problem) {
   return std::ranges::any_of(problem.knowledge.artefact.parameters, [](const ArtefactParameter& parameter) {
-    if (parameter.kind == ArtefactKind::kSphereCenter)
+    if (parameter.kind == ArtefactKind::kSphereCenter || parameter.kind == ArtefactKind::kBoreAxis)
       return !parameter.std || *parameter.std > kAimedSphereStdMetres;
+    const bool is_radius =
+        parameter.kind == ArtefactKind::kSphereRadius || parameter.kind == ArtefactKind::kBoreRadius;
+    if (is_radius && parameter.std) return *parameter.std > kAimedSphereStdMetres;
     return parameter.kind == ArtefactKind::kFaceOffset && !parameter.std;
   });
 }
@@ -164,10 +167,10 @@ std::vector<bool> OnlineArmEstimate::settle(LeastSquares& fit) {
 }
 
 void OnlineArmEstimate::solve(LeastSquares& fit) {
-  for (int step = 0; step < kStepsMax && fit.solve(); ++step) {
+  for (int step = 0; step < kUpdatesMax && fit.solve(); ++step) {
     estimate_ = fit.stepped(std::move(estimate_));
     fit.linearise(estimate_);
-    if (fit.step().norm() < kStepSmall) break;
+    if (fit.step().norm() < kUpdateSmall) break;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/planning/internal/bore_room.hpp"
 
 namespace calib {
 namespace {
@@ -12,6 +13,8 @@ namespace {
 constexpr double kRangeMarginRad = 1.0 * kRadiansPerDegree;
 constexpr double kLineStepMetres = 0.010;
 constexpr double kSamePlaneMetres = 1e-6;
+/// A length of a file is itself within the rounding of what is computed from it.
+constexpr double kAsWrittenMetres = 1e-9;
 /// What a search begins and ends beyond the position error: the ball is off the face, and the face in reach.
 constexpr double kStandoffSpareMetres = 0.003;
 /// How often `clear` is moved away from obstacles, and how far from its initial position in total.
@@ -68,6 +71,10 @@ std::vector<bool> obstacles_behind(const PlanningProblem& problem, const Plane& 
   return is_behind;
 }
 
+std::string missed_mm(const PlanningProblem& problem) {
+  return std::to_string(std::lround(mm_from_metres(problem.nominal_position_error_m))) + " mm";
+}
+
 /// The ball of a sphere among the obstacles, -1 for none.
 int find_ball(const PlanningProblem& problem, const Face& sphere) {
   const auto& obstacles = problem.scene.obstacles;
@@ -92,16 +99,26 @@ std::string describe(const PlanningProblem& problem, const TouchInfeasibility& i
     case TouchInfeasibility::Cause::kOutOfReach:
       return "out of reach along the search";
     case TouchInfeasibility::Cause::kNearObstacle:
-      return body(infeasibility.body) + " is within " +
-             std::to_string(std::lround(mm_from_metres(problem.nominal_position_error_m))) + " mm of the " +
+      return body(infeasibility.body) + " is within " + missed_mm(problem) + " of the " +
              problem.scene.obstacles[infeasibility.other].name;
     case TouchInfeasibility::Cause::kHitsItself:
       return body(infeasibility.body) + " hits " + body(infeasibility.other);
     case TouchInfeasibility::Cause::kSmallSphere:
-      return "the sphere with the stylus ball is less than twice as wide as the " +
-             std::to_string(std::lround(mm_from_metres(problem.nominal_position_error_m))) +
-             " mm to either side that the arm may miss it by (nominal_miss_mm, more where the block was "
+      return "the sphere with the stylus ball is less than twice as wide as the " + missed_mm(problem) +
+             " to either side that the arm may miss it by (nominal_miss_mm, more where the block was "
              "located no better)";
+    case TouchInfeasibility::Cause::kNarrowBore:
+      return "the bore is too narrow for the stylus ball, what the arm may miss by (" + missed_mm(problem) +
+             ", nominal_miss_mm, more where the block was located no better) and the "
+             "room for an approach: it needs a radius of " +
+             std::to_string(std::lround(std::ceil(mm_from_metres(bore_radius_min_m(
+                 problem,
+                 touch_heights(problem.nominal_position_error_m, problem.standoff_min_m).approach_m))))) +
+             " mm";
+    case TouchInfeasibility::Cause::kShallowBore:
+      return "the depths of the bore that may be touched (depth_mm) are less than twice the " +
+             missed_mm(problem) +
+             " apart that the arm may miss by (nominal_miss_mm, more where the block was located no better)";
     case TouchInfeasibility::Cause::kNoPath:
       return "no clear way from the park posture";
   }
@@ -119,9 +136,10 @@ TouchTarget find_target(const PlanningProblem& problem, int face) {
   const Face& wanted = problem.faces[static_cast<std::size_t>(face)];
   const auto& obstacles = problem.scene.obstacles;
   TouchTarget target{.face = face, .is_behind = std::vector<bool>(obstacles.size(), false)};
-  if (wanted.cap) {
-    target.solid = find_ball(problem, wanted);
+  if (!wanted.is_flat()) {
+    target.solid = wanted.cap ? find_ball(problem, wanted) : find_bored_solid(problem, wanted);
     if (target.solid >= 0) target.is_behind = obstacles_behind(problem, wanted.plane);
+    if (wanted.bore && target.solid >= 0) target.is_behind[static_cast<std::size_t>(target.solid)] = true;
     return target;
   }
   for (std::size_t i = 0; i < obstacles.size(); ++i) {
@@ -148,8 +166,15 @@ TouchMaker::TouchMaker(const PlanningProblem& problem)
 /// The line of one touch, followed in either direction; keeps the reason of a failure.
 class TouchMaker::TouchLine {
  public:
-  TouchLine(const TouchMaker& maker, const TouchTarget& target, const TouchPose& pose, const Plane& plane)
-      : maker_(maker), problem_(maker.problem_), target_(target), pose_(pose), plane_(plane) {}
+  TouchLine(const TouchMaker& maker, const TouchTarget& target, const TouchPose& pose, const Plane& plane,
+            const TouchHeights& heights)
+      : maker_(maker),
+        problem_(maker.problem_),
+        target_(target),
+        pose_(pose),
+        plane_(plane),
+        heights_(heights),
+        face_(problem_.faces[static_cast<std::size_t>(target.face)]) {}
 
   /// Follows the normal from the contact posture to a height.
   std::optional<JointVector> follow(const JointVector& contact, double to_m) {
@@ -166,16 +191,16 @@ class TouchMaker::TouchLine {
   }
 
   /// Leaves the slow zone from the approach posture; there must be a path to park from there.
-  std::optional<JointVector> leave(const JointVector& approach, const TouchHeights& heights) {
-    const Eigen::Vector3d straight_m = heights.clear_m * plane_.outward;
+  std::optional<JointVector> leave(const JointVector& approach) {
+    const Eigen::Vector3d straight_m = way_out_m();
     Eigen::Vector3d off_m = straight_m;
     for (int moves = 0; moves <= kClearMovesMax; ++moves) {
       auto clear = maker_.inverse_.follow(moved(off_m), approach);
       if (!clear || !is_in_range(*clear)) break;
       const Eigen::Vector3d away_m = out_of_slow_zone_m(*clear);
       if (away_m.isZero()) {
-        const double length_m = (off_m - heights.approach_m * plane_.outward).norm();
-        if (!check_move(approach, *clear, length_m, heights.approach_m)) return std::nullopt;
+        const double length_m = (off_m - heights_.approach_m * plane_.outward).norm();
+        if (!check_move(approach, *clear, length_m, heights_.approach_m)) return std::nullopt;
         if (!can_reach_park(maker_.space_, *clear)) break;
         return clear;
       }
@@ -202,6 +227,14 @@ class TouchMaker::TouchLine {
     Eigen::Isometry3d block_from_tip = pose_.block_from_tip;
     block_from_tip.translation() += off_m;
     return block_from_tip;
+  }
+
+  /// From the contact to `clear`: farther out on the normal, from the approach in a bore out of its mouth.
+  [[nodiscard]] Eigen::Vector3d way_out_m() const {
+    if (!face_.bore) return heights_.clear_m * plane_.outward;
+    const BoreWall& bore = *face_.bore;
+    const double depth_m = bore.mouth_m - bore.axis.dot(pose_.block_from_tip.translation() - bore.center_m);
+    return heights_.approach_m * plane_.outward + (depth_m + heights_.clear_m) * bore.axis;
   }
 
   [[nodiscard]] bool is_in_range(const JointVector& joints) const { return maker_.ranges_.contains(joints); }
@@ -275,17 +308,29 @@ class TouchMaker::TouchLine {
       if (is_apart(axis, obstacles[i], body.radius_m + body.margin_m + problem_.nominal_position_error_m))
         continue;
       const bool exempt = is_probe(body) && target_.is_behind[i];
-      if (exempt && is_above_plane(body, axis, plane_)) continue;
+      if (exempt && stays_off(body, axis, i, height_m)) continue;
       return i;
     }
     return std::nullopt;
+  }
+
+  /// Whether a body of the probe stays off the obstacle that is touched, or one behind it, until the contact.
+  [[nodiscard]] bool stays_off(const Capsule& body, const Segment& axis, std::size_t obstacle,
+                               double height_m) const {
+    if (!face_.bore || static_cast<int>(obstacle) != target_.solid) return is_above_plane(body, axis, plane_);
+    // At the approach and on the way in there is a wall on the other side as well.
+    if (height_m > heights_.approach_m - kSamePlaneMetres) return false;
+    const Eigen::Vector3d ball_m = pose_.block_from_tip.translation() + height_m * plane_.outward;
+    return stays_off_wall(problem_, face_, problem_.scene.obstacles[obstacle], body, axis, ball_m);
   }
 
   const TouchMaker& maker_;
   const PlanningProblem& problem_;
   const TouchTarget& target_;
   const TouchPose& pose_;
-  const Plane& plane_;  // of the face; of a sphere, that which touches it at the contact
+  const Plane& plane_;  // of the face; of a sphere or bore, that which touches it at the contact
+  const TouchHeights heights_;
+  const Face& face_;
   std::optional<TouchInfeasibility> infeasibility_;
 };
 
@@ -293,20 +338,28 @@ std::variant<PlannedTouch, TouchInfeasibility> TouchMaker::make(const TouchTarge
                                                                 const TouchPose& pose,
                                                                 const JointVector& joints) const {
   const Face& face = problem_.faces[static_cast<std::size_t>(target.face)];
-  if (face.cap && sphere_contact_radius_m(problem_, face) < 2.0 * problem_.nominal_position_error_m)
+  if (face.cap && round_contact_radius_m(problem_, face) < 2.0 * problem_.nominal_position_error_m)
     return TouchInfeasibility{TouchInfeasibility::Cause::kSmallSphere};
   TouchHeights heights = touch_heights(problem_.nominal_position_error_m, problem_.standoff_min_m);
+  if (face.bore &&
+      surface_of(face).radius_m() < bore_radius_min_m(problem_, heights.approach_m) - kAsWrittenMetres)
+    return TouchInfeasibility{TouchInfeasibility::Cause::kNarrowBore};
+  if (face.bore && face.half_extent_m.x() < problem_.nominal_position_error_m - kAsWrittenMetres)
+    return TouchInfeasibility{TouchInfeasibility::Cause::kShallowBore};
   heights.search_end_m -= contact_drop_m(problem_, face);
+  heights.approach_m += contact_rise_m(problem_, face);
+  heights.clear_m += contact_rise_m(problem_, face);
   const Plane plane = tangent_plane(surface_of(face), pose.block_from_tip.translation());
   TouchTarget here = target;
-  if (face.cap && target.solid >= 0) here.is_behind = obstacles_behind(problem_, plane);
-  TouchLine line(*this, here, pose, plane);
+  if (!face.is_flat() && target.solid >= 0) here.is_behind = obstacles_behind(problem_, plane);
+  if (face.bore && target.solid >= 0) here.is_behind[static_cast<std::size_t>(target.solid)] = true;
+  TouchLine line(*this, here, pose, plane, heights);
   if (!line.check(joints, 0.0)) return line.infeasibility();
   const auto approach = line.follow(joints, heights.approach_m);
   if (!approach) return line.infeasibility();
   const auto search_end = line.follow(joints, heights.search_end_m);
   if (!search_end) return line.infeasibility();
-  const auto clear = line.leave(*approach, heights);
+  const auto clear = line.leave(*approach);
   if (!clear) return line.infeasibility();
   return PlannedTouch{.face = target.face,
                       .joints = joints,

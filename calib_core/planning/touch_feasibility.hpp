@@ -30,7 +30,8 @@ struct TouchTarget {
   int face = 0;
   int solid = -1;               // the obstacle that the face is a side of, -1 for none
   std::vector<bool> is_behind;  // one per obstacle: the touched solid, and those entirely behind the
-                                // plane of the face; of a sphere, behind that of its pole
+                                // plane of the face; of a sphere, behind that of its pole, of a
+                                // bore, behind the plane that touches its wall
 };
 TouchTarget find_target(const PlanningProblem& problem, int face);
 
@@ -43,6 +44,8 @@ struct TouchInfeasibility {
     kNearObstacle,
     kHitsItself,
     kSmallSphere,
+    kNarrowBore,
+    kShallowBore,
     kNoPath
   };
   Cause cause = Cause::kJointRanges;
@@ -62,17 +65,19 @@ class TouchMaker {
   /// The complete touch in one posture of the pose, or why it is infeasible.
   ///
   /// The orientation is constant. Approach, contact and search end lie on the normal of the face, of a sphere
-  /// on that at the contact, whose tangent plane is then the plane of the face. A straight
-  /// joint move leads from `approach` to `clear`, which lies at least kSlowZoneMetres farther out, moved away
-  /// from everything that would be in the slow zone of the probe. At most every 10 mm on these lines the
-  /// joints are within their limits (minus one degree) and not near a singular posture, and
+  /// or bore on that at the contact, whose tangent plane is then the plane of the face. A straight
+  /// joint move leads from `approach` to `clear`, which lies at least kSlowZoneMetres farther out, of a bore
+  /// along its axis out of the mouth, moved away from everything that would be in the slow zone of the probe.
+  /// At most every 10 mm on these lines the joints are within their limits (minus one degree) and not near a
+  /// singular posture, and
   /// - every body keeps the nominal position error and its own margin to every obstacle, as the actual arm
   /// may be
   ///   that far from the nominal one;
   /// - exception before the contact: the probe need not keep it to the obstacles of TouchTarget::is_behind,
   /// as the
   ///   contact ends the search. It is enough that each of its bodies stays above the plane of the face by
-  ///   kOrientationErrorMaxRadians times its distance from the ball;
+  ///   kOrientationErrorMaxRadians times its distance from the ball; in a bore, off its wall all around by as
+  ///   much, wherever the ball meets it. The approach itself keeps the position error to the wall;
   /// - exception after the contact: the obstacles of TouchTarget::is_behind are ignored, as the contact stops
   /// the
   ///   actual arm before any body gets closer to them.

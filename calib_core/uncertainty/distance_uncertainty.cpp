@@ -21,17 +21,20 @@ double mean_distance_std_m(const IdentificationProblem& problem, const LeastSqua
   const double of_touches = ratio * ratio * carried.dot(fit.gradient_covariance() * carried);
   const double of_priors = carried.dot((fit.information() - fit.touch_information()) * carried);
   const double of_left_out = (budget.left_out.transpose() * mean_row).squaredNorm();
-  double of_lag = 0.0;  // displaces these touches, and bends the estimate in the same run the other way
-  if (budget.lagged.cols() > 0) {
-    const Eigen::MatrixXd displaced = factors.asDiagonal() * lag_displacements(problem, distances, estimate);
-    const Eigen::VectorXd mean_displacement =
-        distances.noise_unit_m() * displaced.colwise().mean().transpose();
-    of_lag = (mean_displacement.cwiseProduct(problem.gear_lag_std_rad) - budget.lagged.transpose() * mean_row)
-                 .squaredNorm();
+  double of_patterns = 0.0;  // they displace these touches, and bend the estimate in the same run
+  if (!whole.patterns.empty()) {
+    const Eigen::MatrixXd displaced =
+        factors.asDiagonal() * pattern_displacements(problem, distances, estimate);
+    Eigen::VectorXd by_one_std = budget.patterned.transpose() * mean_row;
+    for (Eigen::Index k = 0; k < by_one_std.size(); ++k) {
+      by_one_std[k] += whole.patterns[static_cast<std::size_t>(k)].std * distances.noise_unit_m() *
+                       displaced.col(k).mean();
+    }
+    of_patterns = by_one_std.squaredNorm();
   }
   const double of_noise =
       budget.noise_m * budget.noise_m * factors.cwiseAbs2().mean() / static_cast<double>(touches.size());
-  return std::sqrt(of_noise + of_touches + of_priors + of_left_out + of_lag);
+  return std::sqrt(of_noise + of_touches + of_priors + of_left_out + of_patterns);
 }
 
 }  // namespace calib

@@ -34,8 +34,9 @@ double log_likelihood(double variance_seen, double degrees, double variance) {
 
 }  // namespace
 
-double gear_variance_m2(const IdentificationProblem& problem, const std::vector<std::size_t>& touches) {
-  if (problem.gear_std_rad.isZero(0.0) || touches.empty()) return 0.0;
+double gear_variance_m2(const IdentificationProblem& problem, const JointVector& gear_std_rad,
+                        const std::vector<std::size_t>& touches) {
+  if (gear_std_rad.isZero(0.0) || touches.empty()) return 0.0;
   const PreparedModel nominal = prepare(problem.nominal);
   double sum = 0.0;
   for (const std::size_t index : touches) {
@@ -45,7 +46,7 @@ double gear_variance_m2(const IdentificationProblem& problem, const std::vector<
         problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)], chain.tip_in_block_m());
     const JointVector per_rad = tip_jacobian(problem.nominal, chain).transpose() * normal;
     const double factor = noise_factor(touch, problem.touch_noise_m);
-    sum += per_rad.cwiseProduct(problem.gear_std_rad).squaredNorm() / (factor * factor);
+    sum += per_rad.cwiseProduct(gear_std_rad).squaredNorm() / (factor * factor);
   }
   return sum / static_cast<double>(touches.size());
 }

@@ -9,9 +9,10 @@
 /// What the residuals of a fit can say, and what they do say, of the arm beside the noise of the touches.
 namespace calib {
 
-/// Variance of a touch by the maker's figures of the gears, mean over these touches of the nominal arm as
-/// they are weighed by their noise_factor(), square metres.
-double gear_variance_m2(const IdentificationProblem& problem, const std::vector<std::size_t>& touches);
+/// Variance of a touch by errors of the joints of this standard deviation (the maker's figures of the gears),
+/// mean over these touches of the nominal arm as they are weighed by their noise_factor(), square metres.
+double gear_variance_m2(const IdentificationProblem& problem, const JointVector& gear_std_rad,
+                        const std::vector<std::size_t>& touches);
 
 /// Score test for the compliance of the joints that have a deviation and were left out, at the converged fit:
 /// how much of the residuals their columns would explain beside all that was estimated. Nothing where none

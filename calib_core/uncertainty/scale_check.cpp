@@ -54,7 +54,8 @@ ArmVector own_lengths(const KinematicModel& nominal, const std::vector<int>& col
 }
 
 /// The maximum a posteriori problem in all errors that are known of, with what is beside rigid kinematics,
-/// and the artefact; the block pose is free. What is not known of is as in the model.
+/// the artefact, and what displaces the touches by a pattern; the block pose is free. What is not known of is
+/// as in the model.
 class ScaleTest {
  public:
   ScaleTest(const IdentificationProblem& problem, const FullLinearisation& whole, double noise_ratio,
@@ -64,13 +65,24 @@ class ScaleTest {
     for (std::size_t k = 0; k < positions.size(); ++k)
       positions[k] = whole.position_of(static_cast<Eigen::Index>(k));
     const double square = noise_ratio * noise_ratio;
-    information_ = whole.touch_information(positions, positions) / square;
-    Eigen::VectorXd values(information_.rows());
-    values << estimate.arm(columns_), estimate.artefact;
-    targets_ = information_ * values + whole.touch_gradient(positions) / square;
+    const auto known = std::ssize(positions), patterns = std::ssize(whole.patterns);
+    information_.resize(known + patterns, known + patterns);
+    information_.topLeftCorner(known, known) = whole.touch_information(positions, positions);
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(known + patterns), gradient = values;
+    values.head(known) << estimate.arm(columns_), estimate.artefact;
+    gradient.head(known) = whole.touch_gradient(positions);
+    if (patterns > 0) {
+      information_.topRightCorner(known, patterns) = whole.pattern_columns(positions, Eigen::all);
+      information_.bottomLeftCorner(patterns, known) =
+          information_.topRightCorner(known, patterns).transpose();
+      information_.bottomRightCorner(patterns, patterns) = whole.pattern_information;
+      gradient.tail(patterns) = whole.pattern_gradient;
+    }
+    information_ /= square;
+    targets_ = information_ * values + gradient / square;
     right_ = targets_;
     Eigen::MatrixXd posterior = information_;
-    posterior.diagonal() += precision(problem);
+    posterior.diagonal() += precision(problem, whole.patterns);
     for (const ArtefactEquation& equation : problem.artefact.equations) {
       const double of_equation = 1.0 / (equation.std_m * equation.std_m);
       for (const auto& [i, weight_i] : equation.weights) {
@@ -115,7 +127,8 @@ class ScaleTest {
     return std::ssize(columns_) + static_cast<Eigen::Index>(parameter);
   }
 
-  [[nodiscard]] Eigen::VectorXd precision(const IdentificationProblem& problem) const {
+  [[nodiscard]] Eigen::VectorXd precision(const IdentificationProblem& problem,
+                                          const std::vector<TouchPattern>& patterns) const {
     Eigen::VectorXd precision(information_.rows());
     Eigen::Index row = 0;
     for (const int column : columns_) {
@@ -131,10 +144,12 @@ class ScaleTest {
     }
     for (const ArtefactParameter& parameter : problem.artefact.parameters)
       precision[row++] = 1.0 / std::pow(parameter.std.value_or(kFreeStd), 2);
+    for (const TouchPattern& pattern : patterns)
+      precision[row++] = 1.0 / std::pow(std::max(pattern.std, kExactStd), 2);
     return precision;
   }
 
-  const std::vector<int>& columns_;  // of the arm; the artefact's parameters follow them
+  const std::vector<int>& columns_;  // of the arm; the artefact's parameters follow, then the patterns
   Eigen::MatrixXd information_;
   Eigen::VectorXd targets_, right_, solution_;  // the last two with the certified lengths
   std::optional<ScaledCholesky> cholesky_;
@@ -169,11 +184,11 @@ bool has_known_offset(const Artefact& artefact, std::size_t face) {
 }
 
 /// Whether the touched faces determine a length. An arm of any size can touch planes that intersect in one
-/// point; a sphere brings its radius, which is always given.
+/// point; a sphere or bore brings its radius, which is always given.
 bool determine_a_length(const IdentificationProblem& problem, const LeastSquares& fit) {
   std::vector<ContactSurface> known;
   for (const std::size_t face : touched_faces(problem, fit)) {
-    if (problem.artefact.contact_planes[face].is_sphere()) return true;
+    if (!problem.artefact.contact_planes[face].is_flat()) return true;
     if (has_known_offset(problem.artefact, face)) known.push_back(problem.artefact.contact_planes[face]);
   }
   Eigen::MatrixXd normals(static_cast<Eigen::Index>(known.size()), 3);
@@ -230,7 +245,7 @@ ScaleSource source_of(const IdentificationProblem& problem, const Identification
   for (const std::size_t a : touched) {
     for (const std::size_t b : touched) {
       if (b >= a) break;
-      if (planes[a].is_sphere() || planes[b].is_sphere()) continue;
+      if (!planes[a].is_flat() || !planes[b].is_flat()) continue;
       const double cosine = planes[a].outward.dot(planes[b].outward);
       if (std::abs(cosine) < 0.999) continue;
       const double sign_b = cosine > 0.0 ? -1.0 : 1.0;

@@ -11,6 +11,8 @@ namespace calib {
 namespace {
 
 constexpr int kToolFrame = 6;
+/// The ripples are the last parameters; most arms have none.
+constexpr int kBeforeRipples = nongeometric_index(ripple_position(0));
 
 using PointDerivatives = Eigen::Matrix<double, 3, kArmParameterCount>;
 
@@ -29,10 +31,13 @@ class JacobianMean {
     ++count_;
     // Column by column below the diagonal: three times faster than Eigen's rankUpdate for so flat a matrix.
     const Eigen::Matrix<double, kArmParameterCount, 3> rows = derivatives.transpose();
-    for (int j = 0; j < kArmParameterCount; ++j) {
-      const int below = kArmParameterCount - j;
-      sum_.col(j).tail(below) += rows(j, 0) * rows.col(0).tail(below) + rows(j, 1) * rows.col(1).tail(below) +
-                                 rows(j, 2) * rows.col(2).tail(below);
+    const bool has_ripples = !rows.bottomRows<kArmParameterCount - kBeforeRipples>().isZero(0.0);
+    const int end = has_ripples ? kArmParameterCount : kBeforeRipples;
+    for (int j = 0; j < end; ++j) {
+      const int below = end - j;
+      sum_.col(j).segment(j, below) += rows(j, 0) * rows.col(0).segment(j, below) +
+                                       rows(j, 1) * rows.col(1).segment(j, below) +
+                                       rows(j, 2) * rows.col(2).segment(j, below);
     }
   }
   [[nodiscard]] TipRegion region() const {

@@ -1,6 +1,7 @@
 #include "calib_core/uncertainty/uncertainty_budget.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "calib_core/numerics/distributions.hpp"
 
@@ -12,10 +13,13 @@ constexpr double kShareMin = 1e-6;  // of the noise: a smaller one leaves a norm
 
 }  // namespace
 
-double UncertaintyBudget::coverage_factor_of(double variance, double noise_variance) const {
+double UncertaintyBudget::coverage_factor_of(double variance, double noise_variance,
+                                             double drift_variance) const {
   const double share = noise_variance / variance;
-  const double effective = share <= 1.0 ? degrees_of_freedom / std::max(share * share, kShareMin)
-                                        : degrees_of_freedom;  // also where nothing is known
+  double effective = share <= 1.0 ? degrees_of_freedom / std::max(share * share, kShareMin)
+                                  : degrees_of_freedom;  // also where nothing is known
+  if (drift_variance > 0.0 && drift_degrees_of_freedom > 0.0)
+    effective = 1.0 / (1.0 / effective + std::pow(drift_variance / variance, 2) / drift_degrees_of_freedom);
   return student_two_sided_factor(kConfidence, effective);
 }
 
@@ -28,6 +32,8 @@ UncertaintyBudget in_arm_frame(const UncertaintyBudget& budget) {
   result.held = budget.held;
   result.unseen = budget.unseen;
   result.of_posture = budget.of_posture;
+  result.of_drift = budget.of_drift;
+  result.drift_degrees_of_freedom = budget.drift_degrees_of_freedom;
   result.unseen_without_tolerance = budget.unseen_without_tolerance;
   result.unknown_directions = budget.unknown_directions;
   for (int i = 0; i < kArmParameterCount; ++i) {

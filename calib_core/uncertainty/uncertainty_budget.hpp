@@ -38,8 +38,14 @@ struct UncertaintyBudget {
   ArmCovariance held = no_covariance();
   ArmCovariance unseen = no_covariance();
   ArmCovariance of_posture = no_covariance();
+  /// The share of `of_posture` that a drift has which the scatter of the reference touches may hide, and the
+  /// degrees of freedom of that scatter (0: there is no such share).
+  ArmCovariance of_drift = no_covariance();
+  double drift_degrees_of_freedom = 0.0;
   /// Of the maker's variance of harmonics that were left out: what the residuals leave of it.
   double harmonic_share = 0.0;
+  /// What the residuals leave of the second harmonic of each joint, radians: cosine and sine each.
+  JointVector second_harmonic_std_rad = JointVector::Zero();
   /// Of the maker's variance of what changes from posture to posture: what the touches say of it.
   double gear_share = 1.0;
   std::vector<int> unseen_without_tolerance;  // unseen errors without a tolerance
@@ -48,8 +54,9 @@ struct UncertaintyBudget {
   /// What was not estimated and has a standard deviation: by one of them each displaces true minus estimated
   /// arm and artefact (rows: ArmVector, then the artefact parameters). `held` and `unseen` are made of them.
   Eigen::MatrixXd left_out;
-  /// The same by one standard deviation of the lag of each joint, one column each or none; in `held` as well.
-  Eigen::MatrixXd lagged;
+  /// The same by one standard deviation of what displaces the touches by a pattern, a column each of
+  /// touch_patterns(); in `held` as well.
+  Eigen::MatrixXd patterned;
   std::vector<UncertaintySource> sources;  // their sum is that of the four above
   /// One standard deviation of each estimated artefact parameter, of all the above; NaN for a face that is
   /// estimated in place and is displaced by an unseen error without tolerance.
@@ -57,9 +64,10 @@ struct UncertaintyBudget {
   std::vector<Correlation> correlations;  // the strongest ones in descending order
 
   /// 95 % coverage factor of a quantity with this variance, of which `noise_variance` is of the noise of the
-  /// touches: Student with the effective degrees of freedom of Welch and Satterthwaite (GUM, equation G.2b),
-  /// all other sources being known exactly.
-  [[nodiscard]] double coverage_factor_of(double variance, double noise_variance) const;
+  /// touches and `drift_variance` of `of_drift`: Student with the effective degrees of freedom of Welch and
+  /// Satterthwaite (GUM, equation G.2b), all other sources being known exactly.
+  [[nodiscard]] double coverage_factor_of(double variance, double noise_variance,
+                                          double drift_variance = 0.0) const;
   /// The total covariance, for predictions at any pose and with any tool.
   [[nodiscard]] ArmMatrix covariance() const { return identified + held + unseen + of_posture; }
   /// Standard deviation of an estimated error by its index in ArmVector.

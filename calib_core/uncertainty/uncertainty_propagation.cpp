@@ -7,7 +7,6 @@
 #include <string_view>
 
 #include "calib_core/uncertainty/internal/source_sum.hpp"
-#include "calib_core/uncertainty/left_out_effects.hpp"
 
 namespace calib {
 namespace {
@@ -17,8 +16,7 @@ std::vector<int> all_known_columns(const IdentificationProblem& problem, const L
   std::vector<int> columns(kErrorParameterCount);
   std::iota(columns.begin(), columns.end(), 0);
   for (int i = kErrorParameterCount; i < kArmParameterCount; ++i) {
-    if (is_estimated(fit, i) || problem.nongeometric_std[static_cast<std::size_t>(i - kErrorParameterCount)])
-      columns.push_back(i);
+    if (is_estimated(fit, i) || std_unless_estimated(problem, i, 1.0)) columns.push_back(i);
   }
   return columns;
 }
@@ -28,8 +26,11 @@ const char* source_name(ArtefactKind kind) {
     case ArtefactKind::kFaceOffset:
     case ArtefactKind::kSphereCenter:
     case ArtefactKind::kSphereRadius:
+    case ArtefactKind::kBoreAxis:
+    case ArtefactKind::kBoreRadius:
       return "block_size";
     case ArtefactKind::kFaceTilt:
+    case ArtefactKind::kBoreTilt:
       return "squareness";
     case ArtefactKind::kStylusRadius:
       return "stylus_radius";
@@ -95,28 +96,22 @@ void add_priors(const IdentificationProblem& problem, const IdentificationOption
 
 }  // namespace
 
-Eigen::MatrixXd lag_displacements(const IdentificationProblem& problem, const LeastSquares& fit,
-                                  const Estimate& estimate) {
-  const KinematicModel arm = apply(problem.nominal, estimate.arm);
-  const PreparedModel prepared = prepare(arm);
-  Eigen::MatrixXd displaced = Eigen::MatrixXd::Zero(fit.rows().rows(), kJointCount);
-  for (std::size_t i = 0; i < fit.touches().size(); ++i) {
-    if (!fit.kept()[i]) continue;
-    const Touch& touch = problem.touches[fit.touches()[i]];
-    const ContactSurface& surface = problem.artefact.contact_planes[static_cast<std::size_t>(touch.face)];
-    const Chain chain = forward_chain(prepared, touch.joints);
-    const JointVector directions = search_directions(arm, chain, normal_at(surface, chain.tip_in_block_m()));
-    const auto row = static_cast<Eigen::Index>(i);
-    for (int joint = 0; joint < kJointCount; ++joint)
-      displaced(row, joint) = directions[joint] * fit.rows()(row, theta_index(joint));
+JointVector gear_std_beside(const IdentificationProblem& problem, const std::vector<int>& arm_columns) {
+  JointVector variances = problem.gear_std_rad.cwiseAbs2();
+  for (int joint = 0; joint < kJointCount; ++joint) {
+    const int position = ripple_position(joint);
+    const auto& std = problem.nongeometric_std[static_cast<std::size_t>(position)];
+    if (std && std::ranges::find(arm_columns, nongeometric_index(position)) != arm_columns.end())
+      variances[joint] = std::max(0.0, variances[joint] - *std * *std);
   }
-  return displaced;
+  return variances.cwiseSqrt();
 }
 
 std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
                                            double harmonic_share) {
   if (column < kErrorParameterCount) return problem.tolerances[static_cast<std::size_t>(column)];
   const int position = column - kErrorParameterCount;
+  if (is_ripple(position)) return std::nullopt;
   const auto& std = problem.nongeometric_std[static_cast<std::size_t>(position)];
   if (!std || !is_harmonic(position)) return std;
   return std::sqrt(harmonic_share) * *std;
@@ -139,12 +134,15 @@ FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,
       whole.touch_information(whole.position_of(i), whole.position_of(j)) =
           everything.touch_information()(i, j);
   }
-  if (!problem.gear_lag_std_rad.isZero(0.0)) {
-    const Eigen::MatrixXd of_columns =
-        everything.rows().transpose() * lag_displacements(problem, everything, estimate);
-    whole.lag_gradient.setZero(count, kJointCount);
+  whole.patterns = touch_patterns(problem);
+  if (!whole.patterns.empty()) {
+    const Eigen::MatrixXd displaced = pattern_displacements(problem, everything, estimate);
+    const Eigen::MatrixXd of_columns = everything.rows().transpose() * displaced;
+    whole.pattern_columns.setZero(count, displaced.cols());
     for (Eigen::Index j = 0; j < of_columns.rows(); ++j)
-      whole.lag_gradient.row(whole.position_of(j)) = of_columns.row(j);
+      whole.pattern_columns.row(whole.position_of(j)) = of_columns.row(j);
+    whole.pattern_information = displaced.transpose() * displaced;
+    whole.pattern_gradient = displaced.transpose() * everything.weighted_targets();
   }
   for (const int column : fit.arm_columns()) whole.estimated.push_back(column);
   for (Eigen::Index k = 0; k < estimate.artefact.size(); ++k) {

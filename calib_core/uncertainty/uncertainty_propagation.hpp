@@ -6,6 +6,8 @@
 
 #include "calib_core/estimation/goodness_of_fit.hpp"
 #include "calib_core/estimation/least_squares.hpp"
+#include "calib_core/uncertainty/left_out_effects.hpp"
+#include "calib_core/uncertainty/touch_patterns.hpp"
 #include "calib_core/uncertainty/uncertainty_budget.hpp"
 
 namespace calib {
@@ -16,9 +18,14 @@ struct FullLinearisation {
   std::vector<int> columns;  // of the arm, those that were linearised
   Eigen::MatrixXd touch_information;
   Eigen::VectorXd touch_gradient;
-  /// Sum over the touches of their row times the change of their distance per radian of lag of each joint:
-  /// one column per joint, empty where no lag is known.
-  Eigen::MatrixXd lag_gradient;
+  bool has_residuals = true;  // not of touches that are only planned: they say nothing of what was left out
+  /// What displaces the touches by a pattern: each a further column of the linearisation, with its
+  /// information with the columns above (a column each), with the other patterns, and its gradient. Empty
+  /// without any.
+  std::vector<TouchPattern> patterns;
+  Eigen::MatrixXd pattern_columns;
+  Eigen::MatrixXd pattern_information;
+  Eigen::VectorXd pattern_gradient;
   std::vector<Eigen::Index> estimated;  // the estimated columns, ascending
   Eigen::MatrixXd
       estimated_covariance;  // of these columns, for the declared noise: inverse of the information
@@ -30,14 +37,17 @@ struct FullLinearisation {
   }
 };
 
-/// The change of each touch's weighted distance (rows of `fit`) per radian by which each joint lags behind
-/// its drive, n x 6; 0 for touches that are not kept. The columns of `fit` must begin with the candidates,
-/// and it must be linearised.
-Eigen::MatrixXd lag_displacements(const IdentificationProblem& problem, const LeastSquares& fit,
-                                  const Estimate& estimate);
+/// What the residuals leave of the second harmonics: the standard deviations of these patterns become the
+/// root of that share of the maker's variance, one for all joints. `noise` in units of the fit's noise.
+void bound_second_harmonics(const NoiseEvidence& noise, FullLinearisation& whole);
+
+/// One standard deviation of each joint's error that changes from posture to posture beside these estimated
+/// parameters of the arm: without the ripples among them. Radians.
+JointVector gear_std_beside(const IdentificationProblem& problem, const std::vector<int>& arm_columns);
 
 /// Standard deviation with which the budget counts a parameter of the arm (index into ArmVector) that is not
-/// estimated; nothing where it is unknown. `harmonic_share`: UncertaintyBudget.
+/// estimated; nothing where it is unknown, and of a ripple, which is an error of posture then.
+/// `harmonic_share`: UncertaintyBudget.
 std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
                                            double harmonic_share);
 

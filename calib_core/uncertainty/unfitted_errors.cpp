@@ -15,6 +15,10 @@ namespace {
 
 constexpr std::size_t kCorrelationsShown = 10;
 
+/// Of the maker's variance of the first harmonics, what is expected before any touch: of these, and of the
+/// second ones. A gear is eccentric before it is oval.
+constexpr double kFirstHarmonicShare = 1.0 / 6.0, kSecondHarmonicShare = 1.0 / 12.0;
+
 /// True minus estimated errors of arm and artefact when the touches are displaced by something that was not
 /// estimated: `gradient` is the sum of their rows times their displacements.
 Eigen::VectorXd bias(const FullLinearisation& whole, const Eigen::Ref<const Eigen::VectorXd>& gradient) {
@@ -61,21 +65,34 @@ std::vector<Eigen::Index> known_harmonics(const IdentificationProblem& problem) 
 }
 
 /// The variance that harmonics which were left out may still have, as a share of the maker's: what the
-/// residuals leave of it.
+/// residuals leave of it; all of it beside others that the touches asked for.
 double harmonic_share(const IdentificationProblem& problem, const LeastSquares& fit,
                       const FullLinearisation& whole, double noise_variance) {
-  const std::vector<Eigen::Index> columns = known_harmonics(problem);
-  if (columns.empty() || is_estimated(fit, static_cast<int>(columns.front()))) return 0.0;
+  std::vector<Eigen::Index> columns = known_harmonics(problem);
+  const auto estimated = std::erase_if(
+      columns, [&](Eigen::Index column) { return is_estimated(fit, static_cast<int>(column)); });
+  if (columns.empty()) return 0.0;
+  if (estimated > 0) return 1.0;
+  if (!whole.has_residuals) return kFirstHarmonicShare;
   Eigen::VectorXd std(static_cast<Eigen::Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     std[static_cast<Eigen::Index>(i)] =
         *problem.nongeometric_std[static_cast<std::size_t>(columns[i] - kErrorParameterCount)];
   }
-  const Eigen::MatrixXd shared = whole.touch_information(whole.estimated, columns) * std.asDiagonal();
-  Eigen::MatrixXd information =
-      std.asDiagonal() * whole.touch_information(columns, columns) * std.asDiagonal();
-  information.noalias() -= shared.transpose() * whole.estimated_covariance * shared;
-  return mean_variance_share(information, std.cwiseProduct(whole.touch_gradient(columns)), noise_variance);
+  return mean_variance_share(
+      evidence_of_group(whole.touch_information(columns, columns),
+                        whole.touch_information(whole.estimated, columns), whole.touch_gradient(columns), std,
+                        whole.estimated_covariance),
+      {.otherwise = noise_variance}, kFirstHarmonicShare);
+}
+
+/// The second harmonics among the patterns.
+std::vector<Eigen::Index> second_harmonics(const FullLinearisation& whole) {
+  std::vector<Eigen::Index> found;
+  for (Eigen::Index k = 0; k < std::ssize(whole.patterns); ++k) {
+    if (whole.patterns[static_cast<std::size_t>(k)].joint) found.push_back(k);
+  }
+  return found;
 }
 
 void add_square(const Eigen::VectorXd& displacement, ArmCovariance& covariance) {
@@ -111,28 +128,48 @@ void add_nongeometric(const IdentificationProblem& problem, const LeastSquares& 
   }
 }
 
-/// Adds the lag of the joints: every touch ends a search, so that it displaces them by a pattern.
-void add_lag(const IdentificationProblem& problem, const FullLinearisation& whole, SourceSum& sum,
-             UncertaintyBudget& result) {
-  result.lagged.resize(whole.touch_information.rows(), whole.lag_gradient.cols());
-  for (Eigen::Index joint = 0; joint < whole.lag_gradient.cols(); ++joint) {
-    // The recorded joints are ahead of the true ones: the model sees the touches displaced, not the arm.
-    result.lagged.col(joint) = -problem.gear_lag_std_rad[joint] * bias(whole, whole.lag_gradient.col(joint));
-    const ArmVector of_arm = result.lagged.col(joint).head<kArmParameterCount>();
-    const ArmCovariance covariance = of_arm * of_arm.transpose();
-    sum.source("backlash").covariance += covariance;
-    result.held += covariance;
+/// Adds what displaces all touches by a pattern: the lag of the joints at the end of a search, the pre-travel
+/// of a push from the side.
+void add_patterns(const FullLinearisation& whole, SourceSum& sum, UncertaintyBudget& result) {
+  const auto count = std::ssize(whole.patterns);
+  result.patterned.resize(whole.touch_information.rows(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const TouchPattern& pattern = whole.patterns[static_cast<std::size_t>(k)];
+    result.patterned.col(k) = pattern.std * bias(whole, whole.pattern_columns.col(k));
+    add_square(result.patterned.col(k), sum.source(pattern.source).covariance);
+    add_square(result.patterned.col(k), result.held);
   }
 }
 
+/// Adds the second harmonics at the tip: in any posture their cosine and sine make one standard deviation.
+/// What they did to the estimate is in the patterns, as if it were another matter: where the joints stand as
+/// at the touches both make up for each other in part and the sum is too large, where cosine and sine are
+/// opposite to those at the touches it is too small.
+void add_second_harmonics(const IdentificationProblem& problem, const FullLinearisation& whole,
+                          SourceSum& sum, UncertaintyBudget& result) {
+  ArmCovariance at_tip = no_covariance();
+  for (const Eigen::Index k : second_harmonics(whole)) {
+    const TouchPattern& pattern = whole.patterns[static_cast<std::size_t>(k)];
+    result.second_harmonic_std_rad[*pattern.joint] = pattern.std;
+    const int theta = theta_index(*pattern.joint);
+    const double gain = problem.nominal.gains[static_cast<std::size_t>(*pattern.joint)];
+    at_tip(theta, theta) = std::pow(gain * pattern.std, 2);
+  }
+  if (at_tip.isZero(0.0)) return;
+  sum.source("gear_harmonics").covariance += at_tip;
+  result.of_posture += at_tip;
+}
+
 /// Adds what changes from posture to posture: it is in the noise of the touches, and at the tip once more.
-void add_gears(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
+void add_gears(const IdentificationProblem& problem, const LeastSquares& fit, SourceSum& sum,
+               UncertaintyBudget& result) {
   if (problem.gear_std_rad.isZero(0.0)) return;
+  const JointVector std_rad = gear_std_beside(problem, fit.arm_columns());
   for (int joint = 0; joint < kJointCount; ++joint) {
     result.of_posture(theta_index(joint), theta_index(joint)) =
-        result.gear_share * std::pow(problem.gear_std_rad[joint], 2);
+        result.gear_share * std::pow(std_rad[joint], 2);
   }
-  sum.source("gears").covariance = result.of_posture;
+  sum.source("gears").covariance += result.of_posture;  // beside the ripples that were estimated
 }
 
 /// The changes of the block's place (three columns, rows: ArmVector) that displace the whole arm by a metre
@@ -160,13 +197,17 @@ Eigen::MatrixXd unit_displacements(const KinematicModel& nominal) {
   return of_arm;
 }
 
-/// Adds the drift, as a displacement of the arm. No touch says in which direction, so that it is the same in
-/// each.
+/// Adds the drift, as a displacement of the arm: what is shown, and what the scatter of the reference touches
+/// leaves open. No touch says in which direction, so that it is the same in each.
 void add_drift(const IdentificationProblem& problem, SourceSum& sum, UncertaintyBudget& result) {
-  if (problem.drift_m == 0.0) return;
+  const double open_m = problem.drift_uncertainty.std_m;
+  if (problem.drift_m == 0.0 && open_m == 0.0) return;
   ArmCovariance& covariance = sum.source("drift").covariance;
-  const Eigen::MatrixXd directions = problem.drift_m / 2.0 * unit_displacements(problem.nominal);
-  covariance.noalias() += directions * directions.transpose();
+  const Eigen::MatrixXd directions = unit_displacements(problem.nominal) / 2.0;
+  const ArmCovariance of_one_metre = directions * directions.transpose();
+  result.of_drift = open_m * open_m * of_one_metre;
+  result.drift_degrees_of_freedom = problem.drift_uncertainty.degrees_of_freedom;
+  covariance += problem.drift_m * problem.drift_m * of_one_metre + result.of_drift;
   result.of_posture += covariance;
 }
 
@@ -236,6 +277,23 @@ std::vector<Correlation> strongest(const ArmCovariance& covariance, const std::v
 
 }  // namespace
 
+void bound_second_harmonics(const NoiseEvidence& noise, FullLinearisation& whole) {
+  const std::vector<Eigen::Index> harmonics = second_harmonics(whole);
+  if (harmonics.empty()) return;
+  Eigen::VectorXd std(std::ssize(harmonics));
+  for (Eigen::Index k = 0; k < std.size(); ++k)
+    std[k] = whole.patterns[static_cast<std::size_t>(harmonics[static_cast<std::size_t>(k)])].std;
+  const auto of_touches = [&] {
+    return mean_variance_share(
+        evidence_of_group(whole.pattern_information(harmonics, harmonics),
+                          whole.pattern_columns(whole.estimated, harmonics),
+                          whole.pattern_gradient(harmonics), std, whole.estimated_covariance),
+        noise, kSecondHarmonicShare);
+  };
+  const double share = whole.has_residuals ? of_touches() : kSecondHarmonicShare;
+  for (const Eigen::Index k : harmonics) whole.patterns[static_cast<std::size_t>(k)].std *= std::sqrt(share);
+}
+
 void add_unfitted(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
                   const LeastSquares& fit, const FullLinearisation& whole, UncertaintyBudget& fitted) {
   SourceSum sum(fit.arm_columns(), std::move(fitted.sources));
@@ -243,11 +301,12 @@ void add_unfitted(const IdentificationProblem& problem, const IdentifiableSet& i
   fitted.left_out.resize(whole.touch_information.rows(), 0);
   add_unseen(problem, identifiable, fit, whole, sum, fitted);
   add_nongeometric(problem, fit, whole, ratio * ratio, sum, fitted);
-  add_lag(problem, whole, sum, fitted);
-  add_gears(problem, sum, fitted);
+  add_patterns(whole, sum, fitted);
+  add_gears(problem, fit, sum, fitted);
+  add_second_harmonics(problem, whole, sum, fitted);
   add_drift(problem, sum, fitted);
   displace_artefact(fitted.left_out, fitted.artefact_std);
-  displace_artefact(fitted.lagged, fitted.artefact_std);
+  displace_artefact(fitted.patterned, fitted.artefact_std);
   fitted.sources = sum.take();
   fitted.correlations = strongest(fitted.identified, fit.arm_columns());
 }

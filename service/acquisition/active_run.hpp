@@ -16,6 +16,11 @@ namespace cell {
 struct Interruption {
   std::optional<std::string> plan_id;
   std::vector<PlanChange> plan_changes;
+  /// Why it cannot be resumed with the files that this daemon was started with; empty when it can be. These
+  /// files say nothing of its touches, which are in the store only: so many of so many.
+  std::string why_not;
+  int touches_done = 0;
+  int touches_total = 0;
 };
 
 /// The run under way or the last one: what belongs to it and to no other. A value; whoever acts on a run is
@@ -33,6 +38,8 @@ struct ActiveRun {
 
   /// The changes of its plan behind the stored ones.
   [[nodiscard]] std::vector<PlanChange> changes_to_store() const;
+  /// It waits for a daemon with its files, or for a person who ends it.
+  [[nodiscard]] bool is_of_other_files() const { return interruption && !interruption->why_not.empty(); }
 };
 
 /// The result document, as json text; nothing before there is a result.

@@ -5,6 +5,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <stdexcept>
 #include <utility>
 
 #include "calib_core/geometry/units.hpp"
@@ -34,6 +35,13 @@ BlockPose located(const std::optional<BlockPose>& before, const Locating& locati
   return place;
 }
 
+/// Whether the place was found by just these touches.
+bool is_made_of(const BlockPose& place, const std::vector<LocatingTouch>& touches) {
+  return std::ranges::equal(place.touches, touches, [](const auto& fitted, const LocatingTouch& made) {
+    return to_wire(fitted.joints) == made.joints;
+  });
+}
+
 /// Why nothing can be planned around a block whose place is known no better than `there` has it: every path
 /// keeps that far from the faces, and every search reaches that far to either side.
 std::optional<std::string> why_too_vague(const Cell& there, std::optional<double> search_length_max_m) {
@@ -56,8 +64,9 @@ std::optional<std::string> why_too_vague(const Cell& there, std::optional<double
 
 }  // namespace
 
-BlockLocation::BlockLocation(const Cell& configured, StoreQueue& store, ControllerSession& session,
-                             PublishedStatus& status, Wake& wake, Clocks clocks)
+BlockLocation::BlockLocation(boost::asio::any_io_executor operation, const Cell& configured,
+                             StoreQueue& store, ControllerSession& session, PublishedStatus& status,
+                             Wake& wake, Clocks clocks)
     : configured_(configured),
       store_(store),
       session_(session),
@@ -66,7 +75,8 @@ BlockLocation::BlockLocation(const Cell& configured, StoreQueue& store, Controll
       clocks_(std::move(clocks)),
       cell_(configured),
       regions_(std::in_place, cell_),
-      located_(std::make_shared<const LocatedCell>(LocatedCell{cell_, std::nullopt})) {}
+      located_(std::make_shared<const LocatedCell>(LocatedCell{cell_, std::nullopt})),
+      journal_(store, std::move(operation)) {}
 
 bool BlockLocation::keep_in(const std::filesystem::path& file) {
   file_ = file;
@@ -83,32 +93,98 @@ bool BlockLocation::keep_in(const std::filesystem::path& file) {
   return true;
 }
 
+void BlockLocation::keep_dialogue_in(const std::filesystem::path& file,
+                                     const std::optional<std::string>& config_digest) {
+  journal_.keep_in(file, config_digest);
+  const LocatingJournal::Left left = journal_.left(place_before());
+  if (!left.record && !left.why_not) return;
+  if (left.record && place_ && is_made_of(*place_, left.record->touches)) {
+    forget_touches();  // it was found just before the end
+    return;
+  }
+  try {
+    take_up(left);
+  } catch (const std::invalid_argument& error) {
+    spdlog::warn("{}: the touches by hand in it are discarded: {}", file.string(), error.what());
+    dialogue_.reset();
+    forget_touches();
+  }
+}
+
+void BlockLocation::take_up(const LocatingJournal::Left& left) {
+  dialogue_.emplace(cell_);
+  std::optional<std::string> why_not = left.why_not;
+  const std::vector<LocatingTouch> touches =
+      left.record ? left.record->touches : std::vector<LocatingTouch>();
+  for (const LocatingTouch& touch : touches) {
+    const HandTouch made{touch.joints, from_wire(touch.joints), touch.moved_m};
+    if (!why_not) why_not = dialogue_->locating.why_not(made);
+    if (why_not) break;
+    dialogue_->locating.take(made);
+    dialogue_->made.push_back(touch);
+  }
+  if (why_not) {
+    dialogue_.emplace(cell_);
+    dialogue_->note = fmt::format(
+        "the touches by hand of the daemon before are discarded, all are made again: {}; ", *why_not);
+    forget_touches();
+  } else {
+    dialogue_->note = fmt::format(
+        "the daemon was restarted and {} kept, the last one made {} (touchcal undo takes it back, touchcal "
+        "stop all); ",
+        touches.size() == 1 ? "1 touch is" : fmt::format("{} touches are", touches.size()),
+        touches.back().touched_at);
+  }
+  spdlog::warn("locating the block: {}{}", dialogue_->note, dialogue_->locating.guide().words);
+}
+
+std::optional<std::string> BlockLocation::place_before() const {
+  return place_ ? std::optional(place_->located_at) : std::nullopt;
+}
+
+std::optional<CommandRefusal> BlockLocation::refusal_while_storing() const {
+  if (!is_storing()) return std::nullopt;
+  return CommandRefusal{.detail = "the last touch is being stored; then once more"};
+}
+
 std::optional<CommandRefusal> BlockLocation::locate() {
+  if (auto refusal = refusal_while_storing()) return refusal;
   if (!session_.connected())
     return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
                           .detail = "the cell is not ready",
                           .unmet = unmet_by_controller(false, {}, status_.fault())};
-  if (locating_) return locating_->fit() ? prepare_pass() : std::nullopt;
+  if (dialogue_) return dialogue_->locating.fit() ? prepare_pass() : std::nullopt;
   try {
-    locating_.emplace(cell_);
+    dialogue_.emplace(cell_);
   } catch (const std::invalid_argument& error) {
     return CommandRefusal{.detail = error.what()};
   }
-  watch_.emplace(cell_.arm.model);
   spdlog::info("locating the block by touches");
   status_.publish();
   return std::nullopt;
 }
 
-bool BlockLocation::can_undo() const { return awaits_touch() && !locating_->touches().empty(); }
+bool BlockLocation::can_undo() const { return awaits_touch() && !is_storing() && !dialogue_->made.empty(); }
 
 void BlockLocation::undo() {
-  locating_->undo();
-  status_.publish();
+  std::vector<LocatingTouch> others = dialogue_->made;
+  others.pop_back();
+  journal_.write(std::move(others), place_before(), [this](const std::optional<std::string>& failure) {
+    if (failure) {
+      spdlog::error("a touch by hand is not taken back: {}", *failure);
+      dialogue_->locating.refuse("the last touch could not be taken back, which is to be stored: " +
+                                 *failure);
+    } else {
+      dialogue_->note.clear();
+      dialogue_->made.pop_back();
+      dialogue_->locating.undo();
+    }
+    status_.publish();
+  });
 }
 
 std::optional<CommandRefusal> BlockLocation::take() {
-  auto taken = watch_->take();
+  auto taken = dialogue_->watch.take();
   if (auto* why = std::get_if<std::string>(&taken)) return CommandRefusal{.detail = std::move(*why)};
   if (auto why = take_touch(std::get<HandTouch>(taken))) return CommandRefusal{.detail = std::move(*why)};
   return std::nullopt;
@@ -116,29 +192,65 @@ std::optional<CommandRefusal> BlockLocation::take() {
 
 void BlockLocation::on_controller_state(const cs8::State& state) {
   if (!awaits_touch()) return;
-  if (const auto touch = watch_->on_controller_state(state)) take_touch(*touch);
+  if (const auto touch = dialogue_->watch.on_controller_state(state)) take_touch(*touch);
 }
 
-/// Why it was not taken, if it was not.
+/// Why it was not taken, if it was not; else it is on its way to the disk.
 std::optional<std::string> BlockLocation::take_touch(const HandTouch& touch) {
-  const std::size_t before = locating_->touches().size();
-  locating_->take(touch);
-  const HandGuide guide = locating_->guide();
-  spdlog::info("touch by hand{}{}; {}", guide.problem ? " not taken: " : "", guide.problem.value_or(""),
-               guide.words);
+  if (dialogue_->locating.guide().step != HandStep::kTouch) return "no touch is awaited now";
+  std::optional<std::string> why = dialogue_->locating.why_not(touch);
+  if (is_storing()) why = "the one before was still being stored: touch again";
+  if (why) {
+    spdlog::info("touch by hand not taken: {}", *why);
+    dialogue_->locating.refuse(*why);
+    status_.publish();
+    return why;
+  }
+  const LocatingTouch made{touch.wire_joints, touch.moved_m, format_utc(clocks_.system())};
+  std::vector<LocatingTouch> with = dialogue_->made;
+  with.push_back(made);
+  journal_.write(std::move(with), place_before(),
+                 [this, touch, made](const auto& failure) { keep_touch(touch, made, failure); });
+  return std::nullopt;
+}
+
+/// It is on the disk, or cannot be written there.
+void BlockLocation::keep_touch(const HandTouch& touch, const LocatingTouch& made,
+                               const std::optional<std::string>& failure) {
+  if (failure) {
+    spdlog::error("touch by hand not taken: {}", *failure);
+    dialogue_->locating.refuse("it could not be stored: " + *failure);
+  } else {
+    dialogue_->note.clear();
+    dialogue_->made.push_back(made);
+    dialogue_->locating.take(touch);
+    spdlog::info("touch by hand; {}", dialogue_->locating.guide().words);
+  }
   status_.publish();
-  if (locating_->touches().size() > before) return std::nullopt;
-  return guide.problem.value_or("no touch is awaited now");
 }
 
 void BlockLocation::leave() {
-  locating_.reset();
-  watch_.reset();
+  passing_ = false;
+  if (!dialogue_) return;
+  dialogue_.reset();
+  forget_touches();
+}
+
+/// Nobody waits for it: what is over is over, also where its file stays.
+void BlockLocation::forget_touches() {
+  journal_.forget([this](const std::string& failure) {
+    status_.warn(
+        {FaultCode::kStoreFailed,
+         fmt::format("the touches by hand of a dialogue that is over stay there, and the next daemon "
+                     "takes them up: {}",
+                     failure)});
+  });
 }
 
 std::optional<HandGuide> BlockLocation::guide() const {
-  if (!locating_) return std::nullopt;
-  HandGuide guide = locating_->guide();
+  if (!dialogue_) return std::nullopt;
+  HandGuide guide = dialogue_->locating.guide();
+  guide.words = dialogue_->note + guide.words;
   if (passing_) {
     guide.step = HandStep::kPassing;
     guide.words = "the arm goes once around the block: keep away from it";
@@ -152,10 +264,10 @@ std::optional<CommandRefusal> BlockLocation::prepare_pass() {
   if (status_.fault() && !is_link_fault(status_.fault()->code))
     return CommandRefusal{.detail = "a fault is there to be read first: " + status_.fault()->message(),
                           .code = FaultCode::kFaultUnacknowledged};
-  const Cell there = cell_with_block_pose(configured_, located(place_, *locating_));
+  const Cell there = cell_with_block_pose(configured_, located(place_, dialogue_->locating));
   if (auto why = why_too_vague(there, session_.search_length_max_m()))
     return CommandRefusal{.detail = *std::move(why)};
-  auto postures = pass_postures(there, locating_->touches());
+  auto postures = pass_postures(there, dialogue_->locating.touches());
   if (auto* why = std::get_if<std::string>(&postures)) return CommandRefusal{.detail = std::move(*why)};
   pass_stops_ = std::get<std::vector<calib::JointVector>>(std::move(postures));
   passing_ = true;
@@ -163,7 +275,13 @@ std::optional<CommandRefusal> BlockLocation::prepare_pass() {
 }
 
 asio::awaitable<bool> BlockLocation::pass() {
-  const bool passed = co_await go_around_block();
+  bool passed = false;
+  try {
+    passed = co_await go_around_block();
+  } catch (...) {
+    passing_ = false;
+    throw;
+  }
   if (!passed && status_.state() == State::kStarting) {
     co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     co_return false;
@@ -193,7 +311,7 @@ asio::awaitable<bool> BlockLocation::go_around_block() {
   if (!permitted) co_return false;
   const auto from = co_await session_.standing_joints();
   if (!from || status_.state() != State::kStarting) co_return false;
-  Cell there = cell_with_block_pose(configured_, located(place_, *locating_));
+  Cell there = cell_with_block_pose(configured_, located(place_, dialogue_->locating));
   there.speeds.travel_m_s *= kPassSpeedShare;
   const calib::TransferSpace space(there.arm.model, there.collision_scene(), there.park_joints,
                                    there.face_error_m());
@@ -217,7 +335,7 @@ asio::awaitable<bool> BlockLocation::go_around_block() {
 
 /// On the store's thread: a disk may take seconds, and the link and a stop do not wait for it.
 asio::awaitable<bool> BlockLocation::keep_found_place() {
-  BlockPose place = located(place_, *locating_);
+  BlockPose place = located(place_, dialogue_->locating);
   place.located_at = format_utc(clocks_.system());
   place.digest = block_pose_digest(configured_);
   if (!file_.empty()) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <filesystem>
 #include <memory>
@@ -13,6 +14,7 @@
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/hand_touch.hpp"
 #include "service/acquisition/locating.hpp"
+#include "service/acquisition/locating_journal.hpp"
 #include "service/acquisition/published_status.hpp"
 #include "service/acquisition/store_queue.hpp"
 #include "service/base/clocks.hpp"
@@ -27,18 +29,24 @@ struct LocatedCell {
   std::optional<BlockPose> place;  // empty while the block is where the cell file says
 };
 
-/// Where the block stands: the dialogue that finds it by a person's touches (locating.hpp), the pass around
-/// it that proves the place, the file that keeps it, and the cell with its block there. Whether it still
-/// stands there is asked in each run: place_check.hpp.
+/// Where the block stands: the dialogue that finds it by a person's touches (locating.hpp), of which each is
+/// on the disk before it counts (locating_journal.hpp), the pass around it that proves the place, the file
+/// that keeps it, and the cell with its block there. Whether it still stands there is asked in each run:
+/// place_check.hpp.
 class BlockLocation {
  public:
-  /// All must outlive it; `configured` is the cell as its file has it.
-  BlockLocation(const Cell& configured, StoreQueue& store, ControllerSession& session,
-                PublishedStatus& status, Wake& wake, Clocks clocks);
+  /// All must outlive it; `operation` is the executor that it is used on, `configured` the cell as its file
+  /// has it.
+  BlockLocation(boost::asio::any_io_executor operation, const Cell& configured, StoreQueue& store,
+                ControllerSession& session, PublishedStatus& status, Wake& wake, Clocks clocks);
 
   /// Sets the file of the block's pose; call it before the cell operates. A pose in the file is used, unless
   /// it is of another cell. Returns whether one is used. Throws when the file cannot be read.
   bool keep_in(const std::filesystem::path& file);
+  /// Sets the file of the dialogue's touches, behind keep_in(), and takes up the dialogue that the daemon
+  /// before left there. Its touches count where the cell's files (`config_digest`) and the place before are
+  /// those that they were made with, else it begins anew; the guide says which.
+  void keep_dialogue_in(const std::filesystem::path& file, const std::optional<std::string>& config_digest);
 
   /// The cell with its block at the last found pose. Always the same object.
   [[nodiscard]] const Cell& cell() const { return cell_; }
@@ -54,12 +62,18 @@ class BlockLocation {
   /// Begins the dialogue; once the block is found, makes the pass ready: is_passing() is true then. The place
   /// counts for all runs that follow, also of later daemons.
   std::optional<CommandRefusal> locate();
-  [[nodiscard]] bool is_locating() const { return locating_.has_value(); }
-  [[nodiscard]] bool awaits_touch() const { return locating_ && !passing_; }
+  [[nodiscard]] bool is_locating() const { return dialogue_.has_value(); }
+  [[nodiscard]] bool awaits_touch() const { return dialogue_ && !passing_; }
+  /// A touch, or one less, is on its way to the disk; until it is there nothing else is taken.
+  [[nodiscard]] bool is_storing() const { return journal_.is_writing(); }
+  /// Returns when it is there, or cannot be; after a while also when the disk does not answer.
+  boost::asio::awaitable<void> stored() { return journal_.written(); }
+  /// Why nothing is done with the touches until then; nothing when all are on the disk.
+  [[nodiscard]] std::optional<CommandRefusal> refusal_while_storing() const;
   [[nodiscard]] bool can_undo() const;
-  /// Discards the last touch and asks for it again.
+  /// Discards the last touch and asks for it again, once that is stored.
   void undo();
-  /// Takes the arm's present position as the expected touch.
+  /// Takes the arm's present position as the expected touch; it counts once it is stored.
   std::optional<CommandRefusal> take();
   /// Watches for a touch by a person who jogs, while one is expected.
   void on_controller_state(const cs8::State& state);
@@ -77,7 +91,21 @@ class BlockLocation {
   boost::asio::awaitable<bool> pass();
 
  private:
+  /// What a person has touched so far.
+  struct Dialogue {
+    explicit Dialogue(const Cell& cell) : locating(cell), watch(cell.arm.model) {}
+    Locating locating;
+    HandTouchWatch watch;
+    std::vector<LocatingTouch> made;  // those of `locating`, as they are stored
+    std::string note;  // what has become of touches of the daemon before, in front of the words
+  };
+
   std::optional<CommandRefusal> prepare_pass();
+  void take_up(const LocatingJournal::Left& left);
+  void keep_touch(const HandTouch& touch, const LocatingTouch& made,
+                  const std::optional<std::string>& failure);
+  void forget_touches();
+  [[nodiscard]] std::optional<std::string> place_before() const;
   boost::asio::awaitable<bool> go_around_block();
   std::optional<std::string> take_touch(const HandTouch& touch);
   boost::asio::awaitable<bool> keep_found_place();
@@ -95,8 +123,8 @@ class BlockLocation {
   mutable std::mutex located_mutex_;  // held for the exchange of a pointer
   std::shared_ptr<const LocatedCell> located_;
   std::filesystem::path file_;  // empty: nowhere
-  std::optional<Locating> locating_;
-  std::optional<HandTouchWatch> watch_;         // as long as the dialogue lasts
+  LocatingJournal journal_;
+  std::optional<Dialogue> dialogue_;
   std::vector<calib::JointVector> pass_stops_;  // once around the block
   bool passing_ = false;
 };

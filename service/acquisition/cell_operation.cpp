@@ -12,6 +12,7 @@
 #include "service/acquisition/link_fault.hpp"
 #include "service/acquisition/preconditions.hpp"
 #include "service/base/log_format.hpp"
+#include "service/base/state_directory.hpp"
 #include "service/base/utc_time.hpp"
 
 namespace cell {
@@ -49,6 +50,11 @@ void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_c
   status.touches_total = run.touches_total();
   status.run_id = run.id();
   status.recipe = run.recipe().name;
+  if (active.is_of_other_files()) {
+    status.touches_done = active.interruption->touches_done;
+    status.touches_total = active.interruption->touches_total;
+    return;
+  }
   const calib::IdentificationResult& latest = run.latest();
   if (run.touches_done() > 0)
     status.identifiable_count = static_cast<int>(latest.identifiable.columns.size());
@@ -82,7 +88,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
                                      const std::string& message) { store_fault(name, message); }}),
       controller_(std::move(controller)),
       session_(cell, *controller_, status_, wake_, clocks_),
-      location_(cell, store_, session_, status_, wake_, clocks_),
+      location_(threads.operation, cell, store_, session_, status_, wake_, clocks_),
       plans_(threads.operation, location_.cell()),
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
       computation_(threads.computation, location_.cell()),
@@ -175,6 +181,9 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
 
 /// Why a command that the state allows is not taken all the same.
 std::optional<CommandRefusal> CellOperation::refusal_reason(Command command) const {
+  const bool goes_on = command == Command::kResume || command == Command::kRetry || command == Command::kSkip;
+  if (goes_on && waits_for_its_files())
+    return CommandRefusal{.detail = kept_words(run_->interruption->why_not)};
   switch (command) {
     case Command::kRetry:
     case Command::kSkip:
@@ -218,6 +227,7 @@ std::optional<CommandRefusal> CellOperation::refuse_answer_to_hold(Command comma
 std::optional<CommandRefusal> CellOperation::refuse_undo() const {
   const bool guiding =
       run_ && run_->guided && status_.state() == State::kExecute && run_->run.touches_done() > 0;
+  if (auto refusal = location_.refusal_while_storing()) return refusal;
   if (location_.is_locating() ? location_.can_undo() : guiding) return std::nullopt;
   return CommandRefusal{.detail = "there is no touch by hand to take back"};
 }
@@ -264,6 +274,8 @@ std::optional<CommandRefusal> CellOperation::undo() {
   return std::nullopt;
 }
 
+asio::awaitable<void> CellOperation::touch_stored() { return location_.stored(); }
+
 /// Whether a run can start that touches by itself. What its recipe asks for is told when it is refused.
 bool CellOperation::is_ready_to_start() const {
   const auto& fault = status_.fault();
@@ -280,6 +292,7 @@ std::vector<Command> CellOperation::exits() const {
 
 void CellOperation::keep_place_in(const std::filesystem::path& file) {
   if (location_.keep_in(file)) forget_plans();
+  location_.keep_dialogue_in(file.parent_path() / kLocatingFile, recovery_.config_digest());
 }
 
 Status CellOperation::status() const {

@@ -67,10 +67,14 @@ class CellOperation {
   boost::asio::awaitable<std::variant<Started, CommandRefusal>> start(StartRequest request);
   /// `run_id` when the command names a run: it must be the active one.
   std::optional<CommandRefusal> command(Command command, std::optional<std::int64_t> run_id = {});
+  /// Waits until a touch of a dialogue, or what takes one back, is on the disk: a few seconds at most, after
+  /// which the status tells the touch before.
+  boost::asio::awaitable<void> touch_stored();
   /// The commands that lead out of the present state and are taken now.
   [[nodiscard]] std::vector<Command> exits() const;
 
-  /// Sets the file of the block's pose; call it before launch(). See BlockLocation::keep_in.
+  /// Sets the file of the block's pose, and beside it that of the dialogue which finds it; call it before
+  /// launch(). See BlockLocation::keep_in and keep_dialogue_in.
   void keep_place_in(const std::filesystem::path& file);
   /// The found pose of the block; empty while it is where the cell file says.
   [[nodiscard]] const std::optional<BlockPose>& place() const { return location_.place(); }
@@ -101,6 +105,8 @@ class CellOperation {
 
   /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on a thread of its own.
   boost::asio::awaitable<PlanOutcome> plan_recipe(std::string name) { return plans_.plan(std::move(name)); }
+  /// See PlanCache::hand_in(); call it before launch().
+  void hand_in_plan(std::shared_ptr<const Plan> plan) { plans_.hand_in(std::move(plan)); }
   /// What plan_recipe() gave; nothing before. A run by this recipe makes these touches.
   [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe) const {
     return plans_.planned(recipe);
@@ -140,6 +146,7 @@ class CellOperation {
   void forget_plans();
   [[nodiscard]] ActiveRun* active() { return run_ ? &*run_ : nullptr; }
   [[nodiscard]] bool is_interrupted() const { return run_ && run_->interruption; }
+  [[nodiscard]] bool waits_for_its_files() const { return run_ && run_->open && run_->is_of_other_files(); }
   [[nodiscard]] std::string now_text() const;
 
   // what the controller tells (cell_operation_link.cpp)

@@ -42,9 +42,9 @@ void CellOperation::break_off_for_end() {
   if (!is_active(state) || state == State::kStopping || state == State::kAborting) return;
   if (!run_) {
     status_.enter(State::kStopping);
-  } else if (state != State::kHeld && state != State::kHolding) {
-    session_.stop_motion();
-    status_.enter(State::kHolding);  // whatever it waits for, or its resumption
+  } else if (state != State::kHeld) {
+    session_.stop_motion();  // a pause lets the touch under way end, the end of the daemon does not
+    if (state != State::kHolding) status_.enter(State::kHolding);  // whatever it waits for, or its resumption
   }
 }
 

@@ -7,8 +7,10 @@
 
 #include "calib_core/planning/aimed_transfer.hpp"
 #include "service/acquisition/cell_operation.hpp"
+#include "service/acquisition/preconditions.hpp"
 #include "service/acquisition/touch_judgement.hpp"
 #include "service/base/utc_time.hpp"
+#include "service/documents/conditions_view.hpp"
 #include "service/run/touch_command.hpp"
 
 namespace cell {
@@ -26,7 +28,7 @@ constexpr std::chrono::milliseconds kPermitLook{10'000};
 void CellOperation::on_entered(State state) {
   session_.on_entered(state);
   const auto now = clocks_.steady();
-  hold_time_.on_entered(state, now);
+  hold_time_.on_entered(state, run_ ? run_->run.touches_done() : 0, now);
   if (run_) run_->worked.on_entered(state, now);
 }
 
@@ -162,7 +164,8 @@ asio::awaitable<void> CellOperation::await_readiness() {
 
 asio::awaitable<void> CellOperation::connect() {
   const std::uint32_t sequence = co_await session_.connect(is_interrupted());
-  if (sequence != 0) co_await settle(sequence);
+  // An answer to a run of other files stays with the controller: these say nothing of it.
+  if (sequence != 0 && !waits_for_its_files()) co_await settle(sequence);
 }
 
 /// The result that the controller still has, in whatever state: where a run has ended it is kept with that
@@ -189,6 +192,13 @@ asio::awaitable<void> CellOperation::start_run() {
 
 asio::awaitable<void> CellOperation::resume_run() {
   session_.forget_standing();  // on hold the arm may have been moved by hand
+  if (is_interrupted() && !stood_at(run_->conditions, place())) {
+    status_.raise({FaultCode::kDaemonRestarted,
+                   "the block does not stand where it was found for this run; restore place.json of the "
+                   "state directory, or stop the run"},
+                  Event::kNotReadyFault);
+    co_return;
+  }
   const bool answer_stored = co_await touches_.store_answer(*run_);
   const bool is_held_again = !is_going_on(status_.state());
   if (!answer_stored || is_held_again) co_return;
@@ -197,10 +207,12 @@ asio::awaitable<void> CellOperation::resume_run() {
   if (!resumable || !goes_on || !can_search()) co_return;
   end_old_permit();
   // Whatever took the permission may have moved something too, and an arm that stood still has cooled.
-  const bool looks = !has_permit() || hold_time_.exceeds(HoldTime::kReferenceMax, clocks_.steady());
+  const bool is_confirmed_anew = !has_permit();
+  const bool looks = is_confirmed_anew || hold_time_.exceeds(HoldTime::kReferenceMax, clocks_.steady());
   if (looks) touches_.look_at_reference();
   const bool permitted = co_await obtain_permit();
   if (!permitted) co_return;
+  if (is_confirmed_anew) hold_time_.on_confirmed(clocks_.steady());
   tell_resumption(looks);
   status_.apply(Event::kDone);
 }
@@ -244,7 +256,7 @@ bool CellOperation::has_permit() const {
 
 /// Who confirmed a run long ago need not be at the cell any more: the key is asked for again.
 void CellOperation::end_old_permit() {
-  if (!has_permit() || !hold_time_.exceeds(cell().permit_lifetime, clocks_.steady())) return;
+  if (!has_permit() || !hold_time_.outlives_permit(cell().permit_lifetime, clocks_.steady())) return;
   spdlog::info("run {} was on hold for more than {} min: it is confirmed again when it goes on",
                run_->run.id(), cell().permit_lifetime.count());
   session_.end_permit();

@@ -82,6 +82,7 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
     }  // else granted, or taken away while it was awaited: asked for again
   }
   wait_for(nullptr);
+  permission_ = {};
   is_permitted_ = status_.state() == state;
   co_return is_permitted_;
 }

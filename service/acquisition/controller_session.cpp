@@ -27,6 +27,9 @@ constexpr std::size_t kToldFaultsMax = 16;
 /// An arm that rests says so within this time.
 constexpr auto kSettleMax = 10s;
 
+/// What a person reads of a run that is over, and how it ended, stays while the link comes and goes.
+bool is_over(State state) { return has_ended(state) || state == State::kComplete; }
+
 /// "touchcal 1.2.3, VAL3 s7.7.2"
 std::string application_text(const cs8::Welcome& welcome) {
   const auto parts = [](std::uint32_t version) {
@@ -61,7 +64,7 @@ void ControllerSession::on_controller_state(const cs8::State& state) {
   }
   state_at_ = clocks_.steady();
   told_at_ = *state_at_;
-  if (is_permitted_ && is_moving_state()) permission_.on_state(state, *state_at_);
+  if (is_watched()) permission_.on_state(state, *state_at_);
   hold_without_permission();
 }
 
@@ -69,23 +72,25 @@ bool ControllerSession::is_moving_state() const {
   return status_.state() == State::kExecute || status_.state() == State::kCompleting;
 }
 
+/// With a permit the arm moves in STARTING on the way around the block.
+bool ControllerSession::is_watched() const {
+  return is_permitted_ && (is_moving_state() || status_.state() == State::kStarting);
+}
+
 void ControllerSession::on_heartbeat() {
-  if (is_permitted_ && is_moving_state()) permission_.on_heartbeat();
+  if (is_watched()) permission_.on_heartbeat();
   hold_without_permission();
 }
 
 /// The arm is told to stop: a controller that lost the permission and moves all the same is not to be
-/// trusted.
+/// trusted. What was lost stays known until the next permit: the touch under way may be answered after this.
 void ControllerSession::hold_without_permission() {
-  if (!is_permitted_ || !is_moving_state()) {
-    permission_ = {};
-    return;
-  }
+  if (!is_watched()) return;
   auto fault = permission_.fault(clocks_.steady());
   if (!fault) return;
   is_doubted_ = true;
   stop_motion();
-  status_.raise(with_permission_told(*std::move(fault)), Event::kHoldFault);
+  status_.raise(with_permission_told(*std::move(fault)), hold_or_abort());
 }
 
 std::optional<Fault> ControllerSession::search_fault(std::span<const calib::PlannedTouch> touches) const {
@@ -160,7 +165,6 @@ std::optional<std::int64_t> ControllerSession::data_age_ms() const {
 
 asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) {
   const State state = status_.state();
-  const bool is_over = has_ended(state);
   const cs8::ExpectedController expected{.arm = cell_.arm.name,
                                          .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
                                          .upper_limits = to_wire(cell_.arm.joint_ranges.upper)};
@@ -178,7 +182,7 @@ asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) 
     }
     const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
     const auto& there = status_.fault();
-    const bool keeps_fault = (is_over || (state == State::kHeld && !run_interrupted)) && there;
+    const bool keeps_fault = (is_over(state) || (state == State::kHeld && !run_interrupted)) && there;
     if (!keeps_fault && (!there || there->message() != fault.message()))
       raise_link_fault(fault, run_interrupted ? Event::kNotReadyFault : Event::kLinkDown);
   }
@@ -193,15 +197,15 @@ void ControllerSession::close() {
 void ControllerSession::on_link_lost(const cs8::LinkError& error, Event event) {
   standing_.reset();
   is_permitted_ = false;
+  loss_ = link_fault(error);
   pause_.on_link_end(clocks_.steady());
   if (pause_.short_links() == 0) told_faults_.clear();
   // A person reads why a run ended or is on hold, and how it ended, to the end.
   const State state = status_.state();
-  const bool is_over = has_ended(state);
   const bool is_held = state == State::kHolding || (state == State::kHeld && event == Event::kLinkDown);
   const auto& there = status_.fault();
   const bool is_told = there && there->code != FaultCode::kStateMissing;  // which this is the reason of
-  if ((is_over || is_held) && is_told) {
+  if ((is_over(state) || is_held) && is_told) {
     spdlog::warn("{}", link_fault(error).message());
     status_.publish();
   } else {
@@ -236,6 +240,9 @@ void ControllerSession::on_welcome(const cs8::Welcome& welcome, State state, boo
   // A fault that ended a run or holds it stays until somebody has read it.
   const bool stays = state == State::kAborted || (state == State::kHeld && !run_interrupted);
   if (status_.fault() && is_link_fault(status_.fault()->code) && !stays) status_.clear_fault();
+  // That the controller could not be reached is over; what holds the run is that the link was lost.
+  const bool was_unreachable = status_.fault() && status_.fault()->code == FaultCode::kControllerUnreachable;
+  if (state == State::kHeld && was_unreachable && loss_) status_.set_fault(*loss_);
   if (state == State::kHeld && run_interrupted && !status_.fault())
     status_.set_fault({FaultCode::kDaemonRestarted, {}});
   status_.publish();
@@ -289,7 +296,7 @@ void ControllerSession::expect_stop(cs8::Outcome outcome) {
   if (outcome == cs8::Outcome::kStopped && asked) return;
   status_.raise(
       {FaultCode::kProtocolError, fmt::format("unexpected answer '{}' to a command", cs8::name(outcome))},
-      is_moving_state() ? Event::kHoldFault : Event::kAbortFault);
+      hold_or_abort());
 }
 
 void ControllerSession::meet_anew_after(const cs8::Rejected& rejected) {
@@ -311,11 +318,27 @@ asio::awaitable<std::optional<cs8::State>> ControllerSession::settled_state() {
   co_return std::nullopt;
 }
 
+/// A run keeps its touches; the way around the block has none and begins anew.
+Event ControllerSession::hold_or_abort() const {
+  return is_moving_state() ? Event::kHoldFault : Event::kAbortFault;
+}
+
+bool ControllerSession::may_retract() const {
+  const auto permit = controller_.latest_permit();
+  return permit &&
+         (permit->state == cs8::PermitState::kGranted || permit->state == cs8::PermitState::kRetractOnly);
+}
+
 asio::awaitable<std::optional<calib::JointVector>> ControllerSession::standing_joints() {
   if (standing_) co_return standing_;
   auto told = co_await settled_state();
   if (told && (told->flags & cs8::kRetractDue) != 0) {
     const State state = status_.state();
+    if (!may_retract()) {  // ended in this moment: the controller would refuse the command
+      status_.raise(with_permission_told({FaultCode::kPermissionLost, "before the way back from the face"}),
+                    hold_or_abort());
+      co_return std::nullopt;
+    }
     stop_sent_ = false;
     const cs8::MoveReply reply = co_await controller_.retract(retract_command(cell_));
     take_move(reply);
@@ -330,6 +353,10 @@ asio::awaitable<void> ControllerSession::leave_face() {
   const int stop_count = stop_count_;
   const auto told = co_await settled_state();
   if (!told || (told->flags & cs8::kRetractDue) == 0 || stop_count != stop_count_) co_return;
+  if (!may_retract()) {
+    spdlog::warn("the arm stays at the face: there is no permit any more for the way back");
+    co_return;
+  }
   const cs8::MoveReply reply = co_await controller_.retract(retract_command(cell_));
   const auto* result = std::get_if<cs8::MoveResult>(&reply.answer);
   if (result) controller_.acknowledge(reply.sequence);

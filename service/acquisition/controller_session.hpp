@@ -137,6 +137,10 @@ class ControllerSession {
   void on_welcome(const cs8::Welcome& welcome, State state, bool run_interrupted);
   bool take_move(const cs8::MoveReply& reply);
   [[nodiscard]] bool is_moving_state() const;
+  [[nodiscard]] bool is_watched() const;
+  [[nodiscard]] Event hold_or_abort() const;
+  /// Whether the newest Permit of this connection is one for the way back from a face.
+  [[nodiscard]] bool may_retract() const;
   void raise_link_fault(Fault fault, Event event);
   void hold_without_permission();
   boost::asio::awaitable<std::optional<cs8::State>> settled_state();
@@ -164,6 +168,7 @@ class ControllerSession {
   PermissionWatch permission_;
   ReconnectPause pause_;
   std::set<std::string> told_faults_;       // of links, since one of them lasted
+  std::optional<Fault> loss_;               // how the last link ended
   std::int32_t search_length_max_dmm_ = 0;  // of Welcome, 10^-4 mm; 0 is unknown
   std::int32_t search_speed_max_um_s_ = 0;
   /// state_at_ for other threads; the least value before the first.

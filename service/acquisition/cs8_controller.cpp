@@ -59,6 +59,14 @@ Cs8Controller::Cs8Controller(asio::any_io_executor executor, const Deadlines& de
                .on_loss = [this](const cs8::LinkError& error) { hooks_.on_loss(error); }}) {}
 
 asio::awaitable<cs8::ConnectReply> Cs8Controller::connect(cs8::ExpectedController expected) {
+  // A look-up has a thread of its own; an address needs none.
+  boost::system::error_code is_a_name;
+  const asio::ip::address address = asio::ip::make_address(endpoint_.host, is_a_name);
+  if (!is_a_name) {
+    const asio::ip::tcp::endpoint there(address, endpoint_.port);
+    cs8::ConnectReply reply = co_await client_.connect(there, expected);
+    co_return reply;
+  }
   const auto look = co_await look_up(executor_, endpoint_, look_up_max_);
   const auto found = look->found;
   cs8::ConnectReply reply = cs8::LinkError{cs8::LinkErrorKind::kUnreachable,

@@ -7,7 +7,8 @@
 
 namespace cell {
 
-/// The controller at an address, over the protocol's client. One thread: that of the executor.
+/// The controller at an address or a name, which is looked up at each connection, over the protocol's client.
+/// One thread: that of the executor.
 class Cs8Controller : public Controller {
  public:
   Cs8Controller(boost::asio::any_io_executor executor, const Deadlines& deadlines, Endpoint endpoint);

@@ -2,11 +2,14 @@
 
 namespace cell {
 
-void HoldTime::on_entered(State state, TimePoint now) {
+void HoldTime::on_entered(State state, int touches_done, TimePoint now) {
+  is_moving_ = state == State::kExecute || state == State::kCompleting;
+  if (is_moving_) touches_done_ = touches_done;  // one may have been withdrawn in the hold
   if (stands_still(state)) {
-    if (!since_) since_ = now;
-  } else if (!is_going_on(state)) {
-    since_.reset();
+    if (!since_ || touches_done > touches_done_) since_ = now;
+    touches_done_ = touches_done;
+  } else if (!is_moving_ && !is_going_on(state)) {
+    *this = {};
   }
 }
 

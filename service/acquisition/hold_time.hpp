@@ -8,7 +8,8 @@
 namespace cell {
 
 /// How long a run has stood still, on hold or suspended: a permit and a reference place do not keep their
-/// worth for ever. A pure value; the time is handed in.
+/// worth for ever. What ends a standstill is a touch that was made, not the state EXECUTE: a run that goes on
+/// and is held before its next touch has stood still all the time. A pure value; the time is handed in.
 class HoldTime {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
@@ -17,15 +18,24 @@ class HoldTime {
   /// have passed.
   static constexpr std::chrono::minutes kReferenceMax{10};
 
-  /// A resumption that does not succeed goes on with the hold.
-  void on_entered(State state, TimePoint now);
-  /// Longer than this, until now.
+  /// `touches_done` are those of the run at this time.
+  void on_entered(State state, int touches_done, TimePoint now);
+  /// A person has confirmed the run: a permit is as old as that at most.
+  void on_confirmed(TimePoint now) { confirmed_at_ = now; }
+  /// Longer than this, until now. Never while the arm moves.
   [[nodiscard]] bool exceeds(std::chrono::minutes limit, TimePoint now) const {
-    return since_ && now - *since_ > limit;
+    return since_ && !is_moving_ && now - *since_ > limit;
+  }
+  /// The same since the last confirmation.
+  [[nodiscard]] bool outlives_permit(std::chrono::minutes limit, TimePoint now) const {
+    return exceeds(limit, now) && (!confirmed_at_ || now - *confirmed_at_ > limit);
   }
 
  private:
   std::optional<TimePoint> since_;
+  int touches_done_ = 0;  // when the arm moved last, or the hold began
+  bool is_moving_ = false;
+  std::optional<TimePoint> confirmed_at_;
 };
 
 /// How long a run has made touches, without its holds: what is left takes as long in proportion. A pure

@@ -33,7 +33,7 @@ const calib::Face& face_of(const Cell& cell, int face) {
 /// Whether a face can be located on: a flat that lies where the file has it.
 bool is_known(const Cell& cell, int face) {
   const auto index = static_cast<std::size_t>(face);
-  if (face_of(cell, face).cap) return false;
+  if (!face_of(cell, face).is_flat()) return false;
   return index >= cell.block.face_uncertainties.size() || !cell.block.face_uncertainties[index].estimated;
 }
 
@@ -77,7 +77,7 @@ int towards(const Cell& cell, int from, const Eigen::Vector3d& direction) {
   double most = 0.5;
   for (int face = 0; face < static_cast<int>(cell.block.faces.size()); ++face) {
     const double along = face_of(cell, face).plane.outward.dot(direction);
-    if (face_of(cell, face).cap) continue;
+    if (!face_of(cell, face).is_flat()) continue;
     if (face == from || along <= most) continue;
     most = along;
     found = face;
@@ -172,14 +172,12 @@ HandGuide Locating::guide() const {
   return guide;
 }
 
-void Locating::take(const HandTouch& touch) {
-  problem_.reset();
-  if (touches_.size() == spots_.size()) return;
+std::optional<std::string> Locating::why_not(const HandTouch& touch) const {
+  if (touches_.size() == spots_.size()) return "all touches are made";
   const int face = spots_[touches_.size()].face;
   if (touch.moved_m && *touch.moved_m > kHandMovedMaxMetres) {
-    problem_ = fmt::format("the ball moved {:.1f} mm during the touch: approach more slowly, under 25 mm/s",
-                           calib::mm_from_metres(*touch.moved_m));
-    return;
+    return fmt::format("the ball moved {:.1f} mm during the touch: approach more slowly, under 25 mm/s",
+                       calib::mm_from_metres(*touch.moved_m));
   }
   const auto ball_m = [&](const calib::JointVector& joints) -> Eigen::Vector3d {
     return calib::forward_kinematics(problem_of_place_.nominal, joints).translation();
@@ -188,14 +186,23 @@ void Locating::take(const HandTouch& touch) {
     // On another face a touch near an edge may well be near; the same contact once more is not.
     const double apart_min_m =
         touches_[i].face == face ? calib::kRegistrationSpreadMinMetres : kSameContactMetres;
-    if ((ball_m(touches_[i].joints) - ball_m(touch.joints)).norm() < apart_min_m) {
-      problem_ = fmt::format("that is where touch {} was: touch {}", i + 1, spots_[touches_.size()].words);
-      return;
-    }
+    if ((ball_m(touches_[i].joints) - ball_m(touch.joints)).norm() < apart_min_m)
+      return fmt::format("that is where touch {} was: touch {}", i + 1, spots_[touches_.size()].words);
+  }
+  return std::nullopt;
+}
+
+void Locating::take(const HandTouch& touch) {
+  problem_.reset();
+  if (touches_.size() == spots_.size()) return;
+  if (auto why = why_not(touch)) {
+    refuse(*std::move(why));
+    return;
   }
   // Evenly anywhere on the way since the state before, or behind the trigger.
   const double behind_m =
       touch.moved_m ? *touch.moved_m / std::sqrt(3.0) : kTakenOvertravelShare * overtravel_m_;
+  const int face = spots_[touches_.size()].face;
   touches_.push_back({face, touch.joints, std::hypot(touch_noise_m_, behind_m)});
   find_place();
 }

@@ -40,8 +40,12 @@ class Locating {
 
   /// What to do next.
   [[nodiscard]] HandGuide guide() const;
+  /// Why a touch cannot be the one that is asked for; nothing when it can.
+  [[nodiscard]] std::optional<std::string> why_not(const HandTouch& touch) const;
   /// Adds a touch; for one that cannot count, guide().problem says why.
   void take(const HandTouch& touch);
+  /// The last touch did not count, for this reason.
+  void refuse(std::string why) { problem_ = std::move(why); }
   /// Discards the last touch, if any.
   void undo();
 

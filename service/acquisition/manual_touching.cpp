@@ -32,13 +32,20 @@ bool is_same_posture(const calib::Touch& touch, int face, const calib::JointVect
   return apart_rad < (touch.face == face ? kSamePostureRad : kSameContactRad);
 }
 
-/// Whether a ball lies over a face's rectangle or cap, as far as the arm is known.
+/// Whether a ball lies over a face's rectangle, cap or wall, as far as the arm is known.
 bool is_over(const calib::Face& face, const Eigen::Vector3d& ball_m, double miss_m) {
   if (face.cap) {
     const Eigen::Vector3d from_center_m = ball_m - face.cap->center_m;
     const double cosine = face.plane.outward.dot(from_center_m.normalized());
     return std::acos(std::clamp(cosine, -1.0, 1.0)) <=
            face.cap->half_angle_rad + miss_m / from_center_m.norm();
+  }
+  if (face.bore) {
+    const double along_m = face.bore->axis.dot(ball_m - face.bore->center_m);
+    const Eigen::Vector3d outward = normal_at(surface_of(face), ball_m);
+    const double around_rad = std::acos(std::clamp(face.plane.outward.dot(outward), -1.0, 1.0));
+    return std::abs(along_m) <= face.half_extent_m.x() + miss_m &&
+           around_rad <= face.bore->half_angle_rad + miss_m / surface_of(face).radius_m();
   }
   const Eigen::Vector3d off_m = ball_m - face.center_m;
   return std::abs(off_m.dot(face.edge_u)) <= face.half_extent_m.x() + miss_m &&
@@ -171,9 +178,9 @@ std::optional<std::string> ManualTouching::why_not(const Run& run, const calib::
   }
   const calib::PlanningProblem& problem = preparation_.problem();
   const calib::Face& face = problem.faces[static_cast<std::size_t>(planned.face)];
-  const Eigen::Vector3d ball_m =
-      calib::forward_kinematics(preparation_.aim().model(), touch.joints).translation();
-  const double off_m = calib::signed_distance_m(calib::contact_plane(face, problem.stylus), ball_m);
+  const Eigen::Isometry3d tip = calib::forward_kinematics(preparation_.aim().model(), touch.joints);
+  const Eigen::Vector3d ball_m = tip.translation();
+  const double off_m = calib::signed_distance_m(calib::contact_plane(face, problem.stylus), tip);
   if (std::abs(off_m) > cell_.face_error_m()) {
     return fmt::format("the ball was {:.0f} mm off plane {}: touch that one", calib::mm_from_metres(off_m),
                        planned.face + 1);

@@ -52,6 +52,12 @@ OutlierRetest::Finding OutlierRetest::judge(const StoredTouch& first, const Stor
   return Replaced{again, std::move(aim)};
 }
 
+bool OutlierRetest::is_pair(const StoredTouch& first, const StoredTouch& again, double apart_m,
+                            double agreement_m) {
+  return apart_m <= agreement_m && first.source == cs8::CaptureSource::kLatched &&
+         again.source == cs8::CaptureSource::kLatched;
+}
+
 Fault OutlierRetest::warning_of(const std::vector<int>& suspects) const {
   std::string numbers;
   for (const int number : suspects)

@@ -59,6 +59,10 @@ class OutlierRetest {
   /// between both along the face's normal and `agreement_m` is the most of two touches of one place.
   [[nodiscard]] Finding judge(const StoredTouch& first, const StoredTouch& again, double apart_m,
                               double agreement_m) const;
+  /// Whether the difference of both is noise of a touch: they agree, so that both are believed, and both were
+  /// latched, since one that was polled is late. A first touch that its repetition contradicts is a mistake.
+  [[nodiscard]] static bool is_pair(const StoredTouch& first, const StoredTouch& again, double apart_m,
+                                    double agreement_m);
   void settle() { suspect_.reset(); }
 
  private:

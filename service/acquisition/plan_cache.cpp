@@ -93,6 +93,12 @@ void PlanCache::begin(std::string recipe, PlanGiven given, std::function<void()>
                  [done = std::move(done)](auto&&...) { done(); });
 }
 
+void PlanCache::hand_in(std::shared_ptr<const Plan> plan) {
+  const Key key =
+      key_of(plan->recipe, {.stiffness = cell_.recipes.at(plan->recipe).identification.stiffness});
+  plans_.insert_or_assign(key, PlanOutcome(std::move(plan)));
+}
+
 void PlanCache::cancel() {
   if (begun_) *begun_ = true;
 }

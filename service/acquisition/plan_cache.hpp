@@ -50,6 +50,8 @@ class PlanCache {
   /// Gives up what begin() began last, unless it is done: nobody waits for it any more, and the planner is
   /// free for the next.
   void cancel();
+  /// A plan that was made before, of a recipe as the cell's files have it: it is not made again.
+  void hand_in(std::shared_ptr<const Plan> plan);
   /// What plan() gave; nothing before.
   [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe,
                                                    const PlanGiven& given = {}) const;

@@ -26,6 +26,13 @@ std::optional<std::string> why_not_resumable(const Cell& cell, const StoredRun& 
   return std::nullopt;
 }
 
+std::string kept_words(const std::string& why) {
+  return fmt::format(
+      "it cannot be resumed: {}; start touchcald with the files that the run had, or end it with touchcal "
+      "stop",
+      why);
+}
+
 RunRecovery::RunRecovery(const Cell& cell, const TipRegions& regions, StoreQueue& store, PlanCache& plans,
                          ControllerSession& session, TouchPreparation& preparation, RunPlanning& planning,
                          TouchExecutor& touches, PublishedStatus& status, Clocks clocks)
@@ -46,10 +53,7 @@ std::optional<ActiveRun> RunRecovery::restore() {
   store_.store().finish_interrupted(format_utc(clocks_.system()),
                                     stored ? std::optional(stored->id) : std::nullopt);
   if (!stored) return std::nullopt;
-  if (const auto why = why_not_resumable(cell_, *stored, config_digest_)) {
-    end_for_good(*stored, *why);
-    return std::nullopt;
-  }
+  if (const auto why = why_not_resumable(cell_, *stored, config_digest_)) return keep_on_hold(*stored, *why);
   try {
     return take_up(*stored);
   } catch (const DamagedStore& damage) {
@@ -93,6 +97,24 @@ std::optional<ActiveRun> RunRecovery::take_up(const StoredRun& stored) {
   status_.set_fault({FaultCode::kDaemonRestarted, {}});
   spdlog::warn("run {} was interrupted after {} of {} touches; it waits to be resumed", stored.id,
                stored.touches_done, stored.touches_total);
+  return active;
+}
+
+ActiveRun RunRecovery::keep_on_hold(const StoredRun& stored, const std::string& why) {
+  Recipe recipe = cell_.recipes.empty() ? Recipe{} : cell_.recipes.begin()->second;  // any: nothing is fitted
+  recipe.name = stored.recipe;
+  ActiveRun active{.run = Run(stored.id, regions_, std::move(recipe), stored.started_at, std::nullopt),
+                   .conditions = stored.conditions_json.value_or(""),
+                   .interruption = Interruption{.plan_id = stored.plan_id,
+                                                .plan_changes = {},
+                                                .why_not = why,
+                                                .touches_done = stored.touches_done,
+                                                .touches_total = stored.touches_total},
+                   .place_check = std::nullopt};
+  status_.begin_run(stored.id);
+  status_.set_fault({FaultCode::kDaemonRestarted, kept_words(why)});
+  spdlog::warn("run {} was interrupted after {} of {} touches; {}", stored.id, stored.touches_done,
+               stored.touches_total, kept_words(why));
   return active;
 }
 
@@ -153,15 +175,15 @@ asio::awaitable<bool> RunRecovery::plan_again(ActiveRun& active) {
   const PlanOutcome outcome = *plans_.planned(run.recipe().name, given_to(run));
   const auto* plan = std::get_if<std::shared_ptr<const Plan>>(&outcome);
   if (!plan || (*plan)->id != *active.interruption->plan_id) {
-    status_.raise({FaultCode::kDaemonRestarted, "it cannot be resumed: planning now gives a different plan"},
-                  Event::kAbortFault);
+    status_.raise({FaultCode::kDaemonRestarted, kept_words("planning now gives a different plan")},
+                  Event::kNotReadyFault);
     co_return false;
   }
   run.set_plan((*plan)->touches);
   for (const PlanChange& change : active.interruption->plan_changes) run.change_plan(change);
   active.stored_changes = run.plan_changes().size();
   if (const auto why = why_not_of_plan(cell_, run, active.guided)) {
-    status_.raise({FaultCode::kDaemonRestarted, "it cannot be resumed: " + *why}, Event::kAbortFault);
+    status_.raise({FaultCode::kDaemonRestarted, kept_words(*why)}, Event::kNotReadyFault);
     co_return false;
   }
   planning_.begin_touches(active);

@@ -17,6 +17,9 @@ namespace cell {
 std::optional<std::string> why_not_resumable(const Cell& cell, const StoredRun& run,
                                              const std::optional<std::string>& config_digest);
 
+/// The same for a person, with what to do.
+std::string kept_words(const std::string& why);
+
 /// Resumes runs. A run that an earlier daemon left open stays on hold until a person resumes it, with the
 /// same plan, touches and estimate. For any run on hold, the link and the open command are settled first.
 class RunRecovery {
@@ -28,9 +31,10 @@ class RunRecovery {
 
   [[nodiscard]] const std::optional<std::string>& config_digest() const { return config_digest_; }
 
-  /// Takes up the run that the previous daemon left open, or ends it in the store when it cannot be resumed.
-  /// Also one whose rows are damaged, or whose touches cannot be those of a run of this cell, ends. Moves
-  /// nothing. Passes on what the store throws. Before the store's thread begins.
+  /// Takes up the run that the previous daemon left open. One of other files stays on hold without its
+  /// touches (ActiveRun::is_of_other_files): a start is nobody's decision to end it. One whose rows are
+  /// damaged, or whose touches cannot be those of a run of this cell, ends in the store. Moves nothing.
+  /// Passes on what the store throws. Before the store's thread begins.
   std::optional<ActiveRun> restore();
   /// Prepares a run on hold for a person's confirmation: the link, the outcome of its last command, its plan.
   /// False when another state was entered.
@@ -39,6 +43,7 @@ class RunRecovery {
  private:
   std::optional<StoredRun> open_run();
   std::optional<ActiveRun> take_up(const StoredRun& stored);
+  ActiveRun keep_on_hold(const StoredRun& stored, const std::string& why);
   void end_for_good(const StoredRun& run, const std::string& why);
   void take_up_open_command(std::int64_t run_id);
   boost::asio::awaitable<bool> plan_again(ActiveRun& active);

@@ -57,6 +57,16 @@ boost::asio::awaitable<std::optional<std::string>> StoreQueue::finish(Begun begu
   co_return failure;
 }
 
+void StoreQueue::write_then(std::function<void(RunStore&)> work, boost::asio::any_io_executor caller,
+                            std::function<void(std::optional<std::string>)> then) {
+  boost::asio::post(executor_, [&store = store_, waits = count_one(), faults = faults_,
+                                work = std::move(work), caller = std::move(caller), then = std::move(then)] {
+    auto failure = failure_of(work, store);
+    if (!failure) faults->store_waiting();
+    boost::asio::post(caller, [then, failure = std::move(failure)] { then(failure); });
+  });
+}
+
 void StoreQueue::append_fault(StoredFault fault) {
   behind([faults = faults_, fault = std::move(fault)](RunStore&) {
     faults->append(fault.run_id, fault.at, fault.code, fault.message);

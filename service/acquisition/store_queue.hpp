@@ -61,6 +61,10 @@ class StoreQueue {
   /// way, unless the write failed; what it throws is logged, so it says itself that it was done.
   boost::asio::awaitable<std::optional<std::string>> finish(Begun begun,
                                                             std::function<void(RunStore&)> behind = {});
+  /// Begins a write for which no coroutine waits: `then` is called on `caller` with why it failed, nothing
+  /// when it is done. The caller keeps to one at a time.
+  void write_then(std::function<void(RunStore&)> work, boost::asio::any_io_executor caller,
+                  std::function<void(std::optional<std::string>)> then);
   /// Nobody waits for it; what it throws is logged. False when it was left out.
   bool behind(std::function<void(RunStore&)> work);
 

@@ -9,8 +9,6 @@
 #include <exception>
 #include <utility>
 
-#include "cs8_protocol/names.hpp"
-#include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/commanded_touch.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/run/touch_command.hpp"
@@ -91,6 +89,7 @@ asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   held_by_ = HeldBy::kNothing;
   Run& run = active.run;
   const bool is_stored = take_stored_ahead(run);
+  if (!is_stored) tell_kept();
   if (outlier_.is_due()) {
     co_await retest_outlier(active);
     co_return;
@@ -205,6 +204,7 @@ bool TouchExecutor::take_stored_ahead(const Run& run) {
 asio::awaitable<void> TouchExecutor::work_ahead(ActiveRun& active) {
   // Where the answer fails, this is not broken off on the thread of the arithmetic.
   co_await asio::this_coro::reset_cancellation_state(asio::disable_cancellation());
+  tell_kept();
   store_.behind([id = active.run.id()](RunStore& store) { store.make_durable(id); });
   co_await identify(active);
   preparation_.add_contacts(active.run);
@@ -263,12 +263,14 @@ asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch o
       status_.raise(*moved, Event::kHoldFault);
   }
   if (contradicted) outlier_.begin({storing.touch.number, *preparation_.made(), std::move(without)});
+  if (unforeseen || !stored.whole) tell_kept();
   if (unforeseen) std::rethrow_exception(unforeseen);
   if (!stored.whole) co_return;
   if (status_.state() == State::kExecute) {
     stored_ahead_ = next;
   } else {
     forget_stored_command(active.run.id());
+    tell_kept();
   }
 }
 
@@ -340,7 +342,9 @@ asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch
                                           cs8::TouchResult result, std::optional<OpenTouch> answered,
                                           std::optional<double> noise_um) {
   const Storing storing = begin_storing(active.run, planned, result, answered, noise_um);
-  co_return co_await finish_storing(active, storing, result.edges, {});
+  const bool kept = co_await finish_storing(active, storing, result.edges, {});
+  tell_kept();
+  co_return kept;
 }
 
 TouchExecutor::Storing TouchExecutor::begin_storing(const Run& run, const calib::PlannedTouch& planned,
@@ -357,7 +361,9 @@ TouchExecutor::Storing TouchExecutor::begin_storing(const Run& run, const calib:
                           .session = answered ? answered->session : 0,
                           .sequence = answered ? answered->sequence : 0,
                           .aimed_with = answered ? answered->aimed_with : 0,
-                          .noise_um = noise_um};
+                          .noise_um = noise_um,
+                          .first = first_contact_in(result),
+                          .again = {}};
   const std::optional<int> total = total_is_due_ ? std::optional(run.touches_total()) : std::nullopt;
   auto total_stored = std::make_shared<bool>(false);
   const auto write = [id = run.id(), touch, total, total_stored](RunStore& store) {
@@ -379,12 +385,7 @@ asio::awaitable<bool> TouchExecutor::finish_storing(ActiveRun& active, Storing s
     co_return false;
   }
   run.add(touch);
-  const bool polled = touch.source == cs8::CaptureSource::kPolled;
-  spdlog::log(polled ? spdlog::level::warn : spdlog::level::info,
-              "run {} touch {} on plane {}: {}{}, {} edge(s), overtravel {:.3f} mm", run.id(),
-              run.touches_done(), touch.plane, cs8::name(touch.source),
-              polled ? ", late by up to 4 ms of its speed: check the latch" : "", edges,
-              cs8::metres_from_dmm(touch.overtravel_dmm) * 1e3);
+  kept_ = KeptLine{run.id(), touch, edges};
   co_return true;
 }
 

@@ -99,6 +99,7 @@ class TouchExecutor {
                         std::optional<double> noise_um = std::nullopt);
   boost::asio::awaitable<bool> finish_storing(ActiveRun& active, Storing storing, std::uint32_t edges,
                                               std::function<void(RunStore&)> behind);
+  void tell_kept();
   bool aim_ahead(ActiveRun& active, const StoredTouch& touch, const calib::JointVector& contact);
   bool accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
               const cs8::TouchResult& result, HeldBy held_by);
@@ -118,6 +119,7 @@ class TouchExecutor {
   void judge_reference(const ActiveRun& active, const calib::JointVector& contact);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
   boost::asio::awaitable<bool> replace(ActiveRun& active, OutlierRetest::Replaced replaced);
+  boost::asio::awaitable<bool> confirm(ActiveRun& active, StoredTouch again);
   boost::asio::awaitable<bool> leave_out(ActiveRun& active, bool outlier);
 
   // When all touches of the plan are made (touch_executor_at_end.cpp).
@@ -143,6 +145,13 @@ class TouchExecutor {
     cs8::TouchResult result;
   };
   std::optional<BesidePlan> beside_plan_;
+  /// A touch that is stored, for the log: it is written behind the command that follows.
+  struct KeptLine {
+    std::int64_t run_id = 0;
+    StoredTouch touch;
+    std::uint32_t edges = 0;
+  };
+  std::optional<KeptLine> kept_;
   std::optional<OpenTouch> stored_ahead_;         // the command that leaves next, when it is stored already
   std::optional<PreparedTouch> reference_ahead_;  // the way to the reference place, when it is touched next
   bool total_is_due_ = false;  // the run's number of touches has changed and is not stored yet

@@ -4,12 +4,26 @@
 
 #include <utility>
 
+#include "cs8_protocol/names.hpp"
+#include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/touch_executor.hpp"
 #include "service/run/decision_rule.hpp"
 
 namespace cell {
 
 namespace asio = boost::asio;
+
+void TouchExecutor::tell_kept() {
+  const auto kept = std::exchange(kept_, std::nullopt);
+  if (!kept) return;
+  const StoredTouch& touch = kept->touch;
+  const bool polled = touch.source == cs8::CaptureSource::kPolled;
+  spdlog::log(polled ? spdlog::level::warn : spdlog::level::info,
+              "run {} touch {} on plane {}: {}{}, {} edge(s), overtravel {:.3f} mm", kept->run_id,
+              touch.number, touch.plane, cs8::name(touch.source),
+              polled ? ", late by up to 4 ms of its speed: check the latch" : "", kept->edges,
+              cs8::metres_from_dmm(touch.overtravel_dmm) * 1e3);
+}
 
 /// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.
 void TouchExecutor::stop_when_good_enough(ActiveRun& active, std::size_t first) {

@@ -185,11 +185,16 @@ asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
   again.overtravel_dmm = result.overtravel_dmm;
   again.captured_at = format_utc(clocks_.system());
   again.sequence = 0;  // no command of the plan
+  again.first = first_contact_in(result);
+  again.again.reset();
   const double apart_m = std::abs(preparation_.height_m(face, from_wire(again.joints)) -
                                   preparation_.height_m(face, from_wire(first.joints)));
   auto finding = outlier_.judge(first, again, apart_m, agreement_max_m(cell_));
   if (auto* replaced = std::get_if<OutlierRetest::Replaced>(&finding)) {
     const bool stored = co_await replace(active, std::move(*replaced));
+    if (!stored) co_return;
+  } else if (OutlierRetest::is_pair(first, again, apart_m, agreement_max_m(cell_))) {
+    const bool stored = co_await confirm(active, again);
     if (!stored) co_return;
   }
   settle_beside_plan();
@@ -218,6 +223,20 @@ asio::awaitable<bool> TouchExecutor::replace(ActiveRun& active, OutlierRetest::R
   preparation_.set_aim(std::move(replaced.aim));
   outlier_.settle();
   status_.publish();
+  co_return true;
+}
+
+/// The repetition is kept with the touch, which stays: their difference is noise of a touch.
+asio::awaitable<bool> TouchExecutor::confirm(ActiveRun& active, StoredTouch again) {
+  const auto write = [id = active.run.id(), number = again.number, joints = again.joints](RunStore& store) {
+    store.confirm_touch(id, number, joints);
+  };
+  const auto failure = co_await store_.write(write);
+  if (failure) {
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kHoldFault);
+    co_return false;
+  }
+  active.run.confirm(again.number, again.joints);
   co_return true;
 }
 

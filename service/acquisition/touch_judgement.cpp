@@ -103,6 +103,11 @@ std::optional<double> contact_spread_m(const Cell& cell, const cs8::TouchResult&
   return (tip_m(cell, from_wire(result.contact)) - tip_m(cell, from_wire(result.first_contact))).norm();
 }
 
+std::optional<FirstContact> first_contact_in(const cs8::TouchResult& result) {
+  if (result.first_source == cs8::CaptureSource::kNone) return std::nullopt;
+  return FirstContact{.source = result.first_source, .joints = result.first_contact};
+}
+
 double agreement_max_m(const Cell& cell) { return kSigmas * std::numbers::sqrt2 * cell.touch_noise_m; }
 
 double reference_drift_max_m(const Cell& cell) {

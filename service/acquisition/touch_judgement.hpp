@@ -9,6 +9,7 @@
 #include "cs8_protocol/messages.hpp"
 #include "service/run/fault_table.hpp"
 #include "service/run/packml_state.hpp"
+#include "service/store/run_store.hpp"
 
 namespace cell {
 
@@ -44,6 +45,9 @@ TouchJudgement judge_touch(const Cell& cell, const calib::PlannedTouch& planned,
 
 /// Between the two contacts of a touch; nothing where one is made only.
 std::optional<double> contact_spread_m(const Cell& cell, const cs8::TouchResult& result);
+
+/// The first of the two contacts of a touch, as it is stored; nothing where one is made only.
+std::optional<FirstContact> first_contact_in(const cs8::TouchResult& result);
 
 /// The limit of the reference drift: the cell file's, else five standard deviations of the difference of two
 /// touches.

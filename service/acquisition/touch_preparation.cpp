@@ -31,9 +31,9 @@ bool is_on(const std::vector<calib::JointVector>& way, const calib::JointVector&
   return false;
 }
 
-double off_m(const calib::PlanningProblem& planning, int face, const Eigen::Vector3d& tip_m) {
+double off_m(const calib::PlanningProblem& planning, int face, const Eigen::Isometry3d& block_from_tip) {
   const calib::Face& touched = planning.faces[static_cast<std::size_t>(face)];
-  return signed_distance_m(contact_plane(touched, planning.stylus), tip_m);
+  return signed_distance_m(contact_plane(touched, planning.stylus), block_from_tip);
 }
 
 }  // namespace
@@ -78,13 +78,13 @@ bool TouchPreparation::add_ahead(const Run& run, const calib::Touch& touch) {
 }
 
 double TouchPreparation::height_m(int face, const calib::JointVector& joints) const {
-  return off_m(planning_, face, calib::forward_kinematics(aim_->model(), joints).translation());
+  return off_m(planning_, face, calib::forward_kinematics(aim_->model(), joints));
 }
 
 bool TouchPreparation::is_surprise(const calib::JointVector& contact) const {
   const calib::PlannedTouch& touch = made_->touch;
-  const Eigen::Vector3d tip_m = calib::forward_kinematics(made_->problem.nominal, contact).translation();
-  return std::abs(off_m(planning_, touch.face, tip_m)) > touch.predicted_position_error_m;
+  const Eigen::Isometry3d tip = calib::forward_kinematics(made_->problem.nominal, contact);
+  return std::abs(off_m(planning_, touch.face, tip)) > touch.predicted_position_error_m;
 }
 
 bool TouchPreparation::is_ready_from(const calib::JointVector& joints) const {

@@ -7,14 +7,20 @@
 namespace cell {
 
 inline constexpr std::string_view kStoreFile = "touchcal.sqlite";
+inline constexpr std::string_view kBegunFile = "touchcal.begun";  // beside a database since its creation
 inline constexpr std::string_view kOperateTokenFile = "operate.token";
 inline constexpr std::string_view kViewTokenFile = "view.token";
 inline constexpr std::string_view kOperatorsDirectory = "operators";  // a file for each named token
 inline constexpr std::string_view kBlockPoseFile = "place.json";
+inline constexpr std::string_view kLocatingFile = "locating.json";  // of a dialogue that is under way
 inline constexpr std::string_view kSocketFile = "touchcald.sock";
 inline constexpr std::string_view kLockFile = "touchcald.lock";
 
 /// $XDG_STATE_HOME/touchcal or ~/.local/state/touchcal.
 std::filesystem::path default_state_directory();
+
+/// The directory itself, or its nearest parent that exists. Throws std::runtime_error, with the remedy, where
+/// that is no directory.
+std::filesystem::path demand_state_directory(const std::filesystem::path& directory);
 
 }  // namespace cell

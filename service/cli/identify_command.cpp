@@ -17,8 +17,8 @@
 #include "service/documents/result_view.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/calibrated_arm.hpp"
-#include "service/run/reference_drift.hpp"
 #include "service/run/run_conditions.hpp"
+#include "service/run/run_repeats.hpp"
 #include "service/run/simulated_calibrations.hpp"
 
 namespace cell {
@@ -82,7 +82,7 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   if (auto warning = unknown_temperature_warning(cell)) file.warnings.push_back(*std::move(warning));
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
   problem.touches = file.touches;
-  note_references(file.references, problem);
+  note_repeats(file.repeats, problem);
   const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
   if (result.status != calib::IdentificationStatus::kConverged)
     return print_refusal(arguments.touches_file, result);

@@ -71,15 +71,28 @@ std::string tested_against(const ResultDocument::Fit& fit) {
                      figure(fit.lack_of_fit_gears_um, "{:.1f}"));
 }
 
+/// Of what is touched more than once beside the reference place.
+std::string repeats_text(const ResultDocument::RepeatsSource& source) {
+  if (!source.noise_um || source.source == "reference_touches") return {};
+  const bool two_speed = source.source == "two_speed";
+  const char* unused =
+      two_speed ? ", not counted: a lower bound" : ", not counted: other than the reference touches show";
+  return fmt::format("{}: noise {} um ({} degrees of freedom{})\n",
+                     two_speed ? "two contacts of a touch" : "touches made again",
+                     figure(source.noise_um, "{:.1f}"), figure(source.degrees_of_freedom, "{:.0f}"),
+                     source.used ? "" : unused);
+}
+
 std::string fit_text(const ResultDocument::Fit& fit) {
   std::string lines =
       fmt::format("noise of a touch: declared {} um, from the residuals {} um\n",
                   figure(fit.noise_declared_um, "{:.1f}"), figure(fit.noise_estimated_um, "{:.1f}"));
   if (fit.noise_repeats_um) {
     lines +=
-        fmt::format("one place touched again and again: noise {} um ({} degrees of freedom)\n",
+        fmt::format("what was touched more than once: noise {} um ({} degrees of freedom)\n",
                     figure(fit.noise_repeats_um, "{:.1f}"), figure(fit.repeats_degrees_of_freedom, "{:.0f}"));
   }
+  for (const ResultDocument::RepeatsSource& source : fit.repeats_sources) lines += repeats_text(source);
   if (!fit.lack_of_fit_p) return lines;
   lines += fmt::format("lack of fit: p = {} ({})", figure(fit.lack_of_fit_p, "{:.2g}"), tested_against(fit));
   const char* separator = "; plane";

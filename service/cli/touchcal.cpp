@@ -1,6 +1,5 @@
 // touchcal: the command line, for a daemon or offline.
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -8,8 +7,11 @@
 
 #include "config/block_file.hpp"
 #include "config/config_error.hpp"
+#include "config/decimal_text.hpp"
 #include "config/json_value.hpp"
+#include "config/option_text.hpp"
 #include "config/recipe.hpp"
+#include "service/base/freed_memory.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/base/version.hpp"
 #include "service/cli/commands.hpp"
@@ -95,6 +97,7 @@ class CommandLine {
     identify
         ->add_option("--monte-carlo", identify_.monte_carlo_count,
                      "check the uncertainty by this many simulated calibrations (GUM, Supplement 1)")
+        ->check(cell::refuse_integer)
         ->check(CLI::Range(cell::kMonteCarloMin, cell::kMonteCarloMax));
     identify->add_option("--export", identify_.arm_file, "write the calibrated arm to this arm file");
     identify->add_option("--map", identify_.map_file,
@@ -119,6 +122,7 @@ class CommandLine {
     auto* plan = app_.add_subcommand("plan", "plan touches and predict their result (offline)");
     add_cell(*plan, plan_.cell, "the recipe");
     plan->add_option("--fit", plan_.fit_count, "touches to fit, over all planes, in place of the recipe's")
+        ->check(cell::refuse_integer)
         ->check(CLI::Range(1, cell::kFitCountMax));
     std::vector<std::string> criteria;
     for (const auto& [unused, name] : cell::kCriterionNames) criteria.emplace_back(name);
@@ -128,28 +132,34 @@ class CommandLine {
             "--accuracy", plan_.tip_rms_max_mm,
             "plan the fewest touches, at most --fit or the recipe's, with a predicted tip error within "
             "this, mm")
+        ->check(cell::refuse_number)
         ->check(CLI::Range(1e-6, 1e3));
     plan->add_option("--workspace-box", plan_.workspace_box_mm,
                      "box in which the tip error is predicted: minX,minY,minZ,maxX,maxY,maxZ in R_-1, mm")
         ->delimiter(',')
+        ->check(cell::refuse_number)
         ->expected(6);
     auto* place = plan->add_flag("--place", plan_.place, "search places for the block and rank them");
     plan->add_option("--place-min", plan_.place_min_mm,
                      "lower end of the block's shift, X,Y,Z along the present R_-1, mm")
         ->delimiter(',')
+        ->check(cell::refuse_number)
         ->expected(3)
         ->needs(place);
     plan->add_option("--place-max", plan_.place_max_mm, "upper end of the block's shift, X,Y,Z, mm")
         ->delimiter(',')
+        ->check(cell::refuse_number)
         ->expected(3)
         ->needs(place);
     plan->add_option("--place-yaw", plan_.place_yaw_deg,
                      "range of rotation about R_-1's y axis, MIN,MAX, degrees")
         ->delimiter(',')
+        ->check(cell::refuse_number)
         ->expected(2)
         ->needs(place);
     plan->add_option("--places", plan_.place_count, "number of places to try")
         ->needs(place)
+        ->check(cell::refuse_integer)
         ->check(CLI::Range(1, cell::kPlaceCountMax))
         ->default_str("24");
     plan->add_option("--out", plan_.file, "write the document to this file");
@@ -172,7 +182,7 @@ class CommandLine {
     add_block_temperature(*run, run_.block_temperature);
     run->add_option("--arm-moving", run_.arm_moving_min,
                     "minutes that the arm has moved at working speed before: how warm it is")
-        ->check(refuse_nan)
+        ->check(cell::refuse_number)
         ->check(CLI::Range(0.0, cell::kArmMovingMaxMin));
   }
 
@@ -192,21 +202,15 @@ class CommandLine {
         ->check(CLI::IsMember({"on", "off", "auto"}));
   }
 
-  /// CLI::Range lets NaN pass.
-  static std::string refuse_nan(const std::string& text) {
-    double value = 0.0;
-    return CLI::detail::lexical_cast(text, value) && std::isnan(value) ? "wants a number, not " + text : "";
-  }
-
   static void add_block_temperature(CLI::App& command, cell::TemperatureArguments& temperature) {
     auto* celsius = command
                         .add_option("--block-temperature", temperature.celsius,
                                     "temperature of the block, degrees C, in place of that of its file")
-                        ->check(refuse_nan)
+                        ->check(cell::refuse_number)
                         ->check(CLI::Range(cell::kBlockTemperatureMinC, cell::kBlockTemperatureMaxC));
     auto* deviation =
         command.add_option("--std-block-temperature", temperature.std_k, "its standard deviation, K")
-            ->check(refuse_nan)
+            ->check(cell::refuse_number)
             ->check(CLI::Range(cell::kPositive.min, cell::kBlockTemperatureStdMaxK))
             ->needs(celsius);
     celsius->needs(deviation);
@@ -235,6 +239,7 @@ class CommandLine {
         "audit", "list the audit log, newest first: who gave which command, from where, and what came of it",
         [this](const cell::ApiClient& daemon) { return cell::audit_command(daemon, audit_, json_); });
     audit->add_option("--limit", audit_.limit, "number of rows")
+        ->check(cell::refuse_integer)
         ->check(CLI::Range(1, cell::kAuditLimitMax))
         ->default_str("50");
     audit->add_flag("--csv", audit_.csv, "as a table for other programs")
@@ -256,11 +261,14 @@ class CommandLine {
                            const std::function<cell::ExitCode(const cell::ApiClient&)>& command) {
     auto* sub = app_.add_subcommand(name, description);
     sub->add_option("--daemon", daemon_url_, "the daemon's address; also TOUCHCAL_DAEMON")
+        ->check(cell::refuse_empty)
         ->default_str(daemon_url_);
     sub->add_option("--state", state_directory_, "the daemon's state directory, where its token is")
+        ->check(cell::refuse_empty)
         ->default_str(state_directory_);
     sub->add_option("--ca", ca_file_,
                     "certificates (PEM) that sign the one of an https daemon; also TOUCHCAL_CA")
+        ->check(cell::refuse_empty)
         ->default_str(ca_file_);
     sub->add_flag("--json", json_, "one JSON document on standard output");
     sub->add_flag("--token-in-clear", token_in_clear_,
@@ -270,6 +278,7 @@ class CommandLine {
       const bool is_named = sub->count("--daemon") > 0 || !environment_or("TOUCHCAL_DAEMON", "").empty();
       action_ = [this, command, is_named] {
         const std::filesystem::path state(state_directory_);
+        if (!is_named) cell::demand_state_directory(state);
         const cell::ApiClientOptions options{
             .ca_file = ca_file_,
             .socket = is_named ? std::filesystem::path() : state / cell::kSocketFile,
@@ -302,6 +311,7 @@ class CommandLine {
 }  // namespace
 
 int main(int argc, char** argv) {
+  cell::keep_freed_memory();
   try {
     return CommandLine().run(argc, argv);
   } catch (const cell::ConfigError& error) {

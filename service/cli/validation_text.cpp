@@ -7,7 +7,7 @@
 namespace cell {
 namespace {
 
-constexpr std::array kKinds{"alpha", "d", "theta", "r", "beta"};
+constexpr std::array kParameterKinds{"alpha", "d", "theta", "r", "beta"};
 
 /// As the paper marks it: "-" no such parameter, "x" without effect, "/" carried by others or left out.
 std::string entry(const std::vector<RepetitionDocument::NewError>& parameters, int frame,
@@ -24,12 +24,13 @@ std::string new_errors_text(const RepetitionDocument& repetition, const std::str
   if (!repetition.done) return fmt::format("\n{}: not made, {}\n", title, repetition.why_not.value_or(""));
   std::string lines = fmt::format("\n{}: new errors from {} touches in {} iterations, mm and rad\n{:>3}",
                                   title, repetition.touch_count, repetition.iterations, "j");
-  for (const char* kind : kKinds) lines += fmt::format("{:>11}", kind);
+  for (const char* kind : kParameterKinds) lines += fmt::format("{:>11}", kind);
   lines += "\n";
   const int frames = repetition.parameters.back().frame;
   for (int frame = 0; frame <= frames; ++frame) {
     lines += fmt::format("{:>3}", frame);
-    for (const char* kind : kKinds) lines += fmt::format("{:>11}", entry(repetition.parameters, frame, kind));
+    for (const char* kind : kParameterKinds)
+      lines += fmt::format("{:>11}", entry(repetition.parameters, frame, kind));
     lines += "\n";
   }
   return lines;

@@ -25,6 +25,7 @@
 #include <thread>
 
 #include "service/acquisition/cell_operation.hpp"
+#include "service/base/context.hpp"
 #include "service/base/exit_code.hpp"
 #include "service/base/run_on.hpp"
 #include "service/base/state_directory.hpp"
@@ -75,7 +76,8 @@ asio::awaitable<void> delete_old_runs(const RunStore& store, asio::any_io_execut
     const std::string oldest = format_utc(clocks.system() - std::chrono::days(retain_days));
     const auto delete_them = [&store, oldest, retain_days] {
       try {
-        const int deleted = delete_runs_before(store.database(), oldest);
+        const int deleted =
+            delete_runs_before(store.database(), oldest, std::min(kDaysThatAgree, retain_days));
         if (deleted > 0) spdlog::info("{} runs older than {} days were deleted", deleted, retain_days);
       } catch (const std::exception& error) {
         spdlog::error("old runs could not be deleted: {}", error.what());
@@ -112,6 +114,9 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
     spdlog::warn("{}: there is no Unix socket: {}", file.string(), error.code().message());
   }
 }
+
+/// How often the tokens are read again: one that was removed ends so soon.
+constexpr std::chrono::milliseconds kTokensLook{1000};
 
 /// How long the end waits for the disk.
 constexpr std::chrono::milliseconds kDiskPatience{10'000};
@@ -165,6 +170,25 @@ class WorkDone {
   const bool& is_hurried_;
 };
 
+/// At its end what still waits in the two contexts is destroyed, in the order in which it refers to the
+/// other: all that it refers to is there yet.
+class NothingWaits {
+ public:
+  NothingWaits(Context& operation, Context& http, Api& api) : operation_(operation), http_(http), api_(api) {}
+  ~NothingWaits() {
+    api_.end_desks();  // they post to the contexts
+    operation_.give_up();
+    http_.give_up();
+  }
+  NothingWaits(const NothingWaits&) = delete;
+  NothingWaits& operator=(const NothingWaits&) = delete;
+
+ private:
+  Context& operation_;
+  Context& http_;
+  Api& api_;
+};
+
 /// The thread that serves, until its end. What nobody foresaw there ends a connection and no run.
 class HttpThread {
  public:
@@ -203,12 +227,13 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const DirectoryLock lock(options.state_directory);
   refuse_lost_store(options.state_directory);
   RunStore store(options.state_directory / kStoreFile);
+  mark_begun(options.state_directory);
   const Tokens tokens = load_or_make_tokens(options.state_directory);
   const Clocks clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now};
 
   // Requests on their way to the operation wait in its context, with sockets of the other: it goes first.
-  asio::io_context http(1);
-  asio::io_context context(1);
+  Context http(1);
+  Context context(1);
   asio::thread_pool disk(1);
   asio::thread_pool arithmetic(1);
   const StoreQueue store_queue(store, disk.get_executor());
@@ -248,6 +273,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     });
   });
   operation.launch();
+  asio::co_spawn(http, api.follow_tokens(options.state_directory, kTokensLook), asio::detached);
   listener->launch();
   if (socket) socket->launch();
   spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());
@@ -255,6 +281,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   fmt::print("listening on {}:{}\n", options.listen.host, address.port());
   std::fflush(stdout);
   supervision.notify_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
+  const NothingWaits nothing_waits(context, http, api);
   const WorkDone done(arithmetic, disk, end_watch, operation, store_queue.waiting_count(), is_hurried);
   const HttpThread http_thread(http);
   context.run();

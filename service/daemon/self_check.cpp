@@ -20,22 +20,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The directory itself, or its nearest existing parent.
-fs::path nearest_existing(fs::path directory) {
-  std::error_code ignored;
-  directory = fs::absolute(directory);
-  while (!fs::exists(directory, ignored) && directory.has_relative_path())
-    directory = directory.parent_path();
-  return directory;
-}
-
 void check_state(const fs::path& directory) {
-  const fs::path existing = nearest_existing(directory);
-  std::error_code ignored;
-  if (!fs::is_directory(existing, ignored)) {
-    throw std::runtime_error(fmt::format("--state {}: {} is not a directory; name another",
-                                         directory.string(), existing.string()));
-  }
+  const fs::path existing = demand_state_directory(directory);
   if (::access(existing.c_str(), W_OK | X_OK) != 0) {
     throw std::runtime_error(
         fmt::format("--state {}: {} cannot be written; change its rights or name another", directory.string(),

@@ -9,6 +9,8 @@
 #include <iostream>
 
 #include "config/config_error.hpp"
+#include "config/decimal_text.hpp"
+#include "config/option_text.hpp"
 #include "config/read_config.hpp"
 #include "service/base/exit_code.hpp"
 #include "service/base/log_format.hpp"
@@ -20,10 +22,9 @@
 
 namespace {
 
-cell::Endpoint endpoint_option(const std::string& name, const std::string& text) {
-  const auto endpoint = cell::parse_endpoint(text);
-  if (!endpoint) throw CLI::ValidationError(name, "'" + text + "' is not HOST:PORT");
-  return *endpoint;
+std::string check_endpoint(const std::string& text) {
+  if (std::string refusal = cell::refuse_empty(text); !refusal.empty()) return refusal;
+  return cell::parse_endpoint(text) ? "" : "'" + text + "' is not HOST:PORT, with an IPv6 host in brackets";
 }
 
 /// Letters, digits, hyphens and dots (RFC 1123), without a port.
@@ -32,6 +33,14 @@ bool is_host_name(const std::string& name) {
   return !name.empty() && name.size() <= kLengthMax && std::ranges::all_of(name, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '-' || c == '.';
   });
+}
+
+void demand_both_of_tls(const std::string& certificate, const std::string& key) {
+  if (certificate.empty() == key.empty()) return;
+  const std::string given = key.empty() ? "--tls-cert" : "--tls-key";
+  throw CLI::ValidationError(given, "is given without " +
+                                        std::string(key.empty() ? "--tls-key" : "--tls-cert") +
+                                        "; give both, or neither and no TLS");
 }
 
 /// Maintenance of the database, also beside a running daemon. Returns the exit code.
@@ -77,19 +86,23 @@ int main(int argc, char** argv) {
   std::vector<std::string> host_names;
   bool check = false, verify = false, loopback_needs_token = false;
   int retain_days = 0;
-  app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json");
-  app.add_option("--listen", listen, "HOST:PORT of the API")->default_str("127.0.0.1:8080");
+  const CLI::Validator filled(cell::refuse_empty, "");
+  const CLI::Validator endpoint(check_endpoint, "");
+  app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json")->check(filled);
+  app.add_option("--listen", listen, "HOST:PORT of the API")->check(endpoint)->default_str("127.0.0.1:8080");
   app.add_option("--host-name", host_names, "a host name that clients may use, besides the address")
       ->check(CLI::Validator(
           [](const std::string& name) {
             return is_host_name(name) ? "" : "'" + name + "' is not a host name";
           },
           "NAME"));
-  app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's");
-  app.add_option("--state", state, "directory for runs and tokens; default: the user's state home");
-  app.add_option("--tls-cert", tls_certificate,
-                 "certificate, PEM; with --tls-key the API is served over TLS");
-  app.add_option("--tls-key", tls_key, "the certificate's key, PEM");
+  app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's")
+      ->check(endpoint);
+  app.add_option("--state", state, "directory for runs and tokens; default: the user's state home")
+      ->check(filled);
+  app.add_option("--tls-cert", tls_certificate, "certificate, PEM; with --tls-key the API is served over TLS")
+      ->check(filled);
+  app.add_option("--tls-key", tls_key, "the certificate's key, PEM")->check(filled);
   app.add_option("--log-format", log_format,
                  "format of the log on standard error: text, or json (one object per line)")
       ->check(CLI::IsMember({"text", "json"}))
@@ -98,9 +111,11 @@ int main(int argc, char** argv) {
                "check the cell and its files, the state directory, the tokens, the address and TLS, report "
                "every error, then exit");
   app.add_option("--backup", backup,
-                 "copy the state's database into this new file, then exit; a daemon may run");
+                 "copy the state's database into this new file, then exit; a daemon may run")
+      ->check(filled);
   app.add_flag("--verify", verify, "check the state's database for damage, then exit; a daemon may run");
   app.add_option("--retain-days", retain_days, "delete older runs, except the last accepted one")
+      ->check(cell::refuse_integer)
       ->check(CLI::Range(1, cell::kRetainDaysMax));
   app.add_flag("--loopback-needs-token", loopback_needs_token,
                "reading over a loopback address needs a token too, as behind a proxy on this machine");
@@ -108,9 +123,11 @@ int main(int argc, char** argv) {
 
   try {
     app.parse(argc, argv);
+    demand_both_of_tls(tls_certificate, tls_key);
     begin_log(log_format);
     cell::DaemonOptions options{.state_directory = state.empty() ? cell::default_state_directory()
                                                                  : std::filesystem::path(state)};
+    if (!check) cell::demand_state_directory(options.state_directory);
     if (!backup.empty() || verify)
       return keep_state(options.state_directory / cell::kStoreFile, backup, verify);
     if (cell_file.empty()) throw CLI::RequiredError("--cell");
@@ -119,8 +136,8 @@ int main(int argc, char** argv) {
     options.trusts_loopback = !loopback_needs_token;
     options.tls_certificate = tls_certificate;
     options.tls_key = tls_key;
-    if (!listen.empty()) options.listen = endpoint_option("--listen", listen);
-    if (!controller.empty()) options.controller = endpoint_option("--controller", controller);
+    if (!listen.empty()) options.listen = cell::parse_endpoint(listen).value();
+    if (!controller.empty()) options.controller = cell::parse_endpoint(controller).value();
     if (check) return tell_check(cell_file, cell::check_daemon(cell_file, options));
     const cell::Cell cell = cell::read_cell(cell_file);
     cell::demand_revolute(cell);

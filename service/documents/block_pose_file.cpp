@@ -1,13 +1,6 @@
 #include "service/documents/block_pose_file.hpp"
 
-#include <fcntl.h>
-#include <spdlog/fmt/fmt.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
@@ -16,6 +9,7 @@
 #include "config/shapes.hpp"
 #include "config/strict_json.hpp"
 #include "service/base/digest.hpp"
+#include "service/base/durable_file.hpp"
 
 namespace cell {
 namespace {
@@ -46,38 +40,6 @@ Eigen::Isometry3d pose_of(const Eigen::Vector3d& shift_m, const Eigen::Vector3d&
 /// Of the document without its checksum, keys sorted.
 std::string checksum_of(const std::string& text) { return sha256_hex(nlohmann::json::parse(text).dump()); }
 
-std::runtime_error trouble(const std::filesystem::path& file) {
-  return std::runtime_error(fmt::format("{}: {}", file.string(), std::strerror(errno)));
-}
-
-/// Owns a file descriptor.
-class Descriptor {
- public:
-  Descriptor(const std::filesystem::path& file, int flags)
-      : file_(file), number_(::open(file.c_str(), flags | O_CLOEXEC, 0600)) {
-    if (number_ < 0) throw trouble(file);
-  }
-  ~Descriptor() { ::close(number_); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-
-  void write(std::string_view bytes) const {
-    while (!bytes.empty()) {
-      const ssize_t done = ::write(number_, bytes.data(), bytes.size());
-      if (done < 0 && errno == EINTR) continue;
-      if (done < 0) throw trouble(file_);
-      bytes.remove_prefix(static_cast<std::size_t>(done));
-    }
-  }
-  void make_durable() const {
-    if (::fsync(number_) != 0) throw trouble(file_);
-  }
-
- private:
-  std::filesystem::path file_;
-  int number_;
-};
-
 }  // namespace
 
 std::string block_pose_document(const BlockPose& place) {
@@ -104,15 +66,7 @@ std::string block_pose_document(const BlockPose& place) {
 }
 
 void write_block_pose(const std::filesystem::path& file, const BlockPose& place) {
-  std::filesystem::path beside = file;
-  beside += ".new";
-  {
-    const Descriptor made(beside, O_WRONLY | O_CREAT | O_TRUNC);
-    made.write(block_pose_document(place) + '\n');
-    made.make_durable();
-  }
-  std::filesystem::rename(beside, file);
-  Descriptor(file.parent_path().empty() ? "." : file.parent_path(), O_RDONLY | O_DIRECTORY).make_durable();
+  replace_file(file, block_pose_document(place) + '\n');
 }
 
 std::optional<BlockPose> read_block_pose(const std::filesystem::path& file) {

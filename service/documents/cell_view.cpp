@@ -14,18 +14,29 @@ namespace {
 
 using calib::mm_from_metres;
 
+Json bore_json(const calib::Face& face) {
+  const calib::BoreWall& bore = *face.bore;
+  const double half_m = face.half_extent_m.x();
+  return {{"mouth_mm", vector_mm_json(bore.center_m + bore.mouth_m * bore.axis)},
+          {"axis", {bore.axis.x(), bore.axis.y(), bore.axis.z()}},
+          {"radius_mm", mm_from_metres(surface_of(face).radius_m())},
+          {"depth_mm", {mm_from_metres(bore.mouth_m - half_m), mm_from_metres(bore.mouth_m + half_m)}},
+          {"wall_half_angle_deg", calib::degrees_from_radians(bore.half_angle_rad)}};
+}
+
 Json faces_json(const Block& block) {
   Json faces = Json::array();
   for (const calib::Face& face : block.faces) {
     const Eigen::Vector3d& outward = face.plane.outward;
     faces.push_back({{"plane", faces.size() + 1},
-                     {"shape", face.cap ? "sphere" : "plane"},
+                     {"shape", face.bore ? "bore" : (face.cap ? "sphere" : "plane")},
                      {"outward", {outward.x(), outward.y(), outward.z()}},
                      {"offset_mm", mm_from_metres(face.plane.offset_m)},
                      {"center_mm", vector_mm_json(face.center_m)},
                      {"edge_u", {face.edge_u.x(), face.edge_u.y(), face.edge_u.z()}},
                      {"half_extent_mm",
                       {mm_from_metres(face.half_extent_m.x()), mm_from_metres(face.half_extent_m.y())}}});
+    if (face.bore) faces.back()["bore"] = bore_json(face);
     if (!face.cap) continue;
     faces.back()["sphere"] = {{"center_mm", vector_mm_json(face.cap->center_m)},
                               {"radius_mm", mm_from_metres(surface_of(face).radius_m())},
@@ -35,12 +46,36 @@ Json faces_json(const Block& block) {
 }
 
 Json limits_json(const AcceptanceLimits& limits) {
+  Json by_recipe = Json::object();
+  for (const auto& [recipe, limit_m] : limits.tip_box_max_by_recipe_m)
+    by_recipe[recipe] = mm_from_metres(limit_m);
   return {{"held_out_mean_max_mm", mm_from_metres(limits.held_out_mean_max_m)},
           {"held_out_rms_max_mm", mm_from_metres(limits.held_out_rms_max_m)},
           {"condition_number_max", limits.condition_number_max},
           {"lack_of_fit_p_min", limits.lack_of_fit_p_min},
           {"tip_box_rms_max_mm", number_mm(limits.tip_box_rms_max_m)},
-          {"tip_box_max_mm", number_mm(limits.tip_box_max_m)}};
+          {"tip_box_max_mm", number_mm(limits.tip_box_max_m)},
+          {"tip_box_max_by_recipe_mm", by_recipe}};
+}
+
+/// A figure of which nothing is said, neither itself nor its deviation, is unknown.
+Json said_mm(double value_m, double std_m) {
+  return value_m == 0.0 && std_m == 0.0 ? Json() : Json(mm_from_metres(value_m));
+}
+
+Json probe_json(const Probe& probe) {
+  const calib::SidewaysPretravel& sideways = probe.stylus.sideways;
+  return {
+      {"name", probe.name},
+      {"tip_is_contact_point", probe.tip_is_contact_point},
+      {"stylus_radius_mm", mm_from_metres(probe.stylus.radius_m)},
+      {"pretravel_mm", mm_from_metres(probe.stylus.pretravel_m)},
+      {"pretravel_tilt_mm", said_mm(sideways.tilt_m, probe.std_pretravel_tilt_m)},
+      {"std_pretravel_tilt_mm", said_mm(probe.std_pretravel_tilt_m, 0.0)},
+      {"lobes_mm", said_mm(sideways.lobes_m, probe.std_lobes_m)},
+      {"std_lobes_mm", said_mm(probe.std_lobes_m, 0.0)},
+      {"lobe_direction_deg",
+       sideways.lobes_m == 0.0 ? Json() : Json(calib::degrees_from_radians(sideways.lobe_direction_rad))}};
 }
 
 }  // namespace
@@ -76,11 +111,7 @@ std::string cell_document(const Cell& cell, const std::optional<BlockPose>& plac
           cell.block.temperature_at ? Json(format_utc(*cell.block.temperature_at)) : Json()},
          {"faces", faces_json(cell.block)}}},
        {"place", block_pose_json(place)},
-       {"probe",
-        {{"name", cell.probe.name},
-         {"tip_is_contact_point", cell.probe.tip_is_contact_point},
-         {"stylus_radius_mm", mm_from_metres(cell.probe.stylus.radius_m)},
-         {"pretravel_mm", mm_from_metres(cell.probe.stylus.pretravel_m)}}},
+       {"probe", probe_json(cell.probe)},
        {"default_recipe", cell.default_recipe},
        {"workspace_box", box_json(cell.workspace_box)},
        {"keep_out_boxes", keep_out},

@@ -9,16 +9,22 @@ constexpr std::string_view kTouches = R"({
 "type":"object",
 "required":["schema","arm","touches"],
 "properties":{
-  "schema":{"enum":["touchcal/touches/1","touchcal/touches/2"]},
+  "schema":{"enum":["touchcal/touches/1","touchcal/touches/2","touchcal/touches/3"]},
   "arm":{"type":"string"},
   "touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},
     "role":{"enum":["fit","held_out","proof"]},
     "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
     "noise_um":{"type":"number","exclusiveMinimum":0,"maximum":5000,
-      "description":"one standard deviation of this touch along the normal, where it is not the cell's touch_noise_mm; version 2 only"}}}},
+      "description":"one standard deviation of this touch along the normal, where it is not the cell's touch_noise_mm; from version 2 on"},
+    "at_s":{"type":"number","minimum":0,"description":"seconds since the first touch; from version 3 on"},
+    "first_joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"},
+      "description":"the first contact of a two-speed touch; from version 3 on"},
+    "again_joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"},
+      "description":"the contact of a repetition that agreed with this touch; from version 3 on"}}}},
   "reference_touches":{"type":"array","items":{"type":"object","required":["plane","joints_deg"],"properties":{
     "plane":{"type":"integer","minimum":1},
+    "at_s":{"type":"number","minimum":0,"description":"seconds since the first touch, not decreasing; from version 3 on"},
     "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}}}}}}})";
 
 constexpr std::string_view kResult = R"({
@@ -103,6 +109,12 @@ constexpr std::string_view kResult = R"({
       "noise_used_um":{"type":["number","null"],"minimum":0},
       "noise_repeats_um":{"type":["number","null"],"minimum":0},
       "repeats_degrees_of_freedom":{"type":["number","null"],"minimum":0},
+      "repeats_sources":{"type":"array","description":"what noise_repeats_um is made of",
+        "items":{"type":"object","required":["source","noise_um","degrees_of_freedom","used"],"properties":{
+          "source":{"enum":["reference_touches","two_speed","touched_again"]},
+          "noise_um":{"type":["number","null"],"minimum":0},
+          "degrees_of_freedom":{"type":["number","null"],"minimum":0},
+          "used":{"type":"boolean"}}}},
       "gear_share":{"type":["number","null"],"minimum":0},
       "lack_of_fit_noise_um":{"type":["number","null"],"minimum":0},
       "lack_of_fit_repeats_um":{"type":["number","null"],"minimum":0},
@@ -194,7 +206,7 @@ constexpr std::string_view kArm = R"({
 "description":"An arm's file, with what was identified",
 "required":["schema","name","frames"],
 "properties":{
-  "schema":{"const":"touchcal/arm/2"},
+  "schema":{"const":"touchcal/arm/3"},
   "name":{"type":"string"},
   "frames":{"type":"array","minItems":8,"maxItems":8,"items":{"type":"object"}}}})";
 
@@ -208,17 +220,17 @@ constexpr std::string_view kReport = R"({
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","use"]}},
   "result":{"type":["object","null"]}}})";
 
-constexpr std::array kSchemas{DocumentSchema{"Touches", kTouches},
-                              DocumentSchema{"Result", kResult},
-                              DocumentSchema{"Distances", kDistances},
-                              DocumentSchema{"TipUncertainty", kTipUncertainty},
-                              DocumentSchema{"ExpandedTipUncertainty", kExpandedTipUncertainty},
-                              DocumentSchema{"Plan", kPlan},
-                              DocumentSchema{"Arm", kArm},
-                              DocumentSchema{"Report", kReport}};
+constexpr std::array kFileSchemas{DocumentSchema{"Touches", kTouches},
+                                  DocumentSchema{"Result", kResult},
+                                  DocumentSchema{"Distances", kDistances},
+                                  DocumentSchema{"TipUncertainty", kTipUncertainty},
+                                  DocumentSchema{"ExpandedTipUncertainty", kExpandedTipUncertainty},
+                                  DocumentSchema{"Plan", kPlan},
+                                  DocumentSchema{"Arm", kArm},
+                                  DocumentSchema{"Report", kReport}};
 
 }  // namespace
 
-std::span<const DocumentSchema> file_schemas() { return kSchemas; }
+std::span<const DocumentSchema> file_schemas() { return kFileSchemas; }
 
 }  // namespace cell

@@ -13,6 +13,7 @@
 #include "service/documents/internal/geometry_json.hpp"
 #include "service/documents/run_document.hpp"
 #include "service/run/run_conditions.hpp"
+#include "service/run/run_repeats.hpp"
 
 namespace cell {
 namespace {
@@ -80,6 +81,20 @@ void set_faults(const Status& status, StatusDocument& document) {
   document.warning_message = status.warning->message();
 }
 
+std::string_view schema_of(int version) {
+  if (version == 1) return kFirstTouchesSchema;
+  return version == 2 ? kSecondTouchesSchema : kTouchesSchema;
+}
+
+/// What the third version of a touches document has of a touch; false when nothing is known of it.
+bool add_third(const StoredTouch& touch, const std::optional<double>& at_s, Json& entry) {
+  if (at_s) entry["at_s"] = *at_s;
+  const auto first = first_contact_of(touch);
+  if (first) entry["first_joints_deg"] = joints_deg_json(*first);
+  if (touch.again) entry["again_joints_deg"] = joints_deg_json(*touch.again);
+  return at_s || first || touch.again;
+}
+
 /// But for the rounding of units.
 bool is_noise_of_cell(const Cell& cell, double noise_um) {
   return std::abs(calib::metres_from_um(noise_um) - cell.touch_noise_m) < calib::kTouchDeviationMinMetres;
@@ -131,22 +146,31 @@ std::string runs_document(const RunPage& page) {
 
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
                              const std::vector<ReferenceTouch>& references) {
+  const TouchTimes times = times_of(touches, references);
   Json list = Json::array();
-  std::string_view schema = kFirstTouchesSchema;  // older programs read it
-  for (const StoredTouch& touch : touches) {
+  int version = 1;  // older programs read it
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const StoredTouch& touch = touches[i];
     Json& entry = list.emplace_back(Json{{"plane", touch.plane},
                                          {"role", word_of(touch.role)},
                                          {"joints_deg", joints_deg_json(touch.joints)}});
-    if (!touch.noise_um || is_noise_of_cell(cell, *touch.noise_um)) continue;
-    entry["noise_um"] = *touch.noise_um;
-    schema = kTouchesSchema;
+    if (touch.noise_um && !is_noise_of_cell(cell, *touch.noise_um)) {
+      entry["noise_um"] = *touch.noise_um;
+      version = std::max(version, 2);
+    }
+    if (add_third(touch, times.touches_s[i], entry)) version = 3;
   }
-  Json document{{"schema", schema}, {"arm", cell.arm.name}, {"touches", list}};
   const auto place = std::ranges::find(touches, calib::TouchRole::kFit, &StoredTouch::role);
-  if (references.empty() || place == touches.end()) return text_of(document);
-  Json& again = document["reference_touches"] = Json::array();
-  for (const ReferenceTouch& touch : references)
-    again.push_back({{"plane", place->plane}, {"joints_deg", joints_deg_json(touch.joints)}});
+  Json again = Json::array();
+  for (std::size_t i = 0; place != touches.end() && i < references.size(); ++i) {
+    Json& entry = again.emplace_back(
+        Json{{"plane", place->plane}, {"joints_deg", joints_deg_json(references[i].joints)}});
+    if (times.references_s.empty()) continue;
+    entry["at_s"] = times.references_s[i];
+    version = 3;
+  }
+  Json document{{"schema", schema_of(version)}, {"arm", cell.arm.name}, {"touches", list}};
+  if (!again.empty()) document["reference_touches"] = again;
   return text_of(document);
 }
 

@@ -22,7 +22,8 @@ std::string run_document(const StoredRun& run);
 /// A page of the history.
 std::string runs_document(const RunPage& page);
 
-/// touchcal/touches/1, or /2 where a touch has a noise of its own: what `touchcal identify` reads back.
+/// What `touchcal identify` reads back: touchcal/touches/1, /2 where a touch has a noise of its own, /3 where
+/// times, first contacts or repetitions are known.
 /// `references`: of the same run.
 std::string touches_document(const Cell& cell, const std::vector<StoredTouch>& touches,
                              const std::vector<ReferenceTouch>& references);

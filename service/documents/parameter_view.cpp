@@ -44,12 +44,15 @@ CarriedError carried_error(int named, int from, int to, double factor_si) {
 const char* unit_name(calib::ArtefactKind kind) {
   switch (kind) {
     case calib::ArtefactKind::kFaceTilt:
+    case calib::ArtefactKind::kBoreTilt:
       return "rad";
     case calib::ArtefactKind::kTemperature:
       return "degC";
     case calib::ArtefactKind::kFaceOffset:
     case calib::ArtefactKind::kSphereCenter:
     case calib::ArtefactKind::kSphereRadius:
+    case calib::ArtefactKind::kBoreAxis:
+    case calib::ArtefactKind::kBoreRadius:
     case calib::ArtefactKind::kStylusRadius:
     case calib::ArtefactKind::kPretravel:
       return "mm";
@@ -135,6 +138,10 @@ double value_of(const calib::IdentificationResult& result, int position) {
       return result.calibrated.harmonics_rad[joint].sin;
     case calib::NongeometricKind::kMass:
       return result.errors[calib::nongeometric_index(position)];
+    case calib::NongeometricKind::kRippleCos:
+      return result.calibrated.ripples_rad[joint].cos;
+    case calib::NongeometricKind::kRippleSin:
+      return result.calibrated.ripples_rad[joint].sin;
   }
   throw std::logic_error("value_of: no such kind");
 }

@@ -185,12 +185,28 @@ struct ResultDocument {
       fields("p", self.p);
     }
   };
+  /// What was touched more than once, by how; no figures where a run has none of it.
+  struct RepeatsSource {
+    std::string source;  // reference_touches, two_speed, touched_again
+    std::optional<double> noise_um;
+    std::optional<double> degrees_of_freedom;
+    bool used = false;  // in noise_repeats_um
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("source", self.source);
+      fields("noise_um", self.noise_um);
+      fields("degrees_of_freedom", self.degrees_of_freedom);
+      fields("used", self.used);
+    }
+  };
   struct Fit {
     std::optional<double> noise_declared_um;
     std::optional<double> noise_estimated_um;
     std::optional<double> noise_used_um;
     std::optional<double> noise_repeats_um;  // nothing where no place was touched often enough
     std::optional<double> repeats_degrees_of_freedom;
+    std::vector<RepeatsSource> repeats_sources;    // none in a result of an older daemon
     std::optional<double> gear_share;              // of the maker's variance of the gears
     std::optional<std::string> lack_of_fit_test;   // against the repeats: F, against the declared: chi-square
     std::optional<double> lack_of_fit_noise_um;    // what the residuals are tested against
@@ -209,6 +225,7 @@ struct ResultDocument {
       fields("noise_used_um", self.noise_used_um);
       fields("noise_repeats_um", self.noise_repeats_um);
       fields("repeats_degrees_of_freedom", self.repeats_degrees_of_freedom);
+      fields("repeats_sources", self.repeats_sources);
       fields("gear_share", self.gear_share);
       fields("lack_of_fit_test", self.lack_of_fit_test);
       fields("lack_of_fit_noise_um", self.lack_of_fit_noise_um);

@@ -111,6 +111,22 @@ std::vector<ResultDocument::PlaneFit> plane_fits_of(const calib::IdentificationR
   return planes;
 }
 
+std::vector<ResultDocument::RepeatsSource> repeats_sources_of(const calib::RepeatSources& sources) {
+  std::vector<ResultDocument::RepeatsSource> all;
+  const auto add = [&all](const char* name, const calib::RepeatSource& source) {
+    auto& entry = all.emplace_back(
+        ResultDocument::RepeatsSource{.source = name, .noise_um = {}, .degrees_of_freedom = {}});
+    if (!source.noise) return;
+    entry.noise_um = micrometres(source.noise->std_m);
+    entry.degrees_of_freedom = source.noise->degrees_of_freedom;
+    entry.used = source.used;
+  };
+  add("reference_touches", sources.reference_touches);
+  add("two_speed", sources.two_speed);
+  add("touched_again", sources.touched_again);
+  return all;
+}
+
 ResultDocument::Fit fit_of(const calib::IdentificationProblem& problem,
                            const calib::IdentificationResult& result) {
   const auto& lack_of_fit = result.lack_of_fit;
@@ -122,6 +138,7 @@ ResultDocument::Fit fit_of(const calib::IdentificationProblem& problem,
     document.noise_repeats_um = micrometres(problem.pure_error->std_m);
     document.repeats_degrees_of_freedom = problem.pure_error->degrees_of_freedom;
   }
+  document.repeats_sources = repeats_sources_of(problem.repeat_sources);
   if (uncertainty) {
     document.noise_used_um = micrometres(uncertainty->noise_m);
     if (!problem.gear_std_rad.isZero(0.0)) document.gear_share = finite(uncertainty->gear_share);
@@ -176,9 +193,12 @@ ResultDocument::Rank rank_of(const calib::IdentificationProblem& problem,
 }
 
 /// What distances count from: a plane's from the origin along its outward normal, a sphere's from its centre.
+/// A bore's count from its axis along the outward normal, which points to the axis: its wall is at minus its
+/// radius, and larger is farther out of the material as elsewhere.
 double reference_of(const Cell& cell, int face) {
   const calib::Face& touched = cell.block.faces[static_cast<std::size_t>(face)];
-  return touched.cap ? surface_of(touched).radius_m() : touched.plane.offset_m;
+  if (touched.is_flat()) return touched.plane.offset_m;
+  return (touched.bore ? -1.0 : 1.0) * surface_of(touched).radius_m();
 }
 
 /// Distances are reference + signed distance. Those of the
@@ -314,7 +334,7 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
     document.monte_carlo = monte_carlo_of(*context.monte_carlo);
     if (!context.monte_carlo->warning.empty()) document.warnings.push_back(context.monte_carlo->warning);
   }
-  const std::vector<Criterion> judged = criteria(result, options, cell, judged_tip(tip));
+  const std::vector<Criterion> judged = criteria(result, recipe, cell, judged_tip(tip));
   Judgement judgement = judge(result, judged, cell.acceptance, context.complete);
   document.verdict = {.accepted = judgement.accepted,
                       .reasons = std::move(judgement.reasons),

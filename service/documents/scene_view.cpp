@@ -35,12 +35,23 @@ Json bodies_json(const std::vector<calib::Capsule>& bodies) {
   return list;
 }
 
+Json holes_json(const calib::Box& box) {
+  Json list = Json::array();
+  for (const calib::Hole& hole : box.holes) {
+    list.push_back({{"center_mm", vector_mm_json(hole.center_m)},
+                    {"axis", {hole.axis.x(), hole.axis.y(), hole.axis.z()}},
+                    {"radius_mm", mm_from_metres(hole.radius_m)}});
+  }
+  return list;
+}
+
 }  // namespace
 
 Json scene_json(const Cell& cell) {
   Json solids = Json::array();
   for (const calib::Box& box : cell.block.solids) {
     solids.push_back(box_json(box));
+    solids.back()["holes"] = holes_json(box);
   }
   return {{"frames", frames_json(cell.arm.model)},
           {"gains", cell.arm.model.gains},

@@ -165,7 +165,9 @@ constexpr std::string_view kCell = R"({
     "temperature_at":{"type":["string","null"],"description":"when it was measured; null: it always holds"},
     "faces":{"type":"array","items":{"type":"object","required":["plane","shape","outward","offset_mm","center_mm",
       "edge_u","half_extent_mm"],"properties":{
-      "shape":{"enum":["plane","sphere"]},
+      "shape":{"enum":["plane","sphere","bore"]},
+      "bore":{"type":"object","description":"of a bore; the plane beside it touches the middle of the wall that may be touched; depths are below the mouth, which axis points out of",
+        "required":["mouth_mm","axis","radius_mm","depth_mm","wall_half_angle_deg"]},
       "sphere":{"type":"object","description":"of a sphere; the plane beside it touches the pole of what may be touched",
         "required":["center_mm","radius_mm","cap_half_angle_deg"]}}}}}},
   "place":{"type":["object","null"],
@@ -177,14 +179,21 @@ constexpr std::string_view kCell = R"({
       "turn_deg":{"type":"array","items":{"type":"number"},"description":"rotation vector"},
       "std_turn_deg":{"type":"array","items":{"type":"number"}},
       "touch_count":{"type":"integer","minimum":0}}},
-  "probe":{"type":"object","required":["name","tip_is_contact_point","stylus_radius_mm","pretravel_mm"]},
+  "probe":{"type":"object","required":["name","tip_is_contact_point","stylus_radius_mm","pretravel_mm"],"properties":{
+    "pretravel_tilt_mm":{"type":["number","null"],"description":"what a push from the side adds to the pre-travel; null: nobody says"},
+    "std_pretravel_tilt_mm":{"type":["number","null"]},
+    "lobes_mm":{"type":["number","null"],"description":"three lobes about the stylus; null: nobody says"},
+    "std_lobes_mm":{"type":["number","null"]},
+    "lobe_direction_deg":{"type":["number","null"],"description":"of one of the lobes; null without any"}}},
   "default_recipe":{"type":"string"},
   "workspace_box":{"type":"object"},
   "keep_out_boxes":{"type":"array","items":{"type":"object"}},
   "nominal_miss_mm":{"type":"number"},
   "touch_noise_mm":{"type":"number"},
-  "acceptance":{"type":"object"},
-  "scene":{"type":"object","description":"what the cell looks like, in R_-1; bodies in the frame that they move with",
+  "acceptance":{"type":"object","properties":{
+    "tip_box_max_by_recipe_mm":{"type":"object","description":"in place of tip_box_max_mm, by the name of a recipe",
+      "additionalProperties":{"type":"number"}}}},
+  "scene":{"type":"object","description":"what the cell looks like, in R_-1; bodies in the frame that they move with; a solid has holes (center_mm, axis, radius_mm), which go through it",
     "required":["frames","gains","arm_bodies","probe_bodies","solids","park_joints_deg"]},
   "controller":{"type":"string"}}})";
 
@@ -244,23 +253,23 @@ constexpr std::string_view kOpenApi = R"({
 "required":["openapi","info","paths","components"],
 "properties":{"openapi":{"const":"3.1.0"}}})";
 
-constexpr std::array kSchemas{DocumentSchema{"Status", kStatus},
-                              DocumentSchema{"Run", kRun},
-                              DocumentSchema{"Runs", kRuns},
-                              DocumentSchema{"StartRequest", kStartRequest},
-                              DocumentSchema{"PlanRequest", kPlanRequest},
-                              DocumentSchema{"Problem", kProblem},
-                              DocumentSchema{"Recipes", kRecipes},
-                              DocumentSchema{"Cell", kCell},
-                              DocumentSchema{"Joints", kJoints},
-                              DocumentSchema{"Faults", kFaults},
-                              DocumentSchema{"Health", kHealth},
-                              DocumentSchema{"Access", kAccess},
-                              DocumentSchema{"Audit", kAudit},
-                              DocumentSchema{"OpenApi", kOpenApi}};
+constexpr std::array kDaemonSchemas{DocumentSchema{"Status", kStatus},
+                                    DocumentSchema{"Run", kRun},
+                                    DocumentSchema{"Runs", kRuns},
+                                    DocumentSchema{"StartRequest", kStartRequest},
+                                    DocumentSchema{"PlanRequest", kPlanRequest},
+                                    DocumentSchema{"Problem", kProblem},
+                                    DocumentSchema{"Recipes", kRecipes},
+                                    DocumentSchema{"Cell", kCell},
+                                    DocumentSchema{"Joints", kJoints},
+                                    DocumentSchema{"Faults", kFaults},
+                                    DocumentSchema{"Health", kHealth},
+                                    DocumentSchema{"Access", kAccess},
+                                    DocumentSchema{"Audit", kAudit},
+                                    DocumentSchema{"OpenApi", kOpenApi}};
 
 }  // namespace
 
-std::span<const DocumentSchema> daemon_schemas() { return kSchemas; }
+std::span<const DocumentSchema> daemon_schemas() { return kDaemonSchemas; }
 
 }  // namespace cell

@@ -17,12 +17,16 @@ std::string block_pose_digest(const Cell& cell) {
     for (const double number : {link.alpha_rad, link.d_m, link.theta_rad, link.r_m, link.beta_rad})
       add(number);
   for (const calib::Face& face : cell.block.faces) {
-    if (face.cap) continue;  // a block is located on its flats
+    if (!face.is_flat()) continue;  // a block is located on its flats
     for (int axis = 0; axis < 3; ++axis) add(face.plane.outward[axis]);
     add(face.plane.offset_m);
   }
   add(cell.probe.stylus.radius_m);
   add(cell.probe.stylus.pretravel_m);
+  const calib::SidewaysPretravel& sideways = cell.probe.stylus.sideways;
+  if (!sideways.is_zero()) {  // places that were found with a probe without these keep their digest
+    for (const double number : {sideways.tilt_m, sideways.lobes_m, sideways.lobe_direction_rad}) add(number);
+  }
   return sha256_hex(text).substr(0, 32);
 }
 

@@ -19,7 +19,7 @@ std::optional<double> in_mm(std::optional<double> metres) {
   return metres ? std::optional(mm_from_metres(*metres)) : std::nullopt;
 }
 
-void add_tip(const JudgedTip& tip, const Cell& cell, Criteria& list) {
+void add_tip(const JudgedTip& tip, const Cell& cell, const std::string& recipe, Criteria& list) {
   const auto add = [&](const char* name, const char* what, std::optional<double> value_m, double limit_m,
                        std::optional<std::string> tool = std::nullopt) {
     const std::string of = tool ? fmt::format(" of the tool {}", *tool) : "";
@@ -37,7 +37,7 @@ void add_tip(const JudgedTip& tip, const Cell& cell, Criteria& list) {
   };
   if (const auto limit_m = cell.acceptance.tip_box_rms_max_m)
     add("tip_box_rms", "tip uncertainty", tip.box_rms_m, *limit_m);
-  if (const auto limit_m = cell.acceptance.tip_box_max_m)
+  if (const auto limit_m = cell.acceptance.tip_box_max_of_m(recipe))
     add("tip_box_max", "largest expanded tip uncertainty (k = 2)", tip.box_max_m, *limit_m);
   for (const JudgedTip::OfTool& tool : tip.tools) {
     const auto limit = cell.acceptance.tool_box_rms_max_m.find(tool.name);
@@ -245,19 +245,18 @@ bool is_estimated(const calib::IdentificationOptions& options, const calib::Iden
                        : status == calib::ParameterStatus::kIdentified;
 }
 
-std::vector<Criterion> criteria(const calib::IdentificationResult& result,
-                                const calib::IdentificationOptions& options, const Cell& cell,
-                                const JudgedTip& tip) {
+std::vector<Criterion> criteria(const calib::IdentificationResult& result, const Recipe& recipe,
+                                const Cell& cell, const JudgedTip& tip) {
   Criteria list;
   if (result.status == calib::IdentificationStatus::kConverged) {
-    add_tip(tip, cell, list);
+    add_tip(tip, cell, recipe.name, list);
     add_gain(tip, cell, list);
   }
   add_scale(result, list);
   add_condition_number(result, cell, list);
   add_lack_of_fit(result, cell, list);
   add_rejected(result, list);
-  add_set(result, options, list);
+  add_set(result, recipe.identification, list);
   for (const calib::FaceDistances& face : result.distances) {
     if (face.role == calib::TouchRole::kHeldOut) add_held_out(face, cell, list);
   }

@@ -58,11 +58,10 @@ JudgedTip judged_tip(const TipPrediction& tip);
 bool is_estimated(const calib::IdentificationOptions& options, const calib::IdentifiableSet& identifiable,
                   int index);
 
-/// Every figure of a result that can reject it. The uncertainty of the mean of held-out touches is that of
-/// FaceDistances::calibrated_mean_std_m, that of their rms reaches the upper confidence bound of a chi-square
-/// variable.
-std::vector<Criterion> criteria(const calib::IdentificationResult& result,
-                                const calib::IdentificationOptions& options, const Cell& cell,
-                                const JudgedTip& tip);
+/// Every figure of a result of this recipe that can reject it. The uncertainty of the mean of held-out
+/// touches is that of FaceDistances::calibrated_mean_std_m, that of their rms reaches the upper confidence
+/// bound of a chi-square variable.
+std::vector<Criterion> criteria(const calib::IdentificationResult& result, const Recipe& recipe,
+                                const Cell& cell, const JudgedTip& tip);
 
 }  // namespace cell

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "calib_core/estimation/identification_problem.hpp"
@@ -13,14 +14,13 @@ struct ReferencePlace {
   /// noise alone would make of it. 0 when there are fewer than three, and when noise alone makes as much in
   /// more than 3 of 1,000 runs.
   double trend_m = 0.0;
+  /// One standard deviation of that, whether it is significant or not: a drift that the scatter hides is
+  /// still there. 0 when there are fewer than three.
+  calib::TouchNoise open_trend;
   std::optional<calib::TouchNoise> scatter;  // about that line
 };
 
-/// Of the distances of one place in the order in which they were made.
-ReferencePlace reference_place(const std::vector<double>& readings_m);
-
-/// Notes in the problem of a run what the touches at its reference place say, in the order in which they were
-/// made: the heights of calib::counted_readings() over the nominal face by the nominal arm.
-void note_references(const std::vector<calib::Touch>& at_place, calib::IdentificationProblem& problem);
+/// Of the distances of one place in the order in which they were made. `times_s` as in calib::line_through().
+ReferencePlace reference_place(const std::vector<double>& readings_m, std::span<const double> times_s = {});
 
 }  // namespace cell

@@ -6,7 +6,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "config/identification_problem.hpp"
 #include "service/run/internal/touch_benefit.hpp"
-#include "service/run/reference_drift.hpp"
+#include "service/run/run_repeats.hpp"
 #include "service/run/touch_command.hpp"
 
 namespace cell {
@@ -41,7 +41,7 @@ void Run::restore(const std::vector<StoredTouch>& touches, int touches_total) {
   touches_ = touches;
   for (const StoredTouch& touch : touches_) problem_.touches.push_back(to_touch(touch));
   restored_total_ = touches_total;
-  ++revision_;
+  revise();
 }
 
 void Run::change_plan(const PlanChange& change) {
@@ -123,28 +123,38 @@ int Run::drop_fit_touches(std::size_t first) {
 void Run::add(const StoredTouch& touch) {
   touches_.push_back(touch);
   problem_.touches.push_back(to_touch(touch));
-  ++revision_;
+  revise();
 }
 
 void Run::replace(const StoredTouch& again) {
   const auto index = static_cast<std::size_t>(again.number - 1);
   touches_.at(index) = again;
   problem_.touches.at(index) = to_touch(again);
-  ++revision_;
+  revise();
+}
+
+void Run::confirm(int number, const cs8::JointsMicrodeg& again) {
+  touches_.at(static_cast<std::size_t>(number - 1)).again = again;
+  revise();
 }
 
 void Run::withdraw_last() {
   touches_.pop_back();
   problem_.touches.pop_back();
-  ++revision_;
+  revise();
   if (!touches_.empty()) return;
   latest_ = {};  // without a touch there is nothing to identify from
   predicted_tip_rms_m_.reset();
   touch_benefit_.reset();
 }
 
-void Run::note_references(const std::vector<ReferenceTouch>& references) {
-  cell::note_references(to_touches(references, touches_), problem_);
+void Run::note_references(std::vector<ReferenceTouch> references) {
+  references_ = std::move(references);
+  revise();
+}
+
+void Run::revise() {
+  note_repeats(repeats_of(touches_, references_), problem_);
   ++revision_;
 }
 

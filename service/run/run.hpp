@@ -71,10 +71,12 @@ class Run {
   void add(const StoredTouch& touch);
   /// Replaces the touch of the same number; the store has replaced it before.
   void replace(const StoredTouch& again);
+  /// Keeps the contact of a repetition that agreed with the touch; the store has it before.
+  void confirm(int number, const cs8::JointsMicrodeg& again);
   /// Removes the last touch, which becomes next(); the store has withdrawn it before.
   void withdraw_last();
   /// What the reference place says so far: it counts in latest() from the next identify() on.
-  void note_references(const std::vector<ReferenceTouch>& references);
+  void note_references(std::vector<ReferenceTouch> references);
   /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
   /// Whether latest() is not that of all touches.
@@ -103,6 +105,8 @@ class Run {
 
  private:
   void skip(std::size_t index);
+  /// Touches or references have changed.
+  void revise();
   [[nodiscard]] bool sees_all_attainable() const;
   [[nodiscard]] std::optional<std::string> estimate_touch_benefit() const;
 
@@ -117,6 +121,7 @@ class Run {
   std::vector<PlanChange> plan_changes_;
   int restored_total_ = 0;  // while there is no plan
   std::vector<StoredTouch> touches_;
+  std::vector<ReferenceTouch> references_;
   calib::IdentificationProblem problem_;
   std::size_t revision_ = 0;             // of the touches and references: counts their changes
   std::size_t identified_revision_ = 0;  // from which latest_ is

@@ -2,6 +2,7 @@
 
 #include <SQLiteCpp/Backup.h>
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <spdlog/fmt/fmt.h>
 #include <sqlite3.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "service/base/durable_file.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/store/audit_chain.hpp"
 #include "service/store/internal/row_checksum.hpp"
@@ -41,9 +43,8 @@ void find_damaged_rows(SQLite::Database& database, std::vector<std::string>& dam
   const bool has_checksums =
       database.execAndGet("SELECT count(*) FROM pragma_table_info('touches') WHERE name = 'checksum'")
           .getInt() > 0;
-  if (version > migrations().size() || has_checksums != (version >= kChecksumSchema)) {
-    damage.push_back("its tables are not those of schema " + std::to_string(version) +
-                     ", or a newer touchcald has written it");
+  if (has_checksums != (version >= kChecksumSchema)) {
+    damage.push_back("its tables are not those of schema " + std::to_string(version));
     return;
   }
   if (!has_checksums) return;
@@ -94,6 +95,16 @@ SQLite::Database open_to_check(const std::filesystem::path& file) {
   return {uri + "?immutable=1", SQLite::OPEN_READONLY | SQLite::OPEN_URI, kReadBusyMilliseconds};
 }
 
+/// What a newer version has written is no damage, and no backup is the remedy.
+void demand_known_schema(SQLite::Database& database, const std::filesystem::path& file) {
+  const int version = database.execAndGet("PRAGMA user_version").getInt();
+  if (version < 0) throw std::runtime_error("its schema has the number " + std::to_string(version));
+  if (static_cast<std::size_t>(version) <= migrations().size()) return;
+  throw StoreNotChecked(file.string() + ": a newer touchcald wrote it (schema " + std::to_string(version) +
+                        ", this one knows " + std::to_string(migrations().size()) +
+                        "); verify it with that version");
+}
+
 }  // namespace
 
 void back_up(const std::filesystem::path& database_file, const std::filesystem::path& copy) {
@@ -120,20 +131,35 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
 
 void refuse_lost_store(const std::filesystem::path& state_directory) {
   const auto has = [&](std::string_view file) { return std::filesystem::exists(state_directory / file); };
-  const bool was_in_use = has(kBlockPoseFile) || (has(kOperateTokenFile) && has(kViewTokenFile));
+  std::string shown_by;
+  for (const std::string_view file : {kBegunFile, kBlockPoseFile, kLocatingFile})
+    if (shown_by.empty() && has(file)) shown_by = file;
+  if (shown_by.empty() && has(kOperateTokenFile) && has(kViewTokenFile)) shown_by = "both tokens";
   const std::filesystem::path database = state_directory / kStoreFile;
   std::error_code missing;
   const auto bytes = std::filesystem::file_size(database, missing);
-  if (!was_in_use || (!missing && bytes > 0)) return;
-  throw std::runtime_error(database.string() + (missing ? ": is missing" : ": is empty") +
-                           ", and its state directory was in use; restore the last backup to it, or give "
-                           "another --state to begin without the earlier runs");
+  if (shown_by.empty() || (!missing && bytes > 0)) return;
+  throw std::runtime_error(
+      database.string() + (missing ? ": is missing" : ": is empty") +
+      ", and its state directory was in use (" + shown_by +
+      " there shows it); restore the last backup to it, or give another --state to begin "
+      "without the earlier runs");
+}
+
+void mark_begun(const std::filesystem::path& state_directory) {
+  const std::filesystem::path marker = state_directory / kBegunFile;
+  if (std::filesystem::exists(marker)) return;
+  replace_file(marker,
+               fmt::format("{} was begun here. While this file is there, touchcald does not begin anew "
+                           "where that one is lost.\n",
+                           kStoreFile));
 }
 
 std::vector<std::string> find_damage(const std::filesystem::path& database_file) {
   std::vector<std::string> damage;
   try {
     SQLite::Database database = open_to_check(database_file);
+    demand_known_schema(database, database_file);
     if (auto lost = find_log_damage(database_file)) damage.push_back(*std::move(lost));
     SQLite::Statement integrity(database, "PRAGMA integrity_check");
     while (integrity.executeStep()) {
@@ -166,7 +192,7 @@ std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database) {
   return unknown ? std::nullopt : std::optional(space.available);
 }
 
-int delete_runs_before(const SharedDatabase& database, const std::string& oldest) {
+int delete_runs_before(const SharedDatabase& database, const std::string& oldest, int days_that_agree) {
   constexpr std::array kOfRuns{"touches",
                                "superseded_touches",
                                "reference_touches",
@@ -180,12 +206,13 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
                            "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
                            "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ?) AND id "
                            "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND ? <= (SELECT "
-                           "max(started_at) FROM runs)");
+                           "count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?)");
   choose.bind(1, oldest);
   choose.bind(2, std::string(run_outcome_name(RunOutcome::kRunning)));
   choose.bind(3, std::string(verdict_name(Verdict::kAccepted)));
   choose.bind(4, kLastRunsKept);
-  choose.bind(5, oldest);
+  choose.bind(5, days_that_agree);
+  choose.bind(6, oldest);
   choose.exec();
   for (const std::string table : kOfRuns)
     database->exec("DELETE FROM " + table + " WHERE run_id IN (SELECT id FROM old_runs)");

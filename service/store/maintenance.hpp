@@ -16,11 +16,16 @@ namespace cell {
 /// name with ".place.json" behind it. Throws std::runtime_error if it fails; no partial file remains.
 void back_up(const std::filesystem::path& database_file, const std::filesystem::path& copy);
 
-/// Throws std::runtime_error, with what to do, for a state directory that was in use (the place of the block
-/// or both tokens are there) and whose database is missing or empty: it would begin as if nothing had been.
+/// Throws std::runtime_error, with what to do, for a state directory that was in use (what mark_begun() left,
+/// the place of the block or both tokens are there) and whose database is missing or empty: it would begin as
+/// if nothing had been.
 void refuse_lost_store(const std::filesystem::path& state_directory);
 
-/// Nobody can say whether a database is damaged.
+/// Leaves a file beside the database, where there is none, that tells that one was begun there. Throws
+/// std::runtime_error if it cannot be written.
+void mark_begun(const std::filesystem::path& state_directory);
+
+/// Nobody can say here whether a database is damaged.
 class StoreNotChecked : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -29,7 +34,8 @@ class StoreNotChecked : public std::runtime_error {
 /// Damage of a database file, one line each; empty if there is none. Checks the log, pages, indices, foreign
 /// keys, the checksum of every row that a run rests on, that no row of an ended run is gone, plane, role and
 /// source of every touch, and the chains of the audit. Read-only, also on a disk that cannot be written;
-/// StoreNotChecked where a log lies beside the file there, which only a writer can put into it.
+/// StoreNotChecked where a log lies beside the file there, which only a writer can put into it, and for a
+/// file of a newer version.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
 
 /// Free bytes on the disk of the database; nothing where its directory is no longer there.
@@ -38,10 +44,16 @@ std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database);
 /// So many of the last runs stay however old they are.
 inline constexpr int kLastRunsKept = 10;
 
+/// On so many days, or all that are kept where those are fewer, runs must have begun since the date before
+/// which others are deleted.
+inline constexpr int kDaysThatAgree = 3;
+
 /// Deletes the runs that began before `oldest` (as in format_utc()) with all their rows, except the last
-/// accepted run, a running one and the last kLastRunsKept; returns how many. Where even the newest run began
-/// before `oldest`, nothing is deleted: more likely than a cell at rest is a clock that has jumped. Faults
-/// and audit entries have their own limits.
-int delete_runs_before(const SharedDatabase& database, const std::string& oldest);
+/// accepted run, a running one and the last kLastRunsKept; returns how many. What is deleted does not come
+/// back, so no clock is believed alone: where runs began on fewer than `days_that_agree` days since `oldest`,
+/// nothing is deleted. More likely than a cell at rest is a clock that stands years ahead, at this start of
+/// the daemon or at one before that made some runs. Faults and audit entries have their own limits.
+int delete_runs_before(const SharedDatabase& database, const std::string& oldest,
+                       int days_that_agree = kDaysThatAgree);
 
 }  // namespace cell

@@ -66,14 +66,23 @@ CheckedRows superseded_rows_of(const std::string& columns) {
   return rows_of("superseded_touches", "id, run_id, " + columns + ", reason", "number");
 }
 
-const CheckedRows& touch_rows_without_noise() {
-  static const CheckedRows rows = touch_rows_of(kTouchColumnsWithoutNoise);
-  return rows;
+/// Both tables of touches.
+struct TouchTables {
+  CheckedRows touches;
+  CheckedRows superseded;
+};
+
+TouchTables touch_tables_of(const std::string& columns) {
+  return {touch_rows_of(columns), superseded_rows_of(columns)};
 }
 
-const CheckedRows& superseded_rows_without_noise() {
-  static const CheckedRows rows = superseded_rows_of(kTouchColumnsWithoutNoise);
-  return rows;
+/// As they are in a file of this schema.
+const TouchTables& touch_tables(std::size_t schema) {
+  static const TouchTables without_noise = touch_tables_of(kTouchColumnsWithoutNoise);
+  static const TouchTables without_contacts = touch_tables_of(kTouchColumnsWithoutContacts);
+  static const TouchTables newest = touch_tables_of(kTouchColumns);
+  if (schema < kTouchNoiseSchema) return without_noise;
+  return schema < kTouchContactsSchema ? without_contacts : newest;
 }
 
 void reseal(SQLite::Database& database, const CheckedRows& before, const CheckedRows& now) {
@@ -95,15 +104,9 @@ std::string CheckedRows::values(int count) const {
   return " VALUES(" + parameters + ", row_checksum('" + name + "', " + parameters + "))";
 }
 
-const CheckedRows& touch_rows() {
-  static const CheckedRows rows = touch_rows_of(kTouchColumns);
-  return rows;
-}
+const CheckedRows& touch_rows() { return touch_tables(kTouchContactsSchema).touches; }
 
-const CheckedRows& superseded_rows() {
-  static const CheckedRows rows = superseded_rows_of(kTouchColumns);
-  return rows;
-}
+const CheckedRows& superseded_rows() { return touch_tables(kTouchContactsSchema).superseded; }
 
 const CheckedRows& reference_rows() {
   static const CheckedRows rows =
@@ -167,13 +170,16 @@ const CheckedRows& arm_rows() {
 }
 
 std::span<const CheckedRows* const> all_checked_rows(std::size_t schema) {
-  static const auto with = [](const CheckedRows& touches, const CheckedRows& superseded) {
-    return std::array{&touches,     &superseded, &reference_rows(), &plan_change_rows(), &open_command_rows(),
-                      &plan_rows(), &run_rows(), &result_rows(),    &arm_rows()};
+  static const auto with = [](const TouchTables& tables) {
+    return std::array{&tables.touches,     &tables.superseded,   &reference_rows(),
+                      &plan_change_rows(), &open_command_rows(), &plan_rows(),
+                      &run_rows(),         &result_rows(),       &arm_rows()};
   };
-  static const std::array all = with(touch_rows(), superseded_rows());
-  static const std::array without_noise = with(touch_rows_without_noise(), superseded_rows_without_noise());
-  return schema < kTouchNoiseSchema ? without_noise : all;
+  static const std::array without_noise = with(touch_tables(kChecksumSchema));
+  static const std::array without_contacts = with(touch_tables(kTouchNoiseSchema));
+  static const std::array newest = with(touch_tables(kTouchContactsSchema));
+  if (schema < kTouchNoiseSchema) return without_noise;
+  return schema < kTouchContactsSchema ? without_contacts : newest;
 }
 
 const std::string& rows_of_run() {
@@ -204,9 +210,10 @@ void fill_checksums(SQLite::Database& database, std::size_t schema) {
   }
 }
 
-void reseal_touches(SQLite::Database& database) {
-  reseal(database, touch_rows_without_noise(), touch_rows());
-  reseal(database, superseded_rows_without_noise(), superseded_rows());
+void reseal_touches(SQLite::Database& database, std::size_t schema) {
+  const TouchTables &before = touch_tables(schema - 1), &now = touch_tables(schema);
+  reseal(database, before.touches, now.touches);
+  reseal(database, before.superseded, now.superseded);
 }
 
 void seal(SQLite::Database& database, const CheckedRows& rows, const std::string& condition,

@@ -2,16 +2,15 @@
 #include "service/store/run_store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
-#include <sys/stat.h>
 
-#include <stdexcept>
 #include <utility>
 
-#include "service/store/damaged_store.hpp"
+#include "service/store/internal/opened_file.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
 #include "service/store/internal/run_change.hpp"
+#include "service/store/internal/touch_change.hpp"
 
 namespace cell {
 namespace {
@@ -19,15 +18,6 @@ namespace {
 /// Restarts the write-ahead log, so that no touch of a run finds it full. A reader may prevent it: then it
 /// grows.
 void restart_log(SQLite::Database& database) { database.tryExec("PRAGMA wal_checkpoint(RESTART)"); }
-
-template <class Value>
-void bind_or_null(SQLite::Statement& statement, int index, const std::optional<Value>& value) {
-  if (value) {
-    statement.bind(index, *value);
-  } else {
-    statement.bind(index);
-  }
-}
 
 /// The columns of a touch, in the order of both tables, from `index` on.
 void bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouch& touch) {
@@ -43,34 +33,11 @@ void bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouc
   insert.bind(++index, touch.session);
   insert.bind(++index, touch.sequence);
   insert.bind(++index, touch.aimed_with);
-  bind_or_null(insert, ++index, touch.noise_um);
-}
-
-/// A damaged touch stays where it is: its copy would get a checksum that says it is whole.
-void demand_whole_touch(SQLite::Database& database, std::int64_t run_id, int number) {
-  SQLite::Statement query(
-      database, "SELECT " + row::touch_rows().is_whole() + " FROM touches WHERE run_id = ? AND number = ?");
-  query.bind(1, run_id);
-  query.bind(2, number);
-  if (!query.executeStep() || query.getColumn(0).getInt() == 1) return;
-  throw DamagedStore(database.getFilename(), row::place_of("touches", run_id, number), row::kOtherChecksum);
-}
-
-/// Moves a touch to superseded_touches, inside the caller's transaction.
-void supersede(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason) {
-  demand_whole_touch(database, run_id, number);
-  SQLite::Statement keep(database, "INSERT INTO superseded_touches(run_id, " + row::kTouchColumns +
-                                       ", reason) SELECT run_id, " + row::kTouchColumns +
-                                       ", ? FROM touches WHERE run_id = ? AND number = ?");
-  keep.bind(1, reason);
-  keep.bind(2, run_id);
-  keep.bind(3, number);
-  if (keep.exec() != 1) throw SQLite::Exception("there is no such touch to supersede");
-  row::seal(database, row::superseded_rows(), "id", database.getLastInsertRowid());
-  SQLite::Statement remove(database, "DELETE FROM touches WHERE run_id = ? AND number = ?");
-  remove.bind(1, run_id);
-  remove.bind(2, number);
-  remove.exec();
+  row::bind_or_null(insert, ++index, touch.noise_um);
+  row::bind_or_null(insert, ++index,
+                    touch.first ? std::optional(static_cast<int>(touch.first->source)) : std::nullopt);
+  row::bind_joints(insert, index, touch.first ? &touch.first->joints : nullptr);
+  row::bind_joints(insert, index, touch.again ? &*touch.again : nullptr);
 }
 
 void insert_plan_change(SQLite::Database& database, std::int64_t run_id, const PlanChange& change) {
@@ -88,7 +55,7 @@ void write_result(SQLite::Database& database, std::int64_t run_id,
   SQLite::Statement result(database,
                            "UPDATE runs SET result_json = ?1, result_checksum = CASE WHEN ?1 IS NOT "
                            "NULL THEN row_checksum('results', ?2, ?1) END WHERE id = ?2");
-  bind_or_null(result, 1, result_json);
+  row::bind_or_null(result, 1, result_json);
   result.bind(2, run_id);
   result.exec();
   SQLite::Statement forget(database, "DELETE FROM arms WHERE run_id = ?");
@@ -117,26 +84,18 @@ class OneUse {
   SQLite::Statement& statement_;
 };
 
-/// Which file stands at a path: its device and its inode; nothing where none does.
-std::optional<std::pair<dev_t, ino_t>> file_at(const std::string& path) {
-  struct stat found {};
-  if (::stat(path.c_str(), &found) != 0) return std::nullopt;
-  return std::pair{found.st_dev, found.st_ino};
-}
-
-/// SQLite goes on writing to a file that was moved or removed, where the next daemon does not find it.
-void demand_file(const std::string& path, const std::optional<std::pair<dev_t, ino_t>>& opened) {
-  if (file_at(path) == opened) return;
-  throw std::runtime_error(
-      path +
-      " was moved, removed or replaced since touchcald started; put it back, or stop the "
-      "run and start touchcald again");
+/// row::has_ended() by a statement that is prepared once, not parsed again with each touch: less work
+/// before the disk.
+bool has_ended(SQLite::Statement& prepared, std::int64_t run_id) {
+  OneUse query(prepared);
+  query->bind(1, run_id);
+  return query->executeStep();
 }
 
 }  // namespace
 
 struct RunStore::Statements {
-  static constexpr int kTouchParameters = 17;
+  static constexpr int kTouchParameters = 1 + row::kTouchColumnCount;
 
   explicit Statements(SQLite::Database& database)
       : append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns + ", checksum)" +
@@ -145,13 +104,15 @@ struct RunStore::Statements {
                          "INSERT OR REPLACE INTO open_commands(run_id, session, sequence, aimed_with, "
                          "touch_json, checksum)" +
                              row::open_command_rows().values(5)),
-        make_durable(database, "UPDATE open_commands SET session = session WHERE run_id = ?"),
-        opened(file_at(database.getFilename())) {}
+        shift_open_command(database, "UPDATE open_commands SET session = session + ? WHERE run_id = ?"),
+        has_ended(database, row::kHasEnded),
+        opened(row::file_at(database.getFilename())) {}
 
   SQLite::Statement append_touch;
   SQLite::Statement set_open_command;
-  SQLite::Statement make_durable;
-  std::optional<std::pair<dev_t, ino_t>> opened;  // the file at the path of the database
+  SQLite::Statement shift_open_command;
+  SQLite::Statement has_ended;
+  row::FileAtPath opened;  // the file of the database
 };
 
 RunStore::RunStore(const std::filesystem::path& file)
@@ -183,17 +144,17 @@ std::int64_t RunStore::insert_run(const NewRun& run) {
   insert.bind(1, run.recipe);
   insert.bind(2, run.touches_total);
   insert.bind(3, run.started_at);
-  bind_or_null(insert, 4, run.idempotency_key);
-  bind_or_null(insert, 5, run.operator_name);
-  bind_or_null(insert, 6, run.config_digest);
-  bind_or_null(insert, 7, run.conditions_json);
+  row::bind_or_null(insert, 4, run.idempotency_key);
+  row::bind_or_null(insert, 5, run.operator_name);
+  row::bind_or_null(insert, 6, run.config_digest);
+  row::bind_or_null(insert, 7, run.conditions_json);
   if (const auto& temperature = run.block_temperature) {
     insert.bind(8, temperature->celsius);
-    bind_or_null(insert, 9, temperature->std_k);
-    bind_or_null(insert, 10, temperature->measured_at);
-    bind_or_null(insert, 11, temperature->source);
+    row::bind_or_null(insert, 9, temperature->std_k);
+    row::bind_or_null(insert, 10, temperature->measured_at);
+    row::bind_or_null(insert, 11, temperature->source);
   }
-  bind_or_null(insert, 12, run.stiffness);
+  row::bind_or_null(insert, 12, run.stiffness);
   insert.exec();
   const std::int64_t id = database_->getLastInsertRowid();
   row::seal(*database_, row::run_rows(), "id", id);
@@ -252,14 +213,14 @@ void RunStore::append_plan_change(std::int64_t run_id, const PlanChange& change)
 void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& changes,
                          const std::optional<Withdrawal>& withdrawn) {
   SQLite::Transaction transaction(*database_);
-  if (withdrawn) supersede(*database_, run_id, withdrawn->number, withdrawn->reason);
+  if (withdrawn) row::supersede(*database_, run_id, withdrawn->number, withdrawn->reason);
   for (const PlanChange& change : changes) insert_plan_change(*database_, run_id, change);
   row::note_rows(*database_, run_id);
   transaction.commit();
 }
 
 void RunStore::set_open_command(std::int64_t run_id, const OpenCommand& command) {
-  demand_file(database_->getFilename(), statements_->opened);
+  row::demand_file(database_->getFilename(), statements_->opened);
   const RelaxedDurability unsynced(*database_);
   OneUse insert(statements_->set_open_command);
   insert->bind(1, run_id);
@@ -278,10 +239,18 @@ void RunStore::forget_open_command(std::int64_t run_id) {
 }
 
 bool RunStore::make_durable(std::int64_t run_id) {
-  try {
-    OneUse update(statements_->make_durable);
-    update->bind(1, run_id);
+  // A commit is synced where it writes a page, and what is set to what it was writes none.
+  const auto shift = [&](int by) {
+    OneUse update(statements_->shift_open_command);
+    update->bind(1, by);
+    update->bind(2, run_id);
     update->exec();
+  };
+  try {
+    SQLite::Transaction transaction(*database_);
+    shift(1);
+    shift(-1);
+    transaction.commit();
     return true;
   } catch (const SQLite::Exception&) {
     return false;
@@ -289,7 +258,7 @@ bool RunStore::make_durable(std::int64_t run_id) {
 }
 
 void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
-  if (!row::has_ended(*database_, run_id)) {
+  if (!has_ended(statements_->has_ended, run_id)) {
     insert_touch(run_id, touch);
     return;
   }
@@ -307,16 +276,22 @@ void RunStore::insert_touch(std::int64_t run_id, const StoredTouch& touch) {
 
 void RunStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {
   SQLite::Transaction transaction(*database_);
-  supersede(*database_, run_id, number, reason);
+  row::supersede(*database_, run_id, number, reason);
   row::note_rows(*database_, run_id);
   transaction.commit();
 }
 
 void RunStore::replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason) {
   SQLite::Transaction transaction(*database_);
-  supersede(*database_, run_id, again.number, reason);
+  row::supersede(*database_, run_id, again.number, reason);
   insert_touch(run_id, again);
   row::note_rows(*database_, run_id);
+  transaction.commit();
+}
+
+void RunStore::confirm_touch(std::int64_t run_id, int number, const cs8::JointsMicrodeg& again) {
+  SQLite::Transaction transaction(*database_);
+  row::confirm(*database_, run_id, number, again);
   transaction.commit();
 }
 
@@ -330,7 +305,7 @@ void RunStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch
   insert.bind(++index, touch.number);
   insert.bind(++index, touch.touches_done);
   for (const std::int32_t joint : touch.joints) insert.bind(++index, joint);
-  bind_or_null(insert, ++index, touch.drift_mm);
+  row::bind_or_null(insert, ++index, touch.drift_mm);
   insert.bind(++index, touch.captured_at);
   insert.exec();
   row::note_rows(*database_, run_id);
@@ -355,8 +330,8 @@ void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
     update.bind(1, std::string(run_outcome_name(end.outcome)));
     update.bind(2, std::string(verdict_name(end.verdict)));
     update.bind(3, end.ended_at);
-    bind_or_null(update, 4, end.fault_code);
-    bind_or_null(update, 5, end.fault_message);
+    row::bind_or_null(update, 4, end.fault_code);
+    row::bind_or_null(update, 5, end.fault_message);
     update.bind(6, run_id);
     update.exec();
     row::count_rows_of(*database_, run_id);
@@ -376,7 +351,7 @@ int RunStore::finish_interrupted(const std::string& now, std::optional<std::int6
   SQLite::Transaction transaction(*database_);
   SQLite::Statement query(*database_, "SELECT id FROM runs WHERE outcome = ? AND id IS NOT ?");
   query.bind(1, std::string(run_outcome_name(RunOutcome::kRunning)));
-  bind_or_null(query, 2, but);
+  row::bind_or_null(query, 2, but);
   std::vector<std::int64_t> open;
   while (query.executeStep()) open.push_back(query.getColumn(0).getInt64());
   query.reset();

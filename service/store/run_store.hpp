@@ -14,6 +14,14 @@
 
 namespace cell {
 
+/// The first contact of a two-speed touch, at the speed of the search.
+struct FirstContact {
+  cs8::CaptureSource source = cs8::CaptureSource::kLatched;
+  cs8::JointsMicrodeg joints{};
+
+  bool operator==(const FirstContact&) const = default;
+};
+
 /// A touch exactly as the controller answered it: joints in 10^-6 degrees.
 struct StoredTouch {
   int number = 0;  // place in the run's plan, from 1
@@ -29,6 +37,8 @@ struct StoredTouch {
   int aimed_with = 0;  // number of touches in the estimate that aimed it; kNominalMiss: none was used
   /// One standard deviation along the normal, micrometres; nothing: that of any touch of the cell.
   std::optional<double> noise_um;
+  std::optional<FirstContact> first;         // nothing of a touch with one contact
+  std::optional<cs8::JointsMicrodeg> again;  // the contact of a repetition that agreed with this touch
 };
 inline constexpr int kNominalMiss = -1;
 
@@ -159,6 +169,9 @@ class RunStore {
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
   /// `again` replaces the touch of its number, which is kept as superseded.
   void replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason);
+  /// Keeps the contact of a repetition with the touch that it agrees with, which stays. It goes with the
+  /// touch where that is replaced or withdrawn later.
+  void confirm_touch(std::int64_t run_id, int number, const cs8::JointsMicrodeg& again);
   /// Removes the touch, which is kept as superseded.
   void withdraw_touch(std::int64_t run_id, int number, const std::string& reason);
   /// Changes of the plan by a person's word, the withdrawal of a touch with them: durable on return, all or

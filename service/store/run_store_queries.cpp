@@ -134,6 +134,16 @@ cs8::JointsMicrodeg read_joints(SQLite::Statement& query, int first) {
   return joints;
 }
 
+std::optional<FirstContact> read_first_contact(SQLite::Statement& query) {
+  if (query.getColumn(16).isNull()) return std::nullopt;
+  return FirstContact{static_cast<cs8::CaptureSource>(query.getColumn(16).getInt()), read_joints(query, 17)};
+}
+
+std::optional<cs8::JointsMicrodeg> read_repetition(SQLite::Statement& query) {
+  if (query.getColumn(23).isNull()) return std::nullopt;
+  return read_joints(query, 23);
+}
+
 StoredTouch read_touch(SQLite::Statement& query) {
   return {.number = query.getColumn(0).getInt(),
           .plane = query.getColumn(1).getInt(),
@@ -145,7 +155,9 @@ StoredTouch read_touch(SQLite::Statement& query) {
           .session = query.getColumn(12).getUInt(),
           .sequence = query.getColumn(13).getUInt(),
           .aimed_with = query.getColumn(14).getInt(),
-          .noise_um = number_or_nothing(query.getColumn(15))};
+          .noise_um = number_or_nothing(query.getColumn(15)),
+          .first = read_first_contact(query),
+          .again = read_repetition(query)};
 }
 
 }  // namespace
@@ -233,7 +245,7 @@ std::vector<StoredTouch> RunStore::touches(std::int64_t run_id) const try {
   query.bind(1, run_id);
   std::vector<StoredTouch> found;
   while (query.executeStep()) {
-    demand_whole(*database_, query, 16, "touches", run_id, 0);
+    demand_whole(*database_, query, row::kTouchColumnCount, "touches", run_id, 0);
     found.push_back(read_touch(query));
   }
   return found;
@@ -249,8 +261,8 @@ std::vector<SupersededTouch> RunStore::superseded_touches(std::int64_t run_id) c
   query.bind(1, run_id);
   std::vector<SupersededTouch> found;
   while (query.executeStep()) {
-    demand_whole(*database_, query, 17, "superseded_touches", run_id, 0);
-    found.push_back({read_touch(query), query.getColumn(16).getString()});
+    demand_whole(*database_, query, row::kTouchColumnCount + 1, "superseded_touches", run_id, 0);
+    found.push_back({read_touch(query), query.getColumn(row::kTouchColumnCount).getString()});
   }
   return found;
 } catch (const SQLite::Exception& error) {

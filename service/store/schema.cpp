@@ -184,8 +184,40 @@ ALTER TABLE superseded_touches ADD COLUMN noise_um REAL;
 /// Whose token a command came with. The hash of a row has it only where there is one.
 constexpr const char* kAuditTokenNames = "ALTER TABLE audit ADD COLUMN token_name TEXT NOT NULL DEFAULT '';";
 
-constexpr std::array kMigrations{kRunsAndTouches, kPlans,        kDiary,      kTemperatures,   kStiffness,
-                                 kChecksums,      kAuditChained, kTouchNoise, kAuditTokenNames};
+/// What else was touched at the place of a touch: the first contact of two, and a repetition that agreed.
+/// Checksums cover both from here on: reseal_touches().
+constexpr const char* kTouchContacts = R"sql(
+ALTER TABLE touches ADD COLUMN first_source INTEGER;
+ALTER TABLE touches ADD COLUMN first_j1_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN first_j2_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN first_j3_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN first_j4_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN first_j5_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN first_j6_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN again_j1_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN again_j2_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN again_j3_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN again_j4_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN again_j5_microdeg INTEGER;
+ALTER TABLE touches ADD COLUMN again_j6_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN first_source INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN first_j1_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN first_j2_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN first_j3_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN first_j4_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN first_j5_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN first_j6_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN again_j1_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN again_j2_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN again_j3_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN again_j4_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN again_j5_microdeg INTEGER;
+ALTER TABLE superseded_touches ADD COLUMN again_j6_microdeg INTEGER;
+)sql";
+
+constexpr std::array kMigrations{kRunsAndTouches,  kPlans,        kDiary,        kTemperatures,
+                                 kStiffness,       kChecksums,    kAuditChained, kTouchNoise,
+                                 kAuditTokenNames, kTouchContacts};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.
@@ -213,7 +245,8 @@ void migrate(SQLite::Database& database, const std::filesystem::path& file) {
     database.exec(migration);
     if (migration == kChecksums) row::fill_checksums(database, kChecksumSchema);
     if (migration == kAuditChained) chain_audit_rows(database);
-    if (migration == kTouchNoise) row::reseal_touches(database);
+    if (migration == kTouchNoise) row::reseal_touches(database, kTouchNoiseSchema);
+    if (migration == kTouchContacts) row::reseal_touches(database, kTouchContactsSchema);
   }
   database.exec("PRAGMA user_version = " + std::to_string(newest));
   transaction.commit();

@@ -43,6 +43,24 @@ TEST(Tree, HasNoNamesThatSayNothing) {
   }
 }
 
+/// Files of a component are compiled together, in groups that change with every file added: the same name in
+/// two of them is an error of some build to come.
+TEST(Tree, ConstantsOfAComponentHaveNamesOfTheirOwn) {
+  const std::regex constant("^(?:inline |static )?constexpr [^=;({]*?\\b(k[A-Z]\\w*)");
+  for (const std::string& folder : kFolders) {
+    std::map<std::string, std::filesystem::path> places;
+    for (const auto& file : source_files(folder)) {
+      if (file.extension() != ".cpp") continue;
+      for (const std::string& line : read_lines(file)) {
+        std::smatch found;
+        if (!std::regex_search(line, found, constant)) continue;
+        const auto [place, is_new] = places.emplace(found[1], file);
+        EXPECT_TRUE(is_new) << found[1] << " in " << place->second << " and " << file;
+      }
+    }
+  }
+}
+
 /// Who reads a clock of its own, and why; everybody else is handed one.
 const std::map<std::string, std::string> kReadsAClock{
     {"daemon.cpp", "hands the machine's clocks to all parts of the daemon"},

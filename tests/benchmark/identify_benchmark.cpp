@@ -19,6 +19,7 @@
 #include "calib_core/identification/identify.hpp"
 #include "calib_core/numerics/uniform_chance.hpp"
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
+#include "service/base/freed_memory.hpp"
 #include "tests/benchmark/bare_factorisations.hpp"
 #include "tests/benchmark/ceres_identify.hpp"
 #include "tests/benchmark/demo_study.hpp"
@@ -255,6 +256,7 @@ void print_figures(const TimesReporter& times) {
 }  // namespace bench
 
 int main(int argc, char** argv) {
+  cell::keep_freed_memory();  // as touchcal
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   bench::TimesReporter times(benchmark::ConsoleReporter::OO_Tabular);

@@ -60,6 +60,20 @@ Face ball(double cap_half_angle_deg) {
   return sphere_face({0.14, -0.18, 0.11}, 0.025, {0, -1, 0}, radians_from_degrees(cap_half_angle_deg));
 }
 
+Face bore(double wall_half_angle_deg) {
+  return bore_face({.center_m = {0.14, -0.038, 0.11},
+                    .axis = {0, -1, 0},
+                    .mouth_m = 0.022,
+                    .half_angle_rad = radians_from_degrees(wall_half_angle_deg)},
+                   0.042, {1, 0, 0}, 0.020);
+}
+
+Box bored_ring() {
+  Box ring{"ring", {0.09, -0.06, 0.06}, {0.19, 0.0, 0.16}};
+  ring.holes.push_back({{0.14, -0.038, 0.11}, {0, -1, 0}, 0.042});
+  return ring;
+}
+
 IdentificationProblem problem(const ArtefactKnowledge& knowledge, double touch_noise_m) {
   IdentificationProblem problem;
   problem.nominal = paper::nominal();

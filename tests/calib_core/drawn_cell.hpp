@@ -25,6 +25,12 @@ ArtefactKnowledge uncertain_artefact(std::size_t face_count);
 /// A ball of 50 mm beside the block, as a face; touched around -y.
 Face ball(double cap_half_angle_deg = 100.0);
 
+/// A ring with a bore of 84 mm beside the block, as a face: it opens upwards (-y) 60 mm above the plate, and
+/// may be touched from 2 to 42 mm below its mouth, around +x or all around.
+Face bore(double wall_half_angle_deg = 180.0);
+/// The ring: a box with the bore as a hole.
+Box bored_ring();
+
 /// Everything but the touches.
 IdentificationProblem problem(const ArtefactKnowledge& knowledge,
                               double touch_noise_m = study::kTouchNoiseMetres);

@@ -52,6 +52,13 @@ Arm bending() {
   Arm arm = calibrated(shipped_arm("tx90"));
   arm.model.down_in_frame_1 = Eigen::Vector3d::UnitX();  // on a wall
   arm.model.harmonics_rad[3] = {1e-5, -2e-5};
+  for (const int joint : {2, 4}) {
+    arm.model.ripple_periods_per_turn[static_cast<std::size_t>(joint)] = joint == 2 ? 96.0 : 59.75;
+    arm.model.ripples_rad[static_cast<std::size_t>(joint)] = {1.25e-5, -3e-6};
+    for (int position = calib::ripple_position(joint); position <= calib::ripple_position(joint) + 1;
+         ++position)
+      arm.nongeometric_std[static_cast<std::size_t>(position)] = arm.gears.ripple_rad[joint] / std::sqrt(2.0);
+  }
   arm.model.compliance_rad_per_nm[1] = 1.234567890123e-6;
   arm.model.compliance_rad_per_nm[2] = -1e-8;
   arm.model.compliance_rad_per_nm[4] = 2.5e-4;  // touches that hardly show it
@@ -125,7 +132,10 @@ TEST_P(EveryArm, IsReadBackWithItsTolerancesRangesAndWeights) {
   for (std::size_t joint = 0; joint < calib::kJointCount; ++joint) {
     EXPECT_EQ(back.model.harmonics_rad[joint].cos, arm.model.harmonics_rad[joint].cos);
     EXPECT_EQ(back.model.harmonics_rad[joint].sin, arm.model.harmonics_rad[joint].sin);
+    EXPECT_EQ(back.model.ripples_rad[joint].cos, arm.model.ripples_rad[joint].cos);
+    EXPECT_EQ(back.model.ripples_rad[joint].sin, arm.model.ripples_rad[joint].sin);
   }
+  EXPECT_EQ(back.model.ripple_periods_per_turn, arm.model.ripple_periods_per_turn);
   EXPECT_EQ(back.gears.std_rad(), arm.gears.std_rad());
   ASSERT_EQ(back.growth.has_value(), arm.growth.has_value());
   if (!arm.growth) return;

@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
     Sphere, SpoiledBlock,
     testing::Values(
         SpoiledBall{"/schema", "touchcal/block/1", "/faces/5/shape", "raise \"schema\" to 2"},
-        SpoiledBall{"/faces/5/shape", "bore", "/faces/5/shape", "bores cannot"},
+        SpoiledBall{"/faces/5/shape", "cone", "/faces/5/shape", "can be touched"},
         SpoiledBall{"/faces/5/shape", "plane", "/faces/5/cap_axis", "unknown key"},
         SpoiledBall{"/faces/0/shape", "sphere", "/faces/0/edge_u", "unknown key"},
         SpoiledBall{"/faces/5/radius_mm", 0, "/faces/5/radius_mm", "a number over 0"},

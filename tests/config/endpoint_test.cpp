@@ -21,8 +21,9 @@ TEST(ParseEndpoint, AnIpv6HostStandsInBrackets) {
 }
 
 TEST(ParseEndpoint, AnythingElseIsNone) {
-  for (const char* text : {"", ":", "host", ":80", "host:", "host:x", "host:-1", "host:65536", "host:80x",
-                           "host: 80", "[]:80"}) {
+  for (const char* text :
+       {"", ":", "host", ":80", "host:", "host:x", "host:-1", "host:65536", "host:80x", "host: 80", "[]:80",
+        "[::1", "[::1:80", "::1]:80", "::1:80", "[[::1]]:80", "[::1]x:80"}) {
     EXPECT_FALSE(parse_endpoint(text)) << text;
   }
 }

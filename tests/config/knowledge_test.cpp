@@ -225,6 +225,7 @@ TEST_F(Knowledge, ACellSaysHowOldATemperatureMayBeFromItsSecondSchemaOn) {
   edit(kCell, [](json& cell) {
     cell["schema"] = kFirstCellSchema;
     cell["acceptance"].erase("tip_box_max_mm");
+    cell["acceptance"].erase("tip_box_max_by_recipe_mm");
   });
   EXPECT_FALSE(read().acceptance.tip_box_max_m) << "files of the first are read";
   EXPECT_EQ(read().block_temperature_age_max, std::chrono::hours(8));
@@ -245,6 +246,32 @@ TEST_F(Knowledge, ACellLimitsTheTipAtItsWorstFromItsSecondSchemaOn) {
   EXPECT_LT(*shipped.acceptance.tip_box_max_m, shipped.nominal_position_error_m) << "else it says nothing";
   edit(kCell, [](json& cell) { cell["schema"] = kFirstCellSchema; });
   EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/acceptance/tip_box_max_mm");
+}
+
+TEST_F(Knowledge, ACellLimitsTheTipByRecipeFromItsThirdSchemaOn) {
+  const auto limit_to = [this](const json& by_recipe) {
+    edit(kCell, [&](json& cell) {
+      cell["schema"] = kCellSchema;
+      cell["acceptance"]["tip_box_max_by_recipe_mm"] = by_recipe;
+    });
+  };
+  limit_to({{"quick", 0.4}, {"best", 0.25}});
+  const AcceptanceLimits limits = read().acceptance;
+  EXPECT_DOUBLE_EQ(limits.tip_box_max_of_m("quick").value(), 4e-4);
+  EXPECT_DOUBLE_EQ(limits.tip_box_max_of_m("best").value(), 2.5e-4);
+  EXPECT_EQ(limits.tip_box_max_of_m("edf-23"), limits.tip_box_max_m);
+  for (const auto& [wrong, said] : {std::pair{json{{"quik", 0.4}}, "no recipe of this cell is called"},
+                                    std::pair{json{{"quick", 0}}, "over 0"}}) {
+    limit_to(wrong);
+    const ConfigError error = error_of([&] { static_cast<void>(read()); });
+    EXPECT_EQ(error.pointer(), "/acceptance/tip_box_max_by_recipe_mm/" + wrong.begin().key());
+    EXPECT_THAT(error.message(), testing::HasSubstr(said));
+  }
+  limit_to({{"quick", 0.4}});
+  edit(kCell, [](json& cell) { cell["schema"] = kSecondCellSchema; });
+  const ConfigError older = error_of([&] { static_cast<void>(read()); });
+  EXPECT_EQ(older.pointer(), "/acceptance/tip_box_max_by_recipe_mm");
+  EXPECT_THAT(older.message(), testing::HasSubstr("version 2; raise \"schema\" to 3"));
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST_P(SpoiledEntry, IsRefusedInOneLineWithFilePointerAndRemedy) {
 INSTANTIATE_TEST_SUITE_P(
     Arm, SpoiledEntry,
     testing::Values(
-        Spoiled{kArm, "/schema", "touchcal/arm/3", "/schema", "this program reads \"touchcal/arm/2\""},
+        Spoiled{kArm, "/schema", "touchcal/arm/4", "/schema", "this program reads \"touchcal/arm/3\""},
         Spoiled{kArm, "/schema", "touchcal/arm/1", "/gears", "unknown key"},
         Spoiled{kArm, "/schema", std::nullopt, "", "\"schema\" is missing"},
         Spoiled{kArm, "/schema", 1, "/schema", "is a number"},
@@ -126,6 +126,15 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kArm, "/gears/harmonics_rad", json({0}), "/gears/harmonics_rad", "wants 6 entries, has 1"},
         Spoiled{kArm, "/gears/harmonics_rad", json::array({{3, -3}, {0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 0}}),
                 "/gears/harmonics_rad/0/0", "give -0.01 to 0.01"},
+        Spoiled{kArm, "/gears/ripple_rad", json({1e-5, 1e-5, 1e-5, 1e-5, 1e-5}), "/gears/ripple_rad",
+                "wants 6 entries, has 5"},
+        Spoiled{kArm, "/gears/ripple_rad/0", -1e-5, "/gears/ripple_rad/0", "give 0 to 0.01"},
+        Spoiled{kArm, "/gears/ripple_rad/0", "NaN", "/gears/ripple_rad/0", "give a finite number"},
+        Spoiled{kArm, "/gears/repeatability_rad/5", nullptr, "/gears/repeatability_rad/5", "finite number"},
+        Spoiled{kArm, "/gears/std_harmonic_rad", "NaN", "/gears/std_harmonic_rad", "finite number"},
+        Spoiled{kArm, "/gears/std_harmonic_rad", -5e-5, "/gears/std_harmonic_rad", "over 0"},
+        Spoiled{kArm, "/gears/ripple_periods_per_turn", json({118, 118, 96, 72, 60, 48}),
+                "/gears/ripple_periods_per_turn", "unknown key"},
         Spoiled{kArm, "/gears/lubricant", "oil", "/gears/lubricant", "unknown key"},
         Spoiled{kArm, "/bodies/0/radius_mm", 0, "/bodies/0/radius_mm", "a number over 0"},
         Spoiled{kArm, "/bodies/0/frame", 8, "/bodies/0/frame", "0 to 7"},
@@ -195,13 +204,14 @@ INSTANTIATE_TEST_SUITE_P(
         Spoiled{kRecipe, "/identification/stiffness", "no", "/identification/stiffness",
                 R"(give "on", "off" or "auto")"},
         Spoiled{kRecipe, "/identification/stiffness", true, "/identification/stiffness", "is true"},
+        Spoiled{kRecipe, "/identification/ripple", "auto", "/identification/ripple", "raise \"schema\" to 3"},
         Spoiled{kRecipe, "/identification/hold_weak", 0, "/identification/hold_weak", "true or false"},
         Spoiled{kRecipe, "/identification/huber", true, "/identification/huber", "unknown key"}));
 
 INSTANTIATE_TEST_SUITE_P(
     Cell, SpoiledEntry,
     testing::Values(
-        Spoiled{kCell, "/schema", "touchcal/cell/9", "/schema", "\"touchcal/cell/2\""},
+        Spoiled{kCell, "/schema", "touchcal/cell/9", "/schema", "\"touchcal/cell/3\""},
         Spoiled{kCell, "/arm", "../arms/none.json", "/arm", "there is no file"},
         Spoiled{kCell, "/arm", "../../arms", "/arm", "there is no file"},
         Spoiled{kCell, "/recipes/1", "nowhere.json", "/recipes/1", "there is no file"},

@@ -74,13 +74,13 @@ std::string references(const std::vector<std::string>& made) {
 }
 
 TEST(TouchesJson, HasTheTouchesOfTheReferencePlaceInTheirOrder) {
-  EXPECT_THAT(from_json(document("")).references, IsEmpty());
+  EXPECT_THAT(from_json(document("")).repeats.references, IsEmpty());
   const TouchesFile file = from_json(references({reference(), reference(1, 1e-3), reference(1, -1e-3)}));
   EXPECT_THAT(file.warnings, IsEmpty());
-  ASSERT_EQ(file.references.size(), 3U);
-  EXPECT_EQ(file.references[1].face, file.references[0].face);
-  EXPECT_NEAR(file.references[1].joints[0] - file.references[0].joints[0], calib::radians_from_degrees(1e-3),
-              1e-12);
+  ASSERT_EQ(file.repeats.references.size(), 3U);
+  EXPECT_EQ(file.repeats.references[1].face, file.repeats.references[0].face);
+  EXPECT_NEAR(file.repeats.references[1].joints[0] - file.repeats.references[0].joints[0],
+              calib::radians_from_degrees(1e-3), 1e-12);
 }
 
 TEST(TouchesJson, ReferenceTouchesOfMoreThanOnePlaceAreRefusedWithTheirPointer) {
@@ -99,7 +99,7 @@ TEST(TouchesJson, ReferenceTouchesOfMoreThanOnePlaceAreRefusedWithTheirPointer) 
   const ConfigError off = refusal(reference(3, 60.0), 0);
   EXPECT_EQ(off.pointer(), "/reference_touches/0/joints_deg");
   EXPECT_THAT(off.message(), HasSubstr("(by the nominal arm); correct the plane or the joints"));
-  const int plane = from_json(references({reference()})).references.front().face + 1;
+  const int plane = from_json(references({reference()})).repeats.references.front().face + 1;
   EXPECT_EQ(refusal(reference(1, 0.0, plane % 4 + 1)).pointer(), "/reference_touches/1/plane");
 }
 
@@ -166,13 +166,13 @@ TEST(TouchesJson, WhatIsWrongIsSaidWithItsPlace) {
       {document("7"), "body: /touches/0: is a number; give an object"},
       {R"({"schema":"touchcal/touches/1","arm":"tx60","touches":[]})",
        "body: /arm: is \"tx60\" but the cell's arm is \"tx90\""},
-      {R"({"schema":"touchcal/touches/3","arm":"tx90","touches":[]})",
-       "this program reads \"touchcal/touches/2\""},
+      {R"({"schema":"touchcal/touches/4","arm":"tx90","touches":[]})",
+       "this program reads \"touchcal/touches/3\""},
       {R"({"schema":"touchcal/touches/1","arm":"tx90","touches":[{"plane":1,"joints_deg":[1,2,3,4,5,6],"noise_um":61}]})",
        R"(/touches/0/noise_um: unknown key "noise_um" in a touches document of version 1; raise)"},
       {R"({"schema":"touchcal/touches/1","touches":[]})", "body: \"arm\" is missing; add it"},
       {R"({"schema":"touchcal/touches/1","arm":"tx90"})", "body: \"touches\" is missing; add it"},
-      {"[]", "give an object with \"schema\":\"touchcal/touches/2\""},
+      {"[]", "give an object with \"schema\":\"touchcal/touches/3\""},
   };
   for (const RefusedTouches& refused : cases) {
     EXPECT_THAT(error_of([&] { from_json(refused.bytes); }).what(), HasSubstr(refused.what)) << refused.bytes;

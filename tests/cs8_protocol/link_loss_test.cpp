@@ -1,9 +1,8 @@
 #include <gmock/gmock.h>
 
-#include <boost/asio/bind_cancellation_slot.hpp>
-#include <boost/asio/cancellation_signal.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <limits>
-#include <memory>
 #include <utility>
 
 #include "tests/cs8_protocol/fake_controller.hpp"
@@ -265,91 +264,6 @@ TEST_F(LinkLoss, AFaultOfTheControllerIsNamed) {
   EXPECT_THAT(error.text, HasSubstr("bad_value (detail 1)"));
 }
 
-TEST_F(LinkLoss, ClosingDuringATouchEndsItAndCallsNothingBack) {
-  Client client = make_client();
-  on_state_ = [&](const State&) { client.close(); };
-  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
-    co_await peer.shake_hands(welcome());
-    co_await peer.receive<Touch>();
-    peer.send(1, State{.session = 3});
-    co_await peer.until_closed();
-  }});
-  run([&]() -> asio::awaitable<void> {
-    co_await client.connect(endpoint(), expected());
-    const TouchReply reply = co_await client.touch(some_touch());
-    const auto* error = std::get_if<LinkError>(&reply.answer);
-    EXPECT_TRUE(error != nullptr && error->kind == LinkErrorKind::kClosed);
-  });
-  EXPECT_TRUE(losses_.empty());
-}
-
-TEST_F(LinkLoss, ClosingDuringTheHandshakeEndsIt) {
-  Client client = make_client();
-  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
-    co_await peer.receive<Hello>();
-    client.close();
-    co_await peer.until_closed();
-  }});
-  run([&]() -> asio::awaitable<void> {
-    const ConnectReply reply = co_await client.connect(endpoint(), expected());
-    const auto* error = std::get_if<LinkError>(&reply);
-    EXPECT_TRUE(error != nullptr && error->kind == LinkErrorKind::kClosed);
-  });
-}
-
-TEST_F(LinkLoss, TheClientMayBeDestroyedFromItsOwnHooksAndWhileACallWaits) {
-  for (const bool on_loss : {false, true}) {
-    std::unique_ptr<Client> client;
-    const auto destroy = [&] { client.reset(); };
-    client = std::make_unique<Client>(io_.get_executor(), patient(),
-                                      ClientHooks{.on_state =
-                                                      [&, on_loss](const State&) {
-                                                        if (!on_loss) destroy();
-                                                      },
-                                                  .on_loss =
-                                                      [&, on_loss](const LinkError&) {
-                                                        if (on_loss) destroy();
-                                                      }});
-    controller_does({[&](Peer& peer) -> asio::awaitable<void> {
-      co_await peer.shake_hands(welcome());
-      co_await peer.receive<Touch>();
-      peer.send(1, State{.session = 3});
-      peer.send(0, Fault{FaultCode::kLength, 4});
-      co_await peer.until_closed();
-    }});
-    run([&]() -> asio::awaitable<void> {
-      co_await client->connect(endpoint(), expected());
-      const TouchReply reply = co_await client->touch(some_touch());
-      EXPECT_TRUE(std::holds_alternative<LinkError>(reply.answer));
-    });
-    EXPECT_EQ(client, nullptr);
-  }
-}
-
-TEST_F(LinkLoss, ACallThatIsCancelledEndsTheLinkBecauseItsAnswerHasNowhereToGo) {
-  Client client = make_client();
-  asio::cancellation_signal cancel;
-  on_state_ = [&](const State&) { cancel.emit(asio::cancellation_type::terminal); };
-  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
-    co_await peer.shake_hands(welcome());
-    co_await peer.receive<Touch>();
-    peer.send(1, State{.session = 3});
-    co_await peer.until_closed();
-  }});
-  bool cancelled = false;
-  run([&]() -> asio::awaitable<void> {
-    co_await client.connect(endpoint(), expected());
-    asio::co_spawn(
-        io_, client.touch(some_touch()),
-        asio::bind_cancellation_slot(cancel.slot(), [&](const std::exception_ptr& failure, auto&&) {
-          cancelled = failure != nullptr;
-        }));
-  });
-  EXPECT_TRUE(cancelled);
-  ASSERT_EQ(losses_.size(), 1u);
-  EXPECT_THAT(losses_.front().text, HasSubstr("given up"));
-}
-
 TEST_F(LinkLoss, AControllerThatStopsReadingIsFoundOut) {
   Client client = make_client();
   controller_does({[&](Peer& peer) -> asio::awaitable<void> {
@@ -359,7 +273,10 @@ TEST_F(LinkLoss, AControllerThatStopsReadingIsFoundOut) {
   }});
   run([&]() -> asio::awaitable<void> {
     co_await client.connect(endpoint(), expected());
-    for (int i = 0; i < 10'000'000 && client.connected(); ++i) client.stop();
+    for (int i = 0; i < 10'000'000 && client.connected(); ++i) {
+      client.stop();
+      if (i % 1'000 == 0) co_await asio::post(io_, asio::use_awaitable);
+    }
     EXPECT_FALSE(client.connected());
     io_.stop();
   });
@@ -367,6 +284,30 @@ TEST_F(LinkLoss, AControllerThatStopsReadingIsFoundOut) {
   io_.poll();
   ASSERT_EQ(losses_.size(), 1u);
   EXPECT_EQ(losses_.front().kind, LinkErrorKind::kSilent);
+}
+
+/// The moment at which an owner connects anew is any: here as soon as it can see that there is no link.
+TEST_F(LinkLoss, IsToldBeforeTheOwnerCanConnectAnew) {
+  Client client = make_client();
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+                     co_await peer.shake_hands(welcome());
+                     peer.send_bytes({'n', 'o', ' ', 'f', 'r', 'a', 'm', 'e', '.', '.', '.', '.'});
+                     co_await peer.until_closed();
+                   },
+                   [&](Peer& peer) -> asio::awaitable<void> {
+                     co_await peer.shake_hands(welcome());
+                     co_await peer.until_closed();
+                   }});
+  run([&]() -> asio::awaitable<void> {
+    const ConnectReply first = co_await client.connect(endpoint(), expected());
+    EXPECT_TRUE(std::holds_alternative<Welcome>(first));
+    while (client.connected()) co_await asio::post(io_, asio::use_awaitable);
+    const ConnectReply second = co_await client.connect(endpoint(), expected());
+    EXPECT_TRUE(std::holds_alternative<Welcome>(second));
+    client.close();
+  });
+  ASSERT_EQ(losses_.size(), 1u);
+  EXPECT_EQ(losses_[0].kind, LinkErrorKind::kProtocol);
 }
 
 }  // namespace

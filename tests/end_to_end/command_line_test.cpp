@@ -146,6 +146,93 @@ TEST_F(CommandLine, AnEmptyDatabaseOfAStateDirectoryThatWasInUseIsNoNewOne) {
   EXPECT_EQ(std::filesystem::file_size(state / "touchcal.sqlite"), 0U);
 }
 
+TEST_F(CommandLine, AStateDirectoryThatIsAFileIsToldWithTheRemedy) {
+  const auto file = folder_ / "state";
+  std::ofstream(file) << "a file";
+  const std::vector<std::vector<std::string>> calls{
+      {"touchcald", "--cell", cell_file("demo"), "--state", file.string(), "--listen", "127.0.0.1:0"},
+      {"touchcald", "--verify", "--state", file.string()},
+      {"touchcald", "--backup", (folder_ / "copy").string(), "--state", file.string()},
+      {"touchcal", "status", "--state", file.string()}};
+  for (const auto& call : calls) {
+    const Finished refused = run(call);
+    EXPECT_EQ(refused.exit_code, cell::kExitFailed) << refused.err;
+    EXPECT_THAT(refused.err, HasSubstr(file.string() + " is not a directory; name another"));
+  }
+}
+
+TEST_F(CommandLine, NumbersAreDecimal) {
+  const std::vector<std::vector<std::string>> calls{
+      {"touchcald", "--retain-days", "0x10"},
+      {"touchcal", "audit", "--limit", "0x10"},
+      {"touchcal", "run", "--arm-moving", "0x10"},
+      {"touchcal", "run", "--block-temperature", "0x10", "--std-block-temperature", "1"},
+      {"touchcal", "run", "--block-temperature", "20", "--std-block-temperature", "0x1"},
+      {"touchcal", "identify", "--monte-carlo", "0x1000"},
+      {"touchcal", "plan", "--fit", "0x10"},
+      {"touchcal", "plan", "--accuracy", "0x1p-2"},
+      {"touchcal", "plan", "--workspace-box", "0x10,0,0,1,1,1"},
+      {"touchcal", "plan", "--place", "--place-min", "0x10,0,0"},
+      {"touchcal", "plan", "--place", "--place-max", "0,0,0x10"},
+      {"touchcal", "plan", "--place", "--place-yaw", "0,0x10"},
+      {"touchcal", "plan", "--place", "--places", "0x10"},
+      {"cs8sim", "--seed", "0x10"},
+      {"cs8sim", "--speed", "0x10"}};
+  for (const auto& call : calls) {
+    const Finished refused = run(call);
+    EXPECT_EQ(refused.exit_code, cell::kExitUsage) << call[0] << ' ' << call[1];
+    EXPECT_THAT(refused.err, HasSubstr("'0x1")) << call[0] << ' ' << call[1];
+  }
+}
+
+TEST_F(CommandLine, ASeedOfMoreThan64BitsIsNotCut) {
+  for (const char* seed : {"18446744073709551616", "-1"}) {
+    const Finished refused = run({"cs8sim", "--cell", cell_file("edf"), "--seed", seed});
+    EXPECT_EQ(refused.exit_code, cell::kExitUsage);
+    EXPECT_THAT(refused.err, HasSubstr("--seed: wants a whole number from 0 to 18446744073709551615"));
+  }
+}
+
+TEST_F(CommandLine, AnEmptyOptionIsNotTakenForOneThatWasLeftOut) {
+  const std::string cell = cell_file("demo");
+  const std::vector<std::vector<std::string>> calls{{"touchcald", "--cell", cell, "--state", ""},
+                                                    {"touchcald", "--cell", cell, "--listen", ""},
+                                                    {"touchcald", "--cell", cell, "--controller", ""},
+                                                    {"touchcald", "--cell", cell, "--tls-cert", ""},
+                                                    {"touchcald", "--cell", cell, "--tls-key", ""},
+                                                    {"touchcald", "--cell", cell, "--backup", ""},
+                                                    {"touchcald", "--cell", ""},
+                                                    {"touchcal", "status", "--state", ""},
+                                                    {"touchcal", "status", "--daemon", ""},
+                                                    {"cs8sim", "--cell", cell, "--truth", ""},
+                                                    {"cs8sim", "--cell", cell, "--faults", ""},
+                                                    {"cs8sim", "--cell", cell, "--control", ""},
+                                                    {"cs8sim", "--cell", cell, "--listen", ""}};
+  for (const auto& call : calls) {
+    const Finished refused = run(call);
+    EXPECT_EQ(refused.exit_code, cell::kExitUsage) << ::testing::PrintToString(call);
+    EXPECT_THAT(refused.err, HasSubstr(*(call.end() - 2) + ": is empty; give it a value"));
+  }
+}
+
+TEST_F(CommandLine, AnAddressWithOneBracketIsNone) {
+  for (const char* option : {"--controller", "--listen"}) {
+    const Finished refused = run({"touchcald", "--cell", cell_file("demo"), option, "[::1"});
+    EXPECT_EQ(refused.exit_code, cell::kExitUsage);
+    EXPECT_THAT(refused.err, HasSubstr(std::string(option) + ": '[::1' is not HOST:PORT"));
+  }
+}
+
+TEST_F(CommandLine, ACertificateWithoutItsKeyIsToldBeforeAnythingElse) {
+  const std::string none = (folder_ / "none.json").string();
+  const Finished lone = run({"touchcald", "--cell", none, "--tls-cert", "cert.pem"});
+  EXPECT_EQ(lone.exit_code, cell::kExitUsage);
+  EXPECT_THAT(lone.err, HasSubstr("--tls-cert: is given without --tls-key; give both"));
+  const Finished key = run({"touchcald", "--check", "--cell", none, "--tls-key", "key.pem"});
+  EXPECT_EQ(key.exit_code, cell::kExitUsage);
+  EXPECT_THAT(key.err, HasSubstr("--tls-key: is given without --tls-cert; give both"));
+}
+
 TEST_F(CommandLine, TheUnitIsAsClosedAsItCanBe) {
   const std::string unit = std::string(TOUCHCAL_SOURCE_DIR) + "/service/touchcald.service";
   const Finished judged = run({"/usr/bin/systemd-analyze", "security", "--offline=true", "--threshold=10",

@@ -147,8 +147,8 @@ TEST_F(BlockElsewhere, ATouchTakenBackIsMadeAgainAndTheDialogueCanBeLeft) {
   loop_.command(Command::kLocate);  // once more changes nothing
   EXPECT_EQ(loop_.status().by_hand->index, 2);
   loop_.command(Command::kUndo);
-  EXPECT_EQ(loop_.status().by_hand->index, 1);
-  loop_.relaunch();  // a dialogue does not outlive its daemon
+  loop_.run_until([](const cell::Status& status) { return status.by_hand.value().index == 1; });
+  loop_.relaunch();  // without a touch there is nothing to keep
   EXPECT_FALSE(loop_.status().by_hand);
   loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
   loop_.command(Command::kLocate);
@@ -156,6 +156,50 @@ TEST_F(BlockElsewhere, ATouchTakenBackIsMadeAgainAndTheDialogueCanBeLeft) {
   loop_.command(Command::kStop);
   EXPECT_FALSE(loop_.status().by_hand);
   EXPECT_FALSE(std::filesystem::exists(loop_.place_file));
+}
+
+TEST_F(BlockElsewhere, ADialogueKeepsItsTouchesOverDaemonsALostLinkAndAnEmergencyStop) {
+  serve_block_at(moved_block());
+  launch();
+  loop_.command(Command::kLocate);
+  Pendant pendant(loop_, there_, plant_);
+  pendant.take_over();
+  const auto spots = cell::place_spots(loop_.cell);
+  for (std::size_t i = 0; i < spots.size(); ++i) {
+    SCOPED_TRACE("touch " + std::to_string(i + 1));
+    pendant.touch(spots[i].face, spots[i].point_m);
+    const int behind = loop_.status().by_hand.value().index;
+    EXPECT_EQ(behind, static_cast<int>(std::min(i + 2, spots.size())));
+    if (i == 1) loop_.inject(R"({"fault":"close"})");
+    if (i == 1) loop_.run_until([](const cell::Status& status) { return !status.controller.connected; });
+    if (i == 2) loop_.inject(R"({"fault":"emergency_stop"})");
+    if (i == 2)
+      loop_.run_until(
+          [](const cell::Status& status) { return status.controller.emergency_stop.value_or(false); });
+    loop_.relaunch();
+    ASSERT_TRUE(loop_.status().by_hand);
+    EXPECT_EQ(loop_.status().by_hand->index, behind);
+    EXPECT_NE(loop_.status().by_hand->words.find(" kept"), std::string::npos);
+    loop_.run_until([](const cell::Status& status) { return status.controller.connected; });
+    if (i == 2) loop_.inject(R"({"fault":"release_emergency_stop"})");
+    if (i == 2) loop_.inject(R"({"fault":"acknowledge_emergency_stop"})");
+    if (i == 2) pendant.take_over();
+  }
+  pendant.hand_back();
+  loop_.run_until(State::kIdle);
+  loop_.command(Command::kLocate);
+  ASSERT_EQ(loop_.status().by_hand.value().step, cell::HandStep::kPassing);
+  loop_.inject(R"({"fault":"close"})");
+  loop_.run_until([](const cell::Status& status) { return !cell::is_active(status.state); });
+  ASSERT_EQ(loop_.status().state, State::kAborted);
+  loop_.leave_aborted();
+  EXPECT_EQ(loop_.status().by_hand.value().step, cell::HandStep::kPass) << "the touches are there";
+  go_around();
+  ASSERT_TRUE(loop_.operation().place()) << loop_.fault_name();
+  const Eigen::Isometry3d off = moved_block().inverse() * loop_.operation().place()->cell_from_block;
+  EXPECT_LT(off.translation().norm(), loop_.cell.nominal_position_error_m);
+  loop_.relaunch();
+  EXPECT_FALSE(loop_.status().by_hand) << "it is over";
 }
 
 TEST_F(BlockElsewhere, ATouchOnTheWayAroundTheBlockEndsTheDialogueWithoutAPlace) {

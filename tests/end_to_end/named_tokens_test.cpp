@@ -13,6 +13,7 @@
 #include "service/base/exit_code.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
+#include "tests/service/raw_http.hpp"
 
 namespace touchcal::testing {
 namespace {
@@ -79,6 +80,60 @@ TEST_F(NamedTokens, TheAuditTellsWhichTokenACommandCameWith) {
   EXPECT_EQ(asked[2].at("role"), "operate");
   EXPECT_THAT(run("", {"audit"}).out, AllOf(ContainsRegex("operate +anna +- "), HasSubstr(" bert ")));
   EXPECT_THAT(run("", {"audit", "--csv"}).out, HasSubstr("\"operate\",\"anna\",\"\","));
+  served.signal(SIGTERM);
+  EXPECT_EQ(served.wait().exit_code, cell::kExitDone);
+}
+
+TEST_F(NamedTokens, OneThatIsRemovedEndsAndANewOneCountsWithoutARestart) {
+  const std::string bert(64, '2'), cora(64, '3');
+  Process served(daemon(), folder_ / "touchcald.err");
+  served.wait_for_address();
+  ASSERT_EQ(run(bert, {"acknowledge"}).exit_code, cell::kExitDone);
+  EXPECT_NE(run(cora, {"acknowledge"}).exit_code, cell::kExitDone);
+  std::filesystem::remove(state_ / "operators" / "bert");
+  write("cora", cora);
+  constexpr int kCallsMax = 1000;  // each takes a while
+  int calls = 0;
+  while (run(bert, {"acknowledge"}).exit_code == cell::kExitDone && calls < kCallsMax) ++calls;
+  while (run(cora, {"acknowledge"}).exit_code != cell::kExitDone && calls < kCallsMax) ++calls;
+  EXPECT_LT(calls, kCallsMax);
+  EXPECT_THAT(run(bert, {"acknowledge"}).err, HasSubstr("requires its token"));
+  EXPECT_EQ(run(std::string(64, '1'), {"acknowledge"}).exit_code, cell::kExitDone) << "anna's is as before";
+  served.signal(SIGTERM);
+  EXPECT_EQ(served.wait().exit_code, cell::kExitDone);
+}
+
+TEST_F(NamedTokens, AStreamOfEventsEndsWithItsToken) {
+  Process served(daemon(), folder_ / "touchcald.err");
+  const std::string address = served.wait_for_address();
+  const std::string port = address.substr(address.rfind(':') + 1);
+  cell::RawClient reader(
+      {boost::asio::ip::address_v4::loopback(), static_cast<boost::asio::ip::port_type>(std::stoi(port))});
+  reader.send("GET /api/v1/events HTTP/1.1\r\nHost: " + address + "\r\nAuthorization: Bearer " +
+              std::string(64, '2') + "\r\n\r\n");
+  ASSERT_EQ(reader.receive(true).status, 200U);
+  std::filesystem::remove(state_ / "operators" / "bert");
+  reader.receive_until("no event ends so");
+  EXPECT_TRUE(reader.closed()) << "sooner than a stream says that it lives";
+  served.signal(SIGTERM);
+  EXPECT_EQ(served.wait().exit_code, cell::kExitDone);
+}
+
+TEST_F(NamedTokens, TheTokensWithoutANameAreReadAgainToo) {
+  Process served(daemon(), folder_ / "touchcald.err");
+  served.wait_for_address();
+  const std::string token(64, '4');
+  EXPECT_NE(run(token, {"acknowledge"}).exit_code, cell::kExitDone);
+  std::ofstream(state_ / "new") << token << "\n";
+  std::filesystem::permissions(state_ / "new", std::filesystem::perms(0600));
+  std::filesystem::rename(state_ / "new", state_ / "operate.token");
+  constexpr int kCallsMax = 1000;  // each takes a while
+  int calls = 0;
+  while (run(token, {"acknowledge"}).exit_code != cell::kExitDone && calls < kCallsMax) ++calls;
+  std::filesystem::remove(state_ / "operate.token");
+  while (run(token, {"acknowledge"}).exit_code == cell::kExitDone && calls < kCallsMax) ++calls;
+  EXPECT_LT(calls, kCallsMax);
+  EXPECT_EQ(run("", {"acknowledge"}).exit_code, cell::kExitDone) << "with the one that was made anew";
   served.signal(SIGTERM);
   EXPECT_EQ(served.wait().exit_code, cell::kExitDone);
 }

@@ -116,6 +116,27 @@ TEST_F(Operator, AStopInASearchTakesTheStylusBackAndTheNextRunBeginsWithTheRestO
   EXPECT_EQ(asked.front(), cs8::MessageType::kRetract);
 }
 
+/// A pause lets the touch under way end; nobody promised that of the end of the daemon.
+TEST_F(Operator, ASearchBehindAPauseIsBrokenOffByTheEndOfTheDaemon) {
+  loop_.serve({}, 20.0);
+  bool searched = false;
+  std::set<cs8::MessageType> asked;
+  Relay relay(loop_.io(), loop_.port(), [&](const cs8::Message& message) {
+    const auto* state = std::get_if<cs8::State>(&message.payload);
+    if (state && state->phase == cs8::Phase::kSearch) searched = true;
+    asked.insert(cs8::type_of(message));
+  });
+  loop_.launch(relay.port());
+  loop_.run_until(State::kIdle);
+  const std::int64_t id = loop_.start();
+  loop_.run_until([&](const cell::Status&) { return searched; });
+  loop_.command(Command::kPause);
+  loop_.relaunch();
+  EXPECT_TRUE(asked.contains(cs8::MessageType::kStop));
+  loop_.run_until(State::kHeld);
+  expect_touches_once(loop_, id, 0);
+}
+
 TEST_F(Operator, AStopWhileTheTouchesArePlannedEndsTheRunWithoutAny) {
   make_ready();
   const std::int64_t id = loop_.start();

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "service/acquisition/cell_operation.hpp"
+#include "service/base/context.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/store/maintenance.hpp"
 #include "sim_controller/server.hpp"
@@ -46,7 +47,7 @@ class MortalDaemon {
   ~MortalDaemon() { kill(); }
 
   void launch() {
-    io_ = std::make_unique<boost::asio::io_context>(1);
+    io_ = std::make_unique<cell::Context>(1);
     computation_ = std::make_unique<boost::asio::thread_pool>(1);
     store_ = std::make_unique<cell::RunStore>(store_file());
     operation_ = std::make_unique<cell::CellOperation>(
@@ -57,7 +58,8 @@ class MortalDaemon {
   }
   /// Nothing of the daemon gets to act any more.
   void kill() {
-    computation_.reset();  // waits for what it is at, of which nobody hears
+    computation_.reset();     // waits for what it is at, of which nobody hears
+    if (io_) io_->give_up();  // its coroutines, while the operation that they refer to is there
     operation_.reset();
     io_.reset();
     store_.reset();
@@ -131,7 +133,7 @@ class MortalDaemon {
   Folder folder_;
   boost::asio::io_context controller_io_{1};
   std::optional<sim::Server> server_;
-  std::unique_ptr<boost::asio::io_context> io_;
+  std::unique_ptr<cell::Context> io_;
   std::unique_ptr<boost::asio::thread_pool> computation_;
   std::unique_ptr<cell::RunStore> store_;
   std::unique_ptr<cell::CellOperation> operation_;
@@ -162,6 +164,8 @@ void expect_touches_of_the_unbroken_run(const std::vector<cell::StoredTouch>& to
     EXPECT_EQ(touches[i].number, static_cast<int>(i) + 1);
     EXPECT_EQ(touches[i].plane, unbroken().touches[i].plane) << i;
     EXPECT_EQ(touches[i].joints, unbroken().touches[i].joints) << i;
+    EXPECT_TRUE(touches[i].first) << "each is made at two speeds";
+    EXPECT_EQ(touches[i].first, unbroken().touches[i].first) << i;
   }
 }
 
@@ -234,6 +238,25 @@ TEST(Restart, WhateverItDidWhenItWasKilledNoAnsweredTouchIsLostOrCountedTwice) {
   }
 }
 
+TEST(Restart, ADaemonThatIsKilledWhileItAsksForTheLastAnswerLeavesItToTheNext) {
+  MortalDaemon daemon;
+  daemon.launch();
+  daemon.start();
+  daemon.run_until([](const cell::Status& status) { return status.touches_done >= 2; });
+  while (!daemon.store().open_command(1)) daemon.step();
+  for (int i = 0; i < 3; ++i) {
+    daemon.kill();
+    daemon.launch();
+    daemon.run_until([](const cell::Status& status) { return status.controller.connected; });
+  }
+  ASSERT_EQ(daemon.restart().state, State::kHeld);
+  EXPECT_GE(daemon.status().touches_done, 2);
+  daemon.command(Command::kResume);
+  daemon.finish();
+  EXPECT_EQ(daemon.status().state, State::kComplete);
+  EXPECT_EQ(daemon.store().touches(1).size(), kTouchesInAll);
+}
+
 TEST(Restart, ARunKeepsTheTemperatureThatItWasStartedWith) {
   MortalDaemon daemon;
   daemon.launch();
@@ -291,18 +314,47 @@ TEST(Restart, AnInterruptedRunThatIsStoppedStaysInterruptedAndTheNextOneCanStart
   daemon.run_until([](const cell::Status& status) { return status.run_id == 2 && status.touches_done >= 1; });
 }
 
-TEST(Restart, ARunOfARecipeThatIsGoneIsToldAsInterruptedAndTheCellIsFree) {
+TEST(Restart, ARunOfARecipeThatIsGoneWaitsForItsFilesOrForAPersonWhoEndsIt) {
+  MortalDaemon daemon;
+  daemon.launch();
+  daemon.start();
+  daemon.run_until([](const cell::Status& status) { return status.touches_done >= 1; });
+  const int kept = daemon.store().run(1)->touches_done;
+  daemon.kill();
+  daemon.cell.recipes.erase(kFewTouches);
+  daemon.launch();
+  daemon.run_until([](const cell::Status& status) { return status.controller.connected; });
+  EXPECT_EQ(daemon.status().state, State::kHeld);
+  EXPECT_EQ(daemon.status().touches_done, kept);
+  EXPECT_THAT(daemon.status().fault->message(), ::testing::HasSubstr(kFewTouches));
+  EXPECT_THAT(daemon.operation().exits(), ::testing::Not(::testing::Contains(Command::kResume)));
+  EXPECT_EQ(daemon.store().run(1)->outcome, cell::RunOutcome::kRunning);
+
+  daemon.command(Command::kStop);
+  daemon.run_until(State::kStopped);
+  EXPECT_EQ(daemon.store().run(1)->outcome, cell::RunOutcome::kInterrupted);
+  EXPECT_FALSE(daemon.store().result_json(1)) << "of touches that these files say nothing of";
+  daemon.command(Command::kReset);
+  daemon.run_until(State::kIdle);
+}
+
+TEST(Restart, ARunGoesOnOnceItsFilesAreBack) {
   MortalDaemon daemon;
   daemon.launch();
   daemon.start();
   daemon.run_until([](const cell::Status& status) { return status.touches_done >= 1; });
   daemon.kill();
+  const cell::Recipe recipe = daemon.cell.recipes.at(kFewTouches);
   daemon.cell.recipes.erase(kFewTouches);
   daemon.launch();
-  daemon.run_until(State::kIdle);
-  EXPECT_EQ(daemon.store().run(1)->outcome, cell::RunOutcome::kInterrupted);
-  EXPECT_THAT(daemon.store().run(1)->fault_message.value_or(""), ::testing::HasSubstr(kFewTouches));
-  EXPECT_GE(daemon.store().run(1)->touches_done, 1);
+  daemon.run_until([](const cell::Status& status) { return status.controller.connected; });
+  ASSERT_EQ(daemon.status().state, State::kHeld);
+  daemon.cell.recipes.emplace(kFewTouches, recipe);
+  ASSERT_EQ(daemon.restart().state, State::kHeld);
+  daemon.command(Command::kResume);
+  daemon.finish();
+  EXPECT_EQ(daemon.status().state, State::kComplete);
+  EXPECT_EQ(daemon.store().runs(10).size(), 1U);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ class ServedCell {
 
  private:
   asio::awaitable<std::string> read_events() {
-    const cell::HttpRequest request{.method = "GET", .path = "/api/v1/events"};
+    const cell::HttpRequest request{.method = "GET", .path = "/api/v1/events", .from_loopback = true};
     const std::unique_ptr<cell::EventSource> stream = api_.events(request);
     std::string text;
     const auto tells = [&text](const char* state) { return text.find(state) != std::string::npos; };

@@ -9,8 +9,8 @@
 #include "config/touches_file.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/documents/result_view.hpp"
-#include "service/run/reference_drift.hpp"
 #include "service/run/run.hpp"
+#include "service/run/run_repeats.hpp"
 #include "tests/end_to_end/held_out.hpp"
 #include "tests/end_to_end/loopback_cell.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
@@ -109,13 +109,20 @@ TEST_P(WholeRun, ItsTouchesReadBackFromAFileGiveTheSameResultToTheBit) {
       cell::touches_document(loop_.cell, loop_.store().touches(run_id_), loop_.store().references(run_id_));
   const cell::TouchesFile file =
       cell::touches_from_json("the run's touches", document, cell::kTouchesSizeMax, loop_.cell);
+  EXPECT_EQ(file.repeats.two_speed.size(), file.touches.size()) << "each was touched at two speeds";
+  EXPECT_EQ(file.repeats.reference_times_s.size(), file.repeats.references.size());
   const cell::Recipe& recipe = loop_.cell.recipes.at(kRecipe);
   calib::IdentificationProblem problem = cell::identification_problem(loop_.cell, recipe);
   problem.touches = file.touches;
-  cell::note_references(file.references, problem);
+  cell::note_repeats(file.repeats, problem);
   const calib::IdentificationResult again = calib::identify(problem, recipe.identification);
   const calib::IdentificationResult& live = loop_.operation().run()->latest();
   EXPECT_TRUE((again.errors.array() == live.errors.array()).all());
+  const auto& two_speed = problem.repeat_sources.two_speed;
+  ASSERT_TRUE(two_speed.noise);
+  EXPECT_EQ(two_speed.noise->degrees_of_freedom, static_cast<double>(kTouchCount - kPlaneCount));
+  EXPECT_LT(two_speed.noise->std_m, 0.5 * loop_.cell.touch_noise_m) << "one trigger's noise is in both";
+  EXPECT_FALSE(two_speed.used);
   const cell::TipRegions regions(loop_.cell);
   const auto stored = loop_.store().run(run_id_);
   const cell::ResultContext context{.warnings = {}, .conditions = stored->conditions_json.value()};

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "calib_core/kinematics/kinematic_model.hpp"
-#include "service/run/reference_drift.hpp"
+#include "service/run/run_repeats.hpp"
 #include "sim_controller/contact.hpp"
 #include "tests/calib_core/block_study.hpp"
 #include "tests/figures/simulated_cell.hpp"
@@ -160,7 +160,9 @@ std::vector<Eigen::Vector3d> HiddenCell::tips_m(const std::vector<JointVector>& 
 void make_run(HiddenCell& hidden, const std::vector<Touch>& planned, const cell::Recipe& recipe,
               IdentificationProblem& problem) {
   problem.touches = hidden.touch(planned, recipe.reference_every);
-  cell::note_references(hidden.references(), problem);
+  cell::note_repeats(
+      {.references = hidden.references(), .reference_times_s = {}, .two_speed = {}, .touched_again = {}},
+      problem);
 }
 
 }  // namespace calib::figures

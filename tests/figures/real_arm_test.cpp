@@ -15,14 +15,15 @@ namespace calib::figures {
 namespace {
 
 constexpr int kPostureCount = 200;
-/// Achieved over predicted, median. Wanted are 0.75 to 1.25: missed by the worn gears with `best` over the
-/// joint ranges (their play is wider than the file allows) and by `quick` over the joint ranges on two arms.
-/// What the model does not have is the same in every seed and depends on the plan: with lengths of the block
-/// known to 4.2, 4.5, 5.0 and 5.5 um, which gives four plans as good as each other, `quick` has 0.62 to 0.75
-/// on truth-real and 0.96 to 1.49 on the worn gears, and `best` there 1.15 to 1.33.
+/// Achieved over predicted, median. Wanted are 0.75 to 1.25: above it is `quick` over the box with oval gears
+/// (1.35 and 1.27, and more than half of these runs lack fit), below it `quick` on four arms and `best` on an
+/// arm with less beside its model than the file allows (truth). What the model does not have is the same in
+/// every seed and depends on the plan: lengths of the block known to 4.2, 4.5 or 5.5 um in place of 5 gave
+/// plans as good as each other, and ratios of `quick` from 0.62 to 0.75 on truth-real and from 0.96 to 1.49
+/// on the worn gears (before second harmonics were counted).
 constexpr double kRatioMin = 0.60, kRatioMax = 1.40;
-/// Coordinates of the tip within their 95 % uncertainty, over the box. Wanted are 93 to 97 %: the worn gears
-/// have 92 with `best`, arms that bend less than the file allows up to 99.2.
+/// Coordinates of the tip within their 95 % uncertainty, over the box. Wanted are 93 to 97 %: oval gears
+/// have 88 with `quick`, arms that bend less than the file allows up to 99.8.
 constexpr double kCoverageMin = 0.87, kCoverageMax = 0.999;
 
 HiddenArm with_twice_the_droop(const cell::Cell& cell) {
@@ -54,6 +55,24 @@ HiddenArm with_worn_gears(const cell::Cell& cell) {
   return arm;
 }
 
+/// The gears of joints 2 and 3 are oval and not eccentric: an error that repeats twice a turn, which the
+/// model does not have.
+HiddenArm with_oval_gears(const cell::Cell& cell) {
+  HiddenArm arm = shipped_arm(cell, "truth-real");
+  arm.name = "oval gears";
+  constexpr double kOvalityRad = 160e-6, kTwiceATurn = 2.0;
+  for (const std::size_t joint : {1U, 2U}) arm.truth.ripple.at(joint) = {kOvalityRad, kTwiceATurn, 0.0};
+  return arm;
+}
+
+/// Joint 2 alone: one bad gear among good ones.
+HiddenArm with_one_oval_gear(const cell::Cell& cell) {
+  HiddenArm arm = with_oval_gears(cell);
+  arm.name = "one oval gear";
+  arm.truth.ripple.at(2) = shipped_arm(cell, "truth-real").truth.ripple.at(2);
+  return arm;
+}
+
 /// Tip errors over some postures: achieved, predicted, and how many coordinates are within their 95 %
 /// uncertainty.
 struct TipTally {
@@ -72,9 +91,12 @@ struct TipTally {
       const Eigen::Vector3d variance = (slopes * covariance * slopes.transpose()).diagonal();
       const Eigen::Vector3d of_noise =
           (slopes * result.uncertainty->of_noise * slopes.transpose()).diagonal();
+      const Eigen::Vector3d of_drift =
+          (slopes * result.uncertainty->of_drift * slopes.transpose()).diagonal();
       for (int axis = 0; axis < 3; ++axis) {
-        const double half_m = result.uncertainty->coverage_factor_of(variance[axis], of_noise[axis]) *
-                              std::sqrt(variance[axis]);
+        const double half_m =
+            result.uncertainty->coverage_factor_of(variance[axis], of_noise[axis], of_drift[axis]) *
+            std::sqrt(variance[axis]);
         covered += std::abs(error_m[axis]) <= half_m ? 1.0 : 0.0;
       }
       coordinates += 3.0;
@@ -140,8 +162,9 @@ TEST_P(RealArm, IsAsGoodAsItsResultSays) {
   const cell::Cell cell = shipped_cell("demo");
   const cell::Recipe& recipe = cell.recipes.at(GetParam());
   const std::vector<Touch> planned = all_planned_touches(cell, recipe);
-  for (const HiddenArm& arm : {shipped_arm(cell, "truth"), shipped_arm(cell, "truth-real"),
-                               with_twice_the_droop(cell), with_cold_start(cell), with_worn_gears(cell)}) {
+  for (const HiddenArm& arm :
+       {shipped_arm(cell, "truth"), shipped_arm(cell, "truth-real"), with_twice_the_droop(cell),
+        with_cold_start(cell), with_worn_gears(cell), with_oval_gears(cell), with_one_oval_gear(cell)}) {
     const Tally tally = calibrate(cell, recipe, planned, arm);
     tally.report(arm.name, recipe.name);
     for (const TipTally* tip : {&tally.box, &tally.ranges}) {

@@ -65,6 +65,9 @@ inline void check_schema(const nlohmann::json& value, const nlohmann::json& sche
       for (const auto& [name, part] : wanted.items()) {
         if (value.contains(name)) check_schema(value.at(name), part, where + "/" + name, wrong);
       }
+    } else if (key == "additionalProperties") {  // here always beside no "properties"
+      if (!value.is_object()) continue;
+      for (const auto& [name, part] : value.items()) check_schema(part, wanted, where + "/" + name, wrong);
     } else if (key == "items") {
       for (std::size_t i = 0; i < value.size(); ++i)
         check_schema(value.at(i), wanted, where + "/" + std::to_string(i), wrong);

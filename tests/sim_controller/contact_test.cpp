@@ -31,6 +31,18 @@ TEST(BoxDistance, OfABallIsThatFromItsSurface) {
   EXPECT_DOUBLE_EQ(box_distance_m(ball, {1, 2, 2.75}), -0.25);
 }
 
+TEST(BoxDistance, InAHoleIsThatFromItsWallAndFromItsRimAbove) {
+  calib::Box ring{"ring", Eigen::Vector3d(-5, -2, -5), Eigen::Vector3d(5, 2, 5)};
+  ring.holes.push_back({{1, 0, 0}, {0, 1, 0}, 3.0});
+  EXPECT_DOUBLE_EQ(box_distance_m(ring, {1, 0, 0}), 3.0);
+  EXPECT_DOUBLE_EQ(box_distance_m(ring, {3, 1.5, 0}), 1.0);
+  EXPECT_DOUBLE_EQ(box_distance_m(ring, {1, -1, -3.5}), -0.5);  // in the material
+  EXPECT_DOUBLE_EQ(box_distance_m(ring, {-4, 0, 0}), -1.0);
+  EXPECT_DOUBLE_EQ(box_distance_m(ring, {-4, 5, 0}), 3.0);
+  EXPECT_DOUBLE_EQ(box_distance_m(ring, {0, 5, 0}), std::hypot(3.0, 2.0));  // from the rim
+  EXPECT_DOUBLE_EQ(box_distance_m(ring, {1, 2, 1}), 2.0);
+}
+
 TEST(Contact, PutsTheTrueBallWherePlaneRadiusPretravelAndNoiseSay) {
   for (const char* name : {"edf", "demo"}) {
     const cell::Cell cell = testing::read_cell(name);

@@ -225,6 +225,27 @@ TEST(World, PretravelHasThreeLobesAroundTheStylus) {
   }
 }
 
+// The simulator's formula against that of the core, which identifies: what a probe's file says of the probe
+// puts the contact where it is.
+TEST(World, TripsWhereTheDistanceOfAKnownProbeIsNothing) {
+  const calib::SidewaysPretravel known{.tilt_m = 80e-6, .lobes_m = 50e-6, .lobe_direction_rad = 0.7};
+  cell::Truth truth;
+  truth.probe.pretravel_tilt_m = known.tilt_m;
+  truth.probe.lobes_m = known.lobes_m;
+  truth.probe.lobe_direction_rad = known.lobe_direction_rad;
+  const Plant plant = quiet_plant(truth);
+  calib::Stylus stylus = demo().probe.stylus;
+  stylus.sideways = known;
+  for (int face = 0; face < 5; ++face) {
+    const AimedTouch touch = aimed_touch(demo(), {.face = face, .tilt_rad = 0.8});
+    const Eigen::Isometry3d tip = calib::forward_kinematics(plant.nominal, trip(plant, touch));
+    EXPECT_NEAR(calib::signed_distance_m(calib::contact_plane(touch.face, stylus), tip), 0.0,
+                1.1 * kStepMetres);
+    EXPECT_GT(std::abs(calib::signed_distance_m(touch.contact_plane, tip)), 10e-6)
+        << "by one pre-travel for all";
+  }
+}
+
 TEST(World, DrawsNoiseAndStopOfEachSearchWithTheirStandardDeviations) {
   cell::Truth truth = real_truth();
   const Plant plant = make_plant(demo(), truth);

@@ -11,7 +11,7 @@ namespace calib {
 namespace {
 
 /// Steps after which the accumulated rounding errors are removed.
-constexpr int kStepsMax = 200;
+constexpr int kExchangesMax = 200;
 
 /// A row that provides all information in some direction up to this fraction is not removed: the result would
 /// be too inaccurate.
@@ -223,7 +223,7 @@ bool FedorovExchange::improve(double improvement_min) {
   bool changed = false;
   for (std::size_t turn = 0; turn < chosen_.size(); ++turn) {
     if (try_exchange_first(improvement_min)) changed = true;
-    if (steps_ > kStepsMax) recompute();
+    if (steps_ > kExchangesMax) recompute();
   }
   return changed;
 }

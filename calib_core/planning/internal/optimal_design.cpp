@@ -1,5 +1,6 @@
 #include "calib_core/planning/internal/optimal_design.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,9 +27,13 @@ constexpr double kImprovementMin = 3e-5;
 /// invertible, negligible against the touches.
 constexpr double kRidge = 1e-8;
 
-/// The variance of a sphere's centre that is found in place, beside that of the tip: enough to have it
-/// touched from all sides. The tip alone would ask for one point of it in many postures.
-constexpr double kSphereCenterShare = 0.1;
+/// Smallest eigenvalue of an information matrix of unit diagonal whose unknowns are determined. Rounding
+/// leaves some 1e-15 of a zero; the plans of the shipped cells have 1e-4 and more.
+constexpr double kDeterminedMin = 1e-12;
+
+/// The variance of a sphere's centre or a bore's axis that is found in place, beside that of the tip: enough
+/// to have it touched from all sides. The tip alone would ask for one point of it in many postures.
+constexpr double kRoundPlaceShare = 0.1;
 
 /// The identification from given touches, linearised at the nominal arm.
 class ExpectedIdentification {
@@ -49,12 +54,12 @@ class ExpectedIdentification {
   [[nodiscard]] Eigen::Index unknown_count() const {
     return std::ssize(estimated_) + nominal_.artefact.size();
   }
-  /// Positions of the coordinates of spheres that are found in place among all unknowns.
-  [[nodiscard]] std::vector<Eigen::Index> free_sphere_centers() const {
+  /// Positions of the coordinates of spheres and bores that are found in place among all unknowns.
+  [[nodiscard]] std::vector<Eigen::Index> free_round_places() const {
     std::vector<Eigen::Index> positions;
     const auto& parameters = problem_.artefact.parameters;
     for (std::size_t k = 0; k < parameters.size(); ++k) {
-      if (parameters[k].kind == ArtefactKind::kSphereCenter && !parameters[k].std)
+      if (is_free_round_place(parameters[k]))
         positions.push_back(std::ssize(estimated_) + static_cast<Eigen::Index>(k));
     }
     return positions;
@@ -92,14 +97,25 @@ class ExpectedIdentification {
   /// Information of priors and certified lengths.
   Eigen::MatrixXd prior() { return linearised({}).information(); }
 
-  /// Whether these touches determine all unknowns.
-  bool is_determined_by(std::vector<Touch> touches) { return linearised(std::move(touches)).solve(); }
+  /// Whether these touches determine all unknowns: by more than kDeterminedMin. A decomposition that merely
+  /// ends would say for touches that do not how a compiler happened to round.
+  bool is_determined_by(std::vector<Touch> touches) {
+    LeastSquares fit = linearised(std::move(touches));
+    if (!fit.solve()) return false;
+    const Eigen::MatrixXd& information = fit.information();
+    const Eigen::VectorXd scale = information.diagonal().cwiseSqrt().cwiseInverse();
+    const Eigen::MatrixXd scaled = scale.asDiagonal() * information * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scaled, Eigen::EigenvaluesOnly);
+    return solver.info() == Eigen::Success && solver.eigenvalues()[0] > kDeterminedMin;
+  }
 
   ExpectedFigures figures(std::vector<Touch> touches) {
     LeastSquares fit = linearised(std::move(touches));
     if (!fit.solve())
       throw std::invalid_argument("the touches do not determine all parameters that are to be identified");
-    const FullLinearisation whole = linearise_all_parameters(problem_, options_, fit, nominal_);
+    FullLinearisation whole = linearise_all_parameters(problem_, options_, fit, nominal_);
+    whole.has_residuals = false;
+    bound_second_harmonics({}, whole);
     return {propagate_uncertainty(problem_, options_, identifiable_, fit, whole,
                                   {problem_.touch_noise_m, std::numeric_limits<double>::infinity()}),
             fit.condition_numbers(positions()).as_is};
@@ -201,14 +217,13 @@ class TouchChooser {
                : region_over_box(arm, problem.joint_ranges, problem.workspace_box);
   }
 
-  /// Weight of the unknowns for the mean square tip error; of the artefact only kSphereCenterShare.
+  /// Weight of the unknowns for the mean square tip error; of the artefact only kRoundPlaceShare.
   [[nodiscard]] Eigen::MatrixXd tip_weight() const {
     const std::vector<int>& columns = expected_.estimated();
     Eigen::MatrixXd weight = Eigen::MatrixXd::Zero(expected_.unknown_count(), expected_.unknown_count());
     const auto count = std::ssize(columns);
     weight.topLeftCorner(count, count) = region_.mean_square(columns, columns);
-    for (const Eigen::Index center : expected_.free_sphere_centers())
-      weight(center, center) = kSphereCenterShare;
+    for (const Eigen::Index center : expected_.free_round_places()) weight(center, center) = kRoundPlaceShare;
     return weight;
   }
 

@@ -26,6 +26,9 @@ inline const char* source_name(NongeometricKind kind) {
       return "gear_harmonics";
     case NongeometricKind::kMass:
       return "masses";
+    case NongeometricKind::kRippleCos:
+    case NongeometricKind::kRippleSin:
+      return "gears";
   }
   throw std::logic_error("source_name: no such kind");
 }

@@ -51,6 +51,11 @@ Caller caller_of(const HttpRequest& request, const Tokens& tokens) {
 
 Role role_of(const HttpRequest& request, const Tokens& tokens) { return caller_of(request, tokens).role; }
 
+bool shows_token(const HttpRequest& request, const Tokens& tokens) {
+  const Role role = role_of(request, tokens);
+  return role == Role::kView || role == Role::kOperate;
+}
+
 std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access access, const Tokens& tokens) {
   if (access == Access::kOpen || (access == Access::kView && request.from_loopback)) return std::nullopt;
   const Role role = role_of(request, tokens);

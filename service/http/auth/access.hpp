@@ -23,6 +23,7 @@ struct Caller {
 };
 Caller caller_of(const HttpRequest& request, const Tokens& tokens);
 Role role_of(const HttpRequest& request, const Tokens& tokens);
+bool shows_token(const HttpRequest& request, const Tokens& tokens);  // one that counts
 
 /// Nothing if access is granted. Reading needs no token on loopback.
 std::optional<HttpResponse> refuse_access(const HttpRequest& request, Access access, const Tokens& tokens);

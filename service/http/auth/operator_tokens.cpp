@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <stdexcept>
 #include <system_error>
 
 #include "service/base/state_directory.hpp"
@@ -46,8 +45,11 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& directo
                                           kOperatorTokensMax));
     files.push_back(entry->path());
   }
+  if (failure == std::errc::permission_denied || failure == std::errc::operation_not_permitted)
+    refuse_place(directory, "cannot be read by this user; make it this user's own");
   if (failure)
-    refuse_place(directory, fmt::format("cannot be read: {}; make it this user's own", failure.message()));
+    throw TokenUnreadable(fmt::format("{}: cannot be read: {}; make it this user's own", directory.string(),
+                                      failure.message()));
   std::ranges::sort(files);
   return files;
 }
@@ -58,11 +60,24 @@ NamedToken read_named_token(const std::filesystem::path& file) {
     refuse_place(file, fmt::format("the name of a token is of at most {} letters, digits, '-' and '_'; "
                                    "rename the file or remove it",
                                    kTokenNameBytesMax));
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) refuse_place(file, "is not a file; remove it");
+  std::error_code ignored;  // read_token() tells it
+  const auto type = std::filesystem::status(file, ignored).type();
+  if (type != std::filesystem::file_type::regular && type != std::filesystem::file_type::none)
+    refuse_place(file, "is not a file; remove it");
   auto token = read_token(file, kWrittenByHand);
   if (!token) refuse_place(file, "went while it was read; start again");
   return {.name = name, .token = *std::move(token)};
+}
+
+/// Throws as reading does where nothing is known of it.
+NamedToken read_or_known(const std::filesystem::path& file, const std::vector<NamedToken>& known,
+                         std::vector<std::string>& kept) try {
+  return read_named_token(file);
+} catch (const TokenUnreadable& trouble) {
+  const auto before = std::ranges::find(known, file.filename().string(), &NamedToken::name);
+  if (before == known.end()) throw;
+  kept.emplace_back(trouble.what());
+  return *before;
 }
 
 /// Nothing also where it is refused, which who reads it for its own sake tells.
@@ -74,25 +89,49 @@ std::optional<std::string> token_without_name(const std::filesystem::path& file)
 
 }  // namespace
 
-std::vector<NamedToken> read_operator_tokens(const std::filesystem::path& state_directory) {
+CurrentOperators operator_tokens_now(const std::filesystem::path& state_directory,
+                                     const std::vector<NamedToken>& known) {
   struct Held {
     std::filesystem::path place;
     std::string token;
   };
+  CurrentOperators now;
+  std::vector<std::filesystem::path> files;
+  try {
+    files = files_in(state_directory / kOperatorsDirectory);
+  } catch (const TokenUnreadable& trouble) {
+    now.tokens = known;
+    (known.empty() ? now.troubles : now.kept).emplace_back(trouble.what());
+    return now;
+  } catch (const std::runtime_error& refused) {
+    now.troubles.emplace_back(refused.what());
+    return now;
+  }
+  if (files.empty()) return now;
   std::vector<Held> all;
   for (const std::string_view file : {kOperateTokenFile, kViewTokenFile})
     if (auto token = token_without_name(state_directory / file))
       all.push_back({state_directory / file, *std::move(token)});
-  std::vector<NamedToken> tokens;
-  for (const std::filesystem::path& file : files_in(state_directory / kOperatorsDirectory)) {
-    NamedToken read = read_named_token(file);
-    const auto same = std::ranges::find(all, read.token, &Held::token);
-    if (same != all.end())
-      refuse_place(file, fmt::format("holds the token of {} too; {}", same->place.string(), kWrittenByHand));
-    all.push_back({file, read.token});
-    tokens.push_back(std::move(read));
+  for (const std::filesystem::path& file : files) {
+    try {
+      NamedToken read = read_or_known(file, known, now.kept);
+      const auto same = std::ranges::find(all, read.token, &Held::token);
+      if (same != all.end())
+        refuse_place(file,
+                     fmt::format("holds the token of {} too; {}", same->place.string(), kWrittenByHand));
+      all.push_back({file, read.token});
+      now.tokens.push_back(std::move(read));
+    } catch (const std::runtime_error& refused) {
+      now.troubles.emplace_back(refused.what());
+    }
   }
-  return tokens;
+  return now;
+}
+
+std::vector<NamedToken> read_operator_tokens(const std::filesystem::path& state_directory) {
+  CurrentOperators now = operator_tokens_now(state_directory);
+  if (!now.troubles.empty()) throw std::runtime_error(now.troubles.front());
+  return std::move(now.tokens);
 }
 
 }  // namespace cell

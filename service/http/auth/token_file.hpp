@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -17,10 +18,17 @@ inline constexpr std::size_t kTokenCharactersMax = 1024;
 /// How to replace a token that the daemon makes.
 inline constexpr std::string_view kMadeAtStart = "remove the file to have a new token made";
 
-/// The token in this file; nothing if there is no such file. Throws std::runtime_error that names the file if
-/// its permissions are too wide, it cannot be read or it holds no token: fewer characters than one has, more
-/// than kTokenCharactersMax, or others than visible ones of ASCII. `replacement` is the remedy that the error
-/// tells.
+/// A file that is there and cannot be read now, of which nobody knows what it holds. Not one whose rights
+/// keep this user from it.
+class TokenUnreadable : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The token in this file; nothing if there is no such file. Throws TokenUnreadable if it cannot be read, and
+/// std::runtime_error if its permissions are too wide or it holds no token, both of which name the file:
+/// fewer characters than one has, more than kTokenCharactersMax, or others than visible ones of ASCII.
+/// `replacement` is the remedy that the error tells.
 std::optional<std::string> read_token(const std::filesystem::path& file,
                                       std::string_view replacement = kMadeAtStart);
 

@@ -6,7 +6,9 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <iterator>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -40,7 +42,11 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
 std::string load_or_make(const std::filesystem::path& file) {
   if (auto token = read_token(file)) return *std::move(token);
   std::string token = random_hex(kTokenBytes);
-  write_for_owner_only(file, token);
+  try {
+    write_for_owner_only(file, token);
+  } catch (const std::runtime_error& failure) {  // it has gone with its directory, or the disk is full
+    throw TokenUnreadable(failure.what());
+  }
   return token;
 }
 
@@ -61,8 +67,35 @@ Tokens load_or_make_tokens(const std::filesystem::path& state_directory) {
   return {std::move(operate), std::move(view), read_operator_tokens(state_directory)};
 }
 
+CurrentTokens tokens_now(const std::filesystem::path& state_directory, const Tokens& known) {
+  // Whoever moved the directory withdrew nothing, and STOP needs a token: it is looked for before and after.
+  CurrentTokens as_known{
+      known, {}, {fmt::format("{}: the state directory is gone", state_directory.string())}};
+  std::error_code ignored;
+  if (!std::filesystem::exists(state_directory, ignored)) return as_known;
+  CurrentTokens now;
+  const auto read = [&](std::string_view file, const std::string& before) -> std::string {
+    try {
+      return load_or_make(state_directory / file);
+    } catch (const TokenUnreadable& trouble) {
+      (before.empty() ? now.troubles : now.kept).emplace_back(trouble.what());
+      return before;
+    } catch (const std::runtime_error& refused) {
+      now.troubles.emplace_back(refused.what());
+      return {};
+    }
+  };
+  now.tokens.operate = read(kOperateTokenFile, known.operate);
+  now.tokens.view = read(kViewTokenFile, known.view);
+  CurrentOperators operators = operator_tokens_now(state_directory, known.operators);
+  now.tokens.operators = std::move(operators.tokens);
+  std::ranges::move(operators.troubles, std::back_inserter(now.troubles));
+  std::ranges::move(operators.kept, std::back_inserter(now.kept));
+  return std::filesystem::exists(state_directory, ignored) ? now : as_known;
+}
+
 bool same_token(std::string_view expected, std::string_view presented) {
-  return expected.size() == presented.size() &&
+  return !expected.empty() && expected.size() == presented.size() &&
          CRYPTO_memcmp(expected.data(), presented.data(), expected.size()) == 0;
 }
 

@@ -10,11 +10,13 @@
 
 namespace cell {
 
-/// The tokens of a daemon. Reading on loopback needs none.
+/// The tokens of a daemon. Reading on loopback needs none. An empty one is nobody's.
 struct Tokens {
   std::string operate;                     // may operate and read; has no name
   std::string view;                        // may read
   std::vector<NamedToken> operators = {};  // may operate and read, and the audit names them
+
+  bool operator==(const Tokens&) const = default;
 };
 
 /// `bytes` random bytes as hexadecimal text. Throws std::runtime_error if none are available.
@@ -25,7 +27,17 @@ std::string random_hex(std::size_t bytes);
 /// std::runtime_error that names the file.
 Tokens load_or_make_tokens(const std::filesystem::path& state_directory);
 
-/// Compares in constant time, against timing attacks.
+/// The same for a daemon that is running, with the rules of operator_tokens_now() for all of them: `known` is
+/// what was read last. A file without a name that has gone is made again, with another token. Where the whole
+/// directory has gone all are as before.
+struct CurrentTokens {
+  Tokens tokens;
+  std::vector<std::string> troubles;
+  std::vector<std::string> kept;
+};
+CurrentTokens tokens_now(const std::filesystem::path& state_directory, const Tokens& known);
+
+/// Compares in constant time, against timing attacks. An empty `expected` is the same as nothing.
 bool same_token(std::string_view expected, std::string_view presented);
 
 }  // namespace cell

@@ -17,6 +17,7 @@
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
+#include "service/http/routes/internal/token_log.hpp"
 #include "service/http/server/target.hpp"
 
 namespace cell {
@@ -96,7 +97,8 @@ std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedReque
 struct Api::Desk {
   Desk(const CellOperation& operation, int to_have_waiting, const char* to_say)
       : waiting_max(to_have_waiting), when_full(to_say), reads(operation, operation.store().file()) {}
-  ~Desk() {
+  ~Desk() { end(); }
+  void end() {
     thread.stop();  // nobody waits for an answer any more
     thread.join();
   }
@@ -125,6 +127,10 @@ Api::Api(asio::any_io_executor executor, CellOperation& operation, Tokens tokens
     : Api(executor, {.operation = executor, .store = executor}, operation, std::move(tokens)) {}
 
 Api::~Api() = default;
+
+void Api::end_desks() {
+  for (Desk* desk : {reader_.get(), worker_.get()}) desk->end();
+}
 
 Services::Services(CellOperation& to_serve, Tokens to_ask_for,
                    const std::optional<std::filesystem::path>& store_file)
@@ -167,12 +173,11 @@ std::unique_ptr<EventSource> Api::events(const HttpRequest& request) {
   const auto id = match(kRunEventsPath, request.path);
   const std::optional<std::int64_t> run_id =
       id ? std::optional(std::stoll(decode_segment(*id))) : std::nullopt;
-  return std::make_unique<EventStream>(services_, run_id, request.last_event_id);
+  return std::make_unique<EventStream>(services_, run_id, request);
 }
 
 HeaderDecision Api::decide(const HttpRequest& header) const {
-  const Role role = role_of(header, services_.tokens);
-  HeaderDecision decision{.has_token = role == Role::kView || role == Role::kOperate};
+  HeaderDecision decision{.has_token = shows_token(header, services_.tokens)};
   const auto outcome = admit(header, services_.tokens);
   if (const auto* admitted = std::get_if<Admitted>(&outcome)) {
     decision.takes_body = !is_stop(*admitted->route);
@@ -188,7 +193,11 @@ bool Api::ignores_query(std::string_view method, std::string_view path) const {
 
 asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const Admitted& admitted) {
   const DispatchMode dispatch = admitted.route->dispatch;
-  if (dispatch == DispatchMode::kLongPoll) co_await wait_for_status(request);
+  if (dispatch == DispatchMode::kLongPoll) {
+    co_await wait_for_status(request);
+    // Its token may have been withdrawn meanwhile.
+    if (auto refused = refuse_access(request, admitted.route->access, services_.tokens)) co_return *refused;
+  }
   if (dispatch == DispatchMode::kPlanning)
     co_await asio::co_spawn(threads_.operation, wait_for_plan(request), asio::use_awaitable);
   if (dispatch == DispatchMode::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
@@ -204,6 +213,8 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
   if (asked.to_start)
     asked = co_await asio::co_spawn(threads_.operation, answer_start(services_.operation, *asked.to_start),
                                     asio::use_awaitable);
+  if (asked.is_storing)
+    co_await asio::co_spawn(threads_.operation, services_.operation.touch_stored(), asio::use_awaitable);
   services_.reads.update();
   co_return handle(admitted, request, services_, services_.reads, asked);
 }
@@ -269,6 +280,29 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
 
 std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
 
+asio::awaitable<void> Api::follow_tokens(std::filesystem::path state_directory,
+                                         std::chrono::milliseconds every) {
+  asio::steady_timer timer(executor_);
+  TokenTroubles troubles;
+  for (;;) {
+    timer.expires_after(every);
+    co_await timer.async_wait(asio::use_awaitable);
+    const auto look = [state_directory, known = services_.tokens] {
+      return tokens_now(state_directory, known);
+    };
+    CurrentTokens now = co_await run_on(reader_->thread.get_executor(), look);
+    troubles.tell(now);
+    take_tokens(std::move(now.tokens));
+  }
+}
+
+void Api::take_tokens(Tokens now) {
+  if (now == services_.tokens) return;
+  tell_changes(services_.tokens, now);
+  services_.tokens = std::move(now);
+  services_.feed.wake();  // streams look whether their token still counts
+}
+
 asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
   if (!request.authorization) co_return;
   if (wrong_tokens_.size() >= kWrongAddressesMax) wrong_tokens_.clear();
@@ -288,8 +322,16 @@ asio::awaitable<void> Api::wait_for_status(const HttpRequest& request) {
   const auto wait_s = call.number("wait_s");
   const auto after = call.number("after");
   if (!wait_s || !after || services_.feed.waiting_count() >= kLongPollsMax) co_return;
-  co_await services_.feed.wait(static_cast<std::uint64_t>(*after),
-                               std::chrono::seconds(std::min(*wait_s, kWaitSecondsMax)));
+  const auto sequence = static_cast<std::uint64_t>(*after);
+  const auto end =
+      services_.operation.clocks().steady() + std::chrono::seconds(std::min(*wait_s, kWaitSecondsMax));
+  for (;;) {
+    const auto left = end - services_.operation.clocks().steady();
+    if (services_.feed.newest().sequence != sequence || left <= std::chrono::seconds::zero()) co_return;
+    co_await services_.feed.wait(sequence, std::chrono::ceil<std::chrono::milliseconds>(left));
+    // Woken without a change: tokens have changed, this one's perhaps.
+    if (refuse_access(request, Access::kView, services_.tokens)) co_return;
+  }
 }
 
 /// On the operation's thread.

@@ -3,10 +3,12 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
 
+#include "service/http/auth/tokens.hpp"
 #include "service/http/routes/request_audit.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
@@ -41,6 +43,16 @@ class Api final : public RequestHandler {
   [[nodiscard]] bool ignores_query(std::string_view method, std::string_view path) const override;
 
   [[nodiscard]] Services& services() { return services_; }
+
+  /// Reads the tokens again and again, on the thread that reads, until the executor ends: one whose file has
+  /// gone or is refused ends within this time, and a new one counts.
+  boost::asio::awaitable<void> follow_tokens(std::filesystem::path state_directory,
+                                             std::chrono::milliseconds every);
+  /// Waits for what the threads of its own are at, of which nobody hears any more. Call it before the
+  /// contexts end whose coroutines wait for them.
+  void end_desks();
+  /// From now on these count. An event stream whose token does not count any more ends.
+  void take_tokens(Tokens now);
 
  private:
   /// A thread that answers requests one after the other, and what it reads.

@@ -11,6 +11,7 @@ namespace {
 Asked give(CellOperation& operation, Command command, std::optional<std::int64_t> run_id) {
   Asked asked{.refusal = operation.command(command, run_id)};
   if (asked.refusal) asked.exits = operation.exits();
+  asked.is_storing = !asked.refusal && (command == Command::kTake || command == Command::kUndo);
   return asked;
 }
 

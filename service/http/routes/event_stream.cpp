@@ -3,8 +3,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <charconv>
+#include <utility>
 
 #include "service/documents/json_view.hpp"
+#include "service/http/auth/access.hpp"
 
 namespace cell {
 
@@ -34,9 +36,13 @@ std::optional<std::uint64_t> sequence_of(std::string_view id, const std::string&
 
 }  // namespace
 
-EventStream::EventStream(Services& services, std::optional<std::int64_t> run_id,
-                         std::optional<std::string> last_event_id)
-    : services_(services), run_id_(run_id), open_(services.open_streams) {
+EventStream::EventStream(Services& services, std::optional<std::int64_t> run_id, HttpRequest request)
+    : services_(services),
+      run_id_(run_id),
+      request_(std::move(request)),
+      needs_token_(!request_.from_loopback || shows_token(request_, services.tokens)),
+      open_(services.open_streams) {
+  const auto& last_event_id = request_.last_event_id;
   ++*open_;
   first_ = "retry: 2000\n\n";
   const auto known = last_event_id ? sequence_of(*last_event_id, services_.feed.instance_id()) : std::nullopt;
@@ -63,7 +69,13 @@ std::string EventStream::whole_status(const char* event) {
   return event_text(event, id_of(seen_), services_.feed.document());
 }
 
+bool EventStream::is_withdrawn() const { return needs_token_ && !shows_token(request_, services_.tokens); }
+
 std::string EventStream::due() {
+  if (is_withdrawn()) {
+    ended_ = true;
+    return {};
+  }
   std::string text = std::exchange(first_, {});
   services_.feed.newest();
   const StatusFeed& feed = services_.feed;
@@ -89,6 +101,9 @@ std::string EventStream::end_of_run() {
   return event_text("run", id_of(seen_) + std::string(kEnd), run_document(*run));
 }
 
-boost::asio::awaitable<void> EventStream::wait() { co_await services_.feed.wait(seen_, kKeepAlivePeriod); }
+boost::asio::awaitable<void> EventStream::wait() {
+  if (is_withdrawn()) co_return;  // while something was written: nobody wakes it for that again
+  co_await services_.feed.wait(seen_, kKeepAlivePeriod);
+}
 
 }  // namespace cell

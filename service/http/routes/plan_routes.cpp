@@ -13,7 +13,7 @@
 #include "service/http/routes/internal/request_body.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/run/block_temperature.hpp"
-#include "service/run/reference_drift.hpp"
+#include "service/run/run_repeats.hpp"
 
 namespace cell {
 namespace {
@@ -79,7 +79,7 @@ HttpResponse post_identify(const Call& call) {
     TouchesFile file = touches_from_json("request body", call.request.body, kTouchesBytesMax, cell);
     if (auto warning = unknown_temperature_warning(cell)) file.warnings.push_back(*std::move(warning));
     calib::IdentificationProblem problem = identification_problem(cell, recipe);
-    note_references(file.references, problem);
+    note_repeats(file.repeats, problem);
     problem.touches = std::move(file.touches);
     const calib::IdentificationResult result = calib::identify(problem, recipe.identification);
     if (result.status != calib::IdentificationStatus::kConverged)

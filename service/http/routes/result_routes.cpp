@@ -13,8 +13,8 @@
 #include "service/report/report_html.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/calibrated_arm.hpp"
-#include "service/run/reference_drift.hpp"
 #include "service/run/run_recipe.hpp"
+#include "service/run/run_repeats.hpp"
 #include "service/store/fault_log.hpp"
 
 namespace cell {
@@ -59,7 +59,7 @@ std::variant<Identified, HttpResponse> identify_stored(const Reads& reads, std::
   Identified identified{recipe_of(run, cell), {}, {}};
   identified.problem = identification_problem(cell, identified.recipe);
   std::ranges::transform(touches, std::back_inserter(identified.problem.touches), to_touch);
-  note_references(to_touches(reads.store().references(id), touches), identified.problem);
+  note_repeats(repeats_of(touches, reads.store().references(id)), identified.problem);
   identified.result = calib::identify(identified.problem, identified.recipe.identification);
   if (identified.result.status == calib::IdentificationStatus::kConverged) return identified;
   return conflict("there is no result: " + identified.result.message);
@@ -108,10 +108,10 @@ HttpResponse get_result(const Reads& reads, std::int64_t id) {
 }
 
 HttpResponse get_arm(const Reads& reads, std::int64_t id) {
-  if (auto stored = reads.store().arm_json(id)) return {.body = *std::move(stored)};  // the run is over
-  auto found = identify_stored(reads, id);
-  if (auto* response = std::get_if<HttpResponse>(&found)) return std::move(*response);
-  return {.body = calibrated_arm_document(reads.cell(), std::get<Identified>(found).result)};
+  if (auto stored = reads.store().arm_json(id)) return {.body = *std::move(stored)};
+  const bool is_open = reads.store().run(id).value().outcome == RunOutcome::kRunning;
+  return conflict(is_open ? "there is no calibrated arm yet: it is stored when the run ends"
+                          : "no calibrated arm was stored: the run ended without a result that converged");
 }
 
 HttpResponse get_report(const Reads& reads, const StoredRun& run, const std::string& format) {

@@ -176,6 +176,7 @@ boost::asio::awaitable<HttpResponse> route(HttpRequest request, CellOperation& o
   const Admitted& admitted = std::get<Admitted>(outcome);
   Asked asked = ask_operation(admitted, request, services);
   if (asked.to_start) asked = co_await answer_start(operation, *asked.to_start);
+  if (asked.is_storing) co_await operation.touch_stored();
   services.reads.update();
   co_return handle(admitted, request, services, services.reads, asked);
 }

@@ -39,6 +39,7 @@ struct Asked {
   std::vector<Command> exits = {};            // with a refusal: the commands that the state allows
   std::optional<StartRequest> to_start = {};  // answer_start() follows
   std::optional<Started> started = {};
+  bool is_storing = false;  // CellOperation::touch_stored() follows
   std::optional<PlanOutcome> plan = {};
   std::vector<Unmet> unmet = {};
   std::optional<cs8::State> controller_state = {};

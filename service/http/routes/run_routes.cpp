@@ -82,8 +82,9 @@ std::vector<Route> run_routes() {
                 {"before", 0, kRunIdMax, "only runs before this id: next_before of the page before"}};
   Route result = read("/api/v1/runs/{id}/result", "The latest result; 409 before there is one",
                       of_run<result_view>, "Result");
-  Route arm = read("/api/v1/runs/{id}/arm", "The calibrated arm as a file; 409 before there is a result",
-                   of_run<arm_view>, "Arm");
+  Route arm =
+      read("/api/v1/runs/{id}/arm", "The calibrated arm as stored when the run ended; 409 when none was",
+           of_run<arm_view>, "Arm");
   result.tells_result = true;
   arm.tells_result = true;
   return {

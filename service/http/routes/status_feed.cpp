@@ -95,7 +95,10 @@ void StatusFeed::take_in() {
     keep(*status);
     listener_(*status);
   }
-  if (statuses.empty()) return;
+  if (!statuses.empty()) wake();
+}
+
+void StatusFeed::wake() {
   for (asio::steady_timer* timer : waiting_) timer->cancel();
 }
 

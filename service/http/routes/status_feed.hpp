@@ -62,8 +62,10 @@ class StatusFeed {
   [[nodiscard]] const Change* next(std::uint64_t sequence) const;
   /// True if every change after `sequence` is still available.
   [[nodiscard]] bool remembers(std::uint64_t sequence) const;
-  /// Returns when there is a change after `sequence`, or after `wait`.
+  /// Returns when there is a change after `sequence`, after `wait`, or by wake().
   boost::asio::awaitable<void> wait(std::uint64_t sequence, std::chrono::milliseconds wait);
+  /// Whoever waits looks again, as after a change.
+  void wake();
   [[nodiscard]] std::size_t waiting_count() const { return waiting_.size(); }
 
  private:

@@ -53,8 +53,9 @@ void add_checksum_function(SQLite::Database& database);
 /// Writes the checksums of the rows that have none, as in a file of this schema.
 void fill_checksums(SQLite::Database& database, std::size_t schema);
 
-/// Brings the checksums of touches to kTouchNoiseSchema. A row that was damaged before stays known as such.
-void reseal_touches(SQLite::Database& database);
+/// Brings the checksums of touches to this schema from the one before, which had fewer columns. A row that
+/// was damaged before stays known as such.
+void reseal_touches(SQLite::Database& database, std::size_t schema);
 
 /// Writes the checksum of the rows where `condition` (SQL) holds for `key`.
 void seal(SQLite::Database& database, const CheckedRows& rows, const std::string& condition,

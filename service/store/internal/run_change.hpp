@@ -22,8 +22,10 @@ void change_run(SQLite::Database& database, std::int64_t run_id, Change&& change
   if (whole) seal(database, run_rows(), "id", run_id);
 }
 
+inline constexpr const char* kHasEnded = "SELECT 1 FROM runs WHERE id = ? AND rows_kept IS NOT NULL";
+
 inline bool has_ended(SQLite::Database& database, std::int64_t run_id) {
-  SQLite::Statement query(database, "SELECT 1 FROM runs WHERE id = ? AND rows_kept IS NOT NULL");
+  SQLite::Statement query(database, kHasEnded);
   query.bind(1, run_id);
   return query.executeStep();
 }

@@ -107,6 +107,64 @@ TEST(Artefact, ShiftsDistancesFromASphereAsTheChangedSphereDoes) {
   }
 }
 
+ArtefactKnowledge with_bore(const Eigen::Vector3d& moved_m = Eigen::Vector3d::Zero(),
+                            const Eigen::Vector3d& turned_rad = Eigen::Vector3d::Zero(),
+                            double wider_m = 0.0) {
+  ArtefactKnowledge knowledge = everything_uncertain();
+  Face bore = drawn::bore();
+  bore.bore->center_m += moved_m;
+  const Eigen::AngleAxisd turned(turned_rad.norm(),
+                                 turned_rad.isZero() ? Eigen::Vector3d::UnitX() : turned_rad.normalized());
+  knowledge.faces.push_back(bore_face({.center_m = bore.bore->center_m, .axis = turned * bore.bore->axis},
+                                      0.042 + wider_m, turned * Eigen::Vector3d::UnitX(), 0.020));
+  knowledge.face_uncertainties.push_back(
+      {.std_offset_m = 1e-6, .std_tilt_rad = 5e-3, .estimated = true, .std_center_m = 1e-3});
+  return knowledge;
+}
+
+TEST(Artefact, ShiftsDistancesFromABoreAsTheChangedBoreDoes) {
+  constexpr double kBy = 1e-6;
+  const Artefact before = make_artefact(with_bore());
+  ArtefactKnowledge warmer = with_bore();
+  warmer.warmer_than_20_c_k += 1e6 * kBy;
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero(), u = Eigen::Vector3d::UnitX(),
+                        v = Eigen::Vector3d::UnitZ();  // axis x u = (0, -1, 0) x (1, 0, 0)
+  const std::vector<std::tuple<std::string, double, ArtefactKnowledge>> changes{
+      {"plane6_axis_u", kBy, with_bore(kBy * u)},
+      {"plane6_axis_v", kBy, with_bore(kBy * v)},
+      {"plane6_tilt_u", 1e2 * kBy, with_bore(none, 1e2 * kBy * u)},
+      {"plane6_tilt_v", 1e2 * kBy, with_bore(none, 1e2 * kBy * v)},
+      {"plane6_radius", kBy, with_bore(none, none, kBy)},
+      {"block_temperature", 1e6 * kBy, warmer}};
+  const ContactSurface& bore = before.contact_planes[5];
+  const Eigen::Vector3d point_m = drawn::bore().bore->center_m + Eigen::Vector3d(0.022, 0.015, -0.031);
+  for (const auto& [name, by, knowledge] : changes) {
+    const auto shift = parameter(before, name).shifts[5].at(point_m, normal_at(bore, point_m));
+    const double shifted_m = signed_distance_m(make_artefact(knowledge).contact_planes[5], point_m) -
+                             signed_distance_m(bore, point_m);
+    EXPECT_NEAR(shifted_m, by * shift, 2e-3 * kBy) << name;
+    EXPECT_GT(std::abs(shifted_m), 0.1 * kBy) << name;
+    Eigen::VectorXd errors = Eigen::VectorXd::Zero(std::ssize(before.parameters));
+    errors[&parameter(before, name) - before.parameters.data()] = by;
+    std::vector<ContactSurface> corrected;
+    correct_contact_planes(before, errors, corrected);
+    EXPECT_NEAR(signed_distance_m(corrected[5], point_m) - signed_distance_m(bore, point_m), shifted_m,
+                2e-3 * kBy)
+        << name;
+  }
+}
+
+TEST(Artefact, FreesThePlaceOfAnEstimatedBoreAndKeepsTheDeviationsOfTiltAndRadius) {
+  const Artefact artefact = make_artefact(with_bore());
+  EXPECT_FALSE(parameter(artefact, "plane6_axis_u").std);
+  EXPECT_FALSE(parameter(artefact, "plane6_axis_v").std);
+  EXPECT_EQ(parameter(artefact, "plane6_tilt_u").std, 5e-3);
+  EXPECT_EQ(parameter(artefact, "plane6_radius").std, 1e-6);
+  EXPECT_DOUBLE_EQ(parameter(artefact, "plane6_radius").nominal, 0.042);
+  EXPECT_EQ(parameter(artefact, "plane6_axis_u").nominal, 0.14);
+  EXPECT_EQ(parameter(artefact, "plane6_axis_v").nominal, 0.11);
+}
+
 TEST(Artefact, KeepsTheDeviationOfAnEstimatedSpheresRadius) {
   ArtefactKnowledge knowledge = with_ball();
   knowledge.face_uncertainties[5].estimated = true;

@@ -157,6 +157,14 @@ TEST(MonteCarlo, CountsTheGearsOnceMoreAtTheTip) {
   expect_linear_and_drawn_to_agree(made);
 }
 
+TEST(MonteCarlo, CountsTheDriftAsOneDisplacementOfTheWholeRun) {
+  Case made = calibrated(drawn::uncertain_artefact(4), {});
+  made.problem.drift_m = 1.5e-4;
+  made.problem.drift_uncertainty = {1e-4, 6.0};
+  made.result = identify(made.problem, made.options);
+  expect_linear_and_drawn_to_agree(made);
+}
+
 TEST(MonteCarlo, TheSameNumberGivesTheSameDrawWheneverItIsMade) {
   const Case made = calibrated(drawn::uncertain_artefact(5), {});
   const MonteCarlo one = made.simulation(), other = made.simulation();

@@ -48,5 +48,16 @@ TEST(ResultWarnings, NameAPlaneThatFitsNoOther) {
                              HasSubstr("stylus_radius_mm"))));
 }
 
+TEST(ResultWarnings, NameReferenceTouchesThatHardlyVary) {
+  UniformChance chance(4);
+  IdentificationProblem problem = drawn::problem(drawn::certain_artefact(5), kNoiseMetres);
+  problem.touches = drawn::touches(drawn::draw_truth(problem, chance), {.noise_m = kNoiseMetres}, chance);
+  const auto warning = AllOf(HasSubstr("the 8 touches of the reference place scatter by 0.03 um only"),
+                             HasSubstr("the declared 10.00 um"), HasSubstr("\"reference_touches\""));
+  EXPECT_THAT(identify(problem, {.hold_weak = false}).warnings, Not(Contains(warning)));
+  problem.doubted_error = TouchNoise{3e-8, 6.0};
+  EXPECT_THAT(identify(problem, {.hold_weak = false}).warnings, Contains(warning));
+}
+
 }  // namespace
 }  // namespace calib

@@ -109,6 +109,7 @@ KinematicModel mixed_arm() {
   model.masses[2] = {20.0, {0.25, 0.0, 0.1}};
   model.masses[4] = {10.0, {0.0, 0.02, -0.15}};
   model.masses[7] = {1.0, {0.0, 0.03, -0.1}};
+  model.ripple_periods_per_turn = {118.0, 33.3, 0.0, 96.0, 60.0, 48.0};  // one of a prismatic joint
   return model;
 }
 
@@ -173,7 +174,8 @@ TEST(ArmParameters, DerivativesMatchDifferencesForARigidArm) {
         EXPECT_LT((derivatives.col(i) - numeric.col(i)).norm() * step_unit(i), 1e-9) << arm_parameter_name(i);
         const bool without_effect = numeric.col(i).norm() * step_unit(i) < 1e-9;
         // Masses turn no joint of a rigid arm; joint 1 of an upright one carries no moment.
-        const bool is_mass = i >= nongeometric_index(mass_position(1));
+        const bool is_mass =
+            i >= nongeometric_index(mass_position(1)) && i < nongeometric_index(ripple_position(0));
         const std::string name = arm_parameter_name(i);
         if (i < kErrorParameterCount) {
           EXPECT_EQ(without_effect, name == "theta7") << name;
@@ -211,6 +213,32 @@ TEST(KinematicModel, AHarmonicTurnsItsJointByTheSineOfItsPosition) {
       1e-14);
 }
 
+TEST(KinematicModel, ARippleTurnsItsJointByTheSineOfItsPeriods) {
+  const KinematicModel even = paper::nominal();
+  KinematicModel rippled = even;
+  rippled.gains[3] = -0.5;
+  rippled.ripple_periods_per_turn[3] = 71.5;
+  rippled.ripples_rad[3] = {3e-5, -2e-5};
+  KinematicModel with_gain = even;
+  with_gain.gains[3] = -0.5;
+  const JointVector joints = some_joints(0.2);
+  const double phase = 71.5 * -0.5 * joints[3];
+  JointVector where_it_stands = joints;
+  where_it_stands[3] += 3e-5 * std::cos(phase) - 2e-5 * std::sin(phase);
+  const Eigen::Matrix4d wanted = forward_kinematics(with_gain, where_it_stands).matrix();
+  EXPECT_LT((forward_kinematics(rippled, joints).matrix() - wanted).norm(), 1e-14);
+  EXPECT_GT((forward_kinematics(with_gain, joints).matrix() - wanted).norm(), 1e-6);
+}
+
+TEST(ArmParameters, RipplesHaveNoEffectWithoutTheirPeriods) {
+  const KinematicModel model = paper::nominal();
+  const JointVector joints = some_joints(0.2);
+  const auto derivatives = tip_arm_derivatives(model, forward_chain(model, joints));
+  EXPECT_TRUE(derivatives.rightCols(2 * kJointCount).isZero(0.0));
+  const KinematicModel changed = apply(model, 1e-3 * ArmVector::Unit(nongeometric_index(ripple_position(2))));
+  EXPECT_EQ(forward_kinematics(changed, joints).matrix(), forward_kinematics(model, joints).matrix());
+}
+
 TEST(NongeometricParameters, HaveTheirPlacesInTheList) {
   const auto& all = nongeometric_parameters();
   const auto name_at = [&](int position) { return all[static_cast<std::size_t>(position)].name(); };
@@ -218,7 +246,14 @@ TEST(NongeometricParameters, HaveTheirPlacesInTheList) {
   EXPECT_EQ(name_at(harmonic_position(0)), "harmonic_cos1");
   EXPECT_EQ(name_at(harmonic_position(5) + 1), "harmonic_sin6");
   EXPECT_EQ(name_at(mass_position(7)), "mass7");
-  EXPECT_EQ(mass_position(7), kNongeometricCount - 1);
+  EXPECT_EQ(name_at(ripple_position(0)), "ripple_cos1");
+  EXPECT_EQ(name_at(ripple_position(5) + 1), "ripple_sin6");
+  EXPECT_EQ(ripple_position(5) + 1, kNongeometricCount - 1);
+  for (int position = 0; position < kNongeometricCount; ++position) {
+    const std::string name = name_at(position);
+    EXPECT_EQ(is_harmonic(position), name.starts_with("harmonic")) << name;
+    EXPECT_EQ(is_ripple(position), name.starts_with("ripple")) << name;
+  }
 }
 
 TEST(ArmParameters, DerivativesOfACompliantArmAreWrongByNoMoreThanItsDeflection) {

@@ -30,8 +30,16 @@ KinematicModel bending_arm() {
   return model;
 }
 
-KinematicModel sliding_arm() {
+/// One joint far enough round that its phases go to the library, one without periods.
+KinematicModel rippled_arm() {
   KinematicModel model = bending_arm();
+  model.ripple_periods_per_turn = {118.0, 97.25, 0.0, 72.0, 900.0, 48.0};
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) model.ripples_rad[joint] = {2e-5, -3e-5};
+  return model;
+}
+
+KinematicModel sliding_arm() {
+  KinematicModel model = rippled_arm();
   model.joint_types[1] = model.joint_types[4] = JointType::kPrismatic;
   return model;
 }
@@ -84,6 +92,7 @@ TEST_P(LanesOfAnArm, AreTheSameInNarrowRegisters) {
 
 INSTANTIATE_TEST_SUITE_P(Rigid, LanesOfAnArm, ::testing::Values(paper::nominal(), rigid_arm()));
 INSTANTIATE_TEST_SUITE_P(Bending, LanesOfAnArm, ::testing::Values(bending_arm()));
+INSTANTIATE_TEST_SUITE_P(Rippled, LanesOfAnArm, ::testing::Values(rippled_arm()));
 INSTANTIATE_TEST_SUITE_P(Sliding, LanesOfAnArm, ::testing::Values(sliding_arm()));
 
 /// Sine and cosine of these angles, one in each lane.

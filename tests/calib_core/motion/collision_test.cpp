@@ -71,6 +71,56 @@ TEST(Collision, ARoundedBoxIsNearerByItsRounding) {
   }
 }
 
+/// A box with an oblique and a straight hole.
+Box holed_box() {
+  Box box{"ring", {-0.5, -0.3, -0.5}, {0.5, 0.3, 0.5}};
+  box.holes.push_back({{0.25, 0, 0}, {0, 1, 0}, 0.2});
+  box.holes.push_back({{-0.25, 0, 0}, Eigen::Vector3d(0.1, 1, 0.05).normalized(), 0.15});
+  return box;
+}
+
+bool is_material(const Box& box, const Eigen::Vector3d& point_m) {
+  return box.contains(point_m) && std::ranges::none_of(box.holes, [&](const Hole& hole) {
+           return hole.off_axis_m(point_m).norm() < hole.radius_m;
+         });
+}
+
+TEST(Collision, ABoxWithHolesIsNoNearerThanItsMaterial) {
+  Chance chance;
+  const Box box = holed_box();
+  int in_holes = 0, clear = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Eigen::Vector3d from_m = 0.6 * chance.point();
+    const Segment segment{from_m, from_m + 0.3 * chance.point()};
+    const double bound_m = segment_box_distance_m(segment, box);
+    if (bound_m == 0.0) continue;
+    ++clear;
+    if (box.contains(from_m)) ++in_holes;
+    ASSERT_TRUE(is_apart(segment, box, bound_m - kDistanceErrorMaxMetres));
+    ASSERT_FALSE(is_apart(segment, box, bound_m + kDistanceErrorMaxMetres));
+    for (int k = 0; k < 200; ++k) {
+      const Eigen::Vector3d on_segment_m =
+          segment.from_m + 0.5 * (chance.point().x() + 1.0) * (segment.to_m - segment.from_m);
+      const Eigen::Vector3d near_m = on_segment_m + 0.999 * bound_m * chance.point().normalized();
+      ASSERT_FALSE(is_material(box, near_m)) << i;
+    }
+  }
+  EXPECT_GT(in_holes, 20);
+  EXPECT_GT(clear, 500);
+}
+
+TEST(Collision, InAHoleTheDistanceIsThatFromItsWall) {
+  const Box box = holed_box();
+  const Segment along{{0.30, -0.2, 0}, {0.30, 0.2, 0}};
+  EXPECT_NEAR(segment_box_distance_m(along, box), 0.15, 1e-9);
+  EXPECT_TRUE(segment_box_gap_m(along, box).isApprox(Eigen::Vector3d(-0.15, 0, 0), 1e-6));
+  EXPECT_NEAR(segment_box_distance_m({{0.20, -0.9, 0}, {0.36, 0.2, 0}}, box), 0.09, 1e-9);
+  EXPECT_NEAR(segment_box_distance_m({{0.25, 0, 0}, {0.25, 0, 0}}, box), 0.2, 1e-9);
+  EXPECT_NEAR(segment_box_distance_m({{0.25, 0.4, 0}, {0.25, 0.9, 0}}, box), 0.2, 1e-9);  // over the mouth
+  EXPECT_DOUBLE_EQ(segment_box_distance_m({{0.25, 0, 0}, {0.48, 0, 0}}, box), 0.0);       // through the wall
+  EXPECT_DOUBLE_EQ(segment_box_distance_m({{0.0, 0.5, 0}, {0.0, 0.5, 0}}, box), 0.2);
+}
+
 TEST(Collision, SegmentsAlongABoxAndPointsAreNoSpecialCase) {
   const Box box{"box", {0, 0, 0}, {1, 1, 1}};
   EXPECT_DOUBLE_EQ(segment_box_distance_m({{-1, 0.5, 1.25}, {2, 0.5, 1.25}}, box), 0.25);

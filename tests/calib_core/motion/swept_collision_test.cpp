@@ -24,10 +24,14 @@ bool sampled_clash(const CollisionScene& scene, const JointVector& from, const J
   return false;
 }
 
-/// A shelf as thin as paper in the arm's way, so that a coarse sampling would step over it, and a ball.
+/// A shelf as thin as paper in the arm's way, so that a coarse sampling would step over it, a ball and a
+/// ring.
 CollisionScene scene_with_shelf() {
   CollisionScene scene = tx90::scene(0.003);
   scene.obstacles.push_back({"shelf", {-0.3, -0.4001, -0.6}, {0.3, -0.4, 0.6}});
+  Box ring{"ring", {0.2, -0.6, -0.3}, {0.6, -0.2, 0.3}};  // with a hole that an arm fits through
+  ring.holes.push_back({{0.4, -0.4, 0}, {0, 0, 1}, 0.18});
+  scene.obstacles.push_back(ring);
   scene.obstacles.push_back({"ball", {0.1, -0.7, 0.2}, {0.1, -0.7, 0.2}, 0.1});
   return scene;
 }

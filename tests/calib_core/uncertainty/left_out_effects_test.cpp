@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "calib_core/kinematics/inverse_kinematics.hpp"
@@ -30,7 +31,7 @@ double median_share(double scale, double shown) {
       return Eigen::VectorXd::NullaryExpr(kEffects, [&] { return study::normal(chance); }).eval();
     };
     const Eigen::VectorXd score = information * (scale * drawn()) + root * drawn();
-    shares.push_back(mean_variance_share(information, score, 1.0));
+    shares.push_back(mean_variance_share({information, score}, {}, kPriorShare));
   }
   std::ranges::nth_element(shares, shares.begin() + 50);
   return shares[50];
@@ -40,11 +41,44 @@ TEST(LeftOutEffects, AreOfTheSizeThatTheResidualsLeaveThem) {
   EXPECT_LT(median_share(0.0, 3.0), 0.05);
   EXPECT_NEAR(median_share(0.5, 3.0), 0.25, 0.08);
   EXPECT_GT(median_share(1.0, 3.0), 0.5);
+  EXPECT_NEAR(median_share(2.0, 3.0), 4.0, 1.5) << "the declared deviations are too small";
+}
+
+/// As median_share(), where the noise is known from the same residuals alone: so many degrees with the
+/// effects.
+double median_share_beside(double scale, double shown, double degrees) {
+  UniformChance chance(5);
+  const Eigen::MatrixXd information = shown * shown * Eigen::MatrixXd::Identity(kEffects, kEffects);
+  std::vector<double> shares;
+  for (int arm = 0; arm < 101; ++arm) {
+    Eigen::VectorXd score(kEffects);
+    for (double& value : score)
+      value = shown * shown * scale * study::normal(chance) + shown * study::normal(chance);
+    double squares = score.squaredNorm() / (shown * shown);
+    for (int k = kEffects; k < degrees; ++k) squares += std::pow(study::normal(chance), 2);
+    const NoiseEvidence noise{squares, degrees, squares / degrees};
+    shares.push_back(mean_variance_share({information, score}, noise, kPriorShare));
+  }
+  std::ranges::nth_element(shares, shares.begin() + 50);
+  return shares[50];
+}
+
+TEST(LeftOutEffects, DoNotPassForNoise) {
+  EXPECT_GT(median_share_beside(3.0, 4.0, 30.0), 4.0);
+  EXPECT_GT(median_share_beside(3.0, 4.0, 24.0), 4.0);
+  EXPECT_NEAR(median_share_beside(1.0, 4.0, 30.0), 1.0, 0.3);
+  EXPECT_LT(median_share_beside(0.0, 4.0, 30.0), 0.05);
+  const Eigen::MatrixXd information = Eigen::MatrixXd::Identity(kEffects, kEffects);
+  const GroupEvidence group{information, Eigen::VectorXd::Constant(kEffects, 5.0)};
+  EXPECT_EQ(mean_variance_share(group, {100.0, 13.0, 7.0}, kPriorShare),
+            mean_variance_share(group, {.otherwise = 7.0}, kPriorShare))
+      << "too few degrees are left";
 }
 
 TEST(LeftOutEffects, StayAsTheyAreExpectedWhereTheTouchesSayNothing) {
   const Eigen::MatrixXd nothing = Eigen::MatrixXd::Zero(kEffects, kEffects);
-  EXPECT_NEAR(mean_variance_share(nothing, Eigen::VectorXd::Zero(kEffects), 1.0), kPriorShare, 1e-3);
+  EXPECT_NEAR(mean_variance_share({nothing, Eigen::VectorXd::Zero(kEffects)}, {}, kPriorShare), kPriorShare,
+              1e-3);
   EXPECT_NEAR(median_share(1.0, 0.01), kPriorShare, 0.01);
 }
 

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "calib_core/geometry/face.hpp"
@@ -46,6 +48,93 @@ TEST(Budget, ADriftMovesTheTipAsFarInEveryDirection) {
   }
 }
 
+/// The named source of a budget, or nothing.
+const UncertaintySource* named_source(const IdentificationResult& result, const std::string& name) {
+  const auto found = std::ranges::find(result.uncertainty->sources, name, &UncertaintySource::name);
+  return found == result.uncertainty->sources.end() ? nullptr : &*found;
+}
+
+/// An arm that carries 20 kg before its wrist and 2 behind it, with what else is said of it.
+IdentificationResult calibrated_with(const std::function<void(IdentificationProblem&)>& said,
+                                     const IdentificationOptions& options) {
+  IdentificationProblem problem = drawn::problem(drawn::uncertain_artefact(5));
+  problem.nominal.masses[4] = {20.0, {0.0, 0.0, -0.25}};
+  problem.nominal.masses[6] = {2.0, {0.0, 0.05, 0.06}};
+  problem.nongeometric_std[static_cast<std::size_t>(compliance_position(1))] = 1e-6;
+  said(problem);
+  UniformChance chance(5);
+  const drawn::Truth truth = drawn::draw_truth(problem, chance);
+  problem.touches = drawn::touches(truth, {.count = 100}, chance);
+  return identify(problem, options);
+}
+
+// Never estimated by any option, and never missing.
+TEST(Budget, HasTheComplianceOfTheWristWhetherThatOfTheOtherJointsIsEstimatedOrNot) {
+  constexpr double kStd = 5e-6;
+  for (const bool stiffness : {true, false}) {
+    for (const int joint : {3, 4, 5}) {
+      const auto said = [&](IdentificationProblem& problem) {
+        problem.nongeometric_std[static_cast<std::size_t>(compliance_position(joint))] = kStd;
+      };
+      const IdentificationOptions options{.stiffness = stiffness, .harmonics = Harmonics::kEstimate};
+      const IdentificationResult with = calibrated_with(said, options);
+      ASSERT_EQ(with.status, IdentificationStatus::kConverged) << with.message;
+      const UncertaintySource* source = named_source(with, "compliance");
+      ASSERT_NE(source, nullptr);
+      const int column = nongeometric_index(compliance_position(joint));
+      EXPECT_NEAR(source->covariance(column, column), kStd * kStd, 1e-9 * kStd * kStd) << joint;
+      EXPECT_EQ(with.uncertainty->identified(column, column), 0.0);
+      const IdentificationResult without = calibrated_with([](IdentificationProblem&) {}, options);
+      const auto over_ranges = region_over_joint_ranges(paper::nominal(), tx90::joint_ranges(), {}, 40);
+      EXPECT_EQ(named_source(without, "compliance")->covariance(column, column), 0.0);
+      EXPECT_GT(with.uncertainty->held.trace(), without.uncertainty->held.trace()) << joint;
+      EXPECT_TRUE(over_ranges.rms_m(source->covariance)) << "it is a figure of the tip";
+    }
+  }
+}
+
+TEST(Budget, HasThePlayOfTheGearsAsALagAndAsAnErrorOfPosture) {
+  const auto said = [](IdentificationProblem& problem) {
+    problem.gear_std_rad.setConstant(1e-5);
+    problem.gear_lag_std_rad.setConstant(1e-5);
+  };
+  const IdentificationResult result = calibrated_with(said, {.stiffness = true});
+  ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+  const auto over_ranges = region_over_joint_ranges(paper::nominal(), tx90::joint_ranges(), {}, 40);
+  for (const char* name : {"backlash", "gears"}) {
+    const UncertaintySource* source = named_source(result, name);
+    ASSERT_NE(source, nullptr) << name;
+    EXPECT_GT(over_ranges.rms_m(source->covariance).value(), 1e-6) << name;
+  }
+}
+
+TEST(Budget, ADriftThatTheScatterHidesIsASourceOfItsOwnDegreesOfFreedom) {
+  constexpr double kOpenMetres = 1e-5;
+  IdentificationProblem problem{.nominal = paper::nominal(),
+                                .artefact = exact_artefact(paper::planes()),
+                                .touch_noise_m = 2e-5,
+                                .tolerances = drawn::tolerances()};
+  const JointRanges ranges{JointVector::Constant(-2.0), JointVector::Constant(2.0)};
+  for (int i = 1; i <= 120; ++i)
+    problem.touches.push_back({.face = i % 4, .joints = halton_posture(i, ranges)});
+  problem.touches = moved_onto_planes(problem.nominal, problem.artefact.contact_planes, problem.touches);
+  const IdentificationResult without = identify(problem, {.robust = false});
+  problem.drift_uncertainty = {kOpenMetres, 6.0};
+  const IdentificationResult with = identify(problem, {.robust = false});
+  ASSERT_EQ(with.status, IdentificationStatus::kConverged) << with.message;
+  EXPECT_EQ(with.uncertainty->sources.back().name, "drift");
+  EXPECT_EQ(with.uncertainty->drift_degrees_of_freedom, 6.0);
+  EXPECT_TRUE(without.uncertainty->of_drift.isZero(0.0));
+  const auto of_tip = tip_arm_derivatives(problem.nominal,
+                                          forward_chain(prepare(problem.nominal), halton_posture(7, ranges)));
+  const Eigen::Matrix3d added =
+      of_tip * (with.uncertainty->covariance() - without.uncertainty->covariance()) * of_tip.transpose();
+  const Eigen::Matrix3d expected = std::pow(kOpenMetres / 2.0, 2) * Eigen::Matrix3d::Identity();
+  EXPECT_LT((added - expected).cwiseAbs().maxCoeff(), 1e-5 * expected(0, 0));
+  for (const std::string& warning : with.warnings)
+    EXPECT_EQ(warning.find("reference place"), std::string::npos) << "nothing is shown";
+}
+
 // Student's factors of the GUM, table G.2.
 TEST(Coverage, TakesTheEffectiveDegreesOfFreedom) {
   UncertaintyBudget budget;
@@ -54,6 +143,9 @@ TEST(Coverage, TakesTheEffectiveDegreesOfFreedom) {
   EXPECT_NEAR(budget.coverage_factor_of(1.0, 0.5), 2.120, 1e-3) << "half of the variance: 16";
   EXPECT_NEAR(budget.coverage_factor_of(1.0, 0.0), 1.960, 1e-3) << "no noise: infinite";
   EXPECT_NEAR(budget.coverage_factor_of(0.0, 0.0), 2.776, 1e-3) << "nothing known";
+  budget.drift_degrees_of_freedom = 4.0;
+  EXPECT_NEAR(budget.coverage_factor_of(1.0, 0.0, 1.0), 2.776, 1e-3) << "drift alone: 4";
+  EXPECT_NEAR(budget.coverage_factor_of(1.0, 0.5, 0.5), 2.306, 1e-3) << "half each: 8";
 }
 
 TEST(ArmFrame, LeavesOutTheBlocksPlaceAndNothingElse) {

@@ -8,16 +8,11 @@
 namespace cell {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using namespace std::chrono_literals;
-
-cs8::Permit refused(std::uint32_t run, cs8::RejectReason reason) {
-  cs8::Permit permit;
-  permit.run = run;
-  permit.reason = cs8::PermitReason::kRefused;
-  permit.detail = static_cast<std::int32_t>(reason);
-  return permit;
-}
 
 class ControllerSessionTest : public ::testing::Test, public OwnersBench {};
 
@@ -60,45 +55,6 @@ TEST_F(ControllerSessionTest, AStateThatChangesEndsTheSearch) {
   EXPECT_EQ(wake.wait_count, 1);
 }
 
-TEST_F(ControllerSessionTest, APermitIsAskedForAgainOnceTheReasonOfItsRefusalHasChanged) {
-  status.enter(State::kStarting);
-  int asked = 0;
-  controller.on_begin = [&](std::uint32_t run) {
-    if (++asked == 1) return refused(run, cs8::RejectReason::kCellOpen);
-    cs8::Permit granted;
-    granted.run = run;
-    granted.state = cs8::PermitState::kGranted;
-    return granted;
-  };
-  std::optional<std::string> awaited;
-  wake.on_wait = [&] {
-    awaited = status.latest().waiting_for;
-    controller.state->flags ^= cs8::kCellClosed;
-  };
-  EXPECT_TRUE(run(session.obtain_permit(7)));
-  EXPECT_EQ(awaited, "cell_closed");
-  EXPECT_EQ(status.latest().waiting_for, std::nullopt);
-  EXPECT_EQ(wake.wait_count, 1);
-  EXPECT_THAT(controller.asked, ElementsAre("begin 7", "begin 7"));
-}
-
-TEST_F(ControllerSessionTest, NobodyWhoMakesTheCellReadyInTimeEndsTheStart) {
-  status.enter(State::kStarting);
-  controller.on_begin = [](std::uint32_t run) { return refused(run, cs8::RejectReason::kCellOpen); };
-  EXPECT_FALSE(run(session.obtain_permit(7)));
-  EXPECT_THAT(faults, ElementsAre("cell_open"));
-  EXPECT_EQ(status.state(), State::kStopping);
-  EXPECT_GE(time.since_begin(), cell_of_owners().deadlines.ready);
-  EXPECT_LT(time.since_begin(), cell_of_owners().deadlines.ready + 2s);
-}
-
-TEST_F(ControllerSessionTest, APermitOfTheRunBeforeIsNone) {
-  status.enter(State::kStarting);
-  controller.permit = cs8::Permit{.run = 6, .state = cs8::PermitState::kGranted};
-  EXPECT_TRUE(run(session.obtain_permit(7)));
-  EXPECT_THAT(controller.asked, ElementsAre("begin 7"));
-}
-
 TEST_F(ControllerSessionTest, WhereTheArmStandsIsWhatItsControllerSaysAfterTheQuestion) {
   status.enter(State::kExecute);
   tell_state();  // before: it may have moved since
@@ -112,20 +68,20 @@ TEST_F(ControllerSessionTest, WhereTheArmStandsIsWhatItsControllerSaysAfterTheQu
 
 TEST_F(ControllerSessionTest, ASearchThatWasBrokenOffIsLeftFirst) {
   status.enter(State::kExecute);
+  controller.permit = cs8::Permit{.run = 7, .state = cs8::PermitState::kGranted};
   controller.state->flags |= cs8::kRetractDue;
   EXPECT_TRUE(run(session.standing_joints()));
   EXPECT_THAT(controller.asked, ElementsAre("retract 1", "acknowledge 1"));
 }
 
-TEST_F(ControllerSessionTest, WhatTookThePermissionIsTold) {
-  controller.state->flags &= ~static_cast<std::uint32_t>(cs8::kCellClosed);
-  controller.state->permit = cs8::PermitState::kGranted;
-  controller.permit = cs8::Permit{.run = 7, .reason = cs8::PermitReason::kPermissionLost};
-  const Fault told = session.with_permission_told({FaultCode::kPermissionLost, "in the phase 'search'"});
-  EXPECT_EQ(
-      told.detail,
-      "in the phase 'search'; the controller tells an open cell; the permit ended by 'permission_lost'");
-  EXPECT_EQ(session.with_permission_told({FaultCode::kNoContact, "here"}).detail, "here");
+TEST_F(ControllerSessionTest, ASearchThatWasBrokenOffIsNotLeftWithAPermitThatHasEnded) {
+  status.enter(State::kExecute);
+  controller.permit = cs8::Permit{.run = 7, .reason = cs8::PermitReason::kProbeFault};
+  controller.state->flags |= cs8::kRetractDue;
+  EXPECT_FALSE(run(session.standing_joints()));
+  EXPECT_THAT(controller.asked, IsEmpty());
+  EXPECT_THAT(faults, ElementsAre("permission_lost"));
+  EXPECT_THAT(status.fault().value().detail, HasSubstr("the permit ended by 'probe_fault'"));
 }
 
 TEST_F(ControllerSessionTest, AnArmThatStandsAtAFaceIsTold) {
@@ -166,6 +122,7 @@ TEST_F(ControllerSessionTest, StoppingTheCellStopsTheArm) {
 
 TEST_F(ControllerSessionTest, AStylusLeavesTheFaceBeforeTheEndUnlessAPersonSaysStop) {
   status.enter(State::kStopping);
+  controller.permit = cs8::Permit{.run = 7, .state = cs8::PermitState::kRetractOnly};
   controller.state->flags |= cs8::kRetractDue;
   wake.on_wait = [this] {
     session.stop();
@@ -177,6 +134,10 @@ TEST_F(ControllerSessionTest, AStylusLeavesTheFaceBeforeTheEndUnlessAPersonSaysS
   controller.asked.clear();
   run(session.leave_face());
   EXPECT_THAT(controller.asked, ElementsAre("retract 1", "acknowledge 1"));
+  controller.permit = cs8::Permit{.run = 7};
+  controller.asked.clear();
+  run(session.leave_face());
+  EXPECT_THAT(controller.asked, IsEmpty()) << "nobody permits it any more";
 }
 
 TEST_F(ControllerSessionTest, TheProbesInputsMayChangeOneAfterTheOther) {
@@ -198,35 +159,29 @@ TEST_F(ControllerSessionTest, DataIsAsOldAsTheClockThatWasHandedInSays) {
   EXPECT_EQ(session.data_age_ms(), 140) << "only State says how the controller is";
 }
 
-TEST_F(ControllerSessionTest, WhatStateSaysHoldsARunThatHasItsPermit) {
+TEST_F(ControllerSessionTest, WhatStateSaysEndsTheWayAroundTheBlock) {
   status.enter(State::kStarting);
-  ASSERT_TRUE(run(session.obtain_permit(7)));
-  status.enter(State::kExecute);
+  ASSERT_TRUE(run(session.obtain_permit(0)));
+  controller.asked.clear();
   controller.state->permit = cs8::PermitState::kGranted;
-  const auto tell_for = [this](std::chrono::milliseconds duration) {
-    for (auto passed = 0ms; passed <= duration; passed += 20ms) {
-      tell_state();
-      time.pass(20ms);
-    }
-  };
-  tell_for(2s);
-  EXPECT_EQ(status.state(), State::kExecute);
-  controller.asked.clear();
   controller.state->emergency_stop = 2;
-  tell_for(PermissionWatch::kAnswerPatience - 40ms);
-  EXPECT_EQ(status.state(), State::kExecute) << "the controller's own answer comes first";
-  EXPECT_FALSE(session.lost_permission().empty()) << "and a contact is none by now";
-  tell_for(40ms);
-  EXPECT_EQ(status.state(), State::kHolding);
+  for (auto passed = 0ms; passed <= PermissionWatch::kAnswerPatience; passed += 20ms) {
+    tell_state();
+    time.pass(20ms);
+  }
+  EXPECT_EQ(status.state(), State::kAborting) << "it has no touches to keep";
   EXPECT_THAT(faults, ElementsAre("permission_lost"));
-  EXPECT_THAT(status.fault().value().message(), ::testing::HasSubstr("emergency stop"));
-  EXPECT_THAT(controller.asked, ElementsAre("stop"));
-  // A permit that State denies is asked for again, whatever the controller said of it before.
-  controller.state->emergency_stop = 0;
-  status.enter(State::kUnholding);
-  controller.asked.clear();
-  EXPECT_TRUE(run(session.obtain_permit(7)));
-  EXPECT_THAT(controller.asked, ElementsAre("begin 7"));
+  EXPECT_THAT(controller.asked, Contains("stop"));
+}
+
+TEST_F(ControllerSessionTest, WhatIsToldOfACompleteRunStaysWhileTheLinkComesAndGoes) {
+  status.enter(State::kComplete);
+  status.set_fault({FaultCode::kNotIdentifiable, "28 of 30"});
+  session.on_link_lost({cs8::LinkErrorKind::kPeerClosed, "the connection ended"}, Event::kLinkDown);
+  EXPECT_EQ(status.fault().value().code, FaultCode::kNotIdentifiable);
+  controller.on_connect = [] { return cs8::Welcome{}; };
+  run(session.connect(false));
+  EXPECT_EQ(status.fault().value().code, FaultCode::kNotIdentifiable) << "until somebody acknowledges it";
 }
 
 TEST_F(ControllerSessionTest, NoStateAtAllHoldsARun) {
@@ -283,25 +238,6 @@ TEST_F(ControllerSessionTest, WhyARunIsOnHoldStaysWhileTheLinkComesAndGoes) {
   EXPECT_THAT(faults, ElementsAre("link_lost"));
 }
 
-TEST_F(ControllerSessionTest, AControllerThatMissedAnAcknowledgementIsMetAnew) {
-  status.enter(State::kUnholding);
-  controller.on_begin = [](std::uint32_t run) {
-    return refused(run, cs8::RejectReason::kResultUnacknowledged);
-  };
-  EXPECT_FALSE(run(session.obtain_permit(7)));
-  EXPECT_EQ(status.state(), State::kHolding);
-  EXPECT_THAT(controller.asked, ElementsAre("begin 7", "close"));
-}
-
-TEST_F(ControllerSessionTest, ATaskThatFailedIsToldWithTheNumberThatStateHasOfIt) {
-  status.enter(State::kUnholding);
-  controller.state->task_error = 60;
-  controller.on_begin = [](std::uint32_t run) { return refused(run, cs8::RejectReason::kTaskFailed); };
-  EXPECT_FALSE(run(session.obtain_permit(7)));
-  EXPECT_THAT(faults, ElementsAre("task_failed"));
-  EXPECT_EQ(status.fault().value().detail, "run-time error 60");
-}
-
 TEST_F(ControllerSessionTest, ASearchThatTheControllerWillNotMakeIsNamedBeforeAnythingMoves) {
   status.enter(State::kResetting);
   const std::vector<calib::PlannedTouch>& touches = plan_of_owners().touches.touches;
@@ -317,6 +253,26 @@ TEST_F(ControllerSessionTest, ASearchThatTheControllerWillNotMakeIsNamedBeforeAn
   EXPECT_EQ(fault_with(400'000, 20'000), "");
   EXPECT_THAT(fault_with(10'000, 20'000), ::testing::StartsWith("touch 1 searches over"));
   EXPECT_THAT(fault_with(400'000, 100), ::testing::HasSubstr("takes 100 at most"));
+}
+
+TEST_F(ControllerSessionTest, AResumeWithoutALinkHidesOnlyUntilItIsBackThatTheLinkWasLost) {
+  status.begin_run(1);
+  status.enter(State::kExecute);
+  controller.is_connected = false;
+  session.on_link_lost({cs8::LinkErrorKind::kSilent, "nothing was heard"}, Event::kLinkDown);
+  const Fault lost = status.fault().value();
+  ASSERT_EQ(lost.code, FaultCode::kLinkLost);
+  status.clear_fault();  // as a person's resume does
+  status.enter(State::kUnholding);
+  controller.on_connect = [] { return cs8::LinkError{cs8::LinkErrorKind::kUnreachable, "refused"}; };
+  run(session.connect(false));
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_EQ(status.fault().value().code, FaultCode::kControllerUnreachable) << "as it is now";
+  status.apply(Event::kDone);
+  ASSERT_EQ(status.state(), State::kHeld);
+  controller.on_connect = [] { return cs8::Welcome{}; };
+  run(session.connect(false));
+  EXPECT_EQ(status.fault().value().message(), lost.message()) << "why it is on hold";
 }
 
 TEST_F(ControllerSessionTest, AMoveThatDoesNotArriveIsAFaultUnlessSomebodyAskedForAStop) {

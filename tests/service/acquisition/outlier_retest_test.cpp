@@ -50,6 +50,15 @@ TEST_F(OutlierRetestTest, TwoTouchesThatAgreeStayAsAWarning) {
   EXPECT_EQ(std::get<OutlierRetest::Confirmed>(found).warning.code, FaultCode::kTouchOutlier);
 }
 
+TEST_F(OutlierRetestTest, APairIsWhatAgreesAndWasLatchedTwice) {
+  EXPECT_TRUE(OutlierRetest::is_pair(wrong(), wrong(), 0.9 * kAgreementMetres, kAgreementMetres));
+  EXPECT_FALSE(OutlierRetest::is_pair(wrong(), good(), 1.1 * kAgreementMetres, kAgreementMetres));
+  StoredTouch polled = good();
+  polled.source = cs8::CaptureSource::kPolled;
+  EXPECT_FALSE(OutlierRetest::is_pair(polled, good(), 0.0, kAgreementMetres));
+  EXPECT_FALSE(OutlierRetest::is_pair(good(), polled, 0.0, kAgreementMetres));
+}
+
 TEST_F(OutlierRetestTest, ARepetitionThatFitsTakesTheTouchsPlaceAndAims) {
   const auto found = retest_.judge(wrong(), good(), 0.02, kAgreementMetres);
   const auto& replaced = std::get<OutlierRetest::Replaced>(found);

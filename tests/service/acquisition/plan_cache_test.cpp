@@ -23,6 +23,15 @@ TEST_F(PlanCacheTest, PlansARecipeOnceAndGivesItAgain) {
   EXPECT_FALSE(plans_.is_planning());
 }
 
+TEST_F(PlanCacheTest, APlanThatIsHandedInIsNotMadeAgain) {
+  auto made = std::make_shared<Plan>(plan_of_owners());
+  made->id = "made elsewhere";
+  plans_.hand_in(made);
+  EXPECT_EQ(std::get<std::shared_ptr<const Plan>>(run(plans_.plan("few"))), made);
+  EXPECT_EQ(plans_.plan_with_id("made elsewhere"), made);
+  EXPECT_TRUE(plans_.planned("few", {{}, cell_of_owners().recipes.at("few").identification.stiffness}));
+}
+
 TEST_F(PlanCacheTest, APlanThatWasBegunBeforeTheBlockStoodElsewhereIsMadeAgain) {
   bool done = false;
   plans_.begin("few", {}, [&done] { done = true; });

@@ -63,12 +63,23 @@ TEST_F(RunRecoveryTest, TakesUpTheRunWithItsTouchesAndMovesNothing) {
   EXPECT_TRUE(controller.asked.empty());
 }
 
-TEST_F(RunRecoveryTest, ARunOfOtherFilesIsOverForGood) {
-  const std::int64_t id =
-      store.begin_run({.recipe = "few", .started_at = "start", .config_digest = "another"});
-  EXPECT_FALSE(recovery_.restore());
-  EXPECT_EQ(store.run(id).value().outcome, RunOutcome::kInterrupted);
-  EXPECT_EQ(store.run(id).value().verdict, Verdict::kIncomplete);
+/// Who starts a daemon with other files has not decided about the run.
+TEST_F(RunRecoveryTest, ARunOfOtherFilesOrOfARecipeThatIsGoneStaysOnHoldWithoutItsTouches) {
+  for (const char* recipe : {"few", "gone"}) {
+    const std::int64_t id =
+        store.begin_run({.recipe = recipe, .started_at = "start", .config_digest = "another"});
+    store.append_touch(id, {.number = 1, .plane = 99});  // of no plane of this block
+    const ActiveRun active = recovery_.restore().value();
+    EXPECT_TRUE(active.is_of_other_files());
+    EXPECT_EQ(active.run.id(), id);
+    EXPECT_EQ(active.run.recipe().name, recipe);
+    EXPECT_EQ(active.run.touches_done(), 0);
+    EXPECT_EQ(active.interruption.value().touches_done, 1);
+    EXPECT_THAT(status.fault().value().message(), ::testing::HasSubstr("touchcal stop"));
+    EXPECT_EQ(store.run(id).value().outcome, RunOutcome::kRunning);
+    EXPECT_FALSE(session.open_touch());
+  }
+  EXPECT_THAT(controller.asked, ::testing::IsEmpty());
 }
 
 TEST_F(RunRecoveryTest, ARunWithADamagedRowIsOverAndSaysWhich) {
@@ -111,7 +122,7 @@ TEST_F(RunRecoveryTest, ATouchThatWasNotPlannedSoKeepsTheRunFromGoingOn) {
   ActiveRun active = recovery_.restore().value();
   hold(active);
   EXPECT_FALSE(run(recovery_.make_resumable(active)));
-  EXPECT_EQ(status.state(), State::kAborting);
+  EXPECT_EQ(status.state(), State::kHolding) << "a person ends it";
   EXPECT_THAT(status.fault().value().message(), ::testing::HasSubstr("touch 4 is"));
 }
 
@@ -194,7 +205,7 @@ TEST_F(RunRecoveryTest, ARunThatWasPlannedInAnotherWayCannotGoOn) {
   ActiveRun active = recovery_.restore().value();
   hold(active);
   EXPECT_FALSE(run(recovery_.make_resumable(active)));
-  EXPECT_EQ(status.state(), State::kAborting);
+  EXPECT_EQ(status.state(), State::kHolding) << "a person ends it";
   EXPECT_THAT(faults, ElementsAre("daemon_restarted"));
 }
 

@@ -123,6 +123,10 @@ TEST_P(OneLie, IsMadeAgainWhereverItComesAndTheResultIsThatOfAnHonestRun) {
   EXPECT_EQ(replaced_count(), 1);
   EXPECT_EQ(store.superseded_touches(active_.run.id()).front().touch.number, GetParam().number);
   expect_run_is_as_stored();
+  for (const StoredTouch& touch : store.touches(active_.run.id())) {
+    EXPECT_FALSE(touch.again) << "an outlier is no noise";
+    EXPECT_EQ(touch.first.value().joints, touch.joints) << "as this controller has them";
+  }
   EXPECT_EQ(store.touches(active_.run.id())[static_cast<std::size_t>(GetParam().number - 1)].joints,
             active_.run.touches()[static_cast<std::size_t>(GetParam().number - 1)].joints);
   EXPECT_THAT(result().rejected, IsEmpty());
@@ -146,6 +150,34 @@ TEST_F(LyingController, ThatLiesTheSameAgainIsToldOfAndTheFirstTouchStays) {
   EXPECT_EQ(replaced_count(), 0);
   EXPECT_EQ(status.latest().warning.value().code, FaultCode::kTouchOutlier);
   EXPECT_NE(status.latest().warning->detail.find("touch 1"), std::string::npos);
+  EXPECT_FALSE(active_.run.touches().front().again) << "half a millimetre apart: noise of no touch";
+}
+
+TEST_F(LyingController, ATouchThatItsRepetitionAgreesWithKeepsItAsAPair) {
+  lie(kTotal, 0.005, 2);
+  run_to_the_end();
+  ASSERT_EQ(status.state(), State::kCompleting) << (faults.empty() ? "" : faults.back());
+  EXPECT_EQ(touch_count_, kTotal + 1) << "once";
+  const std::vector<StoredTouch> kept = store.touches(active_.run.id());
+  ASSERT_TRUE(kept.back().again) << "both are believed";
+  EXPECT_EQ(kept.back().again, active_.run.touches().back().again);
+  EXPECT_FALSE(active_.run.problem().repeat_sources.touched_again.noise)
+      << "both at the search's end: copies";
+}
+
+TEST_F(LyingController, ARepetitionThatCannotBeStoredHoldsTheRunAndIsStoredWhenItGoesOn) {
+  lie(kTotal, 0.005, 2);
+  while (active_.run.next()) run(touches_.make_next_touch(active_));
+  break_store();
+  run(touches_.make_next_touch(active_));
+  mend_store();
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_FALSE(active_.run.touches().back().again);
+  const int made = touch_count_;
+  status.enter(State::kExecute);
+  run_to_the_end();
+  EXPECT_EQ(touch_count_, made) << "it is not touched twice";
+  EXPECT_TRUE(store.touches(active_.run.id()).back().again);
 }
 
 TEST_F(LyingController, ATouchThatCannotBeMadeAgainHoldsAndSkipLeavesItWithAWarning) {

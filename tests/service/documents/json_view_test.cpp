@@ -177,7 +177,7 @@ TEST(TouchesDocument, IsWhatIdentifyReadsBackToTheLastStep) {
   const json touches = json::parse(document).at("touches");
   EXPECT_EQ(touches[2].at("noise_um"), 61.1);
   for (const std::size_t i : {0u, 1u, 3u}) EXPECT_FALSE(touches[i].contains("noise_um")) << "the cell's";
-  EXPECT_EQ(json::parse(document).at("schema"), kTouchesSchema);
+  EXPECT_EQ(json::parse(document).at("schema"), kSecondTouchesSchema);
   const std::vector<StoredTouch> without(stored.begin(), stored.begin() + 2);
   EXPECT_EQ(json::parse(touches_document(edf(), without, {})).at("schema"), kFirstTouchesSchema);
 }

@@ -103,6 +103,7 @@ TEST(ResultDocument, ItsPartsHaveTheirFieldsWithTheirTypes) {
                                                  {"noise_used_um", "number"},
                                                  {"noise_repeats_um", "null"},
                                                  {"repeats_degrees_of_freedom", "null"},
+                                                 {"repeats_sources", "array"},
                                                  {"gear_share", "number"},
                                                  {"lack_of_fit_test", "string"},
                                                  {"lack_of_fit_noise_um", "number"},

@@ -6,7 +6,7 @@
 
 #include "service/documents/cell_view.hpp"
 #include "service/documents/result_view.hpp"
-#include "tests/config/cell_with_ball.hpp"
+#include "tests/config/cell_with_bore.hpp"
 
 namespace cell {
 namespace {
@@ -42,6 +42,38 @@ TEST(CellView, TellsASphereFromAPlane) {
   const json& ball = document.at("scene").at("solids").at(3);  // the cube around it
   EXPECT_NEAR(ball.at("min_mm").at(0).get<double>(), 115.0, 1e-9);
   EXPECT_NEAR(ball.at("max_mm").at(1).get<double>(), -155.0, 1e-9);
+}
+
+TEST(CellView, TellsABoreAndTheHoleOfItsSolid) {
+  const Folder folder;
+  const Cell cell = read_cell(write_demo_with(block_with_ring(bore_of_ring()), folder));
+  const json document = json::parse(cell_document(cell, std::nullopt));
+  const json& face = document.at("block").at("faces").at(5);
+  EXPECT_EQ(face.at("shape"), "bore");
+  const json& bore = face.at("bore");
+  EXPECT_NEAR(bore.at("mouth_mm").at(1).get<double>(), -60.0, 1e-9);
+  EXPECT_EQ(bore.at("axis"), json({0.0, -1.0, 0.0}));
+  EXPECT_NEAR(bore.at("radius_mm").get<double>(), 42.0, 1e-9);
+  EXPECT_NEAR(bore.at("depth_mm").at(0).get<double>(), 2.0, 1e-9);
+  EXPECT_NEAR(bore.at("depth_mm").at(1).get<double>(), 42.0, 1e-9);
+  EXPECT_NEAR(bore.at("wall_half_angle_deg").get<double>(), 180.0, 1e-9);
+  const json& solids = document.at("scene").at("solids");
+  EXPECT_TRUE(solids.at(0).at("holes").empty());
+  const json& hole = solids.at(2).at("holes").at(0);
+  EXPECT_NEAR(hole.at("center_mm").at(0).get<double>(), 140.0, 1e-9);
+  EXPECT_EQ(hole.at("axis"), json({0.0, -1.0, 0.0}));
+  EXPECT_NEAR(hole.at("radius_mm").get<double>(), 42.0, 1e-9);
+}
+
+TEST(ResultView, CountsDistancesFromABoreFromItsAxisAlongItsNormal) {
+  const Folder folder;
+  const Cell cell = read_cell(write_demo_with(block_with_ring(bore_of_ring()), folder));
+  const std::vector<calib::FaceDistances> distances{
+      {.face = 5, .touch_count = 3, .nominal_mean_m = 1e-3, .calibrated_mean_m = 2e-6}};
+  const PlaneDistances bore = planes_of(cell, distances, calib::TouchRole::kFit).at(0);
+  EXPECT_NEAR(bore.reference_mm.value(), -42.0, 1e-9);
+  EXPECT_NEAR(bore.nominal_mean_mm.value(), -41.0, 1e-9);
+  EXPECT_NEAR(bore.calibrated_mean_mm.value(), -41.998, 1e-9);
 }
 
 TEST(ResultView, CountsDistancesFromASphereFromItsCentre) {

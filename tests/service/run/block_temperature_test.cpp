@@ -92,10 +92,7 @@ TEST_F(BlockTemperatureTest, OneThatComesWithTheRunAgesTooAndByTheCellsOwnLimit)
   const auto refusal = refuse_temperature(read(), measured(8h + 1s), kNow).value();
   EXPECT_EQ(refusal.code, "temperature_old");
   EXPECT_THAT(refusal.words, AllOf(HasSubstr("the request: /block_temperature_at"), HasSubstr("8.0 h old")));
-  edit(kCell, [](json& cell) {
-    cell["schema"] = "touchcal/cell/2";
-    cell["block_temperature_age_max_h"] = 24;
-  });
+  edit(kCell, [](json& cell) { cell["block_temperature_age_max_h"] = 24; });
   EXPECT_EQ(code(measured(24h)), "");
   EXPECT_EQ(code(measured(24h + 1s)), "temperature_old");
 }

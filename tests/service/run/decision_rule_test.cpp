@@ -50,7 +50,7 @@ calib::IdentificationResult good_result() {
 
 std::vector<Criterion> list_of(const calib::IdentificationResult& result,
                                const Cell& cell = cell_with_limits(), const JudgedTip& tip = kGoodTip) {
-  return criteria(result, {}, cell, tip);
+  return criteria(result, Recipe{}, cell, tip);
 }
 
 const Criterion& named(const std::vector<Criterion>& list, const std::string& name,
@@ -164,6 +164,21 @@ TEST(Criteria, TheTipIsLimitedByItsRmsItsWorstPostureAndForEachTool) {
       EXPECT_FALSE(named(list_of(good_result(), cell, tip), name).within_limit()) << name;
   }
   EXPECT_EQ(named(list_of(good_result(), cell, bad), "tool_box_rms").tool, "gripper");
+}
+
+TEST(Criteria, TheLimitOfARecipeOutranksThatOfAll) {
+  Cell cell = cell_with_limits();
+  cell.acceptance.tip_box_max_m = 5e-3;
+  cell.acceptance.tip_box_max_by_recipe_m = {{"quick", 1e-4}};
+  const auto limit_mm = [&](const char* recipe) {
+    return named(criteria(good_result(), Recipe{.name = recipe}, cell, kGoodTip), "tip_box_max").limit;
+  };
+  EXPECT_DOUBLE_EQ(limit_mm("quick"), 0.1);
+  EXPECT_DOUBLE_EQ(limit_mm("edf-23"), 5.0);
+  EXPECT_FALSE(
+      named(criteria(good_result(), Recipe{.name = "quick"}, cell, kGoodTip), "tip_box_max").within_limit());
+  cell.acceptance.tip_box_max_m.reset();
+  EXPECT_DOUBLE_EQ(limit_mm("quick"), 0.1) << "alone as well";
 }
 
 TEST(DecisionRule, TheDocumentTellsEveryCriterion) {

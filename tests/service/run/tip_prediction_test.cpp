@@ -90,6 +90,25 @@ TEST_F(TipPredictionTest, AtTheBlockTheTipIsBetterKnownThanElsewhere) {
   EXPECT_LT(prediction.at_block_rms_m.value(), prediction.joint_ranges_rms_m.value());
 }
 
+// Neither is ever estimated by itself: what the maker says of them is all that anybody knows.
+TEST_F(TipPredictionTest, NamesTheComplianceOfTheWristAndThePlayOfTheGearsAmongItsSources) {
+  const auto box_rms_m = [&](const char* name) {
+    for (const auto& source : predict(edf()).sources)
+      if (source.name == name) return source.workspace_box_rms_m.value();
+    return 0.0;
+  };
+  problem_.gear_lag_std_rad.setZero();
+  EXPECT_EQ(box_rms_m("compliance"), 0.0);
+  EXPECT_EQ(box_rms_m("backlash"), 0.0);
+  for (const int joint : {3, 4}) {  // on the axis of joint 6 nothing hangs
+    problem_.nongeometric_std = {};
+    problem_.nongeometric_std[static_cast<std::size_t>(calib::compliance_position(joint))] = 5e-6;
+    EXPECT_GT(box_rms_m("compliance"), 1e-7) << joint + 1;
+  }
+  problem_.gear_lag_std_rad = edf().arm.gears.lag_std_rad();
+  EXPECT_GT(box_rms_m("backlash"), 1e-6);
+}
+
 TEST_F(TipPredictionTest, AWarmerArmIsOffByWhatItHasGrown) {
   Cell cell = edf();
   cell.arm.growth.reset();

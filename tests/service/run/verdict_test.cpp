@@ -42,7 +42,8 @@ Judgement judged(const calib::IdentificationResult& result, const AcceptanceLimi
   cell.nominal_position_error_m = kNominalMiss;
   cell.acceptance = limits;
   const JudgedTip tip{.box_rms_m = tip_box_rms_m, .box_max_m = kNominalMiss};
-  return judge(result, criteria(result, options, cell, tip), limits, complete);
+  const Recipe recipe{.identification = options};
+  return judge(result, criteria(result, recipe, cell, tip), limits, complete);
 }
 
 std::vector<std::string> reasons_against(const calib::IdentificationResult& result, bool complete = true) {

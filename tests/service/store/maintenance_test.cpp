@@ -141,6 +141,36 @@ TEST(LostStore, IsNoticedInAStateDirectoryThatWasInUse) {
   EXPECT_THROW(refuse_lost_store(folder.path()), std::runtime_error);
 }
 
+TEST(LostStore, IsNoticedBesideWhatIsLeftThereOnceItWasBegun) {
+  const Folder folder;
+  folder.write("operate.token", "a");
+  EXPECT_NO_THROW(refuse_lost_store(folder.path())) << "prepared for its first start";
+  { const RunStore made(folder.path() / "touchcal.sqlite"); }
+  mark_begun(folder.path());
+  mark_begun(folder.path());
+  EXPECT_NO_THROW(refuse_lost_store(folder.path()));
+  std::filesystem::remove(folder.path() / "touchcal.sqlite");
+  try {
+    refuse_lost_store(folder.path());
+    ADD_FAILURE() << "it would begin as if nothing had been";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("touchcal.sqlite: is missing"), HasSubstr("touchcal.begun"),
+                                    HasSubstr("restore the last backup")));
+  }
+}
+
+TEST_F(StoreMaintenance, AFileOfANewerVersionIsNotCalledDamaged) {
+  SQLite::Database(file_.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 77");
+  try {
+    find_damage(file_);
+    ADD_FAILURE() << "nobody can say";
+  } catch (const StoreNotChecked& error) {
+    EXPECT_THAT(error.what(),
+                AllOf(HasSubstr(file_.string()), HasSubstr("a newer touchcald wrote it (schema 77"),
+                      HasSubstr("verify it with that version")));
+  }
+}
+
 TEST_F(StoreMaintenance, WhatIsNoTouchOrBelongsToNoRunIsTold) {
   const std::int64_t run = add_run("start", Verdict::kAccepted);
   EXPECT_THAT(find_damage(file_), IsEmpty());
@@ -168,7 +198,8 @@ TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRun
   const std::int64_t rejected = add_run("2026-01-03", Verdict::kRejected);
   const std::int64_t running = add_run("2026-01-04", Verdict::kNone);
   const std::int64_t young = add_run("2026-03-01", Verdict::kRejected);
-  for (int i = 1; i < kLastRunsKept; ++i) add_run("2026-03-02", Verdict::kRejected);
+  for (int i = 1; i < kLastRunsKept; ++i)
+    add_run(i % 2 == 0 ? "2026-03-02" : "2026-03-03", Verdict::kRejected);
   EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 2);
   EXPECT_FALSE(store_.run(old) || store_.run(rejected));
   EXPECT_THAT(store_.touches(old), IsEmpty());
@@ -176,7 +207,7 @@ TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRun
     EXPECT_TRUE(store_.run(kept));
     EXPECT_TRUE(store_.plan_json(kept));
   }
-  EXPECT_EQ(store_.database()->execAndGet("SELECT count(*) FROM plans").getInt(), 4);
+  EXPECT_EQ(store_.database()->execAndGet("SELECT count(*) FROM plans").getInt(), 5);
   EXPECT_THAT(find_damage(file_), IsEmpty());
   EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 0);
 }
@@ -197,15 +228,32 @@ TEST_F(StoreMaintenance, OfADirectoryThatWasMovedAwayNoRoomIsTold) {
 
 TEST_F(StoreMaintenance, TheLastRunsStayHoweverOldTheyAre) {
   for (int i = 0; i < kLastRunsKept; ++i) add_run("2026-01-01", Verdict::kRejected);
-  add_run("2026-03-01", Verdict::kRejected);
-  EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 1);
+  for (const char* day : {"2026-03-01", "2026-03-02", "2026-03-03"}) add_run(day, Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), kDaysThatAgree);
 }
 
 TEST_F(StoreMaintenance, AClockThatHasJumpedDeletesNothing) {
   for (int i = 0; i < 2 * kLastRunsKept; ++i) add_run("2026-01-01", Verdict::kRejected);
   EXPECT_EQ(delete_runs_before(store_.database(), "2036-01-01"), 0);
-  add_run("2036-01-02", Verdict::kRejected);
-  EXPECT_EQ(delete_runs_before(store_.database(), "2036-01-01"), kLastRunsKept + 1);
+}
+
+TEST_F(StoreMaintenance, WhoKeepsADayNeedsRunsOfThatDayOnly) {
+  for (int i = 0; i < 2 * kLastRunsKept; ++i) add_run("2026-01-01T08:00:00.000Z", Verdict::kRejected);
+  add_run("2026-03-01T08:00:00.000Z", Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-28T09:00:00.000Z"), 0);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-28T09:00:00.000Z", 1), kLastRunsKept + 1);
+}
+
+TEST_F(StoreMaintenance, OneStartWithAClockFarAheadIsNotTheWordOfTheNext) {
+  for (int i = 0; i < 2 * kLastRunsKept; ++i) add_run("2026-01-01T08:00:00.000Z", Verdict::kRejected);
+  for (int minute = 10; minute < 40; ++minute)
+    add_run("2036-01-02T08:" + std::to_string(minute) + ":00.000Z", Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2036-01-01T00:00:00.000Z"), 0);
+  add_run("2036-01-03T08:00:00.000Z", Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2036-01-01T00:00:00.000Z"), 0);
+  add_run("2036-01-04T08:00:00.000Z", Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2036-01-01T00:00:00.000Z"), 2 * kLastRunsKept)
+      << "days went by";
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include <cstdint>
-#include <functional>
 #include <limits>
 
 #include "tests/config/folder.hpp"
@@ -16,7 +15,7 @@ static bool operator==(const StoredTouch& a, const StoredTouch& b) {
   return a.number == b.number && a.plane == b.plane && a.role == b.role && a.joints == b.joints &&
          a.source == b.source && a.overtravel_dmm == b.overtravel_dmm && a.captured_at == b.captured_at &&
          a.session == b.session && a.sequence == b.sequence && a.aimed_with == b.aimed_with &&
-         a.noise_um == b.noise_um;
+         a.noise_um == b.noise_um && a.first == b.first && a.again == b.again;
 }
 
 namespace {
@@ -94,6 +93,32 @@ TEST_F(RunStoreTest, ATouchKeepsItsNoiseWhenAnotherTakesItsPlace) {
   store_->replace_touch(run, again, "it contradicted the others");
   EXPECT_THAT(store_->touches(run), ElementsAre(again));
   EXPECT_EQ(store_->superseded_touches(run).at(0).touch, first);
+}
+
+TEST_F(RunStoreTest, ATouchKeepsItsFirstContactAndARepetitionThatAgreedWithIt) {
+  const std::int64_t run = begin();
+  StoredTouch made = touch(1);
+  made.first = FirstContact{.source = cs8::CaptureSource::kPolled, .joints = {kLowest, 2, 3, 4, 5, kHighest}};
+  store_->append_touch(run, made);
+  store_->append_touch(run, touch(2));
+  reopen();
+  EXPECT_THAT(store_->touches(run), ElementsAre(made, touch(2)));
+  made.again = cs8::JointsMicrodeg{0, 0, 0, 0, 0, -1};
+  store_->confirm_touch(run, 1, *made.again);
+  reopen();
+  EXPECT_THAT(store_->touches(run), ElementsAre(made, touch(2)));
+  EXPECT_THROW(store_->confirm_touch(run, 3, *made.again), std::exception);
+}
+
+TEST_F(RunStoreTest, ARepetitionGoesWithTheTouchThatItAgreedWith) {
+  const std::int64_t run = begin();
+  StoredTouch confirmed = touch(1);
+  confirmed.again = cs8::JointsMicrodeg{1, 2, 3, 4, 5, 6};
+  store_->append_touch(run, touch(1));
+  store_->confirm_touch(run, 1, *confirmed.again);
+  store_->replace_touch(run, touch(1), "it contradicts the others after all");
+  EXPECT_THAT(store_->touches(run), ElementsAre(touch(1)));
+  EXPECT_EQ(store_->superseded_touches(run).at(0).touch, confirmed);
 }
 
 TEST_F(RunStoreTest, AStoredTouchIsThereForAnotherConnectionAtOnce) {
@@ -229,18 +254,6 @@ TEST_F(RunStoreTest, AFolderThatIsNotThereIsToldByName) {
   EXPECT_THAT(refusal(file), HasSubstr(file.string()));
 }
 
-TEST_F(RunStoreTest, NoCommandIsKeptInAFileThatWasMovedOrReplaced) {
-  const std::int64_t run = begin();
-  const OpenCommand command{.session = 1, .sequence = 1, .touch_json = "{}"};
-  const std::filesystem::path moved = file_.string() + ".moved";
-  std::filesystem::rename(file_, moved);
-  EXPECT_THROW(store_->set_open_command(run, command), std::runtime_error);
-  folder_.write("touchcal.sqlite", "another");
-  EXPECT_THROW(store_->set_open_command(run, command), std::runtime_error);
-  std::filesystem::rename(moved, file_);
-  EXPECT_NO_THROW(store_->set_open_command(run, command));
-}
-
 TEST_F(RunStoreTest, RunsThatFollowOnePlanKeepItOnce) {
   const std::string kPlan = R"({"touches":[]})";
   const std::int64_t first = begin(), second = begin(), unplanned = begin();
@@ -269,54 +282,6 @@ TEST_F(RunStoreTest, ARunTellsWhoStartedItAndWithWhat) {
   EXPECT_EQ(run.conditions_json, "{}");
   const StoredRun other = store_->run(begin()).value();
   EXPECT_FALSE(run.plan_id || other.operator_name || other.block_temperature || other.stiffness);
-}
-
-TEST_F(RunStoreTest, AfterALockOfAnotherProgramWhatIsWrittenReachesTheFile) {
-  const std::int64_t run = begin();
-  SQLite::Database other(file_.string(), SQLite::OPEN_READWRITE);
-  const std::vector<std::function<void()>> meeting_the_lock{
-      [&] { store_->set_open_command(run, {.session = 1, .sequence = 1, .touch_json = "{}"}); },
-      [&] {
-        if (!store_->make_durable(run)) throw SQLite::Exception("as it tells");
-      },
-      [&] { store_->append_touch(run, touch(1)); }};
-  int stored = 0;
-  for (const auto& write : meeting_the_lock) {
-    other.exec("BEGIN IMMEDIATE");
-    EXPECT_THROW(write(), SQLite::Exception);
-    other.exec("ROLLBACK");
-    store_->append_touch(run, touch(++stored));
-    EXPECT_EQ(other.execAndGet("SELECT count(*) FROM touches").getInt(), stored);
-    store_->set_touches_total(run, 10 + stored);
-    EXPECT_EQ(other.execAndGet("SELECT touches_total FROM runs").getInt(), 10 + stored);
-  }
-}
-
-TEST_F(RunStoreTest, ACommandIsOpenUntilItsAnswerIsStored) {
-  const std::int64_t run = begin();
-  EXPECT_FALSE(store_->open_command(run));
-  store_->set_open_command(run, {.session = 7, .sequence = 9, .aimed_with = 2, .touch_json = "{\"a\":1}"});
-  store_->make_durable(run);
-  reopen();
-  const OpenCommand open = store_->open_command(run).value();
-  EXPECT_EQ(open.session, 7u);
-  EXPECT_EQ(open.sequence, 9u);
-  EXPECT_EQ(open.aimed_with, 2);
-  EXPECT_EQ(open.touch_json, "{\"a\":1}");
-  StoredTouch answer = touch(1);
-  answer.session = 7;
-  answer.sequence = 8;
-  store_->append_touch(run, answer);
-  EXPECT_TRUE(store_->open_command(run)) << "that was the answer to another";
-  answer = touch(2);
-  answer.session = 7;
-  answer.sequence = 9;
-  store_->append_touch(run, answer);
-  EXPECT_FALSE(store_->open_command(run));
-  StoredTouch again = answer;
-  again.sequence = 10;
-  store_->replace_touch(run, again, "outlier");
-  EXPECT_FALSE(store_->open_command(run)) << "its touch is kept apart, and it was answered";
 }
 
 TEST_F(RunStoreTest, ATouchMadeAgainTakesThePlaceOfTheFirstWhichIsKept) {

@@ -67,7 +67,7 @@ TEST_P(StoreSchema, AFileOfAnEarlierVersionIsTakenOverWithAllThatIsInIt) {
   EXPECT_EQ(touches[0].joints, (cs8::JointsMicrodeg{-1, 2, -3, 4, -5, 6}));
   EXPECT_EQ(touches[0].overtravel_dmm, 7);
   EXPECT_EQ(touches[0].sequence, 0u);
-  EXPECT_FALSE(touches[0].noise_um);
+  EXPECT_FALSE(touches[0].noise_um || touches[0].first || touches[0].again);
   EXPECT_THAT(find_damage(file), ::testing::IsEmpty());
   EXPECT_EQ(store.result_json(1), "{\"a\":1}");
   EXPECT_EQ(store.last_accepted()->id, 1);
@@ -91,9 +91,11 @@ TEST_P(StoreSchema, AFileOfAnEarlierVersionGetsTheShapeOfANewOne) {
 
 INSTANTIATE_TEST_SUITE_P(Versions, StoreSchema, ::testing::Range(1, static_cast<int>(migrations().size())));
 
-TEST(StoreSchemaFile, ATouchThatWasDamagedBeforeItsChecksumCoversItsNoiseStaysKnownAsDamaged) {
+class ResealedTouches : public ::testing::TestWithParam<std::size_t> {};
+
+TEST_P(ResealedTouches, ATouchThatWasDamagedBeforeItsChecksumCoversMoreStaysKnownAsDamaged) {
   const Folder folder;
-  const auto file = file_of_version(folder, static_cast<int>(kTouchNoiseSchema) - 1);
+  const auto file = file_of_version(folder, static_cast<int>(GetParam()) - 1);
   EXPECT_THAT(find_damage(file), ::testing::IsEmpty()) << "of a file of that schema";
   SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
       .exec("UPDATE touches SET plane = 2 WHERE run_id = 1 AND number = 2");
@@ -102,6 +104,26 @@ TEST(StoreSchemaFile, ATouchThatWasDamagedBeforeItsChecksumCoversItsNoiseStaysKn
   const RunStore store(file);
   EXPECT_THAT(find_damage(file), damaged);
   EXPECT_THROW(static_cast<void>(store.touches(1)), DamagedStore);
+}
+
+INSTANTIATE_TEST_SUITE_P(Schemas, ResealedTouches,
+                         ::testing::Values(kTouchNoiseSchema, kTouchContactsSchema));
+
+TEST(StoreSchemaFile, WhatElseWasTouchedAtAPlaceIsInTheChecksumOfItsTouch) {
+  const Folder folder;
+  RunStore store(folder.path() / "store.sqlite");
+  const std::int64_t run = store.begin_run({.recipe = "edf-25", .touches_total = 140, .started_at = "start"});
+  for (const char* tampered :
+       {"first_source = 1 - first_source", "first_source = NULL", "first_j6_microdeg = 7",
+        "again_j1_microdeg = 7", "again_j1_microdeg = NULL"}) {
+    store.database()->exec("DELETE FROM touches");
+    store.append_touch(run, {.number = 1, .plane = 1, .captured_at = "now", .first = FirstContact{}});
+    store.confirm_touch(run, 1, {1, 2, 3, 4, 5, 6});
+    EXPECT_NO_THROW(static_cast<void>(store.touches(run))) << tampered;
+    store.database()->exec(std::string("UPDATE touches SET ") + tampered);
+    EXPECT_THROW(static_cast<void>(store.touches(run)), DamagedStore) << tampered;
+    EXPECT_THROW(store.confirm_touch(run, 1, {1, 2, 3, 4, 5, 6}), DamagedStore) << tampered;
+  }
 }
 
 TEST(StoreSchemaFile, TheNoiseOfATouchIsInItsChecksum) {

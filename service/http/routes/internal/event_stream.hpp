@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "service/http/routes/services.hpp"
+#include "service/http/server/http_message.hpp"
 #include "service/http/server/request_handler.hpp"
 
 namespace cell {
@@ -17,12 +18,12 @@ inline constexpr std::string_view kRunEventsPath = "/api/v1/runs/{id}/events";
 
 /// Server-sent events for one client: `status` for each change, in order, once each; `reset` with the whole
 /// status if the client's last event is of another instance or too old; `run` with the document of the run at
-/// the end of a run's stream. Ids are INSTANCE-SEQUENCE.
+/// the end of a run's stream. Ids are INSTANCE-SEQUENCE. One that was opened with a token ends when that does
+/// not count any more.
 class EventStream final : public EventSource {
  public:
   /// `run_id`: only changes during this run.
-  EventStream(Services& services, std::optional<std::int64_t> run_id,
-              std::optional<std::string> last_event_id);
+  EventStream(Services& services, std::optional<std::int64_t> run_id, HttpRequest request);
   ~EventStream() override;
 
   [[nodiscard]] static int open_count(const Services& services) { return *services.open_streams; }
@@ -34,12 +35,15 @@ class EventStream final : public EventSource {
   boost::asio::awaitable<void> wait() override;
 
  private:
+  [[nodiscard]] bool is_withdrawn() const;
   [[nodiscard]] std::string id_of(std::uint64_t sequence) const;
   [[nodiscard]] std::string whole_status(const char* event);
   [[nodiscard]] std::string end_of_run();
 
   Services& services_;
   std::optional<std::int64_t> run_id_;
+  HttpRequest request_;
+  bool needs_token_;  // over loopback only what was opened with one
   std::shared_ptr<int> open_;
   std::string first_;  // the first event, if any
   std::uint64_t seen_ = 0;

@@ -59,7 +59,9 @@ export interface Joints {
 }
 
 export type Vector = [number, number, number];
-export interface Box { name: string; min_mm: Vector; max_mm: Vector }
+/** Through a solid from side to side; the axis of unit length. */
+export interface Hole { center_mm: Vector; axis: Vector; radius_mm: number }
+export interface Box { name: string; min_mm: Vector; max_mm: Vector; holes?: Hole[] }
 export interface Capsule { name: string; frame: number; from_mm: Vector; to_mm: Vector; radius_mm: number }
 export interface Frame { alpha_rad: number; d_mm: number; theta_rad: number; r_mm: number; beta_rad: number }
 export interface Face {
@@ -70,6 +72,7 @@ export interface Face {
   edge_u: Vector;
   half_extent_mm: [number, number];
   sphere?: {center_mm: Vector; radius_mm: number};  // the rest is the plane that touches it at its pole
+  bore?: {mouth_mm: Vector; axis: Vector; radius_mm: number; depth_mm: [number, number]; wall_half_angle_deg: number};
 }
 /** Where the block was located, against the cell's file. */
 export interface Place { located_at: string; shift_mm: number[]; turn_deg: number[] }
@@ -89,6 +92,7 @@ export interface Cell {
     condition_number_max: number;
     tip_box_rms_max_mm: number | null;
     tip_box_max_mm: number | null;
+    tip_box_max_by_recipe_mm?: Record<string, number>;
   };
   scene: {
     frames: Frame[];

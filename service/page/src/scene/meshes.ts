@@ -1,4 +1,5 @@
 import type {Box, Capsule, Face, Vector} from '../api/documents.ts';
+import {holedBoxMesh, wallTriangles} from './holes.ts';
 import {add, cross, length, scale, subtract, unit} from './matrix.ts';
 
 /** Triangles: six numbers a corner, place (mm) and normal. */
@@ -67,16 +68,24 @@ export function blockMeshes(solids: Box[], faces: Face[]): Mesh[] {
       center_mm.every((middle, axis) =>
           Math.abs(min_mm[axis]! - middle + radius_mm) < 1e-6 && Math.abs(max_mm[axis]! - middle - radius_mm) < 1e-6));
   return [
-    ...solids.filter((box) => !isAround(box)).map(boxMesh),
+    ...solids.filter((box) => !isAround(box)).map((box) => (box.holes?.length ? holedBoxMesh(box, box.holes) : boxMesh(box))),
     ...balls.map(({center_mm, radius_mm}) => ballMesh(center_mm, radius_mm)),
   ];
 }
 
 const kLift_mm = 0.8;
 
+function boreMesh({mouth_mm, axis, radius_mm, depth_mm, wall_half_angle_deg}: NonNullable<Face['bore']>, outward: Vector): Mesh {
+  const out: number[] = [];
+  const along = [-depth_mm[1], -depth_mm[0]] as const;
+  wallTriangles(out, mouth_mm, axis, radius_mm - kLift_mm, along, scale(outward, -1), (wall_half_angle_deg * Math.PI) / 180);
+  return new Float32Array(out);
+}
+
 /** The part of a face that may be touched, of a ball the whole, lifted a little off the block so that it shows. */
-export function faceMesh({outward, center_mm, edge_u, half_extent_mm, sphere}: Face): Mesh {
+export function faceMesh({outward, center_mm, edge_u, half_extent_mm, sphere, bore}: Face): Mesh {
   if (sphere) return ballMesh(sphere.center_mm, sphere.radius_mm + kLift_mm);
+  if (bore) return boreMesh(bore, outward);
   const edge_v = cross(outward, edge_u);
   const out: number[] = [];
   for (const [a, b] of [[-1, -1], [1, -1], [1, 1], [-1, -1], [1, 1], [-1, 1]] as const) {

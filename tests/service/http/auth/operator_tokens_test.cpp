@@ -1,8 +1,10 @@
 #include "service/http/auth/operator_tokens.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "service/base/state_directory.hpp"
+#include "service/http/auth/token_file.hpp"
 #include "service/http/auth/tokens.hpp"
 #include "tests/config/folder.hpp"
 
@@ -104,6 +106,17 @@ TEST_F(OperatorTokens, WhatIsNoFileIsRefused) {
   EXPECT_THAT(refusal(), HasSubstr(place.string() + ": is not a file"));
 }
 
+TEST_F(OperatorTokens, APipeHoldsNobodyWhoReadsAndOfALargeFileOnlyTheBeginningIsRead) {
+  const std::filesystem::path pipe = state_.path() / kOperateTokenFile, large = directory_ / "anna";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRUSR | S_IWUSR), 0);
+  EXPECT_THROW(read_token(pipe, "remove it"), std::runtime_error);
+  std::filesystem::remove(pipe);
+  write(large, std::string(64, '1'));
+  constexpr std::uintmax_t kTerabyte = 1'000'000'000'000;  // a sparse one
+  std::filesystem::resize_file(large, kTerabyte);
+  EXPECT_THAT(refusal(), HasSubstr("does not hold a token"));
+}
+
 TEST_F(OperatorTokens, OneTokenInTwoPlacesIsRefusedWithBoth) {
   write(directory_ / "anna", token_);
   write(directory_ / "bert", token_ + "\n");
@@ -136,6 +149,40 @@ TEST_F(OperatorTokens, ADirectoryThatOthersMayWriteInIsRefused) {
   std::filesystem::permissions(directory_, perms::others_read | perms::others_exec,
                                std::filesystem::perm_options::add);
   EXPECT_THAT(read_operator_tokens(state_.path()), IsEmpty()) << "names are no secret";
+}
+
+TEST_F(OperatorTokens, OfADaemonThatRunsWhatIsRefusedDoesNotCountAndTheOthersDo) {
+  write(directory_ / "anna", token_);
+  write(directory_ / "bert", std::string(64, '2'));
+  write(directory_ / "cora", "short");
+  const CurrentOperators now = operator_tokens_now(state_.path());
+  ASSERT_THAT(now.tokens, ElementsAre(Field(&NamedToken::name, "anna"), Field(&NamedToken::name, "bert")));
+  EXPECT_THAT(now.troubles, ElementsAre(HasSubstr("cora: does not hold a token")));
+  std::filesystem::remove(directory_ / "anna");
+  EXPECT_THAT(operator_tokens_now(state_.path()).tokens, ElementsAre(Field(&NamedToken::name, "bert")));
+  std::filesystem::permissions(directory_, perms::group_write, std::filesystem::perm_options::add);
+  EXPECT_THAT(operator_tokens_now(state_.path()).tokens, IsEmpty()) << "anybody may have put it there";
+  EXPECT_THAT(operator_tokens_now(state_.path()).troubles, SizeIs(1));
+}
+
+TEST_F(OperatorTokens, OfADaemonThatRunsAFileThatCannotBeReadLeavesItsTokenAsItWas) {
+  write(directory_ / "anna", token_);
+  write(directory_ / "bert", std::string(64, '2'));
+  const auto known = operator_tokens_now(state_.path()).tokens;
+  std::filesystem::remove(directory_ / "anna");
+  std::filesystem::create_symlink("/proc/self/mem", directory_ / "anna");  // reading it is an error
+  const CurrentOperators now = operator_tokens_now(state_.path(), known);
+  EXPECT_EQ(now.tokens, known);
+  EXPECT_THAT(now.troubles, IsEmpty());
+  EXPECT_THAT(now.kept, ElementsAre(HasSubstr("anna: the token cannot be read: Input/output error")));
+  EXPECT_THAT(refusal(), HasSubstr("cannot be read")) << "no daemon starts with it";
+  std::filesystem::remove(directory_ / "bert");
+  std::filesystem::create_symlink("bert", directory_ / "bert");  // so is a loop
+  write(directory_ / "cora", token_);
+  const CurrentOperators later = operator_tokens_now(state_.path(), known);
+  EXPECT_EQ(later.tokens, known);
+  EXPECT_THAT(later.troubles, ElementsAre(HasSubstr("cora: holds the token of")))
+      << "what is kept is held like what was read";
 }
 
 TEST_F(OperatorTokens, AFileInPlaceOfTheDirectoryIsRefused) {

@@ -1,6 +1,7 @@
 #include "service/http/auth/tokens.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include "service/base/state_directory.hpp"
@@ -10,8 +11,11 @@ namespace cell {
 namespace {
 
 using std::filesystem::perms;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using ::testing::MatchesRegex;
+using ::testing::SizeIs;
 
 TEST(Tokens, TheFirstStartMakesTwoOf256RandomBits) {
   const Folder state;
@@ -87,10 +91,96 @@ TEST(Tokens, AFolderThatIsNotThereIsToldWithTheFile) {
   }
 }
 
+class TokensOfARunningDaemon : public ::testing::Test {
+ protected:
+  void write(const std::filesystem::path& file, const std::string& bytes) const {
+    state_.write(file.string(), bytes);
+    std::filesystem::permissions(state_.path() / file, perms::owner_read | perms::owner_write);
+  }
+  CurrentTokens look() const { return tokens_now(state_.path(), known_); }
+
+  const Folder state_;
+  const Tokens known_ = load_or_make_tokens(state_.path());
+  const std::vector<std::string_view> files_{kOperateTokenFile, kViewTokenFile};
+};
+
+TEST_F(TokensOfARunningDaemon, AreThoseOfTheFilesAsTheyAre) {
+  EXPECT_EQ(look().tokens, known_);
+  write(kOperateTokenFile, std::string(64, '1'));
+  write(kViewTokenFile, std::string(64, '2') + "\n");
+  const CurrentTokens now = look();
+  EXPECT_EQ(now.tokens, (Tokens{std::string(64, '1'), std::string(64, '2')}));
+  EXPECT_THAT(now.troubles, IsEmpty());
+  EXPECT_THAT(now.kept, IsEmpty());
+}
+
+TEST_F(TokensOfARunningDaemon, AreMadeAnewWhereTheirFileWasRemoved) {
+  for (const auto file : files_) std::filesystem::remove(state_.path() / file);
+  const Tokens now = look().tokens;
+  EXPECT_THAT(now.operate, SizeIs(64));
+  EXPECT_NE(now.operate, known_.operate);
+  EXPECT_NE(now.view, known_.view);
+  EXPECT_EQ(load_or_make_tokens(state_.path()), now) << "they stand in their files";
+}
+
+TEST_F(TokensOfARunningDaemon, AreNobodysWhereTheirFileIsRefused) {
+  write(kOperateTokenFile, "short");
+  std::filesystem::permissions(state_.path() / kViewTokenFile, perms::group_read,
+                               std::filesystem::perm_options::add);
+  const CurrentTokens now = look();
+  EXPECT_EQ(now.tokens, Tokens{});
+  EXPECT_THAT(now.troubles, ElementsAre(HasSubstr("operate.token: does not hold a token"),
+                                        HasSubstr("view.token: others than its owner have access")));
+  EXPECT_THAT(now.kept, IsEmpty());
+}
+
+TEST_F(TokensOfARunningDaemon, StayWhereTheirFileCannotBeReadOnce) {
+  for (const auto file : files_) {
+    std::filesystem::remove(state_.path() / file);
+    // Where nothing is mapped: a regular file of its owner, whose reading is an error of the device.
+    std::filesystem::create_symlink("/proc/self/mem", state_.path() / file);
+  }
+  const CurrentTokens now = look();
+  EXPECT_EQ(now.tokens, known_);
+  EXPECT_THAT(now.troubles, IsEmpty());
+  EXPECT_THAT(now.kept, ElementsAre(HasSubstr("operate.token: the token cannot be read: Input/output error"),
+                                    HasSubstr("view.token: the token cannot be read")));
+  EXPECT_THAT(tokens_now(state_.path(), {}).troubles, SizeIs(2)) << "where none is known none counts";
+}
+
+TEST_F(TokensOfARunningDaemon, StayWhereNoFileCanBeOpened) {
+  std::filesystem::create_directory(state_.path() / kOperatorsDirectory);
+  std::filesystem::permissions(state_.path() / kOperatorsDirectory, perms::owner_all);
+  write(std::filesystem::path(kOperatorsDirectory) / "anna", std::string(64, '1'));
+  const Tokens known = look().tokens;
+  ASSERT_THAT(known.operators, SizeIs(1));
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit none{.rlim_cur = 0, .rlim_max = before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  const CurrentTokens now = tokens_now(state_.path(), known);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(now.tokens, known);
+  EXPECT_THAT(now.troubles, IsEmpty());
+  EXPECT_THAT(now.kept, SizeIs(3));
+}
+
+TEST_F(TokensOfARunningDaemon, AreAsTheyWereWhileTheWholeDirectoryIsGone) {
+  write(std::filesystem::path(kOperatorsDirectory) / "anna", std::string(64, '1'));
+  const Tokens known = look().tokens;
+  const std::filesystem::path moved = state_.path().string() + "-moved";
+  std::filesystem::rename(state_.path(), moved);
+  const CurrentTokens now = tokens_now(state_.path(), known);
+  std::filesystem::rename(moved, state_.path());
+  EXPECT_EQ(now.tokens, known) << "STOP needs one";
+  EXPECT_THAT(now.kept, SizeIs(1));
+}
+
 TEST(Tokens, OnlyTheWholeTokenIsTheToken) {
   const std::string token(64, 'a');
   EXPECT_TRUE(same_token(token, token));
   EXPECT_FALSE(same_token(token, ""));
+  EXPECT_FALSE(same_token("", "")) << "where there is no token nobody has it";
   EXPECT_FALSE(same_token(token, token.substr(1)));
   EXPECT_FALSE(same_token(token, token + "a"));
   for (std::size_t i = 0; i < token.size(); ++i) {

@@ -2,8 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
 #include <nlohmann/json.hpp>
 
+#include "tests/service/http/test_tokens.hpp"
 #include "tests/service/quiet_cell.hpp"
 
 namespace cell {
@@ -47,13 +50,18 @@ class EventStreams : public ::testing::Test {
   std::uint64_t sequence() { return quiet_.operation().sequence(); }
   std::string id_of(std::uint64_t sequence) { return "instance-" + std::to_string(sequence); }
 
+  static HttpRequest local(std::optional<std::string> last_event_id = std::nullopt) {
+    return {.last_event_id = std::move(last_event_id), .from_loopback = true};
+  }
+  static HttpRequest with(const std::string& token) { return {.authorization = "Bearer " + token}; }
+
   QuietCell quiet_;
-  Services services_{quiet_.operation(), {}};
+  Services services_{quiet_.operation(), kTokens};
   bool resetting_ = false;
 };
 
 TEST_F(EventStreams, BeginWithTheWholeStatusAndGoOnWithEachChangeOnce) {
-  EventStream stream(services_, {}, {});
+  EventStream stream(services_, {}, local());
   const auto first = parsed(stream.due());
   ASSERT_EQ(first.size(), 1u);
   EXPECT_EQ(first[0].name, "status");
@@ -78,13 +86,13 @@ TEST_F(EventStreams, BeginWithTheWholeStatusAndGoOnWithEachChangeOnce) {
 TEST_F(EventStreams, GoOnWhereAReaderLeftOff) {
   std::string last;
   {
-    EventStream stream(services_, {}, {});
+    EventStream stream(services_, {}, local());
     change();
     last = parsed(stream.due()).back().id;
   }
   change();
   change();
-  EventStream again(services_, {}, last);
+  EventStream again(services_, {}, local(last));
   const auto missed = parsed(again.due());
   ASSERT_EQ(missed.size(), 2u);
   EXPECT_EQ(missed[0].id, id_of(sequence() - 1));
@@ -98,13 +106,13 @@ TEST_F(EventStreams, TellAReaderThatItHasToBeginAgain) {
   for (const std::string& unknown :
        {begin, std::string("other-1"), id_of(sequence() + 1), std::string("instance-"), std::string("x"),
         std::string("instance-1x")}) {
-    EventStream stream(services_, {}, unknown);
+    EventStream stream(services_, {}, local(unknown));
     const auto events = parsed(stream.due());
     ASSERT_EQ(events.size(), 1u) << unknown;
     EXPECT_EQ(events[0].name, "reset") << unknown;
     EXPECT_EQ(events[0].data.at("sequence"), sequence()) << unknown;
   }
-  EventStream slow(services_, {}, {});
+  EventStream slow(services_, {}, local());
   slow.due();
   for (std::size_t i = 0; i <= kChangesKept; ++i) change();
   EXPECT_EQ(parsed(slow.due()).at(0).name, "reset") << "a reader that fell behind";
@@ -112,7 +120,7 @@ TEST_F(EventStreams, TellAReaderThatItHasToBeginAgain) {
 
 TEST_F(EventStreams, OfARunEndWithItsDocument) {
   const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
-  EventStream stream(services_, run, {});
+  EventStream stream(services_, run, local());
   stream.due();
   change();
   EXPECT_EQ(stream.due(), "") << "what happens outside of the run is not told";
@@ -128,10 +136,43 @@ TEST_F(EventStreams, OfARunEndWithItsDocument) {
   EXPECT_FALSE(EventStream::is_over(id_of(1)));
 }
 
+TEST_F(EventStreams, EndWithTheirTokenAndOthersGoOn) {
+  EventStream anna(services_, {}, with(kTokens.operators[0].token));
+  EventStream bert(services_, {}, with(kTokens.operators[1].token));
+  EventStream viewer(services_, {}, with(kTokens.view));
+  EventStream nobody(services_, {}, local());
+  HttpRequest over_loopback = with(kTokens.operators[0].token);
+  over_loopback.from_loopback = true;
+  EventStream anna_here(services_, {}, over_loopback);
+  EXPECT_NE(anna.due(), "");
+  services_.tokens.operators.erase(services_.tokens.operators.begin());
+  change();
+  for (EventStream* of_anna : {&anna, &anna_here}) {
+    EXPECT_EQ(of_anna->due(), "") << "not even what changed before";
+    EXPECT_TRUE(of_anna->ended());
+  }
+  services_.tokens.view = std::string(64, 'f');
+  EXPECT_EQ(viewer.due(), "");
+  EXPECT_TRUE(viewer.ended());
+  for (EventStream* other : {&bert, &nobody}) {
+    EXPECT_NE(other->due(), "");
+    EXPECT_FALSE(other->ended());
+  }
+}
+
+TEST_F(EventStreams, WhoseTokenGoesWhileTheyWriteDoNotWait) {
+  EventStream stream(services_, {}, with(kTokens.view));
+  services_.tokens.view.clear();
+  boost::asio::co_spawn(quiet_.context(), stream.wait(), boost::asio::detached);
+  quiet_.context().poll();
+  EXPECT_EQ(services_.feed.waiting_count(), 0U);
+  EXPECT_EQ(stream.due(), "");
+}
+
 TEST_F(EventStreams, AreCountedWhileTheyAreOpen) {
   {
-    const EventStream first(services_, {}, {});
-    const EventStream second(services_, {}, {});
+    const EventStream first(services_, {}, local());
+    const EventStream second(services_, {}, local());
     EXPECT_EQ(EventStream::open_count(services_), 2);
   }
   EXPECT_EQ(EventStream::open_count(services_), 0);

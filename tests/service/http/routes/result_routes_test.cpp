@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/arm_file.hpp"
+#include "service/run/calibrated_arm.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/quiet_cell.hpp"
 #include "tests/service/table3_result.hpp"
@@ -32,16 +33,17 @@ class ResultRoutesTest : public ::testing::Test {
 };
 
 TEST_F(ResultRoutesTest, TheArmReadsBackToTheKinematicsThatWereIdentified) {
-  const HttpResponse response = get_arm(cell_.operation(), run_);
-  ASSERT_EQ(response.status, 200u) << response.body;
-  folder_.write("arm.json", response.body);
-  const Arm arm = read_arm(folder_.path() / "arm.json");
-
   const Recipe& recipe = edf().recipes.at("edf-25");
   calib::IdentificationProblem problem = identification_problem(edf(), recipe);
   for (const calib::Touch& touch : table3_touches())
     problem.touches.push_back({touch.face, from_wire(to_wire(touch.joints)), touch.role});
   const auto identified = calib::identify(problem, recipe.identification);
+  cell_.store().finish_run(
+      run_, {.outcome = RunOutcome::kComplete, .arm_json = calibrated_arm_document(edf(), identified)});
+  const HttpResponse response = get_arm(cell_.operation(), run_);
+  ASSERT_EQ(response.status, 200u) << response.body;
+  folder_.write("arm.json", response.body);
+  const Arm arm = read_arm(folder_.path() / "arm.json");
   for (const calib::Touch& touch : table3_touches()) {
     const auto tip_of = [&touch](const calib::KinematicModel& model) {
       return calib::forward_kinematics(model, touch.joints).matrix();
@@ -91,14 +93,23 @@ TEST_F(ResultRoutesTest, ARunIsIdentifiedWithItsOwnChoiceOfStiffness) {
   EXPECT_EQ(model(elastic), json::array({"compliance2", "compliance3"}));
 }
 
-TEST_F(ResultRoutesTest, WithoutATouchThereIsNeitherResultNorArm) {
+TEST_F(ResultRoutesTest, WithoutATouchThereIsNoResult) {
   const std::int64_t empty = cell_.store().begin_run(
       {.recipe = "edf-25", .started_at = "start", .config_digest = cell_.operation().config_digest()});
-  for (const HttpResponse& response :
-       {get_result(cell_.operation(), empty), get_arm(cell_.operation(), empty)}) {
-    EXPECT_EQ(response.status, 409u);
-    EXPECT_THAT(response.body, HasSubstr("no touch"));
-  }
+  const HttpResponse response = get_result(cell_.operation(), empty);
+  EXPECT_EQ(response.status, 409u);
+  EXPECT_THAT(response.body, HasSubstr("no touch"));
+}
+
+/// An arm is written to a controller: never that of a run which is not over, whatever its touches say so far.
+TEST_F(ResultRoutesTest, NoArmIsMadeWhereNoneWasStored) {
+  const HttpResponse open = get_arm(cell_.operation(), run_);
+  EXPECT_EQ(open.status, 409u);
+  EXPECT_THAT(open.body, HasSubstr("stored when the run ends"));
+  cell_.store().finish_run(run_, {.outcome = RunOutcome::kAborted});
+  const HttpResponse ended = get_arm(cell_.operation(), run_);
+  EXPECT_EQ(ended.status, 409u);
+  EXPECT_THAT(ended.body, HasSubstr("no calibrated arm was stored"));
 }
 
 TEST_F(ResultRoutesTest, WhatWasStoredAtTheEndIsToldWhateverTheFilesAreNow) {
@@ -116,11 +127,9 @@ TEST_F(ResultRoutesTest, ARunOfOtherFilesIsNotComputedAgain) {
     const std::int64_t other =
         cell_.store().begin_run({.recipe = "edf-25", .started_at = "start", .config_digest = digest});
     for (const StoredTouch& touch : cell_.store().touches(run_)) cell_.store().append_touch(other, touch);
-    for (const HttpResponse& response :
-         {get_result(cell_.operation(), other), get_arm(cell_.operation(), other)}) {
-      EXPECT_EQ(response.status, 409u);
-      EXPECT_THAT(response.body, HasSubstr("files are not those of this run"));
-    }
+    const HttpResponse response = get_result(cell_.operation(), other);
+    EXPECT_EQ(response.status, 409u);
+    EXPECT_THAT(response.body, HasSubstr("files are not those of this run"));
     const StoredRun stored = cell_.store().run(other).value();
     const json report = json::parse(get_report(cell_.operation(), stored, "json").body);
     EXPECT_TRUE(report.at("result").is_null());
@@ -134,7 +143,7 @@ TEST_F(ResultRoutesTest, ARunWithTheBlockElsewhereIsNotComputedAgain) {
                                .config_digest = cell_.operation().config_digest(),
                                .conditions_json = R"({"place":{"shift_mm":[1,2,3]}})"});
   for (const StoredTouch& touch : cell_.store().touches(run_)) cell_.store().append_touch(moved, touch);
-  const HttpResponse refused = get_arm(cell_.operation(), moved);
+  const HttpResponse refused = get_result(cell_.operation(), moved);
   EXPECT_EQ(refused.status, 409u);
   EXPECT_THAT(refused.body, HasSubstr("where it stood in this run"));
 }

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cs8_protocol/messages.hpp"
+#include "service/run/packml_state.hpp"
+#include "service/store/run_store.hpp"
+#include "tests/simulation/virtual_clock.hpp"
+
+namespace simulation {
+
+/// A motion command in the moment in which it left the host, with what the host was and knew then.
+struct MotionSent {
+  Time at{};
+  cs8::MessageType type{};
+  std::uint32_t sequence = 0;
+  cell::State state{};
+  std::optional<std::int64_t> run;
+  cs8::Permit permit;       // the last that the host had read on this connection
+  Time permit_read_at{-1};  // before the world began: none
+};
+
+/// A command of the controller's application: its session and its number there.
+struct CommandNumber {
+  std::uint32_t session = 0;
+  std::uint32_t sequence = 0;
+  auto operator<=>(const CommandNumber&) const = default;
+};
+
+/// An answer that the host acknowledged: from then on the controller has it no more.
+struct Acknowledged {
+  Time at{};
+  CommandNumber command;
+  cs8::TouchResult result;
+  /// Why the host may have kept no touch of it: a word of its own about that command. Empty: it must be
+  /// stored.
+  std::string excuse;
+};
+
+/// What the store has of a run.
+struct RunRecord {
+  cell::StoredRun run;
+  std::vector<cell::StoredTouch> touches;
+  std::vector<cell::SupersededTouch> superseded;
+  std::optional<std::string> result_json;
+  /// The document that the same touches give in one piece, when nothing ever failed.
+  std::optional<std::string> undisturbed_json;
+};
+
+/// What the store had at some time, and how many answers had been acknowledged by then.
+struct StoreRecord {
+  Time at{};
+  std::string occasion;  // "killed", "the end"
+  std::size_t acknowledged_count = 0;
+  std::vector<RunRecord> runs;
+};
+
+struct StateRecord {
+  Time at{};
+  cell::State state{};
+  std::vector<cell::Command> exits;
+};
+
+/// All that the invariants of a world are judged by.
+struct Record {
+  std::vector<MotionSent> motions;
+  std::map<CommandNumber, cs8::TouchResult> answers;  // as the controller gave them
+  std::vector<Acknowledged> acknowledged;
+  std::vector<StoreRecord> stores;  // in time; the last one is the end's
+  std::vector<StateRecord> states;
+  bool came_to_end = false;  // within the time that a person would wait
+};
+
+}  // namespace simulation

@@ -1,0 +1,93 @@
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "config/fault_file.hpp"
+#include "sim_controller/fault_names.hpp"
+#include "tests/simulation/invariants.hpp"
+#include "tests/simulation/world.hpp"
+
+namespace simulation {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+using namespace std::chrono_literals;
+
+/// The end of the journal: what a person reads first.
+std::string last_lines(const std::string& journal) {
+  constexpr std::size_t kShown = 6'000;
+  return journal.size() <= kShown ? journal : "...\n" + journal.substr(journal.size() - kShown);
+}
+
+void expect_unbroken(std::uint64_t first, std::uint64_t last) {
+  for (std::uint64_t seed = first; seed <= last; ++seed) {
+    const Outcome outcome = run_world(scenario_of(seed));
+    EXPECT_THAT(outcome.broken, IsEmpty()) << "touchcal-sim --seed " << seed << "\n"
+                                           << last_lines(outcome.journal);
+  }
+}
+
+TEST(Seeds, OneToHundredBreakNoInvariant) { expect_unbroken(1, 100); }
+TEST(Seeds, FromThereToTwoHundredBreakNoInvariant) { expect_unbroken(101, 200); }
+TEST(Seeds, FromThereToThreeHundredBreakNoInvariant) { expect_unbroken(201, 300); }
+
+TEST(World, OfOneSeedIsTheSameToTheByte) {
+  for (const std::uint64_t seed : {3U, 7U, 10U, 24U}) {
+    const Outcome first = run_world(scenario_of(seed));
+    const Outcome again = run_world(scenario_of(seed));
+    EXPECT_GT(first.journal.size(), 1000u);
+    EXPECT_EQ(first.journal, again.journal) << "seed " << seed;
+  }
+}
+
+TEST(World, WithoutFaultsMakesEachTouchOnceAndHasAResult) {
+  const Outcome outcome = run_world(scenario_of(10));
+  const RunRecord& run = outcome.record.stores.back().runs.back();
+  EXPECT_EQ(run.run.outcome, cell::RunOutcome::kComplete);
+  EXPECT_EQ(static_cast<int>(run.touches.size()), scenario_of(10).touch_count);
+  EXPECT_EQ(outcome.record.acknowledged.size(), run.touches.size());
+  EXPECT_TRUE(run.result_json);
+}
+
+TEST(World, WhoseDiskLosesWhatItSaidWasSyncedIsFound) {
+  Scenario scenario{.seed = 1, .touch_count = 8};
+  scenario.faults.push_back({.at = 100s, .kind = FaultKind::kPowerFails, .number = 1});
+  scenario.sabotage = [](Disk& disk) { disk.trouble = DiskTrouble::kSyncLies; };
+  scenario.sabotaged_at = 50s;
+  EXPECT_THAT(run_world(scenario).broken, Contains(StartsWith("answered_touches_are_durable")));
+}
+
+/// Its command was not durable once: the contact that the controller still had was acknowledged and lost.
+TEST(World, WhosePowerFailsAtAnyWriteOfATouchLosesNoAnswer) {
+  for (int write = 1; write <= 10; ++write) {
+    Scenario scenario{.seed = 1, .touch_count = kTouchesMin, .speed = kQuickSpeed};
+    scenario.faults.push_back({.at = 30s, .kind = FaultKind::kPowerFails, .number = write});
+    const Outcome outcome = run_world(scenario);
+    EXPECT_THAT(outcome.broken, IsEmpty()) << "write " << write << "\n" << last_lines(outcome.journal);
+    EXPECT_THAT(outcome.journal, HasSubstr("the power of the daemon's machine fails"));
+  }
+}
+
+TEST(DrawnFaults, AreOfEveryKindAndEveryLineOfTheController) {
+  std::set<FaultKind> kinds;
+  std::set<std::string> lines;
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    for (const DrawnFault& fault : draw_faults(seed, 12)) {
+      kinds.insert(fault.kind);
+      if (fault.kind == FaultKind::kController) lines.insert(fault.line);
+    }
+  }
+  EXPECT_EQ(kinds.size(), static_cast<std::size_t>(FaultKind::kCommand) + 1);
+  EXPECT_EQ(lines.size(), controller_lines().size());
+}
+
+TEST(DrawnFaults, OfTheControllerAreAsTheSimulatorWantsThem) {
+  for (const std::string& line : controller_lines())
+    EXPECT_NO_THROW(sim::planned(std::get<cell::DeclaredFault>(cell::parse_control_line(line)))) << line;
+}
+
+}  // namespace
+}  // namespace simulation

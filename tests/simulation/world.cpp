@@ -1,0 +1,365 @@
+#include "tests/simulation/world.hpp"
+
+#include <spdlog/fmt/fmt.h>
+#include <spdlog/sinks/base_sink.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <boost/asio/co_spawn.hpp>
+
+#include "config/fault_file.hpp"
+#include "sim_controller/fault_names.hpp"
+#include "tests/simulation/invariants.hpp"
+#include "tests/simulation/store_reading.hpp"
+#include "tests/simulation/watcher.hpp"
+
+namespace simulation {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Who does what the cell asks for is at the end of the last run long before.
+constexpr Time kPatience = 3h;
+/// A daemon that ends has so much time; then systemd kills it.
+constexpr Time kEndPatience = 20s;
+
+/// The daemon's log, as lines of the journal.
+class LogSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
+ public:
+  explicit LogSink(Watcher& watcher) : watcher_(watcher) {}
+
+ protected:
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    watcher_.on_log({message.payload.data(), message.payload.size()});
+  }
+  void flush_() override {}
+
+ private:
+  Watcher& watcher_;
+};
+
+/// The process of the daemon, as the machine sees it.
+struct Process {
+  std::unique_ptr<SimulatedDaemon> daemon;
+  Time starts_at{0};
+  Time due{0};                    // it has nothing to do before
+  std::optional<Time> killed_by;  // it was told to end
+  std::optional<int> writes_left;
+  bool dies_now = false;
+  bool power_fails = false;
+  Time store_answers_at{0};
+};
+
+class World {
+ public:
+  explicit World(const Scenario& scenario);
+  ~World();
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  Outcome run();
+
+ private:
+  void begin_daemon();
+  void end_daemon(const std::string& how);
+  void kill_if_due();
+  void let_happen();
+  void begin(const DrawnFault& fault);
+  void begin_for_a_time(const DrawnFault& fault, const std::function<void()>& end);
+  void disk_trouble(const DrawnFault& fault, DiskTrouble trouble);
+  void poke() { process_.due = cell_due_ = clock_.now(); }
+  void take_turn_of_daemon();
+  void take_turns();
+  [[nodiscard]] Time next_event() const;
+  void start_run();
+  void note_store(const std::string& occasion, bool with_results);
+
+  const Scenario& scenario_;
+  VirtualClock clock_;
+  Journal journal_{clock_};
+  Record record_;
+  Watcher watcher_{clock_, journal_, record_};
+  Network network_{clock_, scenario_.seed + 1};
+  Disk disk_{clock_, scenario_.seed + 2};
+  Context cell_context_;
+  sim::Server controller_;
+  Person person_;
+  Process process_;
+  std::shared_ptr<const cell::Plan> plan_;
+  std::multimap<Time, std::function<void()>> events_;
+  Time cell_due_{0};
+};
+
+World::World(const Scenario& scenario)
+    : scenario_(scenario),
+      controller_(cell_context_, "127.0.0.1", kControllerPort, setting().plant,
+                  {.controller = {.seed = scenario.seed, .speed = scenario.speed}, .faults = {}}),
+      person_(scenario.seed + 3, controller_, journal_, [this] { start_run(); }),
+      plan_(first_touches(*setting().plan, scenario.touch_count)) {
+  auto log = std::make_shared<spdlog::logger>("simulation", std::make_shared<LogSink>(watcher_));
+  log->set_level(spdlog::level::info);
+  spdlog::set_default_logger(std::move(log));
+  network_.tap = [this](bool from_host, bool sent, std::span<const std::uint8_t> bytes) {
+    watcher_.on_bytes(from_host, sent, bytes);
+  };
+  network_.on_connection = [this] { watcher_.on_connection(); };
+  network_.on_host_close = [this] { watcher_.on_connection_end(); };
+  disk_.on_write = [this](bool is_sync) {
+    if (is_sync || !process_.writes_left || --*process_.writes_left > 0) return;
+    process_.writes_left.reset();
+    process_.dies_now = true;
+    disk_.freeze();
+    network_.silence_host();
+  };
+  disk_.keeps_unsynced = std::ranges::any_of(
+      scenario.faults, [](const DrawnFault& fault) { return fault.kind == FaultKind::kPowerFails; });
+  for (const DrawnFault& fault : scenario.faults) events_.emplace(fault.at, [this, &fault] { begin(fault); });
+  if (scenario.sabotage) events_.emplace(scenario.sabotaged_at, [this] { scenario_.sabotage(disk_); });
+}
+
+World::~World() {
+  disk_.freeze();
+  process_.daemon.reset();
+  controller_.stop();
+  cell_context_.give_up();
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("nobody"));
+}
+
+// ---- the daemon's process ----
+
+void World::begin_daemon() {
+  try {
+    process_.daemon = std::make_unique<SimulatedDaemon>(setting().cell, plan_);
+  } catch (const std::exception& error) {
+    journal_.note("process", fmt::format("the daemon does not start: {}", error.what()));
+    process_.starts_at = clock_.now() + 5s;
+    return;
+  }
+  journal_.note("process", "the daemon starts");
+  cell::CellOperation& operation = process_.daemon->operation();
+  watcher_.watch(&operation);
+  operation.on_change([this](const cell::Status& status) { watcher_.on_status(status); });
+  note_store("the daemon starts", false);
+  process_.daemon->launch();
+  poke();
+}
+
+void World::end_daemon(const std::string& how) {
+  journal_.note("process", how);
+  disk_.freeze();
+  network_.silence_host();
+  process_.daemon.reset();
+  watcher_.watch(nullptr);
+  network_.new_host();
+  if (process_.power_fails && disk_.has_failed()) watcher_.on_power_failure_of_failed_disk();
+  disk_.start_again(process_.power_fails);
+  const Time starts_at = clock_.now() + 2s;
+  process_ = {};
+  process_.starts_at = starts_at;
+}
+
+void World::kill_if_due() {
+  if (!process_.daemon) return;
+  if (process_.dies_now) {
+    end_daemon(process_.power_fails ? "the power of the daemon's machine fails" : "the daemon is killed");
+  } else if (process_.daemon->has_ended()) {
+    end_daemon("the daemon has ended");
+  } else if (process_.killed_by && *process_.killed_by <= clock_.now()) {
+    end_daemon("the daemon does not end in time and is killed");
+  }
+}
+
+void World::note_store(const std::string& occasion, bool with_results) {
+  watcher_.note_store(occasion,
+                      read_runs(process_.daemon->store(), with_results ? setting().regions.get() : nullptr));
+}
+
+void World::start_run() {
+  const cell::StartRequest request{.recipe = kRecipe};
+  boost::asio::co_spawn(process_.daemon->context(), process_.daemon->operation().start(request),
+                        [this](const std::exception_ptr& failure,
+                               const std::variant<cell::Started, cell::CommandRefusal>& answer) {
+                          if (failure) std::rethrow_exception(failure);
+                          if (const auto* started = std::get_if<cell::Started>(&answer)) {
+                            journal_.note("person", fmt::format("has started run {}", started->run_id));
+                            person_.on_started();
+                          } else {
+                            const auto& refusal = std::get<cell::CommandRefusal>(answer);
+                            journal_.note("person", fmt::format("may not start: {}", refusal.detail));
+                          }
+                        });
+}
+
+// ---- what goes wrong ----
+
+void World::begin_for_a_time(const DrawnFault& fault, const std::function<void()>& end) {
+  events_.emplace(clock_.now() + fault.lasts, [this, &fault, end] {
+    journal_.note("fault", fmt::format("is over: {}", fault_kind_name(fault.kind)));
+    end();
+  });
+}
+
+void World::disk_trouble(const DrawnFault& fault, DiskTrouble trouble) {
+  disk_.trouble = trouble;
+  begin_for_a_time(fault, [this] { disk_.trouble = DiskTrouble::kNone; });
+}
+
+void World::begin(const DrawnFault& fault) {
+  journal_.note("fault", fault_text(fault));
+  switch (fault.kind) {
+    case FaultKind::kController:
+      controller_.inject(sim::planned(std::get<cell::DeclaredFault>(cell::parse_control_line(fault.line))));
+      break;
+    case FaultKind::kLinkCut:
+      network_.cut();
+      break;
+    case FaultKind::kLinkHalfOpen:
+      network_.half_open();
+      break;
+    case FaultKind::kLinkHeldUp:
+      network_.hold_up(fault.lasts);
+      break;
+    case FaultKind::kLinkInPieces:
+      network_.conditions.piece_max = static_cast<std::size_t>(fault.number);
+      begin_for_a_time(fault, [this] { network_.conditions.piece_max = 0; });
+      break;
+    case FaultKind::kLinkRefuses:
+      network_.conditions.refuses = true;
+      begin_for_a_time(fault, [this] { network_.conditions.refuses = false; });
+      break;
+    case FaultKind::kLinkSwallows:
+      network_.conditions.swallows = true;
+      begin_for_a_time(fault, [this] { network_.conditions.swallows = false; });
+      break;
+    case FaultKind::kDiskFull:
+      disk_trouble(fault, DiskTrouble::kFull);
+      break;
+    case FaultKind::kDiskWriteFails:
+      disk_trouble(fault, DiskTrouble::kWriteFails);
+      break;
+    case FaultKind::kDiskSyncFails:
+      disk_trouble(fault, DiskTrouble::kSyncFails);
+      break;
+    case FaultKind::kDiskWritesShort:
+      disk_trouble(fault, DiskTrouble::kWritesShort);
+      break;
+    case FaultKind::kDiskStalls:
+      process_.store_answers_at = clock_.now() + fault.lasts;
+      begin_for_a_time(fault, [] {});
+      break;
+    case FaultKind::kClockJumps:
+      clock_.set_wall_clock_ahead(clock_.wall_ahead() + fault.lasts);
+      break;
+    case FaultKind::kKilled:
+      process_.dies_now = true;
+      break;
+    case FaultKind::kKilledAtWrite:
+    case FaultKind::kPowerFails:
+      // What it wrote while it starts would be killed inside the store's constructor: not simulated yet.
+      if (!process_.daemon) break;
+      process_.writes_left = fault.number;
+      process_.power_fails = fault.kind == FaultKind::kPowerFails;
+      break;
+    case FaultKind::kTerminated:
+      if (!process_.daemon || process_.killed_by) break;
+      process_.killed_by = clock_.now() + kEndPatience;
+      process_.daemon->begin_end();
+      break;
+    case FaultKind::kCommand:
+      if (!process_.daemon) break;
+      if (const auto refusal = process_.daemon->operation().command(fault.command))
+        journal_.note("fault", "refused: " + refusal->detail);
+      break;
+  }
+}
+
+// ---- time ----
+
+/// What is due now.
+void World::let_happen() {
+  while (!events_.empty() && events_.begin()->first <= clock_.now()) {
+    const std::function<void()> event = std::move(events_.begin()->second);
+    events_.erase(events_.begin());
+    event();
+    kill_if_due();
+    poke();
+  }
+  if (!process_.daemon && process_.starts_at <= clock_.now()) begin_daemon();
+  if (person_.next_look() > clock_.now()) return;
+  if (process_.daemon && !process_.killed_by) {
+    person_.look(process_.daemon->operation(), clock_.now());
+    poke();
+  } else {
+    person_.wait(clock_.now());
+  }
+}
+
+/// A side that has done all it can at this time is left alone until its next timer, or until something
+/// reaches it: nine of ten ticks of the controller concern nobody else.
+void World::take_turn_of_daemon() {
+  const bool store_goes_on = process_.store_answers_at <= clock_.now();
+  if (process_.daemon->take_turn(store_goes_on)) {
+    cell_due_ = clock_.now();  // it may have connected
+  } else {
+    const auto next = process_.daemon->until_next_timer();
+    process_.due = clock_.now() + next.value_or(1h);
+  }
+  kill_if_due();
+}
+
+/// Until nobody has anything to do at this time.
+void World::take_turns() {
+  const auto daemon_is_due = [this] { return process_.daemon && process_.due <= clock_.now(); };
+  do {
+    if (network_.deliver()) poke();
+    if (daemon_is_due()) take_turn_of_daemon();
+    if (cell_due_ <= clock_.now()) cell_due_ = clock_.now() + cell_context_.until_next_timer().value_or(1h);
+  } while (daemon_is_due() || cell_due_ <= clock_.now());
+}
+
+Time World::next_event() const {
+  Time next = std::min({person_.next_look(), cell_due_, clock_.now() + 1h});
+  const auto consider = [&next](Time time) { next = std::min(next, time); };
+  if (!events_.empty()) consider(events_.begin()->first);
+  if (const auto due = network_.next_due()) consider(*due);
+  consider(process_.daemon ? process_.due : process_.starts_at);
+  if (process_.killed_by) consider(*process_.killed_by);
+  return next;
+}
+
+Outcome World::run() {
+  while (clock_.now() < kPatience) {
+    let_happen();
+    take_turns();
+    record_.came_to_end = person_.is_done() && process_.daemon && !process_.killed_by;
+    if (record_.came_to_end) break;
+    clock_.advance_to(next_event());
+  }
+  if (process_.daemon) note_store("the end", true);
+  Outcome outcome;
+  outcome.broken = broken_invariants(record_);
+  for (const std::string& broken : outcome.broken) journal_.note("invariant", broken);
+  outcome.virtual_time = clock_.now();
+  outcome.journal = journal_.text();
+  outcome.record = record_;
+  return outcome;
+}
+
+}  // namespace
+
+Scenario scenario_of(std::uint64_t seed) {
+  Chance chance(seed * 2);
+  Scenario scenario{.seed = seed};
+  const int whole = static_cast<int>(setting().plan->touches.touches.size());
+  scenario.touch_count = seed % 100 == 99 ? whole : kTouchesMin + chance.below(kTouchesMax - kTouchesMin + 1);
+  scenario.speed = chance.once_in(4) ? 1.0 : kQuickSpeed;
+  scenario.faults = draw_faults(seed, scenario.touch_count);
+  return scenario;
+}
+
+Outcome run_world(const Scenario& scenario) {
+  World world(scenario);
+  return world.run();
+}
+
+}  // namespace simulation

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/simulation/disk.hpp"
+#include "tests/simulation/faults.hpp"
+#include "tests/simulation/journal.hpp"
+#include "tests/simulation/network.hpp"
+#include "tests/simulation/person.hpp"
+#include "tests/simulation/record.hpp"
+#include "tests/simulation/setting.hpp"
+#include "tests/simulation/simulated_daemon.hpp"
+#include "tests/simulation/wire.hpp"
+
+namespace simulation {
+
+/// Of the arm in three worlds of four, in its own time: link, disk and people do not know.
+inline constexpr double kQuickSpeed = 5.0;
+
+/// What a world is made of; its seed gives one, a test changes it.
+struct Scenario {
+  std::uint64_t seed = 0;
+  int touch_count = kTouchesMin;
+  double speed = 1.0;  // of the arm
+  std::vector<DrawnFault> faults;
+  /// For tests that break the program on purpose: done to the disk at that time.
+  std::function<void(Disk& disk)> sabotage;
+  Time sabotaged_at{};
+};
+
+Scenario scenario_of(std::uint64_t seed);
+
+struct Outcome {
+  std::string journal;
+  Record record;
+  std::vector<std::string> broken;  // invariants, a line each
+  Time virtual_time{};
+};
+
+/// Runs a world to its end. One at a time in a process.
+Outcome run_world(const Scenario& scenario);
+
+}  // namespace simulation
