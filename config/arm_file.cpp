@@ -298,8 +298,9 @@ void read_gears(const JsonValue& value, bool has_periods, Arm& arm) {
     for (int joint = 0; joint < kJointCount; ++joint) {
       if (arm.model.joint_types[static_cast<std::size_t>(joint)] == calib::JointType::kPrismatic) continue;
       const auto cosine = static_cast<std::size_t>(calib::harmonic_position(joint));
-      arm.nongeometric_std[cosine] = arm.nongeometric_std[cosine + 1] =
-          std->number({.min = kPositive.min, .max = kGearAngles.max});
+      const auto second = static_cast<std::size_t>(calib::second_harmonic_position(joint));
+      arm.nongeometric_std[cosine] = arm.nongeometric_std[cosine + 1] = arm.nongeometric_std[second] =
+          arm.nongeometric_std[second + 1] = std->number({.min = kPositive.min, .max = kGearAngles.max});
     }
   }
 }

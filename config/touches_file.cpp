@@ -85,7 +85,7 @@ calib::TouchRole role_from_json(const JsonValue& value) {
   value.fail("is " + in_quotes(name) + R"(; give "fit", "held_out" or "proof")");
 }
 
-constexpr NumberRange kNoiseUm{.min = kPositive.min,
+constexpr NumberRange kNoiseUm{.min = calib::um_from_metres(calib::kTouchDeviationMinMetres),
                                .max = calib::um_from_metres(calib::kTouchDeviationMaxMetres)};
 
 /// Seconds since the first touch; a run does not take a year.

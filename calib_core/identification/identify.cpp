@@ -73,8 +73,8 @@ bool may_hold(const IdentificationProblem& problem, const IdentificationOptions&
 /// Whether another solution follows this one, which is evaluated in part.
 bool is_followed(const IdentificationProblem& problem, const IdentificationOptions& options,
                  const IdentificationResult& result) {
-  return (may_hold(problem, options) && weakest(result)) || tries_harmonics(problem, options, result) ||
-         tries_ripple(problem, options, result) || is_reweighed(problem, options, result);
+  return (may_hold(problem, options) && weakest(result)) || !against_harmonics(problem, options, result) ||
+         !against_ripple(problem, options, result) || is_reweighed(problem, options, result);
 }
 
 /// kFit: what decides between solutions: goodness of fit, measured noise, uncertainty of what was fitted.
@@ -108,10 +108,9 @@ void evaluate(const IdentificationProblem& problem, const IdentificationOptions&
   if (extent == Extent::kFit && is_followed(problem, options, result)) return;
   result.distances = face_distances(problem, result);
   FullLinearisation whole = linearise_all_parameters(problem, options, fit, estimate, covariance);
-  bound_second_harmonics({.squares = fit.chi_square(estimate),
-                          .degrees = static_cast<double>(fit.degrees_of_freedom()),
-                          .otherwise = std::pow(noise.std_m / fit.noise_unit_m(), 2)},
-                         whole);
+  whole.noise = {.squares = fit.chi_square(estimate),
+                 .degrees = static_cast<double>(fit.degrees_of_freedom()),
+                 .otherwise = std::pow(noise.std_m / fit.noise_unit_m(), 2)};
   if (result.lack_of_fit) result.lack_of_fit->droop = test_droop(problem, fit, whole, result.residual_sum);
   result.uncertainty->gear_share = gear_share;
   add_unfitted(problem, result.identifiable, fit, whole, *result.uncertainty);

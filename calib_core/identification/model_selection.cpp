@@ -51,6 +51,11 @@ bool has_deviation_among(const IdentificationProblem& problem, bool (*is_one)(in
   return false;
 }
 
+std::optional<std::string> against_few(int touches, int least) {
+  if (touches >= least) return std::nullopt;
+  return std::to_string(touches) + " touches to fit are too few, it takes " + std::to_string(least);
+}
+
 }  // namespace
 
 std::optional<NestedTest> test_nested(const ResidualSum& smaller, const ResidualSum& larger) {
@@ -122,18 +127,24 @@ ModelChoice choose_model(const std::string& what, const IdentificationProblem& p
                      ", nor do the held-out ones" + held_out};
 }
 
-bool tries_harmonics(const IdentificationProblem& problem, const IdentificationOptions& options,
-                     const IdentificationResult& without) {
-  return options.harmonics == Harmonics::kWhenShown && !options.nongeometric && options.stiffness &&
-         without.status == IdentificationStatus::kConverged &&
-         touches_to_fit(without) >= kHarmonicTouchesMin && has_deviation_among(problem, is_harmonic);
+std::optional<std::string> against_harmonics(const IdentificationProblem& problem,
+                                             const IdentificationOptions& options,
+                                             const IdentificationResult& without) {
+  const bool is_wanted = options.harmonics == Harmonics::kWhenShown && !options.nongeometric &&
+                         without.status == IdentificationStatus::kConverged;
+  if (!is_wanted || !has_deviation_among(problem, is_harmonic)) return "";
+  if (!options.stiffness) return "alone they would take up the droop, and no compliance is estimated";
+  return against_few(touches_to_fit(without), kHarmonicTouchesMin);
 }
 
-bool tries_ripple(const IdentificationProblem& problem, const IdentificationOptions& options,
-                  const IdentificationResult& without) {
-  return options.ripple == Ripple::kWhenShown && !options.nongeometric && problem.touch_noise_m > 0.0 &&
-         without.status == IdentificationStatus::kConverged && touches_to_fit(without) >= kRippleTouchesMin &&
-         has_deviation_among(problem, is_ripple);
+std::optional<std::string> against_ripple(const IdentificationProblem& problem,
+                                          const IdentificationOptions& options,
+                                          const IdentificationResult& without) {
+  const bool is_wanted = options.ripple == Ripple::kWhenShown && !options.nongeometric &&
+                         without.status == IdentificationStatus::kConverged;
+  if (!is_wanted || !has_deviation_among(problem, is_ripple)) return "";
+  if (!(problem.touch_noise_m > 0.0)) return "the noise of a touch is given as 0";
+  return against_few(touches_to_fit(without), kRippleTouchesMin);
 }
 
 bool is_reweighed(const IdentificationProblem& problem, const IdentificationOptions& options,

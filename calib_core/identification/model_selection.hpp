@@ -75,14 +75,17 @@ struct ModelChoice {
 ModelChoice choose_model(const std::string& what, const IdentificationProblem& problem,
                          const IdentificationResult& smaller, const IdentificationResult& larger);
 
-/// Whether harmonics are tried after the result without them. Beside the compliance only: alone they take up
-/// the droop of an arm with even gears.
-bool tries_harmonics(const IdentificationProblem& problem, const IdentificationOptions& options,
-                     const IdentificationResult& without);
+/// Why harmonics are not tried after the result without them; nothing where they are, no words where nobody
+/// asks for them. They are beside the compliance only: alone they take up the droop of an arm with even
+/// gears.
+std::optional<std::string> against_harmonics(const IdentificationProblem& problem,
+                                             const IdentificationOptions& options,
+                                             const IdentificationResult& without);
 
-/// Whether ripple is tried after the result without it.
-bool tries_ripple(const IdentificationProblem& problem, const IdentificationOptions& options,
-                  const IdentificationResult& without);
+/// The same of the ripple.
+std::optional<std::string> against_ripple(const IdentificationProblem& problem,
+                                          const IdentificationOptions& options,
+                                          const IdentificationResult& without);
 
 /// Whether the touches are so much better or worse than declared that they are weighed anew against the
 /// priors.

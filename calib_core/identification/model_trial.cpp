@@ -29,6 +29,10 @@ constexpr Trial kRippleTrial{
 
 void add_words(std::string& text, const std::string& words) { text += (text.empty() ? "" : "; ") + words; }
 
+void not_tried(const Trial& trial, const std::string& why, IdentificationResult& result) {
+  if (!why.empty()) add_words(result.model_reason, std::string(trial.what) + " not tried: " + why);
+}
+
 /// The same touches with these columns more, and what they ask for.
 IdentificationResult taken_of(const Trial& trial, const GearColumns& more,
                               const IdentificationProblem& problem, const IdentificationOptions& options,
@@ -60,12 +64,17 @@ IdentificationResult taken_of(const Trial& trial, const GearColumns& more,
 IdentificationResult select_model(const IdentificationProblem& problem, const IdentificationOptions& options,
                                   const std::vector<std::size_t>& fitted, IdentificationResult smaller,
                                   const SolveAgain& solve_again) {
-  const bool ripple_is_tried = tries_ripple(problem, options, smaller);
-  if (tries_harmonics(problem, options, smaller)) {
+  const auto no_ripple = against_ripple(problem, options, smaller);
+  if (const auto no_harmonics = against_harmonics(problem, options, smaller)) {
+    not_tried(kHarmonicsTrial, *no_harmonics, smaller);
+  } else {
     smaller = taken_of(kHarmonicsTrial, shown_harmonics(problem, fitted), problem, options,
                        std::move(smaller), solve_again);
   }
-  if (!ripple_is_tried) return smaller;
+  if (no_ripple) {
+    not_tried(kRippleTrial, *no_ripple, smaller);
+    return smaller;
+  }
   return taken_of(kRippleTrial, shown_ripples(problem, fitted), problem, options, std::move(smaller),
                   solve_again);
 }

@@ -115,7 +115,6 @@ MonteCarlo::MonteCarlo(const IdentificationProblem& problem, const Identificatio
       fitted_artefact_(result.artefact_errors),
       noise_m_(result.uncertainty.value().noise_m) {
   problem_.gear_std_rad = std::sqrt(result.uncertainty->gear_share) * gear_std_beside(problem, columns_);
-  second_harmonic_std_rad_ = result.uncertainty->second_harmonic_std_rad;
   problem_.touches.clear();
   for (const std::size_t touch : fitted) problem_.touches.push_back(problem.touches[touch]);
   assume_noise(problem_, result.weight_noise_m);
@@ -134,7 +133,7 @@ MonteCarlo::MonteCarlo(const IdentificationProblem& problem, const Identificatio
   prior_std_ = (precision.array() > 0.0).select(precision.cwiseSqrt().cwiseInverse(), 0.0);
   for (int column = 0; column < kArmParameterCount; ++column) {
     if (std::ranges::find(columns_, column) != columns_.end()) continue;
-    if (const auto std = std_unless_estimated(problem, column, result.uncertainty->harmonic_share))
+    if (const auto std = std_unless_estimated(problem, column, result.uncertainty->harmonic_shares))
       not_estimated_.emplace_back(column, *std);
   }
   const TipPostures box = derive_at_postures(problem.nominal, postures.box);
@@ -148,13 +147,6 @@ MonteCarlo::Truth MonteCarlo::draw_truth(UniformChance& chance) const {
   Truth truth{fitted_arm_, fitted_artefact_, JointVector::Zero()};
   for (int joint = 0; joint < kJointCount; ++joint)
     truth.lag_rad[joint] = problem_.gear_lag_std_rad[joint] * standard_normal(chance);
-  if (has_second_harmonics()) {
-    for (std::size_t joint = 0; joint < kJointCount; ++joint) {
-      const double std_rad = second_harmonic_std_rad_[static_cast<Eigen::Index>(joint)];
-      truth.second_harmonics_rad[joint] = {std_rad * standard_normal(chance),
-                                           std_rad * standard_normal(chance)};
-    }
-  }
   for (Eigen::Index k = 0; k < truth.sideways_m.size(); ++k) {
     const double std_m = problem_.artefact.std_sideways_m[k];
     if (std_m > 0.0) truth.sideways_m[k] = std_m * standard_normal(chance);
@@ -205,42 +197,24 @@ IdentificationProblem MonteCarlo::draw_problem(const Truth& truth, UniformChance
       touch.joints -= beside_m * joints_per_metre_[i];
     }
     touch.joints += truth.lag_rad.cwiseProduct(search_directions_[i]);  // the drive is ahead
-    if (has_second_harmonics())
-      touch.joints -= second_harmonics_at(truth, prepare(problem_.nominal.gains, touch.joints));
   }
   return drawn;
-}
-
-bool MonteCarlo::has_second_harmonics() const { return !second_harmonic_std_rad_.isZero(0.0); }
-
-JointVector MonteCarlo::second_harmonics_at(const Truth& truth, const PreparedJoints& joints) {
-  JointVector off_rad;
-  for (std::size_t joint = 0; joint < kJointCount; ++joint) {
-    const CosSin phase = twice_a_turn(joints.turned[joint]);
-    const CosSin& harmonic = truth.second_harmonics_rad[joint];
-    off_rad[static_cast<Eigen::Index>(joint)] = harmonic.cos * phase.cos + harmonic.sin * phase.sin;
-  }
-  return off_rad;
 }
 
 std::vector<double> MonteCarlo::tip_errors_m(const Region& region, const Truth& truth,
                                              const PreparedModel& true_arm, const PreparedModel& calibrated,
                                              UniformChance& chance) const {
-  const bool has_gears = !problem_.gear_std_rad.isZero(0.0), is_uneven = has_second_harmonics();
+  const bool has_gears = !problem_.gear_std_rad.isZero(0.0);
   std::vector<double> errors_m;
   errors_m.reserve(region.postures.size());
   Eigen::Index row = 0;
   for (const PreparedJoints& joints : region.postures) {
     Eigen::Vector3d off_m = truth.drifted_m + forward_chain(true_arm, joints).tip_in_block_m() -
                             forward_chain(calibrated, joints).tip_in_block_m();
-    JointVector off_rad = JointVector::Zero();
-    if (is_uneven) {
-      const Eigen::Map<const JointVector> gains(problem_.nominal.gains.data());
-      off_rad = gains.cwiseProduct(second_harmonics_at(truth, joints));
-    }
+    JointVector off_rad;
     for (int joint = 0; has_gears && joint < kJointCount; ++joint)
-      off_rad[joint] += problem_.gear_std_rad[joint] * standard_normal(chance);
-    if (has_gears || is_uneven) off_m += region.by_joint.middleRows<kJointCount>(row).transpose() * off_rad;
+      off_rad[joint] = problem_.gear_std_rad[joint] * standard_normal(chance);
+    if (has_gears) off_m += region.by_joint.middleRows<kJointCount>(row).transpose() * off_rad;
     row += kJointCount;
     errors_m.push_back(off_m.norm());
   }

@@ -63,10 +63,9 @@ class MonteCarlo {
 
  private:
   struct Truth {
-    ArmVector arm;             // errors against the nominal arm
-    Eigen::VectorXd artefact;  // errors against the nominal artefact
-    JointVector lag_rad;       // of each joint behind its drive
-    std::array<CosSin, kJointCount> second_harmonics_rad{};
+    ArmVector arm;                                         // errors against the nominal arm
+    Eigen::VectorXd artefact;                              // errors against the nominal artefact
+    JointVector lag_rad;                                   // of each joint behind its drive
     Eigen::Vector3d sideways_m = Eigen::Vector3d::Zero();  // error of the pre-travel, by sideways_shapes()
     Eigen::Vector3d drifted_m = Eigen::Vector3d::Zero();   // of the tip, by the drift of the run
   };
@@ -81,9 +80,6 @@ class MonteCarlo {
                                                  const PreparedModel& true_arm,
                                                  const PreparedModel& calibrated,
                                                  UniformChance& chance) const;
-  [[nodiscard]] bool has_second_harmonics() const;
-  /// By how much each joint is ahead of its drive.
-  static JointVector second_harmonics_at(const Truth& truth, const PreparedJoints& joints);
 
   IdentificationProblem problem_;  // with the fitted touches alone
   IdentificationOptions options_;
@@ -93,7 +89,6 @@ class MonteCarlo {
   Eigen::VectorXd prior_std_;  // of the columns, then of the artefact parameters; 0 where there is no prior
   std::vector<std::pair<int, double>> not_estimated_;  // index into ArmVector, standard deviation
   double noise_m_ = 0.0;
-  JointVector second_harmonic_std_rad_;
   std::vector<JointVector> joints_per_metre_;   // of each touch, along the outward normal
   std::vector<JointVector> search_directions_;  // of each touch
   Eigen::MatrixX3d sideways_shapes_;            // of each touch, a row

@@ -33,6 +33,26 @@ void warn_of_droop(const IdentificationProblem& problem, IdentificationResult& r
       "in no uncertainty; add std_compliance_rad_per_nm to \"gravity\" in the arm's file");
 }
 
+/// Below 0 by this many standard deviations a compliance is not within its uncertainty any more.
+constexpr double kNegativeSigmas = 3.0;
+
+/// Gravity pulls every joint downwards: one that gives way upwards has gravity or a mass the wrong way round.
+void warn_of_negative_compliance(IdentificationResult& result) {
+  for (const int position : result.nongeometric) {
+    const NongeometricParameter& parameter = nongeometric_parameters()[static_cast<std::size_t>(position)];
+    if (parameter.kind != NongeometricKind::kCompliance || !result.uncertainty) continue;
+    const double value =
+        result.calibrated.compliance_rad_per_nm[static_cast<std::size_t>(parameter.number - 1)];
+    const double sigmas = -value / result.uncertainty->std_error(nongeometric_index(position));
+    if (!(sigmas > kNegativeSigmas)) continue;
+    result.warnings.push_back(
+        "joint " + std::to_string(parameter.number) +
+        " would give way upwards: its compliance is below 0 by " + std::to_string(std::lround(sigmas)) +
+        " standard deviations. Check \"down_in_frame_1\" and the masses under \"gravity\" in the arm's file "
+        "against how the arm is mounted");
+  }
+}
+
 /// A droop that was left out and that the touches show.
 void warn_of_shown_droop(IdentificationResult& result) {
   if (!result.lack_of_fit || !result.lack_of_fit->droop) return;
@@ -132,6 +152,7 @@ void add_warnings(const IdentificationProblem& problem, const IdentificationOpti
   if (!options.prior) warn_of_weak(result);
   if (result.status == IdentificationStatus::kConverged) {
     warn_of_droop(problem, result);
+    warn_of_negative_compliance(result);
     if (options.measure_noise) warn_of_declared_noise(problem, result);
     warn_of_drift(problem, result);
     warn_of_doubted_repeats(problem, result);

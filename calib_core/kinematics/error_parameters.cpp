@@ -113,6 +113,9 @@ ArmRow derivatives_along(const PreparedModel& prepared, const Chain& chain, cons
     by_joint[joint] = prepared.model.gains[index] * row[theta_index(joint + 1)];
     row[nongeometric_index(harmonic_position(joint))] = by_joint[joint] * chain.turned[index].cos;
     row[nongeometric_index(harmonic_position(joint)) + 1] = by_joint[joint] * chain.turned[index].sin;
+    const CosSin twice = twice_a_turn(chain.turned[index]);
+    row[nongeometric_index(second_harmonic_position(joint))] = by_joint[joint] * twice.cos;
+    row[nongeometric_index(second_harmonic_position(joint)) + 1] = by_joint[joint] * twice.sin;
   }
   if (prepared.has_periods) {
     const auto phases = ripple_phases(prepared.model, chain.commanded);
@@ -194,6 +197,9 @@ KinematicModel apply(const KinematicModel& model, const ArmVector& errors) {
     changed.compliance_rad_per_nm[joint] += errors[nongeometric_index(compliance_position(number))];
     changed.harmonics_rad[joint].cos += errors[nongeometric_index(harmonic_position(number))];
     changed.harmonics_rad[joint].sin += errors[nongeometric_index(harmonic_position(number)) + 1];
+    changed.second_harmonics_rad[joint].cos += errors[nongeometric_index(second_harmonic_position(number))];
+    changed.second_harmonics_rad[joint].sin +=
+        errors[nongeometric_index(second_harmonic_position(number)) + 1];
     changed.ripples_rad[joint].cos += errors[nongeometric_index(ripple_position(number))];
     changed.ripples_rad[joint].sin += errors[nongeometric_index(ripple_position(number)) + 1];
   }

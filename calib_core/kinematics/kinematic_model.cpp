@@ -82,8 +82,9 @@ PreparedModel prepare(const KinematicModel& model) {
   prepared.has_masses =
       std::ranges::any_of(model.masses, [](const PointMass& m) { return m.mass_kg != 0.0; });
   prepared.is_compliant = std::ranges::any_of(model.compliance_rad_per_nm, [](double c) { return c != 0.0; });
-  prepared.has_harmonics =
-      std::ranges::any_of(model.harmonics_rad, [](const CosSin& h) { return h.cos != 0.0 || h.sin != 0.0; });
+  const auto is_uneven = [](const CosSin& h) { return h.cos != 0.0 || h.sin != 0.0; };
+  prepared.has_harmonics = std::ranges::any_of(model.harmonics_rad, is_uneven) ||
+                           std::ranges::any_of(model.second_harmonics_rad, is_uneven);
   prepared.has_periods =
       std::ranges::any_of(model.ripple_periods_per_turn, [](double p) { return p != 0.0; });
   prepared.down_in_frame_0 = frame_transform(model.links[1]).linear() * model.down_in_frame_1;
@@ -96,6 +97,10 @@ PreparedJoints prepare(const std::array<double, kJointCount>& gains, const Joint
     prepared.turned[joint] = cos_sin(gains[joint] * joints[static_cast<Eigen::Index>(joint)]);
   }
   return prepared;
+}
+
+CosSin twice_a_turn(const CosSin& turned) {
+  return {turned.cos * turned.cos - turned.sin * turned.sin, 2.0 * turned.cos * turned.sin};
 }
 
 std::array<CosSin, kJointCount> ripple_phases(const KinematicModel& model, const JointVector& joints) {
@@ -121,9 +126,12 @@ Chain forward_chain(const PreparedModel& prepared, const PreparedJoints& joints)
   }
   for (std::size_t joint = 0; prepared.has_harmonics && joint < kJointCount; ++joint) {
     if (prepared.model.joint_types[joint] == JointType::kPrismatic) continue;
-    const CosSin& harmonic = prepared.model.harmonics_rad[joint];
+    const CosSin& first = prepared.model.harmonics_rad[joint];
+    const CosSin& second = prepared.model.second_harmonics_rad[joint];
+    const CosSin& once = joints.turned[joint];
+    const CosSin twice = twice_a_turn(once);
     moved[static_cast<Eigen::Index>(joint)] +=
-        harmonic.cos * joints.turned[joint].cos + harmonic.sin * joints.turned[joint].sin;
+        first.cos * once.cos + first.sin * once.sin + second.cos * twice.cos + second.sin * twice.sin;
   }
   if (prepared.has_periods) {
     const auto phases = ripple_phases(prepared.model, joints.joints);

@@ -54,6 +54,8 @@ struct KinematicModel {
   /// First harmonic of each joint's transmission: a revolute joint stands cos * cos(gain * position) + sin *
   /// sin(gain * position) too far (radians).
   std::array<CosSin, kJointCount> harmonics_rad = kEvenJoints;
+  /// The same twice a turn: of an oval gear. Never estimated; the budget and simulated arms have it.
+  std::array<CosSin, kJointCount> second_harmonics_rad = kEvenJoints;
   /// Ripple of each joint's gear: with p periods a turn of the joint a revolute joint stands cos * cos(p *
   /// gain * position) + sin * sin(p * gain * position) too far (radians). No periods: they are not known.
   std::array<double, kJointCount> ripple_periods_per_turn{};
@@ -100,6 +102,9 @@ struct PreparedJoints {
 };
 
 PreparedJoints prepare(const std::array<double, kJointCount>& gains, const JointVector& joints);
+
+/// Cosine and sine of twice the angle.
+CosSin twice_a_turn(const CosSin& turned);
 
 /// Cosine and sine of the phase of each joint's ripple at commanded joints; 0 for a joint without periods and
 /// for a prismatic one.

@@ -14,6 +14,8 @@ std::array<NongeometricParameter, kNongeometricCount> list_nongeometric() {
     at(compliance_position(joint)) = {NongeometricKind::kCompliance, joint + 1};
     at(harmonic_position(joint)) = {NongeometricKind::kHarmonicCos, joint + 1};
     at(harmonic_position(joint) + 1) = {NongeometricKind::kHarmonicSin, joint + 1};
+    at(second_harmonic_position(joint)) = {NongeometricKind::kSecondCos, joint + 1};
+    at(second_harmonic_position(joint) + 1) = {NongeometricKind::kSecondSin, joint + 1};
     at(ripple_position(joint)) = {NongeometricKind::kRippleCos, joint + 1};
     at(ripple_position(joint) + 1) = {NongeometricKind::kRippleSin, joint + 1};
   }
@@ -34,6 +36,10 @@ std::string NongeometricParameter::name() const {
       return "harmonic_sin" + std::to_string(number);
     case NongeometricKind::kMass:
       return "mass" + std::to_string(number);
+    case NongeometricKind::kSecondCos:
+      return "second_harmonic_cos" + std::to_string(number);
+    case NongeometricKind::kSecondSin:
+      return "second_harmonic_sin" + std::to_string(number);
     case NongeometricKind::kRippleCos:
       return "ripple_cos" + std::to_string(number);
     case NongeometricKind::kRippleSin:
@@ -48,6 +54,8 @@ std::string NongeometricParameter::unit() const {
       return "rad/Nm";
     case NongeometricKind::kHarmonicCos:
     case NongeometricKind::kHarmonicSin:
+    case NongeometricKind::kSecondCos:
+    case NongeometricKind::kSecondSin:
     case NongeometricKind::kRippleCos:
     case NongeometricKind::kRippleSin:
       return "rad";

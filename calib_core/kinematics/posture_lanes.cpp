@@ -215,9 +215,11 @@ constexpr double kTurnMaxRadians = 1e3;
   for (std::size_t joint = 0; joint < kJointCount; ++joint) {
     Number by_rad = model.model.compliance_rad_per_nm[joint] * load(torques[joint]);
     if (model.model.joint_types[joint] == JointType::kRevolute) {
-      const CosSin& harmonic = model.model.harmonics_rad[joint];
-      by_rad +=
-          harmonic.cos * load(postures.turned[joint].cos) + harmonic.sin * load(postures.turned[joint].sin);
+      const CosSin& first = model.model.harmonics_rad[joint];
+      const CosSin& second = model.model.second_harmonics_rad[joint];
+      const Number cos = load(postures.turned[joint].cos), sin = load(postures.turned[joint].sin);
+      by_rad += first.cos * cos + first.sin * sin + second.cos * (cos * cos - sin * sin) +
+                second.sin * (2.0 * cos * sin);
     }
     if (model.has_periods) {
       const CosSin& ripple = model.model.ripples_rad[joint];
@@ -307,8 +309,13 @@ constexpr double kTurnMaxRadians = 1e3;
     by_joint[joint] = (turns ? model.model.gains[joint] : 0.0) * by_joint[joint];
     const auto cosine =
         static_cast<std::size_t>(nongeometric_index(harmonic_position(static_cast<int>(joint))));
-    store(by_joint[joint] * load(chains.turned[joint].cos), rows[cosine]);
-    store(by_joint[joint] * load(chains.turned[joint].sin), rows[cosine + 1]);
+    const Number cos = load(chains.turned[joint].cos), sin = load(chains.turned[joint].sin);
+    store(by_joint[joint] * cos, rows[cosine]);
+    store(by_joint[joint] * sin, rows[cosine + 1]);
+    const auto twice =
+        static_cast<std::size_t>(nongeometric_index(second_harmonic_position(static_cast<int>(joint))));
+    store(by_joint[joint] * (cos * cos - sin * sin), rows[twice]);
+    store(by_joint[joint] * (2.0 * cos * sin), rows[twice + 1]);
   }
   ripple_derivatives(model, chains, by_joint, rows);
   gravity_derivatives(model, chains, by_joint, rows);

@@ -59,7 +59,7 @@ ArmVector own_lengths(const KinematicModel& nominal, const std::vector<int>& col
 class ScaleTest {
  public:
   ScaleTest(const IdentificationProblem& problem, const FullLinearisation& whole, double noise_ratio,
-            const Estimate& estimate)
+            const HarmonicShares& shares, const Estimate& estimate)
       : columns_(whole.columns) {
     std::vector<Eigen::Index> positions(columns_.size() + problem.artefact.parameters.size());
     for (std::size_t k = 0; k < positions.size(); ++k)
@@ -82,7 +82,7 @@ class ScaleTest {
     targets_ = information_ * values + gradient / square;
     right_ = targets_;
     Eigen::MatrixXd posterior = information_;
-    posterior.diagonal() += precision(problem, whole.patterns);
+    posterior.diagonal() += precision(problem, whole, shares);
     for (const ArtefactEquation& equation : problem.artefact.equations) {
       const double of_equation = 1.0 / (equation.std_m * equation.std_m);
       for (const auto& [i, weight_i] : equation.weights) {
@@ -128,15 +128,19 @@ class ScaleTest {
   }
 
   [[nodiscard]] Eigen::VectorXd precision(const IdentificationProblem& problem,
-                                          const std::vector<TouchPattern>& patterns) const {
+                                          const FullLinearisation& whole,
+                                          const HarmonicShares& shares) const {
     Eigen::VectorXd precision(information_.rows());
     Eigen::Index row = 0;
     for (const int column : columns_) {
       std::optional<double> std;
       if (column >= kErrorParameterCount) {
-        // Estimated or not, it is within the maker's figures; without any it is as in the model.
-        std = problem.nongeometric_std[static_cast<std::size_t>(column - kErrorParameterCount)].value_or(
-            kExactStd);
+        // Within the maker's figures, or what the residuals leave of them; without any it is as in the model.
+        const bool is_estimated = std::ranges::find(whole.estimated, column) != whole.estimated.end();
+        const auto position = static_cast<std::size_t>(column - kErrorParameterCount);
+        std = (is_estimated ? problem.nongeometric_std[position]
+                            : std_unless_estimated(problem, column, shares))
+                  .value_or(kExactStd);
       } else if (error_parameters()[static_cast<std::size_t>(column)].group() != ParameterGroup::kBlockPose) {
         std = problem.tolerances[static_cast<std::size_t>(column)];
       }
@@ -144,7 +148,7 @@ class ScaleTest {
     }
     for (const ArtefactParameter& parameter : problem.artefact.parameters)
       precision[row++] = 1.0 / std::pow(parameter.std.value_or(kFreeStd), 2);
-    for (const TouchPattern& pattern : patterns)
+    for (const TouchPattern& pattern : whole.patterns)
       precision[row++] = 1.0 / std::pow(std::max(pattern.std, kExactStd), 2);
     return precision;
   }
@@ -331,7 +335,7 @@ ScaleCheck check_scale(const IdentificationProblem& problem, const Identificatio
         std::sqrt(own.dot((uncertainty.identified + uncertainty.held) * own)) / own.squaredNorm();
   }
   const double ratio = uncertainty.noise_m > 0.0 ? uncertainty.noise_m / fit.noise_unit_m() : 1.0;
-  const ScaleTest test(problem, whole, ratio, estimate);
+  const ScaleTest test(problem, whole, ratio, uncertainty.harmonic_shares, estimate);
   if (!test.solvable()) return check;
   const auto [stretch, std] = test.stretch(lengths_of(problem.nominal));
   check.stretch_relative = stretch;

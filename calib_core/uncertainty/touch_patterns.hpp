@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <optional>
 #include <vector>
 
 #include "calib_core/estimation/least_squares.hpp"
@@ -13,19 +12,12 @@ namespace calib {
 /// One such effect; its size has this standard deviation around 0.
 struct TouchPattern {
   const char* source = "";  // in the uncertainty budget; several effects may share one
-  double std = 0.0;         // radians of lag and of harmonics, metres of pre-travel
-  /// Of a second harmonic: its joint, 0 to 5. It is an error of the joint's position at the tip as well.
-  std::optional<int> joint = std::nullopt;
+  double std = 0.0;         // radians of lag, metres of pre-travel
 };
 
 /// The lag of each joint behind its drive ("backlash"), where any is known; then the pre-travel of a push
-/// from the side, each that has a deviation: "pretravel_tilt", and "lobes" in two directions; then the second
-/// harmonic of each joint's transmission, cosine and sine ("gear_harmonics"): where the maker gives a
-/// deviation of the first, the second is taken to be of that size before any touch.
+/// from the side, each that has a deviation: "pretravel_tilt", and "lobes" in two directions.
 std::vector<TouchPattern> touch_patterns(const IdentificationProblem& problem);
-
-/// Cosine and sine of twice the angle.
-CosSin twice_a_turn(const CosSin& turned);
 
 /// d (weighted distance of a touch) / d (size of an effect): rows as those of `fit`, columns as
 /// touch_patterns(); 0 for touches that are not kept. The columns of `fit` must begin with the candidates,

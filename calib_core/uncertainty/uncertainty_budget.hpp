@@ -24,6 +24,11 @@ struct Correlation {
   double coefficient = 0.0;
 };
 
+/// Of the maker's variance of the harmonics of the joints that were left out: what the residuals leave.
+struct HarmonicShares {
+  double first = 0.0, second = 0.0;
+};
+
 /// Uncertainty of the identified errors. Covariances are those of true minus identified errors, metres and
 /// radians. An identified error is a combination of itself and the parameters grouped with it; `identified`
 /// is the covariance of that combination. A parameter that was excluded or held at nominal still has an error
@@ -42,10 +47,7 @@ struct UncertaintyBudget {
   /// degrees of freedom of that scatter (0: there is no such share).
   ArmCovariance of_drift = no_covariance();
   double drift_degrees_of_freedom = 0.0;
-  /// Of the maker's variance of harmonics that were left out: what the residuals leave of it.
-  double harmonic_share = 0.0;
-  /// What the residuals leave of the second harmonic of each joint, radians: cosine and sine each.
-  JointVector second_harmonic_std_rad = JointVector::Zero();
+  HarmonicShares harmonic_shares;
   /// Of the maker's variance of what changes from posture to posture: what the touches say of it.
   double gear_share = 1.0;
   std::vector<int> unseen_without_tolerance;  // unseen errors without a tolerance

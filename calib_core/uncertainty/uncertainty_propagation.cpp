@@ -16,7 +16,7 @@ std::vector<int> all_known_columns(const IdentificationProblem& problem, const L
   std::vector<int> columns(kErrorParameterCount);
   std::iota(columns.begin(), columns.end(), 0);
   for (int i = kErrorParameterCount; i < kArmParameterCount; ++i) {
-    if (is_estimated(fit, i) || std_unless_estimated(problem, i, 1.0)) columns.push_back(i);
+    if (is_estimated(fit, i) || std_unless_estimated(problem, i, {1.0, 1.0})) columns.push_back(i);
   }
   return columns;
 }
@@ -108,13 +108,15 @@ JointVector gear_std_beside(const IdentificationProblem& problem, const std::vec
 }
 
 std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
-                                           double harmonic_share) {
+                                           const HarmonicShares& shares) {
   if (column < kErrorParameterCount) return problem.tolerances[static_cast<std::size_t>(column)];
   const int position = column - kErrorParameterCount;
   if (is_ripple(position)) return std::nullopt;
   const auto& std = problem.nongeometric_std[static_cast<std::size_t>(position)];
-  if (!std || !is_harmonic(position)) return std;
-  return std::sqrt(harmonic_share) * *std;
+  if (!std) return std;
+  if (is_harmonic(position)) return std::sqrt(shares.first) * *std;
+  if (is_second_harmonic(position)) return std::sqrt(shares.second) * *std;
+  return std;
 }
 
 FullLinearisation linearise_all_parameters(const IdentificationProblem& problem,

@@ -18,7 +18,9 @@ struct FullLinearisation {
   std::vector<int> columns;  // of the arm, those that were linearised
   Eigen::MatrixXd touch_information;
   Eigen::VectorXd touch_gradient;
-  bool has_residuals = true;  // not of touches that are only planned: they say nothing of what was left out
+  /// What the residuals say of the noise, in units of the fit's; nothing of touches that are only planned:
+  /// they say nothing of what was left out either.
+  std::optional<NoiseEvidence> noise;
   /// What displaces the touches by a pattern: each a further column of the linearisation, with its
   /// information with the columns above (a column each), with the other patterns, and its gradient. Empty
   /// without any.
@@ -37,19 +39,14 @@ struct FullLinearisation {
   }
 };
 
-/// What the residuals leave of the second harmonics: the standard deviations of these patterns become the
-/// root of that share of the maker's variance, one for all joints. `noise` in units of the fit's noise.
-void bound_second_harmonics(const NoiseEvidence& noise, FullLinearisation& whole);
-
 /// One standard deviation of each joint's error that changes from posture to posture beside these estimated
 /// parameters of the arm: without the ripples among them. Radians.
 JointVector gear_std_beside(const IdentificationProblem& problem, const std::vector<int>& arm_columns);
 
 /// Standard deviation with which the budget counts a parameter of the arm (index into ArmVector) that is not
 /// estimated; nothing where it is unknown, and of a ripple, which is an error of posture then.
-/// `harmonic_share`: UncertaintyBudget.
 std::optional<double> std_unless_estimated(const IdentificationProblem& problem, int column,
-                                           double harmonic_share);
+                                           const HarmonicShares& shares);
 
 /// `fit` must have been solved at `estimate`; `covariance`: the inverse of its information, computed when
 /// missing.

@@ -54,26 +54,27 @@ Eigen::VectorXd unseen_direction(const IdentificationProblem& problem, const Can
   return direction;
 }
 
-/// The harmonics that have a standard deviation, as columns.
-std::vector<Eigen::Index> known_harmonics(const IdentificationProblem& problem) {
+/// The harmonics of one kind that have a standard deviation, as columns.
+std::vector<Eigen::Index> known_harmonics(const IdentificationProblem& problem, bool (*is_one)(int)) {
   std::vector<Eigen::Index> columns;
-  for (int position = harmonic_position(0); is_harmonic(position); ++position) {
-    if (problem.nongeometric_std[static_cast<std::size_t>(position)])
+  for (int position = 0; position < kNongeometricCount; ++position) {
+    if (is_one(position) && problem.nongeometric_std[static_cast<std::size_t>(position)])
       columns.push_back(nongeometric_index(position));
   }
   return columns;
 }
 
-/// The variance that harmonics which were left out may still have, as a share of the maker's: what the
-/// residuals leave of it; all of it beside others that the touches asked for.
+/// The variance that harmonics of one kind which were left out may still have, as a share of the maker's:
+/// what the residuals leave of it; all of it beside others that the touches asked for.
 double harmonic_share(const IdentificationProblem& problem, const LeastSquares& fit,
-                      const FullLinearisation& whole, double noise_variance) {
-  std::vector<Eigen::Index> columns = known_harmonics(problem);
+                      const FullLinearisation& whole, bool (*is_one)(int),
+                      const std::optional<NoiseEvidence>& noise, double expected_share) {
+  std::vector<Eigen::Index> columns = known_harmonics(problem, is_one);
   const auto estimated = std::erase_if(
       columns, [&](Eigen::Index column) { return is_estimated(fit, static_cast<int>(column)); });
   if (columns.empty()) return 0.0;
   if (estimated > 0) return 1.0;
-  if (!whole.has_residuals) return kFirstHarmonicShare;
+  if (!noise) return expected_share;
   Eigen::VectorXd std(static_cast<Eigen::Index>(columns.size()));
   for (std::size_t i = 0; i < columns.size(); ++i) {
     std[static_cast<Eigen::Index>(i)] =
@@ -83,16 +84,16 @@ double harmonic_share(const IdentificationProblem& problem, const LeastSquares& 
       evidence_of_group(whole.touch_information(columns, columns),
                         whole.touch_information(whole.estimated, columns), whole.touch_gradient(columns), std,
                         whole.estimated_covariance),
-      {.otherwise = noise_variance}, kFirstHarmonicShare);
+      *noise, expected_share);
 }
 
-/// The second harmonics among the patterns.
-std::vector<Eigen::Index> second_harmonics(const FullLinearisation& whole) {
-  std::vector<Eigen::Index> found;
-  for (Eigen::Index k = 0; k < std::ssize(whole.patterns); ++k) {
-    if (whole.patterns[static_cast<std::size_t>(k)].joint) found.push_back(k);
-  }
-  return found;
+/// First harmonics have been tried, so that what is left of them passes for noise; second ones have not.
+HarmonicShares harmonic_shares(const IdentificationProblem& problem, const LeastSquares& fit,
+                               const FullLinearisation& whole) {
+  std::optional<NoiseEvidence> with_first;
+  if (whole.noise) with_first = {.otherwise = whole.noise->otherwise};
+  return {harmonic_share(problem, fit, whole, is_harmonic, with_first, kFirstHarmonicShare),
+          harmonic_share(problem, fit, whole, is_second_harmonic, whole.noise, kSecondHarmonicShare)};
 }
 
 void add_square(const Eigen::VectorXd& displacement, ArmCovariance& covariance) {
@@ -116,12 +117,11 @@ void add_held(const std::string& name, const Eigen::VectorXd& displacement, Sour
 /// Adds what the arm does beside rigid kinematics and was not estimated: within the maker's figures it bends
 /// the estimate and remains.
 void add_nongeometric(const IdentificationProblem& problem, const LeastSquares& fit,
-                      const FullLinearisation& whole, double noise_variance, SourceSum& sum,
-                      UncertaintyBudget& result) {
-  result.harmonic_share = harmonic_share(problem, fit, whole, noise_variance);
+                      const FullLinearisation& whole, SourceSum& sum, UncertaintyBudget& result) {
+  result.harmonic_shares = harmonic_shares(problem, fit, whole);
   for (int column = kErrorParameterCount; column < kArmParameterCount; ++column) {
     const auto index = static_cast<std::size_t>(column - kErrorParameterCount);
-    const auto std = std_unless_estimated(problem, column, result.harmonic_share);
+    const auto std = std_unless_estimated(problem, column, result.harmonic_shares);
     if (!std || is_estimated(fit, column)) continue;
     add_held(source_name(nongeometric_parameters()[index].kind), *std * bias_direction(whole, column), sum,
              result);
@@ -139,25 +139,6 @@ void add_patterns(const FullLinearisation& whole, SourceSum& sum, UncertaintyBud
     add_square(result.patterned.col(k), sum.source(pattern.source).covariance);
     add_square(result.patterned.col(k), result.held);
   }
-}
-
-/// Adds the second harmonics at the tip: in any posture their cosine and sine make one standard deviation.
-/// What they did to the estimate is in the patterns, as if it were another matter: where the joints stand as
-/// at the touches both make up for each other in part and the sum is too large, where cosine and sine are
-/// opposite to those at the touches it is too small.
-void add_second_harmonics(const IdentificationProblem& problem, const FullLinearisation& whole,
-                          SourceSum& sum, UncertaintyBudget& result) {
-  ArmCovariance at_tip = no_covariance();
-  for (const Eigen::Index k : second_harmonics(whole)) {
-    const TouchPattern& pattern = whole.patterns[static_cast<std::size_t>(k)];
-    result.second_harmonic_std_rad[*pattern.joint] = pattern.std;
-    const int theta = theta_index(*pattern.joint);
-    const double gain = problem.nominal.gains[static_cast<std::size_t>(*pattern.joint)];
-    at_tip(theta, theta) = std::pow(gain * pattern.std, 2);
-  }
-  if (at_tip.isZero(0.0)) return;
-  sum.source("gear_harmonics").covariance += at_tip;
-  result.of_posture += at_tip;
 }
 
 /// Adds what changes from posture to posture: it is in the noise of the touches, and at the tip once more.
@@ -240,7 +221,7 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
     const CandidateStatus& candidate = identifiable.candidates[static_cast<std::size_t>(column)];
     const bool is_held =
         candidate.status == ParameterStatus::kWeak || candidate.status == ParameterStatus::kExcluded;
-    if (const auto tolerance = std_unless_estimated(problem, column, result.harmonic_share)) {
+    if (const auto tolerance = std_unless_estimated(problem, column, result.harmonic_shares)) {
       const Eigen::VectorXd displacement = *tolerance * bias_direction(whole, column);
       add_square(displacement, is_held ? held : result.unseen);
       add_left_out(displacement, result);
@@ -277,33 +258,14 @@ std::vector<Correlation> strongest(const ArmCovariance& covariance, const std::v
 
 }  // namespace
 
-void bound_second_harmonics(const NoiseEvidence& noise, FullLinearisation& whole) {
-  const std::vector<Eigen::Index> harmonics = second_harmonics(whole);
-  if (harmonics.empty()) return;
-  Eigen::VectorXd std(std::ssize(harmonics));
-  for (Eigen::Index k = 0; k < std.size(); ++k)
-    std[k] = whole.patterns[static_cast<std::size_t>(harmonics[static_cast<std::size_t>(k)])].std;
-  const auto of_touches = [&] {
-    return mean_variance_share(
-        evidence_of_group(whole.pattern_information(harmonics, harmonics),
-                          whole.pattern_columns(whole.estimated, harmonics),
-                          whole.pattern_gradient(harmonics), std, whole.estimated_covariance),
-        noise, kSecondHarmonicShare);
-  };
-  const double share = whole.has_residuals ? of_touches() : kSecondHarmonicShare;
-  for (const Eigen::Index k : harmonics) whole.patterns[static_cast<std::size_t>(k)].std *= std::sqrt(share);
-}
-
 void add_unfitted(const IdentificationProblem& problem, const IdentifiableSet& identifiable,
                   const LeastSquares& fit, const FullLinearisation& whole, UncertaintyBudget& fitted) {
   SourceSum sum(fit.arm_columns(), std::move(fitted.sources));
-  const double ratio = fitted.noise_m / fit.noise_unit_m();
   fitted.left_out.resize(whole.touch_information.rows(), 0);
   add_unseen(problem, identifiable, fit, whole, sum, fitted);
-  add_nongeometric(problem, fit, whole, ratio * ratio, sum, fitted);
+  add_nongeometric(problem, fit, whole, sum, fitted);
   add_patterns(whole, sum, fitted);
   add_gears(problem, fit, sum, fitted);
-  add_second_harmonics(problem, whole, sum, fitted);
   add_drift(problem, sum, fitted);
   displace_artefact(fitted.left_out, fitted.artefact_std);
   displace_artefact(fitted.patterned, fitted.artefact_std);

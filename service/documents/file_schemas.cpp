@@ -15,7 +15,7 @@ constexpr std::string_view kTouches = R"({
     "plane":{"type":"integer","minimum":1},
     "role":{"enum":["fit","held_out","proof"]},
     "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
-    "noise_um":{"type":"number","exclusiveMinimum":0,"maximum":5000,
+    "noise_um":{"type":"number","minimum":0.001,"maximum":5000,
       "description":"one standard deviation of this touch along the normal, where it is not the cell's touch_noise_mm; from version 2 on"},
     "at_s":{"type":"number","minimum":0,"description":"seconds since the first touch; from version 3 on"},
     "first_joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"},

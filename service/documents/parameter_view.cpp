@@ -138,6 +138,10 @@ double value_of(const calib::IdentificationResult& result, int position) {
       return result.calibrated.harmonics_rad[joint].sin;
     case calib::NongeometricKind::kMass:
       return result.errors[calib::nongeometric_index(position)];
+    case calib::NongeometricKind::kSecondCos:
+      return result.calibrated.second_harmonics_rad[joint].cos;
+    case calib::NongeometricKind::kSecondSin:
+      return result.calibrated.second_harmonics_rad[joint].sin;
     case calib::NongeometricKind::kRippleCos:
       return result.calibrated.ripples_rad[joint].cos;
     case calib::NongeometricKind::kRippleSin:

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kPostureCount = 200;
 /// Achieved over predicted, median. Wanted are 0.75 to 1.25: above it is `quick` over the box with oval gears
-/// (1.35 and 1.27, and more than half of these runs lack fit), below it `quick` on four arms and `best` on an
+/// (1.37 and 1.28, and more than half of these runs lack fit), below it `quick` on four arms and `best` on an
 /// arm with less beside its model than the file allows (truth). What the model does not have is the same in
 /// every seed and depends on the plan: lengths of the block known to 4.2, 4.5 or 5.5 um in place of 5 gave
 /// plans as good as each other, and ratios of `quick` from 0.62 to 0.75 on truth-real and from 0.96 to 1.49

@@ -113,9 +113,7 @@ class ExpectedIdentification {
     LeastSquares fit = linearised(std::move(touches));
     if (!fit.solve())
       throw std::invalid_argument("the touches do not determine all parameters that are to be identified");
-    FullLinearisation whole = linearise_all_parameters(problem_, options_, fit, nominal_);
-    whole.has_residuals = false;
-    bound_second_harmonics({}, whole);
+    const FullLinearisation whole = linearise_all_parameters(problem_, options_, fit, nominal_);
     return {propagate_uncertainty(problem_, options_, identifiable_, fit, whole,
                                   {problem_.touch_noise_m, std::numeric_limits<double>::infinity()}),
             fit.condition_numbers(positions()).as_is};

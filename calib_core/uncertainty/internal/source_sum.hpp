@@ -23,6 +23,8 @@ inline const char* source_name(NongeometricKind kind) {
       return "compliance";
     case NongeometricKind::kHarmonicCos:
     case NongeometricKind::kHarmonicSin:
+    case NongeometricKind::kSecondCos:
+    case NongeometricKind::kSecondSin:
       return "gear_harmonics";
     case NongeometricKind::kMass:
       return "masses";

@@ -126,6 +126,16 @@ TEST(MonteCarlo, AgreesWithTheLinearUncertaintyOfAPriorAndOfACertifiedLength) {
   expect_linear_and_drawn_to_agree(calibrated(knowledge, options));
 }
 
+TEST(MonteCarlo, CountsWhatTheTouchesLeaveOfSecondHarmonics) {
+  Case made = calibrated(drawn::certain_artefact(5), {}, 0.1);
+  const double before_m = made.simulation().linear_box_rms_m().value();
+  for (int i = second_harmonic_position(0); is_second_harmonic(i); ++i)
+    made.problem.nongeometric_std[static_cast<std::size_t>(i)] = 2e-4;
+  made.result = identify(made.problem, made.options);
+  EXPECT_GT(made.simulation().linear_box_rms_m().value(), 1.2 * before_m);
+  expect_linear_and_drawn_to_agree(made);
+}
+
 TEST(MonteCarlo, CountsAComplianceThatWasNotEstimatedAndTheMasses) {
   Case made = calibrated(drawn::certain_artefact(5), {}, 0.1);
   made.problem.nominal.masses[3] = {30.0, {0.2, 0.0, 0.1}};

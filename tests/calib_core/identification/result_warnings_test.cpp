@@ -48,6 +48,21 @@ TEST(ResultWarnings, NameAPlaneThatFitsNoOther) {
                              HasSubstr("stylus_radius_mm"))));
 }
 
+TEST(ResultWarnings, NameAJointThatWouldGiveWayUpwards) {
+  UniformChance chance(4);
+  IdentificationProblem problem = drawn::problem(drawn::certain_artefact(5), kNoiseMetres);
+  problem.nominal.masses[4] = {20.0, {0.0, 0.0, -0.25}};
+  problem.nongeometric_std[static_cast<std::size_t>(compliance_position(1))] = 3e-6;
+  drawn::Truth truth = drawn::draw_truth(problem, chance);
+  truth.arm.compliance_rad_per_nm[1] = 3e-6;
+  problem.touches = drawn::touches(truth, {.count = 100, .noise_m = kNoiseMetres}, chance);
+  const auto warning = HasSubstr("joint 2 would give way upwards");
+  EXPECT_THAT(identify(problem, {.stiffness = true}).warnings, Not(Contains(warning)));
+  problem.nominal.down_in_frame_1 = -problem.nominal.down_in_frame_1;
+  EXPECT_THAT(identify(problem, {.stiffness = true}).warnings,
+              Contains(AllOf(warning, HasSubstr("\"down_in_frame_1\""))));
+}
+
 TEST(ResultWarnings, NameReferenceTouchesThatHardlyVary) {
   UniformChance chance(4);
   IdentificationProblem problem = drawn::problem(drawn::certain_artefact(5), kNoiseMetres);

@@ -213,6 +213,20 @@ TEST(KinematicModel, AHarmonicTurnsItsJointByTheSineOfItsPosition) {
       1e-14);
 }
 
+TEST(KinematicModel, ASecondHarmonicTurnsItsJointByTheSineOfTwiceItsAngle) {
+  KinematicModel even = paper::nominal();
+  even.gains[1] = -0.5;
+  KinematicModel oval = even;
+  oval.second_harmonics_rad[1] = {3e-4, -2e-4};
+  const JointVector joints = some_joints(0.2);
+  const double angle = -0.5 * joints[1];
+  JointVector where_it_stands = joints;
+  where_it_stands[1] += 3e-4 * std::cos(2.0 * angle) - 2e-4 * std::sin(2.0 * angle);
+  const Eigen::Matrix4d wanted = forward_kinematics(even, where_it_stands).matrix();
+  EXPECT_LT((forward_kinematics(oval, joints).matrix() - wanted).norm(), 1e-14);
+  EXPECT_GT((forward_kinematics(even, joints).matrix() - wanted).norm(), 1e-5);
+}
+
 TEST(KinematicModel, ARippleTurnsItsJointByTheSineOfItsPeriods) {
   const KinematicModel even = paper::nominal();
   KinematicModel rippled = even;

@@ -27,6 +27,7 @@ KinematicModel bending_arm() {
   KinematicModel model = rigid_arm();
   model.compliance_rad_per_nm = {0.0, 1e-6, 3e-6, 5e-6, 0.0, 1e-5};
   for (std::size_t joint = 0; joint < kJointCount; ++joint) model.harmonics_rad[joint] = {5e-5, -3e-5};
+  for (std::size_t joint = 0; joint < kJointCount; ++joint) model.second_harmonics_rad[joint] = {-2e-5, 4e-5};
   return model;
 }
 

@@ -11,9 +11,9 @@
 namespace calib {
 namespace {
 
-constexpr double kTiltStdMetres = 2e-6, kLobesStdMetres = 1e-6, kLagStdRad = 1e-5, kHarmonicStdRad = 5e-5;
-/// Their places among the patterns: the lags, the tilt, the two lobes, then cosine and sine of each joint.
-constexpr int kTilt = 6, kLobes = 7, kFirstHarmonic = 9, kPatterns = kFirstHarmonic + 12;
+constexpr double kTiltStdMetres = 2e-6, kLobesStdMetres = 1e-6, kLagStdRad = 1e-5;
+/// Their places among the patterns: the lags, the tilt, the two lobes.
+constexpr int kTilt = 6, kLobes = 7, kPatterns = 9;
 
 IdentificationProblem touched_with_patterns() {
   UniformChance chance(3);
@@ -22,8 +22,6 @@ IdentificationProblem touched_with_patterns() {
   problem.artefact.std_sideways_m = {kTiltStdMetres, kLobesStdMetres, kLobesStdMetres};
   problem.gear_lag_std_rad.setConstant(kLagStdRad);
   problem.nominal.gains[4] = -0.5;
-  for (int joint = 0; joint < kJointCount; ++joint)
-    problem.nongeometric_std[static_cast<std::size_t>(harmonic_position(joint))] = kHarmonicStdRad;
   return problem;
 }
 
@@ -33,27 +31,21 @@ std::vector<std::string> names_of(const IdentificationProblem& problem) {
   return names;
 }
 
-TEST(TouchPatterns, AreTheLagOfEachJointThenWhatIsNotKnownOfTheProbeThenSecondHarmonics) {
+TEST(TouchPatterns, AreTheLagOfEachJointThenWhatIsNotKnownOfTheProbe) {
   IdentificationProblem problem = touched_with_patterns();
   std::vector<std::string> all(6, "backlash");
   all.insert(all.end(), {"pretravel_tilt", "lobes", "lobes"});
-  all.insert(all.end(), 12, "gear_harmonics");
   EXPECT_EQ(names_of(problem), all);
   EXPECT_EQ(touch_patterns(problem)[0].std, kLagStdRad);
   EXPECT_EQ(touch_patterns(problem)[kTilt].std, kTiltStdMetres);
-  EXPECT_EQ(touch_patterns(problem)[kFirstHarmonic + 3].std, kHarmonicStdRad);
-  EXPECT_EQ(touch_patterns(problem)[kFirstHarmonic + 3].joint, 1);
-  EXPECT_FALSE(touch_patterns(problem)[kTilt].joint);
   problem.artefact.std_sideways_m.x() = 0.0;
   problem.gear_lag_std_rad.setZero();
-  problem.nongeometric_std = {};
   EXPECT_THAT(names_of(problem), testing::ElementsAre("lobes", "lobes"));
   problem.artefact.std_sideways_m.setZero();
   EXPECT_TRUE(touch_patterns(problem).empty());
 }
 
-// Against differences of the distance of a touch: with another probe, with a joint behind its drive, and with
-// one ahead of it by what repeats twice a turn.
+// Against differences of the distance of a touch: with another probe, and with a joint behind its drive.
 TEST(TouchPatterns, DisplaceATouchByWhatItsDistanceChanges) {
   const IdentificationProblem problem = touched_with_patterns();
   std::vector<int> columns(kErrorParameterCount);
@@ -73,16 +65,10 @@ TEST(TouchPatterns, DisplaceATouchByWhatItsDistanceChanges) {
     std::vector<ContactSurface> probed = planes;
     for (ContactSurface& plane : probed) {
       if (k == kTilt) plane.sideways.tilt_m = kStep;
-      if (k >= kLobes && k < kFirstHarmonic) plane.sideways.lobes_m = kStep;
+      if (k >= kLobes) plane.sideways.lobes_m = kStep;
       if (k == kLobes + 1) plane.sideways.lobe_direction_rad = radians_from_degrees(30.0);  // the sine
     }
     for (Touch& touch : lagging) {
-      if (k >= kFirstHarmonic) {
-        const int joint = (k - kFirstHarmonic) / 2;
-        const double angle =
-            2.0 * problem.nominal.gains[static_cast<std::size_t>(joint)] * touch.joints[joint];
-        touch.joints[joint] += kStep * ((k - kFirstHarmonic) % 2 == 0 ? std::cos(angle) : std::sin(angle));
-      }
       if (k >= kJointCount) continue;
       const Chain chain = forward_chain(problem.nominal, touch.joints);
       const Eigen::Vector3d outward = planes[static_cast<std::size_t>(touch.face)].outward;
