@@ -3,6 +3,8 @@
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
+#include <utility>
+
 #include "service/base/utc_time.hpp"
 
 namespace cell {
@@ -46,7 +48,14 @@ void PublishedStatus::show(Fault fault, Event event) {
 
 void PublishedStatus::warn(Fault fault) {
   spdlog::warn("warning {}: {}", describe(fault.code).name, fault.message());
-  status_.warning = std::move(fault);
+  warning_before_ = std::exchange(status_.warning, std::move(fault));
+  publish();
+}
+
+void PublishedStatus::end_warning(FaultCode code) {
+  if (!status_.warning || status_.warning->code != code) return;
+  spdlog::info("the warning {} is over", describe(code).name);
+  status_.warning = std::exchange(warning_before_, std::nullopt);
   publish();
 }
 
@@ -65,6 +74,7 @@ void PublishedStatus::wait_for(std::optional<std::string> name) {
 void PublishedStatus::begin_run(std::int64_t run_id) {
   status_.run_id = run_id;
   status_.warning.reset();
+  warning_before_.reset();
   status_.reference_drift_m.reset();
   status_.fault.reset();
   status_.verdict = Verdict::kNone;

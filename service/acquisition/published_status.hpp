@@ -42,6 +42,8 @@ class PublishedStatus {
   void show(Fault fault, Event event);
   /// Published and logged while the run goes on.
   void warn(Fault fault);
+  /// What this warning told of is over: the one before it is shown again. Nothing where it is not shown.
+  void end_warning(FaultCode code);
   void publish();
 
   /// The daemon ends: nothing new begins.
@@ -65,6 +67,7 @@ class PublishedStatus {
   Wake& wake_;
   Hooks hooks_;
   Status status_;
+  std::optional<Fault> warning_before_;  // the one that is shown
   std::function<void(const Status&)> status_listener_;
   bool is_ending_ = false;
 };

@@ -2,21 +2,32 @@
 
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
+#include <chrono>
+#include <memory>
 #include <optional>
+#include <string>
 
 #include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
+#include "service/acquisition/alarm.hpp"
+#include "service/acquisition/published_status.hpp"
 
 namespace cell {
 
 /// The arithmetic of a run, on a thread of its own: a millisecond for a result, some tenths of a second for
 /// the documents at the end, in which the operation's thread keeps the link and takes a stop. It works on
-/// copies; what a copy gave counts in the run unless that has changed meanwhile (Run::take_latest()).
+/// copies; what a copy gave counts in the run unless that has changed meanwhile (Run::take_latest()). The run
+/// waits for it without a bound, but not without a word: see kUntoldMax.
 class RunComputation {
  public:
-  /// `cell` must outlive the executor's work. A test gives its one executor.
-  RunComputation(boost::asio::any_io_executor executor, const Cell& cell)
-      : executor_(std::move(executor)), cell_(cell) {}
+  /// After so long the status warns of a computation (FaultCode::kComputationSlow) until its result is there.
+  static constexpr std::chrono::seconds kUntoldMax{30};
+
+  /// `cell` must outlive the executor's work. A test gives its one executor. `status` and `alarm` are of the
+  /// caller's thread.
+  RunComputation(boost::asio::any_io_executor executor, const Cell& cell, PublishedStatus& status,
+                 std::unique_ptr<Alarm> alarm)
+      : executor_(std::move(executor)), cell_(cell), status_(status), alarm_(std::move(alarm)) {}
 
   /// The same run with the result of all its touches.
   boost::asio::awaitable<Run> identified(Run run);
@@ -24,8 +35,14 @@ class RunComputation {
   boost::asio::awaitable<Conclusion> conclude(ActiveRun active, std::optional<RunOutcome> outcome);
 
  private:
+  /// `what` is computed, in words.
+  template <class Result>
+  boost::asio::awaitable<Result> told_when_late(std::string what, boost::asio::awaitable<Result> work);
+
   boost::asio::any_io_executor executor_;
   const Cell& cell_;
+  PublishedStatus& status_;
+  std::unique_ptr<Alarm> alarm_;
 };
 
 }  // namespace cell

@@ -33,6 +33,7 @@
 #include "service/daemon/end_watch.hpp"
 #include "service/daemon/listen_address.hpp"
 #include "service/daemon/supervision.hpp"
+#include "service/daemon/work_done.hpp"
 #include "service/http/auth/tokens.hpp"
 #include "service/http/routes/api.hpp"
 #include "service/http/server/listener.hpp"
@@ -118,57 +119,24 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
 /// How often the tokens are read again: one that was removed ends so soon.
 constexpr std::chrono::milliseconds kTokensLook{1000};
 
-/// How long the end waits for the disk.
-constexpr std::chrono::milliseconds kDiskPatience{10'000};
+/// How long the end waits for the disk and for a computation.
+constexpr std::chrono::milliseconds kWorkPatience{10'000};
 
-/// At its end all that was to be computed and written is done: it refers to coroutines that are destroyed
-/// next. The arithmetic ends by itself, a disk may not.
-class WorkDone {
- public:
-  /// All must outlive it; `is_hurried` is looked at then. `waiting_count` is that of the acquisition's
-  /// StoreQueue.
-  WorkDone(asio::thread_pool& arithmetic, asio::thread_pool& disk, EndWatch& watch,
-           const CellOperation& operation, std::shared_ptr<const std::atomic<int>> waiting_count,
-           const bool& is_hurried)
-      : arithmetic_(arithmetic),
-        disk_(disk),
-        watch_(watch),
-        operation_(operation),
-        waiting_count_(std::move(waiting_count)),
-        is_hurried_(is_hurried) {}
-  ~WorkDone() {
-    arithmetic_.join();
-    watch_.begin(is_hurried_ ? EndWatch::kHurriedPatience : kDiskPatience, end_without_disk());
-    disk_.join();
-  }
-  WorkDone(const WorkDone&) = delete;
-  WorkDone& operator=(const WorkDone&) = delete;
-
- private:
-  /// Nothing is destroyed: the disk's thread may still use it. What the disk has not taken is as after a
-  /// power cut, and an answer that is not stored stays at the controller, which is asked again.
-  [[nodiscard]] EndWatch::GiveUp end_without_disk() const {
-    const Run* run = operation_.run();
-    const std::string of_run = run ? fmt::format(", of run {} with {} of {} touches", run->id(),
-                                                 run->touches_done(), run->touches_total())
-                                   : "";
-    return [of_run, waiting_count = waiting_count_](const std::string& why) {
-      spdlog::error(
-          "{}: the daemon ends without it. Not on the disk: {} writes of the acquisition{}, and what "
-          "was to be recorded of requests since. The controller keeps a touch that is not stored",
-          why, waiting_count->load(), of_run);
-      spdlog::shutdown();
-      std::_Exit(kExitFailed);
-    };
-  }
-
-  asio::thread_pool& arithmetic_;
-  asio::thread_pool& disk_;
-  EndWatch& watch_;
-  const CellOperation& operation_;
-  std::shared_ptr<const std::atomic<int>> waiting_count_;
-  const bool& is_hurried_;
-};
+/// Nothing is destroyed: the other threads may still use it. What the disk has not taken is as after a power
+/// cut, and an answer that is not stored stays at the controller, which is asked again.
+EndWatch::GiveUp end_without_work(const Run* run, std::shared_ptr<const std::atomic<int>> waiting_count) {
+  const std::string of_run = run ? fmt::format(", of run {} with {} of {} touches", run->id(),
+                                               run->touches_done(), run->touches_total())
+                                 : "";
+  return [of_run, waiting_count = std::move(waiting_count)](const std::string& why) {
+    spdlog::error(
+        "{}: the daemon ends without it. Not on the disk: {} writes of the acquisition{}, and what "
+        "was to be recorded of requests since. The controller keeps a touch that is not stored",
+        why, waiting_count->load(), of_run);
+    spdlog::shutdown();
+    std::_Exit(kExitFailed);
+  };
+}
 
 /// At its end what still waits in the two contexts is destroyed, in the order in which it refers to the
 /// other: all that it refers to is there yet.
@@ -259,7 +227,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   std::optional<LocalListener> socket;
   open_socket(socket, http, api, options);
   Supervision supervision(context.get_executor());
-  bool is_hurried = false;
+  std::chrono::milliseconds patience = kWorkPatience;
   asio::signal_set signals(context, SIGINT, SIGTERM, SIGHUP);
   signals.async_wait([&](const boost::system::error_code& failure, int signal) {
     if (failure) return;
@@ -268,7 +236,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     // A stop is taken until the arm has been drawn back: the listeners close with the end.
     asio::co_spawn(context, operation.shut_down(), [&](const std::exception_ptr&) { context.stop(); });
     signals.async_wait([&](const boost::system::error_code&, int) {  // a second signal: at once
-      is_hurried = true;
+      patience = EndWatch::kHurriedPatience;
       context.stop();
     });
   });
@@ -282,7 +250,8 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   std::fflush(stdout);
   supervision.notify_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
   const NothingWaits nothing_waits(context, http, api);
-  const WorkDone done(arithmetic, disk, end_watch, operation, store_queue.waiting_count(), is_hurried);
+  const WorkDone done(arithmetic, disk, end_watch, patience,
+                      [&] { return end_without_work(operation.run(), store_queue.waiting_count()); });
   const HttpThread http_thread(http);
   context.run();
 }

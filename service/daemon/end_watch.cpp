@@ -24,13 +24,15 @@ void EndWatch::begin(std::chrono::milliseconds patience, GiveUp give_up) {
 }
 
 void EndWatch::watch(std::chrono::milliseconds patience, const GiveUp& give_up) {
-  std::string why =
-      fmt::format("the end has not come within {}: the disk does not answer, it seems", patience);
+  std::string why = fmt::format(
+      "the end has not come within {}: the disk does not answer, or a "
+      "computation does not end",
+      patience);
   bool is_hurried = false;
   signals_->async_wait([&](const boost::system::error_code& failure, int signal) {
     if (failure) return;
     is_hurried = true;
-    why = fmt::format("signal {} while the end waits for the disk", signal);
+    why = fmt::format("signal {} while the end waits for the disk or a computation", signal);
     context_.stop();
   });
   context_.run_for(patience);

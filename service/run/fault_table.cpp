@@ -294,6 +294,12 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kInternalError, "internal_error", "the daemon met an error of its own",
                "the arm was told to stop and stands where it was",
                "note the message and report it, then touchcal clear, touchcal reset and start a new run"},
+    FaultEntry{
+        FaultCode::kComputationSlow, "computation_slow", "a computation takes unusually long",
+        "the arm ends a touch that is under way, then it stands still",
+        "wait: the run goes on by itself and this warning ends with the computation; or touchcal stop, "
+        "which stops the arm at once",
+        FaultKind::kWarning},
 };
 
 }  // namespace

@@ -73,6 +73,7 @@ enum class FaultCode {
   kBlockMoved,
   kStateMissing,
   kInternalError,
+  kComputationSlow,
 };
 
 /// Effect of a fault on the run. A refused command or start changes nothing; a warning is kept with the run,

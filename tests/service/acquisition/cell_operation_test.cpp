@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
+#include <memory>
 
 #include "cs8_protocol/wire_units.hpp"
 #include "service/documents/configuration_digest.hpp"
@@ -23,7 +24,11 @@ using ::testing::IsSupersetOf;
 /// The whole of an operation over a scripted controller: all it meets is said by the test.
 class CellOperationTest : public ::testing::Test {
  protected:
-  CellOperationTest() { spdlog::set_level(spdlog::level::off); }
+  /// With the arithmetic of a run on another context, which waits until a test lets it.
+  explicit CellOperationTest(std::unique_ptr<boost::asio::io_context> arithmetic = nullptr)
+      : arithmetic_(std::move(arithmetic)) {
+    spdlog::set_level(spdlog::level::off);
+  }
   ~CellOperationTest() override {
     controller_->is_connected = false;  // nobody whose answer the end waits for
     shut_down();
@@ -57,14 +62,43 @@ class CellOperationTest : public ::testing::Test {
     return *answer;
   }
 
+  std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run_id; }
+  /// The controller tells its state all the time.
+  void run_until(const std::function<bool()>& condition) {
+    while (!condition()) {
+      time_.pass(std::chrono::milliseconds(10));
+      if (controller_->is_connected) controller_->hooks.on_state(*controller_->state);
+      io_.restart();
+      io_.run_one();
+    }
+    io_.poll();
+  }
+  /// The contact of an arm without errors at a touch of the plan.
+  static cs8::TouchResult contact_of(std::size_t touch) {
+    cs8::TouchResult result;
+    result.outcome = cs8::Outcome::kContact;
+    result.source = cs8::CaptureSource::kLatched;
+    result.contact = to_wire(plan_of_owners().touches.touches.at(touch).joints);
+    result.first_source = result.source;
+    result.first_contact = result.contact;
+    result.search_speed_um_s = cs8::um_s_from_metres_per_second(cell_of_owners().speeds.contact_m_s());
+    result.monitor_speed_percent = 100;
+    result.edges = 1;
+    return result;
+  }
+
   Folder folder_;
   RunStore store_{folder_.path() / "touchcal.sqlite"};
   boost::asio::io_context io_{1};
+  std::unique_ptr<boost::asio::io_context> arithmetic_;
   MadeUpTime time_;
   ScriptedController* controller_ = new ScriptedController;  // the operation's
-  CellOperation operation_{
-      {io_.get_executor(), io_.get_executor()}, cell_of_owners(), StoreQueue(store_, io_.get_executor()),
-      std::unique_ptr<Controller>(controller_), "instance",       time_.clocks()};
+  CellOperation operation_{{io_.get_executor(), (arithmetic_ ? *arithmetic_ : io_).get_executor()},
+                           cell_of_owners(),
+                           StoreQueue(store_, io_.get_executor()),
+                           std::unique_ptr<Controller>(controller_),
+                           "instance",
+                           time_.clocks()};
 };
 
 TEST_F(CellOperationTest, FindsItsControllerAndIsIdleOnceNothingStandsInTheWay) {
@@ -288,7 +322,7 @@ class EndedRunTest : public CellOperationTest {
       on_ended_();
       return ScriptedController::lost();
     };
-    controller_->on_query = [](std::uint32_t) { return first_contact(); };
+    controller_->on_query = [](std::uint32_t) { return contact_of(0); };
     launch();
     controller_->on_connect = [this] {
       state_before_ = operation_.status().state;
@@ -299,33 +333,9 @@ class EndedRunTest : public CellOperationTest {
     };
   }
   ~EndedRunTest() override { controller_->on_connect = ScriptedController::lost; }
-  /// The contact of an arm without errors at the first touch of the plan.
-  static cs8::TouchResult first_contact() {
-    cs8::TouchResult result;
-    result.outcome = cs8::Outcome::kContact;
-    result.source = cs8::CaptureSource::kLatched;
-    result.contact = to_wire(plan_of_owners().touches.touches.front().joints);
-    result.first_source = result.source;
-    result.first_contact = result.contact;
-    result.search_speed_um_s = cs8::um_s_from_metres_per_second(cell_of_owners().speeds.contact_m_s());
-    result.monitor_speed_percent = 100;
-    result.edges = 1;
-    return result;
-  }
-  /// The controller tells its state all the time.
-  void run_until(const std::function<bool()>& condition) {
-    while (!condition()) {
-      time_.pass(std::chrono::milliseconds(10));
-      if (controller_->is_connected) controller_->hooks.on_state(*controller_->state);
-      io_.restart();
-      io_.run_one();
-    }
-    io_.poll();
-  }
   void run_until_asked(const std::string& what) {
     run_until([&] { return std::ranges::find(controller_->asked, what) != controller_->asked.end(); });
   }
-  std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run_id; }
   [[nodiscard]] std::string fault() const { return operation_.status().fault.value_or(Fault{}).message(); }
 
   Command ends_by_ = Command::kAbort;
@@ -384,6 +394,56 @@ TEST_F(EndedRunTest, ARunOnHoldTakesItTooAndTheTimeThatIsLeftIsThatOfItsWork) {
   tell_state();
   ASSERT_EQ(operation_.status().controller.powered, false) << "the status is made anew";
   EXPECT_EQ(operation_.status().eta_s, left_s);
+}
+
+/// A run whose second touch is made while the result of the first is still being computed.
+class SlowArithmeticTest : public CellOperationTest {
+ protected:
+  SlowArithmeticTest() : CellOperationTest(std::make_unique<boost::asio::io_context>(1)) {
+    controller_->state->joints = to_wire(cell_of_owners().park_joints);
+    controller_->state->permit = cs8::PermitState::kGranted;
+    controller_->on_touch = [this](const cs8::Touch&) { return contact_of(touch_count_++); };
+    launch();
+    id_ = start_few();
+    run_until([this] { return touch_count_ == 2; });
+    controller_->asked.clear();
+  }
+  void poll() {
+    io_.restart();
+    io_.poll();
+  }
+  void compute_until(const std::function<bool()>& condition) {
+    while (!condition()) {
+      arithmetic_->restart();
+      arithmetic_->poll();
+      poll();
+    }
+  }
+
+  std::size_t touch_count_ = 0;
+  std::int64_t id_ = 0;
+};
+
+TEST_F(SlowArithmeticTest, IsNotWaitedForByAStop) {
+  ASSERT_EQ(operation_.status().state, State::kExecute);
+  EXPECT_FALSE(operation_.command(Command::kStop));
+  EXPECT_THAT(controller_->asked, Contains("stop"));
+  poll();
+  EXPECT_EQ(operation_.status().state, State::kStopping) << "the end of the run is stored with its result";
+  compute_until([this] { return operation_.status().state == State::kStopped; });
+  EXPECT_EQ(store_.run(id_).value().outcome, RunOutcome::kStopped);
+}
+
+TEST_F(SlowArithmeticTest, IsNotWaitedForToStopTheArmWhereTheDaemonEnds) {
+  bool down = false;
+  boost::asio::co_spawn(io_, operation_.shut_down(), [&](const std::exception_ptr&) { down = true; });
+  poll();
+  EXPECT_THAT(controller_->asked, Contains("stop"));
+  EXPECT_EQ(operation_.status().state, State::kHolding);
+  compute_until([&] { return down; });
+  EXPECT_EQ(operation_.status().state, State::kHeld);
+  EXPECT_EQ(store_.run(id_).value().outcome, RunOutcome::kRunning) << "the next daemon takes it up";
+  EXPECT_EQ(store_.touches(id_).size(), 2u) << "what was answered meanwhile is kept";
 }
 
 TEST_F(CellOperationTest, ChangesAreToldAtOnceAndNumbered) {

@@ -2,7 +2,9 @@
 
 #include <chrono>
 #include <functional>
+#include <utility>
 
+#include "service/acquisition/alarm.hpp"
 #include "service/acquisition/wake.hpp"
 #include "service/base/clocks.hpp"
 
@@ -36,6 +38,23 @@ class MadeUpWake : public Wake {
 
  private:
   MadeUpTime& time_;
+};
+
+/// Rings when the test says so.
+class MadeUpAlarm : public Alarm {
+ public:
+  void set(std::chrono::milliseconds after, std::function<void()> call) override {
+    set_for = after;
+    call_ = std::move(call);
+  }
+  void cancel() override { call_ = nullptr; }
+  [[nodiscard]] bool is_set() const { return call_ != nullptr; }
+  void ring() { std::exchange(call_, nullptr)(); }
+
+  std::chrono::milliseconds set_for{0};
+
+ private:
+  std::function<void()> call_;
 };
 
 }  // namespace cell

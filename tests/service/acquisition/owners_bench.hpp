@@ -2,6 +2,7 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -67,7 +68,7 @@ class OwnersBench {
   RunStore store;
   StoreQueue queue{store, io.get_executor()};
   TipRegions regions;
-  RunComputation computation{io.get_executor(), cell_of_owners()};
+  RunComputation computation{io.get_executor(), cell_of_owners(), status, std::make_unique<MadeUpAlarm>()};
   TouchPreparation preparation;
 
  private:

@@ -70,6 +70,20 @@ TEST_F(PublishedStatusTest, EachPublicationHasTheNextNumber) {
   EXPECT_EQ(status_.latest().sequence, before + 2);
 }
 
+TEST_F(PublishedStatusTest, AWarningThatIsOverUncoversTheOneBefore) {
+  status_.end_warning(FaultCode::kComputationSlow);
+  EXPECT_TRUE(log_.empty()) << "there was none";
+  status_.warn({FaultCode::kProbeBounced, {}});
+  status_.warn({FaultCode::kComputationSlow, {}});
+  status_.end_warning(FaultCode::kComputationSlow);
+  EXPECT_EQ(status_.latest().warning.value().code, FaultCode::kProbeBounced);
+  EXPECT_EQ(log_.size(), 6u) << "published three times";
+  status_.warn({FaultCode::kComputationSlow, {}});
+  status_.warn({FaultCode::kLatchMissing, {}});
+  status_.end_warning(FaultCode::kComputationSlow);
+  EXPECT_EQ(status_.latest().warning.value().code, FaultCode::kLatchMissing) << "newer";
+}
+
 TEST_F(PublishedStatusTest, WhatIsAwaitedIsPublishedWhenItIsAnother) {
   status_.wait_for("touch_test");
   status_.wait_for("touch_test");

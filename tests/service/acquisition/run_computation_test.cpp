@@ -11,12 +11,15 @@ namespace cell {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 /// The arithmetic waits until the test lets it.
 class RunComputationTest : public ExecutorBench {
  protected:
   boost::asio::io_context arithmetic_{1};
-  RunComputation withheld_{arithmetic_.get_executor(), cell_of_owners()};
+  MadeUpAlarm* const alarm_ = new MadeUpAlarm;  // the computation's
+  RunComputation withheld_{arithmetic_.get_executor(), cell_of_owners(), status,
+                           std::unique_ptr<Alarm>(alarm_)};
   TouchExecutor beside_{cell_of_owners(), withheld_, queue, session,
                         preparation,      status,    wake,  time.clocks()};
 };
@@ -35,6 +38,38 @@ TEST_F(RunComputationTest, TheCommandLeavesBeforeTheResultOfTheTouchesBeforeIt) 
   EXPECT_EQ(active_.run.latest().fitted_touch_count, 1);
   EXPECT_EQ(active_.run.touches_done(), 2);
   expect_run_is_as_stored();
+}
+
+TEST_F(RunComputationTest, AResultThatTakesLongIsToldUntilItIsThere) {
+  run(touches_.make_next_touch(active_));
+  status.warn({FaultCode::kProbeBounced, {}});
+  boost::asio::co_spawn(io, beside_.identify(active_), boost::asio::detached);
+  io.restart();
+  io.poll();
+  EXPECT_EQ(status.latest().warning.value().code, FaultCode::kProbeBounced) << "it is not late yet";
+  EXPECT_EQ(alarm_->set_for, RunComputation::kUntoldMax);
+  alarm_->ring();
+  EXPECT_EQ(status.latest().warning.value().code, FaultCode::kComputationSlow);
+  EXPECT_THAT(status.latest().warning->message(), HasSubstr("the result up to touch 1, for 30 s now"));
+  EXPECT_EQ(status.state(), State::kExecute) << "it warns only";
+  arithmetic_.run();
+  io.restart();
+  io.run();
+  EXPECT_EQ(active_.run.latest().fitted_touch_count, 1);
+  EXPECT_EQ(status.latest().warning.value().code, FaultCode::kProbeBounced) << "as before";
+}
+
+TEST_F(RunComputationTest, NoAlarmIsLeftBehindAResultInTime) {
+  run(touches_.make_next_touch(active_));
+  boost::asio::co_spawn(io, beside_.identify(active_), boost::asio::detached);
+  io.restart();
+  io.poll();
+  EXPECT_TRUE(alarm_->is_set());
+  arithmetic_.run();
+  io.restart();
+  io.run();
+  EXPECT_FALSE(alarm_->is_set());
+  EXPECT_FALSE(status.latest().warning);
 }
 
 TEST_F(RunComputationTest, ARunIsConcludedAsOnTheSpot) {

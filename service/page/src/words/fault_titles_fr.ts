@@ -64,4 +64,5 @@ export const kFaultTitlesFr: Readonly<Record<string, string>> = {
   block_moved: 'bloc déplacé',
   state_missing: 'état de la baie manquant',
   internal_error: 'erreur interne',
+  computation_slow: 'calcul long',
 };

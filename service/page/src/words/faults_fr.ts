@@ -128,4 +128,6 @@ export const kFaultsFr: Record<string, FaultWords> = {
     `notez le message et signalez-le, ${kAnew}`),
   daemon_restarted: words('le démon a été relancé pendant l’essai', 'le bras s’est arrêté de lui-même sans liaison et se tient où il était',
     'touchcal resume pour continuer derrière le dernier palpage enregistré, ou touchcal stop pour finir l’essai tel quel ; en ABORTED il ne peut continuer : touchcal clear, puis touchcal reset'),
+  computation_slow: words('un calcul dure plus longtemps que d’habitude', 'le bras finit un palpage en cours, puis ne bouge plus',
+    'attendez : l’essai continue de lui-même et cet avertissement finit avec le calcul ; ou touchcal stop, qui arrête le bras aussitôt'),
 };
