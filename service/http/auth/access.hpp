@@ -16,10 +16,10 @@ enum class Access { kOpen, kView, kOperate };
 enum class Role { kNone, kWrongToken, kView, kOperate };
 std::string_view role_name(Role role);  // "operate", "view", "wrong token", "none"
 
-/// Who sends a request, by its token.
+/// Who sends a request, by its token. A value: the tokens may be others before the request is answered.
 struct Caller {
   Role role = Role::kNone;
-  std::string_view token_name = {};  // in `tokens`; empty where the token has no name
+  std::string token_name = {};  // empty where the token has no name
 };
 Caller caller_of(const HttpRequest& request, const Tokens& tokens);
 Role role_of(const HttpRequest& request, const Tokens& tokens);

@@ -144,24 +144,25 @@ Services::Services(CellOperation& to_serve, Tokens to_ask_for,
 HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
   services_.metrics.count_request("", "", problem.status);
   HttpResponse response = to_response(problem);
-  if (is_command(request)) audit_.record(request, nullptr, problem.status);
+  if (is_command(request))
+    audit_.record(request, caller_of(request, services_.tokens), nullptr, problem.status);
   return response;
 }
 
 asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
+  const Caller caller = caller_of(request, services_.tokens);  // they may be others at its end
   const auto outcome = admit(request, services_.tokens);
   if (const auto* refused = std::get_if<HttpResponse>(&outcome)) {
-    if (is_command(request)) audit_.record(request, nullptr, refused->status);
+    if (is_command(request)) audit_.record(request, caller, nullptr, refused->status);
     if (refused->status == 401) co_await delay_wrong_token(request);
     services_.metrics.count_request("", "", refused->status);
     co_return *refused;
   }
   const Admitted& admitted = std::get<Admitted>(outcome);
-  if (request.authorization && role_of(request, services_.tokens) != Role::kWrongToken)
-    wrong_tokens_.erase(request.remote);
+  if (request.authorization && caller.role != Role::kWrongToken) wrong_tokens_.erase(request.remote);
   HttpResponse response;
   if (is_command(request)) {
-    response = co_await execute_command(request, admitted);
+    response = co_await execute_command(request, caller, admitted);
   } else {
     response = co_await make_answer(request, admitted);
   }
@@ -221,7 +222,8 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
 
 /// A command: recorded before it is executed, its outcome afterwards. One that halts is recorded afterwards
 /// only: it never waits for the database to record it.
-asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, const Admitted& admitted) {
+asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, const Caller& caller,
+                                                   const Admitted& admitted) {
   HttpResponse response;
   const bool halts = halts_only(*admitted.route);
   if (is_stop(*admitted.route)) {
@@ -230,7 +232,7 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
     if (!halts && at_store_ >= kAtStoreMax) co_return busy("the disk does not answer; ask again");
     const Waiting waiting(at_store_);
     bool is_recorded = halts;
-    if (!is_recorded) is_recorded = co_await audit_.record_asked(request, admitted.start.get());
+    if (!is_recorded) is_recorded = co_await audit_.record_asked(request, caller, admitted.start.get());
     if (!is_recorded) {
       response = to_response(
           {.status = 503,
@@ -241,7 +243,7 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
     }
     response = co_await execute_command_once(request, admitted);
   }
-  audit_.record(request, admitted.start.get(), response.status, halts && !is_stop(*admitted.route));
+  audit_.record(request, caller, admitted.start.get(), response.status, halts && !is_stop(*admitted.route));
   co_return response;
 }
 

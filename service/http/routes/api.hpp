@@ -59,7 +59,8 @@ class Api final : public RequestHandler {
   struct Desk;
 
   boost::asio::awaitable<HttpResponse> make_answer(const HttpRequest& request, const Admitted& admitted);
-  boost::asio::awaitable<HttpResponse> execute_command(const HttpRequest& request, const Admitted& admitted);
+  boost::asio::awaitable<HttpResponse> execute_command(const HttpRequest& request, const Caller& caller,
+                                                       const Admitted& admitted);
   boost::asio::awaitable<HttpResponse> execute_command_once(const HttpRequest& request,
                                                             const Admitted& admitted);
   [[nodiscard]] std::string now_text() const;

@@ -55,11 +55,10 @@ struct RequestAudit::Row {
 RequestAudit::RequestAudit(asio::any_io_executor store_thread, Services& services)
     : store_thread_(std::move(store_thread)), services_(services) {}
 
-RequestAudit::Row RequestAudit::row_of(const HttpRequest& request, const StartBody* start,
-                                       std::string outcome) const {
-  const Caller caller = caller_of(request, services_.tokens);
+RequestAudit::Row RequestAudit::row_of(const HttpRequest& request, const Caller& caller,
+                                       const StartBody* start, std::string outcome) {
   Row row{.entry = {.who = std::string(role_name(caller.role)),
-                    .token_name = std::string(caller.token_name),
+                    .token_name = caller.token_name,
                     .remote = request.remote,
                     .action = (request.method + " " + request.path).substr(0, kActionBytesMax),
                     .outcome = std::move(outcome)}};
@@ -90,15 +89,17 @@ bool RequestAudit::write(Row row) {
   }
 }
 
-asio::awaitable<bool> RequestAudit::record_asked(const HttpRequest& request, const StartBody* start) {
-  Row row = row_of(request, start, "asked");
+asio::awaitable<bool> RequestAudit::record_asked(const HttpRequest& request, const Caller& caller,
+                                                 const StartBody* start) {
+  Row row = row_of(request, caller, start, "asked");
   row.durable = true;
   const bool is_recorded = co_await run_on(store_thread_, [&] { return write(row); });
   co_return is_recorded;
 }
 
-void RequestAudit::record(const HttpRequest& request, const StartBody* start, unsigned status, bool durable) {
-  Row row = row_of(request, start, std::to_string(status));
+void RequestAudit::record(const HttpRequest& request, const Caller& caller, const StartBody* start,
+                          unsigned status, bool durable) {
+  Row row = row_of(request, caller, start, std::to_string(status));
   row.durable = durable;
   if (row.is_stranger) {
     const auto left_out = stranger_rate_.admit(services_.operation.clocks().steady());

@@ -11,12 +11,14 @@
 
 namespace cell {
 
+struct Caller;
 struct Services;
 struct StartBody;
 
 /// Records requests in the audit log. It is used on the thread that serves and writes on that of the store.
-/// `start`, where it is given: the body of a request that starts a run, which names the operator; for another
-/// command that is the operator of its run. Both are told of who has an operate token only.
+/// `caller`: who sent the request, by the tokens that counted when it was admitted or refused. `start`, where
+/// it is given: the body of a request that starts a run, which names the operator; for another command that
+/// is the operator of its run. Both are told of who has an operate token only.
 class RequestAudit {
  public:
   /// `services` must outlive it, and both threads must have ended before it goes.
@@ -25,16 +27,19 @@ class RequestAudit {
   RequestAudit& operator=(const RequestAudit&) = delete;
 
   /// Before a command is executed. Whether it could be recorded: it is durable then.
-  boost::asio::awaitable<bool> record_asked(const HttpRequest& request, const StartBody* start);
+  boost::asio::awaitable<bool> record_asked(const HttpRequest& request, const Caller& caller,
+                                            const StartBody* start);
 
   /// What came of a command, or its refusal: written while the answer goes out. Those of strangers have a
   /// rate of their own; one that finds no room to wait for the disk is dropped, and the log says so.
   /// `durable`: at once and not with the next commit.
-  void record(const HttpRequest& request, const StartBody* start, unsigned status, bool durable = false);
+  void record(const HttpRequest& request, const Caller& caller, const StartBody* start, unsigned status,
+              bool durable = false);
 
  private:
   struct Row;
-  [[nodiscard]] Row row_of(const HttpRequest& request, const StartBody* start, std::string outcome) const;
+  [[nodiscard]] static Row row_of(const HttpRequest& request, const Caller& caller, const StartBody* start,
+                                  std::string outcome);
   bool write(Row row);
 
   boost::asio::any_io_executor store_thread_;

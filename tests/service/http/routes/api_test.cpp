@@ -129,6 +129,32 @@ TEST_F(ApiTest, TheAuditTellsWhoseTokenACommandCameWith) {
   EXPECT_EQ(newest(std::string(64, 'x'), 401).token_name, "");
 }
 
+TEST_F(ApiTest, TheAuditTellsWhoseTokenItWasAlsoWhereItIsReplacedMeanwhile) {
+  HttpRequest request = post("/api/v1/cell/reset");
+  request.authorization = "Bearer " + kTokens.operators[0].token;
+  for (const char* command : {"/api/v1/cell/reset", "/api/v1/cell/stop"}) {
+    request.path = command;
+    api_.take_tokens(kTokens);
+    const std::size_t before = api_.services().audit.page(100).size();
+    unsigned status = 0;
+    boost::asio::co_spawn(
+        quiet_.context(), api_.answer(request),
+        [&](const std::exception_ptr&, const HttpResponse& answer) { status = answer.status; });
+    quiet_.context().restart();
+    quiet_.context().run_one();  // admitted
+    ASSERT_EQ(status, 0u);
+    api_.take_tokens({});
+    quiet_.context().run();
+    EXPECT_EQ(status, 202u);
+    const auto rows = api_.services().audit.page(100);
+    ASSERT_GT(rows.size(), before);
+    for (std::size_t i = 0; i < rows.size() - before; ++i) {
+      EXPECT_EQ(rows[i].token_name, kTokens.operators[0].name) << rows[i].action << ' ' << rows[i].outcome;
+      EXPECT_EQ(rows[i].who, "operate");
+    }
+  }
+}
+
 TEST_F(ApiTest, WhatHaltsIsWrittenDownOnceItIsExecuted) {
   const std::int64_t run =
       quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then", .operator_name = "M. Curie"});

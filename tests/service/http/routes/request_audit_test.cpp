@@ -3,6 +3,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include "service/http/auth/access.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
 #include "tests/service/http/test_tokens.hpp"
@@ -27,7 +28,7 @@ class RequestAuditTest : public ::testing::Test {
   AuditEntry recorded(const HttpRequest& request, unsigned status = 202) {
     const auto outcome = admit(request, kTokens);
     const auto* admitted = std::get_if<Admitted>(&outcome);
-    audit_.record(request, admitted ? admitted->start.get() : nullptr, status);
+    audit_.record(request, caller_of(request, kTokens), admitted ? admitted->start.get() : nullptr, status);
     EXPECT_NE(newest().outcome, std::to_string(status)) << "the answer does not wait for it";
     cell_.context().restart();
     cell_.context().run();
@@ -94,15 +95,16 @@ TEST_F(RequestAuditTest, WhoHasNoOperateTokenNamesNobody) {
 
 TEST_F(RequestAuditTest, WhatIsAskedForIsRecordedOrSaidNotToBe) {
   const HttpRequest request = post("/api/v1/cell/reset");
-  EXPECT_TRUE(cell_.run(audit_.record_asked(request, nullptr)));
+  EXPECT_TRUE(cell_.run(audit_.record_asked(request, caller_of(request, kTokens), nullptr)));
   EXPECT_EQ(newest().outcome, "asked");
   cell_.store().database()->exec("DROP TABLE audit");
-  EXPECT_FALSE(cell_.run(audit_.record_asked(request, nullptr)));
+  EXPECT_FALSE(cell_.run(audit_.record_asked(request, caller_of(request, kTokens), nullptr)));
 }
 
 TEST_F(RequestAuditTest, StrangersThatAreLeftOutAreCounted) {
   const HttpRequest stranger = post("/api/v1/cell/reset", "", std::string(64, 'x'));
-  for (int i = 0; i < 1000; ++i) audit_.record(stranger, nullptr, 401);
+  const Caller caller = caller_of(stranger, kTokens);
+  for (int i = 0; i < 1000; ++i) audit_.record(stranger, caller, nullptr, 401);
   cell_.context().run();
   EXPECT_THAT(services_.audit.page(1000), SizeIs(::testing::Lt(100U)));
   EXPECT_EQ(newest().who, "wrong token");
@@ -110,7 +112,8 @@ TEST_F(RequestAuditTest, StrangersThatAreLeftOutAreCounted) {
 
 TEST_F(RequestAuditTest, AnOutcomeThatFindsNoRoomIsDroppedAndTheNextOnesAreRecorded) {
   const HttpRequest request = post("/api/v1/cell/stop");
-  for (int i = 0; i < 1100; ++i) audit_.record(request, nullptr, 202);
+  const Caller caller = caller_of(request, kTokens);
+  for (int i = 0; i < 1100; ++i) audit_.record(request, caller, nullptr, 202);
   cell_.context().run();
   EXPECT_THAT(services_.audit.page(2000), SizeIs(1000));
   EXPECT_EQ(recorded(request, 409).outcome, "409");
