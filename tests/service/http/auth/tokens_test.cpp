@@ -1,8 +1,10 @@
 #include "service/http/auth/tokens.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/fsuid.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "service/base/state_directory.hpp"
 #include "tests/config/folder.hpp"
@@ -16,6 +18,18 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::MatchesRegex;
 using ::testing::SizeIs;
+
+/// A thread whom the rights of files bind, also where the tests run as root.
+class BoundByRights {
+ public:
+  BoundByRights() { ::setfsuid(kNobody); }
+  ~BoundByRights() { ::setfsuid(::geteuid()); }
+  BoundByRights(const BoundByRights&) = delete;
+  BoundByRights& operator=(const BoundByRights&) = delete;
+
+ private:
+  static constexpr uid_t kNobody = 65534;
+};
 
 TEST(Tokens, TheFirstStartMakesTwoOf256RandomBits) {
   const Folder state;
@@ -132,6 +146,28 @@ TEST_F(TokensOfARunningDaemon, AreNobodysWhereTheirFileIsRefused) {
   EXPECT_THAT(now.troubles, ElementsAre(HasSubstr("operate.token: does not hold a token"),
                                         HasSubstr("view.token: others than its owner have access")));
   EXPECT_THAT(now.kept, IsEmpty());
+}
+
+TEST_F(TokensOfARunningDaemon, AreNobodysWhereRightsKeepTheDaemonFromTheirFile) {
+  const std::filesystem::path anna = std::filesystem::path(kOperatorsDirectory) / "anna";
+  write(anna, std::string(64, '1'));
+  for (const std::filesystem::path& directory : {state_.path(), state_.path() / kOperatorsDirectory})
+    std::filesystem::permissions(directory, perms(0755));  // it is the files that are kept from it
+  const Tokens known = look().tokens;
+  ASSERT_THAT(known.operators, SizeIs(1));
+  for (const std::filesystem::path& file :
+       {std::filesystem::path(kOperateTokenFile), std::filesystem::path(kViewTokenFile), anna})
+    std::filesystem::permissions(state_.path() / file, perms::none);
+  const BoundByRights bound;
+  const CurrentTokens now = tokens_now(state_.path(), known);
+  EXPECT_EQ(now.tokens, Tokens{}) << "rights are somebody's decision";
+  EXPECT_THAT(now.troubles,
+              ElementsAre(HasSubstr("operate.token: the token cannot be read: Permission denied; make the "
+                                    "file this user's own"),
+                          HasSubstr("view.token: the token cannot be read"),
+                          HasSubstr("anna: the token cannot be read: Permission denied")));
+  EXPECT_THAT(now.kept, IsEmpty());
+  EXPECT_THROW(load_or_make_tokens(state_.path()), std::runtime_error) << "nor does a daemon start with it";
 }
 
 TEST_F(TokensOfARunningDaemon, StayWhereTheirFileCannotBeReadOnce) {

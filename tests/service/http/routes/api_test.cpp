@@ -2,9 +2,14 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
+#include <sqlite3.h>
 
+#include <atomic>
 #include <boost/asio/co_spawn.hpp>
+#include <functional>
+#include <future>
 #include <nlohmann/json.hpp>
+#include <thread>
 
 #include "tests/service/http/test_tokens.hpp"
 #include "tests/service/quiet_cell.hpp"
@@ -14,6 +19,29 @@ namespace {
 
 using nlohmann::json;
 using ::testing::HasSubstr;
+
+/// Calls at each statement of the connections that are opened from here on, on the thread that has it.
+class CallAtStatements {
+ public:
+  explicit CallAtStatements(std::function<void()> call) {
+    call_ = std::move(call);
+    sqlite3_auto_extension(reinterpret_cast<void (*)()>(&watch));
+  }
+  ~CallAtStatements() { sqlite3_cancel_auto_extension(reinterpret_cast<void (*)()>(&watch)); }
+  CallAtStatements(const CallAtStatements&) = delete;
+  CallAtStatements& operator=(const CallAtStatements&) = delete;
+
+ private:
+  static int watch(sqlite3* connection, const char**, const void*) {
+    return sqlite3_trace_v2(connection, SQLITE_TRACE_STMT, &tell, nullptr);
+  }
+  static int tell(unsigned, void*, void*, void*) {
+    call_();
+    return 0;
+  }
+
+  static inline std::function<void()> call_;
+};
 
 class ApiTest : public ::testing::Test {
  protected:
@@ -288,6 +316,32 @@ TEST_F(ApiTest, WhoReadsWithATokenIsToldAtOnceThatItDoesNotCountAnyMore) {
   EXPECT_EQ(events->due(), "");
   EXPECT_TRUE(events->ended());
   EXPECT_EQ(status, 401U);
+}
+
+TEST_F(ApiTest, NoDeskIsAtAnythingOnceTheyHaveEnded) {
+  const auto here = std::this_thread::get_id();
+  std::promise<void> at_work;
+  std::atomic<bool> is_told = false, have_ended = false, is_done_before = false;
+  const CallAtStatements watch([&] {
+    if (std::this_thread::get_id() == here || is_told.exchange(true)) return;
+    at_work.set_value();
+    for (int i = 0; i < 1000 && !have_ended; ++i) std::this_thread::yield();
+    is_done_before = !have_ended;
+  });
+  Api api(quiet_.context().get_executor(), quiet_.operation(), kTokens);
+  HttpRequest request{.method = "GET", .path = "/api/v1/audit"};
+  request.authorization = "Bearer " + kTokens.operate;
+  bool is_answered = false;
+  boost::asio::co_spawn(quiet_.context(), api.answer(request),
+                        [&](const std::exception_ptr&, const HttpResponse&) { is_answered = true; });
+  quiet_.context().poll();
+  at_work.get_future().wait();
+  api.end_desks();
+  have_ended = true;
+  EXPECT_TRUE(is_done_before) << "else it posts to a context that has been given up";
+  quiet_.context().restart();
+  quiet_.context().poll();
+  EXPECT_TRUE(is_answered) << "what was done is heard of where somebody listens";
 }
 
 TEST_F(ApiTest, AnswersAreCountedByRouteAndStatus) {
