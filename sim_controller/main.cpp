@@ -87,7 +87,7 @@ int run(const Arguments& arguments) {
     try {
       begin();
     } catch (const boost::system::system_error& error) {
-      std::cerr << "cs8sim: cannot listen on " << at.host << ':' << at.port << ": " << error.code().message()
+      std::cerr << "cs8sim: cannot listen on " << cell::endpoint_text(at) << ": " << error.code().message()
                 << "; give another address with " << option << '\n';
       return false;
     }
@@ -102,14 +102,14 @@ int run(const Arguments& arguments) {
     const cell::Endpoint at = *cell::parse_endpoint(arguments.control);
     const auto answer = [&server](std::string_view line) { return sim::answer_control_line(*server, line); };
     if (!listen(at, "--control", [&] { control.emplace(io, at.host, at.port, answer); })) return kRefused;
-    std::cerr << "control on " << at.host << ':' << control->port() << std::endl;
+    std::cerr << "control on " << cell::endpoint_text({at.host, control->port()}) << std::endl;
   }
   boost::asio::signal_set signals(io, SIGINT, SIGTERM);
   signals.async_wait([&](boost::system::error_code, int) {
     server->stop();
     if (control) control->stop();
   });
-  std::cout << "listening on " << endpoint.host << ':' << server->port() << std::endl;
+  std::cout << "listening on " << cell::endpoint_text({endpoint.host, server->port()}) << std::endl;
   spdlog::info("cell {}, truth {}, seed {}, speed {}", cell.name, truth.name, arguments.seed,
                arguments.speed);
   io.run();

@@ -22,7 +22,6 @@
 #include <fstream>
 #include <sstream>
 
-#include "config/endpoint.hpp"
 #include "service/base/state_directory.hpp"
 
 namespace cell {
@@ -42,11 +41,11 @@ using Request = http::request<http::string_body>;
 using TlsStream = beast::ssl_stream<beast::tcp_stream>;
 using LocalStream = beast::basic_stream<asio::local::stream_protocol>;
 
-asio::awaitable<void> connect(beast::tcp_stream& stream, std::string host, std::string port,
-                              std::chrono::seconds deadline) {
+asio::awaitable<void> connect(beast::tcp_stream& stream, Endpoint to, std::chrono::seconds deadline) {
   const auto executor = co_await asio::this_coro::executor;
   asio::ip::tcp::resolver resolver(executor);
-  const auto addresses = co_await resolver.async_resolve(host, port, asio::use_awaitable);
+  const auto addresses =
+      co_await resolver.async_resolve(to.host, std::to_string(to.port), asio::use_awaitable);
   stream.expires_after(deadline);
   co_await stream.async_connect(addresses, asio::use_awaitable);
 }
@@ -111,23 +110,22 @@ asio::awaitable<std::optional<ApiReply>> ask_local(std::filesystem::path socket,
   co_return reply;
 }
 
-asio::awaitable<ApiReply> ask(std::string host, std::string port, Request request,
-                              std::chrono::seconds deadline) {
+asio::awaitable<ApiReply> ask(Endpoint daemon, Request request, std::chrono::seconds deadline) {
   const auto executor = co_await asio::this_coro::executor;
   beast::tcp_stream stream(executor);
-  co_await connect(stream, host, port, deadline);
+  co_await connect(stream, daemon, deadline);
   ApiReply reply = co_await answer_over(stream, request);
   co_return reply;
 }
 
-asio::awaitable<ApiReply> ask_secure(std::string host, std::string port, Request request,
-                                     std::chrono::seconds deadline, ssl::context& trusted) {
+asio::awaitable<ApiReply> ask_secure(Endpoint daemon, Request request, std::chrono::seconds deadline,
+                                     ssl::context& trusted) {
   const auto executor = co_await asio::this_coro::executor;
   TlsStream stream(executor, trusted);
   stream.set_verify_mode(ssl::verify_peer);
-  stream.set_verify_callback(ssl::host_name_verification(host));
-  SSL_set_tlsext_host_name(stream.native_handle(), host.c_str());
-  co_await connect(beast::get_lowest_layer(stream), host, port, deadline);
+  stream.set_verify_callback(ssl::host_name_verification(daemon.host));
+  SSL_set_tlsext_host_name(stream.native_handle(), daemon.host.c_str());
+  co_await connect(beast::get_lowest_layer(stream), daemon, deadline);
   co_await stream.async_handshake(ssl::stream_base::client, asio::use_awaitable);
   ApiReply reply = co_await answer_over(stream, request);
   co_return reply;
@@ -194,9 +192,8 @@ ApiClient::ApiClient(const std::string& url, std::optional<std::string> token, A
   const auto endpoint = parse_endpoint(rest);
   if (!endpoint)
     throw std::invalid_argument("'" + url + "' is neither http://HOST:PORT nor https://HOST:PORT");
-  host_ = endpoint->host;
-  port_ = std::to_string(endpoint->port);
-  if (token_ && !is_secure_ && !options_.sends_token_in_clear && !is_this_machine(host_)) {
+  at_ = *endpoint;
+  if (token_ && !is_secure_ && !options_.sends_token_in_clear && !is_this_machine(at_.host)) {
     throw std::invalid_argument("'" + url +
                                 "': the token would go to another machine in clear; use https, or " +
                                 "say --token-in-clear");
@@ -204,7 +201,7 @@ ApiClient::ApiClient(const std::string& url, std::optional<std::string> token, A
 }
 
 std::string ApiClient::url() const {
-  return std::string(is_secure_ ? kSecureScheme : kPlainScheme) + host_ + ":" + port_;
+  return std::string(is_secure_ ? kSecureScheme : kPlainScheme) + endpoint_text(at_);
 }
 
 ApiClient ApiClient::without_socket() const {
@@ -224,8 +221,7 @@ ApiReply ApiClient::post(const std::string& target, const std::string& body) con
 ApiReply ApiClient::request(bool post, const std::string& target, const std::string& body,
                             std::chrono::seconds deadline) const {
   Request message(post ? http::verb::post : http::verb::get, target, 11);
-  message.set(http::field::host,
-              (host_.find(':') == std::string::npos ? host_ : "[" + host_ + "]") + ":" + port_);
+  message.set(http::field::host, endpoint_text(at_));
   message.set(http::field::user_agent, "touchcal");
   message.keep_alive(false);
   if (token_) message.set(http::field::authorization, "Bearer " + *token_);
@@ -240,9 +236,9 @@ ApiReply ApiClient::request(bool post, const std::string& target, const std::str
       if (auto reply = reply_of(ask_local(options_.socket, message, deadline))) return *std::move(reply);
     }
     place = url();
-    if (!is_secure_) return reply_of(ask(host_, port_, std::move(message), deadline));
+    if (!is_secure_) return reply_of(ask(at_, std::move(message), deadline));
     ssl::context trusted = trusted_by(options_.ca_file);
-    return reply_of(ask_secure(host_, port_, std::move(message), deadline, trusted));
+    return reply_of(ask_secure(at_, std::move(message), deadline, trusted));
   } catch (const boost::system::system_error& error) {
     throw DaemonUnreachable("no touchcald answers at " + place + " (" + error.code().message() + "); " +
                             unreached_remedy(error.code()));

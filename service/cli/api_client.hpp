@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "config/endpoint.hpp"
+
 namespace cell {
 
 /// The daemon cannot be reached, or the peer is not touchcald.
@@ -47,8 +49,7 @@ class ApiClient {
                                  std::chrono::seconds deadline) const;
 
   bool is_secure_ = false;
-  std::string host_;
-  std::string port_;
+  Endpoint at_;
   std::optional<std::string> token_;
   ApiClientOptions options_;
 };

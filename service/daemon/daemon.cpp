@@ -221,8 +221,8 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
                      HttpLimits{.host_names = options.host_names, .trusts_loopback = options.trusts_loopback},
                      tls);
   } catch (const boost::system::system_error& error) {
-    throw std::runtime_error(fmt::format("cannot listen on {}:{}: {}; give another address with --listen",
-                                         options.listen.host, options.listen.port, error.code().message()));
+    throw std::runtime_error(fmt::format("cannot listen on {}: {}; give another address with --listen",
+                                         endpoint_text(options.listen), error.code().message()));
   }
   std::optional<LocalListener> socket;
   open_socket(socket, http, api, options);
@@ -245,10 +245,10 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   listener->launch();
   if (socket) socket->launch();
   spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());
-  const auto address = listener->address();
-  fmt::print("listening on {}:{}\n", options.listen.host, address.port());
+  const std::string address = endpoint_text({options.listen.host, listener->address().port()});
+  fmt::print("listening on {}\n", address);
   std::fflush(stdout);
-  supervision.notify_ready(fmt::format("cell {} at {}:{}", cell.name, options.listen.host, address.port()));
+  supervision.notify_ready(fmt::format("cell {} at {}", cell.name, address));
   const NothingWaits nothing_waits(context, http, api);
   const WorkDone done(arithmetic, disk, end_watch, patience,
                       [&] { return end_without_work(operation.run(), store_queue.waiting_count()); });

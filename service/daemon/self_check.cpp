@@ -39,8 +39,8 @@ void check_address(const DaemonOptions& options) {
   if (!failure) acceptor.bind(address, failure);
   // In use, most likely by the daemon that this check runs beside.
   if (!failure || failure == asio::error::address_in_use) return;
-  throw std::runtime_error(fmt::format("--listen {}:{}: {}; give another address", options.listen.host,
-                                       options.listen.port, failure.message()));
+  throw std::runtime_error(
+      fmt::format("--listen {}: {}; give another address", endpoint_text(options.listen), failure.message()));
 }
 
 }  // namespace

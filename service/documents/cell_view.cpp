@@ -119,7 +119,7 @@ std::string cell_document(const Cell& cell, const std::optional<BlockPose>& plac
        {"touch_noise_mm", mm_from_metres(cell.touch_noise_m)},
        {"acceptance", limits_json(cell.acceptance)},
        {"scene", scene_json(cell)},
-       {"controller", cell.controller.host + ":" + std::to_string(cell.controller.port)}});
+       {"controller", endpoint_text(cell.controller)}});
 }
 
 std::string faults_document() {

@@ -28,5 +28,13 @@ TEST(ParseEndpoint, AnythingElseIsNone) {
   }
 }
 
+TEST(EndpointText, IsWhatIsParsedAgain) {
+  for (const char* text : {"127.0.0.1:8080", "[::1]:0", "[fe80::1%eth0]:65535", "cell-3.example:80"}) {
+    const auto endpoint = parse_endpoint(text);
+    ASSERT_TRUE(endpoint) << text;
+    EXPECT_EQ(endpoint_text(*endpoint), text);
+  }
+}
+
 }  // namespace
 }  // namespace cell

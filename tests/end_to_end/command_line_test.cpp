@@ -223,6 +223,17 @@ TEST_F(CommandLine, AnAddressWithOneBracketIsNone) {
   }
 }
 
+TEST_F(CommandLine, AnIpv6AddressIsToldInBrackets) {
+  const std::string nobody = "[::1]:1";
+  const Finished status =
+      run({"touchcal", "status", "--daemon", "http://" + nobody, "--state", folder_.path().string()});
+  EXPECT_EQ(status.exit_code, cell::kExitUnreachable);
+  EXPECT_THAT(status.err, HasSubstr("no touchcald answers at http://" + nobody + " ("));
+  const std::string elsewhere = "[2001:db8::1]:11000";  // an address for documentation (RFC 3849)
+  const Finished simulator = run({"cs8sim", "--cell", cell_file("edf"), "--listen", elsewhere});
+  EXPECT_THAT(simulator.err, HasSubstr("cannot listen on " + elsewhere + ": "));
+}
+
 TEST_F(CommandLine, ACertificateWithoutItsKeyIsToldBeforeAnythingElse) {
   const std::string none = (folder_ / "none.json").string();
   const Finished lone = run({"touchcald", "--cell", none, "--tls-cert", "cert.pem"});
