@@ -27,6 +27,7 @@
 #include "service/acquisition/cell_operation.hpp"
 #include "service/base/context.hpp"
 #include "service/base/exit_code.hpp"
+#include "service/base/known_directory.hpp"
 #include "service/base/run_on.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/base/utc_time.hpp"
@@ -191,6 +192,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   if (std::filesystem::create_directories(options.state_directory)) {
     std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
   }
+  const KnownDirectory state_directory(options.state_directory);
   EndWatch end_watch;  // to the very end, which closes the store
   const DirectoryLock lock(options.state_directory);
   refuse_lost_store(options.state_directory);
@@ -241,7 +243,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
     });
   });
   operation.launch();
-  asio::co_spawn(http, api.follow_tokens(options.state_directory, kTokensLook), asio::detached);
+  asio::co_spawn(http, api.follow_tokens(state_directory, kTokensLook), asio::detached);
   listener->launch();
   if (socket) socket->launch();
   spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());

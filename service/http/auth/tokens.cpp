@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -50,6 +51,21 @@ std::string load_or_make(const std::filesystem::path& file) {
   return token;
 }
 
+std::optional<std::string> why_not_there(const KnownDirectory& state_directory) {
+  const std::string place = state_directory.path().string();
+  switch (state_directory.look()) {
+    case KnownDirectory::Found::kItself:
+      return std::nullopt;
+    case KnownDirectory::Found::kNothing:
+      return place + ": the state directory is gone; move it back, or stop the daemon";
+    case KnownDirectory::Found::kAnother:
+      return place +
+             ": the state directory is gone, and another stands in its place; move it back, or start "
+             "the daemon again to take this one";
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string random_hex(std::size_t bytes) {
@@ -67,16 +83,13 @@ Tokens load_or_make_tokens(const std::filesystem::path& state_directory) {
   return {std::move(operate), std::move(view), read_operator_tokens(state_directory)};
 }
 
-CurrentTokens tokens_now(const std::filesystem::path& state_directory, const Tokens& known) {
+CurrentTokens tokens_now(const KnownDirectory& state_directory, const Tokens& known) {
   // Whoever moved the directory withdrew nothing, and STOP needs a token: it is looked for before and after.
-  CurrentTokens as_known{
-      known, {}, {fmt::format("{}: the state directory is gone", state_directory.string())}};
-  std::error_code ignored;
-  if (!std::filesystem::exists(state_directory, ignored)) return as_known;
+  if (auto trouble = why_not_there(state_directory)) return {known, {}, {*std::move(trouble)}};
   CurrentTokens now;
   const auto read = [&](std::string_view file, const std::string& before) -> std::string {
     try {
-      return load_or_make(state_directory / file);
+      return load_or_make(state_directory.path() / file);
     } catch (const TokenUnreadable& trouble) {
       (before.empty() ? now.troubles : now.kept).emplace_back(trouble.what());
       return before;
@@ -87,11 +100,12 @@ CurrentTokens tokens_now(const std::filesystem::path& state_directory, const Tok
   };
   now.tokens.operate = read(kOperateTokenFile, known.operate);
   now.tokens.view = read(kViewTokenFile, known.view);
-  CurrentOperators operators = operator_tokens_now(state_directory, known.operators);
+  CurrentOperators operators = operator_tokens_now(state_directory.path(), known.operators);
   now.tokens.operators = std::move(operators.tokens);
   std::ranges::move(operators.troubles, std::back_inserter(now.troubles));
   std::ranges::move(operators.kept, std::back_inserter(now.kept));
-  return std::filesystem::exists(state_directory, ignored) ? now : as_known;
+  if (auto trouble = why_not_there(state_directory)) return {known, {}, {*std::move(trouble)}};
+  return now;
 }
 
 bool same_token(std::string_view expected, std::string_view presented) {

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "service/base/known_directory.hpp"
 #include "service/http/auth/operator_tokens.hpp"
 
 namespace cell {
@@ -29,13 +30,13 @@ Tokens load_or_make_tokens(const std::filesystem::path& state_directory);
 
 /// The same for a daemon that is running, with the rules of operator_tokens_now() for all of them: `known` is
 /// what was read last. A file without a name that has gone is made again, with another token. Where the whole
-/// directory has gone all are as before.
+/// directory has gone, or another stands in its place, all are as before and nothing is made.
 struct CurrentTokens {
   Tokens tokens;
   std::vector<std::string> troubles;
   std::vector<std::string> kept;
 };
-CurrentTokens tokens_now(const std::filesystem::path& state_directory, const Tokens& known);
+CurrentTokens tokens_now(const KnownDirectory& state_directory, const Tokens& known);
 
 /// Compares in constant time, against timing attacks. An empty `expected` is the same as nothing.
 bool same_token(std::string_view expected, std::string_view presented);

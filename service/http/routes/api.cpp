@@ -282,8 +282,7 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
 
 std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
 
-asio::awaitable<void> Api::follow_tokens(std::filesystem::path state_directory,
-                                         std::chrono::milliseconds every) {
+asio::awaitable<void> Api::follow_tokens(KnownDirectory state_directory, std::chrono::milliseconds every) {
   asio::steady_timer timer(executor_);
   TokenTroubles troubles;
   for (;;) {

@@ -3,7 +3,6 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <chrono>
-#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -46,8 +45,7 @@ class Api final : public RequestHandler {
 
   /// Reads the tokens again and again, on the thread that reads, until the executor ends: one whose file has
   /// gone or is refused ends within this time, and a new one counts.
-  boost::asio::awaitable<void> follow_tokens(std::filesystem::path state_directory,
-                                             std::chrono::milliseconds every);
+  boost::asio::awaitable<void> follow_tokens(KnownDirectory state_directory, std::chrono::milliseconds every);
   /// Waits for what the threads of its own are at, of which nobody hears any more. Call it before the
   /// contexts end whose coroutines wait for them.
   void end_desks();

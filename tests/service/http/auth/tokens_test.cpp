@@ -111,7 +111,7 @@ class TokensOfARunningDaemon : public ::testing::Test {
     state_.write(file.string(), bytes);
     std::filesystem::permissions(state_.path() / file, perms::owner_read | perms::owner_write);
   }
-  CurrentTokens look() const { return tokens_now(state_.path(), known_); }
+  CurrentTokens look() const { return tokens_now(KnownDirectory(state_.path()), known_); }
 
   const Folder state_;
   const Tokens known_ = load_or_make_tokens(state_.path());
@@ -159,7 +159,7 @@ TEST_F(TokensOfARunningDaemon, AreNobodysWhereRightsKeepTheDaemonFromTheirFile) 
        {std::filesystem::path(kOperateTokenFile), std::filesystem::path(kViewTokenFile), anna})
     std::filesystem::permissions(state_.path() / file, perms::none);
   const BoundByRights bound;
-  const CurrentTokens now = tokens_now(state_.path(), known);
+  const CurrentTokens now = tokens_now(KnownDirectory(state_.path()), known);
   EXPECT_EQ(now.tokens, Tokens{}) << "rights are somebody's decision";
   EXPECT_THAT(now.troubles,
               ElementsAre(HasSubstr("operate.token: the token cannot be read: Permission denied; make the "
@@ -181,7 +181,8 @@ TEST_F(TokensOfARunningDaemon, StayWhereTheirFileCannotBeReadOnce) {
   EXPECT_THAT(now.troubles, IsEmpty());
   EXPECT_THAT(now.kept, ElementsAre(HasSubstr("operate.token: the token cannot be read: Input/output error"),
                                     HasSubstr("view.token: the token cannot be read")));
-  EXPECT_THAT(tokens_now(state_.path(), {}).troubles, SizeIs(2)) << "where none is known none counts";
+  EXPECT_THAT(tokens_now(KnownDirectory(state_.path()), {}).troubles, SizeIs(2))
+      << "where none is known none counts";
 }
 
 TEST_F(TokensOfARunningDaemon, StayWhereNoFileCanBeOpened) {
@@ -194,7 +195,7 @@ TEST_F(TokensOfARunningDaemon, StayWhereNoFileCanBeOpened) {
   ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
   const rlimit none{.rlim_cur = 0, .rlim_max = before.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
-  const CurrentTokens now = tokens_now(state_.path(), known);
+  const CurrentTokens now = tokens_now(KnownDirectory(state_.path()), known);
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
   EXPECT_EQ(now.tokens, known);
   EXPECT_THAT(now.troubles, IsEmpty());
@@ -206,10 +207,30 @@ TEST_F(TokensOfARunningDaemon, AreAsTheyWereWhileTheWholeDirectoryIsGone) {
   const Tokens known = look().tokens;
   const std::filesystem::path moved = state_.path().string() + "-moved";
   std::filesystem::rename(state_.path(), moved);
-  const CurrentTokens now = tokens_now(state_.path(), known);
+  const CurrentTokens now = tokens_now(KnownDirectory(state_.path()), known);
   std::filesystem::rename(moved, state_.path());
   EXPECT_EQ(now.tokens, known) << "STOP needs one";
   EXPECT_THAT(now.kept, SizeIs(1));
+}
+
+TEST_F(TokensOfARunningDaemon, AreAsTheyWereWhileAnotherDirectoryStandsInItsPlace) {
+  const KnownDirectory own(state_.path());
+  const std::filesystem::path moved = state_.path().string() + "-moved";
+  std::filesystem::rename(state_.path(), moved);
+  std::filesystem::create_directory(state_.path());
+  const CurrentTokens beside_none = tokens_now(own, known_);
+  EXPECT_TRUE(std::filesystem::is_empty(state_.path())) << "none are made for the stranger";
+  write(kOperateTokenFile, std::string(64, '1'));
+  write(std::filesystem::path(kOperatorsDirectory) / "anna", std::string(64, '2'));
+  const CurrentTokens beside_others = tokens_now(own, known_);
+  std::filesystem::remove_all(state_.path());
+  std::filesystem::rename(moved, state_.path());
+  for (const CurrentTokens& now : {beside_none, beside_others}) {
+    EXPECT_EQ(now.tokens, known_);
+    EXPECT_THAT(now.troubles, IsEmpty());
+    EXPECT_THAT(now.kept, ElementsAre(HasSubstr("another stands in its place; move it back")));
+  }
+  EXPECT_THAT(tokens_now(own, known_).kept, IsEmpty());
 }
 
 TEST(Tokens, OnlyTheWholeTokenIsTheToken) {
