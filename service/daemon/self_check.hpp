@@ -9,10 +9,11 @@
 namespace cell {
 
 /// Everything that would keep a daemon with these options from starting, one line each with what to do.
-/// Changes nothing, also beside a running daemon.
+/// Changes nothing and makes no file, also beside a running daemon.
 struct SelfCheck {
-  std::vector<std::string> bad_files;  // the cell file and the files it names
+  std::vector<std::string> bad_files;  // the cell file and those it names, the database, the block's place
   std::vector<std::string> troubles;   // state directory, tokens, address
+  std::vector<std::string> remarks;    // what could not be looked at; it keeps no daemon from starting
   std::string cell_name;               // empty if its file is invalid
 };
 SelfCheck check_daemon(const std::filesystem::path& cell_file, const DaemonOptions& options);

@@ -64,6 +64,7 @@ int keep_state(const std::filesystem::path& database, const std::string& backup,
 cell::ExitCode tell_check(const std::string& cell_file, const cell::SelfCheck& check) {
   for (const std::string& line : check.bad_files) std::cerr << line << '\n';
   for (const std::string& line : check.troubles) std::cerr << line << '\n';
+  for (const std::string& line : check.remarks) std::cout << line << '\n';
   if (!check.bad_files.empty()) return cell::kExitBadInput;
   if (!check.troubles.empty()) return cell::kExitFailed;
   std::cout << cell_file << ": cell " << check.cell_name << " is in order\n";
@@ -108,8 +109,8 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"text", "json"}))
       ->default_str(log_format);
   app.add_flag("--check", check,
-               "check the cell and its files, the state directory, the tokens, the address and TLS, report "
-               "every error, then exit");
+               "check the cell and its files, the state directory, its database and the block's place, the "
+               "tokens, the address and TLS, report every error, then exit; a daemon may run");
   app.add_option("--backup", backup,
                  "copy the state's database into this new file, then exit; a daemon may run")
       ->check(filled);

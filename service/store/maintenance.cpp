@@ -10,6 +10,7 @@
 #include <iterator>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -72,6 +73,24 @@ SQLite::Database open_to_read(const std::filesystem::path& file) {
   return {file.string(), SQLite::OPEN_READONLY, kReadBusyMilliseconds};
 }
 
+std::string uri_of(const std::filesystem::path& file, std::string_view parameter) {
+  std::string uri = "file:";
+  for (const char byte : std::filesystem::absolute(file).string())
+    uri += byte == '%' ? "%25" : byte == '?' ? "%3f" : byte == '#' ? "%23" : std::string(1, byte);
+  return uri.append("?").append(parameter);
+}
+
+SQLite::Database open_by_uri(const std::filesystem::path& file, std::string_view parameter) {
+  return {uri_of(file, parameter), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kReadBusyMilliseconds};
+}
+
+/// Whether it holds commits that may not be in the database yet.
+bool has_log(const std::filesystem::path& file) {
+  std::error_code missing;
+  const auto bytes = std::filesystem::file_size(file.string() + "-wal", missing);
+  return !missing && bytes > 0;
+}
+
 /// The same, also on a disk that cannot be written: a database with a log needs a file beside it.
 SQLite::Database open_to_check(const std::filesystem::path& file) {
   try {
@@ -82,17 +101,34 @@ SQLite::Database open_to_check(const std::filesystem::path& file) {
     const int code = error.getErrorCode();
     if (code != SQLITE_CANTOPEN && code != SQLITE_READONLY) throw;
   }
-  std::error_code missing;
-  const auto log_bytes = std::filesystem::file_size(file.string() + "-wal", missing);
-  if (!missing && log_bytes > 0) {
+  if (has_log(file)) {
     throw StoreNotChecked(file.string() +
                           ": its directory cannot be written, and its log (-wal) is not in it "
                           "yet; copy both to a writable disk and verify the copy");
   }
-  std::string uri = "file:";
-  for (const char byte : std::filesystem::absolute(file).string())
-    uri += byte == '%' ? "%25" : byte == '?' ? "%3f" : byte == '#' ? "%23" : std::string(1, byte);
-  return {uri + "?immutable=1", SQLite::OPEN_READONLY | SQLite::OPEN_URI, kReadBusyMilliseconds};
+  return open_by_uri(file, "immutable=1");
+}
+
+/// So that no file beside it is made or changed. Who has the log open keeps an index of it beside it, which
+/// is only read here; where nobody has, SQLite makes its own in memory.
+SQLite::Database open_without_trace(const std::filesystem::path& file) {
+  if (!has_log(file)) return open_by_uri(file, "immutable=1");
+  const auto cannot_read = [&](std::string_view why) {
+    return StoreLogNotRead(
+        fmt::format("{}: not looked at: {}; touchcald --verify checks it, and may change the files beside it",
+                    file.string(), why));
+  };
+  if (!std::filesystem::exists(file.string() + "-shm"))
+    throw cannot_read("its log (-wal) is not in it yet, and reading that would make a file (-shm)");
+  try {
+    SQLite::Database database = open_by_uri(file, "readonly_shm=1");
+    database.exec("SELECT count(*) FROM sqlite_schema");
+    return database;
+  } catch (const SQLite::Exception& error) {
+    const int code = error.getErrorCode();
+    if (code != SQLITE_CANTOPEN && code != SQLITE_READONLY && code != SQLITE_BUSY) throw;
+    throw cannot_read(error.what());
+  }
 }
 
 /// What a newer version has written is no damage, and no backup is the remedy.
@@ -183,6 +219,20 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
     damage.emplace_back(error.what());
   }
   return damage;
+}
+
+std::optional<std::string> find_damage_without_trace(const std::filesystem::path& database_file) try {
+  SQLite::Database database = open_without_trace(database_file);
+  demand_known_schema(database, database_file);
+  const std::string found = database.execAndGet("PRAGMA quick_check(1)").getString();
+  return found == "ok" ? std::nullopt : std::optional(found);
+} catch (const StoreNotChecked&) {
+  throw;
+} catch (const SQLite::Exception& error) {
+  if (error.getErrorCode() != SQLITE_CANTOPEN) return error.what();
+  throw StoreNotChecked(database_file.string() + ": cannot be read by this user; make it this user's own");
+} catch (const std::exception& error) {
+  return error.what();
 }
 
 std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database) {

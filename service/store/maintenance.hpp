@@ -38,6 +38,18 @@ class StoreNotChecked : public std::runtime_error {
 /// file of a newer version.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
 
+/// The log beside a database holds what is not in it yet, and cannot be read without leaving a trace.
+class StoreLogNotRead : public StoreNotChecked {
+ public:
+  using StoreNotChecked::StoreNotChecked;
+};
+
+/// What would keep a daemon from opening the file, one line; nothing where it can. A part of what
+/// find_damage() sees, that of every start: whether it is a database, and its pages. Changes no file and
+/// makes none, also beside a running daemon; StoreLogNotRead where that cannot be done, StoreNotChecked for a
+/// file of a newer version.
+std::optional<std::string> find_damage_without_trace(const std::filesystem::path& database_file);
+
 /// Free bytes on the disk of the database; nothing where its directory is no longer there.
 std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database);
 

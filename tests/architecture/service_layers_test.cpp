@@ -27,7 +27,7 @@ const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"http/routes",
      {"base", "store", "run", "documents", "acquisition", "report", "page", "http/server", "http/auth"}},
     {"cli", {"base", "run", "documents"}},
-    {"daemon", {"base", "store", "acquisition", "http/server", "http/auth", "http/routes"}},
+    {"daemon", {"base", "store", "documents", "acquisition", "http/server", "http/auth", "http/routes"}},
 };
 
 /// The folder of a file of service/: "http/routes" of service/http/routes/internal/start_body.hpp.

@@ -72,7 +72,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/cli/watch_command", "end_to_end/programs_test runs the command"},
     {"service/daemon/daemon", "a whole process; end_to_end/programs_test and restart_test"},
     {"service/daemon/listen_address", "end_to_end/bad_input_test and command_line_test (--check)"},
-    {"service/daemon/self_check", "end_to_end/command_line_test runs touchcald --check"},
     {"service/daemon/touchcald", "the program; end_to_end/command_line_test runs it"},
     {"service/documents/audit_document", "http/routes/audit_routes_test writes and reads it"},
     {"service/documents/block_pose_file", "acquisition/locating_test writes and reads a located pose"},

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -131,11 +132,32 @@ TEST_F(CommandLine, CheckTellsAllThatIsWrongAtOnceAndChangesNothing) {
   EXPECT_THAT(open.err, HasSubstr("chmod 600"));
 }
 
+TEST_F(CommandLine, CheckLooksAtWhatADaemonHasAlsoWhileItRuns) {
+  const auto state = folder_ / "state";
+  const std::vector<std::string> check{"touchcald", "--check",      "--cell",   cell_file("edf"),
+                                       "--state",   state.string(), "--listen", "127.0.0.1:0"};
+  Process served({"touchcald", "--cell", cell_file("edf"), "--state", state.string(), "--listen",
+                  "127.0.0.1:0", "--controller", "127.0.0.1:9"},
+                 folder_ / "served.err");
+  served.wait_for_address();
+  const Finished beside = run(check);
+  EXPECT_EQ(beside.exit_code, cell::kExitDone) << beside.err;
+  EXPECT_EQ(beside.out, cell_file("edf") + ": cell edf is in order\n") << "all of it was looked at";
+  served.signal(SIGTERM);
+  EXPECT_EQ(served.wait().exit_code, cell::kExitDone);
+  std::ofstream(state / "place.json") << "{}";
+  std::ofstream(state / "touchcal.sqlite") << std::string(8192, 'x');
+  const Finished bad = run(check);
+  EXPECT_EQ(bad.exit_code, cell::kExitBadInput);
+  EXPECT_THAT(bad.err, HasSubstr("touchcal.sqlite: file is not a database; restore the last backup"));
+  EXPECT_THAT(bad.err, HasSubstr("place.json: "));
+}
+
 TEST_F(CommandLine, AnEmptyDatabaseOfAStateDirectoryThatWasInUseIsNoNewOne) {
   const auto state = folder_ / "state";
   std::filesystem::create_directory(state);
   std::ofstream(state / "touchcal.sqlite").close();
-  std::ofstream(state / "place.json") << "{}";
+  std::ofstream(state / "touchcal.begun") << "by an earlier daemon";
   for (const char* how : {"--check", "--loopback-needs-token"}) {
     const Finished refused = run({"touchcald", how, "--cell", cell_file("demo"), "--state", state.string(),
                                   "--listen", "127.0.0.1:0"});
