@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -17,7 +18,9 @@
 namespace touchcal::testing {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
 using ::testing::Not;
 
 std::string cell_file(const std::string& name) {
@@ -200,11 +203,20 @@ TEST_F(CommandLine, NumbersAreDecimal) {
       {"touchcal", "plan", "--place", "--places", "0x10"},
       {"cs8sim", "--seed", "0x10"},
       {"cs8sim", "--speed", "0x10"}};
+  std::set<std::string> tried;
   for (const auto& call : calls) {
     const Finished refused = run(call);
     EXPECT_EQ(refused.exit_code, cell::kExitUsage) << call[0] << ' ' << call[1];
-    EXPECT_THAT(refused.err, HasSubstr("'0x1")) << call[0] << ' ' << call[1];
+    const auto value =
+        std::ranges::find_if(call, [](const auto& word) { return word.find("0x1") != std::string::npos; });
+    EXPECT_THAT(refused.err, AllOf(HasSubstr(*(value - 1)), HasSubstr("'0x1"))) << call[0] << ' ' << call[1];
+    tried.insert(*(value - 1));
   }
+  std::vector<std::vector<std::string>> programs{{"touchcald"}, {"cs8sim"}};
+  for (const std::string& command : commands()) programs.push_back({"touchcal", command});
+  const std::regex line_of_a_number("^ +(?:-[a-zA-Z],)?(--[a-z-]+) .*\\b(?:U?INT|FLOAT)\\b");
+  for (const auto& program : programs)
+    EXPECT_THAT(tried, IsSupersetOf(names_in_help(program, line_of_a_number))) << program.back();
 }
 
 TEST_F(CommandLine, ASeedOfMoreThan64BitsIsNotCut) {
