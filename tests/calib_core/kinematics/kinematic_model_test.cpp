@@ -175,7 +175,7 @@ TEST(ArmParameters, DerivativesMatchDifferencesForARigidArm) {
         const bool without_effect = numeric.col(i).norm() * step_unit(i) < 1e-9;
         // Masses turn no joint of a rigid arm; joint 1 of an upright one carries no moment.
         const bool is_mass =
-            i >= nongeometric_index(mass_position(1)) && i < nongeometric_index(ripple_position(0));
+            i >= nongeometric_index(mass_position(1)) && i < nongeometric_index(second_harmonic_position(0));
         const std::string name = arm_parameter_name(i);
         if (i < kErrorParameterCount) {
           EXPECT_EQ(without_effect, name == "theta7") << name;

@@ -1,18 +1,14 @@
-#include "service/acquisition/cell_operation.hpp"
-
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
-#include <spdlog/spdlog.h>
 #include <sqlite3.h>
 
 #include <algorithm>
-#include <boost/asio/co_spawn.hpp>
 #include <memory>
 
 #include "cs8_protocol/wire_units.hpp"
 #include "service/documents/configuration_digest.hpp"
 #include "service/run/touch_command.hpp"
-#include "tests/service/acquisition/owners_bench.hpp"
+#include "tests/service/acquisition/operation_bench.hpp"
 
 namespace cell {
 namespace {
@@ -21,58 +17,11 @@ using ::testing::Contains;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 
-/// The whole of an operation over a scripted controller: all it meets is said by the test.
-class CellOperationTest : public ::testing::Test {
+class CellOperationTest : public ::testing::Test, protected OperationBench {
  protected:
-  /// With the arithmetic of a run on another context, which waits until a test lets it.
-  explicit CellOperationTest(std::unique_ptr<boost::asio::io_context> arithmetic = nullptr)
-      : arithmetic_(std::move(arithmetic)) {
-    spdlog::set_level(spdlog::level::off);
-  }
-  ~CellOperationTest() override {
-    controller_->is_connected = false;  // nobody whose answer the end waits for
-    shut_down();
-  }
-  void shut_down() {
-    bool down = false;
-    boost::asio::co_spawn(io_, operation_.shut_down(), [&](const std::exception_ptr&) { down = true; });
-    io_.restart();
-    while (!down) io_.run_one();
-  }
-  /// The controller tells its state; what waits looks at it.
-  void tell_state() {
-    controller_->hooks.on_state(controller_->state.value());
-    io_.restart();
-    io_.poll();
-  }
-  void launch() {
-    operation_.launch();
-    io_.poll();
-    tell_state();
-  }
-
-  std::variant<Started, CommandRefusal> start(const StartRequest& request) {
-    std::optional<std::variant<Started, CommandRefusal>> answer;
-    boost::asio::co_spawn(io_, operation_.start(request),
-                          [&](const std::exception_ptr&, const std::variant<Started, CommandRefusal>& given) {
-                            answer = given;
-                          });
-    io_.restart();
-    while (!answer) io_.run_one();
-    return *answer;
-  }
+  using OperationBench::OperationBench;
 
   std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run_id; }
-  /// The controller tells its state all the time.
-  void run_until(const std::function<bool()>& condition) {
-    while (!condition()) {
-      time_.pass(std::chrono::milliseconds(10));
-      if (controller_->is_connected) controller_->hooks.on_state(*controller_->state);
-      io_.restart();
-      io_.run_one();
-    }
-    io_.poll();
-  }
   /// The contact of an arm without errors at a touch of the plan.
   static cs8::TouchResult contact_of(std::size_t touch) {
     cs8::TouchResult result;
@@ -86,19 +35,6 @@ class CellOperationTest : public ::testing::Test {
     result.edges = 1;
     return result;
   }
-
-  Folder folder_;
-  RunStore store_{folder_.path() / "touchcal.sqlite"};
-  boost::asio::io_context io_{1};
-  std::unique_ptr<boost::asio::io_context> arithmetic_;
-  MadeUpTime time_;
-  ScriptedController* controller_ = new ScriptedController;  // the operation's
-  CellOperation operation_{{io_.get_executor(), (arithmetic_ ? *arithmetic_ : io_).get_executor()},
-                           cell_of_owners(),
-                           StoreQueue(store_, io_.get_executor()),
-                           std::unique_ptr<Controller>(controller_),
-                           "instance",
-                           time_.clocks()};
 };
 
 TEST_F(CellOperationTest, FindsItsControllerAndIsIdleOnceNothingStandsInTheWay) {
