@@ -62,7 +62,7 @@ void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_c
     status.condition_number = latest.iterations.back().condition_number;
   status.predicted_tip_rms_m = run.predicted_tip_rms_m();
   status.touch_benefit = run.touch_benefit();
-  if (!is_active(status.state)) return;
+  if (!is_active(status.state) || !active.open) return;
   if (const calib::PlannedTouch* next = run.next()) status.plane = next->face + 1;
   if (run.touches_done() == 0 || active.interruption) return;  // an earlier daemon's plan is not read yet
   status.eta_s = run.remaining_s(active.worked.until(now).count());
@@ -95,6 +95,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
                    std::make_unique<TimerAlarm>(threads.operation)),
       touches_(location_.cell(), computation_, store_, session_, preparation_, status_, wake_, clocks_),
       manual_(location_.cell(), store_, preparation_, touches_, status_, wake_),
+      way_back_(session_, status_, wake_),
       recovery_(location_.cell(), location_.regions(), store_, plans_, session_, preparation_, planning_,
                 touches_, status_, clocks_),
       loop_{.executor = threads.operation, .ended = TimerWake(threads.operation)} {
@@ -160,7 +161,7 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
   const bool stops = command == Command::kStop || command == Command::kAbort;
   if (status_.is_ending() && !stops) return refusal_at_the_end();
   const State state = status_.state();
-  const auto next = after_command(state, command);
+  const auto next = after(command);
   if (!next) {
     return CommandRefusal{
         .detail = fmt::format("{} is not possible in the state {}", command_name(command), state_name(state)),
@@ -173,6 +174,8 @@ std::optional<CommandRefusal> CellOperation::command(Command command, std::optio
   spdlog::info("command {}", command_name(command));
   apply_command(command);
   if (status_.state() == state) status_.enter(*next);
+  if (command == Command::kReset && *next == State::kResetting) way_back_.ask();
+  if (stops) loop_.ends_pass = false;  // it is the last word
   // Entering these two states stops the arm. A stop in any other case is sent all the same: nothing here
   // knows better than who gives it whether something moves.
   const bool is_sent = *next != state && (*next == State::kStopping || *next == State::kAborting);
@@ -283,10 +286,34 @@ bool CellOperation::is_ready_to_start() const {
   return unmet_preconditions().empty() && (!fault || is_link_fault(fault->code));
 }
 
+/// What State says may be older than the answer of the command that was broken off: who takes the arm back
+/// waits until none runs. In a dialogue by hand the arm is a person's.
+bool CellOperation::is_way_back_due() const {
+  const auto told = session_.latest_state();
+  return told && (told->flags & cs8::kRetractDue) != 0 && !location_.is_locating();
+}
+
+/// The state machine's answer, but for an arm that is at a face or on its way back: what ends the motion
+/// waits for its answer, and nobody else takes the arm.
+std::optional<State> CellOperation::after(Command command) const {
+  const State state = status_.state();
+  if (way_back_.is_under_way()) {
+    if (command == Command::kStop) return State::kStopping;
+    if (command == Command::kAbort) return State::kAborting;
+    if (command == Command::kLocate) return std::nullopt;
+  }
+  if (command == Command::kReset && state == State::kIdle && is_way_back_due()) return State::kResetting;
+  return after_command(state, command);
+}
+
 std::vector<Command> CellOperation::exits() const {
-  std::vector<Command> commands = cell::exits(status_.state());
+  const State state = status_.state();
+  std::vector<Command> commands = cell::exits(state);
+  for (const Command command : {Command::kAbort, Command::kReset}) {
+    if (after(command) != after_command(state, command)) commands.push_back(command);
+  }
   std::erase_if(commands, [this](Command command) {
-    return refusal_reason(command).has_value() || (command == Command::kStart && !is_ready_to_start());
+    return !after(command) || refusal_reason(command) || (command == Command::kStart && !is_ready_to_start());
   });
   return commands;
 }

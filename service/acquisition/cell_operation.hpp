@@ -27,6 +27,7 @@
 #include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_executor.hpp"
 #include "service/acquisition/touch_preparation.hpp"
+#include "service/acquisition/way_back.hpp"
 #include "service/base/clocks.hpp"
 #include "service/store/run_page.hpp"
 
@@ -137,6 +138,8 @@ class CellOperation {
   [[nodiscard]] std::optional<CommandRefusal> refuse_answer_to_hold(Command command) const;
   [[nodiscard]] std::optional<CommandRefusal> refuse_undo() const;
   [[nodiscard]] bool is_ready_to_start() const;
+  [[nodiscard]] bool is_way_back_due() const;
+  [[nodiscard]] std::optional<State> after(Command command) const;
   void apply_command(Command command);
   std::optional<CommandRefusal> locate();
   std::optional<CommandRefusal> undo();
@@ -153,6 +156,7 @@ class CellOperation {
   void on_controller_state(const cs8::State& state);
   void on_link_lost(const cs8::LinkError& error);
   [[nodiscard]] Event after_lost_link() const;
+  [[nodiscard]] bool moves_without_run() const;
 
   // what the states do (cell_operation_loop.cpp)
   boost::asio::awaitable<void> act_on_states();
@@ -188,6 +192,7 @@ class CellOperation {
     TimerWake ended;
     bool runs = false;
     bool left_face = false;  // or tried to, at the end
+    bool ends_pass = false;  // around the block, with the daemon and not by a person
   };
 
   StoreQueue store_;
@@ -204,6 +209,7 @@ class CellOperation {
   RunComputation computation_;
   TouchExecutor touches_;
   ManualTouching manual_;
+  WayBack way_back_;
   RunRecovery recovery_;
   std::optional<ActiveRun> run_;
   Loop loop_;

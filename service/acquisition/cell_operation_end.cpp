@@ -36,11 +36,14 @@ asio::awaitable<void> CellOperation::shut_down() {
 }
 
 /// The end of the daemon is nobody's word about the run: it stays open, on hold. Only a stop or an abort that
-/// came before, or comes meanwhile, ends it. The way around the block has nothing to keep.
+/// came before, or comes meanwhile, ends it. The way around the block has nothing to keep; on the way back
+/// from a face the arm stays where it is.
 void CellOperation::break_off_for_end() {
   const State state = status_.state();
+  if (way_back_.is_under_way()) return status_.enter(State::kStopping);
   if (!is_active(state) || state == State::kStopping || state == State::kAborting) return;
   if (!run_) {
+    loop_.ends_pass = true;
     status_.enter(State::kStopping);
   } else if (state != State::kHeld) {
     session_.stop_motion();  // a pause lets the touch under way end, the end of the daemon does not

@@ -7,13 +7,15 @@ void CellOperation::on_controller_state(const cs8::State& state) {
   session_.on_controller_state(state);
   location_.on_controller_state(state);
   manual_.on_controller_state(active(), state);
-  session_.check_task(state, location_.is_passing() ? Event::kAbortFault : Event::kHoldFault);
+  session_.check_task(state, moves_without_run() ? Event::kAbortFault : Event::kHoldFault);
 }
 
-/// A run keeps its touches; the way around the block has none and begins anew.
+bool CellOperation::moves_without_run() const { return location_.is_passing() || way_back_.is_under_way(); }
+
+/// A run keeps its touches; the way around the block and the way back from a face have none and begin anew.
 Event CellOperation::after_lost_link() const {
   if (is_interrupted()) return Event::kNotReadyFault;
-  return location_.is_passing() ? Event::kAbortFault : Event::kLinkDown;
+  return moves_without_run() ? Event::kAbortFault : Event::kLinkDown;
 }
 
 void CellOperation::on_link_lost(const cs8::LinkError& error) {

@@ -27,6 +27,7 @@ constexpr std::chrono::milliseconds kPermitLook{10'000};
 
 void CellOperation::on_entered(State state) {
   session_.on_entered(state);
+  way_back_.on_entered(state);
   const auto now = clocks_.steady();
   hold_time_.on_entered(state, run_ ? run_->run.touches_done() : 0, now);
   if (run_) run_->worked.on_entered(state, now);
@@ -59,7 +60,7 @@ asio::awaitable<void> CellOperation::identify_run() {
 
 /// What nobody foresaw ends the run, never the daemon with its STOP.
 asio::awaitable<void> CellOperation::break_off(State state, std::string why) {
-  if (is_active(status_.state()) && state != State::kAborting) {
+  if ((is_active(status_.state()) || way_back_.is_under_way()) && state != State::kAborting) {
     status_.raise({FaultCode::kInternalError, std::move(why)}, Event::kAbortFault);
     co_return;
   }
@@ -101,8 +102,7 @@ asio::awaitable<void> CellOperation::act_on(State state) {
       co_await resume_run();
       break;
     case State::kStopping:
-      if (status_.is_ending() && !run_)
-        co_await leave_face_once();  // a run is stopped by a person's word only
+      if (loop_.ends_pass) co_await leave_face_once();
       session_.give_permit_back();
       co_await close_run(RunOutcome::kStopped);
       status_.apply(Event::kDone);
@@ -147,10 +147,16 @@ asio::awaitable<void> CellOperation::reset() {
   }
   if (session_.open_touch() || session_.sequence_to_settle() != 0) {
     co_await settle(session_.sequence_to_settle());
-  } else if (unmet_preconditions().empty()) {
-    status_.apply(Event::kDone);
-  } else {
+  } else if (!unmet_preconditions().empty()) {
     co_await await_readiness();
+  } else if (way_back_.is_asked() && is_way_back_due()) {
+    if (session_.latest_state()->active_sequence == 0) {
+      co_await way_back_.make();
+    } else {
+      co_await wake_.wait(1s);  // until State knows of the end that was answered: each wakes
+    }
+  } else {
+    status_.apply(Event::kDone);
   }
 }
 

@@ -62,7 +62,7 @@ std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& re
                           .detail = "the cell is not ready",
                           .unmet = std::move(unmet)};
   }
-  const bool waits_for_remote = request.guided && state == State::kResetting;
+  const bool waits_for_remote = request.guided && state == State::kResetting && !way_back_.is_under_way();
   const bool has_open_touch = session_.open_touch() || session_.sequence_to_settle() != 0;
   if (is_settling_ || (waits_for_remote && has_open_touch))
     return CommandRefusal{.detail = "a touch of the last run is still to be stored; then once more",

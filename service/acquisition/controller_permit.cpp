@@ -66,7 +66,11 @@ void ControllerSession::on_permit(const cs8::Permit& permit) {
 asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number) {
   const State state = status_.state();
   const auto ready_by = clocks_.steady() + cell_.deadlines.ready;
-  while (status_.state() == state && !has_permit(run_number)) {
+  const auto is_needless = [this, state] {
+    const auto told = controller_.latest_state();
+    return state == State::kResetting && told && (told->flags & cs8::kRetractDue) == 0;
+  };
+  while (status_.state() == state && !has_permit(run_number) && !is_needless()) {
     const auto told = controller_.latest_state();
     asking_ = true;
     const cs8::PermitReply reply = co_await controller_.begin(run_number, cell_.deadlines.confirm);
@@ -83,7 +87,7 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
   }
   wait_for(nullptr);
   permission_ = {};
-  is_permitted_ = status_.state() == state;
+  is_permitted_ = status_.state() == state && has_permit(run_number);
   co_return is_permitted_;
 }
 
@@ -97,7 +101,7 @@ asio::awaitable<void> ControllerSession::take_refused_permit(const cs8::Permit& 
   const AwaitedAction* awaited = awaited_after_rejection(refused.reason, told ? told->flags : 0);
   if (!awaited) {
     const OutcomeFault failed = fault_of(refused);
-    const bool ends = state == State::kStarting && !failed.holds;
+    const bool ends = state == State::kResetting || (state == State::kStarting && !failed.holds);
     status_.raise(failed.fault, ends ? Event::kAbortFault : Event::kNotReadyFault);
     meet_anew_after(refused);
     co_return;

@@ -72,9 +72,10 @@ bool ControllerSession::is_moving_state() const {
   return status_.state() == State::kExecute || status_.state() == State::kCompleting;
 }
 
-/// With a permit the arm moves in STARTING on the way around the block.
+/// With a permit the arm moves in STARTING on the way around the block, in RESETTING on the way back.
 bool ControllerSession::is_watched() const {
-  return is_permitted_ && (is_moving_state() || status_.state() == State::kStarting);
+  const State state = status_.state();
+  return is_permitted_ && (is_moving_state() || state == State::kStarting || state == State::kResetting);
 }
 
 void ControllerSession::on_heartbeat() {
@@ -318,7 +319,7 @@ asio::awaitable<std::optional<cs8::State>> ControllerSession::settled_state() {
   co_return std::nullopt;
 }
 
-/// A run keeps its touches; the way around the block has none and begins anew.
+/// A run keeps its touches; the way around the block and the way back have none and begin anew.
 Event ControllerSession::hold_or_abort() const {
   return is_moving_state() ? Event::kHoldFault : Event::kAbortFault;
 }

@@ -74,8 +74,9 @@ class ControllerSession {
   /// The link was lost. Why a run ended or is on hold stays to be read.
   void on_link_lost(const cs8::LinkError& error, Event event);
 
-  /// Obtains a person's permit before anything moves (PROTOCOL.md, section 7), for the run of this number.
-  /// True when it is given; else a fault or a command has entered another state.
+  /// Obtains a person's permit before anything moves (PROTOCOL.md, section 7), for the run of this number,
+  /// 0 where it is none. True when it is given; else a fault or a command has entered another state, or in
+  /// RESETTING a person has jogged the arm back, which it was for.
   boost::asio::awaitable<bool> obtain_permit(std::uint32_t run_number);
   void give_permit_back();
   /// The same in the middle of a run: a person confirms it again before it goes on.

@@ -262,7 +262,9 @@ std::string status_text(const StatusDocument& status) {
       yes_no(status.controller_touch_tested, "made", "missing"), text_or_unknown(status.probe),
       text_or_unknown(status.controller_permit));
   if (status.retract_due.value_or(false))
-    lines += "arm         at a face; it is taken back before anything else\n";
+    lines +=
+        "arm         at a face; it is taken back before anything else: by touchcal resume where a run is on "
+        "hold, else by touchcal reset\n";
   if (status.waiting_for) lines += fmt::format("waiting     {}\n", awaited_instruction(*status.waiting_for));
   if (status.run_id) {
     lines += fmt::format(

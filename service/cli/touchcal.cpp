@@ -27,7 +27,7 @@ const std::map<std::string, std::string> kCellCommands{
     {"stop", "stop motion and end the run"},
     {"acknowledge", "acknowledge the fault"},
     {"clear", "leave ABORTED once its cause is removed"},
-    {"reset", "make the cell ready for a run"},
+    {"reset", "take the arm back from a face, make the cell ready for a run"},
     {"retry", "repeat the touch that holds the run"},
     {"skip", "leave out the touch that holds the run; the run is then incomplete"},
     {"confirm", "report what to confirm at the cell"},

@@ -189,10 +189,10 @@ constexpr std::array kTable{
                "touch the stylus by hand, leave and close the cell, then touchcal resume where a run is on "
                "hold, else touchcal reset and start a new run",
                FaultKind::kHeld},
-    FaultEntry{FaultCode::kNotConfirmed, "not_confirmed", "nobody confirmed the run at the cell in time",
+    FaultEntry{FaultCode::kNotConfirmed, "not_confirmed", "nobody confirmed at the cell in time",
                "nothing moved",
-               "touchcal resume where a run is on hold, else touchcal reset and start a new run; then press "
-               "the confirmation key at the cell within 30 s",
+               "touchcal resume where a run is on hold, else touchcal reset and start a new run; press the "
+               "confirmation key at the cell within 30 s of being asked",
                FaultKind::kHeld},
     FaultEntry{FaultCode::kTouchRejected, "touch_rejected", "the controller refused a command",
                "nothing moved",

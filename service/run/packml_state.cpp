@@ -63,7 +63,8 @@ std::optional<State> after_retry_or_skip(State state) {
 }
 
 bool asks_for_permission(State state) {
-  return state == State::kStarting || state == State::kUnholding || state == State::kUnsuspending;
+  return state == State::kResetting || state == State::kStarting || state == State::kUnholding ||
+         state == State::kUnsuspending;
 }
 
 State after_stop(State state) {
@@ -234,8 +235,11 @@ std::optional<State> after_command(State state, Command command) {
 }
 
 State after_event(State state, Event event) {
-  if (event == Event::kAbortFault) return is_active(state) ? State::kAborting : state;
+  // The way back from a face moves the arm in RESETTING.
+  if (event == Event::kAbortFault)
+    return is_active(state) || state == State::kResetting ? State::kAborting : state;
   if (event == Event::kNotReadyFault) {
+    if (state == State::kResetting) return State::kStopped;
     if (state == State::kUnholding || state == State::kUnsuspending) return State::kHolding;
     return state == State::kStarting ? State::kStopping : state;
   }

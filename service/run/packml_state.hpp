@@ -53,8 +53,8 @@ inline constexpr std::array kCommands{
 
 /// Internal events: the acting state is done (kDone, also at the end of a suspension); a fault that a person
 /// can remove on the spot (hold), that passes while the arm waits (suspend) or that ends the run (abort); the
-/// cell was not made ready in time (a start ends, a held run stays held); the link is down, which holds a run
-/// as a fault does and makes an end that is under way an abort.
+/// cell was not made ready in time (a start or a reset ends, a held run stays held); the link is down, which
+/// holds a run as a fault does and makes an end that is under way an abort.
 enum class Event { kDone, kHoldFault, kSuspendFault, kAbortFault, kNotReadyFault, kLinkDown };
 
 std::string_view state_name(State state);  // "EXECUTE"

@@ -196,5 +196,29 @@ TEST(DaemonEnd, AStopThatComesMeanwhileEndsTheRun) {
   EXPECT_NE(loop.server().report().flags & cs8::kRetractDue, 0U) << "nothing moves behind a stop";
 }
 
+/// A person confirmed the way back, not the end; it is asked for again.
+TEST(DaemonEnd, OnTheWayBackFromAFaceLeavesTheArmWhereItStands) {
+  for (const bool stopped_before : {false, true}) {
+    LoopbackCell loop;
+    loop.serve({}, kSpeed);
+    loop.launch();
+    loop.run_until(State::kIdle);
+    loop.start();
+    loop.run_until([&](const Status&) { return loop.server().report().phase == cs8::Phase::kSearch; });
+    loop.command(Command::kStop);
+    loop.run_until(State::kStopped);
+    loop.relaunch();  // a daemon that knows of no run
+    loop.run_until(State::kIdle);
+    loop.command(Command::kReset);
+    loop.run_until([&](const Status&) { return loop.server().report().phase == cs8::Phase::kRetract; });
+    EXPECT_EQ(loop.status().state, State::kResetting);
+    if (stopped_before) loop.command(Command::kStop);
+    end_daemon(loop);
+    EXPECT_EQ(loop.status().state, State::kStopped);
+    EXPECT_EQ(loop.server().report().active_sequence, 0U);
+    EXPECT_NE(loop.server().report().flags & cs8::kRetractDue, 0U);
+  }
+}
+
 }  // namespace
 }  // namespace touchcal::testing

@@ -83,7 +83,7 @@ TEST_F(Operator, AnAbortedRunIsLeftByClearAndReset) {
   loop_.leave_aborted();
 }
 
-TEST_F(Operator, AStopInASearchTakesTheStylusBackAndTheNextRunBeginsWithTheRestOfTheWay) {
+TEST_F(Operator, AStopInASearchIsFollowedByTheRestOfTheWayBehindAResetAndTheNextRunBeginsWithItsPlan) {
   // Twenty times as fast as an arm: a search takes several of the 20 ms between two reports of the state.
   loop_.serve({}, 20.0);
   std::optional<cell::CommandRefusal> refusal;
@@ -96,7 +96,11 @@ TEST_F(Operator, AStopInASearchTakesTheStylusBackAndTheNextRunBeginsWithTheRestO
       refusal = loop_.operation().command(Command::kStop);
     }
     const cs8::MessageType type = cs8::type_of(message);
-    if (type == cs8::MessageType::kTouch || type == cs8::MessageType::kRetract) asked.push_back(type);
+    const auto* permit = std::get_if<cs8::Permit>(&message.payload);
+    const bool is_granted = permit && permit->state == cs8::PermitState::kGranted;
+    if (type == cs8::MessageType::kTouch || type == cs8::MessageType::kTravel ||
+        type == cs8::MessageType::kRetract || is_granted)
+      asked.push_back(type);
   });
   loop_.launch(relay.port());
   loop_.run_until(State::kIdle);
@@ -108,12 +112,19 @@ TEST_F(Operator, AStopInASearchTakesTheStylusBackAndTheNextRunBeginsWithTheRestO
 
   asked.clear();
   loop_.command(Command::kReset);
+  loop_.run_until([](const cell::Status& status) { return status.waiting_for == "confirmation"; });
+  EXPECT_EQ(loop_.status().state, State::kResetting);
   loop_.run_until(State::kIdle);
+  using Types = std::vector<cs8::MessageType>;
+  EXPECT_EQ(asked, (Types{cs8::MessageType::kPermit, cs8::MessageType::kRetract}));
+  EXPECT_EQ(loop_.server().report().flags & cs8::kRetractDue, 0U) << "it stands clear of the face";
+  asked.clear();
   const std::int64_t next = loop_.start();
   loop_.run_until_touches(1);
   expect_touches_once(loop_, next, 1);
-  ASSERT_FALSE(asked.empty());
-  EXPECT_EQ(asked.front(), cs8::MessageType::kRetract);
+  ASSERT_GE(asked.size(), 2U);
+  asked.resize(2);
+  EXPECT_EQ(asked, (Types{cs8::MessageType::kPermit, cs8::MessageType::kTouch}));
 }
 
 /// A pause lets the touch under way end; nobody promised that of the end of the daemon.

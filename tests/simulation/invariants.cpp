@@ -38,7 +38,10 @@ std::optional<std::string> moves_unpermitted(const Record& record) {
     const bool is_retract = motion.type == cs8::MessageType::kRetract;
     const bool allows = permit.state == cs8::PermitState::kGranted ||
                         (is_retract && permit.state == cs8::PermitState::kRetractOnly);
-    const bool is_of_run = motion.run && static_cast<std::uint32_t>(*motion.run) == permit.run;
+    // Behind a run that is over the arm is taken back by a permit for that alone, which is of no run.
+    const bool is_way_back = motion.state == State::kResetting;
+    const bool is_of_run = is_way_back ? is_retract && permit.run == 0
+                                       : motion.run && static_cast<std::uint32_t>(*motion.run) == permit.run;
     if ((allows && is_of_run) || motion.permit_read_at == motion.at) continue;
     return fmt::format("{} for run {}; the last permit, of run {}, was '{}' ('{}')", motion_text(motion),
                        motion.run.value_or(0), permit.run, cs8::name(permit.state), cs8::name(permit.reason));

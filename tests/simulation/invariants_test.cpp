@@ -87,6 +87,16 @@ TEST_F(InvariantTest, OnlyTheWayBackMovesWithAPermitForIt) {
   EXPECT_THAT(broken_invariants(record_), IsEmpty());
 }
 
+TEST_F(InvariantTest, NothingButTheWayBackMovesInResettingAndNotWithThePermitOfTheRunThatIsOver) {
+  record_.motions[2].state = cell::State::kResetting;
+  record_.motions[2].type = cs8::MessageType::kRetract;
+  expect_broken("no_motion_without_permit");
+  record_.motions[2].permit.run = 0;
+  EXPECT_THAT(broken_invariants(record_), IsEmpty());
+  record_.motions[2].type = cs8::MessageType::kTravel;
+  expect_broken("no_motion_without_permit");
+}
+
 TEST_F(InvariantTest, AnAcceptedRunHasEachTouchOfItsPlan) {
   run().run.touches_total = 4;
   expect_broken("accepted_run_is_whole");

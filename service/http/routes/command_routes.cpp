@@ -83,8 +83,10 @@ std::vector<Route> command_routes() {
       cell_command<Command::kLocate>("/api/v1/cell/locate", "Locates the block by six guided touches"),
       cell_command<Command::kAcknowledge>("/api/v1/cell/acknowledge", "Acknowledges the fault"),
       cell_command<Command::kClear>("/api/v1/cell/clear", "Leaves ABORTED once the cause is removed"),
-      cell_command<Command::kReset>("/api/v1/cell/reset",
-                                    "Connects to the controller and makes the cell ready"),
+      cell_command<Command::kReset>(
+          "/api/v1/cell/reset",
+          "Connects to the controller, takes an arm that stands at a face back once that is "
+          "confirmed at the cell, and makes the cell ready"),
   };
 }
 

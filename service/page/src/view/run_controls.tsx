@@ -63,7 +63,7 @@ function MainButton({state, desk, onStart, usable}: Props & {usable: boolean}) {
     return (
       <button type="button" class="run main" disabled={disabled} onClick={() => void desk.command('reset')}>
         <span class="label">{say('reset')}</span>
-        <span class="note">{say('resetWords')}</span>
+        <span class="note">{say(status?.retract_due ? 'resetBackWords' : 'resetWords')}</span>
       </button>
     );
   }

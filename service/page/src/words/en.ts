@@ -65,6 +65,7 @@ export const en = {
   resume: 'RESUME',
   reset: 'RESET',
   resetWords: 'make the cell ready',
+  resetBackWords: 'take the arm back from the face',
   clear: 'CLEAR',
   holdOn: 'keep holding…',
   pause: 'PAUSE',

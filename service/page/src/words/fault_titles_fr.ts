@@ -44,7 +44,7 @@ export const kFaultTitlesFr: Readonly<Record<string, string>> = {
   not_ready: 'cellule pas prête',
   touch_test_missing: 'stylet non touché à la main',
   cell_open: 'cellule ouverte',
-  not_confirmed: 'essai non confirmé',
+  not_confirmed: 'sans confirmation',
   touch_rejected: 'commande refusée par la baie',
   no_contact: 'pas de contact',
   unexpected_contact: 'contact inattendu',

@@ -67,6 +67,7 @@ export const fr: Words = {
   resume: 'REPRENDRE',
   reset: 'PRÉPARER',
   resetWords: 'préparer la cellule',
+  resetBackWords: 'retirer le bras de la face',
   clear: 'REMETTRE',
   holdOn: 'maintenez…',
   pause: 'PAUSE',
