@@ -49,10 +49,12 @@ bool Person::mend_one(State state) {
   if (lacks(cs8::kSettled) && told.active_sequence == 0) return act(fault("settles")), true;
   if (probe.free()) {
     looked_at_stylus_ = false;
-  } else if (!std::exchange(looked_at_stylus_, true) && lacks(cs8::kRetractDue)) {
-    return act(fault("probe_mended")), true;
-  } else if (lacks(cs8::kRetractDue) || !cell::is_active(state)) {
-    return act(fault("jog_home")), true;  // it stands at a face, and nothing takes it back from there
+  } else if (lacks(cs8::kRetractDue)) {
+    // The stylus and its cable, or a face that it stands at: what does not help is followed by the other.
+    const bool looked = std::exchange(looked_at_stylus_, !looked_at_stylus_);
+    return act(fault(looked ? "jog_home" : "probe_mended")), true;
+  } else if (!cell::is_active(state)) {
+    return act(fault("jog_home")), true;  // nothing takes it back from the face
   }
   return false;
 }

@@ -52,7 +52,7 @@ class Person {
   int started_count_ = 0;
   int holds_count_ = 0;            // of this run
   bool switched_on_ = false;       // the power, since it was there
-  bool looked_at_stylus_ = false;  // since it was free
+  bool looked_at_stylus_ = false;  // last, since it was free
   bool is_done_ = false;
 };
 

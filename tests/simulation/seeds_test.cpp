@@ -71,6 +71,20 @@ TEST(World, WhosePowerFailsAtAnyWriteOfATouchLosesNoAnswer) {
   }
 }
 
+/// The person once looked at the probe where the arm stood at a face, and never again.
+TEST(World, WhoseProbeIsTouchedAndItsCableCutIsMendedByThePerson) {
+  Scenario scenario = scenario_of(1171);
+  const auto of_controller = [&scenario](Time at, const char* line) {
+    scenario.faults.push_back({.at = at, .kind = FaultKind::kController, .line = line});
+  };
+  scenario.faults.clear();
+  of_controller(21'585ms, R"({"fault":"contact_short"})");
+  of_controller(64'254ms, R"({"fault":"probe_touched"})");
+  of_controller(67'081ms, R"({"fault":"loop_cut"})");
+  const Outcome outcome = run_world(scenario);
+  EXPECT_THAT(outcome.broken, IsEmpty()) << last_lines(outcome.journal);
+}
+
 TEST(DrawnFaults, AreOfEveryKindAndEveryLineOfTheController) {
   std::set<FaultKind> kinds;
   std::set<std::string> lines;
