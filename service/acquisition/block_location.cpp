@@ -75,7 +75,7 @@ BlockLocation::BlockLocation(boost::asio::any_io_executor operation, const Cell&
       clocks_(std::move(clocks)),
       cell_(configured),
       regions_(std::in_place, cell_),
-      located_(std::make_shared<const LocatedCell>(LocatedCell{cell_, std::nullopt})),
+      located_(std::make_shared<const LocatedCell>(LocatedCell{cell_, std::nullopt, regions_->shared()})),
       journal_(store, std::move(operation)) {}
 
 bool BlockLocation::keep_in(const std::filesystem::path& file) {
@@ -350,15 +350,23 @@ asio::awaitable<bool> BlockLocation::keep_found_place() {
   co_return true;
 }
 
+void BlockLocation::hand_in(TipRegions::Shared made) {
+  if (place_) return;  // they are of another place
+  regions_.emplace(cell_, std::move(made));
+  publish_cell();
+}
+
+void BlockLocation::publish_cell() {
+  auto located = std::make_shared<const LocatedCell>(LocatedCell{cell_, place_, regions_->shared()});
+  const std::lock_guard lock(located_mutex_);
+  located_ = std::move(located);
+}
+
 void BlockLocation::use(BlockPose place) {
   cell_ = cell_with_block_pose(configured_, place);
   regions_.emplace(cell_);
   place_ = std::move(place);
-  auto located = std::make_shared<const LocatedCell>(LocatedCell{cell_, place_});
-  {
-    const std::lock_guard lock(located_mutex_);
-    located_ = std::move(located);
-  }
+  publish_cell();
   const Eigen::Vector3d shift_m = place_->cell_from_block.translation();
   spdlog::info(
       "the block stands {:.1f} {:.1f} {:.1f} mm and {:.2f} degrees from where the cell's file has it; paths "

@@ -27,6 +27,7 @@ namespace cell {
 struct LocatedCell {
   Cell cell;
   std::optional<BlockPose> place;  // empty while the block is where the cell file says
+  TipRegions::Shared regions;      // of this cell
 };
 
 /// Where the block stands: the dialogue that finds it by a person's touches (locating.hpp), of which each is
@@ -47,6 +48,9 @@ class BlockLocation {
   /// before left there. Its touches count where the cell's files (`config_digest`) and the place before are
   /// those that they were made with, else it begins anew; the guide says which.
   void keep_dialogue_in(const std::filesystem::path& file, const std::optional<std::string>& config_digest);
+
+  /// Tip regions that were computed before for the cell as its file has it: they are not computed again.
+  void hand_in(TipRegions::Shared made);
 
   /// The cell with its block at the last found pose. Always the same object.
   [[nodiscard]] const Cell& cell() const { return cell_; }
@@ -110,6 +114,7 @@ class BlockLocation {
   std::optional<std::string> take_touch(const HandTouch& touch);
   boost::asio::awaitable<bool> keep_found_place();
   void use(BlockPose place);
+  void publish_cell();
 
   const Cell& configured_;
   StoreQueue& store_;

@@ -91,7 +91,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       location_(threads.operation, cell, store_, session_, status_, wake_, clocks_),
       plans_(threads.operation, location_.cell()),
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
-      computation_(threads.computation, location_.cell(), status_,
+      computation_(threads.computation, location_.regions(), status_,
                    std::make_unique<TimerAlarm>(threads.operation)),
       touches_(location_.cell(), computation_, store_, session_, preparation_, status_, wake_, clocks_),
       manual_(location_.cell(), store_, preparation_, touches_, status_, wake_),

@@ -108,6 +108,8 @@ class CellOperation {
   boost::asio::awaitable<PlanOutcome> plan_recipe(std::string name) { return plans_.plan(std::move(name)); }
   /// See PlanCache::hand_in(); call it before launch().
   void hand_in_plan(std::shared_ptr<const Plan> plan) { plans_.hand_in(std::move(plan)); }
+  /// See BlockLocation::hand_in(); call it before launch().
+  void hand_in_regions(TipRegions::Shared made) { location_.hand_in(std::move(made)); }
   /// What plan_recipe() gave; nothing before. A run by this recipe makes these touches.
   [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe) const {
     return plans_.planned(recipe);

@@ -45,8 +45,10 @@ asio::awaitable<Run> RunComputation::identified(Run run) {
 
 asio::awaitable<Conclusion> RunComputation::conclude(ActiveRun active, std::optional<RunOutcome> outcome) {
   std::string what = fmt::format("the documents at the end of run {}", active.run.id());
-  const auto compute = [copy = std::move(active), outcome, cell = cell_]() mutable {
-    const TipRegions regions(cell);  // those of the operation are for its thread
+  // The cell is a copy: that of the operation may be another one as soon as its block is found elsewhere.
+  const auto compute = [copy = std::move(active), outcome, cell = regions_.cell(),
+                        made = regions_.shared()]() mutable {
+    const TipRegions regions(cell, made);
     const Verdict verdict = outcome ? cell::conclude(copy, *outcome, regions) : Verdict::kIncomplete;
     return Conclusion{verdict, copy.finished, result_json(copy, regions), arm_json(copy, cell)};
   };

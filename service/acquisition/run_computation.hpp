@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "config/cell.hpp"
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/alarm.hpp"
 #include "service/acquisition/published_status.hpp"
+#include "service/run/tip_prediction.hpp"
 
 namespace cell {
 
@@ -23,11 +23,11 @@ class RunComputation {
   /// After so long the status warns of a computation (FaultCode::kComputationSlow) until its result is there.
   static constexpr std::chrono::seconds kUntoldMax{30};
 
-  /// `cell` must outlive the executor's work. A test gives its one executor. `status` and `alarm` are of the
-  /// caller's thread.
-  RunComputation(boost::asio::any_io_executor executor, const Cell& cell, PublishedStatus& status,
+  /// `regions`, those of the operation, and their cell must outlive it. A test gives its one executor.
+  /// `status` and `alarm` are of the caller's thread.
+  RunComputation(boost::asio::any_io_executor executor, const TipRegions& regions, PublishedStatus& status,
                  std::unique_ptr<Alarm> alarm)
-      : executor_(std::move(executor)), cell_(cell), status_(status), alarm_(std::move(alarm)) {}
+      : executor_(std::move(executor)), regions_(regions), status_(status), alarm_(std::move(alarm)) {}
 
   /// The same run with the result of all its touches.
   boost::asio::awaitable<Run> identified(Run run);
@@ -40,7 +40,7 @@ class RunComputation {
   boost::asio::awaitable<Result> told_when_late(std::string what, boost::asio::awaitable<Result> work);
 
   boost::asio::any_io_executor executor_;
-  const Cell& cell_;
+  const TipRegions& regions_;
   PublishedStatus& status_;
   std::unique_ptr<Alarm> alarm_;
 };

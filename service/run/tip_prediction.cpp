@@ -86,16 +86,18 @@ std::optional<double> predicted_rms_m(const calib::TipRegion& region,
   return region.rms_m(uncertainty.covariance());
 }
 
+TipRegions::TipRegions(const Cell& cell) : TipRegions(cell, std::make_shared<Made>()) {}
+
 const TipRegions::Tip& TipRegions::made_tip() const {
-  std::call_once(tip_made_, [this] {
+  std::call_once(made_->tip_once, [this] {
     auto box_postures = calib::derive_at_postures(
         cell_.arm.model,
         calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box));
     Regions regions{.workspace_box = box_postures.region(),
                     .joint_ranges = calib::region_over_joint_ranges(cell_.arm.model, cell_.arm.joint_ranges)};
-    tip_ = {.box_postures = std::move(box_postures), .regions = std::move(regions)};
+    made_->tip = {.box_postures = std::move(box_postures), .regions = std::move(regions)};
   });
-  return *tip_;
+  return made_->tip;
 }
 
 const TipRegions::Regions& TipRegions::tip() const { return made_tip().regions; }
@@ -103,22 +105,22 @@ const TipRegions::Regions& TipRegions::tip() const { return made_tip().regions; 
 const calib::TipPostures& TipRegions::box_postures() const { return made_tip().box_postures; }
 
 const std::map<std::string, TipRegions::Regions>& TipRegions::tools() const {
-  if (!tools_) {
-    tools_.emplace();
-    for (const auto& [name, tool] : cell_.tools) tools_->emplace(name, regions_of(cell_, tool));
-  }
-  return *tools_;
+  std::call_once(made_->tools_once, [this] {
+    for (const auto& [name, tool] : cell_.tools) made_->tools.emplace(name, regions_of(cell_, tool));
+  });
+  return made_->tools;
 }
 
 const calib::TipMap& TipRegions::map() const {
-  if (!map_) {
+  std::call_once(made_->map_once, [this] {
     const double volume_m3 = (cell_.workspace_box.max_m - cell_.workspace_box.min_m).prod();
     const double edge_m = std::max(kMapCellMetres, std::cbrt(volume_m3 / kMapCellsMax));
     const auto postures = calib::postures_in_box(cell_.arm.model, cell_.arm.joint_ranges, cell_.workspace_box,
                                                  std::nullopt, kMapPostureCount);
-    map_ = calib::make_tip_map(cell_.arm.model, postures, calib::divide_box(cell_.workspace_box, edge_m));
-  }
-  return *map_;
+    made_->map =
+        calib::make_tip_map(cell_.arm.model, postures, calib::divide_box(cell_.workspace_box, edge_m));
+  });
+  return made_->map;
 }
 
 TipPrediction predict_tip(const TipRegions& regions, const calib::IdentificationProblem& problem,

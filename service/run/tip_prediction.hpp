@@ -1,9 +1,11 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calib_core/identification/identify.hpp"
@@ -30,10 +32,14 @@ std::optional<double> predicted_rms_m(const calib::TipRegion& region,
                                       const calib::UncertaintyBudget& uncertainty);
 
 /// The regions in which a cell predicts the error of its tip: postures of the nominal arm. Each region is
-/// computed on first use (milliseconds; the map about a tenth of a second) and cached. tip() and
-/// box_postures() may be called from several threads, the others from one.
+/// computed on first use (milliseconds; the map about a tenth of a second) and kept. Any thread may ask.
 class TipRegions {
+  struct Made;
+
  public:
+  /// What was computed, for other regions of the same cell: whoever needs a part first computes it for all.
+  using Shared = std::shared_ptr<Made>;
+
   /// For the stylus tip or a named tool centre point.
   struct Regions {
     calib::TipRegion workspace_box;
@@ -41,9 +47,12 @@ class TipRegions {
   };
 
   /// `cell` must outlive the regions.
-  explicit TipRegions(const Cell& cell) : cell_(cell) {}
+  explicit TipRegions(const Cell& cell);
+  /// `made`: of a cell with the same arm, tools, workspace box and place of the block.
+  TipRegions(const Cell& cell, Shared made) : cell_(cell), made_(std::move(made)) {}
 
   [[nodiscard]] const Cell& cell() const { return cell_; }
+  [[nodiscard]] const Shared& shared() const { return made_; }
   [[nodiscard]] const Regions& tip() const;
   /// The postures of tip().workspace_box.
   [[nodiscard]] const calib::TipPostures& box_postures() const;
@@ -56,14 +65,17 @@ class TipRegions {
     calib::TipPostures box_postures;
     Regions regions;
   };
+  struct Made {
+    std::once_flag tip_once, tools_once, map_once;
+    Tip tip;
+    std::map<std::string, Regions> tools;
+    calib::TipMap map;
+  };
 
-  const Tip& made_tip() const;
+  [[nodiscard]] const Tip& made_tip() const;
 
   const Cell& cell_;
-  mutable std::once_flag tip_made_;
-  mutable std::optional<Tip> tip_;
-  mutable std::optional<std::map<std::string, Regions>> tools_;
-  mutable std::optional<calib::TipMap> map_;
+  Shared made_;
 };
 
 /// Predicted tip errors of the calibrated arm; absent where a figure would mislead.

@@ -1,5 +1,7 @@
 #include "tests/simulation/setting.hpp"
 
+#include <malloc.h>
+
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -57,10 +59,18 @@ Setting make_setting(const cell::Cell& cell) {
   return made;
 }
 
+/// What a world frees the next one takes, and not the system in between.
+void keep_memory() {
+  constexpr int kKeptBytes = 256 * 1024 * 1024;
+  mallopt(M_TRIM_THRESHOLD, kKeptBytes);
+  mallopt(M_MMAP_THRESHOLD, kKeptBytes);
+}
+
 }  // namespace
 
 const Setting& setting() {
   static const Setting made = [] {
+    keep_memory();
     static const cell::Cell cell = simulated_cell();
     return make_setting(cell);
   }();

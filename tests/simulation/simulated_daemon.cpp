@@ -14,14 +14,15 @@ std::optional<Time> Context::until_next_timer() {
   return did_something ? std::optional(Time{0}) : turn.until_next_timer();
 }
 
-SimulatedDaemon::SimulatedDaemon(const cell::Cell& cell, std::shared_ptr<const cell::Plan> plan)
+SimulatedDaemon::SimulatedDaemon(const cell::TipRegions& regions, std::shared_ptr<const cell::Plan> plan)
     : store_(kStoreFile) {
   operation_.emplace(
       cell::CellOperation::Threads{operation_context_.get_executor(), computation_context_.get_executor()},
-      cell, cell::StoreQueue(store_, store_context_.get_executor()),
+      regions.cell(), cell::StoreQueue(store_, store_context_.get_executor()),
       cell::Endpoint{"127.0.0.1", kControllerPort}, "simulated",
       cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
   operation_->hand_in_plan(std::move(plan));
+  operation_->hand_in_regions(regions.shared());
 }
 
 /// What waits in the other two contexts unwinds in that of the operation, so that comes last.

@@ -31,8 +31,9 @@ class Context : public cell::Context {
 /// is told, stored or stopped.
 class SimulatedDaemon {
  public:
-  /// Opens the store, as a process does that begins; std::exception when that fails. `cell` must outlive it.
-  SimulatedDaemon(const cell::Cell& cell, std::shared_ptr<const cell::Plan> plan);
+  /// Opens the store, as a process does that begins; std::exception when that fails. `regions` is of `cell`,
+  /// and both must outlive it: what they have computed is not computed again at each start.
+  SimulatedDaemon(const cell::TipRegions& regions, std::shared_ptr<const cell::Plan> plan);
   ~SimulatedDaemon();
   SimulatedDaemon(const SimulatedDaemon&) = delete;
   SimulatedDaemon& operator=(const SimulatedDaemon&) = delete;

@@ -129,7 +129,7 @@ World::~World() {
 
 void World::begin_daemon() {
   try {
-    process_.daemon = std::make_unique<SimulatedDaemon>(setting().cell, plan_);
+    process_.daemon = std::make_unique<SimulatedDaemon>(*setting().regions, plan_);
   } catch (const std::exception& error) {
     journal_.note("process", fmt::format("the daemon does not start: {}", error.what()));
     process_.starts_at = clock_.now() + 5s;

@@ -68,7 +68,7 @@ class OwnersBench {
   RunStore store;
   StoreQueue queue{store, io.get_executor()};
   TipRegions regions;
-  RunComputation computation{io.get_executor(), cell_of_owners(), status, std::make_unique<MadeUpAlarm>()};
+  RunComputation computation{io.get_executor(), regions, status, std::make_unique<MadeUpAlarm>()};
   TouchPreparation preparation;
 
  private:

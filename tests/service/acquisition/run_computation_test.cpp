@@ -18,8 +18,7 @@ class RunComputationTest : public ExecutorBench {
  protected:
   boost::asio::io_context arithmetic_{1};
   MadeUpAlarm* const alarm_ = new MadeUpAlarm;  // the computation's
-  RunComputation withheld_{arithmetic_.get_executor(), cell_of_owners(), status,
-                           std::unique_ptr<Alarm>(alarm_)};
+  RunComputation withheld_{arithmetic_.get_executor(), regions, status, std::unique_ptr<Alarm>(alarm_)};
   TouchExecutor beside_{cell_of_owners(), withheld_, queue, session,
                         preparation,      status,    wake,  time.clocks()};
 };

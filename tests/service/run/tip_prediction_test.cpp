@@ -134,6 +134,15 @@ TEST_F(TipPredictionTest, AWarmerArmIsOffByWhatItHasGrown) {
   EXPECT_GT(by_growth_m, 5e-5) << "else it would not matter";
 }
 
+TEST_F(TipPredictionTest, WhatOneComputedOfACellAnotherNeedsNotComputeAgain) {
+  const TipRegions regions(edf());
+  const TipRegions other(edf(), regions.shared());
+  EXPECT_EQ(&other.map(), &regions.map());
+  EXPECT_EQ(&other.tip(), &regions.tip());
+  EXPECT_EQ(&other.tools(), &regions.tools());
+  EXPECT_NE(&TipRegions(edf()).map(), &regions.map());
+}
+
 TEST_F(TipPredictionTest, InTheArmsOwnFrameTheBlocksPlaceDoesNotCount) {
   calib::IdentificationResult result = calib::identify(problem_, recipe_.identification);
   const TipRegions regions(edf());
