@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 
@@ -20,7 +21,10 @@ struct OpenFile {
 
 Disk::File& file_of(sqlite3_file* open) { return *reinterpret_cast<OpenFile*>(open)->file; }
 
-int close_file(sqlite3_file*) { return SQLITE_OK; }
+int close_file(sqlite3_file* open) {
+  file_of(open).locks.levels.erase(open);
+  return SQLITE_OK;
+}
 
 int read_file(sqlite3_file* open, void* into, int count, sqlite3_int64 offset) {
   const Disk::File& file = file_of(open);
@@ -49,10 +53,28 @@ int size_of_file(sqlite3_file* open, sqlite3_int64* size) {
   return SQLITE_OK;
 }
 
-int lock_file(sqlite3_file*, int) { return SQLITE_OK; }
+int lock_file(sqlite3_file* open, int level) {
+  auto& levels = file_of(open).locks.levels;
+  for (const auto& [other, has] : levels) {
+    if (other == open) continue;
+    const bool is_free = level == SQLITE_LOCK_SHARED     ? has < SQLITE_LOCK_PENDING
+                         : level == SQLITE_LOCK_RESERVED ? has < SQLITE_LOCK_RESERVED
+                                                         : has == SQLITE_LOCK_NONE;
+    if (!is_free) return SQLITE_BUSY;
+  }
+  levels[open] = std::max(levels[open], level);
+  return SQLITE_OK;
+}
 
-int is_reserved(sqlite3_file*, int* answer) {
-  *answer = 0;
+int unlock_file(sqlite3_file* open, int level) {
+  int& has = file_of(open).locks.levels[open];
+  has = std::min(has, level);
+  return SQLITE_OK;
+}
+
+int is_reserved(sqlite3_file* open, int* answer) {
+  const auto& levels = file_of(open).locks.levels;
+  *answer = std::ranges::any_of(levels, [](const auto& one) { return one.second >= SQLITE_LOCK_RESERVED; });
   return SQLITE_OK;
 }
 
@@ -70,20 +92,48 @@ int map_shared(sqlite3_file* open, int region, int size, int extend, void volati
   }
   if (shared[index].empty()) shared[index].resize(static_cast<std::size_t>(size));
   *memory = shared[index].data();
+  file_of(open).locks.with_memory.insert(open);
   return SQLITE_OK;
 }
 
-int lock_shared(sqlite3_file*, int, int, int) { return SQLITE_OK; }
+bool may_have(const Disk::Locks::Slot& slot, const sqlite3_file* open, bool to_write) {
+  if (slot.writer != nullptr && slot.writer != open) return false;
+  const auto is_other = [open](const void* reader) { return reader != open; };
+  return !to_write || std::ranges::none_of(slot.readers, is_other);
+}
+
+int lock_shared(sqlite3_file* open, int first, int count, int flags) {
+  auto& locks = file_of(open).locks;
+  const auto slots =
+      std::span(locks.slots).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+  const bool to_write = (flags & SQLITE_SHM_EXCLUSIVE) != 0;
+  if ((flags & SQLITE_SHM_UNLOCK) != 0) {
+    for (Disk::Locks::Slot& slot : slots) {
+      if (slot.writer == open) slot.writer = nullptr;
+      slot.readers.erase(open);
+    }
+    return SQLITE_OK;
+  }
+  for (const Disk::Locks::Slot& slot : slots)
+    if (!may_have(slot, open, to_write)) return SQLITE_BUSY;
+  for (Disk::Locks::Slot& slot : slots) {
+    if (to_write) slot.writer = open;
+    if (!to_write) slot.readers.insert(open);
+  }
+  return SQLITE_OK;
+}
 void order_shared(sqlite3_file*) {}
 
 int unmap_shared(sqlite3_file* open, int) {
-  file_of(open).shared.clear();
+  Disk::File& file = file_of(open);
+  file.locks.with_memory.erase(open);
+  if (file.locks.with_memory.empty()) file.shared.clear();
   return SQLITE_OK;
 }
 
 const sqlite3_io_methods kMethods{
     2,           close_file,   read_file,    write_file,   truncate_file, sync_file,       size_of_file,
-    lock_file,   lock_file,    is_reserved,  control_file, sector_size,   characteristics, map_shared,
+    lock_file,   unlock_file,  is_reserved,  control_file, sector_size,   characteristics, map_shared,
     lock_shared, order_shared, unmap_shared, nullptr,      nullptr};
 
 int open_file(sqlite3_vfs*, const char* name, sqlite3_file* file, int flags, int* flags_out) {
@@ -246,6 +296,7 @@ void Disk::fail_power(File& file) {
 void Disk::start_again(bool power_failed) {
   for (auto& [name, file] : files_) {
     file.shared.clear();
+    file.locks = {};
     if (power_failed) fail_power(file);
   }
   is_frozen_ = has_failed_ = false;

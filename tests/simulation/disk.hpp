@@ -1,10 +1,12 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -16,7 +18,7 @@ namespace simulation {
 enum class DiskTrouble { kNone, kFull, kWriteFails, kSyncFails, kWritesShort, kReadOnly, kSyncLies };
 
 /// Files in memory for SQLite, which know what of them would outlive a power failure. It is SQLite's default
-/// file system (VFS) while it exists; one at a time, one connection a file.
+/// file system (VFS) while it exists; one at a time. Several connections may have a file, of one process.
 class Disk {
  public:
   Disk(const VirtualClock& clock, std::uint64_t seed);
@@ -30,10 +32,21 @@ class Disk {
     std::vector<std::uint8_t> before, after;
     std::size_t size_before = 0, size_after = 0;  // of the file
   };
+  /// Who of the connections has which lock of a file. `level` of SQLite: SHARED has many, what is above one.
+  struct Locks {
+    std::map<const void*, int> levels;
+    struct Slot {
+      std::set<const void*> readers;
+      const void* writer = nullptr;
+    };
+    std::array<Slot, 8> slots;          // of the index of a write-ahead log
+    std::set<const void*> with_memory;  // that have the index in memory
+  };
   struct File {
     std::vector<std::uint8_t> bytes;                // as everybody reads them
     std::vector<Write> unsynced;                    // oldest first
     std::vector<std::vector<std::uint8_t>> shared;  // the index of a write-ahead log
+    Locks locks;
   };
   using Files = std::map<std::string, File>;
 

@@ -73,6 +73,21 @@ TEST_F(DiskTest, AStoreOnItOutlivesAPowerFailureWithAllThatWasCommitted) {
   }
 }
 
+/// The last connection that closes a file takes its log into the file; one before it must not.
+TEST_F(DiskTest, AReaderSeesWhatIsCommittedAndMayComeAndGo) {
+  cell::RunStore store("store.sqlite");
+  for (int runs = 1; runs <= 3; ++runs) {
+    store.begin_run({.recipe = "few", .started_at = "now"});
+    const auto reader = cell::RunStore::reader("store.sqlite");
+    EXPECT_EQ(reader->runs(100).size(), static_cast<std::size_t>(runs));
+    store.begin_run({.recipe = "few", .started_at = "now"});
+    EXPECT_EQ(cell::RunStore::reader("store.sqlite")->runs(100).size(), reader->runs(100).size());
+    store.withdraw_run(store.runs(1).front().id);
+    EXPECT_GT(disk_.files()["store.sqlite-wal"].bytes.size(), 0u);
+  }
+  EXPECT_EQ(store.runs(100).size(), 3u);
+}
+
 TEST_F(DiskTest, ACommandThatWasMadeDurableOutlivesAPowerFailure) {
   for (std::uint32_t number = 1; number <= 10; ++number) {
     std::int64_t run = 0;

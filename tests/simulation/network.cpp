@@ -24,7 +24,9 @@ struct Network::Socket {
   int descriptor = 0;
   Stage stage = Stage::kNew;
   std::uint16_t port = 0;
-  bool is_host = false;              // it connected
+  bool is_host = false;              // it connected, over the cable
+  bool is_client = false;            // it connected, to the host
+  bool is_on_cable = false;          // as both ends of a connection are
   int peer = 0;                      // 0: none, or gone
   std::deque<int> waiting;           // of a listener: taken, not accepted
   std::deque<Arrival> under_way;     // to here
@@ -32,6 +34,7 @@ struct Network::Socket {
   bool has_end = false;              // the peer sends no more
   bool sends_no_more = false;
   bool is_cut_off = false;  // half open
+  bool waits_to_send = false;
   int error = 0;
   std::optional<Time> connected_at;  // a connection that is being made
 };
@@ -116,7 +119,7 @@ std::optional<Time> Network::next_due() const {
 
 void Network::cut() {
   for (auto& [descriptor, socket] : sockets_) {
-    if (socket->stage != Stage::kConnected) continue;
+    if (socket->stage != Stage::kConnected || !socket->is_on_cable) continue;
     socket->peer = 0;
     reset(*socket);
   }
@@ -124,7 +127,7 @@ void Network::cut() {
 
 void Network::half_open() {
   for (auto& [descriptor, socket] : sockets_) {
-    if (socket->stage != Stage::kConnected) continue;
+    if (socket->stage != Stage::kConnected || !socket->is_on_cable) continue;
     socket->is_cut_off = true;
     socket->under_way.clear();
   }
@@ -132,7 +135,7 @@ void Network::half_open() {
 
 void Network::hold_up(Time time) {
   for (auto& [descriptor, socket] : sockets_) {
-    if (socket->stage != Stage::kConnected || socket->is_cut_off) continue;
+    if (socket->stage != Stage::kConnected || socket->is_cut_off || !socket->is_on_cable) continue;
     for (Arrival& arrival : socket->under_way) arrival.due += time;
     if (socket->under_way.empty()) socket->under_way.push_back({clock_.now() + time, {}, false, false});
   }
@@ -170,18 +173,21 @@ int Network::connect(int descriptor, std::uint16_t port) {
   const auto listener = std::ranges::find_if(sockets_, [port](const auto& one) {
     return one.second->stage == Stage::kListening && one.second->port == port;
   });
-  host->is_host = true;
+  host->is_on_cable = is_on_cable(port);
+  host->is_host = host->is_on_cable;
+  host->is_client = !host->is_on_cable;
   host->port = port;
   host->stage = Stage::kConnecting;
-  if (conditions.swallows || host_is_dead_) return fails(EINPROGRESS);
+  if (host->is_on_cable && (conditions.swallows || host_is_dead_)) return fails(EINPROGRESS);
   host->connected_at = clock_.now() + 2 * conditions.latency;
-  if (conditions.refuses || listener == sockets_.end()) {
+  if ((host->is_on_cable && conditions.refuses) || listener == sockets_.end()) {
     host->error = ECONNREFUSED;
     return fails(EINPROGRESS);
   }
   Socket& controller = *find(open_socket());
   controller.stage = Stage::kConnected;
   controller.port = port;
+  controller.is_on_cable = host->is_on_cable;
   controller.peer = descriptor;
   host->peer = controller.descriptor;
   listener->second->waiting.push_back(controller.descriptor);
@@ -195,7 +201,7 @@ int Network::accept(int descriptor) {
   if (listener->waiting.empty()) return fails(EAGAIN);
   const int accepted = listener->waiting.front();
   listener->waiting.pop_front();
-  if (on_connection) on_connection();
+  if (on_connection && find(accepted)->is_on_cable) on_connection();
   return accepted;
 }
 
@@ -233,20 +239,26 @@ std::int64_t Network::send(int descriptor, std::span<const std::uint8_t> bytes) 
   if (socket == nullptr) return fails(EBADF);
   if (socket->stage == Stage::kBroken) return fails(socket->error != 0 ? socket->error : EPIPE);
   if (socket->stage != Stage::kConnected) return fails(ENOTCONN);
-  if (socket->is_host && host_is_dead_) return static_cast<std::int64_t>(bytes.size());
+  const bool is_of_host = socket->is_on_cable ? socket->is_host : !socket->is_client;
+  if (is_of_host && host_is_dead_) return static_cast<std::int64_t>(bytes.size());
   if (socket->sends_no_more) return fails(EPIPE);
   Socket* const peer = find(socket->peer);
   std::size_t waiting = peer ? peer->unread.size() : 0;
   if (peer)
     for (const Arrival& arrival : peer->under_way) waiting += arrival.bytes.size();
-  if (waiting + bytes.size() > kUnreadMax) return fails(EAGAIN);
-  if (tap) tap(socket->is_host, true, bytes);
+  if (waiting >= kUnreadMax) {
+    socket->waits_to_send = true;
+    return fails(EAGAIN);
+  }
+  bytes = bytes.first(std::min(bytes.size(), kUnreadMax - waiting));
+  if (tap && socket->is_on_cable) tap(socket->is_host, true, bytes);
   if (!peer) return static_cast<std::int64_t>(bytes.size());  // the other side is gone; it will be told
   Time due = clock_.now() + conditions.latency;
   std::span<const std::uint8_t> rest = bytes;
   while (!rest.empty()) {
+    const bool is_whole = conditions.piece_max == 0 || !socket->is_on_cable;
     const std::size_t size =
-        conditions.piece_max == 0 ? rest.size() : std::min(rest.size(), 1 + chance_() % conditions.piece_max);
+        is_whole ? rest.size() : std::min(rest.size(), 1 + chance_() % conditions.piece_max);
     schedule(*peer, {due, {rest.begin(), rest.begin() + static_cast<std::ptrdiff_t>(size)}, false, false});
     rest = rest.subspan(size);
     due += draw_gap();
@@ -262,10 +274,10 @@ std::int64_t Network::receive(int descriptor, std::uint8_t* into, std::size_t si
   if (count == 0) return socket->has_end ? 0 : fails(EAGAIN);
   const auto end = socket->unread.begin() + static_cast<std::ptrdiff_t>(count);
   std::copy(socket->unread.begin(), end, into);
-  const bool was_full = socket->unread.size() > kUnreadMax / 2;
   socket->unread.erase(socket->unread.begin(), end);
-  if (was_full) wake(socket->peer);
-  if (tap) tap(!socket->is_host, false, {into, count});
+  Socket* const sender = find(socket->peer);
+  if (sender && std::exchange(sender->waits_to_send, false)) wake(sender->descriptor);
+  if (tap && socket->is_on_cable) tap(!socket->is_host, false, {into, count});
   return static_cast<std::int64_t>(count);
 }
 

@@ -17,7 +17,7 @@
 
 namespace simulation {
 
-/// How the way between host and controller behaves, from now on.
+/// How the cable between host and controller behaves, from now on.
 struct NetworkConditions {
   Time latency{std::chrono::microseconds(200)};
   std::size_t piece_max = 0;  // 0: what was sent together arrives together; else in pieces of drawn sizes
@@ -40,7 +40,9 @@ class Network {
   static Network* current();
   [[nodiscard]] static bool owns(int descriptor) { return descriptor >= kFirstDescriptor; }
 
-  // What the network does by itself.
+  /// Connections to this port go over the cable between host and controller, which the next members are
+  /// about; others stay on the daemon's machine. 0: all do.
+  std::uint16_t cable_port = 0;
   NetworkConditions conditions;
   /// Called with bytes in the moment in which a program sends or reads them. `from_host`: who connected.
   std::function<void(bool from_host, bool sent, std::span<const std::uint8_t> bytes)> tap;
@@ -52,7 +54,8 @@ class Network {
   void half_open();
   /// What is under way arrives so much later, all behind it too.
   void hold_up(Time time);
-  /// What the host sends from now on leaves its machine no more: the process is dead.
+  /// What the host sends from now on leaves it no more, to the controller or to its own clients: the process
+  /// is dead.
   void silence_host() { host_is_dead_ = true; }
   void new_host() { host_is_dead_ = false; }
   /// What is due arrives. True when something did.
@@ -94,6 +97,7 @@ class Network {
   };
   enum class Stage { kNew, kListening, kConnecting, kConnected, kBroken };
 
+  [[nodiscard]] bool is_on_cable(std::uint16_t port) const { return cable_port == 0 || port == cable_port; }
   Socket* find(int descriptor) const;
   void schedule(Socket& to, Arrival arrival);
   void take(Socket& socket, Arrival arrival);

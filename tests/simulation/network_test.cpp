@@ -110,11 +110,28 @@ TEST_F(NetworkTest, ACutIsToldToBothAndAHalfOpenConnectionToNobody) {
 TEST_F(NetworkTest, WhoDoesNotReadIsNotSentMore) {
   const auto [host, controller] = connect();
   EXPECT_EQ(send(host, 60'000), 60'000);
-  EXPECT_EQ(send(host, 10'000), -1);
+  EXPECT_EQ(send(host, 10'000), 5'536);
+  EXPECT_EQ(send(host, 1), -1);
   EXPECT_EQ(errno, EAGAIN);
   pass(1ms);
-  EXPECT_EQ(receive(controller), 60'000);
+  EXPECT_EQ(receive(controller), 65'536);
   EXPECT_EQ(send(host, 10'000), 10'000);
+}
+
+TEST_F(NetworkTest, WhatTheCableSuffersConnectionsToOtherPortsDoNot) {
+  network_.cable_port = kPort + 1;
+  network_.conditions.swallows = true;
+  const auto [client, host] = connect();
+  network_.cut();
+  network_.half_open();
+  EXPECT_EQ(send(client, 3), 3);
+  pass(1ms);
+  EXPECT_EQ(receive(host), 3);
+  network_.silence_host();
+  EXPECT_EQ(send(host, 3), 3);
+  pass(1ms);
+  EXPECT_EQ(receive(client), -1);
+  EXPECT_EQ(errno, EAGAIN) << "the process is dead";
 }
 
 TEST_F(NetworkTest, WhereNobodyListensAConnectionIsRefused) {

@@ -177,6 +177,11 @@ int getsockname(int descriptor, sockaddr* address, socklen_t* size) noexcept {
   return real<int (*)(int, sockaddr*, socklen_t*)>("getsockname")(descriptor, address, size);
 }
 
+int getpeername(int descriptor, sockaddr* address, socklen_t* size) noexcept {
+  if (network_of(descriptor) != nullptr) return simulation::put_address(1, address, size);
+  return real<int (*)(int, sockaddr*, socklen_t*)>("getpeername")(descriptor, address, size);
+}
+
 int ioctl(int descriptor, unsigned long request, ...) noexcept {
   va_list arguments;
   va_start(arguments, request);

@@ -99,6 +99,7 @@ World::World(const Scenario& scenario)
   auto log = std::make_shared<spdlog::logger>("simulation", std::make_shared<LogSink>(watcher_));
   log->set_level(spdlog::level::info);
   spdlog::set_default_logger(std::move(log));
+  network_.cable_port = kControllerPort;
   network_.tap = [this](bool from_host, bool sent, std::span<const std::uint8_t> bytes) {
     watcher_.on_bytes(from_host, sent, bytes);
   };

@@ -95,12 +95,16 @@ std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedReque
 }  // namespace
 
 struct Api::Desk {
-  Desk(const CellOperation& operation, int to_have_waiting, const char* to_say)
-      : waiting_max(to_have_waiting), when_full(to_say), reads(operation, operation.store().file()) {}
+  Desk(asio::any_io_executor given, const CellOperation& operation, int to_have_waiting, const char* to_say)
+      : waiting_max(to_have_waiting), when_full(to_say), reads(operation, operation.store().file()) {
+    if (!given) given = thread.emplace(1).get_executor();
+    executor = std::move(given);
+  }
   ~Desk() { end(); }
   void end() {
-    thread.stop();  // nobody waits for an answer any more
-    thread.join();
+    if (!thread) return;
+    thread->stop();  // nobody waits for an answer any more
+    thread->join();
   }
   Desk(const Desk&) = delete;
   Desk& operator=(const Desk&) = delete;
@@ -108,8 +112,9 @@ struct Api::Desk {
   int waiting = 0;  // of the thread that serves, as the next two
   int waiting_max;
   const char* when_full;
-  Reads reads;  // of its own thread
-  boost::asio::thread_pool thread{1};
+  Reads reads;                                     // of its own thread
+  std::optional<boost::asio::thread_pool> thread;  // none where it was handed in
+  boost::asio::any_io_executor executor;
 };
 
 Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& operation, Tokens tokens)
@@ -117,8 +122,9 @@ Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& oper
       threads_(std::move(threads)),
       services_(operation, std::move(tokens), operation.store().file()),
       audit_(threads_.store, services_),
-      reader_(std::make_unique<Desk>(operation, kAtReaderMax, "other runs are being read; ask again")),
-      worker_(std::make_unique<Desk>(operation, kAtWorkerMax,
+      reader_(std::make_unique<Desk>(threads_.reader, operation, kAtReaderMax,
+                                     "other runs are being read; ask again")),
+      worker_(std::make_unique<Desk>(threads_.worker, operation, kAtWorkerMax,
                                      "other documents are being identified; ask again")) {
   services_.feed.follow([this](const Status& status) { services_.metrics.follow(status); }, executor);
 }
@@ -291,7 +297,7 @@ asio::awaitable<void> Api::follow_tokens(KnownDirectory state_directory, std::ch
     const auto look = [state_directory, known = services_.tokens] {
       return tokens_now(state_directory, known);
     };
-    CurrentTokens now = co_await run_on(reader_->thread.get_executor(), look);
+    CurrentTokens now = co_await run_on(reader_->executor, look);
     troubles.tell(now);
     take_tokens(std::move(now.tokens));
   }
@@ -364,7 +370,7 @@ asio::awaitable<HttpResponse> Api::at_desk(Desk& desk, const HttpRequest& reques
   if (desk.waiting >= desk.waiting_max) co_return busy(desk.when_full);
   const Waiting waiting(desk.waiting);
   const std::shared_ptr<const ActiveRun> live = co_await live_run(admitted);
-  HttpResponse response = co_await run_on(desk.thread.get_executor(), [&] {
+  HttpResponse response = co_await run_on(desk.executor, [&] {
     const Asked nothing;
     desk.reads.update(live);
     return handle(admitted, request, services_, desk.reads, nothing);

@@ -19,13 +19,16 @@ namespace cell {
 struct ApiThreads {
   boost::asio::any_io_executor operation;  // where the operation is asked and commanded
   boost::asio::any_io_executor store;      // where the audit and the answers are written
+  // Where what is stored is read, and where documents from outside are identified. Empty: the Api has a
+  // thread of its own for each.
+  boost::asio::any_io_executor reader = {};
+  boost::asio::any_io_executor worker = {};
 };
 
 /// Answers requests: waits where a route requires it (DispatchMode), repeats the first answer to an
 /// Idempotency-Key, and records every command and every refusal in the audit log. A command that cannot be
-/// recorded is refused, except one that halts, which is recorded afterwards. It has the thread of `executor`,
-/// one that reads what is stored and one that identifies documents from outside; README.md of service/ says
-/// what waits for what.
+/// recorded is refused, except one that halts, which is recorded afterwards. It has the thread of `executor`;
+/// README.md of service/ says what waits for what.
 class Api final : public RequestHandler {
  public:
   /// `operation` must outlive it; its clock also dates what is recorded here. Before it is destroyed all
@@ -46,7 +49,7 @@ class Api final : public RequestHandler {
   /// Reads the tokens again and again, on the thread that reads, until the executor ends: one whose file has
   /// gone or is refused ends within this time, and a new one counts.
   boost::asio::awaitable<void> follow_tokens(KnownDirectory state_directory, std::chrono::milliseconds every);
-  /// Waits for what the threads of its own are at, of which nobody hears any more. Call it before the
+  /// Waits for what threads of its own are at, of which nobody hears any more. Call it before the
   /// contexts end whose coroutines wait for them.
   void end_desks();
   /// From now on these count. An event stream whose token does not count any more ends.
