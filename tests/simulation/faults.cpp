@@ -13,6 +13,8 @@ using namespace std::chrono_literals;
 constexpr int kFaultsMax = 6;
 /// A touch of the simulated cell takes about so long.
 constexpr Time kTouchTime = 6s;
+/// So many writes, or somewhat more, a daemon makes while it starts.
+constexpr int kWritesOfStart = 1500;
 
 /// The faults of config/FILES.md but for those that need another configuration to end (wrong_arm and the
 /// like at every connection) and the key that is stuck for good.
@@ -67,6 +69,10 @@ constexpr std::array kCommands{cell::Command::kPause,     cell::Command::kResume
                                cell::Command::kReset,     cell::Command::kClear,  cell::Command::kAcknowledge,
                                cell::Command::kTouchTest, cell::Command::kConfirm};
 
+bool is_at_start(FaultKind kind) {
+  return kind == FaultKind::kKilledAtStart || kind == FaultKind::kPowerFailsAtStart;
+}
+
 FaultKind draw_kind(Chance& chance) {
   constexpr int kOthers = static_cast<int>(FaultKind::kCommand);
   if (chance.below(100) < 45) return FaultKind::kController;
@@ -80,6 +86,8 @@ DrawnFault draw_fault(Chance& chance, Time at) {
   if (chance.once_in(5)) fault.lasts *= 10;
   if (fault.kind == FaultKind::kLinkHeldUp) fault.lasts /= 4;
   if (fault.kind == FaultKind::kClockJumps) fault.lasts = chance.between(-2h, 2h);
+  if (is_at_start(fault.kind) && chance.once_in(2)) fault.number = 1 + chance.below(kWritesOfStart);
+  if (is_at_start(fault.kind) && chance.once_in(4)) fault.at = Time{0};  // the first start makes the store
   if (fault.kind == FaultKind::kController)
     fault.line = kLinesOfController[static_cast<std::size_t>(chance.below(kLinesOfController.size()))];
   if (fault.kind == FaultKind::kCommand)
@@ -123,12 +131,20 @@ std::string_view fault_kind_name(FaultKind kind) {
       return "killed at a write";
     case FaultKind::kPowerFails:
       return "power fails at a write";
+    case FaultKind::kKilledAtStart:
+      return "killed, and again at a write of the start";
+    case FaultKind::kPowerFailsAtStart:
+      return "killed, and power fails at a write of the start";
     case FaultKind::kTerminated:
       return "terminated";
     case FaultKind::kCommand:
       return "command";
   }
   return "";
+}
+
+bool takes_power(FaultKind kind) {
+  return kind == FaultKind::kPowerFails || kind == FaultKind::kPowerFailsAtStart;
 }
 
 std::string fault_text(const DrawnFault& fault) {
@@ -145,6 +161,8 @@ std::string fault_text(const DrawnFault& fault) {
       return std::string(fault_kind_name(fault.kind));
     case FaultKind::kKilledAtWrite:
     case FaultKind::kPowerFails:
+    case FaultKind::kKilledAtStart:
+    case FaultKind::kPowerFailsAtStart:
       return fmt::format("{} ({})", fault_kind_name(fault.kind), fault.number);
     case FaultKind::kLinkHeldUp:
     case FaultKind::kLinkInPieces:

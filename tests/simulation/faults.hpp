@@ -26,11 +26,15 @@ enum class FaultKind {
   kKilled,           // kill -9, at once
   kKilledAtWrite,    // at the `number`-th write from then on
   kPowerFails,       // at the `number`-th write; what was not synced is there or is not
-  kTerminated,       // SIGTERM
-  kCommand,          // somebody gives `command`
+  kKilledAtStart,    // at once, and the next one at its `number`-th write
+  kPowerFailsAtStart,
+  kTerminated,  // SIGTERM
+  kCommand,     // somebody gives `command`
 };
 
 std::string_view fault_kind_name(FaultKind kind);
+/// Of the daemon's machine.
+bool takes_power(FaultKind kind);
 
 /// What goes wrong, and when. A value: a world of the same seed with fewer of them is another world.
 struct DrawnFault {

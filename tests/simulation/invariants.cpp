@@ -50,6 +50,9 @@ std::optional<std::string> moves_unpermitted(const Record& record) {
 }
 
 std::optional<std::string> wrong_in_accepted(const Record& record, const RunRecord& run) {
+  if (run.run.touches_total != record.touches_planned)
+    return fmt::format("it has {} touches of {} that are planned", run.run.touches_total,
+                       record.touches_planned);
   std::set<int> numbers;
   for (const cell::StoredTouch& touch : run.touches) {
     if (!numbers.insert(touch.number).second) return fmt::format("touch {} is there twice", touch.number);
@@ -153,9 +156,12 @@ std::optional<std::string> dead_end(const Record& record) {
     return fmt::format("at {:.3f} s nothing leads out of {}", seconds(state.at),
                        cell::state_name(state.state));
   }
-  if (!record.came_to_end) return "a person who does what the cell asks for does not come to an end";
+  if (!record.came_to_end && !record.thrown)
+    return "a person who does what the cell asks for does not come to an end";
   return std::nullopt;
 }
+
+std::optional<std::string> process_ended(const Record& record) { return record.thrown; }
 
 constexpr std::array kInvariants{
     Invariant{"no_motion_in_held_aborted_stopped", moves_where_it_must_not},
@@ -166,6 +172,7 @@ constexpr std::array kInvariants{
     Invariant{"answered_touches_are_in_order", answers_out_of_order},
     Invariant{"result_is_that_of_its_touches", result_differs},
     Invariant{"every_state_has_a_way_out", dead_end},
+    Invariant{"nothing_ends_the_process", process_ended},
 };
 
 }  // namespace

@@ -49,6 +49,7 @@ class InvariantTest : public ::testing::Test {
     record_.stores.push_back({60s, "the end", 3, {run}});
     record_.states.push_back({60s, cell::State::kComplete, {cell::Command::kStart}});
     record_.came_to_end = true;
+    record_.touches_planned = 3;
   }
   RunRecord& run() { return record_.stores.back().runs.back(); }
   void expect_broken(const std::string& name) {
@@ -102,6 +103,11 @@ TEST_F(InvariantTest, AnAcceptedRunHasEachTouchOfItsPlan) {
   expect_broken("accepted_run_is_whole");
   run().run.verdict = cell::Verdict::kIncomplete;
   EXPECT_THAT(broken_invariants(record_), IsEmpty()) << "it says so";
+}
+
+TEST_F(InvariantTest, AnAcceptedRunIsOfTheWholePlan) {
+  record_.touches_planned = 4;
+  expect_broken("accepted_run_is_whole");
 }
 
 TEST_F(InvariantTest, AnAcceptedRunHasNoTouchTwice) {
@@ -164,6 +170,12 @@ TEST_F(InvariantTest, SomethingLeadsOutOfEachState) {
 TEST_F(InvariantTest, APersonComesToAnEnd) {
   record_.came_to_end = false;
   expect_broken("every_state_has_a_way_out");
+}
+
+TEST_F(InvariantTest, NothingEndsTheProcessFromWithin) {
+  record_.thrown = "what nobody caught";
+  record_.came_to_end = false;
+  expect_broken("nothing_ends_the_process");
 }
 
 }  // namespace

@@ -49,6 +49,7 @@ struct RunRecord {
   std::optional<std::string> result_json;
   /// The document that the same touches give in one piece, when nothing ever failed.
   std::optional<std::string> undisturbed_json;
+  std::vector<std::string> reasons;  // of a complete run that is not accepted
 };
 
 /// What the store had at some time, and how many answers had been acknowledged by then.
@@ -67,12 +68,15 @@ struct StateRecord {
 
 /// All that the invariants of a world are judged by.
 struct Record {
+  int touches_planned = 0;  // of each run
   std::vector<MotionSent> motions;
   std::map<CommandNumber, cs8::TouchResult> answers;  // as the controller gave them
   std::vector<Acknowledged> acknowledged;
   std::vector<StoreRecord> stores;  // in time; the last one is the end's
   std::vector<StateRecord> states;
   bool came_to_end = false;  // within the time that a person would wait
+  /// What nobody caught: it would have ended the process of a daemon or of the controller.
+  std::optional<std::string> thrown;
 };
 
 }  // namespace simulation

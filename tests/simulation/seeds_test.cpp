@@ -5,6 +5,7 @@
 #include "config/fault_file.hpp"
 #include "sim_controller/fault_names.hpp"
 #include "tests/simulation/invariants.hpp"
+#include "tests/simulation/shrinking.hpp"
 #include "tests/simulation/world.hpp"
 
 namespace simulation {
@@ -24,9 +25,9 @@ std::string last_lines(const std::string& journal) {
 
 void expect_unbroken(std::uint64_t first, std::uint64_t last) {
   for (std::uint64_t seed = first; seed <= last; ++seed) {
-    const Outcome outcome = run_world(scenario_of(seed));
-    EXPECT_THAT(outcome.broken, IsEmpty()) << "touchcal-sim --seed " << seed << "\n"
-                                           << last_lines(outcome.journal);
+    const Scenario scenario = scenario_of(seed);
+    const Outcome outcome = run_world(scenario);
+    if (!outcome.broken.empty()) ADD_FAILURE() << last_lines(broken_report(scenario, outcome));
   }
 }
 
@@ -52,6 +53,16 @@ TEST(World, WithoutFaultsMakesEachTouchOnceAndHasAResult) {
   EXPECT_TRUE(run.result_json);
 }
 
+/// Else what every accepted run keeps would be asked of none.
+TEST(World, OfAWholePlanIsAcceptedWhenNothingGoesWrong) {
+  for (const std::uint64_t seed : {99U, 199U, 299U}) {
+    const Outcome outcome = run_world(with_only(scenario_of(seed), {}));
+    const RunRecord& run = outcome.record.stores.back().runs.front();
+    EXPECT_EQ(run.run.verdict, cell::Verdict::kAccepted) << last_lines(outcome.journal);
+    EXPECT_EQ(run.touches.size(), setting().plan->touches.touches.size());
+  }
+}
+
 TEST(World, WhoseDiskLosesWhatItSaidWasSyncedIsFound) {
   Scenario scenario{.seed = 1, .touch_count = 8};
   scenario.faults.push_back({.at = 100s, .kind = FaultKind::kPowerFails, .number = 1});
@@ -68,6 +79,21 @@ TEST(World, WhosePowerFailsAtAnyWriteOfATouchLosesNoAnswer) {
     const Outcome outcome = run_world(scenario);
     EXPECT_THAT(outcome.broken, IsEmpty()) << "write " << write << "\n" << last_lines(outcome.journal);
     EXPECT_THAT(outcome.journal, HasSubstr("the power of the daemon's machine fails"));
+  }
+}
+
+TEST(World, WhoseDaemonDiesAtAnyWriteOfAStartLosesNoAnswer) {
+  for (const FaultKind kind : {FaultKind::kKilledAtStart, FaultKind::kPowerFailsAtStart}) {
+    for (const Time at : {Time{0}, Time{30s}}) {  // the first start makes the store
+      for (const int write : {1, 2, 3, 5, 8, 20, 60, 150, 400, 1000}) {
+        Scenario scenario{.seed = 1, .touch_count = kTouchesMin, .speed = kQuickSpeed};
+        scenario.faults.push_back({.at = at, .kind = kind, .number = write});
+        const Outcome outcome = run_world(scenario);
+        EXPECT_THAT(outcome.broken, IsEmpty()) << fault_text(scenario.faults.front()) << "\n"
+                                               << last_lines(outcome.journal);
+        EXPECT_THAT(outcome.journal, HasSubstr("while it starts")) << fault_text(scenario.faults.front());
+      }
+    }
   }
 }
 

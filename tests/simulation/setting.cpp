@@ -21,6 +21,14 @@ std::vector<int> all_but(const std::set<std::string>& names) {
   return excluded;
 }
 
+/// An arm without errors but those that are identified: its file says so, and a healthy run is accepted.
+void make_healthy(cell::Cell& cell, const std::vector<int>& excluded) {
+  constexpr double kAlmostNone = 1e-6;  // metres, radians
+  for (const int index : excluded) cell.arm.std_errors[static_cast<std::size_t>(index)] = kAlmostNone;
+  // One touch a face is held out: of four faces one is off by more than two of its std now and then.
+  cell.acceptance.held_out_mean_max_m = cell.acceptance.held_out_rms_max_m = 1e-4;
+}
+
 /// What the arm hides: the errors that the recipe identifies, and no others.
 calib::ErrorVector hidden_errors() {
   calib::ErrorVector errors = calib::ErrorVector::Zero();
@@ -45,6 +53,7 @@ cell::Cell simulated_cell() {
   recipe.candidate_count = 2'000;
   recipe.identification.identifiability.excluded = all_but({"r0", "d1", "r1", "theta1", "theta2"});
   made.recipes.emplace(recipe.name, recipe);
+  make_healthy(made, recipe.identification.identifiability.excluded);
   return made;
 }
 

@@ -5,11 +5,13 @@
 #include "service/acquisition/active_run.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/run_recipe.hpp"
+#include "service/run/verdict.hpp"
 
 namespace simulation {
 namespace {
 
-std::optional<std::string> undisturbed_result(const RunRecord& record, const cell::TipRegions& regions) {
+/// The result of the stored touches alone, and why it is not accepted.
+void add_undisturbed_result(const cell::TipRegions& regions, RunRecord& record) {
   const cell::StoredRun& stored = record.run;
   cell::ActiveRun again{
       .run = cell::Run(stored.id, regions, cell::recipe_of(stored, regions.cell()), stored.started_at,
@@ -21,7 +23,11 @@ std::optional<std::string> undisturbed_result(const RunRecord& record, const cel
   again.run.identify();
   const bool is_whole = static_cast<int>(record.touches.size()) == stored.touches_total;
   cell::conclude(again, is_whole ? cell::RunOutcome::kComplete : cell::RunOutcome::kAborted, regions);
-  return cell::result_json(again, regions);
+  record.undisturbed_json = cell::result_json(again, regions);
+  const calib::IdentificationResult& latest = again.run.latest();
+  const cell::TipPrediction tip = cell::predict_tip(regions, again.run.problem(), latest);
+  const auto criteria = cell::criteria(latest, again.run.recipe(), regions.cell(), cell::judged_tip(tip));
+  record.reasons = cell::judge(latest, criteria, regions.cell().acceptance, is_whole).reasons;
 }
 
 }  // namespace
@@ -35,9 +41,10 @@ std::vector<RunRecord> read_runs(const cell::RunStore& store, const cell::TipReg
                      .touches = store.touches(run.id),
                      .superseded = store.superseded_touches(run.id),
                      .result_json = store.result_json(run.id),
-                     .undisturbed_json = std::nullopt};
+                     .undisturbed_json = std::nullopt,
+                     .reasons = {}};
     if (regions != nullptr && run.outcome == cell::RunOutcome::kComplete)
-      record.undisturbed_json = undisturbed_result(record, *regions);
+      add_undisturbed_result(*regions, record);
     records.push_back(std::move(record));
   }
   return records;

@@ -8,8 +8,8 @@
 
 namespace simulation {
 
-/// All runs of a store, oldest first. With `regions` the result of each complete one is computed once more
-/// from its stored touches alone.
+/// All runs of a store, oldest first. With `regions` the result of each complete one is computed and judged
+/// once more, from its stored touches alone.
 std::vector<RunRecord> read_runs(const cell::RunStore& store, const cell::TipRegions* regions);
 
 }  // namespace simulation

@@ -60,8 +60,10 @@ class World {
   Outcome run();
 
  private:
+  void go_on_to_end();
   void begin_daemon();
   void end_daemon(const std::string& how);
+  [[nodiscard]] std::string death_text() const;
   void kill_if_due();
   void let_happen();
   void begin(const DrawnFault& fault);
@@ -96,6 +98,7 @@ World::World(const Scenario& scenario)
                   {.controller = {.seed = scenario.seed, .speed = scenario.speed}, .faults = {}}),
       person_(scenario.seed + 3, controller_, journal_, [this] { start_run(); }),
       plan_(first_touches(*setting().plan, scenario.touch_count)) {
+  record_.touches_planned = static_cast<int>(plan_->touches.touches.size());
   auto log = std::make_shared<spdlog::logger>("simulation", std::make_shared<LogSink>(watcher_));
   log->set_level(spdlog::level::info);
   spdlog::set_default_logger(std::move(log));
@@ -112,8 +115,7 @@ World::World(const Scenario& scenario)
     disk_.freeze();
     network_.silence_host();
   };
-  disk_.keeps_unsynced = std::ranges::any_of(
-      scenario.faults, [](const DrawnFault& fault) { return fault.kind == FaultKind::kPowerFails; });
+  disk_.keeps_unsynced = std::ranges::any_of(scenario.faults, takes_power, &DrawnFault::kind);
   for (const DrawnFault& fault : scenario.faults) events_.emplace(fault.at, [this, &fault] { begin(fault); });
   if (scenario.sabotage) events_.emplace(scenario.sabotaged_at, [this] { scenario_.sabotage(disk_); });
 }
@@ -132,10 +134,13 @@ void World::begin_daemon() {
   try {
     process_.daemon = std::make_unique<SimulatedDaemon>(*setting().regions, plan_);
   } catch (const std::exception& error) {
-    journal_.note("process", fmt::format("the daemon does not start: {}", error.what()));
-    process_.starts_at = clock_.now() + 5s;
-    return;
+    if (!process_.dies_now) {
+      journal_.note("process", fmt::format("the daemon does not start: {}", error.what()));
+      process_.starts_at = clock_.now() + 5s;
+      return;
+    }
   }
+  if (process_.dies_now) return end_daemon(death_text() + " while it starts");
   journal_.note("process", "the daemon starts");
   cell::CellOperation& operation = process_.daemon->operation();
   watcher_.watch(&operation);
@@ -159,10 +164,14 @@ void World::end_daemon(const std::string& how) {
   process_.starts_at = starts_at;
 }
 
+std::string World::death_text() const {
+  return process_.power_fails ? "the power of the daemon's machine fails" : "the daemon is killed";
+}
+
 void World::kill_if_due() {
   if (!process_.daemon) return;
   if (process_.dies_now) {
-    end_daemon(process_.power_fails ? "the power of the daemon's machine fails" : "the daemon is killed");
+    end_daemon(death_text());
   } else if (process_.daemon->has_ended()) {
     end_daemon("the daemon has ended");
   } else if (process_.killed_by && *process_.killed_by <= clock_.now()) {
@@ -252,14 +261,16 @@ void World::begin(const DrawnFault& fault) {
       clock_.set_wall_clock_ahead(clock_.wall_ahead() + fault.lasts);
       break;
     case FaultKind::kKilled:
-      process_.dies_now = true;
+      process_.dies_now = process_.daemon != nullptr;
       break;
+    case FaultKind::kKilledAtStart:
+    case FaultKind::kPowerFailsAtStart:
+      if (process_.daemon) end_daemon("the daemon is killed");
+      [[fallthrough]];  // it is the next one that dies by its writes
     case FaultKind::kKilledAtWrite:
     case FaultKind::kPowerFails:
-      // What it wrote while it starts would be killed inside the store's constructor: not simulated yet.
-      if (!process_.daemon) break;
       process_.writes_left = fault.number;
-      process_.power_fails = fault.kind == FaultKind::kPowerFails;
+      process_.power_fails = takes_power(fault.kind);
       break;
     case FaultKind::kTerminated:
       if (!process_.daemon || process_.killed_by) break;
@@ -328,7 +339,7 @@ Time World::next_event() const {
   return next;
 }
 
-Outcome World::run() {
+void World::go_on_to_end() {
   while (clock_.now() < kPatience) {
     let_happen();
     take_turns();
@@ -336,7 +347,19 @@ Outcome World::run() {
     if (record_.came_to_end) break;
     clock_.advance_to(next_event());
   }
-  if (process_.daemon) note_store("the end", true);
+  if (!process_.daemon) return;
+  note_store("the end", true);
+  for (const RunRecord& run : record_.stores.back().runs)
+    for (const std::string& reason : run.reasons)
+      journal_.note("watcher", fmt::format("run {} is not accepted: {}", run.run.id, reason));
+}
+
+Outcome World::run() {
+  try {
+    go_on_to_end();
+  } catch (const std::exception& error) {
+    record_.thrown = error.what();
+  }
   Outcome outcome;
   outcome.broken = broken_invariants(record_);
   for (const std::string& broken : outcome.broken) journal_.note("invariant", broken);
