@@ -137,6 +137,12 @@ std::string_view fault_kind_name(FaultKind kind) {
       return "killed, and power fails at a write of the start";
     case FaultKind::kTerminated:
       return "terminated";
+    case FaultKind::kClientsFlood:
+      return "clients come in crowds";
+    case FaultKind::kClientRepeatsKey:
+      return "a client repeats its key";
+    case FaultKind::kClientsStopReading:
+      return "clients do not read";
     case FaultKind::kCommand:
       return "command";
   }
@@ -163,6 +169,8 @@ std::string fault_text(const DrawnFault& fault) {
     case FaultKind::kPowerFails:
     case FaultKind::kKilledAtStart:
     case FaultKind::kPowerFailsAtStart:
+    case FaultKind::kClientsFlood:
+    case FaultKind::kClientsStopReading:
       return fmt::format("{} ({})", fault_kind_name(fault.kind), fault.number);
     case FaultKind::kLinkHeldUp:
     case FaultKind::kLinkInPieces:
@@ -174,6 +182,7 @@ std::string fault_text(const DrawnFault& fault) {
     case FaultKind::kDiskWritesShort:
     case FaultKind::kDiskStalls:
     case FaultKind::kClockJumps:
+    case FaultKind::kClientRepeatsKey:
       return fmt::format("{} ({} ms)", fault_kind_name(fault.kind), lasts_ms);
   }
   return "";

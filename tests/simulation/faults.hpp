@@ -28,8 +28,11 @@ enum class FaultKind {
   kPowerFails,       // at the `number`-th write; what was not synced is there or is not
   kKilledAtStart,    // at once, and the next one at its `number`-th write
   kPowerFailsAtStart,
-  kTerminated,  // SIGTERM
-  kCommand,     // somebody gives `command`
+  kTerminated,          // SIGTERM
+  kClientsFlood,        // ten times `number` requests at the HTTP port at once
+  kClientRepeatsKey,    // a command with a key: twice at once, and once more behind `lasts`
+  kClientsStopReading,  // `number` of them ask for much and read nothing of it
+  kCommand,             // somebody gives `command`
 };
 
 std::string_view fault_kind_name(FaultKind kind);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <map>
 #include <set>
 
 #include "cs8_protocol/names.hpp"
@@ -12,6 +14,9 @@ namespace simulation {
 namespace {
 
 using cell::State;
+
+/// A disk that stalls keeps a command waiting for a minute.
+constexpr Time kAnswerPatience = std::chrono::minutes(3);
 
 double seconds(Time time) { return std::chrono::duration<double>(time).count(); }
 
@@ -161,6 +166,29 @@ std::optional<std::string> dead_end(const Record& record) {
   return std::nullopt;
 }
 
+/// Who asks again with the same key gets the first answer again.
+std::optional<std::string> key_answered_otherwise(const Record& record) {
+  std::map<std::string, const HttpAnswer*> firsts;
+  for (const HttpAnswer& answer : record.http_answers) {
+    if (answer.key.empty() || answer.status / 100 != 2 || answer.end != HttpAnswer::End::kAnswered) continue;
+    const HttpAnswer& first = *firsts.emplace(answer.key, &answer).first->second;
+    if (first.status == answer.status && first.body == answer.body) continue;
+    if (!record.said_answer_not_kept)
+      return fmt::format("at {:.3f} s {} with {} has another answer than at {:.3f} s", seconds(answer.at),
+                         answer.request, answer.key, seconds(first.at));
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> request_left_alone(const Record& record) {
+  for (const HttpAnswer& answer : record.http_answers) {
+    if (answer.at - answer.asked_at <= kAnswerPatience) continue;
+    return fmt::format("{} of {:.3f} s had no answer and no end at {:.3f} s", answer.request,
+                       seconds(answer.asked_at), seconds(answer.at));
+  }
+  return std::nullopt;
+}
+
 std::optional<std::string> process_ended(const Record& record) { return record.thrown; }
 
 constexpr std::array kInvariants{
@@ -172,6 +200,8 @@ constexpr std::array kInvariants{
     Invariant{"answered_touches_are_in_order", answers_out_of_order},
     Invariant{"result_is_that_of_its_touches", result_differs},
     Invariant{"every_state_has_a_way_out", dead_end},
+    Invariant{"answers_to_a_key_are_the_same", key_answered_otherwise},
+    Invariant{"requests_are_answered", request_left_alone},
     Invariant{"nothing_ends_the_process", process_ended},
 };
 

@@ -172,6 +172,29 @@ TEST_F(InvariantTest, APersonComesToAnEnd) {
   expect_broken("every_state_has_a_way_out");
 }
 
+TEST_F(InvariantTest, ARepeatedKeyHasTheFirstAnswerAgain) {
+  const HttpAnswer first{
+      .at = 10s, .request = "POST /api/v1/runs", .key = "k", .status = 201, .body = "run 1"};
+  record_.http_answers = {first, first};
+  record_.http_answers.push_back(
+      {.at = 11s, .request = first.request, .key = "k", .status = 409, .body = "wait"});
+  EXPECT_THAT(broken_invariants(record_), IsEmpty());
+  record_.http_answers[1].body = "run 2";
+  expect_broken("answers_to_a_key_are_the_same");
+  record_.said_answer_not_kept = true;
+  EXPECT_THAT(broken_invariants(record_), IsEmpty()) << "the log says why";
+}
+
+TEST_F(InvariantTest, ARequestIsNotLeftAlone) {
+  record_.http_answers = {
+      {.asked_at = 10s, .at = 11s, .request = "GET /api/v1/status", .status = 200},
+      {.asked_at = 10s, .at = 15s, .request = "GET /api/v1/status", .end = HttpAnswer::End::kClosed}};
+  EXPECT_THAT(broken_invariants(record_), IsEmpty());
+  record_.http_answers.push_back(
+      {.asked_at = 10s, .at = 300s, .request = "GET /api/v1/runs", .end = HttpAnswer::End::kOpen});
+  expect_broken("requests_are_answered");
+}
+
 TEST_F(InvariantTest, NothingEndsTheProcessFromWithin) {
   record_.thrown = "what nobody caught";
   record_.came_to_end = false;

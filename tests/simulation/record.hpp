@@ -66,6 +66,17 @@ struct StateRecord {
   std::vector<cell::Command> exits;
 };
 
+/// What came of a request at the daemon's HTTP port.
+struct HttpAnswer {
+  enum class End { kAnswered, kClosed, kOpen };  // kOpen: the world ended before
+  Time asked_at{}, at{};
+  std::string request;  // "POST /api/v1/runs"
+  std::string key;
+  End end{};
+  int status = 0;    // 0: none
+  std::string body;  // as far as it came
+};
+
 /// All that the invariants of a world are judged by.
 struct Record {
   int touches_planned = 0;  // of each run
@@ -74,7 +85,9 @@ struct Record {
   std::vector<Acknowledged> acknowledged;
   std::vector<StoreRecord> stores;  // in time; the last one is the end's
   std::vector<StateRecord> states;
-  bool came_to_end = false;  // within the time that a person would wait
+  std::vector<HttpAnswer> http_answers;
+  bool said_answer_not_kept = false;  // to a key: the host could not write it
+  bool came_to_end = false;           // within the time that a person would wait
   /// What nobody caught: it would have ended the process of a daemon or of the controller.
   std::optional<std::string> thrown;
 };

@@ -1,5 +1,6 @@
 #include "tests/simulation/simulated_daemon.hpp"
 
+#include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <exception>
 
@@ -23,18 +24,50 @@ SimulatedDaemon::SimulatedDaemon(const cell::TipRegions& regions, std::shared_pt
       cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
   operation_->hand_in_plan(std::move(plan));
   operation_->hand_in_regions(regions.shared());
+  api_.emplace(http_context_.get_executor(),
+               cell::ApiThreads{.operation = operation_context_.get_executor(),
+                                .store = store_context_.get_executor(),
+                                .reader = reader_context_.get_executor(),
+                                .worker = worker_context_.get_executor()},
+               *operation_, cell::Tokens{.operate = kOperateToken, .view = "view"});
+  listener_.emplace(http_context_.get_executor(),
+                    boost::asio::ip::tcp::endpoint(boost::asio::ip::address_v4::loopback(), kHttpPort),
+                    *api_);
 }
 
-/// What waits in the other two contexts unwinds in that of the operation, so that comes last.
+/// What waits elsewhere unwinds in the context of the operation, and that in the one of the sockets.
 SimulatedDaemon::~SimulatedDaemon() {
-  store_context_.give_up();
-  computation_context_.give_up();
-  operation_context_.give_up();
+  for (Context* one : {&store_context_, &computation_context_, &reader_context_, &worker_context_,
+                       &operation_context_, &http_context_})
+    one->give_up();
+  listener_.reset();
+  api_.reset();
   operation_.reset();
+}
+
+void SimulatedDaemon::launch() {
+  operation_->launch();
+  listener_->launch();
+}
+
+void SimulatedDaemon::on_change(std::function<void(const cell::Status&)> listener) {
+  operation_->on_change([this, listener = std::move(listener)](const cell::Status& status) {
+    listener(status);
+    api_->services().feed.publish(status);
+  });
+}
+
+std::optional<Time> SimulatedDaemon::until_next_timer() {
+  const auto of_operation = operation_context_.until_next_timer();
+  const auto of_http = http_context_.until_next_timer();
+  if (!of_operation || !of_http) return of_operation ? of_operation : of_http;
+  return std::min(*of_operation, *of_http);
 }
 
 bool SimulatedDaemon::take_turn(bool store_goes_on) {
   bool did_something = operation_context_.poll_one() > 0;
+  for (Context* one : {&http_context_, &reader_context_, &worker_context_})
+    did_something = one->poll_one() > 0 || did_something;
   if (store_goes_on) did_something = store_context_.poll_one() > 0 || did_something;
   return computation_context_.poll_one() > 0 || did_something;
 }

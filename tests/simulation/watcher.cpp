@@ -132,6 +132,8 @@ void Watcher::on_acknowledge(std::uint32_t sequence) {
 
 void Watcher::on_log(std::string_view line) {
   journal_.note("daemon", line);
+  if (line.starts_with("the answer to an Idempotency-Key could not be stored"))
+    record_.said_answer_not_kept = true;
   if (record_.acknowledged.empty() || !says_no_measurement(line)) return;
   Acknowledged& last = record_.acknowledged.back();
   if (last.at == clock_.now() && last.excuse.empty()) last.excuse = line;

@@ -86,6 +86,7 @@ class World {
   Context cell_context_;
   sim::Server controller_;
   Person person_;
+  Clients clients_{clock_, network_, journal_, record_, scenario_.seed + 4};
   Process process_;
   std::shared_ptr<const cell::Plan> plan_;
   std::multimap<Time, std::function<void()>> events_;
@@ -144,7 +145,7 @@ void World::begin_daemon() {
   journal_.note("process", "the daemon starts");
   cell::CellOperation& operation = process_.daemon->operation();
   watcher_.watch(&operation);
-  operation.on_change([this](const cell::Status& status) { watcher_.on_status(status); });
+  process_.daemon->on_change([this](const cell::Status& status) { watcher_.on_status(status); });
   note_store("the daemon starts", false);
   process_.daemon->launch();
   poke();
@@ -282,6 +283,11 @@ void World::begin(const DrawnFault& fault) {
       if (const auto refusal = process_.daemon->operation().command(fault.command))
         journal_.note("fault", "refused: " + refusal->detail);
       break;
+    case FaultKind::kClientsFlood:
+    case FaultKind::kClientRepeatsKey:
+    case FaultKind::kClientsStopReading:
+      clients_.begin(fault);
+      break;
   }
 }
 
@@ -296,6 +302,7 @@ void World::let_happen() {
     kill_if_due();
     poke();
   }
+  clients_.ask_again();
   if (!process_.daemon && process_.starts_at <= clock_.now()) begin_daemon();
   if (person_.next_look() > clock_.now()) return;
   if (process_.daemon && !process_.killed_by) {
@@ -323,7 +330,10 @@ void World::take_turn_of_daemon() {
 void World::take_turns() {
   const auto daemon_is_due = [this] { return process_.daemon && process_.due <= clock_.now(); };
   do {
-    if (network_.deliver()) poke();
+    if (network_.deliver()) {
+      clients_.go_on();
+      poke();
+    }
     if (daemon_is_due()) take_turn_of_daemon();
     if (cell_due_ <= clock_.now()) cell_due_ = clock_.now() + cell_context_.until_next_timer().value_or(1h);
   } while (daemon_is_due() || cell_due_ <= clock_.now());
@@ -334,6 +344,7 @@ Time World::next_event() const {
   const auto consider = [&next](Time time) { next = std::min(next, time); };
   if (!events_.empty()) consider(events_.begin()->first);
   if (const auto due = network_.next_due()) consider(*due);
+  if (const auto due = clients_.next_due()) consider(*due);
   consider(process_.daemon ? process_.due : process_.starts_at);
   if (process_.killed_by) consider(*process_.killed_by);
   return next;
@@ -347,6 +358,7 @@ void World::go_on_to_end() {
     if (record_.came_to_end) break;
     clock_.advance_to(next_event());
   }
+  clients_.end();
   if (!process_.daemon) return;
   note_store("the end", true);
   for (const RunRecord& run : record_.stores.back().runs)

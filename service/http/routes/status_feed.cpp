@@ -79,11 +79,14 @@ StatusFeed::~StatusFeed() {
 void StatusFeed::follow(std::function<void(const Status&)> listener, asio::any_io_executor executor) {
   following_ = true;
   listener_ = std::move(listener);
-  operation_.on_change([this, executor = std::move(executor), published = published_](const Status& status) {
-    if (!published->add(std::make_shared<const Status>(status)) || !executor) return;
-    asio::post(executor, [this, alive = std::weak_ptr(published)] {
-      if (alive.lock()) take_in();
-    });
+  executor_ = std::move(executor);
+  operation_.on_change([this](const Status& status) { publish(status); });
+}
+
+void StatusFeed::publish(const Status& status) {
+  if (!published_->add(std::make_shared<const Status>(status)) || !executor_) return;
+  asio::post(executor_, [this, alive = std::weak_ptr(published_)] {
+    if (alive.lock()) take_in();
   });
 }
 

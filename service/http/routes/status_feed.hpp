@@ -48,6 +48,8 @@ class StatusFeed {
   /// threads of both run; `executor`: of the thread that serves, which is woken by a change. Without one,
   /// whoever asks takes in what has changed.
   void follow(std::function<void(const Status&)> listener, boost::asio::any_io_executor executor = {});
+  /// What the feed does at each change, on the thread of the operation: for who listens there in its place.
+  void publish(const Status& status);
 
   /// The status as it was published last.
   const Change& newest();
@@ -76,6 +78,7 @@ class StatusFeed {
   CellOperation& operation_;
   std::shared_ptr<Published> published_;  // what the operation has told and this thread has not taken in
   std::function<void(const Status&)> listener_;
+  boost::asio::any_io_executor executor_;
   Status status_;
   std::string instance_id_;
   std::string etag_;
