@@ -196,6 +196,7 @@ std::vector<DrawnFault> draw_faults(std::uint64_t seed, int touch_count) {
   for (int i = 0; i < count; ++i)
     faults.push_back(draw_fault(chance, chance.between(1s, 12s + touch_count * kTouchTime)));
   std::ranges::stable_sort(faults, {}, &DrawnFault::at);
+  for (std::size_t i = 0; i < faults.size(); ++i) faults[i].event = i + 1;
   return faults;
 }
 

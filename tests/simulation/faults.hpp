@@ -47,6 +47,7 @@ struct DrawnFault {
   int number = 0;
   Time lasts{};
   cell::Command command{};
+  std::size_t event = 0;  // its number among those that the seed draws, from 1
 };
 
 std::string fault_text(const DrawnFault& fault);

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "tests/simulation/chosen_world.hpp"
+
 namespace simulation {
 namespace {
 
@@ -81,23 +83,22 @@ Shrunk shrink(const Scenario& scenario, const Outcome& broken) {
 std::string broken_report(const Scenario& scenario, const Outcome& broken) {
   const Shrunk shrunk = shrink(scenario, broken);
   const std::string_view invariant = invariant_in(broken.broken.at(0));
-  std::string text = fmt::format("---- seed {}, smallest world that breaks {} ({} tried)\n", scenario.seed,
-                                 invariant, shrunk.worlds_count);
+  ChosenWorld smallest{.seed = scenario.seed, .events = {}};
+  for (const std::size_t place : shrunk.kept) smallest.events.push_back(scenario.faults[place].event);
+  if (smallest.events.empty() && !scenario.faults.empty()) smallest.events = {0};
+  std::string text = fmt::format("---- smallest world that breaks {}, of {} that were tried\n{}\n", invariant,
+                                 shrunk.worlds_count, smallest.line());
   text += shrunk.outcome.journal;
   for (const std::string& line : broken.broken)
     text += fmt::format("seed {} breaks {}\n", scenario.seed, line);
   text += fmt::format("{} of its {} events are enough for {}, and none of these can be left out:\n",
                       shrunk.kept.size(), scenario.faults.size(), invariant);
-  std::string numbers;
   for (const std::size_t place : shrunk.kept) {
     const DrawnFault& fault = scenario.faults[place];
     const double at_s = std::chrono::duration<double>(fault.at).count();
-    text += fmt::format("  event {} at {:.3f} s: {}\n", place + 1, at_s, fault_text(fault));
-    numbers += fmt::format("{}{}", numbers.empty() ? "" : ",", place + 1);
+    text += fmt::format("  event {} at {:.3f} s: {}\n", fault.event, at_s, fault_text(fault));
   }
-  text += fmt::format("again: touchcal-sim --seed {} --events {}\n", scenario.seed,
-                      numbers.empty() ? "0" : numbers);
-  return text;
+  return text + "again: " + smallest.line() + "\n";
 }
 
 }  // namespace simulation

@@ -22,6 +22,7 @@ Scenario with_events_around_power_failure() {
                      {.at = 100s, .kind = FaultKind::kPowerFails, .number = 1},
                      {.at = 150s, .kind = FaultKind::kLinkCut},
                      {.at = 160s, .kind = FaultKind::kCommand, .command = cell::Command::kPause}};
+  for (std::size_t i = 0; i < scenario.faults.size(); ++i) scenario.faults[i].event = i + 1;
   return scenario;
 }
 
