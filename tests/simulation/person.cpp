@@ -82,7 +82,10 @@ void Person::answer_hold(cell::CellOperation& operation) {
 void Person::go_on(cell::CellOperation& operation) {
   const State state = operation.status().state;
   if (state == State::kHeld) return answer_hold(operation);
-  if (state == State::kAborted) return command(operation, Command::kClear);
+  if (state == State::kAborted) {
+    act(R"({"fault":"settles"})");  // he looks at the arm whatever the reason
+    return command(operation, Command::kClear);
+  }
   const bool wants_more = started_count_ < kRunsMax && state != State::kComplete;
   is_done_ = !wants_more && !is_acting(state);
   if (!wants_more) return;

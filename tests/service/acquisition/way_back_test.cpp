@@ -225,6 +225,28 @@ TEST_F(WayBackTest, IsStoppedInTheMotionAndItsAnswerIsWaitedFor) {
   expect_way_out();
 }
 
+class WayBackAtTheEnd : public WayBackTest, public ::testing::WithParamInterface<bool> {};
+
+TEST_P(WayBackAtTheEnd, IsStoppedAndNotGoneOnWithBehindAPersonsStopEither) {
+  bool down = false;
+  controller_->on_move = [&] {
+    controller_->state->flags |= cs8::kRetractDue;
+    if (GetParam()) {
+      EXPECT_FALSE(operation_.command(Command::kStop));
+    }
+    boost::asio::co_spawn(io_, operation_.shut_down(), [&](const std::exception_ptr&) { down = true; });
+    EXPECT_EQ(operation_.status().state, State::kStopping);
+    return broken_off(cs8::Outcome::kStopped);
+  };
+  EXPECT_FALSE(operation_.command(Command::kReset));
+  run_until([&] { return down; });
+  EXPECT_EQ(operation_.status().state, State::kStopped);
+  EXPECT_THAT(controller_->asked, Contains("retract 1"));
+  EXPECT_THAT(controller_->asked, Not(Contains("retract 2")));
+}
+
+INSTANTIATE_TEST_SUITE_P(WithAndWithoutAStop, WayBackAtTheEnd, ::testing::Bool());
+
 TEST_F(WayBackTest, EndsWithTheLinkInTheMotion) {
   controller_->on_move = [this] {
     lose_link();
