@@ -55,7 +55,8 @@ std::optional<InputRefusal> bad_deviation(const IdentificationProblem& problem, 
     std::ostringstream value;
     value << mm_from_metres(deviation_m);
     return bad("the standard deviation of " + touch_name(index) + " is " + value.str() +
-               " mm; give one over 0 and up to " + millimetres(kTouchDeviationMaxMetres) + ", or none");
+               " mm; give one of 1 nm or more and up to " + millimetres(kTouchDeviationMaxMetres) +
+               ", or none");
   }
   if (problem.touch_noise_m == 0.0) {
     return bad(touch_name(index) +

@@ -310,7 +310,8 @@ std::vector<Command> CellOperation::exits() const {
   const State state = status_.state();
   std::vector<Command> commands = cell::exits(state);
   for (const Command command : {Command::kAbort, Command::kReset}) {
-    if (after(command) != after_command(state, command)) commands.push_back(command);
+    const bool is_given = run_ || command != Command::kAbort;  // an abort names its run
+    if (is_given && after(command) != after_command(state, command)) commands.push_back(command);
   }
   std::erase_if(commands, [this](Command command) {
     return !after(command) || refusal_reason(command) || (command == Command::kStart && !is_ready_to_start());

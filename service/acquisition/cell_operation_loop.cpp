@@ -66,7 +66,10 @@ asio::awaitable<void> CellOperation::break_off(State state, std::string why) {
   }
   // The end of the run itself failed, or what is done without one.
   spdlog::error("in the state {}: {}", state_name(state), why);
-  if (run_) run_->open = false;
+  if (run_) {
+    run_->open = false;
+    run_->interruption.reset();  // nobody goes on with it
+  }
   status_.set_fault({FaultCode::kInternalError, std::move(why)});
   status_.enter(State::kAborted);
   co_await wake_.wait(1s);

@@ -131,7 +131,7 @@ EndWatch::GiveUp end_without_work(const Run* run, std::shared_ptr<const std::ato
                                  : "";
   return [of_run, waiting_count = std::move(waiting_count)](const std::string& why) {
     spdlog::error(
-        "{}: the daemon ends without it. Not on the disk: {} writes of the acquisition{}, and what "
+        "{}: the daemon ends without it. Still to be written: {} writes of the acquisition{}, and what "
         "was to be recorded of requests since. The controller keeps a touch that is not stored",
         why, waiting_count->load(), of_run);
     spdlog::shutdown();

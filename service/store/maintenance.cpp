@@ -109,25 +109,25 @@ SQLite::Database open_to_check(const std::filesystem::path& file) {
   return open_by_uri(file, "immutable=1");
 }
 
+StoreLogNotRead not_looked_at(const std::filesystem::path& file, std::string_view why) {
+  return StoreLogNotRead(
+      fmt::format("{}: not looked at: {}; touchcald --verify checks it, and may change the files beside it",
+                  file.string(), why));
+}
+
 /// So that no file beside it is made or changed. Who has the log open keeps an index of it beside it, which
 /// is only read here; where nobody has, SQLite makes its own in memory.
 SQLite::Database open_without_trace(const std::filesystem::path& file) {
   if (!has_log(file)) return open_by_uri(file, "immutable=1");
-  const auto cannot_read = [&](std::string_view why) {
-    return StoreLogNotRead(
-        fmt::format("{}: not looked at: {}; touchcald --verify checks it, and may change the files beside it",
-                    file.string(), why));
-  };
   if (!std::filesystem::exists(file.string() + "-shm"))
-    throw cannot_read("its log (-wal) is not in it yet, and reading that would make a file (-shm)");
+    throw not_looked_at(file, "its log (-wal) is not in it yet, and reading that would make a file (-shm)");
   try {
     SQLite::Database database = open_by_uri(file, "readonly_shm=1");
     database.exec("SELECT count(*) FROM sqlite_schema");
     return database;
   } catch (const SQLite::Exception& error) {
-    const int code = error.getErrorCode();
-    if (code != SQLITE_CANTOPEN && code != SQLITE_READONLY && code != SQLITE_BUSY) throw;
-    throw cannot_read(error.what());
+    if (error.getErrorCode() != SQLITE_CANTOPEN) throw;
+    throw not_looked_at(file, error.what());
   }
 }
 
@@ -139,6 +139,24 @@ void demand_known_schema(SQLite::Database& database, const std::filesystem::path
   throw StoreNotChecked(file.string() + ": a newer touchcald wrote it (schema " + std::to_string(version) +
                         ", this one knows " + std::to_string(migrations().size()) +
                         "); verify it with that version");
+}
+
+std::optional<std::string> damage_by_a_look(const std::filesystem::path& file) try {
+  SQLite::Database database = open_without_trace(file);
+  demand_known_schema(database, file);
+  const std::string found = database.execAndGet("PRAGMA quick_check(1)").getString();
+  return found == "ok" ? std::nullopt : std::optional(found);
+} catch (const StoreNotChecked&) {
+  throw;
+} catch (const SQLite::Exception& error) {
+  const int code = error.getErrorCode();
+  if (code == SQLITE_CANTOPEN)
+    throw StoreNotChecked(file.string() + ": cannot be read by this user; make it this user's own");
+  // A daemon that writes beside this look, or a disk that cannot be read now, is no damage.
+  if (code != SQLITE_CORRUPT && code != SQLITE_NOTADB) throw not_looked_at(file, error.what());
+  return error.what();
+} catch (const std::exception& error) {
+  return error.what();
 }
 
 }  // namespace
@@ -221,18 +239,13 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
   return damage;
 }
 
-std::optional<std::string> find_damage_without_trace(const std::filesystem::path& database_file) try {
-  SQLite::Database database = open_without_trace(database_file);
-  demand_known_schema(database, database_file);
-  const std::string found = database.execAndGet("PRAGMA quick_check(1)").getString();
-  return found == "ok" ? std::nullopt : std::optional(found);
-} catch (const StoreNotChecked&) {
-  throw;
-} catch (const SQLite::Exception& error) {
-  if (error.getErrorCode() != SQLITE_CANTOPEN) return error.what();
-  throw StoreNotChecked(database_file.string() + ": cannot be read by this user; make it this user's own");
-} catch (const std::exception& error) {
-  return error.what();
+std::optional<std::string> find_damage_without_trace(const std::filesystem::path& database_file) {
+  const bool had_log = has_log(database_file);
+  auto damage = damage_by_a_look(database_file);
+  // Without a log it is read as if nobody wrote, and a daemon may have begun to.
+  if (damage && !had_log && has_log(database_file))
+    throw not_looked_at(database_file, "it was written to meanwhile");
+  return damage;
 }
 
 std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database) {

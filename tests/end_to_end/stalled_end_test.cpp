@@ -53,7 +53,7 @@ TEST_F(StalledEnd, ASignalEndsTheDaemonAllTheSame) {
   daemon_->signal(SIGTERM);
   const Finished finished = daemon_->wait();
   EXPECT_EQ(finished.exit_code, cell::kExitFailed);
-  EXPECT_THAT(finished.err, ::testing::HasSubstr("Not on the disk"));
+  EXPECT_THAT(finished.err, ::testing::HasSubstr("Still to be written"));
 }
 
 TEST_F(StalledEnd, MoreSignalsKeepItFromNothing) {
@@ -63,7 +63,7 @@ TEST_F(StalledEnd, MoreSignalsKeepItFromNothing) {
   for (int i = 0; i < 3; ++i) daemon_->signal(i % 2 == 0 ? SIGTERM : SIGINT);
   const Finished finished = daemon_->wait();
   EXPECT_EQ(finished.exit_code, cell::kExitFailed);
-  EXPECT_THAT(finished.err, ::testing::HasSubstr("Not on the disk"));
+  EXPECT_THAT(finished.err, ::testing::HasSubstr("Still to be written"));
 }
 
 TEST_F(StalledEnd, WithADiskThatAnswersItEndsInOrder) {

@@ -54,6 +54,19 @@ std::optional<std::string> moves_unpermitted(const Record& record) {
   return std::nullopt;
 }
 
+/// A touch that was made again beside the plan is stored without its command: its joints tell which it was.
+constexpr std::uint32_t kNoCommand = 0;
+
+bool is_answer(const Record& record, const cell::StoredTouch& touch) {
+  const auto is_this = [&touch](const cs8::TouchResult& result) {
+    return result.outcome == cs8::Outcome::kContact && result.contact == touch.joints;
+  };
+  if (touch.sequence == kNoCommand)
+    return std::ranges::any_of(record.answers, [&](const auto& answer) { return is_this(answer.second); });
+  const auto answer = record.answers.find({touch.session, touch.sequence});
+  return answer != record.answers.end() && is_this(answer->second);
+}
+
 std::optional<std::string> wrong_in_accepted(const Record& record, const RunRecord& run) {
   if (run.run.touches_total != record.touches_planned)
     return fmt::format("it has {} touches of {} that are planned", run.run.touches_total,
@@ -61,9 +74,7 @@ std::optional<std::string> wrong_in_accepted(const Record& record, const RunReco
   std::set<int> numbers;
   for (const cell::StoredTouch& touch : run.touches) {
     if (!numbers.insert(touch.number).second) return fmt::format("touch {} is there twice", touch.number);
-    const auto answer = record.answers.find({touch.session, touch.sequence});
-    if (answer == record.answers.end() || answer->second.outcome != cs8::Outcome::kContact ||
-        answer->second.contact != touch.joints)
+    if (!is_answer(record, touch))
       return fmt::format("touch {} is no contact that the controller gave", touch.number);
   }
   for (int number = 1; number <= run.run.touches_total; ++number)
@@ -92,12 +103,24 @@ std::map<CommandNumber, int> stored_commands(const StoreRecord& store) {
   return counts;
 }
 
+/// Whether a touch that was made again has this contact: in place of the first one, or beside it.
+bool has_repetition(const StoreRecord& store, const cs8::JointsMicrodeg& contact) {
+  const auto is_it = [&contact](const cell::StoredTouch& touch) {
+    return touch.again == contact || (touch.sequence == kNoCommand && touch.joints == contact);
+  };
+  return std::ranges::any_of(store.runs, [&](const RunRecord& run) {
+    return std::ranges::any_of(run.touches, is_it) ||
+           std::ranges::any_of(run.superseded, is_it, &cell::SupersededTouch::touch);
+  });
+}
+
 std::optional<std::string> answers_lost(const Record& record) {
   for (const StoreRecord& store : record.stores) {
     const auto stored = stored_commands(store);
     for (std::size_t i = 0; i < store.acknowledged_count && i < record.acknowledged.size(); ++i) {
       const Acknowledged& answer = record.acknowledged[i];
       if (!answer.excuse.empty() || stored.contains(answer.command)) continue;
+      if (has_repetition(store, answer.result.contact)) continue;
       return fmt::format(
           "at {:.3f} s the contact of command {} (session {}) was acknowledged, and at {:.3f} s ({}) no "
           "touch "
@@ -112,7 +135,7 @@ std::optional<std::string> answers_lost(const Record& record) {
 std::optional<std::string> answers_doubled(const Record& record) {
   for (const StoreRecord& store : record.stores) {
     for (const auto& [command, count] : stored_commands(store)) {
-      if (count < 2) continue;
+      if (count < 2 || command.sequence == kNoCommand) continue;
       return fmt::format("at {:.3f} s ({}) the contact of command {} (session {}) is stored {} times",
                          seconds(store.at), store.occasion, command.sequence, command.session, count);
     }
@@ -131,7 +154,7 @@ std::optional<std::string> answers_out_of_order(const Record& record) {
       };
       CommandNumber last;
       for (const cell::StoredTouch& touch : run.touches) {
-        if (was_repeated(touch.number)) continue;
+        if (was_repeated(touch.number) || touch.sequence == kNoCommand) continue;
         const CommandNumber command{touch.session, touch.sequence};
         if (command <= last)
           return fmt::format("run {}: touch {} is of command {}, and the one before it of {}", run.run.id,

@@ -98,6 +98,25 @@ TEST_F(InvariantTest, NothingButTheWayBackMovesInResettingAndNotWithThePermitOfT
   expect_broken("no_motion_without_permit");
 }
 
+TEST_F(InvariantTest, ARepetitionBesideThePlanIsFoundByItsJoints) {
+  record_.answers[{1, 4}] = record_.answers[{1, 5}] = contact(9);
+  record_.answers[{1, 5}].contact[1] = 7;
+  record_.acknowledged.push_back({46s, {1, 4}, record_.answers[{1, 4}], ""});
+  record_.acknowledged.push_back({47s, {1, 5}, record_.answers[{1, 5}], ""});
+  record_.stores.back().acknowledged_count = 5;
+  expect_broken("answered_touches_are_durable");
+  run().touches[1].again = record_.answers[{1, 4}].contact;
+  expect_broken("answered_touches_are_durable");
+  run().touches[0].joints = record_.answers[{1, 5}].contact;
+  run().touches[0].sequence = 0;
+  run().touches[2].sequence = 3;
+  run().superseded.push_back({.touch = touch(1), .reason = "it did not fit"});
+  EXPECT_THAT(broken_invariants(record_), IsEmpty());
+  run().touches[0].joints[2] = 1;
+  EXPECT_THAT(broken_invariants(record_), ElementsAre(StartsWith("accepted_run_is_whole: "),
+                                                      StartsWith("answered_touches_are_durable: ")));
+}
+
 TEST_F(InvariantTest, AnAcceptedRunHasEachTouchOfItsPlan) {
   run().run.touches_total = 4;
   expect_broken("accepted_run_is_whole");

@@ -71,14 +71,18 @@ test('AConditionThatThePageDoesNotKnowIsShownWithTheDaemonsWords', () => {
 });
 
 test('EveryStateAtRestHasItsMainButton', () => {
-  assert.deepEqual((['IDLE', 'COMPLETE', 'HELD', 'SUSPENDED', 'STOPPED', 'ABORTED', 'EXECUTE'] as const).map(mainAction),
+  assert.deepEqual((['IDLE', 'COMPLETE', 'HELD', 'SUSPENDED', 'STOPPED', 'ABORTED', 'EXECUTE'] as const).map((state) => mainAction(state, false)),
                    ['start', 'start', 'resume', 'resume', 'reset', 'clear', null]);
+  assert.deepEqual((['IDLE', 'COMPLETE', 'HELD', 'STOPPED'] as const).map((state) => mainAction(state, true)),
+                   ['reset', 'start', 'resume', 'reset']);
   assert.ok(mayPause('EXECUTE') && !mayPause('HELD'));
 });
 
 test('AnAbnormalStateLooksAbnormal', () => {
   assert.equal(mood(statusWith({state: 'IDLE'})), 'rest');
   assert.equal(mood(statusWith({state: 'EXECUTE'})), 'work');
+  assert.equal(mood(statusWith({state: 'RESETTING'})), 'rest');
+  assert.equal(mood(statusWith({state: 'RESETTING', controller_permit: 'granted'})), 'work');
   assert.equal(mood(statusWith({state: 'HELD'})), 'wait');
   assert.equal(mood(statusWith({state: 'HELD', fault_code: 'no_contact'})), 'wrong');
   assert.equal(mood(statusWith({state: 'ABORTED'})), 'wrong');

@@ -26,6 +26,12 @@ test('AnAcknowledgedFaultGoesAndAWarningStays', () => {
   assert.deepEqual(state.faults.map(({code}) => code), ['probe_bounced']);
 });
 
+test('AWarningThatEndsByItselfGoesWithItsCause', () => {
+  const slow = statusWith({sequence: 1, state: 'EXECUTE', run_id: '1', warning_code: 'computation_slow', warning_message: 'w'});
+  assert.deepEqual(take(kFirstState, slow).faults.map(({code}) => code), ['computation_slow']);
+  assert.deepEqual(take(kFirstState, slow, statusWith({sequence: 2, state: 'EXECUTE', run_id: '1'})).faults, []);
+});
+
 test('AnAcknowledgementTakesOnlyTheFaultThatItWasOf', () => {
   const held = {...kFault, fault_code: 'probe_stuck', fault_message: 'the probe still reads touched'};
   let state = take(kFirstState, statusWith({sequence: 1, state: 'HELD', run_id: '1', ...held}),

@@ -3,7 +3,7 @@ import type {Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, S
 import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
 import {kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
-import {commandPath, isActive, type Command} from './states.ts';
+import {commandPath, isActive, isTakenBack, type Command} from './states.ts';
 import {slimResult} from './slim_result.ts';
 import {startBody, type Conditions} from './start_body.ts';
 import {toldFault} from './sticky_faults.ts';
@@ -89,7 +89,8 @@ export class Desk {
 
   private setPace(): void {
     const {status, view} = this.store.state;
-    this.live.setFast(!this.isPageHidden && view === 'live' && status !== null && isActive(status.state));
+    this.live.setFast(!this.isPageHidden && view === 'live' && status !== null &&
+                      (isActive(status.state) || isTakenBack(status)));
   }
 
   // what is asked for

@@ -13,7 +13,7 @@ export function commandPath(command: Command, run_id: string | null): string | n
 
 const kQuiet: ReadonlySet<StateName> = new Set(['STOPPED', 'RESETTING', 'IDLE', 'COMPLETE', 'ABORTED', 'CLEARING']);
 
-/** A run is under way: the arm may move. */
+/** A run is under way. */
 export const isActive = (state: StateName): boolean => !kQuiet.has(state);
 
 /** A run may start, as far as the state goes. */
@@ -25,7 +25,8 @@ export const mayPause = (state: StateName): boolean => kPausable.has(state);
 
 /** What the run's main button does in a state; null: there is nothing to do but wait. */
 export type MainAction = 'start' | 'resume' | 'reset' | 'clear' | null;
-export function mainAction(state: StateName): MainAction {
+export function mainAction(state: StateName, isAtFace: boolean): MainAction {
+  if (state === 'IDLE' && isAtFace) return 'reset';  // which takes it back
   if (mayStart(state)) return 'start';
   if (state === 'HELD' || state === 'SUSPENDED') return 'resume';
   if (state === 'STOPPED') return 'reset';
@@ -48,11 +49,14 @@ export function touchActions({state, fault_code}: Status): Command[] {
 /** The arm is about to be told what to do by another: a run would end the dialogue. */
 export const isLocating = (status: Status): boolean => status.by_hand === 'locate';
 
+/** The arm is on its way back from a face, for which alone there is a permit. */
+export const isTakenBack = (status: Status): boolean => status.state === 'RESETTING' && status.controller_permit === 'granted';
+
 /** How the state looks: at rest, at work, waiting for a person, or wrong. */
 export type Mood = 'rest' | 'work' | 'wait' | 'wrong';
 export function mood(status: Status): Mood {
   if (status.state === 'ABORTED' || status.state === 'ABORTING') return 'wrong';
   if (status.fault_code && (status.state === 'HELD' || status.state === 'STOPPED')) return 'wrong';
   if (status.waiting_for || isLocating(status) || status.state === 'HELD' || status.state === 'SUSPENDED') return 'wait';
-  return isActive(status.state) ? 'work' : 'rest';
+  return isActive(status.state) || isTakenBack(status) ? 'work' : 'rest';
 }

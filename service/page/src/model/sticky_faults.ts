@@ -13,6 +13,9 @@ export interface StickyFault {
   at: string;       // by the daemon's clock, of the state in which it was told
 }
 
+/** A warning that ends by itself, as its text says. */
+const kPassing = 'computation_slow';
+
 /** The newest warnings are enough to read; the run keeps all of them. */
 const kWarningsMax = 5;
 
@@ -27,6 +30,8 @@ export function noteFaults(known: StickyFault[], before: Status | null, status: 
   const isNewWarning = status.warning_code !== null &&
       (before === null || restarted || before.run_id !== status.run_id || before.warning_code !== status.warning_code ||
        before.warning_message !== status.warning_message);
+  const hasPassed = before?.warning_code === kPassing && status.warning_code !== kPassing;
+  if (hasPassed) faults = faults.filter(({code}) => code !== kPassing);
   if (isNewWarning) faults = withWarning(faults, status);
   return faults;
 }

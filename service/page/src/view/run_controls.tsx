@@ -41,7 +41,7 @@ export function RunControls({state, desk, onStart}: Props) {
 function MainButton({state, desk, onStart, usable}: Props & {usable: boolean}) {
   const say = useSay();
   const {status, busy, recipe} = state;
-  const action = status ? mainAction(status.state) : null;
+  const action = status ? mainAction(status.state, status.retract_due === true) : null;
   const disabled = !usable || busy === 'start' || action === null;
   const isLinked = status?.controller_connected ?? false;
   if (action === 'resume') {
