@@ -136,7 +136,7 @@ const std::vector<BadInput>& bad_inputs() {
       {"AJointThatIsNoNumber", Status::kBadInput, "touch 5 has a joint",
        [](Problem& problem, Options&) { problem.touches[4].joints[2] = kNaN; }},
       {"ADeviationBelowZero", Status::kBadInput,
-       "the standard deviation of touch 6 is -0.02 mm; give one over",
+       "the standard deviation of touch 6 is -0.02 mm; give one of 1 nm",
        [](Problem& problem, Options&) { problem.touches[5].deviation_m = -20e-6; }},
       {"ADeviationThatIsNoNumber", Status::kBadInput, "the standard deviation of touch 6 is nan mm",
        [](Problem& problem, Options&) { problem.touches[5].deviation_m = kNaN; }},
