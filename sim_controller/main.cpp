@@ -151,7 +151,9 @@ int main(int argc, char** argv) {
       ->type_name("X|max")
       ->check(check_speed)
       ->capture_default_str();
-  app.footer("SPDLOG_LEVEL=debug in the environment logs each touch.");
+  app.footer(
+      "Motions take simulated time (--speed); deadlines, the silence that ends a link and the wait for a "
+      "confirmation are wall time.\nSPDLOG_LEVEL=debug in the environment logs each touch.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -175,7 +175,7 @@ class CellOperation {
   boost::asio::awaitable<bool> obtain_permit();
   [[nodiscard]] bool has_permit() const;
   void end_old_permit();
-  void tell_resumption(bool looks_at_reference) const;
+  [[nodiscard]] std::string resumption_text(bool looks_at_reference) const;
   boost::asio::awaitable<void> wait_out_suspension();
   boost::asio::awaitable<void> pass_block();
   boost::asio::awaitable<void> complete_run();

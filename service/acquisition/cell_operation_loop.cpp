@@ -222,18 +222,20 @@ asio::awaitable<void> CellOperation::resume_run() {
   const bool permitted = co_await obtain_permit();
   if (!permitted) co_return;
   if (is_confirmed_anew) hold_time_.on_confirmed(clocks_.steady());
-  tell_resumption(looks);
+  const std::string checked = resumption_text(looks);
+  spdlog::info("{}", checked);
+  if (is_confirmed_anew) status_.warn({FaultCode::kRunResumed, checked});
   status_.apply(Event::kDone);
 }
 
 /// What was checked before a run goes on; its drift is told with the reference touch.
-void CellOperation::tell_resumption(bool looks_at_reference) const {
+std::string CellOperation::resumption_text(bool looks_at_reference) const {
   const Run& run = run_->run;
   const std::uint32_t before = run.touches().empty() ? 0 : run.touches().back().session;
   const char* session = before == 0 ? "" : before == session_.number() ? ", the same" : ", a new one";
   const auto told = session_.latest_state();
   const bool tested = told && (told->flags & cs8::kTouchTested) != 0;
-  spdlog::info(
+  return fmt::format(
       "run {} goes on behind {} of {} touches: controller session {}{}; files of the cell and plan as at its "
       "start; block {}; stylus {}; reference place {}",
       run.id(), run.touches_done(), run.touches_total(), session_.number(), session,
@@ -242,14 +244,16 @@ void CellOperation::tell_resumption(bool looks_at_reference) const {
       looks_at_reference ? "touched next where the recipe has one" : "not due");
 }
 
-/// False for a plan whose searches the controller will not make.
+/// False for a plan whose searches the controller will not make: a run that has begun stays on hold, for the
+/// application may be set as it was.
 bool CellOperation::can_search() {
   if (run_->guided) return true;  // nothing is commanded
   std::vector<calib::PlannedTouch> touches;
   for (std::size_t i = 0; const calib::PlannedTouch* planned = run_->run.planned(i); ++i)
     touches.push_back(*planned);
   auto fault = session_.search_fault(touches);
-  if (fault) status_.raise(*std::move(fault), Event::kAbortFault);
+  const bool is_start = status_.state() == State::kStarting;
+  if (fault) status_.raise(*std::move(fault), is_start ? Event::kAbortFault : Event::kNotReadyFault);
   return !fault;
 }
 

@@ -183,7 +183,8 @@ asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) 
     }
     const Fault fault = link_fault(std::get<cs8::LinkError>(reply));
     const auto& there = status_.fault();
-    const bool keeps_fault = (is_over(state) || (state == State::kHeld && !run_interrupted)) && there;
+    const bool keeps_fault =
+        there && (is_over(state) || (state == State::kHeld && (!run_interrupted || explains_hold(*there))));
     if (!keeps_fault && (!there || there->message() != fault.message()))
       raise_link_fault(fault, run_interrupted ? Event::kNotReadyFault : Event::kLinkDown);
   }
@@ -203,8 +204,10 @@ void ControllerSession::on_link_lost(const cs8::LinkError& error, Event event) {
   if (pause_.short_links() == 0) told_faults_.clear();
   // A person reads why a run ended or is on hold, and how it ended, to the end.
   const State state = status_.state();
-  const bool is_held = state == State::kHolding || (state == State::kHeld && event == Event::kLinkDown);
   const auto& there = status_.fault();
+  const bool is_held =
+      state == State::kHolding ||
+      (state == State::kHeld && (event == Event::kLinkDown || (there && explains_hold(*there))));
   const bool is_told = there && there->code != FaultCode::kStateMissing;  // which this is the reason of
   if ((is_over(state) || is_held) && is_told) {
     spdlog::warn("{}", link_fault(error).message());
@@ -223,7 +226,8 @@ void ControllerSession::raise_link_fault(Fault fault, Event event) {
   bool is_round = count > 1;
   for (int rest = count; rest > 1; rest /= 10) is_round = is_round && rest % 10 == 0;
   if (count > 1) fault.detail += fmt::format(" ({} short links in a row)", count);
-  if (is_new || is_round || is_active(status_.state())) {
+  const bool may_move = is_active(status_.state()) && status_.state() != State::kHeld;
+  if (is_new || is_round || may_move) {
     status_.raise(std::move(fault), event);
   } else {
     status_.show(std::move(fault), event);
@@ -262,6 +266,16 @@ void ControllerSession::acknowledge(std::uint32_t sequence) {
   controller_.acknowledge(sequence);
   if (unsettled_sequence_ == sequence) unsettled_sequence_ = 0;
   open_touch_.reset();
+}
+
+void ControllerSession::discard(std::int64_t run_id, std::uint32_t sequence, const cs8::TouchResult& result) {
+  if (result.outcome == cs8::Outcome::kContact) {
+    spdlog::warn(
+        "run {}: the contact of command {} is no measurement: joints {} microdegrees, overtravel {} dmm, {} "
+        "edges",
+        run_id, sequence, fmt::join(result.contact, " "), result.overtravel_dmm, result.edges);
+  }
+  acknowledge(sequence);
 }
 
 asio::awaitable<bool> ControllerSession::travel(cs8::Travel command) {

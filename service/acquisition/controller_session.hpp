@@ -103,6 +103,8 @@ class ControllerSession {
   boost::asio::awaitable<cs8::QueryReply> query(std::uint32_t sequence);
   /// Lets the controller forget a touch. Only when its answer is stored, or holds nothing to store.
   void acknowledge(std::uint32_t sequence);
+  /// The same of an answer that is no measurement of a run: where its contact was stays in the log.
+  void discard(std::int64_t run_id, std::uint32_t sequence, const cs8::TouchResult& result);
 
   [[nodiscard]] std::uint32_t next_sequence() const { return controller_.next_sequence(); }
   /// The command is sent before this returns; await the reply at once.

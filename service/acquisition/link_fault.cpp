@@ -37,6 +37,11 @@ bool is_link_fault(FaultCode code) {
   return std::ranges::find(kLinkFaults, code) != kLinkFaults.end();
 }
 
+bool explains_hold(const Fault& fault) {
+  if (fault.code == FaultCode::kDaemonRestarted) return !fault.detail.empty();
+  return !is_link_fault(fault.code);
+}
+
 Fault link_fault(const cs8::LinkError& error) { return {fault_code_of(error.kind), error.text}; }
 
 }  // namespace cell

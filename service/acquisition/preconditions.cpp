@@ -85,7 +85,14 @@ std::optional<Unmet> unmet_by_lost_place(const RunPage& runs, const std::optiona
   }
   if (runs.runs.empty()) return std::nullopt;
   const StoredRun& last = runs.runs.front();
-  if (last.config_digest != config_digest || !names_place(last.conditions_json)) return std::nullopt;
+  if (!names_place(last.conditions_json)) return std::nullopt;
+  if (last.config_digest != config_digest) {
+    return Unmet{
+        "place_lost",
+        fmt::format("find the block with touchcal locate (run {} had it at a place that was found by "
+                    "touches, which files that have changed since do not know)",
+                    last.id)};
+  }
   return Unmet{
       "place_lost",
       fmt::format("restore {} of the state directory, or find the block with touchcal locate (run {} had "

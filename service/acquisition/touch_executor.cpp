@@ -304,7 +304,7 @@ bool TouchExecutor::accept(ActiveRun& active, const calib::PlannedTouch& touch, 
     history_ = {.attempts = 0, .spread_m = {}, .last_contact = result.contact};
     return true;
   }
-  session_.acknowledge(sequence);
+  session_.discard(active.run.id(), sequence, result);
   preparation_.drop_next();
   if (judged.next == TouchJudgement::Next::kStopped) {
     if (result.phase == cs8::Phase::kSearch) status_.warn({FaultCode::kStoppedInSearch, {}});

@@ -105,6 +105,7 @@ class TouchExecutor {
               const cs8::TouchResult& result, HeldBy held_by);
   void take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
                            const TouchJudgement& judged, HeldBy held_by);
+  void tell_end_of_unknown(const cs8::QueryReply& reply);
   void take_rejection(const cs8::Rejected& rejected, HeldBy held_by);
   boost::asio::awaitable<bool> keep_late_touch(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
   void aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact);

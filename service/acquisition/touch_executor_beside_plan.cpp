@@ -282,10 +282,23 @@ asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std:
   } else if (open) {
     forget_stored_command(open->run_id);
   }
-  session_.acknowledge(sequence);
+  const bool is_discarded = open && result && !(judged && judged->next == TouchJudgement::Next::kKeep);
+  is_discarded ? session_.discard(open->run_id, sequence, *result) : session_.acknowledge(sequence);
+  if (!judged && active && active->open) tell_end_of_unknown(reply);
   if (judged && judged->next == TouchJudgement::Next::kFault && judged->event == Event::kAbortFault &&
       active->open)
     status_.raise(judged->fault, judged->event);
+}
+
+/// Of a motion or a touch beside the plan that the link did not outlive nothing is known but how it ended:
+/// what ends a run ends it also then.
+void TouchExecutor::tell_end_of_unknown(const cs8::QueryReply& reply) {
+  std::optional<OutcomeFault> fault;
+  if (const auto* touch = std::get_if<cs8::TouchResult>(&reply))
+    fault = fault_of(touch->outcome, touch->phase, touch->error_number);
+  if (const auto* move = std::get_if<cs8::MoveResult>(&reply))
+    fault = fault_of(move->outcome, move->phase, move->error_number);
+  if (fault && !fault->holds) status_.raise(fault->fault, Event::kAbortFault);
 }
 
 /// A contact of a run that is over or on hold: its stored result follows, its verdict does not change.

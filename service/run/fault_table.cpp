@@ -52,11 +52,12 @@ constexpr std::array kTable{
         "look at the controller's screen, then touchcal resume to go on with the touch that was broken "
         "off, or touchcal stop; in ABORTED touchcal clear, then touchcal reset",
         FaultKind::kHeld, "P23"},
-    FaultEntry{
-        FaultCode::kPlanInvalid, "plan_invalid", "a touch of the plan has no length, no speed or no number",
-        "nothing moved",
-        "correct the cell's speeds and recipe, then touchcal clear, touchcal reset and start a new run",
-        FaultKind::kAborted, "P04"},
+    FaultEntry{FaultCode::kPlanInvalid, "plan_invalid",
+               "a touch of the plan has no length, no speed or no number", "nothing moved",
+               "correct the cell's speeds and recipe, or the application's limits, then touchcal resume "
+               "where a run is "
+               "on hold, else touchcal clear, touchcal reset and start a new run",
+               FaultKind::kAborted, "P04"},
     FaultEntry{FaultCode::kProbeTriggered, "probe_triggered",
                "the probe reads touched before the touch began",
                "the arm did not start and stands clear of the face",
@@ -300,6 +301,9 @@ constexpr std::array kTable{
         "wait: the run goes on by itself and this warning ends with the computation; or touchcal stop, "
         "which stops the arm at once",
         FaultKind::kWarning},
+    FaultEntry{FaultCode::kRunResumed, "run_resumed", "the run went on after it was confirmed anew",
+               "the arm went to a safe place and on with the next touch",
+               "read what was checked before; nothing else is to be done", FaultKind::kWarning},
 };
 
 }  // namespace

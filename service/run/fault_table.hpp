@@ -74,6 +74,7 @@ enum class FaultCode {
   kStateMissing,
   kInternalError,
   kComputationSlow,
+  kRunResumed,
 };
 
 /// Effect of a fault on the run. A refused command or start changes nothing; a warning is kept with the run,

@@ -45,6 +45,14 @@ KinematicModel sliding_arm() {
   return model;
 }
 
+/// Where joint 1 carries a moment too.
+KinematicModel wall_arm() {
+  KinematicModel model = bending_arm();
+  model.down_in_frame_1 = Eigen::Vector3d(0.6, -0.8, 0.0);
+  model.compliance_rad_per_nm[0] = 2e-6;
+  return model;
+}
+
 class LanesOfAnArm : public ::testing::TestWithParam<KinematicModel> {};
 
 /// Chains and derivatives in lanes against those of one posture after the other.
@@ -93,6 +101,7 @@ TEST_P(LanesOfAnArm, AreTheSameInNarrowRegisters) {
 
 INSTANTIATE_TEST_SUITE_P(Rigid, LanesOfAnArm, ::testing::Values(paper::nominal(), rigid_arm()));
 INSTANTIATE_TEST_SUITE_P(Bending, LanesOfAnArm, ::testing::Values(bending_arm()));
+INSTANTIATE_TEST_SUITE_P(OnAWall, LanesOfAnArm, ::testing::Values(wall_arm()));
 INSTANTIATE_TEST_SUITE_P(Rippled, LanesOfAnArm, ::testing::Values(rippled_arm()));
 INSTANTIATE_TEST_SUITE_P(Sliding, LanesOfAnArm, ::testing::Values(sliding_arm()));
 

@@ -93,6 +93,30 @@ TEST(Budget, HasTheComplianceOfTheWristWhetherThatOfTheOtherJointsIsEstimatedOrN
   }
 }
 
+// The masses are a guess, and every droop by them is one as well.
+TEST(Budget, HasTheMassesWhereTheArmYieldsToThem) {
+  constexpr double kStdShare = 0.1;
+  const auto said = [kStdShare](IdentificationProblem& problem) {
+    problem.nominal.compliance_rad_per_nm[1] = 3e-6;
+    problem.nongeometric_std[static_cast<std::size_t>(mass_position(4))] = kStdShare;
+  };
+  const auto rigid = [&](IdentificationProblem& problem) {
+    said(problem);
+    problem.nominal.compliance_rad_per_nm[1] = 0.0;
+  };
+  const IdentificationResult result = calibrated_with(said, {.stiffness = true});
+  ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+  const UncertaintySource* source = named_source(result, "masses");
+  ASSERT_NE(source, nullptr);
+  const int column = nongeometric_index(mass_position(4));
+  EXPECT_NEAR(source->covariance(column, column), kStdShare * kStdShare, 1e-12);
+  const auto over_ranges = region_over_joint_ranges(result.calibrated, tx90::joint_ranges(), {}, 40);
+  EXPECT_GT(over_ranges.rms_m(source->covariance).value(), 1e-7) << "the compliance takes up a part of it";
+  const IdentificationResult without = calibrated_with(rigid, {.stiffness = false});
+  const auto of_rigid = region_over_joint_ranges(without.calibrated, tx90::joint_ranges(), {}, 40);
+  EXPECT_NEAR(of_rigid.rms_m(named_source(without, "masses")->covariance).value(), 0.0, 1e-9);
+}
+
 TEST(Budget, HasThePlayOfTheGearsAsALagAndAsAnErrorOfPosture) {
   const auto said = [](IdentificationProblem& problem) {
     problem.gear_std_rad.setConstant(1e-5);

@@ -24,16 +24,7 @@ class CellOperationTest : public ::testing::Test, protected OperationBench {
   std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run_id; }
   /// The contact of an arm without errors at a touch of the plan.
   static cs8::TouchResult contact_of(std::size_t touch) {
-    cs8::TouchResult result;
-    result.outcome = cs8::Outcome::kContact;
-    result.source = cs8::CaptureSource::kLatched;
-    result.contact = to_wire(plan_of_owners().touches.touches.at(touch).joints);
-    result.first_source = result.source;
-    result.first_contact = result.contact;
-    result.search_speed_um_s = cs8::um_s_from_metres_per_second(cell_of_owners().speeds.contact_m_s());
-    result.monitor_speed_percent = 100;
-    result.edges = 1;
-    return result;
+    return contact_at(plan_of_owners().touches.touches.at(touch).joints);
   }
 };
 

@@ -221,6 +221,35 @@ TEST_F(ControllerSessionTest, LinksThatDieAtOnceAreTriedWithPausesAndFillNoTable
   EXPECT_THAT(status.fault().value().message(), ::testing::HasSubstr("20 short links"));
 }
 
+// A run of an earlier daemon waits for its files over night, with a controller that takes links and drops
+// them.
+TEST_F(ControllerSessionTest, WhyAnInterruptedRunCannotGoOnOutlivesLinksThatDieAtOnceAndFillsNoTable) {
+  const Fault why{FaultCode::kDaemonRestarted, "the cell's files are not those of the run"};
+  controller.is_connected = false;
+  status.enter(State::kHeld);
+  status.set_fault(why);
+  int tried = 0;
+  controller.on_connect = [&]() -> cs8::ConnectReply {
+    if (++tried == 1) return cs8::LinkError{cs8::LinkErrorKind::kUnreachable, "nobody"};
+    return cs8::Welcome{};
+  };
+  for (int i = 0; i < 20; ++i) {
+    run(session.connect(true));
+    EXPECT_EQ(status.fault().value().detail, why.detail);
+    controller.is_connected = false;
+    session.on_link_lost({cs8::LinkErrorKind::kPeerClosed, "the connection ended"}, Event::kNotReadyFault);
+    EXPECT_EQ(status.fault().value().detail, why.detail);
+  }
+  EXPECT_TRUE(faults.empty());
+  status.set_fault({FaultCode::kDaemonRestarted, {}});
+  for (int i = 0; i < 20; ++i) {
+    run(session.connect(true));
+    controller.is_connected = false;
+    session.on_link_lost({cs8::LinkErrorKind::kPeerClosed, "the connection ended"}, Event::kNotReadyFault);
+  }
+  EXPECT_LE(faults.size(), 3u) << "the first, and where the number has become ten times as large";
+}
+
 TEST_F(ControllerSessionTest, WhyARunIsOnHoldStaysWhileTheLinkComesAndGoes) {
   status.enter(State::kExecute);
   session.on_link_lost({cs8::LinkErrorKind::kPeerClosed, "the connection ended"}, Event::kLinkDown);

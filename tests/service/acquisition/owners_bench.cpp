@@ -77,11 +77,13 @@ ActiveRun OwnersBench::planned_run() {
   return active;
 }
 
-cs8::TouchResult OwnersBench::contact() const {
+cs8::TouchResult OwnersBench::contact() const { return contact_at(preparation.made()->touch.joints); }
+
+cs8::TouchResult contact_at(const calib::JointVector& joints) {
   cs8::TouchResult result;
   result.outcome = cs8::Outcome::kContact;
   result.source = cs8::CaptureSource::kLatched;
-  result.contact = to_wire(preparation.made()->touch.joints);
+  result.contact = to_wire(joints);
   result.first_source = result.source;
   result.first_contact = result.contact;
   result.search_speed_um_s = cs8::um_s_from_metres_per_second(cell_of_owners().speeds.contact_m_s());

@@ -27,6 +27,9 @@ const Cell& cell_of_owners();
 /// That recipe's plan, made once.
 const Plan& plan_of_owners();
 
+/// The contact of an arm without errors at these joints.
+cs8::TouchResult contact_at(const calib::JointVector& joints);
+
 /// What the owners of an operation stand on: a made-up clock, a scripted controller, the status, a store in a
 /// folder of its own. `faults` is what would go to the fault log.
 class OwnersBench {

@@ -75,8 +75,10 @@ TEST(Preconditions, APlaceThatTheLastRunHadAndNobodyHasNowIsOneOfThem) {
       .id = 7, .config_digest = "digest", .conditions_json = R"({"place":{"shift_mm":[1]}})"};
   EXPECT_EQ(unmet_by_lost_place({.runs = {at_place}}, "digest", false).value().code, "place_lost");
   EXPECT_FALSE(unmet_by_lost_place({.runs = {at_place}}, "digest", true));
-  EXPECT_FALSE(unmet_by_lost_place({.runs = {at_place}}, "another", false))
-      << "the files say where the block stands now";
+  const Unmet of_other_files = unmet_by_lost_place({.runs = {at_place}}, "another", false).value();
+  EXPECT_EQ(of_other_files.code, "place_lost");
+  EXPECT_THAT(of_other_files.detail, ::testing::HasSubstr("files that have changed since"));
+  EXPECT_FALSE(unmet_by_lost_place({.runs = {at_place}}, "another", true));
   EXPECT_FALSE(unmet_by_lost_place({}, "digest", false));
   const StoredRun at_files{.id = 8, .config_digest = "digest", .conditions_json = R"({"place":null})"};
   EXPECT_FALSE(unmet_by_lost_place({.runs = {at_files, at_place}}, "digest", false));

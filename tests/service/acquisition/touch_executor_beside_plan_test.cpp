@@ -44,6 +44,21 @@ TEST_F(TouchesBesidePlan, ACollisionThatIsToldOnceTheLinkIsBackEndsTheRun) {
   EXPECT_FALSE(session.open_touch());
 }
 
+// The way to the reference place, say: nobody here has it open.
+TEST_F(TouchesBesidePlan, ACollisionOfAMotionThatTheLinkDidNotOutliveEndsTheRunToo) {
+  status.raise({FaultCode::kLinkLost, {}}, Event::kLinkDown);
+  for (const auto outcome : {cs8::Outcome::kStopped, cs8::Outcome::kCollision}) {
+    controller.on_query = [outcome](std::uint32_t) {
+      cs8::MoveResult result;
+      result.outcome = outcome;
+      return result;
+    };
+    run(touches_.settle_open_command(&active_, 4));
+    EXPECT_EQ(status.state() == State::kAborting, outcome == cs8::Outcome::kCollision);
+  }
+  EXPECT_THAT(faults, ElementsAre("link_lost", "collision"));
+}
+
 TEST_F(TouchesBesidePlan, AfterALostLinkTheTouchIsOpenUntilItsAnswerIsKept) {
   controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
   run(touches_.make_next_touch(active_));

@@ -65,4 +65,5 @@ export const kFaultTitlesFr: Readonly<Record<string, string>> = {
   state_missing: 'état de la baie manquant',
   internal_error: 'erreur interne',
   computation_slow: 'calcul long',
+  run_resumed: 'essai repris',
 };

@@ -35,7 +35,7 @@ export const kFaultsFr: Record<string, FaultWords> = {
   answer_missing: words('la baie vit mais n’a pas répondu à temps à une commande', 'la liaison a été coupée, sur quoi le bras s’arrête de lui-même',
     `regardez l’écran de la baie, ${kResumeBroken}`),
   plan_invalid: words('un palpage du plan n’a pas de longueur, pas de vitesse ou pas de nombre', kStill,
-    `corrigez les vitesses et la recette de la cellule, ${kAnew}`),
+    `corrigez les vitesses et la recette de la cellule, ou les limites de l’application, puis touchcal resume si un essai est en attente, sinon touchcal clear, touchcal reset et un nouvel essai`),
   probe_triggered: words('le palpeur se lit touché avant le début du palpage', 'le bras n’est pas parti et se tient à l’écart de la face',
     `libérez le stylet et vérifiez son câble, ${kAgain}`),
   early_contact: words('le palpeur a déclenché alors que la recherche commençait à peine', kClearUnrecorded,
@@ -130,4 +130,6 @@ export const kFaultsFr: Record<string, FaultWords> = {
     'touchcal resume pour continuer derrière le dernier palpage enregistré, ou touchcal stop pour finir l’essai tel quel ; en ABORTED il ne peut continuer : touchcal clear, puis touchcal reset'),
   computation_slow: words('un calcul dure plus longtemps que d’habitude', 'le bras finit un palpage en cours, puis ne bouge plus',
     'attendez : l’essai continue de lui-même et cet avertissement finit avec le calcul ; ou touchcal stop, qui arrête le bras aussitôt'),
+  run_resumed: words('l’essai a repris après une nouvelle confirmation', 'le bras est allé à une place sûre, puis au palpage suivant',
+    'lisez ce qui a été vérifié avant ; il n’y a rien d’autre à faire'),
 };
