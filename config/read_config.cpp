@@ -69,7 +69,7 @@ void read_recipes(const JsonObject& object, std::optional<StiffnessChoice> stiff
 constexpr std::array kCellSchemas{kFirstCellSchema, kSecondCellSchema, kCellSchema};
 
 /// The number of the schema of a cell's document; the newest for one that is none of them.
-int version_of(const nlohmann::json& document) {
+int cell_version_of(const nlohmann::json& document) {
   for (std::size_t i = 0; i < kCellSchemas.size(); ++i)
     if (has_schema(document, kCellSchemas[i])) return static_cast<int>(i) + 1;
   return static_cast<int>(kCellSchemas.size());
@@ -260,7 +260,7 @@ Endpoint endpoint_from_json(const JsonValue& value) {
 Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice> stiffness) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const int version = version_of(document);
+  const int version = cell_version_of(document);
   const JsonObject object =
       JsonValue(source, document)
           .document(kCellSchemas[static_cast<std::size_t>(version) - 1], {"schema",

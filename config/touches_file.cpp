@@ -29,7 +29,7 @@ constexpr std::size_t kWarningCountMax = 100;
 constexpr std::array kSchemas{kFirstTouchesSchema, kSecondTouchesSchema, kTouchesSchema};
 
 /// The newest where the document names none of them.
-int version_of(const nlohmann::json& document) {
+int touches_version_of(const nlohmann::json& document) {
   int version = static_cast<int>(kSchemas.size());
   while (version > 1 && !has_schema(document, kSchemas[static_cast<std::size_t>(version - 1)])) --version;
   if (version == 1 && !has_schema(document, kFirstTouchesSchema)) return static_cast<int>(kSchemas.size());
@@ -328,7 +328,7 @@ class CsvLine {
 TouchesFile touches_from_json(const std::string& source, std::string_view bytes, std::size_t size_max_bytes,
                               const Cell& cell) {
   const nlohmann::json document = parse_strict_json(source, bytes, size_max_bytes);
-  const int version = version_of(document);
+  const int version = touches_version_of(document);
   const JsonObject object = JsonValue(source, document)
                                 .document(kSchemas[static_cast<std::size_t>(version - 1)],
                                           {"schema", "arm", "touches", "reference_touches"});

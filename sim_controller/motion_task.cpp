@@ -21,9 +21,9 @@ constexpr std::int32_t kTimeoutError = 60;
 double metres_per_second(std::int32_t um_s) { return cs8::metres_per_second_from_um_s(um_s); }
 
 /// One step of one command.
-class Step {
+class MotionStep {
  public:
-  Step(const Plant& plant, Cabinet& cabinet, MotionTask& task, const CabinetTick& seen, TimePoint at)
+  MotionStep(const Plant& plant, Cabinet& cabinet, MotionTask& task, const CabinetTick& seen, TimePoint at)
       : plant_(plant),
         cabinet_(cabinet),
         retract_path_(task.retract_path),
@@ -390,7 +390,7 @@ void break_off(Cabinet& cabinet, RunningCommand& running, Outcome outcome, std::
 }
 
 bool step(const Plant& plant, Cabinet& cabinet, MotionTask& task, const CabinetTick& seen, TimePoint at) {
-  return Step(plant, cabinet, task, seen, at).run();
+  return MotionStep(plant, cabinet, task, seen, at).run();
 }
 
 }  // namespace sim

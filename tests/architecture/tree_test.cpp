@@ -43,19 +43,21 @@ TEST(Tree, HasNoNamesThatSayNothing) {
   }
 }
 
-/// Files of a component are compiled together, in groups that change with every file added: the same name in
-/// two of them is an error of some build to come.
-TEST(Tree, ConstantsOfAComponentHaveNamesOfTheirOwn) {
-  const std::regex constant("^(?:inline |static )?constexpr [^=;({]*?\\b(k[A-Z]\\w*)");
+/// Files of a component are compiled together, in groups that change with every file added, and in other
+/// groups for the fuzzers: the same name in two of them is an error of some build to come.
+TEST(Tree, ConstantsAndClassesOfAComponentHaveNamesOfTheirOwn) {
+  const std::regex name(
+      "^(?:(?:inline |static )?constexpr [^=;({]*?\\b(k[A-Z]\\w*)|(?:class|struct) (\\w+)(?: final)? [:{])");
   for (const std::string& folder : kFolders) {
     std::map<std::string, std::filesystem::path> places;
     for (const auto& file : source_files(folder)) {
       if (file.extension() != ".cpp") continue;
       for (const std::string& line : read_lines(file)) {
         std::smatch found;
-        if (!std::regex_search(line, found, constant)) continue;
-        const auto [place, is_new] = places.emplace(found[1], file);
-        EXPECT_TRUE(is_new) << found[1] << " in " << place->second << " and " << file;
+        if (!std::regex_search(line, found, name)) continue;
+        const std::string of = found[1].matched ? found[1] : found[2];
+        const auto [place, is_new] = places.emplace(of, file);
+        EXPECT_TRUE(is_new) << of << " in " << place->second << " and " << file;
       }
     }
   }

@@ -14,9 +14,9 @@ using Matrix = Eigen::Ref<const Eigen::MatrixXd>;
 constexpr double kFromTakenWeight = 2.0;
 
 /// Distance of each candidate from the nearest taken one of its group.
-class Distances {
+class FeatureDistances {
  public:
-  Distances(const Matrix& features, std::span<const int> groups)
+  FeatureDistances(const Matrix& features, std::span<const int> groups)
       : features_(features),
         groups_(groups),
         is_taken_(groups.size(), false),
@@ -54,7 +54,7 @@ class Distances {
 std::vector<std::size_t> farthest_point_sampling(const Matrix& features, std::span<const int> groups,
                                                  std::span<const Quota> quotas,
                                                  const std::vector<std::size_t>& taken) {
-  Distances distances(features, groups);
+  FeatureDistances distances(features, groups);
   for (const std::size_t i : taken) distances.take(i, kFromTakenWeight);
   std::vector<std::size_t> selected;
   const int rounds = quotas.empty() ? 0 : std::ranges::max(quotas, {}, &Quota::count).count;
