@@ -153,8 +153,15 @@ bool takes_power(FaultKind kind) {
   return kind == FaultKind::kPowerFails || kind == FaultKind::kPowerFailsAtStart;
 }
 
+DrawnFault of_controller(std::string line) {
+  return {.kind = FaultKind::kController, .line = std::move(line)};
+}
+
+DrawnFault commanded(cell::Command command) { return {.kind = FaultKind::kCommand, .command = command}; }
+
 std::string fault_text(const DrawnFault& fault) {
   const auto lasts_ms = std::chrono::duration_cast<std::chrono::milliseconds>(fault.lasts).count();
+  if (fault.lasts == kUntilMended) return fmt::format("{}, until it is mended", fault_kind_name(fault.kind));
   switch (fault.kind) {
     case FaultKind::kController:
       return fault.line;

@@ -39,6 +39,9 @@ std::string_view fault_kind_name(FaultKind kind);
 /// Of the daemon's machine.
 bool takes_power(FaultKind kind);
 
+/// What lasts so long ends when the world's person comes (Scenario::script).
+inline constexpr Time kUntilMended = Time::max();
+
 /// What goes wrong, and when. A value: a world of the same seed with fewer of them is another world.
 struct DrawnFault {
   Time at{};
@@ -49,6 +52,10 @@ struct DrawnFault {
   cell::Command command{};
   std::size_t event = 0;  // its number among those that the seed draws, from 1
 };
+
+/// Without a time: for a Script.
+DrawnFault of_controller(std::string line);
+DrawnFault commanded(cell::Command command);
 
 std::string fault_text(const DrawnFault& fault);
 

@@ -60,14 +60,35 @@ bool Person::mend_one(State state) {
 }
 
 void Person::command(cell::CellOperation& operation, Command command) {
+  given_.push_back(command);
   const auto refusal = operation.command(command);
   journal_.note("person", fmt::format("commands {}{}", cell::command_name(command),
                                       refusal ? ": refused, " + refusal->detail : ""));
 }
 
+/// What a text says of the cell is done there.
+void Person::act_by_words(std::string_view text) {
+  const auto says = [text](std::string_view word) { return text.find(word) != std::string_view::npos; };
+  if (says("stylus")) act(R"({"fault":"release_stylus"})");
+  if (says("cable")) act(R"({"fault":"probe_mended"})");
+  if (says("jog")) act(R"({"fault":"jog_home"})");
+}
+
+/// What the text names and the state takes, the first of it; without a text a run on hold goes on.
+void Person::answer_by_words(cell::CellOperation& operation) {
+  const auto exits = operation.exits();
+  const auto fault = operation.status().fault;
+  const std::string_view text = fault ? cell::describe(fault->code).next_step : "touchcal resume";
+  act_by_words(text);
+  for (const Command named : commands_named(text))
+    if (std::ranges::find(exits, named) != exits.end()) return command(operation, named);
+  command(operation, Command::kStop);
+}
+
 void Person::answer_hold(cell::CellOperation& operation) {
   const auto exits = operation.exits();
   const auto is_there = [&exits](Command one) { return std::ranges::find(exits, one) != exits.end(); };
+  if (goes_by_words_ && ++holds_count_ < kHoldsMax) return answer_by_words(operation);
   act(R"({"fault":"probe_mended"})");  // he looks at the stylus whatever the reason
   const auto fault = operation.status().fault;
   if (fault && (fault->code == cell::FaultCode::kNoSafeWay || chance_.once_in(8)))
@@ -82,6 +103,9 @@ void Person::answer_hold(cell::CellOperation& operation) {
 void Person::go_on(cell::CellOperation& operation) {
   const State state = operation.status().state;
   if (state == State::kHeld) return answer_hold(operation);
+  const auto told = goes_by_words_ ? operation.status().fault : std::nullopt;
+  if (told && state == State::kComplete && started_count_ < kRunsMax) return answer_by_words(operation);
+  if (told) act_by_words(cell::describe(told->code).next_step);
   if (state == State::kAborted) {
     act(R"({"fault":"settles"})");  // he looks at the arm whatever the reason
     return command(operation, Command::kClear);
@@ -113,6 +137,17 @@ void Person::look(cell::CellOperation& operation, Time now) {
   if (is_acting(state) || *answers_at_ > now) return;
   answers_at_ = now + chance_.between(1s, 15s);
   go_on(operation);
+}
+
+std::vector<Command> commands_named(std::string_view text) {
+  constexpr std::string_view kProgram = "touchcal ";
+  std::vector<Command> named;
+  for (std::size_t at = text.find(kProgram); at != std::string_view::npos; at = text.find(kProgram, at + 1)) {
+    const std::string_view rest = text.substr(at + kProgram.size());
+    for (const Command command : cell::kCommands)
+      if (rest.starts_with(cell::command_name(command))) named.push_back(command);
+  }
+  return named;
 }
 
 }  // namespace simulation

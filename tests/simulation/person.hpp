@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "service/acquisition/cell_operation.hpp"
 #include "sim_controller/server.hpp"
@@ -31,13 +32,22 @@ class Person {
   void wait(Time now) { next_look_ = now + std::chrono::seconds(1); }
   /// The last run that he wanted is over.
   [[nodiscard]] bool is_done() const { return is_done_; }
-  void on_started() { ++started_count_; }
+  void on_started() {
+    ++started_count_;
+    given_.push_back(cell::Command::kStart);
+  }
+  /// From now on he does what the next step of a fault says, in its order, and nothing of his own.
+  void go_by_words() { goes_by_words_ = true; }
+  /// The commands that he gave; a start counts when it was taken, whoever gave it.
+  [[nodiscard]] const std::vector<cell::Command>& given() const { return given_; }
 
  private:
   void act(const std::string& line);
   /// Takes away one thing that keeps the arm from moving; false when there is none.
   bool mend_one(cell::State state);
   void answer_hold(cell::CellOperation& operation);
+  void act_by_words(std::string_view text);
+  void answer_by_words(cell::CellOperation& operation);
   void command(cell::CellOperation& operation, cell::Command command);
   void go_on(cell::CellOperation& operation);
 
@@ -54,6 +64,11 @@ class Person {
   bool switched_on_ = false;       // the power, since it was there
   bool looked_at_stylus_ = false;  // last, since it was free
   bool is_done_ = false;
+  bool goes_by_words_ = false;
+  std::vector<cell::Command> given_;
 };
+
+/// The commands that a text of the fault table names as "touchcal ...", in their order.
+std::vector<cell::Command> commands_named(std::string_view text);
 
 }  // namespace simulation

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cs8_protocol/messages.hpp"
+#include "service/run/fault_table.hpp"
 #include "service/run/packml_state.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/simulation/virtual_clock.hpp"
@@ -66,6 +67,24 @@ struct StateRecord {
   std::vector<cell::Command> exits;
 };
 
+/// How a cell stands behind what went wrong at one step (Scenario::script), before any person has come.
+struct RestRecord {
+  std::optional<Time> struck_at;  // the step was reached
+  std::optional<Time> at;         // it came to rest: what follows holds
+  cell::State state{};
+  std::optional<cell::FaultCode> fault, warning;  // shown there
+  std::optional<std::string> waiting_for;
+  std::vector<cell::Command> exits;
+  bool is_clear = false;  // no way back from a face is due
+  // From the step to the rest.
+  std::vector<std::string> told;  // "fault link_lost", "warning probe_bounced", "refused run_active"
+  Time told_at{};                 // what is shown at rest
+  std::optional<Time> last_moved_at;
+  bool was_commanded = false;              // a motion command was with the controller then
+  std::vector<std::string> next_messages;  // on the wire: "host: touch 3"
+  int next_writes = 0;                     // of the disk, before those had passed
+};
+
 /// What came of a request at the daemon's HTTP port.
 struct HttpAnswer {
   enum class End { kAnswered, kClosed, kOpen };  // kOpen: the world ended before
@@ -86,8 +105,10 @@ struct Record {
   std::vector<StoreRecord> stores;  // in time; the last one is the end's
   std::vector<StateRecord> states;
   std::vector<HttpAnswer> http_answers;
-  bool said_answer_not_kept = false;  // to a key: the host could not write it
-  bool came_to_end = false;           // within the time that a person would wait
+  RestRecord rest;
+  std::vector<cell::Command> person_did;  // behind the rest
+  bool said_answer_not_kept = false;      // to a key: the host could not write it
+  bool came_to_end = false;               // within the time that a person would wait
   /// What nobody caught: it would have ended the process of a daemon or of the controller.
   std::optional<std::string> thrown;
 };

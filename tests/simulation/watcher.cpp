@@ -56,12 +56,14 @@ Watcher::Watcher(const VirtualClock& clock, Journal& journal, Record& record)
 void Watcher::on_bytes(bool from_host, bool sent, std::span<const std::uint8_t> bytes) {
   if (from_host && sent) sent_.take(bytes);
   if (!from_host && !sent) read_.take(bytes);
+  if (!from_host && sent && on_sight) told_.take(bytes);
 }
 
 void Watcher::on_connection() {
   journal_.note("network", "a connection");
   sent_.begin_connection();
   read_.begin_connection();
+  told_.begin_connection();
   permit_ = {};
   permit_read_at_ = Time{-1};
 }
@@ -85,6 +87,7 @@ void Watcher::on_sent(const cs8::Message& message) {
     if (status.run_id) run_of_[{session_, message.sequence}] = *status.run_id;
     asked_for_.reset();
   }
+  tell_sent(message);
   if (const auto* query = std::get_if<cs8::ResultQuery>(&message.payload))
     asked_for_ = CommandNumber{session_, query->command_sequence};
   if (const auto* acknowledged = std::get_if<cs8::ResultAcknowledge>(&message.payload))
@@ -98,10 +101,12 @@ void Watcher::on_sent(const cs8::Message& message) {
 void Watcher::on_read(const cs8::Message& message) {
   if (const auto* state = std::get_if<cs8::State>(&message.payload)) {
     session_ = state->session;
+    if (on_sight) tell_phase(*state);
     return;
   }
   journal_.note("controller", fmt::format("-> {} {}{}", cs8::name(cs8::type_of(message)), message.sequence,
                                           details(message.payload)));
+  tell_from_controller("read", message);
   if (const auto* welcome = std::get_if<cs8::Welcome>(&message.payload)) session_ = welcome->session;
   if (const auto* permit = std::get_if<cs8::Permit>(&message.payload)) {
     permit_ = *permit;
@@ -132,6 +137,8 @@ void Watcher::on_acknowledge(std::uint32_t sequence) {
 
 void Watcher::on_log(std::string_view line) {
   journal_.note("daemon", line);
+  if (line.starts_with("fault ") || line.starts_with("warning "))
+    tell(std::string(line.substr(0, line.find(':'))));
   if (line.starts_with("the answer to an Idempotency-Key could not be stored"))
     record_.said_answer_not_kept = true;
   if (record_.acknowledged.empty() || !says_no_measurement(line)) return;
@@ -143,6 +150,41 @@ void Watcher::on_status(const cell::Status& status) {
   if (std::exchange(state_, status.state) == status.state) return;
   journal_.note("daemon", cell::state_name(status.state));
   record_.states.push_back({clock_.now(), status.state, operation_->exits()});
+  tell("state " + std::string(cell::state_name(status.state)));
+}
+
+// ---- what is seen, in words ----
+
+std::string Watcher::named(std::uint32_t sequence) const {
+  const auto name = names_.find({session_, sequence});
+  return name == names_.end() ? "" : " of " + name->second;
+}
+
+void Watcher::tell_sent(const cs8::Message& message) {
+  if (!on_sight) return;
+  const cs8::MessageType type = cs8::type_of(message);
+  std::string text(cs8::name(type));
+  if (type == cs8::MessageType::kTouch) text += fmt::format(" {}", ++touches_sent_);
+  if (message.sequence != 0) names_[{session_, message.sequence}] = text;
+  if (const auto* acknowledged = std::get_if<cs8::ResultAcknowledge>(&message.payload))
+    text += named(acknowledged->command_sequence);
+  tell("host: " + text);
+}
+
+void Watcher::tell_from_controller(std::string_view who, const cs8::Message& message) {
+  if (!on_sight || cs8::type_of(message) == cs8::MessageType::kState) return;
+  std::string text(cs8::name(cs8::type_of(message)));
+  if (const auto* permit = std::get_if<cs8::Permit>(&message.payload))
+    text += fmt::format(" {}", cs8::name(permit->state));
+  tell(fmt::format("{}: {}{}", who, text, named(message.sequence)));
+}
+
+void Watcher::tell_phase(const cs8::State& state) {
+  if (state.active_sequence == 0) return;
+  const std::string command = named(state.active_sequence);
+  if (std::string phase = fmt::format("phase: {}{}", cs8::name(state.phase), command); phase != phase_)
+    tell(phase_ = std::move(phase));
+  if (cs8::probe_inputs(state.flags).touched()) tell("contact" + command);
 }
 
 void Watcher::note_store(std::string occasion, std::vector<RunRecord> runs) {

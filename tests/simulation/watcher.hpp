@@ -24,6 +24,12 @@ class Watcher {
   void on_connection_end();
   void on_log(std::string_view line);
   void on_status(const cell::Status& status);
+  void on_disk_sync() { tell("disk: synced"); }
+  /// Called with each thing that is seen, where it is set: "state HELD", "host: touch 3" (it left the host;
+  /// the touches of a world are counted), "controller: touch_result of touch 3" (it left the controller),
+  /// "read: touch_result of touch 3" (the host has it), "phase: search of touch 3", "contact of touch 3",
+  /// "disk: synced", "fault link_lost", "warning probe_bounced". It must do nothing to what is watched.
+  std::function<void(std::string_view sight)> on_sight;
   /// The power fails on a disk that had told that it does not write: the commands whose answers wait may be
   /// forgotten with it.
   void on_power_failure_of_failed_disk() { run_of_.clear(); }
@@ -33,6 +39,13 @@ class Watcher {
   void on_sent(const cs8::Message& message);
   void on_read(const cs8::Message& message);
   void on_acknowledge(std::uint32_t sequence);
+  void tell(const std::string& sight) {
+    if (on_sight) on_sight(sight);
+  }
+  void tell_sent(const cs8::Message& message);
+  void tell_from_controller(std::string_view who, const cs8::Message& message);
+  void tell_phase(const cs8::State& state);
+  [[nodiscard]] std::string named(std::uint32_t sequence) const;
   [[nodiscard]] std::string excuse_of(const CommandNumber& command, const cs8::TouchResult& result) const;
 
   const VirtualClock& clock_;
@@ -41,12 +54,17 @@ class Watcher {
   cell::CellOperation* operation_ = nullptr;
   WireReader sent_{[this](const cs8::Message& message) { on_sent(message); }};
   WireReader read_{[this](const cs8::Message& message) { on_read(message); }};
+  WireReader told_{[this](const cs8::Message& message) { tell_from_controller("controller", message); }};
   cs8::Permit permit_;
   Time permit_read_at_{-1};
   std::uint32_t session_ = 0;
   std::optional<CommandNumber> asked_for_;  // by a query, the last one
   std::map<CommandNumber, std::int64_t> run_of_;
   std::optional<cell::State> state_;
+  // For on_sight alone.
+  int touches_sent_ = 0;
+  std::map<CommandNumber, std::string> names_;  // of the motion commands: "touch 3"
+  std::string phase_;
 };
 
 }  // namespace simulation

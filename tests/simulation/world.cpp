@@ -10,6 +10,7 @@
 #include "config/fault_file.hpp"
 #include "sim_controller/fault_names.hpp"
 #include "tests/simulation/invariants.hpp"
+#include "tests/simulation/rest.hpp"
 #include "tests/simulation/store_reading.hpp"
 #include "tests/simulation/watcher.hpp"
 
@@ -50,6 +51,11 @@ struct Process {
   Time store_answers_at{0};
 };
 
+std::string refusal_text(const cell::CommandRefusal& refusal) {
+  if (refusal.code) return fmt::format("refused {}", cell::describe(*refusal.code).name);
+  return refusal.unmet.empty() ? "refused" : fmt::format("refused {}", refusal.unmet.front().code);
+}
+
 class World {
  public:
   explicit World(const Scenario& scenario);
@@ -70,6 +76,9 @@ class World {
   void begin_for_a_time(const DrawnFault& fault, const std::function<void()>& end);
   void disk_trouble(const DrawnFault& fault, DiskTrouble trouble);
   void poke() { process_.due = cell_due_ = clock_.now(); }
+  void strike_due();
+  void look_for_rest();
+  void mend();
   void take_turn_of_daemon();
   void take_turns();
   [[nodiscard]] Time next_event() const;
@@ -90,13 +99,21 @@ class World {
   Process process_;
   std::shared_ptr<const cell::Plan> plan_;
   std::multimap<Time, std::function<void()>> events_;
+  Script script_{scenario_.script};
+  RestWatch rest_{record_.rest};
+  Time next_look_for_rest_{0};
+  std::vector<std::function<void()>> mended_;  // ends of what lasts until then
+  std::ptrdiff_t given_before_rest_ = 0;       // commands, by the script's start
   Time cell_due_{0};
 };
 
 World::World(const Scenario& scenario)
     : scenario_(scenario),
       controller_(cell_context_, "127.0.0.1", kControllerPort, setting().plant,
-                  {.controller = {.seed = scenario.seed, .speed = scenario.speed}, .faults = {}}),
+                  {.controller = {.seed = scenario.seed,
+                                  .speed = scenario.speed,
+                                  .duties = {.frees_arm = scenario.script.empty()}},
+                   .faults = {}}),
       person_(scenario.seed + 3, controller_, journal_, [this] { start_run(); }),
       plan_(first_touches(*setting().plan, scenario.touch_count)) {
   record_.touches_planned = static_cast<int>(plan_->touches.touches.size());
@@ -109,7 +126,15 @@ World::World(const Scenario& scenario)
   };
   network_.on_connection = [this] { watcher_.on_connection(); };
   network_.on_host_close = [this] { watcher_.on_connection_end(); };
+  if (!scenario.script.empty()) {
+    person_.go_by_words();
+    watcher_.on_sight = [this](std::string_view sight) {
+      rest_.see(sight);
+      script_.see(sight);
+    };
+  }
   disk_.on_write = [this](bool is_sync) {
+    is_sync ? watcher_.on_disk_sync() : rest_.on_write();
     if (is_sync || !process_.writes_left || --*process_.writes_left > 0) return;
     process_.writes_left.reset();
     process_.dies_now = true;
@@ -117,6 +142,8 @@ World::World(const Scenario& scenario)
     network_.silence_host();
   };
   disk_.keeps_unsynced = std::ranges::any_of(scenario.faults, takes_power, &DrawnFault::kind);
+  for (const ScriptStep& step : scenario.script)
+    disk_.keeps_unsynced |= std::ranges::any_of(step.then, takes_power, &DrawnFault::kind);
   for (const DrawnFault& fault : scenario.faults) events_.emplace(fault.at, [this, &fault] { begin(fault); });
   if (scenario.sabotage) events_.emplace(scenario.sabotaged_at, [this] { scenario_.sabotage(disk_); });
 }
@@ -197,6 +224,7 @@ void World::start_run() {
                           } else {
                             const auto& refusal = std::get<cell::CommandRefusal>(answer);
                             journal_.note("person", fmt::format("may not start: {}", refusal.detail));
+                            rest_.see(refusal_text(refusal));
                           }
                         });
 }
@@ -204,10 +232,15 @@ void World::start_run() {
 // ---- what goes wrong ----
 
 void World::begin_for_a_time(const DrawnFault& fault, const std::function<void()>& end) {
-  events_.emplace(clock_.now() + fault.lasts, [this, &fault, end] {
+  const auto is_over = [this, &fault, end] {
     journal_.note("fault", fmt::format("is over: {}", fault_kind_name(fault.kind)));
     end();
-  });
+  };
+  if (fault.lasts == kUntilMended) {
+    mended_.push_back(is_over);
+  } else {
+    events_.emplace(clock_.now() + fault.lasts, is_over);
+  }
 }
 
 void World::disk_trouble(const DrawnFault& fault, DiskTrouble trouble) {
@@ -255,8 +288,10 @@ void World::begin(const DrawnFault& fault) {
       disk_trouble(fault, DiskTrouble::kWritesShort);
       break;
     case FaultKind::kDiskStalls:
-      process_.store_answers_at = clock_.now() + fault.lasts;
-      begin_for_a_time(fault, [] {});
+      process_.store_answers_at = fault.lasts == kUntilMended ? kUntilMended : clock_.now() + fault.lasts;
+      begin_for_a_time(fault, [this, &fault] {
+        if (fault.lasts == kUntilMended) process_.store_answers_at = clock_.now();
+      });
       break;
     case FaultKind::kClockJumps:
       clock_.set_wall_clock_ahead(clock_.wall_ahead() + fault.lasts);
@@ -280,8 +315,12 @@ void World::begin(const DrawnFault& fault) {
       break;
     case FaultKind::kCommand:
       if (!process_.daemon) break;
-      if (const auto refusal = process_.daemon->operation().command(fault.command))
+      if (fault.command == cell::Command::kStart) {
+        start_run();
+      } else if (const auto refusal = process_.daemon->operation().command(fault.command)) {
         journal_.note("fault", "refused: " + refusal->detail);
+        rest_.see(refusal_text(*refusal));
+      }
       break;
     case FaultKind::kClientsFlood:
     case FaultKind::kClientRepeatsKey:
@@ -289,6 +328,37 @@ void World::begin(const DrawnFault& fault) {
       clients_.begin(fault);
       break;
   }
+}
+
+// ---- by what is seen ----
+
+/// Not from where it was seen, which is in the middle of what somebody does.
+void World::strike_due() {
+  while (const std::vector<DrawnFault>* due = script_.take_due()) {
+    if (script_.is_over()) rest_.on_struck(clock_.now(), controller_.report());
+    for (const DrawnFault& fault : *due) begin(fault);
+    kill_if_due();
+    poke();
+  }
+}
+
+void World::look_for_rest() {
+  constexpr Time kBetweenLooks = 20ms;
+  if (scenario_.script.empty() || rest_.is_over() || next_look_for_rest_ > clock_.now()) return;
+  next_look_for_rest_ = clock_.now() + kBetweenLooks;
+  const bool is_served = process_.daemon && !process_.killed_by;
+  rest_.look(clock_.now(), is_served ? &process_.daemon->operation() : nullptr, controller_.report());
+  if (rest_.is_over()) mend();
+}
+
+/// What lasts until a person comes is over, and what has not come does not come any more.
+void World::mend() {
+  journal_.note("watcher", record_.rest.at ? "it is at rest: the person comes" : "it does not come to rest");
+  given_before_rest_ = std::ssize(person_.given());
+  for (const auto& end : mended_) end();
+  mended_.clear();
+  process_.writes_left.reset();
+  poke();
 }
 
 // ---- time ----
@@ -305,7 +375,8 @@ void World::let_happen() {
   clients_.ask_again();
   if (!process_.daemon && process_.starts_at <= clock_.now()) begin_daemon();
   if (person_.next_look() > clock_.now()) return;
-  if (process_.daemon && !process_.killed_by) {
+  const bool is_left_alone = !scenario_.script.empty() && !rest_.is_over();
+  if (process_.daemon && !process_.killed_by && !is_left_alone) {
     person_.look(process_.daemon->operation(), clock_.now());
     poke();
   } else {
@@ -334,7 +405,9 @@ void World::take_turns() {
       clients_.go_on();
       poke();
     }
+    strike_due();
     if (daemon_is_due()) take_turn_of_daemon();
+    strike_due();
     if (cell_due_ <= clock_.now()) cell_due_ = clock_.now() + cell_context_.until_next_timer().value_or(1h);
   } while (daemon_is_due() || cell_due_ <= clock_.now());
 }
@@ -354,11 +427,13 @@ void World::go_on_to_end() {
   while (clock_.now() < kPatience) {
     let_happen();
     take_turns();
+    look_for_rest();
     record_.came_to_end = person_.is_done() && process_.daemon && !process_.killed_by;
     if (record_.came_to_end) break;
     clock_.advance_to(next_event());
   }
   clients_.end();
+  record_.person_did.assign(person_.given().begin() + given_before_rest_, person_.given().end());
   if (!process_.daemon) return;
   note_store("the end", true);
   for (const RunRecord& run : record_.stores.back().runs)

@@ -14,6 +14,7 @@
 #include "tests/simulation/network.hpp"
 #include "tests/simulation/person.hpp"
 #include "tests/simulation/record.hpp"
+#include "tests/simulation/script.hpp"
 #include "tests/simulation/setting.hpp"
 #include "tests/simulation/simulated_daemon.hpp"
 #include "tests/simulation/wire.hpp"
@@ -32,6 +33,9 @@ struct Scenario {
   /// For tests that break the program on purpose: done to the disk at that time.
   std::function<void(Disk& disk)> sabotage;
   Time sabotaged_at{};
+  /// What goes wrong by what is seen. Where there is one, it starts the run, nobody frees or mends anything
+  /// before the cell is at rest (Record::rest), and then the person goes by the words that he is told.
+  std::vector<ScriptStep> script;
 };
 
 Scenario scenario_of(std::uint64_t seed);
