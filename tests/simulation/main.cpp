@@ -5,11 +5,14 @@
 #include <ctime>
 #include <exception>
 #include <fstream>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "config/decimal_text.hpp"
 #include "tests/simulation/chosen_world.hpp"
 #include "tests/simulation/kept_journal.hpp"
+#include "tests/simulation/made_table.hpp"
 #include "tests/simulation/shrinking.hpp"
 
 namespace {
@@ -23,7 +26,10 @@ struct Wanted {
   simulation::ChosenWorld first;
   std::uint64_t count = 1;
   bool is_quiet = false;
-  std::string journal_file;  // empty: none
+  std::string journal_file;       // empty: none
+  bool is_table = false;          // the fault table as a document
+  std::string checked_document;   // ... compared with this file; empty: printed
+  std::vector<std::size_t> cell;  // of the table: mode and step
 };
 
 int run_seeds(const Wanted& wanted) {
@@ -62,6 +68,36 @@ int repeat_file(const std::string& name) {
   return broken.empty() ? 0 : 1;
 }
 
+int make_or_check_table(const std::string& checked_document) {
+  const std::string made = simulation::fault_table_document(simulation::make_table(stderr));
+  if (checked_document.empty()) return std::fputs(made.c_str(), stdout) < 0 ? 1 : 0;
+  std::ifstream file(checked_document);
+  std::stringstream given;
+  given << file.rdbuf();
+  const std::string difference = simulation::first_difference(made, given.str());
+  if (difference.empty()) return 0;
+  std::printf("%s: %s\n", checked_document.c_str(), difference.c_str());
+  return 1;
+}
+
+int run_table_cell(const std::vector<std::size_t>& number) {
+  if (number[0] >= simulation::table_modes().size() || number[1] == 0 ||
+      number[1] > simulation::table_steps().size()) {
+    std::fprintf(stderr, "touchcal-sim: --cell: modes are 0 to %zu, steps 1 to %zu\n",
+                 simulation::table_modes().size() - 1, simulation::table_steps().size());
+    return kExitUsage;
+  }
+  const simulation::TableMode& mode = simulation::table_modes()[number[0]];
+  const simulation::TableStep& step = simulation::table_steps()[number[1] - 1];
+  const simulation::TriedCell tried = simulation::try_cell(mode, step, simulation::undisturbed(step));
+  if (tried.cell.cannot_happen.empty())
+    std::fputs(simulation::run_world(simulation::scenario_of(mode, step)).journal.c_str(), stdout);
+  std::printf("%s: %s; %s\n| %s\n", std::string(mode.group).c_str(), std::string(mode.name).c_str(),
+              std::string(step.name).c_str(), simulation::cell_text(tried.cell, {}).c_str());
+  for (const std::string& what : tried.contradictions) std::printf("%s\n", what.c_str());
+  return tried.contradictions.empty() ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -82,14 +118,28 @@ int main(int argc, char** argv) try {
   app.add_option("--repeat", wanted.journal_file,
                  "run the worlds again whose journals are in this file, and compare")
       ->excludes(seed);
+  auto* const table =
+      app.add_flag("--table", wanted.is_table, "print the fault table: every mode at every step");
+  table->excludes(seed);
+  app.add_option("--check", wanted.checked_document,
+                 "compare the table with this file, and print nothing else")
+      ->needs(table);
+  app.add_option("--cell", wanted.cell, "one cell of the table with its journal: MODE,STEP")
+      ->delimiter(',')
+      ->expected(2)
+      ->check(decimal)
+      ->excludes(seed)
+      ->excludes(table);
   app.add_flag("--quiet", wanted.is_quiet, "print the journal of broken worlds only");
   try {
     app.parse(argc, argv);
-    if (seed->count() == 0 && wanted.journal_file.empty())
-      throw CLI::RequiredError("--seed N, or --repeat FILE,");
+    if (seed->count() == 0 && wanted.journal_file.empty() && !wanted.is_table && wanted.cell.empty())
+      throw CLI::RequiredError("--seed N, --repeat FILE, --table or --cell MODE,STEP");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : kExitUsage;
   }
+  if (wanted.is_table) return make_or_check_table(wanted.checked_document);
+  if (!wanted.cell.empty()) return run_table_cell(wanted.cell);
   if (!wanted.journal_file.empty()) return repeat_file(wanted.journal_file);
   wanted.is_quiet = wanted.is_quiet || wanted.count > 1;
   return run_seeds(wanted);
