@@ -96,9 +96,12 @@ HarmonicShares harmonic_shares(const IdentificationProblem& problem, const Least
           harmonic_share(problem, fit, whole, is_second_harmonic, whole.noise, kSecondHarmonicShare)};
 }
 
+/// Most arms have little beside the candidates, and the rest of a displacement is 0 then.
 void add_square(const Eigen::VectorXd& displacement, ArmCovariance& covariance) {
-  const ArmVector of_arm = displacement.head<kArmParameterCount>();
-  covariance.noalias() += of_arm * of_arm.transpose();
+  Eigen::Index end = kArmParameterCount;
+  while (end > 0 && displacement[end - 1] == 0.0) --end;
+  const auto of_arm = displacement.head(end);
+  covariance.topLeftCorner(end, end).noalias() += of_arm * of_arm.transpose();
 }
 
 /// Adds what was not estimated: `displacement` is that by one standard deviation.
