@@ -99,6 +99,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       recovery_(location_.cell(), location_.regions(), store_, plans_, session_, preparation_, planning_,
                 touches_, status_, clocks_),
       loop_{.executor = threads.operation, .ended = TimerWake(threads.operation)} {
+  store_.tell_when_slow(status_, std::make_unique<TimerAlarm>(threads.operation));
   controller_->listen({.on_state = [this](const cs8::State& state) { on_controller_state(state); },
                        .on_permit = [this](const cs8::Permit& permit) { session_.on_permit(permit); },
                        .on_heartbeat = [this] { session_.on_heartbeat(); },

@@ -180,9 +180,20 @@ class CellOperation {
   boost::asio::awaitable<void> pass_block();
   boost::asio::awaitable<void> complete_run();
   boost::asio::awaitable<bool> park();
-  boost::asio::awaitable<void> close_run(RunOutcome outcome);
 
-  // the end with the daemon (cell_operation_end.cpp)
+  // the end of a run, and with the daemon (cell_operation_end.cpp)
+  /// How a run ended, which the disk did not take yet.
+  struct UnstoredEnd {
+    std::int64_t run_id = 0;
+    RunEnd end;
+    bool finished = false;  // as ActiveRun::finished
+    std::chrono::steady_clock::time_point try_at;
+  };
+  boost::asio::awaitable<void> close_run(RunOutcome outcome);
+  boost::asio::awaitable<std::optional<std::string>> store_end(UnstoredEnd closed);
+  boost::asio::awaitable<void> store_end_again();
+  [[nodiscard]] bool is_end_due() const;
+  [[nodiscard]] std::chrono::milliseconds quiet_wait() const;
   void break_off_for_end();
   boost::asio::awaitable<void> leave_for_next_daemon();
   boost::asio::awaitable<void> leave_face_once();
@@ -214,6 +225,7 @@ class CellOperation {
   WayBack way_back_;
   RunRecovery recovery_;
   std::optional<ActiveRun> run_;
+  std::optional<UnstoredEnd> unstored_end_;
   Loop loop_;
   bool is_starting_ = false;  // a start waits for the store
   bool is_settling_ = false;  // the run's last answer is asked for: it stays until that is stored

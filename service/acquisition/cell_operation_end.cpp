@@ -1,10 +1,11 @@
-// The end of a CellOperation with its daemon. Each co_await stands alone in its statement, see
-// cs8_controller.cpp.
+// The end of a run, and that of a CellOperation with its daemon. Each co_await stands alone in its statement,
+// see cs8_controller.cpp.
 #include <spdlog/spdlog.h>
 
 #include <utility>
 
 #include "service/acquisition/cell_operation.hpp"
+#include "service/base/utc_time.hpp"
 
 namespace cell {
 
@@ -16,6 +17,9 @@ namespace {
 constexpr std::chrono::milliseconds kStopPatience{3000};
 constexpr std::chrono::milliseconds kRetractPatience{10'000};  // as long as the arm still moves then
 constexpr std::chrono::milliseconds kClosePatience{1000};
+
+/// How often the end of a run that could not be stored is tried again, beside each change of the state.
+constexpr std::chrono::seconds kEndAgain{5};
 
 }  // namespace
 
@@ -67,6 +71,79 @@ asio::awaitable<void> CellOperation::leave_for_next_daemon() {
 
 asio::awaitable<void> CellOperation::wait_for_end(std::chrono::milliseconds at_most) {
   if (loop_.runs) co_await loop_.ended.wait(at_most);
+}
+
+std::string CellOperation::now_text() const { return format_utc(clocks_.system()); }
+
+/// The run is over: its verdict and its latest result are stored with it.
+asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
+  session_.forget_standing();
+  if (!run_ || !run_->open) co_return;
+  const Run& run = run_->run;
+  run_->open = false;
+  Conclusion concluded;
+  try {
+    concluded = co_await computation_.conclude(*run_, outcome);
+  } catch (const std::exception& error) {  // its end is stored all the same
+    status_.set_fault({FaultCode::kInternalError, error.what()});
+  }
+  RunEnd end{.outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
+             .verdict = concluded.verdict,
+             .ended_at = now_text(),
+             .result_json = concluded.result_json,
+             .arm_json = concluded.arm_json};
+  if (const auto& fault = status_.fault()) {
+    end.fault_code = std::string(describe(fault->code).name);
+    end.fault_message = fault->message();
+  }
+  run_->interruption.reset();
+  spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome),
+               verdict_name(end.verdict), run.touches_done(), run.touches_total());
+  const UnstoredEnd closed{.run_id = run.id(), .end = end, .finished = concluded.finished, .try_at = {}};
+  const auto failure = co_await store_end(closed);
+  if (!failure) co_return;
+  unstored_end_ = closed;
+  unstored_end_->try_at = clocks_.steady() + kEndAgain;
+  status_.set_verdict(Verdict::kIncomplete);
+  status_.set_fault({FaultCode::kStoreFailed, *failure});
+  spdlog::error("run {}: its end could not be stored: {}", run.id(), *failure);
+}
+
+/// Returns why it failed. What is not on the disk is not accepted.
+asio::awaitable<std::optional<std::string>> CellOperation::store_end(UnstoredEnd closed) {
+  const auto write = [id = closed.run_id, end = closed.end](RunStore& store) { store.finish_run(id, end); };
+  const auto failure = co_await store_.write(write);
+  if (failure) co_return failure;
+  const Verdict verdict = closed.end.verdict;
+  if (run_ && run_->run.id() == closed.run_id) {
+    run_->finished = closed.finished;
+    status_.set_verdict(verdict);
+  }
+  if (verdict == Verdict::kAccepted) status_.set_last_accepted(closed.run_id, closed.end.ended_at);
+  co_return std::nullopt;
+}
+
+/// The end of a run that the disk did not take. Nothing moves, and no other run begins in between: it needs
+/// the same disk.
+asio::awaitable<void> CellOperation::store_end_again() {
+  const UnstoredEnd closed = *unstored_end_;
+  const auto failure = co_await store_end(closed);
+  if (failure) {
+    unstored_end_->try_at = clocks_.steady() + kEndAgain;
+    co_return;
+  }
+  unstored_end_.reset();
+  spdlog::info("run {}: its end is stored now: {}", closed.run_id, verdict_name(closed.end.verdict));
+  const auto& fault = status_.fault();
+  if (fault && fault->code == FaultCode::kStoreFailed && !is_active(status_.state())) status_.clear_fault();
+  status_.publish();
+}
+
+bool CellOperation::is_end_due() const { return unstored_end_ && clocks_.steady() >= unstored_end_->try_at; }
+
+/// How long there is nothing to do, unless something wakes.
+std::chrono::milliseconds CellOperation::quiet_wait() const {
+  return unstored_end_ ? std::chrono::milliseconds(kEndAgain) : std::chrono::hours(1);
 }
 
 }  // namespace cell

@@ -9,7 +9,6 @@
 #include "service/acquisition/cell_operation.hpp"
 #include "service/acquisition/preconditions.hpp"
 #include "service/acquisition/touch_judgement.hpp"
-#include "service/base/utc_time.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/run/touch_command.hpp"
 
@@ -31,6 +30,7 @@ void CellOperation::on_entered(State state) {
   const auto now = clocks_.steady();
   hold_time_.on_entered(state, run_ ? run_->run.touches_done() : 0, now);
   if (run_) run_->worked.on_entered(state, now);
+  if (unstored_end_) unstored_end_->try_at = now;
 }
 
 asio::awaitable<void> CellOperation::act_on_states() {
@@ -40,9 +40,13 @@ asio::awaitable<void> CellOperation::act_on_states() {
     const State state = status_.state();
     std::optional<std::string> failure;
     try {
+      if (is_end_due()) {
+        co_await store_end_again();
+        continue;  // nobody waited for a command meanwhile: what there was is looked at now
+      }
       if (state != State::kExecute && run_ && run_->run.identification_is_due()) {
         co_await identify_run();
-        continue;  // nobody waited for a command meanwhile: what there was is looked at now
+        continue;  // as above
       }
       co_await act_on(state);
     } catch (const std::exception& error) {
@@ -50,6 +54,7 @@ asio::awaitable<void> CellOperation::act_on_states() {
     }
     if (failure) co_await break_off(state, *failure);
   }
+  if (unstored_end_) co_await store_end_again();
 }
 
 /// Where a command begins another run meanwhile, the result is that of none.
@@ -132,7 +137,7 @@ asio::awaitable<void> CellOperation::act_on(State state) {
       // A run that is finished or on hold stays to be read while the link comes and goes.
       if (session_.connected()) {
         end_old_permit();
-        co_await wake_.wait(state == State::kHeld ? kPermitLook : 1h);
+        co_await wake_.wait(state == State::kHeld ? kPermitLook : quiet_wait());
       } else {
         co_await connect();
       }
@@ -168,7 +173,7 @@ asio::awaitable<void> CellOperation::await_readiness() {
   const AwaitedAction* missing = nullptr;
   if (!location_.is_locating()) missing = awaited_before_start(unmet_preconditions());
   session_.wait_for(missing);
-  co_await wake_.wait(1h);
+  co_await wake_.wait(quiet_wait());
 }
 
 asio::awaitable<void> CellOperation::connect() {
@@ -340,45 +345,6 @@ asio::awaitable<bool> CellOperation::park() {
   const cs8::Travel command = travel_command(cell(), to, *via);
   const bool arrived = co_await session_.travel(command);
   co_return arrived;
-}
-
-std::string CellOperation::now_text() const { return format_utc(clocks_.system()); }
-
-/// The run is over: its verdict and its latest result are stored with it.
-asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
-  session_.forget_standing();
-  if (!run_ || !run_->open) co_return;
-  const Run& run = run_->run;
-  run_->open = false;
-  Conclusion concluded;
-  try {
-    concluded = co_await computation_.conclude(*run_, outcome);
-  } catch (const std::exception& error) {  // its end is stored all the same
-    status_.set_fault({FaultCode::kInternalError, error.what()});
-  }
-  RunEnd end{.outcome = run_->interruption ? RunOutcome::kInterrupted : outcome,
-             .verdict = concluded.verdict,
-             .ended_at = now_text(),
-             .result_json = concluded.result_json,
-             .arm_json = concluded.arm_json};
-  if (const auto& fault = status_.fault()) {
-    end.fault_code = std::string(describe(fault->code).name);
-    end.fault_message = fault->message();
-  }
-  run_->interruption.reset();
-  const auto write = [id = run.id(), end](RunStore& store) { store.finish_run(id, end); };
-  const auto failure = co_await store_.write(write);
-  if (failure) {
-    status_.set_verdict(Verdict::kIncomplete);
-    status_.set_fault({FaultCode::kStoreFailed, *failure});
-    spdlog::error("run {}: its end could not be stored: {}", run.id(), *failure);
-  } else {
-    run_->finished = concluded.finished;  // what is not on the disk is not accepted
-    status_.set_verdict(concluded.verdict);
-    if (concluded.verdict == Verdict::kAccepted) status_.set_last_accepted(run.id(), end.ended_at);
-  }
-  spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome),
-               verdict_name(end.verdict), run.touches_done(), run.touches_total());
 }
 
 }  // namespace cell

@@ -7,7 +7,6 @@
 
 #include "cs8_protocol/names.hpp"
 #include "service/acquisition/controller_session.hpp"
-#include "service/run/touch_command.hpp"
 
 namespace cell {
 
@@ -19,12 +18,28 @@ namespace {
 /// A refusal whose reason does not show in the controller's state is asked about again after this time.
 constexpr auto kAskAgain = 10s;
 
+asio::awaitable<cs8::TouchReply> not_sent(cs8::TouchReply reply) { co_return reply; }
+
 }  // namespace
 
 bool ControllerSession::has_permit(std::uint32_t run_number) const {
   const auto permit = controller_.latest_permit();  // that of the run before may not be back yet
   return !is_doubted_ && controller_.connected() && permit && permit->run == run_number &&
          permit->state == cs8::PermitState::kGranted;
+}
+
+std::optional<cs8::Rejected> ControllerSession::refusal_without_permit() const {
+  const auto permit = controller_.latest_permit();
+  if (!controller_.connected() || (permit && permit->state == cs8::PermitState::kGranted))
+    return std::nullopt;  // a lost link says so itself
+  const auto state = permit ? permit->state : cs8::PermitState::kNone;
+  return cs8::Rejected{cs8::RejectReason::kNotPermitted, static_cast<std::int32_t>(state)};
+}
+
+asio::awaitable<cs8::TouchReply> ControllerSession::touch(cs8::Touch command) {
+  stop_sent_ = false;
+  if (const auto refusal = refusal_without_permit()) return not_sent({0, *refusal});
+  return controller_.touch(command);
 }
 
 void ControllerSession::wait_for(const AwaitedAction* awaited) {
@@ -66,6 +81,7 @@ void ControllerSession::on_permit(const cs8::Permit& permit) {
 asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number) {
   const State state = status_.state();
   const auto ready_by = clocks_.steady() + cell_.deadlines.ready;
+  inputs_disagreed_ = false;
   const auto is_needless = [this, state] {
     const auto told = controller_.latest_state();
     return state == State::kResetting && told && (told->flags & cs8::kRetractDue) == 0;
@@ -106,6 +122,9 @@ asio::awaitable<void> ControllerSession::take_refused_permit(const cs8::Permit& 
     meet_anew_after(refused);
     co_return;
   }
+  // A hand on the stylus of which only one wire knows is no touch test: the other is cut or shorted.
+  if (awaited == &awaited_touch_test() && inputs_disagreed_)
+    awaited = awaited_after_rejection(cs8::RejectReason::kProbeInputs, 0);
   wait_for(awaited);
   co_await wait_until_readier(told, ready_by);
   if (status_.state() == state && clocks_.steady() >= ready_by)

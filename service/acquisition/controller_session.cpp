@@ -12,7 +12,6 @@
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
 #include "service/acquisition/link_fault.hpp"
-#include "service/run/touch_command.hpp"
 
 namespace cell {
 
@@ -23,6 +22,9 @@ namespace {
 
 /// More different faults of the link than this in a row are not told apart.
 constexpr std::size_t kToldFaultsMax = 16;
+
+/// The two inputs of a probe may change up to 20 ms apart, the time between two states.
+constexpr int kDisagreementsMax = 1;
 
 /// An arm that rests says so within this time.
 constexpr auto kSettleMax = 10s;
@@ -46,8 +48,8 @@ ControllerSession::ControllerSession(const Cell& cell, Controller& controller, P
     : cell_(cell), controller_(controller), status_(status), wake_(wake), clocks_(std::move(clocks)) {}
 
 void ControllerSession::on_controller_state(const cs8::State& state) {
-  // The two inputs of a probe may change up to 20 ms apart, the time between two states.
   inputs_disagree_count_ = cs8::probe_inputs(state.flags).agree() ? 0 : inputs_disagree_count_ + 1;
+  inputs_disagreed_ = inputs_disagreed_ || inputs_disagree_count_ > kDisagreementsMax;
   const ControllerView& shown = status_.latest().controller;
   if (shown != view(shown.probe)) status_.publish();
   const bool watched = status_.state() == State::kResetting || status_.state() == State::kSuspended;
@@ -153,7 +155,7 @@ ControllerView ControllerSession::view(const std::optional<std::string>& probe) 
   if (inputs.agree()) {
     view.probe = inputs.free() ? "free" : "touched";
   } else {
-    view.probe = inputs_disagree_count_ > 1 ? std::optional<std::string>("fault") : probe;
+    view.probe = inputs_disagree_count_ > kDisagreementsMax ? std::optional<std::string>("fault") : probe;
   }
   return view;
 }
@@ -281,6 +283,7 @@ void ControllerSession::discard(std::int64_t run_id, std::uint32_t sequence, con
 asio::awaitable<bool> ControllerSession::travel(cs8::Travel command) {
   standing_.reset();
   stop_sent_ = false;
+  if (const auto refusal = refusal_without_permit()) co_return take_move({0, *refusal});
   const cs8::MoveReply reply = co_await controller_.travel(command);
   co_return take_move(reply);
 }
@@ -288,8 +291,7 @@ asio::awaitable<bool> ControllerSession::travel(cs8::Travel command) {
 bool ControllerSession::take_move(const cs8::MoveReply& reply) {
   if (const auto* rejected = std::get_if<cs8::Rejected>(&reply.answer)) {
     const OutcomeFault refused = fault_of(*rejected);
-    const bool holds = refused.holds && is_moving_state();
-    status_.raise(refused.fault, holds ? Event::kHoldFault : Event::kAbortFault);
+    status_.raise(with_permission_told(refused.fault), event_of(refused));
     meet_anew_after(*rejected);
     return false;
   }
@@ -298,8 +300,7 @@ bool ControllerSession::take_move(const cs8::MoveReply& reply) {
   controller_.acknowledge(reply.sequence);
   if (result->outcome == cs8::Outcome::kArrived) return true;
   if (const auto fault = fault_of(result->outcome, result->phase, result->error_number)) {
-    status_.raise(with_permission_told(fault->fault),
-                  fault->holds && is_moving_state() ? Event::kHoldFault : Event::kAbortFault);
+    status_.raise(with_permission_told(fault->fault), event_of(*fault));
   } else {
     expect_stop(result->outcome);
   }
@@ -336,6 +337,12 @@ asio::awaitable<std::optional<cs8::State>> ControllerSession::settled_state() {
 /// A run keeps its touches; the way around the block and the way back have none and begin anew.
 Event ControllerSession::hold_or_abort() const {
   return is_moving_state() ? Event::kHoldFault : Event::kAbortFault;
+}
+
+/// Of a move. Only among touches something goes on by itself.
+Event ControllerSession::event_of(const OutcomeFault& fault) const {
+  if (!is_moving_state() || !(fault.holds || fault.suspends)) return Event::kAbortFault;
+  return status_.state() == State::kExecute ? fault.event() : Event::kHoldFault;
 }
 
 bool ControllerSession::may_retract() const {

@@ -19,6 +19,7 @@
 #include "service/acquisition/wake.hpp"
 #include "service/base/clocks.hpp"
 #include "service/run/readiness.hpp"
+#include "service/run/touch_command.hpp"
 
 namespace cell {
 
@@ -107,12 +108,10 @@ class ControllerSession {
   void discard(std::int64_t run_id, std::uint32_t sequence, const cs8::TouchResult& result);
 
   [[nodiscard]] std::uint32_t next_sequence() const { return controller_.next_sequence(); }
-  /// The command is sent before this returns; await the reply at once.
-  boost::asio::awaitable<cs8::TouchReply> touch(cs8::Touch command) {
-    stop_sent_ = false;
-    return controller_.touch(command);
-  }
-  /// True when the arm has arrived.
+  /// The command is sent before this returns; await the reply at once. Where the permit has ended nothing is
+  /// sent, and the reply is the refusal that the controller would give.
+  boost::asio::awaitable<cs8::TouchReply> touch(cs8::Touch command);
+  /// True when the arm has arrived. Where the permit has ended nothing is sent, and that is raised.
   boost::asio::awaitable<bool> travel(cs8::Travel command);
   /// Handles a command that ended stopped: by a person's request, or else it is a fault.
   void expect_stop(cs8::Outcome outcome);
@@ -138,7 +137,10 @@ class ControllerSession {
   boost::asio::awaitable<void> wait_until_readier(std::optional<cs8::State> told,
                                                   std::chrono::steady_clock::time_point at_latest);
   void on_welcome(const cs8::Welcome& welcome, State state, bool run_interrupted);
+  /// The refusal of a command for which there is no permit any more: it must not be sent.
+  [[nodiscard]] std::optional<cs8::Rejected> refusal_without_permit() const;
   bool take_move(const cs8::MoveReply& reply);
+  [[nodiscard]] Event event_of(const OutcomeFault& fault) const;
   [[nodiscard]] bool is_moving_state() const;
   [[nodiscard]] bool is_watched() const;
   [[nodiscard]] Event hold_or_abort() const;
@@ -163,6 +165,7 @@ class ControllerSession {
   std::optional<std::chrono::steady_clock::time_point> state_at_;  // when the newest state was received
   std::int32_t task_error_ = 0;                                    // in that state
   int inputs_disagree_count_ = 0;                                  // newest states of the controller in a row
+  bool inputs_disagreed_ = false;                                  // since a permit was asked for
   bool asking_ = false;                                            // for a permit
   int stop_count_ = 0;                                             // stops of a person
   bool stop_sent_ = false;                                         // since the last command

@@ -5,11 +5,9 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "service/acquisition/active_run.hpp"
-#include "service/acquisition/alarm.hpp"
-#include "service/acquisition/published_status.hpp"
+#include "service/acquisition/late_warning.hpp"
 #include "service/run/tip_prediction.hpp"
 
 namespace cell {
@@ -27,7 +25,9 @@ class RunComputation {
   /// `status` and `alarm` are of the caller's thread.
   RunComputation(boost::asio::any_io_executor executor, const TipRegions& regions, PublishedStatus& status,
                  std::unique_ptr<Alarm> alarm)
-      : executor_(std::move(executor)), regions_(regions), status_(status), alarm_(std::move(alarm)) {}
+      : executor_(std::move(executor)),
+        regions_(regions),
+        late_(FaultCode::kComputationSlow, kUntoldMax, status, std::move(alarm)) {}
 
   /// The same run with the result of all its touches.
   boost::asio::awaitable<Run> identified(Run run);
@@ -35,14 +35,9 @@ class RunComputation {
   boost::asio::awaitable<Conclusion> conclude(ActiveRun active, std::optional<RunOutcome> outcome);
 
  private:
-  /// `what` is computed, in words.
-  template <class Result>
-  boost::asio::awaitable<Result> told_when_late(std::string what, boost::asio::awaitable<Result> work);
-
   boost::asio::any_io_executor executor_;
   const TipRegions& regions_;
-  PublishedStatus& status_;
-  std::unique_ptr<Alarm> alarm_;
+  LateWarning late_;
 };
 
 }  // namespace cell

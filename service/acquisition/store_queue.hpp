@@ -3,6 +3,7 @@
 #include <atomic>
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
+#include <chrono>
 #include <concepts>
 #include <functional>
 #include <memory>
@@ -11,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "service/acquisition/late_warning.hpp"
 #include "service/base/run_on.hpp"
 #include "service/store/fault_log.hpp"
 #include "service/store/run_store.hpp"
@@ -33,14 +35,23 @@ class StoreQueue {
         executor_(std::move(executor)),
         faults_(std::make_shared<FaultLog>(store.database())) {}
 
+  /// After so long the status warns of a disk that is waited for (FaultCode::kStoreSlow), until it is done.
+  static constexpr std::chrono::seconds kUntoldMax{5};
+  /// Warns so from now on; call it before the first work. Both are of the caller's thread.
+  void tell_when_slow(PublishedStatus& status, std::unique_ptr<Alarm> alarm) {
+    late_ = std::make_shared<LateWarning>(FaultCode::kStoreSlow, kUntoldMax, status, std::move(alarm));
+  }
+
   /// Returns what `work(store)` returned or threw, when it is done. Each run has one loop, which waits: no
   /// bound is needed.
   template <std::invocable<RunStore&> Work>
   boost::asio::awaitable<std::invoke_result_t<Work, RunStore&>> run(Work work) {
-    return run_on(executor_, [&store = store_, waits = count_one(), work = std::move(work)]() mutable {
+    auto done = run_on(executor_, [&store = store_, waits = count_one(), work = std::move(work)]() mutable {
       const auto until_done = std::move(waits);
       return work(store);
     });
+    return late_ ? late_->told_when_late("the disk has not taken what is to be stored", std::move(done))
+                 : std::move(done);
   }
   /// The same for what only writes: why it failed, nothing when it is done.
   boost::asio::awaitable<std::optional<std::string>> write(std::function<void(RunStore&)> work);
@@ -85,6 +96,7 @@ class StoreQueue {
   RunStore& store_;
   boost::asio::any_io_executor executor_;
   std::shared_ptr<FaultLog> faults_;  // of the store's thread
+  std::shared_ptr<LateWarning> late_;
   std::shared_ptr<std::atomic<int>> behind_count_ = std::make_shared<std::atomic<int>>(0);
   std::shared_ptr<std::atomic<int>> waiting_count_ = std::make_shared<std::atomic<int>>(0);
 };

@@ -243,7 +243,7 @@ asio::awaitable<bool> TouchExecutor::confirm(ActiveRun& active, StoredTouch agai
 void TouchExecutor::take_rejection(const cs8::Rejected& rejected, HeldBy held_by) {
   const OutcomeFault refused = fault_of(rejected);
   held_by_ = held_by;
-  status_.raise(refused.fault, refused.event());
+  status_.raise(session_.with_permission_told(refused.fault), refused.event());
   session_.meet_anew_after(rejected);
 }
 

@@ -62,7 +62,8 @@ constexpr std::array kTable{
                "the probe reads touched before the touch began",
                "the arm did not start and stands clear of the face",
                "free the stylus and check its cable, then touchcal retry to make this touch again, touchcal "
-               "skip to leave it out, or touchcal stop",
+               "skip to leave it out, or touchcal stop; behind a stop touchcal reset, in ABORTED touchcal "
+               "clear first",
                FaultKind::kHeld, "P12"},
     FaultEntry{FaultCode::kEarlyContact, "early_contact",
                "the probe triggered where the search had hardly begun",
@@ -78,9 +79,10 @@ constexpr std::array kTable{
                FaultKind::kHeld, "P15"},
     FaultEntry{FaultCode::kMonitorSpeedChanged, "monitor_speed_changed",
                "the monitor speed was changed during the run",
-               "the arm waits clear of the face and makes the touch again",
-               "set the monitor speed to 100 %: the run goes on by itself; touchcal pause keeps it, touchcal "
-               "stop ends it",
+               "the arm stands still; where it goes on it makes the touch again",
+               "set the monitor speed to 100 %: the run goes on by itself, one on hold by touchcal resume; "
+               "touchcal pause keeps it, touchcal stop ends it; behind a stop touchcal reset, in ABORTED "
+               "touchcal clear first",
                FaultKind::kSuspended, "P19"},
     FaultEntry{FaultCode::kTouchSpread, "touch_spread",
                "the two contacts of a touch lie too far apart, each time it was made",
@@ -256,7 +258,7 @@ constexpr std::array kTable{
                FaultKind::kAborted, "P18"},
     FaultEntry{FaultCode::kImplausibleTouch, "implausible_touch",
                "the reported contact cannot belong to the touch that was asked for",
-               "the arm finished the touch and stands clear of the face; nothing was recorded",
+               "the arm stands where it ended the touch or was held in it; nothing was recorded",
                "check that the cell's arm file is the arm's, then touchcal clear, touchcal reset and start a "
                "new run",
                FaultKind::kAborted, "P37"},
@@ -266,11 +268,13 @@ constexpr std::array kTable{
                "touchcal skip to leave this touch out, or touchcal stop; in ABORTED touchcal clear, then "
                "touchcal reset",
                FaultKind::kHeld},
-    FaultEntry{FaultCode::kStoreFailed, "store_failed", "the state directory could not be written",
-               "the arm finished a touch that was under way and stands clear of the face",
-               "free disk space or repair the state directory's "
-               "rights, then touchcal resume if the run is on hold, else touchcal clear and touchcal reset",
-               FaultKind::kHeld, "P39"},
+    FaultEntry{
+        FaultCode::kStoreFailed, "store_failed", "the state directory could not be written",
+        "the arm finished a touch that was under way, or stands where a stop left it",
+        "free disk space or repair the state directory's rights, then touchcal resume if the run is on "
+        "hold; the end of a run that is over is stored by itself; else touchcal clear and touchcal "
+        "reset",
+        FaultKind::kHeld, "P39"},
     FaultEntry{FaultCode::kNotIdentifiable, "not_identifiable", "the touches do not determine the parameters",
                "the arm finished its touches",
                "look at the result's message; change the recipe and start a new run", FaultKind::kWarning},
@@ -301,6 +305,12 @@ constexpr std::array kTable{
         "wait: the run goes on by itself and this warning ends with the computation; or touchcal stop, "
         "which stops the arm at once",
         FaultKind::kWarning},
+    FaultEntry{
+        FaultCode::kStoreSlow, "store_slow", "the disk takes unusually long to store something",
+        "the arm ends a touch that is under way, then it stands still until that is stored",
+        "look at the disk of the state directory; the run goes on by itself and this warning ends when "
+        "it has answered; touchcal stop stops the arm at once",
+        FaultKind::kWarning, "P39"},
     FaultEntry{FaultCode::kRunResumed, "run_resumed", "the run went on after it was confirmed anew",
                "the arm went to a safe place and on with the next touch",
                "read what was checked before; nothing else is to be done", FaultKind::kWarning},

@@ -74,6 +74,7 @@ enum class FaultCode {
   kStateMissing,
   kInternalError,
   kComputationSlow,
+  kStoreSlow,
   kRunResumed,
 };
 

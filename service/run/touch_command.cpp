@@ -123,6 +123,7 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
     case cs8::RejectReason::kEmergencyStop:
     case cs8::RejectReason::kNotCalibrated:
     case cs8::RejectReason::kNotPermitted:
+      return {{FaultCode::kPermissionLost, fmt::format("before the motion began: {}", why)}, true};
     case cs8::RejectReason::kResultUnacknowledged:  // it is asked for on a new connection
       return {{FaultCode::kTouchRejected, why}, true};
     case cs8::RejectReason::kBusy:

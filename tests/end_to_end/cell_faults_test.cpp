@@ -215,7 +215,7 @@ TEST_F(FailingStore, APlanThatCannotBeWrittenEndsTheRunAndTheDaemonStays) {
   leave_and_run_anew();
 }
 
-TEST_F(FailingStore, AnEndThatCannotBeWrittenIsToldAndNotAccepted) {
+TEST_F(FailingStore, AnEndThatCannotBeWrittenIsToldAndNotAcceptedUntilItCan) {
   constexpr double kAnything = 1.0;
   loop_.cell.acceptance = {kAnything, kAnything, std::numeric_limits<double>::max()};
   const std::int64_t id = loop_.start();
@@ -226,9 +226,13 @@ TEST_F(FailingStore, AnEndThatCannotBeWrittenIsToldAndNotAccepted) {
   EXPECT_EQ(loop_.status().verdict, cell::Verdict::kIncomplete);
   EXPECT_NE(loop_.status().last_accepted_run_id, id);
   expect_touches_once(loop_, id, kShortTouchCount);
-  disk_.relieve();
   EXPECT_THROW(loop_.start(), std::runtime_error) << "nobody has read the fault";
-  loop_.command(Command::kAcknowledge);
+  disk_.relieve();
+  loop_.run_until([](const cell::Status& now) { return !now.fault; });
+  const auto stored = loop_.operation().store().run(id);
+  EXPECT_EQ(stored.value().outcome, cell::RunOutcome::kComplete) << "its end is stored by itself now";
+  EXPECT_NE(stored->verdict, cell::Verdict::kIncomplete);
+  EXPECT_EQ(loop_.status().verdict, stored->verdict);
   const std::int64_t next = loop_.start();
   loop_.run_until_over();
   EXPECT_EQ(loop_.status().verdict, cell::Verdict::kAccepted);

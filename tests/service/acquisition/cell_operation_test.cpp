@@ -373,6 +373,26 @@ TEST_F(SlowArithmeticTest, IsNotWaitedForToStopTheArmWhereTheDaemonEnds) {
   EXPECT_EQ(store_.touches(id_).size(), 2u) << "what was answered meanwhile is kept";
 }
 
+TEST_F(CellOperationTest, TheEndOfARunThatTheDiskDidNotTakeIsStoredWhenItDoes) {
+  controller_->state->permit = cs8::PermitState::kGranted;
+  controller_->on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  launch();
+  const std::int64_t id = start_few();
+  run_until([this] { return operation_.status().state == State::kExecute; });
+  sqlite3* const handle = store_.database()->getHandle();
+  sqlite3_commit_hook(
+      handle, [](void*) { return 1; }, nullptr);
+  EXPECT_FALSE(operation_.command(Command::kStop));
+  run_until([this] { return operation_.status().state == State::kStopped; });
+  sqlite3_commit_hook(handle, nullptr, nullptr);
+  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kStoreFailed);
+  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kRunning);
+  EXPECT_FALSE(operation_.command(Command::kReset));  // each change of the state tries it again
+  run_until([this] { return operation_.status().state == State::kIdle; });
+  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kStopped);
+  EXPECT_FALSE(operation_.status().fault);
+}
+
 TEST_F(CellOperationTest, ChangesAreToldAtOnceAndNumbered) {
   std::vector<std::uint64_t> told;
   operation_.on_change([&](const Status& status) { told.push_back(status.sequence); });

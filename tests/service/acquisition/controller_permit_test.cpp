@@ -52,6 +52,22 @@ TEST_F(ControllerPermitTest, NobodyWhoMakesTheCellReadyInTimeEndsTheStart) {
   EXPECT_LT(time.since_begin(), cell_of_owners().deadlines.ready + 2s);
 }
 
+TEST_F(ControllerPermitTest, AHandOnTheStylusThatOneWireOnlyKnowsIsToldAsTheOtherWire) {
+  status.enter(State::kStarting);
+  controller.state->flags &= ~static_cast<std::uint32_t>(cs8::kTouchTested);
+  controller.on_begin = [](std::uint32_t run) { return refused(run, cs8::RejectReason::kTouchTestMissing); };
+  std::vector<std::string> awaited;
+  wake.on_wait = [&] {
+    const std::string now = status.latest().waiting_for.value_or("");
+    if (awaited.empty() || awaited.back() != now) awaited.push_back(now);
+    controller.state->flags ^= cs8::kProbeLoopClosed;  // the contact's wire is cut
+    for (int i = 0; i < 3; ++i) session.on_controller_state(*controller.state);
+  };
+  EXPECT_FALSE(run(session.obtain_permit(7)));
+  EXPECT_THAT(awaited, ElementsAre("touch_test", "probe_inputs"));
+  EXPECT_THAT(faults, ElementsAre("probe_fault"));
+}
+
 TEST_F(ControllerPermitTest, APermitOfTheRunBeforeIsNone) {
   status.enter(State::kStarting);
   controller.permit = cs8::Permit{.run = 6, .state = cs8::PermitState::kGranted};

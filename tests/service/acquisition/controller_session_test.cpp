@@ -9,6 +9,7 @@ namespace cell {
 namespace {
 
 using ::testing::Contains;
+using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -82,6 +83,31 @@ TEST_F(ControllerSessionTest, ASearchThatWasBrokenOffIsNotLeftWithAPermitThatHas
   EXPECT_THAT(controller.asked, IsEmpty());
   EXPECT_THAT(faults, ElementsAre("permission_lost"));
   EXPECT_THAT(status.fault().value().detail, HasSubstr("the permit ended by 'probe_fault'"));
+}
+
+TEST_F(ControllerSessionTest, AWayThatNobodyPermitsAnyMoreIsNotTaken) {
+  for (const auto state :
+       {cs8::PermitState::kNone, cs8::PermitState::kAwaited, cs8::PermitState::kRetractOnly}) {
+    status.enter(State::kCompleting);
+    controller.permit = cs8::Permit{.run = 7, .state = state};
+    EXPECT_FALSE(run(session.travel({})));
+    EXPECT_EQ(status.state(), State::kHolding) << "the run keeps its touches";
+  }
+  EXPECT_THAT(controller.asked, IsEmpty());
+  EXPECT_THAT(faults, Each("permission_lost"));
+}
+
+TEST_F(ControllerSessionTest, AWayAtAnotherMonitorSpeedHoldsTheRunOrSuspendsItsTouches) {
+  controller.permit = ScriptedController::granted(7);
+  controller.on_move = [] { return cs8::Rejected{cs8::RejectReason::kMonitorSpeed, 50}; };
+  const auto after_way_in = [this](State state) {
+    status.enter(state);
+    EXPECT_FALSE(run(session.travel({})));
+    return status.state();
+  };
+  EXPECT_EQ(after_way_in(State::kExecute), State::kSuspending);
+  EXPECT_EQ(after_way_in(State::kCompleting), State::kHolding);
+  EXPECT_EQ(after_way_in(State::kStarting), State::kAborting) << "the way around the block begins anew";
 }
 
 TEST_F(ControllerSessionTest, AnArmThatStandsAtAFaceIsTold) {
@@ -308,6 +334,7 @@ TEST_F(ControllerSessionTest, AMoveThatDoesNotArriveIsAFaultUnlessSomebodyAskedF
   cs8::MoveResult stopped;
   stopped.outcome = cs8::Outcome::kStopped;
   controller.on_move = [&] { return stopped; };
+  controller.permit = ScriptedController::granted(7);
   status.enter(State::kStopping);
   EXPECT_FALSE(run(session.travel({})));
   EXPECT_TRUE(faults.empty());

@@ -25,6 +25,13 @@ cs8::State ScriptedController::ready_state() {
   return state;
 }
 
+cs8::Permit ScriptedController::granted(std::uint32_t run) {
+  cs8::Permit permit;
+  permit.run = run;
+  permit.state = cs8::PermitState::kGranted;
+  return permit;
+}
+
 cs8::MoveResult ScriptedController::arrived() {
   cs8::MoveResult result;
   result.outcome = cs8::Outcome::kArrived;

@@ -20,6 +20,8 @@ class ScriptedController : public Controller {
 
   /// An arm that rests, ready for a run.
   static cs8::State ready_state();
+  /// A person confirmed the run.
+  static cs8::Permit granted(std::uint32_t run);
   static cs8::MoveResult arrived();
   static cs8::LinkError lost();
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sqlite3.h>
 
+#include <boost/asio/co_spawn.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <future>
 #include <thread>
@@ -43,6 +44,36 @@ TEST_F(StoreQueueTest, WhatNobodyWaitsForIsLeftOutWhenTheDiskStandsStill) {
   run(queue_.run(nothing));
   EXPECT_EQ(done, StoreQueue::kBehindMax - 1);
   EXPECT_TRUE(queue_.behind([](RunStore&) {})) << "there is room again";
+}
+
+TEST_F(StoreQueueTest, ADiskThatTakesLongIsToldUntilItHasAnswered) {
+  boost::asio::io_context stalled{1};
+  StoreQueue waiting{store, stalled.get_executor()};
+  auto* const alarm = new MadeUpAlarm;
+  waiting.tell_when_slow(status, std::unique_ptr<Alarm>(alarm));
+  const auto let_run = [this] {
+    io.restart();
+    io.poll();
+  };
+  std::optional<std::string> failure = "not done";
+  const auto take = [&failure](const std::exception_ptr&, std::optional<std::string> why) { failure = why; };
+  boost::asio::co_spawn(io, waiting.write([](RunStore&) {}), take);
+  let_run();
+  EXPECT_EQ(alarm->set_for, StoreQueue::kUntoldMax);
+  EXPECT_FALSE(status.latest().warning) << "it is not late yet";
+  alarm->ring();
+  EXPECT_EQ(status.latest().warning.value().code, FaultCode::kStoreSlow);
+  stalled.run();
+  let_run();
+  EXPECT_EQ(failure, std::nullopt);
+  EXPECT_FALSE(status.latest().warning);
+  boost::asio::co_spawn(io, waiting.write([](RunStore&) {}), take);
+  let_run();
+  EXPECT_TRUE(alarm->is_set());
+  stalled.restart();
+  stalled.run();
+  let_run();
+  EXPECT_FALSE(alarm->is_set()) << "none is left behind a write in time";
 }
 
 TEST_F(StoreQueueTest, SaysHowMuchADiskThatStandsStillHasNotDone) {

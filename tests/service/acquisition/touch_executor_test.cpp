@@ -180,6 +180,19 @@ TEST_F(TouchExecutorTest, ACommandThatCannotBeKeptDoesNotLeave) {
   EXPECT_THAT(faults, ElementsAre("store_failed"));
 }
 
+TEST_F(TouchExecutorTest, ATouchThatNobodyPermitsAnyMoreDoesNotLeave) {
+  controller.permit = cs8::Permit{.run = 1, .reason = cs8::PermitReason::kPermissionLost};
+  run(touches_.make_next_touch(active_));
+  EXPECT_THAT(controller.asked, IsEmpty());
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_THAT(faults, ElementsAre("permission_lost"));
+  EXPECT_FALSE(session.open_touch() || store.open_command(active_.run.id())) << "it was never made";
+  controller.permit = ScriptedController::granted(1);
+  status.enter(State::kExecute);
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), 1);
+}
+
 TEST_F(TouchExecutorTest, ATouchThatMeetsNothingHoldsTheRunAndIsForgottenByTheController) {
   controller.on_touch = [](const cs8::Touch&) {
     cs8::TouchResult nothing;

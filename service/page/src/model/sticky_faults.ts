@@ -13,8 +13,8 @@ export interface StickyFault {
   at: string;       // by the daemon's clock, of the state in which it was told
 }
 
-/** A warning that ends by itself, as its text says. */
-const kPassing = 'computation_slow';
+/** Warnings that end by themselves, as their texts say. */
+const kPassing = ['computation_slow', 'store_slow'];
 
 /** The newest warnings are enough to read; the run keeps all of them. */
 const kWarningsMax = 5;
@@ -30,8 +30,9 @@ export function noteFaults(known: StickyFault[], before: Status | null, status: 
   const isNewWarning = status.warning_code !== null &&
       (before === null || restarted || before.run_id !== status.run_id || before.warning_code !== status.warning_code ||
        before.warning_message !== status.warning_message);
-  const hasPassed = before?.warning_code === kPassing && status.warning_code !== kPassing;
-  if (hasPassed) faults = faults.filter(({code}) => code !== kPassing);
+  const passed = before?.warning_code;
+  if (passed && kPassing.includes(passed) && status.warning_code !== passed)
+    faults = faults.filter(({code}) => code !== passed);
   if (isNewWarning) faults = withWarning(faults, status);
   return faults;
 }

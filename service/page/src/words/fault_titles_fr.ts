@@ -65,5 +65,6 @@ export const kFaultTitlesFr: Readonly<Record<string, string>> = {
   state_missing: 'état de la baie manquant',
   internal_error: 'erreur interne',
   computation_slow: 'calcul long',
+  store_slow: 'disque lent',
   run_resumed: 'essai repris',
 };
