@@ -66,6 +66,7 @@ class Step {
   // ---- messages ----
 
   void take(std::uint32_t, const cs8::Hello& hello) {
+    if (state_.greeted) end_permit_of_link();  // whoever says it again
     state_.greeted = true;
     state_.heartbeat_timeout = std::clamp(std::chrono::milliseconds(hello.heartbeat_timeout_ms),
                                           kHeartbeatTimeoutMin, kHeartbeatTimeoutMax);
@@ -77,7 +78,7 @@ class Step {
 
   void take(std::uint32_t, const cs8::Heartbeat&) {}
   void take(std::uint32_t, const cs8::Begin& begin) {
-    if (const auto reason = refusal_of_begin()) {
+    if (const auto reason = refusal_of_begin(state_)) {
       // A new run while one moves: the permit goes, and with it the motion.
       if (running()) break_off(state_.cabinet, *running(), Outcome::kStopped);
       tell(refuse(state_.permit, begin, *reason));
@@ -145,44 +146,6 @@ class Step {
     }
   }
 
-  /// A command or a run cannot begin before the one before is done with.
-  std::optional<RejectReason> refusal_of_another() {
-    if (running()) return RejectReason::kBusy;
-    if (state_.stored_result) return RejectReason::kResultUnacknowledged;
-    return std::nullopt;
-  }
-
-  std::optional<RejectReason> refusal_of_begin() {
-    if (state_.cabinet.task_error != 0) return RejectReason::kTaskFailed;
-    if (const auto reason = refusal_of_another()) return reason;
-    if (const auto rejected = cabinet_refusal(state_.cabinet)) return rejected->reason;
-    // Behind a touch that was broken off the stylus may be bent: the way back is all that moves first.
-    if (state_.motion.retract_path.empty()) {
-      if (const auto rejected = probe_refusal(state_.cabinet)) return rejected->reason;
-    } else if (state_.cabinet.probe_disagrees()) {
-      return RejectReason::kProbeInputs;
-    }
-    if (state_.cabinet.touch_test != TouchTest::kDone) return RejectReason::kTouchTestMissing;
-    return std::nullopt;
-  }
-
-  std::optional<cs8::Rejected> refusal_of_motion(std::uint32_t sequence, bool is_retract) {
-    const auto because = [](RejectReason reason, std::int32_t detail = 0) {
-      return cs8::Rejected{reason, detail};
-    };
-    if (sequence <= state_.last_sequence) return because(RejectReason::kStaleSequence);
-    if (const auto reason = refusal_of_another()) return because(*reason);
-    if (auto rejected = cabinet_refusal(state_.cabinet)) return rejected;
-    const PermitState permit = state_.permit.permit.state;
-    if (permit != PermitState::kGranted && !(is_retract && permit == PermitState::kRetractOnly)) {
-      return because(RejectReason::kNotPermitted, static_cast<std::int32_t>(permit));
-    }
-    const bool near_a_face = !state_.motion.retract_path.empty();
-    if (near_a_face && !is_retract) return because(RejectReason::kRetractPending);
-    if (!near_a_face && is_retract) return because(RejectReason::kNothingToRetract);
-    return std::nullopt;
-  }
-
   /// Answers a repeated or refused command; true when it is to be carried out.
   template <class Command>
   bool admit(std::uint32_t sequence, const Command& command) {
@@ -191,7 +154,7 @@ class Step {
       return false;
     }
     constexpr bool kIsRetract = Command::kType == cs8::MessageType::kRetract;
-    auto rejected = refusal_of_motion(sequence, kIsRetract);
+    auto rejected = refusal_of_motion(state_, sequence, kIsRetract);
     if (!rejected) rejected = refusal(plant_, command);
     if (!rejected && !kIsRetract) rejected = probe_refusal(state_.cabinet);
     if (rejected) send(sequence, *rejected);
@@ -334,6 +297,10 @@ class Step {
   void lose_link() {
     state_.connected = false;
     state_.greeted = false;
+    end_permit_of_link();
+  }
+
+  void end_permit_of_link() {
     state_.permit = {};
     if (running()) break_off(state_.cabinet, *running(), Outcome::kHeartbeatLost);
   }

@@ -235,6 +235,17 @@ TEST_F(Controller, AResultWaitsForTheNextConnection) {
   EXPECT_EQ(found.contact, result.contact);
 }
 
+TEST_F(Controller, ASecondHelloEndsThePermitAndWhatMoves) {
+  Bench bench = Bench::ready(plant());
+  bench.touch_until(3, motion(), Phase::kSearch);
+  const auto replies = bench.send(0, cs8::Hello{700});
+  EXPECT_EQ(std::get<cs8::Welcome>(replies.front().payload).open_sequence, 3u);
+  EXPECT_EQ(bench.state.permit.permit.state, cs8::PermitState::kNone);
+  bench.pass(milliseconds(1000));
+  const auto result = std::get<cs8::TouchResult>(bench.state.stored_result.value().payload);
+  EXPECT_EQ(result.outcome, Outcome::kHeartbeatLost);
+}
+
 TEST_F(Controller, AConnectionThatDoesNotSayHelloIsClosed) {
   Bench bench(plant());
   bench.happen(ConnectionOpened{});

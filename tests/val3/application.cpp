@@ -122,11 +122,14 @@ class Loader {
       Parameter parameter{.name = element.attribute("name"),
                           .type = type_named(element.attribute("type")),
                           .is_array = shape == "array",
-                          .by_reference = use == "reference" || shape == "array"};
+                          .by_reference = use == "reference"};
       if (element.name != "Parameter" || parameter.type == Type::kNone ||
           (shape != "element" && shape != "array") || (use != "reference" && !use.empty()))
         throw Problem{program.file, element.line,
                       "a parameter needs name, type and xsi:type element or array"};
+      if (parameter.is_array && use != "reference")
+        throw Problem{program.file, element.line,
+                      parameter.name + ": an array is never passed by value: use=\"reference\""};
       program.parameters.push_back(std::move(parameter));
     }
   }

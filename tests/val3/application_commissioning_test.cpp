@@ -49,6 +49,59 @@ TEST(ApplicationCommissioning, ADryRunGoesSlowlyToEachApproachAndTouchesNothing)
   EXPECT_LT(usual_s, 10.0);
 }
 
+/// Whether the application starts its tasks on a controller that is otherwise as `differs` says.
+bool starts(std::function<void(Cabinet&)> differs) {
+  Bench bench({.differs = std::move(differs)});
+  const bool runs = bench.interpreter.task_status("receive") == 1;
+  EXPECT_EQ(bench.cabinet.pop_ups, runs ? 0 : 1);
+  return runs;
+}
+
+TEST(ApplicationCommissioning, StartsOnTheVersionsThatItIsMadeFor) {
+  const auto version = [](const char* text) { return [text](Cabinet& c) { c.version = text; }; };
+  EXPECT_TRUE(starts(version("s7.7.2 - Mar 23 2012 - 16:01:17")));
+  EXPECT_TRUE(starts(version("s7.7.2")));
+  EXPECT_TRUE(starts(version("s7.11.1 - Sep 27 2016 - 16:01:17")));
+  EXPECT_TRUE(starts(version("s8.1")));
+  EXPECT_FALSE(starts(version("s7.7 - Sep 27 2011 - 16:01:17"))) << "that is s7.7.0";
+  EXPECT_FALSE(starts(version("s7.7 - Sep 27 2011 b1.9"))) << "a point behind the version is none of it";
+  EXPECT_FALSE(starts(version("s6.8.1 - Sep 27 2007 - 16:01:17")));
+  EXPECT_FALSE(starts(version("")));
+}
+
+TEST(ApplicationCommissioning, StartsOnItsArmOnly) {
+  const auto arm = [](const char* type) { return [type](Cabinet& c) { c.arm_type = type; }; };
+  EXPECT_TRUE(starts(arm("tx90-S1")));
+  EXPECT_TRUE(starts(arm("tx90")));
+  EXPECT_TRUE(starts(arm(""))) << "a controller that does not say";
+  EXPECT_FALSE(starts(arm("tx90l-S1")));
+  EXPECT_FALSE(starts(arm("rx160")));
+  Bench bench;
+  EXPECT_NE(bench.log().find("arm tx90-S1, serial F09_9EF3A1_A_01"), std::string::npos) << bench.log();
+}
+
+TEST(ApplicationCommissioning, SetsItsSocketAndDoesNotStartWithoutThat) {
+  Bench bench;
+  EXPECT_EQ(bench.socket().timeout_s, -1);
+  EXPECT_EQ(bench.socket().clients, 1);
+  EXPECT_FALSE(bench.socket().nagle);
+  const auto refuses = [](const char* name, double answer) {
+    return [=](Cabinet& c) { c.socket_refuses[name] = answer; };
+  };
+  EXPECT_FALSE(starts(refuses("timeout", -3)));
+  EXPECT_FALSE(starts(refuses("clients", -5)));
+  EXPECT_FALSE(starts(refuses("nagle", -3)));
+  EXPECT_TRUE(starts(refuses("nagle", -1))) << "a version that does not know the name: the pendant's setting";
+}
+
+TEST(ApplicationCommissioning, ItsTimesAndNumbersGoOnBeyond32Bits) {
+  Bench bench({.clock_s = 5e6});  // 58 days: 5e9 milliseconds
+  bench.make_ready();
+  const auto now_ms = static_cast<std::uint32_t>(std::llround(bench.cabinet.clock_s * 1000));  // modulo 2^32
+  EXPECT_LE(bench.state().clock_ms - now_ms, 40u);
+  EXPECT_EQ(bench.variable<double>("nTaskError"), 0);
+}
+
 TEST(ApplicationCommissioning, EdgesAreCountedToStandstillOnly) {
   Bench bench;
   bench.face_mm = kFaceMm;

@@ -96,6 +96,47 @@ TEST(ApplicationStops, ALostHostStopsTheArmOnTheSpotAndTheResultWaits) {
   }
 }
 
+TEST(ApplicationStops, ASecondHelloEndsWhatALostHostEnds) {
+  for (const PhaseCase& wanted : phases()) {
+    SCOPED_TRACE(name(wanted.phase));
+    Bench bench;
+    into_phase(bench, wanted);
+    EXPECT_EQ(bench.greet_again().open_sequence, 2u);
+    EXPECT_EQ(bench.expect<TouchResult>(2, 2).outcome, Outcome::kHeartbeatLost);
+    EXPECT_EQ(bench.state().permit, PermitState::kNone);
+    bench.send(0, ResultAcknowledge{2});
+    bench.send(3, Retract{20000, 30000});
+    EXPECT_EQ(bench.expect<Rejected>(3).reason, RejectReason::kNotPermitted) << "without a person's word";
+  }
+}
+
+TEST(ApplicationStops, AReceiveTaskThatStandsStillStopsTheArm) {
+  Bench bench;
+  into_phase(bench, phases().front());
+  bench.socket().timeout_s = 0;  // a read that waits for ever
+  bench.heartbeats = false;
+  bench.seconds(0.3);
+  const Joint stands = bench.cabinet.joints_deg;
+  EXPECT_EQ(bench.variable<double>("nPermit"), 0) << "before the silence of the host counts";
+  bench.seconds(1);
+  EXPECT_EQ(bench.cabinet.joints_deg, stands);
+  bench.socket().timeout_s = -1;
+  bench.heartbeats = true;
+  EXPECT_EQ(bench.await<TouchResult>(1).outcome, Outcome::kHeartbeatLost);
+}
+
+TEST(ApplicationStops, AMoveThatTheArmDoesNotBeginIsAMotionErrorAtOnce) {
+  Bench bench;
+  bench.make_ready();
+  bench.cabinet.stopped = true;  // it stays in the store, as one that cannot be carried out
+  bench.send(2, bench.touch());
+  bench.expect<Accepted>(2);
+  const TouchResult result = bench.expect<TouchResult>(2, 5);
+  EXPECT_EQ(result.outcome, Outcome::kMotionError) << name(result.outcome);
+  EXPECT_EQ(result.error_number, 150);
+  EXPECT_EQ(bench.state().permit, PermitState::kNone);
+}
+
 TEST(ApplicationStops, LostPermissionEndsATouchForGood) {
   const std::vector<std::pair<std::string, std::function<void(Bench&, bool)>>> losses{
       {"mode", [](Bench& b, bool lost) { b.cabinet.mode = lost ? 1 : 4; }},

@@ -105,6 +105,8 @@ Value enable_power(Call& c) {
 }
 
 Value version(Call& c) {
+  if (c.text(0) == "ArmType") return c.cabinet.arm_type;
+  if (c.text(0) == "ArmSN") return std::string("F09_9EF3A1_A_01");
   if (c.text(0) != "VAL3" && c.text(0) != "System") throw RuntimeError(kErrorParameter, "version of what");
   return c.cabinet.version;
 }

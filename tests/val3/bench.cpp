@@ -45,6 +45,7 @@ Bench::Bench(Hardware hardware)
 Cabinet Bench::cabinet_of(Hardware hardware) {
   Cabinet cabinet;
   cabinet.clock_s = hardware.clock_s;
+  if (hardware.differs) hardware.differs(cabinet);
   return cabinet;
 }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <optional>
 #include <set>
 #include <string>
@@ -21,6 +22,8 @@ class Bench {
   struct Hardware {
     bool latch = true;
     double clock_s = 0;  // since the controller was switched on
+    /// What is otherwise about the cabinet when the application starts.
+    std::function<void(Cabinet&)> differs = {};
   };
   explicit Bench(Hardware hardware);
   Bench() : Bench(Hardware{}) {}

@@ -25,6 +25,9 @@ struct Socket {
   std::vector<std::uint8_t> to_host;
   std::size_t room = SIZE_MAX;  // bytes that sioSet can still take
   int connections = 0;
+  double timeout_s = 5;  // as the pendant has it for a new one; -1: an access does not wait
+  double clients = 2;
+  bool nagle = true;
 
   /// False while a connection that is over still holds the socket.
   bool connect();
@@ -42,12 +45,14 @@ struct Cabinet {
   int mode = 4;
   int emergency_stop = 0;
   double monitor_speed = 100;
-  std::string version = "s7.7.2";
-  double clock_s = 0;                                // set before the start, it counts on from there
-  std::map<std::string, bool, std::less<>> inputs;   // by link
-  std::map<std::string, bool, std::less<>> outputs;  // by link
-  std::set<std::string, std::less<>> latch_inputs;   // those with latch hardware
-  bool latch_blind = false;                          // takes the command and never captures
+  std::string version = "s7.7.2 - Mar 23 2012 - 16:01:17";
+  std::string arm_type = "tx90-S1";                           // empty: the controller does not say
+  std::map<std::string, double, std::less<>> socket_refuses;  // answers of sioCtrl, by what is set
+  double clock_s = 0;                                         // set before the start, it counts on from there
+  std::map<std::string, bool, std::less<>> inputs;            // by link
+  std::map<std::string, bool, std::less<>> outputs;           // by link
+  std::set<std::string, std::less<>> latch_inputs;            // those with latch hardware
+  bool latch_blind = false;                                   // takes the command and never captures
   std::map<std::string, Socket, std::less<>> sockets;
   /// What clearBuffer does to a living connection is to be confirmed on a controller: both are tested.
   bool clear_buffer_closes = true;

@@ -23,7 +23,10 @@ std::string problems_of(SmallProject& project) {
 /// A right project with one synchronous task.
 SmallProject& fill(SmallProject& project) {
   project.number("nCount").number("kLimit").flag("bOver");
-  project.program("work", "while true\nif nCount<kLimit\nnCount=nCount+1\nendIf\ndelay(0)\nendWhile");
+  project.data("diDoor", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%I0\"/>");
+  project.program("work",
+                  "while true\nbOver=diDoor\nif nCount<kLimit and "
+                  "diDoor==true\nnCount=nCount+1\nendIf\ndelay(0)\nendWhile");
   project.program("start", "nCount=0\nbOver=false\ntaskCreateSync \"work\",0.004,bOver,work()");
   project.program("stop", "taskKill(\"work\")");
   return project;
@@ -43,6 +46,9 @@ TEST(Checks, NameFileAndLineOfEachMistakeInStart) {
       {"nCount=bAnd(1,2)", "start.pgx:6: no instruction is called bAnd"},
       {"nCount=sioGet(1)", "start.pgx:6: sioGet takes 2 arguments"},
       {"work()", "start.pgx:6: work is a program: call work"},
+      {"if diDoor\nendIf", "start.pgx:6: dio where bool is wanted: compare it, diDoor==true"},
+      {"bOver=!diDoor", "start.pgx:6: dio where bool is wanted"},
+      {"bOver=bOver and diDoor", "start.pgx:6: dio where bool is wanted"},
       {"if nCount\nendIf", "start.pgx:6: num where bool is wanted"},
       {"if true", "start.pgx:7: expected 'endIf' before 'end'"},
       {"endWhile", "expected 'end'"},
@@ -59,6 +65,16 @@ TEST(Checks, NameFileAndLineOfEachMistakeInStart) {
     fill(project).program("start",
                           "nCount=0\nbOver=false\ntaskCreateSync \"work\",0.004,bOver,work()\n" + code);
     EXPECT_THAT(problems_of(project), HasSubstr(message)) << code;
+  }
+}
+
+TEST(Checks, AnArrayIsPassedByReferenceOnly) {
+  for (const std::string by : {"", " use=\"value\""}) {
+    SmallProject project;
+    fill(project).program(
+        "put", "x_nTo[0]=1",
+        SmallProject::parameters(SmallProject::parameter("x_nTo", "num", "xsi:type=\"array\"" + by)));
+    EXPECT_THAT(problems_of(project), HasSubstr("put.pgx")) << by;
   }
 }
 

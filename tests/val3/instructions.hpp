@@ -26,6 +26,9 @@ struct Call {
   }
 };
 
+/// Thrown by a statement that has to be carried out again in the next tick.
+struct Blocked {};
+
 struct InstructionParameter {
   std::vector<Type> types;  // any of them
   bool by_reference = false;

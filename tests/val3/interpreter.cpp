@@ -9,9 +9,6 @@
 namespace val3 {
 namespace {
 
-/// The statement has to be carried out again in the next tick.
-struct Blocked {};
-
 /// A digital input or output stands for its state.
 Value state_of(const Cabinet& cabinet, const Value& value) {
   const Dio* dio = std::get_if<Dio>(&value);

@@ -64,7 +64,7 @@ TEST(Language, ParametersByValueAreCopiesAndThoseByReferenceArePlaces) {
       SmallProject::parameters(
           SmallProject::parameter("x_nCopy", "num", "xsi:type=\"element\"") +
           SmallProject::parameter("x_nPlace", "num", "xsi:type=\"element\" use=\"reference\"") +
-          SmallProject::parameter("x_nList", "num", "xsi:type=\"array\"") +
+          SmallProject::parameter("x_nList", "num", "xsi:type=\"array\" use=\"reference\"") +
           SmallProject::parameter("x_jArm", "jointRx", "xsi:type=\"element\" use=\"reference\"")) +
           SmallProject::local("l_n", "num", 2));
   project.program("start", "n[0]=4\ncall add(n[0],n[1],n[2],j)");
@@ -119,6 +119,7 @@ TEST(Language, RunTimeErrorsEndTheTaskWithTheirNumber) {
                                               {"di=true", kErrorWriteToInput},
                                               {"m.vel=50\n m.decel=40\nmovej(herej(),flange,m)", kErrorMdesc},
                                               {"call start()", kErrorStack},
+                                              {"n=4294967296%10", kErrorArithmetic},
                                               {"while true\nendWhile", kErrorInstructionTimeout}};
   for (const auto& [statement, error] : statements) {
     SmallProject project;

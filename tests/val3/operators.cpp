@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "tests/val3/interpreter.hpp"
@@ -21,6 +22,9 @@ Value of_numbers(const std::string& sign, double left, double right) {
   if (sign == "*") return left * right;
   if ((sign == "/" || sign == "%") && right == 0) throw RuntimeError(kErrorArithmetic, "division by 0");
   if (sign == "/") return left / right;
+  // what a controller makes of larger numbers is not known
+  if (sign == "%" && std::max(std::abs(left), std::abs(right)) > 2147483647.0)
+    throw RuntimeError(kErrorArithmetic, "% beyond 32 bits");
   if (sign == "%") return std::fmod(left, right);
   return compare(sign, left, right);
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <set>
+#include <type_traits>
 
 #include "tests/val3/instructions.hpp"
 
@@ -32,6 +32,8 @@ void put(const Place& array, std::size_t index, double number) {
 
 Value sio_get(Call& c) {
   Socket& socket = socket_of(c);
+  // How long it waits does not matter here: a task that waits at all is late.
+  if (socket.to_controller.empty() && socket.timeout_s >= 0) throw Blocked{};
   if (socket.to_controller.empty()) return socket.link == Socket::Link::kOpen ? 0.0 : -1.0;
   std::size_t count = 0;
   while (!socket.to_controller.empty() && count < c.places[1].size()) {
@@ -61,9 +63,21 @@ Value clear_buffer(Call& c) {
 }
 
 Value sio_ctrl(Call& c) {
-  socket_of(c);
-  static const std::set<std::string> names{"port", "target", "timeout", "endOfString", "clients"};
-  return names.contains(c.text(1)) ? 0.0 : -1.0;
+  Socket& socket = socket_of(c);
+  const std::string& name = c.text(1);
+  if (const auto refuses = c.cabinet.socket_refuses.find(name); refuses != c.cabinet.socket_refuses.end())
+    return refuses->second;
+  if (socket.link == Socket::Link::kOpen) return -4.0;  // busy
+  const auto set = [&c](auto& setting) {
+    const auto* value = std::get_if<std::remove_reference_t<decltype(setting)>>(&c.values.at(2));
+    if (value == nullptr) return -2.0;
+    setting = *value;
+    return 0.0;
+  };
+  if (name == "timeout") return set(socket.timeout_s);
+  if (name == "clients") return set(socket.clients);
+  if (name == "nagle") return set(socket.nagle);
+  return -1.0;
 }
 
 /// A binary format of toBinary and fromBinary.

@@ -93,7 +93,8 @@ TEST(Sockets, AreReadAndWrittenWithReturnCodes) {
   project.number("n", 3).number("in", 4).number("out", 3).data("si", "sio",
                                                                "<Value key=\"0\" link=\"Socket\\host\"/>");
   project.program("start",
-                  "n[0]=sioGet(si,in)\ndelay(0.01)\nn[1]=sioGet(si,in[1])\nout[0]=1\nout[1]=2\nout[2]=255\n"
+                  "n[0]=sioCtrl(si,\"timeout\",-1)\nn[0]=sioGet(si,in)\ndelay(0.01)\nn[1]=sioGet(si,in[1])"
+                  "\nout[0]=1\nout[1]=2\nout[2]=255\n"
                   "n[2]=sioSet(si,out)\ndelay(0.1)\nn[0]=sioGet(si,in)\nclearBuffer(si)");
   Running run(project);
   run.ticks(1);
@@ -110,6 +111,24 @@ TEST(Sockets, AreReadAndWrittenWithReturnCodes) {
   EXPECT_FALSE(socket.connect()) << "the dead connection still holds the socket";
   run.ticks(40);
   EXPECT_TRUE(socket.connect()) << "clearBuffer let it go";
+}
+
+TEST(Sockets, AReadWaitsUnlessItsTimeOutSaysOtherwise) {
+  SmallProject project;
+  project.number("n", 3).number("in", 4).data("si", "sio", "<Value key=\"0\" link=\"Socket\\host\"/>");
+  project.program("start",
+                  "n[0]=sioCtrl(si,\"nangle\",1)\nn[1]=sioCtrl(si,\"clients\",true)\nn[2]=sioGet(si,in)");
+  Running run(project);
+  Socket& socket = run.cabinet.sockets["Socket\\host"];
+  run.ticks(1);
+  ASSERT_TRUE(socket.connect());
+  run.ticks(100);
+  EXPECT_EQ(run.number("n", 0), -1) << "no such name";
+  EXPECT_EQ(run.number("n", 1), -2) << "another type";
+  EXPECT_EQ(run.number("n", 2), 0) << "still at its read";
+  socket.to_controller = {7};
+  run.ticks(1);
+  EXPECT_EQ(run.number("n", 2), 1);
 }
 
 TEST(Arm, StandsFiftyFiftyNineFiftyAboveTheShoulderAtZero) {

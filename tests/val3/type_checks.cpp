@@ -7,9 +7,6 @@
 namespace val3 {
 namespace {
 
-/// Whether a value of type `from` can stand where `to` is wanted: an input stands for its state.
-bool fits(Type from, Type to) { return from == to || (from == Type::kDio && to == Type::kBool); }
-
 /// Types of one program. Throws Problem at the first mistake of a statement.
 class TypeChecker {
  public:
@@ -57,7 +54,9 @@ class TypeChecker {
     if (e.kind == ExpressionKind::kBraces && (wanted == Type::kJoint || wanted == Type::kTrsf))
       return braces(e);
     const Type type = value_of(e);
-    if (!fits(type, wanted))
+    if (type == Type::kDio && wanted == Type::kBool)
+      fail("dio where bool is wanted: compare it, " + e.text + "==true, or assign it first");
+    if (type != wanted)
       fail(std::string(name_of(type)) + " where " + std::string(name_of(wanted)) + " is wanted");
   }
 
@@ -69,6 +68,8 @@ class TypeChecker {
   void assign(const Expression& target, const Expression& value) {
     const Type type = name(target);
     if (type == Type::kSio) fail("text over a socket is not part of this subset: sioGet, sioSet");
+    // the state of an input is read by assigning it, or by comparing it
+    if (type == Type::kBool && value.kind == ExpressionKind::kName && name(value) == Type::kDio) return;
     if (type == Type::kDio && value.kind != ExpressionKind::kBraces) return expect(value, Type::kBool);
     expect(value, type);
   }
@@ -134,7 +135,8 @@ class TypeChecker {
       expect(e.parts[1], Type::kBool);
       return Type::kBool;
     }
-    const auto read = [](Type type) { return type == Type::kDio ? Type::kBool : type; };
+    const bool compares = sign == "==" || sign == "!=";
+    const auto read = [compares](Type type) { return compares && type == Type::kDio ? Type::kBool : type; };
     const Type type = read(value_of(e.parts[0]));
     if (type != read(value_of(e.parts[1]))) fail("operator " + sign + " between two types");
     const std::set<std::string> numbers{"+", "-", "*", "/", "%", "==", "!=", "<", "<=", ">", ">="};
