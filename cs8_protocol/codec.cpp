@@ -10,7 +10,7 @@
 namespace cs8 {
 namespace {
 
-constexpr std::uint8_t kMagic[2] = {'T', 'C'};
+constexpr std::uint8_t kMagic[] = {'T', 'C'};
 
 template <class Number>
   requires std::is_integral_v<Number>
@@ -140,11 +140,11 @@ DecodeResult read_payload(const Header& header, std::span<const std::uint8_t> pa
   return Message{header.sequence, body};
 }
 
-/// Calls `use.operator()<Body>()` for the message type with this number; false when there is none.
+/// Calls `use.operator()<Body>()` for the message type with this number, if there is one.
 template <class Use>
-bool with_body_of(MessageType type, const Use& use) {
-  return [&]<class... Body>(std::type_identity<std::variant<Body...>>) {
-    return ((Body::kType == type && (use.template operator()<Body>(), true)) || ...);
+void with_body_of(MessageType type, const Use& use) {
+  [&]<class... Body>(std::type_identity<std::variant<Body...>>) {
+    ((Body::kType == type ? use.template operator()<Body>() : void()), ...);
   }(std::type_identity<Payload>{});
 }
 
@@ -167,7 +167,6 @@ MessageType type_of(const Message& message) {
 
 std::vector<std::uint8_t> encode(const Message& message) {
   std::vector<std::uint8_t> frame;
-  frame.reserve(kHeaderSize + payload_size(type_of(message)));
   encode(message, frame);
   return frame;
 }

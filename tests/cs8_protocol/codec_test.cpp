@@ -13,9 +13,6 @@ namespace cs8 {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::Not;
 
 Bytes hex(const std::string& text) {
   Bytes bytes;
@@ -247,6 +244,26 @@ TEST(Codec, BytesThatAreNoFrameAreRefused) {
   frame[0] = 'G';
   EXPECT_EQ(expect_refused(frame).kind, DecodeErrorKind::kBadMagic);
   EXPECT_EQ(fault_for(expect_refused(frame)).code, FaultCode::kBadMagic);
+  EXPECT_EQ(fault_for(expect_refused(frame)).detail, 0);
+  frame[0] = 'T';
+  frame[1] = 'X';
+  EXPECT_EQ(expect_refused(frame), (DecodeError{DecodeErrorKind::kBadMagic, {}, 0x5458}));
+}
+
+TEST(Codec, AnUnknownTypeHasNoPayload) {
+  EXPECT_EQ(payload_size(static_cast<MessageType>(99)), 0u);
+  const DecodeResult decoded = decode({.type = static_cast<MessageType>(99)}, {});
+  EXPECT_EQ(std::get<DecodeError>(decoded), (DecodeError{DecodeErrorKind::kUnknownType, {}, 99}));
+}
+
+TEST(Codec, TheFirstOfTwoErrorsIsTold) {
+  Bytes frame = encode({9, TouchResult{.outcome = Outcome::kContact}});
+  put_word(frame, 2, 99);
+  put_word(frame, 3, 99);
+  const DecodeError error = expect_refused(frame);
+  EXPECT_EQ(error, (DecodeError{DecodeErrorKind::kUnlistedValue, MessageType::kTouchResult, 2}));
+  EXPECT_EQ(fault_for(error).code, FaultCode::kBadValue);
+  EXPECT_EQ(fault_for(error).detail, 2);
 }
 
 TEST(Codec, AnotherVersionIsRefusedAndToldOurs) {
@@ -312,7 +329,7 @@ TEST(Codec, AViaCountThatDoesNotFitIsRefused) {
     for (const std::int32_t count : {-1, 6, 2147483647}) {
       Bytes frame = encode(message);
       put_word(frame, 1, count);
-      EXPECT_EQ(expect_refused(frame).kind, DecodeErrorKind::kBadCount);
+      EXPECT_EQ(expect_refused(frame), (DecodeError{DecodeErrorKind::kBadCount, type_of(message), 1}));
       EXPECT_EQ(fault_for(expect_refused(frame)).code, FaultCode::kBadValue);
     }
     for (const std::int32_t count : {0, 5}) {
@@ -331,22 +348,35 @@ TEST(Codec, TextThatIsNotPaddedAsciiIsRefused) {
   };
   EXPECT_TRUE(std::holds_alternative<Message>(decode_frame(welcome_with("tx90"))));
   EXPECT_TRUE(std::holds_alternative<Message>(decode_frame(welcome_with(""))));
-  for (const std::string& arm :
-       {std::string("t\x7f"), std::string("St\xe4ubli"), std::string("a\nb"), std::string("tx90\0x", 6)}) {
+  EXPECT_TRUE(std::holds_alternative<Message>(decode_frame(welcome_with(" ~")))) << "the first and the last";
+  for (const std::string& arm : {std::string("t\x7f"), std::string("St\xe4ubli"), std::string("a\nb"),
+                                 std::string("\x1f"), std::string("tx90\0x", 6)}) {
     EXPECT_EQ(expect_refused(welcome_with(arm)),
               (DecodeError{DecodeErrorKind::kNotText, MessageType::kWelcome, 5}));
+    EXPECT_EQ(fault_for(expect_refused(welcome_with(arm))).code, FaultCode::kBadValue);
   }
 }
 
 TEST(Codec, EveryErrorSaysWhatIsWrong) {
-  for (const auto kind :
-       {DecodeErrorKind::kBadMagic, DecodeErrorKind::kVersion, DecodeErrorKind::kUnknownType,
-        DecodeErrorKind::kLength, DecodeErrorKind::kUnlistedValue, DecodeErrorKind::kBadCount,
-        DecodeErrorKind::kNotText}) {
-    EXPECT_THAT((DecodeError{kind, MessageType::kTouch, 1}).text(), Not(IsEmpty()));
-  }
-  EXPECT_THAT((DecodeError{DecodeErrorKind::kUnlistedValue, MessageType::kMoveResult, 2}).text(),
-              HasSubstr("move_result frame whose payload word 2"));
+  const auto text = [](DecodeErrorKind kind, std::uint32_t detail) {
+    return DecodeError{kind, MessageType::kTouch, detail}.text();
+  };
+  EXPECT_EQ(text(DecodeErrorKind::kBadMagic, 0x4754),
+            "the bytes are not a frame of this protocol: it would begin with 'TC', not with 71 84");
+  EXPECT_EQ(text(DecodeErrorKind::kVersion, 3), "protocol version 3; this side speaks version 2");
+  EXPECT_EQ(text(DecodeErrorKind::kUnknownType, 99), "message type 99 is not known");
+  EXPECT_EQ(text(DecodeErrorKind::kLength, 5), "a touch frame with a payload of 5 bytes; it has 220");
+  EXPECT_EQ(text(DecodeErrorKind::kUnlistedValue, 2),
+            "a touch frame whose payload word 2 has a value that is not in its list");
+  EXPECT_EQ(text(DecodeErrorKind::kBadCount, 1), "a touch frame whose via_count is not in 0 to 5");
+  EXPECT_EQ(text(DecodeErrorKind::kNotText, 5),
+            "a touch frame whose text at payload word 5 is not ASCII padded with NUL");
+}
+
+TEST(Codec, AnErrorOfNoKindHasNoTextAndNoFault) {
+  const DecodeError error{static_cast<DecodeErrorKind>(99), MessageType::kTouch, 1};
+  EXPECT_EQ(error.text(), "");
+  EXPECT_EQ(fault_for(error).code, FaultCode{});
 }
 
 TEST(Text16, KeepsWhatFitsAndGivesItBack) {
