@@ -113,6 +113,25 @@ TEST_F(OutlierAtEnd, SuspectsAreThoseOfTheResultTheWorstFirstAndThenThoseOfTheEs
             "touch 8 (not made again), touch 5 (not made again), touch 1");
 }
 
+TEST_F(OutlierAtEnd, ATouchThatBothSuspectIsNamedOnce) {
+  calib::IdentificationResult result;
+  result.rejected = {{0, 0.001, calib::RejectionReason::kOutlier}};
+  EXPECT_EQ(suspects_of(result, retest_.suspect().without), std::vector<int>{1});
+}
+
+TEST_F(OutlierRetestTest, ADifferenceOfAllThatTwoTouchesMayHaveIsAgreement) {
+  const auto found = retest_.judge(wrong(), good(), kAgreementMetres, kAgreementMetres);
+  EXPECT_TRUE(std::holds_alternative<OutlierRetest::Confirmed>(found));
+  EXPECT_TRUE(OutlierRetest::is_pair(wrong(), good(), kAgreementMetres, kAgreementMetres));
+}
+
+TEST_F(OutlierRetestTest, ANewRunKnowsNothingOfTheLastOne) {
+  EXPECT_TRUE(retest_.was_made_again(kKnown + 1));
+  retest_.begin_run();
+  EXPECT_FALSE(retest_.is_due());
+  EXPECT_FALSE(retest_.was_made_again(kKnown + 1));
+}
+
 TEST_F(OutlierRetestTest, IsDueUntilItIsSettled) {
   EXPECT_TRUE(retest_.is_due());
   retest_.settle();

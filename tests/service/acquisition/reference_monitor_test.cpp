@@ -125,5 +125,36 @@ TEST_F(ReferenceMonitorTest, ARestartedDaemonLooksAgainBeforeAnythingElse) {
   EXPECT_FALSE(monitor_.is_due(7, kMoreToMake));
 }
 
+TEST_F(ReferenceMonitorTest, ARestartedDaemonHasNoPlaceWhereTheRecipeWantsNone) {
+  monitor_.begin_run(0);
+  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
+  EXPECT_FALSE(monitor_.is_due(7, kMoreToMake));
+  monitor_.begin_run(1);
+  monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
+  EXPECT_TRUE(monitor_.is_due(7, kMoreToMake)) << "behind each touch";
+}
+
+TEST_F(ReferenceMonitorTest, TheLimitItselfIsAllowed) {
+  EXPECT_FALSE(touch(kLimitMetres, 1).warning);
+  EXPECT_FALSE(touch(2 * kLimitMetres, 5).hold);
+}
+
+TEST_F(ReferenceMonitorTest, TheBiasCountsFromThePlansOwnTouch) {
+  monitor_.begin_run(5);
+  monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.5));
+  EXPECT_FALSE(touch(0.5, 1).warning);
+  monitor_.begin_run(5);
+  monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.5));
+  EXPECT_EQ(touch(0.498, 1).warning.value().detail, "by 2.000 mm");
+}
+
+TEST_F(ReferenceMonitorTest, AFirstContactThatAPersonSkipsCountsAsMade) {
+  monitor_.skip(1);
+  EXPECT_FALSE(monitor_.is_due(1, kMoreToMake));
+  EXPECT_EQ(monitor_.add_contact(at(0.0), 5, first_joint).number, 2);
+  monitor_.skip(6);
+  EXPECT_EQ(monitor_.add_contact(at(0.0), 10, first_joint).number, 3) << "one that was made is no more";
+}
+
 }  // namespace
 }  // namespace cell

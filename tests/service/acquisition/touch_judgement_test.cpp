@@ -21,6 +21,74 @@ TEST(TouchJudgement, AContactIsKeptAndItsBounceIsTold) {
   EXPECT_EQ(judged.next, Next::kKeep);
   ASSERT_EQ(judged.warnings.size(), 1U);
   EXPECT_EQ(judged.warnings.front().code, FaultCode::kProbeBounced);
+  result.edges = 2;
+  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).warnings.size(), 1U);
+}
+
+TEST(TouchJudgement, AContactThatWasPolledIsKeptAndTold) {
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.source = cs8::CaptureSource::kPolled;
+  const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {});
+  EXPECT_EQ(judged.next, Next::kKeep);
+  ASSERT_EQ(judged.warnings.size(), 1U);
+  EXPECT_EQ(judged.warnings.front().code, FaultCode::kLatchMissing);
+}
+
+TEST(TouchJudgement, AnOutcomeWithoutAContactHoldsEndsOrStops) {
+  const auto judged = [](cs8::Outcome outcome) {
+    return judge_touch(edf(), planned_touch(), {.outcome = outcome}, {});
+  };
+  EXPECT_EQ(judged(cs8::Outcome::kNoContact).event, Event::kHoldFault);
+  EXPECT_EQ(judged(cs8::Outcome::kCollision).next, Next::kFault);
+  EXPECT_EQ(judged(cs8::Outcome::kCollision).event, Event::kAbortFault);
+  EXPECT_EQ(judged(cs8::Outcome::kStopped).next, Next::kStopped);
+}
+
+TEST(TouchJudgement, AProbeOfUnknownOvertravelIsNotJudgedByIt) {
+  Cell cell = edf();
+  cs8::TouchResult result = contact({0, 0, 0});
+  for (const double bend_m : {0.0005, 0.0}) {
+    cell.probe.overtravel_m = bend_m;
+    result.overtravel_dmm = cs8::dmm_from_metres(0.001);
+    EXPECT_EQ(judge_touch(cell, planned_touch(), result, {}).next, bend_m > 0.0 ? Next::kFault : Next::kKeep);
+  }
+}
+
+TEST(ContactSpread, LiesBetweenTwoContactsWhereBothWereMade) {
+  const calib::PlannedTouch planned = planned_touch();
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.first_contact = joints_off(0.001 * planned.search_direction);
+  EXPECT_NEAR(contact_spread_m(edf(), result).value(), 0.001, 1e-6);
+  EXPECT_EQ(first_contact_in(result).value().joints, result.first_contact);
+  EXPECT_EQ(first_contact_in(result).value().source, cs8::CaptureSource::kLatched);
+  Cell once = edf();
+  once.speeds.second.reset();
+  EXPECT_FALSE(contact_spread_m(once, result));
+  cs8::TouchResult half = result;
+  half.source = cs8::CaptureSource::kNone;
+  EXPECT_FALSE(contact_spread_m(edf(), half));
+  half = result;
+  half.first_source = cs8::CaptureSource::kNone;
+  EXPECT_FALSE(contact_spread_m(edf(), half));
+  EXPECT_FALSE(first_contact_in(half));
+}
+
+TEST(TouchJudgement, OneContactOfATouchHasNoSpreadToJudge) {
+  Cell once = edf();
+  once.speeds.second.reset();
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.search_speed_um_s = cs8::um_s_from_metres_per_second(once.speeds.contact_m_s());
+  EXPECT_EQ(judge_touch(once, planned_touch(), result, {}).next, Next::kKeep);
+}
+
+TEST(Agreement, IsFiveDeviationsOfADifferenceAndTheDriftsLimitUnlessTheCellHasOne) {
+  Cell cell = edf();
+  cell.touch_noise_m = 2e-5;
+  EXPECT_NEAR(agreement_max_m(cell), 1.41421356e-4, 1e-12);
+  cell.acceptance.reference_drift_max_m.reset();
+  EXPECT_EQ(reference_drift_max_m(cell), agreement_max_m(cell));
+  cell.acceptance.reference_drift_max_m = 3e-4;
+  EXPECT_EQ(reference_drift_max_m(cell), 3e-4);
 }
 
 TEST(TouchJudgement, AnAnswerThatContradictsItselfOrTheCommandIsNoContact) {
@@ -57,6 +125,11 @@ TEST(TouchJudgement, TwoContactsTooFarApartAreMadeAgainUntilAPersonIsAsked) {
       judge_touch(edf(), planned, result, {.attempts = 1, .spread_m = kContactSpreadMaxMetres});
   EXPECT_EQ(worse.fault.code, FaultCode::kRetriesWorse);
   EXPECT_EQ(worse.event, Event::kHoldFault);
+  const double spread_m = contact_spread_m(edf(), result).value();
+  for (const double before_m : {spread_m, 2 * spread_m}) {
+    const TouchJudgement better = judge_touch(edf(), planned, result, {.attempts = 1, .spread_m = before_m});
+    EXPECT_EQ(better.next, Next::kAgain) << "no worse than before";
+  }
 }
 
 TEST(TouchJudgement, AContactAtTheBeginningOfItsSearchIsTooEarly) {
@@ -83,7 +156,7 @@ TEST(TouchJudgement, TheSameJointsOnceMoreAreMadeAgainOnceAndThenHold) {
 TEST(TouchJudgement, NoiseInFreeAirIsToldFromASearchThatMetNothing) {
   cs8::TouchResult result{.outcome = cs8::Outcome::kNoContact};
   EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).fault.code, FaultCode::kNoContact);
-  result.edges = 2;
+  result.edges = 1;
   EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).next, Next::kAgain);
   const TouchJudgement judged = judge_touch(edf(), planned_touch(), result, {.attempts = 1});
   EXPECT_EQ(judged.fault.code, FaultCode::kFalseTrigger);
@@ -105,6 +178,41 @@ TEST(PlanFault, ATouchWithoutLengthOrNumberIsNamed) {
   EXPECT_EQ(plan_fault(touches).value().detail, "touch 2");
   touches[0].clear_joints[3] = std::nan("");
   EXPECT_EQ(plan_fault(touches).value().detail, "touch 1");
+  for (const auto joints : {&calib::PlannedTouch::clear_joints, &calib::PlannedTouch::approach_joints,
+                            &calib::PlannedTouch::search_end_joints, &calib::PlannedTouch::joints}) {
+    std::vector<calib::PlannedTouch> one(1, planned_touch());
+    (one[0].*joints)[3] = std::nan("");
+    EXPECT_TRUE(plan_fault(one));
+  }
+}
+
+TEST(StylusFault, ARadiusFarFromThatOfTheFileIsAnotherStylus) {
+  calib::IdentificationProblem problem;
+  problem.artefact.parameters = {{.kind = calib::ArtefactKind::kPretravel},
+                                 {.kind = calib::ArtefactKind::kStylusRadius}};
+  const auto fault = [&problem](double pretravel_m, double radius_m, std::optional<double> std_m) {
+    problem.artefact.parameters[1].std = std_m;
+    calib::IdentificationResult result;
+    result.artefact_errors = Eigen::Vector2d(pretravel_m, radius_m);
+    return stylus_fault(problem, result);
+  };
+  EXPECT_FALSE(fault(0.0, 1e-4, std::nullopt)) << "the limit itself";
+  EXPECT_EQ(fault(0.0, -2e-4, std::nullopt).value().code, FaultCode::kWrongStylus);
+  EXPECT_EQ(fault(0.0, -2e-4, std::nullopt).value().detail, "by -0.200 mm");
+  EXPECT_FALSE(fault(0.0, 4.9e-4, 1e-4)) << "five deviations of what the file says";
+  EXPECT_TRUE(fault(0.0, 5.1e-4, 1e-4));
+  EXPECT_FALSE(fault(1.0, 0.0, std::nullopt)) << "the pre-travel is no radius";
+  EXPECT_FALSE(stylus_fault(problem, {})) << "nothing is known unless converged";
+}
+
+TEST(FaceWarning, NamesTheFacesThatFitWorseThanChanceAllows) {
+  calib::IdentificationResult result;
+  EXPECT_FALSE(face_warning(result, 0.01));
+  result.lack_of_fit.emplace().p_of_face = {0.5, 0.01};
+  EXPECT_FALSE(face_warning(result, 0.01)) << "the limit itself";
+  result.lack_of_fit->p_of_face = {0.001, 0.5, 0.009};
+  EXPECT_EQ(face_warning(result, 0.01).value().code, FaultCode::kFaceBias);
+  EXPECT_EQ(face_warning(result, 0.01).value().detail, "plane 1, plane 3");
 }
 
 }  // namespace

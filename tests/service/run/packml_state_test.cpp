@@ -136,6 +136,40 @@ TEST(StateMachine, NamesAreThoseOfPackMlAndTheTableHasThemAll) {
                                                      "ABORTING", "ABORTED", "CLEARING"));
 }
 
+TEST(StateMachine, AValueThatIsNoStateOrCommandHasNoNameAndMovesNothing) {
+  const auto no_state = static_cast<State>(99);
+  const auto no_command = static_cast<Command>(99);
+  EXPECT_EQ(state_name(no_state), "");
+  EXPECT_EQ(command_name(no_command), "");
+  EXPECT_FALSE(is_active(no_state));
+  for (const Command command : {Command::kPause, Command::kResume, Command::kStart, Command::kRetry})
+    EXPECT_EQ(after_command(no_state, command), std::nullopt) << command_name(command);
+  for (const Command command : {Command::kStop, Command::kAbort})
+    EXPECT_EQ(after_command(no_state, command), no_state) << command_name(command);
+  for (const Event event : kEvents) EXPECT_EQ(after_event(no_state, event), no_state);
+  for (const Row& row : kTable) EXPECT_EQ(after_command(row.state, no_command), std::nullopt);
+}
+
+TEST(StateMachine, EveryCommandHasAWordOfItsOwn) {
+  std::vector<std::string> words;
+  for (const Command command : kCommands) words.emplace_back(command_name(command));
+  EXPECT_THAT(words, ::testing::UnorderedElementsAre("start", "pause", "resume", "retry", "skip", "take",
+                                                     "undo", "confirm", "touch-test", "locate", "stop",
+                                                     "abort", "clear", "reset", "acknowledge"));
+}
+
+TEST(StateMachine, EveryStateEndsStandsStillAndGoesOnWhereItsNameSaysSo) {
+  const auto all_with = [](bool (*is)(State)) {
+    std::set<State> states;
+    for (const Row& row : kTable)
+      if (is(row.state)) states.insert(row.state);
+    return states;
+  };
+  EXPECT_EQ(all_with(has_ended), (std::set{kStopped, kAborted}));
+  EXPECT_EQ(all_with(stands_still), (std::set{kHolding, kHeld, kSuspending, kSuspended}));
+  EXPECT_EQ(all_with(is_going_on), (std::set{kUnholding, kUnsuspending}));
+}
+
 TEST(StateMachine, StopIsAlwaysTakenAndNeverEndsInMotion) {
   for (const Row& row : kTable) {
     const auto next = after_command(row.state, Command::kStop);

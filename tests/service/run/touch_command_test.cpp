@@ -132,9 +132,68 @@ TEST(FaultOf, SaysWhereInTheTouchAndWhichRunTimeError) {
   EXPECT_THAT(fault->fault.detail, HasSubstr(std::string(cs8::name(cs8::Phase::kApproach))));
 }
 
+TEST(FaultOf, AnOutcomeThatIsNotListedEndsTheRun) {
+  const auto fault = fault_of(static_cast<cs8::Outcome>(99), cs8::Phase::kSearch, 0);
+  ASSERT_TRUE(fault);
+  EXPECT_EQ(fault->fault.code, FaultCode::kMotionError);
+  EXPECT_EQ(fault->event(), Event::kAbortFault);
+}
+
+TEST(FaultOf, ARefusalHoldsWhatAPersonCanMendAndEndsTheRest) {
+  using enum cs8::RejectReason;
+  struct Refusal {
+    FaultCode code;
+    Event event;
+  };
+  constexpr Refusal kMended{FaultCode::kTouchRejected, Event::kHoldFault};
+  constexpr Refusal kOurs{FaultCode::kTouchRejected, Event::kAbortFault};
+  constexpr Refusal kPlan{FaultCode::kPlanInvalid, Event::kAbortFault};
+  const std::map<cs8::RejectReason, Refusal> refusals{
+      {kProbeInputs, {FaultCode::kProbeFault, Event::kHoldFault}},
+      {kCellOpen, {FaultCode::kCellOpen, Event::kHoldFault}},
+      {kTouchTestMissing, {FaultCode::kTouchTestMissing, Event::kHoldFault}},
+      {kTaskFailed, {FaultCode::kTaskFailed, Event::kHoldFault}},
+      {kProbeTriggered, {FaultCode::kProbeTriggered, Event::kHoldFault}},
+      {kMonitorSpeed, {FaultCode::kMonitorSpeedChanged, Event::kSuspendFault}},
+      {kBadField, kPlan},
+      {kSearchTooLong, kPlan},
+      {kSearchTooFast, kPlan},
+      {kNotRemote, kMended},
+      {kNotPowered, kMended},
+      {kHold, kMended},
+      {kEmergencyStop, kMended},
+      {kNotCalibrated, kMended},
+      {kNotPermitted, kMended},
+      {kResultUnacknowledged, kMended},
+      {kBusy, kOurs},
+      {kStaleSequence, kOurs},
+      {kOutOfRange, kOurs},
+      {kNothingToRetract, kOurs},
+      {kRetractPending, kOurs}};
+  for (int value = 0; value < 256; ++value) {
+    const auto reason = static_cast<cs8::RejectReason>(value);
+    if (cs8::name(reason).empty()) continue;
+    ASSERT_TRUE(refusals.contains(reason)) << cs8::name(reason);
+    const OutcomeFault fault = fault_of(cs8::Rejected{reason, 7});
+    EXPECT_EQ(fault.fault.code, refusals.at(reason).code) << cs8::name(reason);
+    EXPECT_EQ(fault.event(), refusals.at(reason).event) << cs8::name(reason);
+  }
+  EXPECT_EQ(fault_of(cs8::Rejected{kOutOfRange, 6}).fault.detail, "out_of_range (detail 6)");
+  EXPECT_EQ(fault_of(cs8::Rejected{kMonitorSpeed, 50}).fault.detail, "to 50 %");
+  EXPECT_EQ(fault_of(cs8::Rejected{static_cast<cs8::RejectReason>(99), 0}).event(), Event::kAbortFault);
+}
+
+TEST(Implausible, AContactThatWasPolledNeedsNoEdge) {
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.edges = 0;
+  EXPECT_THAT(implausibility_reason(edf(), planned_touch(), result).value_or(""), HasSubstr("no edge"));
+  result.source = cs8::CaptureSource::kPolled;
+  EXPECT_EQ(implausibility_reason(edf(), planned_touch(), result), std::nullopt);
+}
+
 TEST(Implausible, AContactOnTheWayOfTheSearchIsTaken) {
   const calib::PlannedTouch planned = planned_touch();
-  for (const double along_m : {-0.0149, -0.005, 0.0, 0.005, 0.0149}) {
+  for (const double along_m : {-0.01505, -0.005, 0.0, 0.005, 0.01505}) {
     EXPECT_EQ(implausibility_reason(edf(), planned, contact(along_m * planned.search_direction)),
               std::nullopt)
         << along_m;
