@@ -102,6 +102,7 @@ void weigh_rows(Observation& observation, std::span<const Touch> touches, double
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     const double factor = noise_factor(touches[i], declared_noise_m);
+    if (factor == 1.0) continue;  // of nearly all, and a row of a matrix by columns is slow to write
     observation.matrix.row(row) /= factor;
     observation.output_error[row] /= factor;
   }

@@ -331,8 +331,11 @@ ScaleCheck check_scale(const IdentificationProblem& problem, const Identificatio
   const ArmVector own = own_lengths(problem.nominal, fit.arm_columns());
   if (own.squaredNorm() > 0.0) {
     // Without grouped parameters: exchanging one for another does not change the scale.
-    check.std_relative =
-        std::sqrt(own.dot((uncertainty.identified + uncertainty.held) * own)) / own.squaredNorm();
+    const std::vector<int>& columns = fit.arm_columns();
+    const Eigen::VectorXd along = own(columns);
+    const Eigen::MatrixXd covariance =
+        uncertainty.identified(columns, columns) + uncertainty.held(columns, columns);
+    check.std_relative = std::sqrt(along.dot(covariance * along)) / along.squaredNorm();
   }
   const double ratio = uncertainty.noise_m > 0.0 ? uncertainty.noise_m / fit.noise_unit_m() : 1.0;
   const ScaleTest test(problem, whole, ratio, uncertainty.harmonic_shares, estimate);

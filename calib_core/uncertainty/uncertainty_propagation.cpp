@@ -164,8 +164,8 @@ UncertaintyBudget fitted_uncertainty(const IdentificationProblem& problem,
   SourceSum sum(fit.arm_columns(), {});
   sum.add("touch_noise", ratio * ratio * (covariance * fit.gradient_covariance() * covariance));
   add_priors(problem, options, fit, covariance, sum);
-  result.of_noise = sum.sources().front().covariance;
-  for (const UncertaintySource& source : sum.sources()) result.identified += source.covariance;
+  sum.add_first_to(result.of_noise, 1);
+  sum.add_first_to(result.identified, sum.sources().size());
   result.artefact_std = sum.artefact_variance().cwiseSqrt();
   result.sources = sum.take();
   return result;

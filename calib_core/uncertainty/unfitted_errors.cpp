@@ -218,7 +218,6 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
                 const LeastSquares& fit, const FullLinearisation& whole, SourceSum& sum,
                 UncertaintyBudget& result) {
   std::vector<Eigen::VectorXd> unknown;
-  ArmCovariance held = no_covariance();
   for (int column = 0; column < kErrorParameterCount; ++column) {
     if (is_estimated(fit, column)) continue;
     const CandidateStatus& candidate = identifiable.candidates[static_cast<std::size_t>(column)];
@@ -226,8 +225,12 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
         candidate.status == ParameterStatus::kWeak || candidate.status == ParameterStatus::kExcluded;
     if (const auto tolerance = std_unless_estimated(problem, column, result.harmonic_shares)) {
       const Eigen::VectorXd displacement = *tolerance * bias_direction(whole, column);
-      add_square(displacement, is_held ? held : result.unseen);
-      add_left_out(displacement, result);
+      if (is_held && *tolerance > 0.0) {
+        add_held("held", displacement, sum, result);
+      } else {
+        add_square(displacement, result.unseen);
+        add_left_out(displacement, result);
+      }
     } else {
       result.unseen_without_tolerance.push_back(column);
       const Eigen::VectorXd direction = unseen_direction(problem, candidate, fit, whole, column);
@@ -239,9 +242,7 @@ void add_unseen(const IdentificationProblem& problem, const IdentifiableSet& ide
   for (std::size_t i = 0; i < unknown.size(); ++i) {
     result.unknown_directions.col(static_cast<Eigen::Index>(i)) = unknown[i].head<kArmParameterCount>();
   }
-  if (!held.isZero(0.0)) sum.source("held").covariance = held;
-  result.held += held;
-  sum.source("unseen").covariance = result.unseen;
+  sum.append("unseen", result.unseen);
 }
 
 std::vector<Correlation> strongest(const ArmCovariance& covariance, const std::vector<int>& columns) {

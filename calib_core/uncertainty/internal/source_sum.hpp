@@ -55,10 +55,22 @@ class SourceSum {
     if (artefact_variance_.size() == 0) artefact_variance_.setZero(of_artefact.size());
     artefact_variance_ += of_artefact;
   }
+  /// Adds to `total` what add() gave the first `count` sources, which is zero but for the given columns.
+  void add_first_to(ArmCovariance& total, std::size_t count) const {
+    for (std::size_t k = 0; k < count; ++k) {
+      for (const int j : columns_) {
+        for (const int i : columns_) total(i, j) += sources_[k].covariance(i, j);
+      }
+    }
+  }
   UncertaintySource& source(const std::string& name) {
     const auto found = std::ranges::find_if(sources_, [&](const auto& s) { return s.name == name; });
     if (found != sources_.end()) return *found;
     return sources_.emplace_back(UncertaintySource{name, no_covariance()});
+  }
+  /// A source that is not there yet.
+  void append(const std::string& name, const ArmCovariance& covariance) {
+    sources_.push_back({name, covariance});
   }
   [[nodiscard]] const std::vector<UncertaintySource>& sources() const { return sources_; }
   [[nodiscard]] const Eigen::VectorXd& artefact_variance() const { return artefact_variance_; }

@@ -68,6 +68,30 @@ IdentificationResult calibrated_with(const std::function<void(IdentificationProb
   return identify(problem, options);
 }
 
+// Only blocks of the covariances are written: none may be left out, and none counted twice.
+TEST(Budget, ItsSourcesSumToTheWholeCovarianceAndHeldOnesHaveANameOfTheirOwn) {
+  const auto said = [](IdentificationProblem& problem) {
+    problem.gear_std_rad.setConstant(2e-5);
+    problem.drift_m = 3e-5;
+    problem.nongeometric_std[static_cast<std::size_t>(harmonic_position(2))] = 4e-5;
+    problem.nongeometric_std[static_cast<std::size_t>(second_harmonic_position(1))] = 4e-5;
+  };
+  IdentificationOptions options;
+  options.identifiability.excluded = {error_parameter_index("r3").value()};
+  const IdentificationResult result = calibrated_with(said, options);
+  ASSERT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+  const UncertaintyBudget& budget = *result.uncertainty;
+  ArmCovariance sum = no_covariance();
+  for (const UncertaintySource& source : budget.sources) sum += source.covariance;
+  const ArmCovariance whole = budget.covariance();
+  const Eigen::VectorXd std = whole.diagonal().cwiseSqrt();
+  const Eigen::VectorXd scale = (std.array() > 0.0).select(std.cwiseInverse(), 0.0);
+  EXPECT_LT((scale.asDiagonal() * (sum - whole) * scale.asDiagonal()).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_EQ(named_source(result, "touch_noise")->covariance, budget.of_noise);
+  ASSERT_NE(named_source(result, "held"), nullptr);
+  EXPECT_GT(named_source(result, "held")->covariance.trace(), 0.0);
+}
+
 // Never estimated by any option, and never missing.
 TEST(Budget, HasTheComplianceOfTheWristWhetherThatOfTheOtherJointsIsEstimatedOrNot) {
   constexpr double kStd = 5e-6;
