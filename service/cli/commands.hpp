@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -27,6 +28,7 @@ struct CellArguments {
   std::string recipe;     // the cell's default when empty
   std::string stiffness;  // "on", "off" or "auto"; the recipe's choice when empty
   TemperatureArguments block_temperature;
+  std::chrono::system_clock::time_point now;  // by which a temperature of the block's file is old
 };
 
 struct IdentifyArguments {

@@ -79,7 +79,8 @@ ExitCode identify_command(const IdentifyArguments& arguments, bool json) {
   const Cell cell = given_cell(arguments.cell);
   const Recipe recipe = given_recipe(cell, arguments.cell);
   TouchesFile file = read_touches(arguments.touches_file, cell);
-  if (auto warning = unknown_temperature_warning(cell)) file.warnings.push_back(*std::move(warning));
+  if (auto warning = temperature_warning(cell, arguments.cell.now))
+    file.warnings.push_back(*std::move(warning));
   calib::IdentificationProblem problem = identification_problem(cell, recipe);
   problem.touches = file.touches;
   note_repeats(file.repeats, problem);

@@ -1,5 +1,6 @@
 // touchcal: the command line, for a daemon or offline.
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <iostream>
@@ -188,6 +189,7 @@ class CommandLine {
 
   /// For commands that need no daemon.
   static void add_cell(CLI::App& command, cell::CellArguments& given, const std::string& recipe_is) {
+    given.now = std::chrono::system_clock::now();
     command.add_option("--cell", given.file, "cell file")->required();
     command.add_option("--recipe", given.recipe, recipe_is + "; default: the cell's first");
     add_stiffness(command, given.stiffness);

@@ -9,13 +9,16 @@
 #include "service/cli/offline.hpp"
 #include "service/cli/validation_text.hpp"
 #include "service/documents/validation_view.hpp"
+#include "service/run/block_temperature.hpp"
 
 namespace cell {
 
 ExitCode validate_command(const ValidateArguments& arguments, bool json) {
   const Cell cell = given_cell(arguments.cell);
   const Recipe recipe = given_recipe(cell, arguments.cell);
-  const TouchesFile file = read_touches(arguments.touches_file, cell);
+  TouchesFile file = read_touches(arguments.touches_file, cell);
+  if (auto warning = temperature_warning(cell, arguments.cell.now))
+    file.warnings.push_back(*std::move(warning));
   TouchesFile other;
   if (!arguments.other_file.empty()) other = read_touches(arguments.other_file, cell);
   if (!arguments.other_file.empty() && other.touches.empty()) {
@@ -27,8 +30,10 @@ ExitCode validate_command(const ValidateArguments& arguments, bool json) {
   const calib::Validation validation = calib::validate(problem, recipe.identification, other.touches);
   if (validation.result.status != calib::IdentificationStatus::kConverged)
     return print_refusal(arguments.touches_file, validation.result);
-  const ValidationDocument document = validation_of(cell, recipe, problem, validation);
+  ValidationDocument document = validation_of(cell, recipe, problem, validation);
   if (json) {
+    for (const auto* warnings : {&file.warnings, &other.warnings})
+      document.warnings.insert(document.warnings.end(), warnings->begin(), warnings->end());
     fmt::print("{}\n", document_text(document));
   } else {
     print_warnings(file.warnings);

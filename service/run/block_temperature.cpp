@@ -18,10 +18,11 @@ std::string time_place(const Cell& cell, TemperatureSource source) {
                                            : cell.block.file.string() + ": /temperature_at";
 }
 
+constexpr const char* kEnterThere = ", or enter it there with its time";
+
 std::string remedy(TemperatureSource source) {
-  return source == TemperatureSource::kRun
-             ? std::string(kMeasureAgain)
-             : fmt::format("{}, or enter it there with its time", kMeasureAgain);
+  return source == TemperatureSource::kRun ? std::string(kMeasureAgain)
+                                           : std::string(kMeasureAgain) + kEnterThere;
 }
 
 std::string hours_text(std::chrono::system_clock::duration time) {
@@ -30,7 +31,8 @@ std::string hours_text(std::chrono::system_clock::duration time) {
 
 std::optional<TemperatureRefusal> refuse_time(const Cell& cell, TemperatureSource source,
                                               std::chrono::system_clock::time_point measured_at,
-                                              std::chrono::system_clock::time_point now) {
+                                              std::chrono::system_clock::time_point now,
+                                              const std::string& what_to_do) {
   if (measured_at - now > kClockDifferenceMax) {
     return TemperatureRefusal{
         "temperature_in_future",
@@ -44,7 +46,7 @@ std::optional<TemperatureRefusal> refuse_time(const Cell& cell, TemperatureSourc
       fmt::format("{}: the block's temperature of {:.1f} degrees C is {} old, more than {} "
                   "(block_temperature_age_max_h of the cell's file); {}",
                   time_place(cell, source), *cell.block.temperature_c, hours_text(now - measured_at),
-                  hours_text(cell.block_temperature_age_max), remedy(source))};
+                  hours_text(cell.block_temperature_age_max), what_to_do)};
 }
 
 }  // namespace
@@ -68,8 +70,17 @@ std::optional<std::string> unknown_expansion_reason(const Cell& cell) {
       cell.block.file.string());
 }
 
-std::optional<std::string> unknown_temperature_warning(const Cell& cell) {
-  if (cell.block.temperature_c || !cell.block.thermal_expansion_per_k) return std::nullopt;
+std::optional<std::string> temperature_warning(const Cell& cell, std::chrono::system_clock::time_point now) {
+  if (!cell.block.thermal_expansion_per_k) return std::nullopt;
+  if (cell.block.temperature_c) {
+    if (!cell.block.temperature_at) return std::nullopt;
+    const auto refusal =
+        refuse_time(cell, TemperatureSource::kFile, *cell.block.temperature_at, now,
+                    std::string("give that of the block at the touches with --block-temperature and "
+                                "--std-block-temperature") +
+                        kEnterThere);
+    return refusal ? std::optional(refusal->words) : std::nullopt;
+  }
   return fmt::format(
       "{}: /temperature_c is missing beside thermal_expansion_per_k: the block is taken as of 20 degrees C "
       "exactly, and no uncertainty has its growth of {:.3g} ppm per kelvin; give its temperature with "
@@ -89,8 +100,8 @@ std::optional<TemperatureRefusal> refuse_temperature(const Cell& cell,
   }
   if (const auto gap = unknown_expansion_reason(there)) return TemperatureRefusal{"expansion_missing", *gap};
   if (!there.block.temperature_at) return std::nullopt;
-  return refuse_time(there, given ? TemperatureSource::kRun : TemperatureSource::kFile,
-                     *there.block.temperature_at, now);
+  const TemperatureSource source = given ? TemperatureSource::kRun : TemperatureSource::kFile;
+  return refuse_time(there, source, *there.block.temperature_at, now, remedy(source));
 }
 
 std::optional<StoredTemperature> temperature_to_store(const Cell& cell,

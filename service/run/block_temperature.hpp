@@ -32,9 +32,11 @@ std::optional<TemperatureRefusal> refuse_temperature(const Cell& cell,
 /// Why a temperature that is given cannot be used: nobody knows how the block grows with it.
 std::optional<std::string> unknown_expansion_reason(const Cell& cell);
 
-/// Why the block of a result without a temperature is not as certain as it looks: it can grow, and is taken
-/// as of the 20 degrees C of its certificate. Nothing where its temperature is known.
-std::optional<std::string> unknown_temperature_warning(const Cell& cell);
+/// Why the block of a result from touches without a date is not as certain as it looks. It can grow and has
+/// no temperature: it is taken as of the 20 degrees C of its certificate. Or its file's temperature is not of
+/// `now`, for which a run would be refused, in the same words: the touches may be as old, which nobody knows.
+/// Nothing where the temperature is known at any time.
+std::optional<std::string> temperature_warning(const Cell& cell, std::chrono::system_clock::time_point now);
 
 /// What the store keeps of a run's temperature: `given`, or without it that of the cell's block; nothing when
 /// that is unknown too.

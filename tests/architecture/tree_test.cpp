@@ -66,6 +66,7 @@ TEST(Tree, ConstantsAndClassesOfAComponentHaveNamesOfTheirOwn) {
 /// Who reads a clock of its own, and why; everybody else is handed one.
 const std::map<std::string, std::string> kReadsAClock{
     {"daemon.cpp", "hands the machine's clocks to all parts of the daemon"},
+    {"touchcal.cpp", "hands the machine's time to the commands that judge a temperature by it"},
     {"watch_command.cpp", "a program of its own, which waits for a daemon"},
 };
 

@@ -41,6 +41,16 @@ class OfflineCommands : public ::testing::Test {
     return call({"touchcal", "validate", "--cell", cell_, "--touches", kTouches}, more);
   }
   std::string file(const std::string& name) { return (folder_ / name).string(); }
+  /// From here on the cell is a copy with another block.
+  void edit_block(void (*edit)(json& block)) {
+    std::filesystem::copy(std::string(TOUCHCAL_SOURCE_DIR) + "/config", folder_ / "config",
+                          std::filesystem::copy_options::recursive);
+    cell_ = file("config/cells/edf/cell.json");
+    json block = json::parse(read(file("config/cells/edf/block.json")));
+    block["schema"] = "touchcal/block/2";
+    edit(block);
+    std::ofstream(file("config/cells/edf/block.json")) << block;
+  }
 
   Folder folder_;
   std::string cell_ = cell_file("edf");
@@ -212,17 +222,24 @@ TEST_F(OfflineCommands, AnArmWhoseFramesTheCellGivesItselfIsExportedWithAWarning
 }
 
 TEST_F(OfflineCommands, ABlockThatCanGrowAndHasNoTemperatureIsAWarning) {
-  std::filesystem::copy(std::string(TOUCHCAL_SOURCE_DIR) + "/config", folder_ / "config",
-                        std::filesystem::copy_options::recursive);
-  cell_ = file("config/cells/edf/cell.json");
-  json block = json::parse(read(file("config/cells/edf/block.json")));
-  block["schema"] = "touchcal/block/2";
-  for (const char* key : {"temperature_c", "std_temperature_k"}) block.erase(key);
-  std::ofstream(file("config/cells/edf/block.json")) << block;
+  edit_block([](json& block) {
+    for (const char* key : {"temperature_c", "std_temperature_k"}) block.erase(key);
+  });
   EXPECT_THAT(identify({}).err, HasSubstr("block.json: /temperature_c is missing"));
   EXPECT_THAT(json::parse(identify({"--json"}).out).at("warnings").dump(), HasSubstr("/temperature_c"));
   EXPECT_THAT(identify({"--block-temperature", "21", "--std-block-temperature", "1"}).err,
               Not(HasSubstr("/temperature_c")));
+}
+
+TEST_F(OfflineCommands, ATemperatureOfYesterdayIsAWarning) {
+  edit_block([](json& block) { block["temperature_at"] = "2020-01-31T08:00:00Z"; });
+  const auto is_told =
+      HasSubstr("block.json: /temperature_at: the block's temperature of 20.0 degrees C is ");
+  for (const Finished& text : {identify({}), validate()}) EXPECT_THAT(text.err, is_told);
+  for (const Finished& document : {identify({"--json"}), validate({"--json"})})
+    EXPECT_THAT(json::parse(document.out).at("warnings"), ::testing::Contains(is_told));
+  const std::vector<std::string> given{"--block-temperature", "21", "--std-block-temperature", "1"};
+  for (const Finished& text : {identify(given), validate(given)}) EXPECT_THAT(text.err, Not(is_told));
 }
 
 TEST_F(OfflineCommands, TheMapHasALineForEachCell) {

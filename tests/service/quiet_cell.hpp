@@ -14,10 +14,11 @@
 
 namespace cell {
 
-/// The paper's cell in operation without a controller, its store in a folder of its own. Not launched: it
-/// stays in the state that the commands of a test lead to.
+/// The paper's cell, or the given one, in operation without a controller, its store in a folder of its own.
+/// Not launched: it stays in the state that the commands of a test lead to.
 class QuietCell {
  public:
+  explicit QuietCell(Cell cell = edf()) : shipped_(std::move(cell)) {}
   boost::asio::io_context& context() { return context_; }
   RunStore& store() { return store_; }
   CellOperation& operation() { return operation_; }
@@ -45,13 +46,14 @@ class QuietCell {
     return {"127.0.0.1", held_port_.local_endpoint().port()};
   }
 
+  Cell shipped_;
   Folder folder_;
   RunStore store_{folder_.path() / "touchcal.sqlite"};
   boost::asio::io_context context_{1};
   boost::asio::ip::tcp::socket held_port_{context_};
   CellOperation operation_{
       {context_.get_executor(), context_.get_executor()},
-      edf(),
+      shipped_,
       StoreQueue(store_, context_.get_executor()),
       nobody(),
       "instance",

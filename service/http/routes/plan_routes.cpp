@@ -77,7 +77,8 @@ HttpResponse post_identify(const Call& call) {
     const Recipe recipe =
         call.text("stiffness") ? with_stiffness(named->second, *choice, cell) : named->second;
     TouchesFile file = touches_from_json("request body", call.request.body, kTouchesBytesMax, cell);
-    if (auto warning = unknown_temperature_warning(cell)) file.warnings.push_back(*std::move(warning));
+    if (auto warning = temperature_warning(cell, call.reads.now()))
+      file.warnings.push_back(*std::move(warning));
     calib::IdentificationProblem problem = identification_problem(cell, recipe);
     note_repeats(file.repeats, problem);
     problem.touches = std::move(file.touches);

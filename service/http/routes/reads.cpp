@@ -27,6 +27,8 @@ void Reads::update(std::shared_ptr<const ActiveRun> live) {
 
 const std::optional<std::string>& Reads::config_digest() const { return operation_.config_digest(); }
 
+std::chrono::system_clock::time_point Reads::now() const { return operation_.clocks().system(); }
+
 std::optional<std::string> Reads::live_result(std::int64_t run_id) const {
   const ActiveRun* live = own_store_ ? live_.get() : operation_.active_run();
   return live && live->run.id() == run_id ? result_json(*live, tip_regions()) : std::nullopt;

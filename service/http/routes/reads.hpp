@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -33,6 +34,8 @@ class Reads {
   [[nodiscard]] const RunStore& store() const { return store_; }
   [[nodiscard]] const Cell& cell() const { return located_->cell; }
   [[nodiscard]] const std::optional<BlockPose>& place() const { return located_->place; }
+  /// By the clock of the operation.
+  [[nodiscard]] std::chrono::system_clock::time_point now() const;
   [[nodiscard]] const TipRegions& tip_regions() const { return *regions_; }
   /// Of the cell's files at the daemon's start; it does not change.
   [[nodiscard]] const std::optional<std::string>& config_digest() const;

@@ -58,14 +58,14 @@ TEST_F(BlockTemperatureTest, AnUnknownOneIsToldWithFilePointerAndRemedyAndOneOfT
 }
 
 TEST_F(BlockTemperatureTest, AnExpansionWithoutATemperatureIsAWarning) {
-  EXPECT_FALSE(unknown_temperature_warning(read()));
+  EXPECT_FALSE(temperature_warning(read(), kNow));
   forget_temperature();
-  EXPECT_THAT(unknown_temperature_warning(read()).value(),
+  EXPECT_THAT(temperature_warning(read(), kNow).value(),
               AllOf(HasSubstr("block.json: /temperature_c is missing"), HasSubstr("23.6 ppm per kelvin"),
                     HasSubstr("--block-temperature")));
-  EXPECT_FALSE(unknown_temperature_warning(with_block_temperature(read(), measured(0s))));
+  EXPECT_FALSE(temperature_warning(with_block_temperature(read(), measured(0s)), kNow));
   edit(kBlock, [](json& block) { block.erase("thermal_expansion_per_k"); });
-  EXPECT_FALSE(unknown_temperature_warning(read()));
+  EXPECT_FALSE(temperature_warning(read(), kNow));
 }
 
 TEST_F(BlockTemperatureTest, WithoutAnExpansionItSaysNothing) {
@@ -85,6 +85,19 @@ TEST_F(BlockTemperatureTest, OneOfYesterdayIsRefused) {
   EXPECT_THAT(refusal.words, AllOf(HasSubstr("block.json: /temperature_at: "), HasSubstr("24.0 h old"),
                                    HasSubstr("8.0 h"), HasSubstr("measure")));
   EXPECT_EQ(code(measured(1h)), "") << "what is measured for the run outranks the file";
+}
+
+TEST_F(BlockTemperatureTest, TouchesWithoutADateAreWarnedOfItInTheWordsOfTheRefusal) {
+  for (const char* at : {"2026-01-31T08:00:00Z", "2027-02-01T08:00:00Z"}) {
+    measured_in_file(at);
+    const std::string refused = refuse_temperature(read(), {}, kNow).value().words;
+    const std::string what = refused.substr(0, refused.find("; ") + 2);
+    EXPECT_THAT(temperature_warning(read(), kNow).value(), ::testing::StartsWith(what));
+    const BlockTemperature of_command{.celsius = 25.0, .std_k = 0.5, .measured_at = std::nullopt};
+    EXPECT_FALSE(temperature_warning(with_block_temperature(read(), of_command), kNow));
+  }
+  measured_in_file("2026-02-01T00:00:00Z");
+  EXPECT_FALSE(temperature_warning(read(), kNow)) << "young enough";
 }
 
 TEST_F(BlockTemperatureTest, OneThatComesWithTheRunAgesTooAndByTheCellsOwnLimit) {

@@ -119,6 +119,21 @@ TEST_F(PlanRoutes, TheStiffnessOfARequestOutranksTheRecipes) {
   EXPECT_THAT(json::parse(send(request).body).at("detail").get<std::string>(), HasSubstr("on, off nor auto"));
 }
 
+TEST_F(PlanRoutes, ATemperatureThatIsNotOfTodayIsAWarningOfTheResult) {
+  Cell dated = edf();
+  dated.block.temperature_at = std::chrono::system_clock::time_point{} - std::chrono::hours(9);
+  QuietCell yesterday(dated);
+  const HttpRequest request =
+      post("/api/v1/identify",
+           read_file_bytes(kSourceDir / "tests/data/table3-exact.touches.json", kTouchesBytesMax));
+  const auto warnings = [&](QuietCell& cell) {
+    return json::parse(cell.run(route(request, cell.operation(), kTokens)).body).at("warnings").dump();
+  };
+  EXPECT_THAT(warnings(yesterday),
+              HasSubstr("/temperature_at: the block's temperature of 20.0 degrees C is 9.0 h old"));
+  EXPECT_THAT(warnings(cell_), ::testing::Not(HasSubstr("/temperature_at")));
+}
+
 TEST_F(PlanRoutes, AStartByAPlanThatIsNotKnownSaysHowToGetOne) {
   const HttpResponse response = send(post("/api/v1/runs", R"({"plan_id":"0123456789abcdef"})"));
   EXPECT_EQ(response.status, 404u);
