@@ -30,8 +30,9 @@ Verdict conclude(ActiveRun& active, RunOutcome outcome, const TipRegions& region
                     run.latest().status == calib::IdentificationStatus::kConverged;
   if (!active.finished) return Verdict::kIncomplete;
   const TipPrediction tip = predict_tip(regions, run.problem(), run.latest());
-  const std::vector<Criterion> judged = criteria(run.latest(), run.recipe(), regions.cell(), judged_tip(tip));
-  const Judgement judgement = judge(run.latest(), judged, regions.cell().acceptance, true);
+  const std::vector<Criterion> judged =
+      criteria(run.latest(), run.recipe(), regions.cell(), judged_tip(tip), true);
+  const Judgement judgement = judge(judged, regions.cell().acceptance);
   return judgement.accepted ? Verdict::kAccepted : Verdict::kRejected;
 }
 

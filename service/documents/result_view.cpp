@@ -334,8 +334,8 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
     document.monte_carlo = monte_carlo_of(*context.monte_carlo);
     if (!context.monte_carlo->warning.empty()) document.warnings.push_back(context.monte_carlo->warning);
   }
-  const std::vector<Criterion> judged = criteria(result, recipe, cell, judged_tip(tip));
-  Judgement judgement = judge(result, judged, cell.acceptance, context.complete);
+  const std::vector<Criterion> judged = criteria(result, recipe, cell, judged_tip(tip), context.complete);
+  Judgement judgement = judge(judged, cell.acceptance);
   document.verdict = {.accepted = judgement.accepted,
                       .reasons = std::move(judgement.reasons),
                       .decision_rule = decision_rule_of(judged, cell.acceptance)};

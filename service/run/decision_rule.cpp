@@ -19,6 +19,29 @@ std::optional<double> in_mm(std::optional<double> metres) {
   return metres ? std::optional(mm_from_metres(*metres)) : std::nullopt;
 }
 
+/// What is so or not: 1 or 0, and 1 is wanted.
+void add_condition(const char* name, bool holds, std::string miss, Criteria& list) {
+  list.push_back({.name = name,
+                  .unit = "1",
+                  .value = holds ? 1.0 : 0.0,
+                  .limit = 1.0,
+                  .at_least = true,
+                  .miss = std::move(miss)});
+}
+
+void add_held_out_count(const calib::IdentificationResult& result, Criteria& list) {
+  int count = 0;
+  for (const calib::FaceDistances& face : result.distances) {
+    if (face.role == calib::TouchRole::kHeldOut) count += face.touch_count;
+  }
+  list.push_back({.name = "held_out_touches",
+                  .unit = "1",
+                  .value = count,
+                  .limit = 1.0,
+                  .at_least = true,
+                  .miss = "no touch was held out: nothing is proved of the limits for them; hold some out"});
+}
+
 void add_tip(const JudgedTip& tip, const Cell& cell, const std::string& recipe, Criteria& list) {
   const auto add = [&](const char* name, const char* what, std::optional<double> value_m, double limit_m,
                        std::optional<std::string> tool = std::nullopt) {
@@ -246,9 +269,12 @@ bool is_estimated(const calib::IdentificationOptions& options, const calib::Iden
 }
 
 std::vector<Criterion> criteria(const calib::IdentificationResult& result, const Recipe& recipe,
-                                const Cell& cell, const JudgedTip& tip) {
+                                const Cell& cell, const JudgedTip& tip, bool complete) {
   Criteria list;
-  if (result.status == calib::IdentificationStatus::kConverged) {
+  const bool converged = result.status == calib::IdentificationStatus::kConverged;
+  add_condition("complete", complete, "the run was not completed", list);
+  add_condition("converged", converged, result.message, list);
+  if (converged) {
     add_tip(tip, cell, recipe.name, list);
     add_gain(tip, cell, list);
   }
@@ -260,6 +286,7 @@ std::vector<Criterion> criteria(const calib::IdentificationResult& result, const
   for (const calib::FaceDistances& face : result.distances) {
     if (face.role == calib::TouchRole::kHeldOut) add_held_out(face, cell, list);
   }
+  if (cell.acceptance.guarded) add_held_out_count(result, list);
   return list;
 }
 

@@ -58,10 +58,11 @@ JudgedTip judged_tip(const TipPrediction& tip);
 bool is_estimated(const calib::IdentificationOptions& options, const calib::IdentifiableSet& identifiable,
                   int index);
 
-/// Every figure of a result of this recipe that can reject it. The uncertainty of the mean of held-out
+/// Everything that can reject a result of this recipe: each is a reason of a verdict, and there is no other.
+/// `complete`: every touch of the recipe was made. The uncertainty of the mean of held-out
 /// touches is that of FaceDistances::calibrated_mean_std_m, that of their rms reaches the upper confidence
 /// bound of a chi-square variable.
 std::vector<Criterion> criteria(const calib::IdentificationResult& result, const Recipe& recipe,
-                                const Cell& cell, const JudgedTip& tip);
+                                const Cell& cell, const JudgedTip& tip, bool complete);
 
 }  // namespace cell

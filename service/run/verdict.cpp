@@ -2,8 +2,6 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <algorithm>
-
 namespace cell {
 namespace {
 
@@ -20,12 +18,9 @@ std::string not_proved(const Criterion& criterion) {
 
 }  // namespace
 
-Judgement judge(const calib::IdentificationResult& result, const std::vector<Criterion>& criteria,
-                const AcceptanceLimits& limits, bool complete) {
+Judgement judge(const std::vector<Criterion>& criteria, const AcceptanceLimits& limits) {
   Judgement judgement;
   std::vector<std::string>& reasons = judgement.reasons;
-  if (!complete) reasons.emplace_back("the run was not completed");
-  if (result.status != calib::IdentificationStatus::kConverged) reasons.push_back(result.message);
   for (const Criterion& criterion : criteria) {
     if (!criterion.within_limit()) {
       reasons.push_back(criterion.miss);
@@ -33,8 +28,6 @@ Judgement judge(const calib::IdentificationResult& result, const std::vector<Cri
       reasons.push_back(not_proved(criterion));
     }
   }
-  if (limits.guarded && std::ranges::none_of(criteria, &Criterion::is_measured))
-    reasons.emplace_back("no touch was held out: nothing is proved of the limits for them; hold some out");
   judgement.accepted = reasons.empty();
   return judgement;
 }

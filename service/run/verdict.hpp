@@ -13,9 +13,8 @@ struct Judgement {
   std::vector<std::string> reasons;  // why not, one sentence each
 };
 
-/// Judges a result by all figures that can reject it (criteria()) and the decision rule of the cell's file: a
-/// guarded rule accepts only proved conformance. `complete`: every touch of the recipe was made.
-Judgement judge(const calib::IdentificationResult& result, const std::vector<Criterion>& criteria,
-                const AcceptanceLimits& limits, bool complete);
+/// Judges by all that can reject a result (criteria()) and the decision rule of the cell's file: a guarded
+/// rule accepts only proved conformance.
+Judgement judge(const std::vector<Criterion>& criteria, const AcceptanceLimits& limits);
 
 }  // namespace cell

@@ -49,8 +49,8 @@ struct Runs {
 bool is_named(const cell::Cell& cell, const cell::Recipe& recipe, const IdentificationProblem& problem,
               const IdentificationResult& result, const TipPostures& box) {
   const cell::JudgedTip tip = tip_to_judge(box, result);
-  const auto criteria = cell::criteria(result, recipe, cell, tip);
-  return !cell::judge(result, criteria, cell.acceptance, true).accepted || problem.drift_m > 0.0 ||
+  const auto criteria = cell::criteria(result, recipe, cell, tip, true);
+  return !cell::judge(criteria, cell.acceptance).accepted || problem.drift_m > 0.0 ||
          (result.scale && !result.scale->warning.empty());
 }
 

@@ -76,8 +76,8 @@ Runs run(const cell::Cell& shipped, const cell::Recipe& recipe, HiddenArm arm) {
   const std::vector<Touch> planned = all_planned_touches(shipped, recipe);
   const TipPostures box = postures_of_box(cell);
   const auto is_accepted = [&](const IdentificationResult& result) {
-    const auto criteria = cell::criteria(result, recipe, shipped, tip_to_judge(box, result));
-    return cell::judge(result, criteria, shipped.acceptance, true).accepted;
+    const auto criteria = cell::criteria(result, recipe, shipped, tip_to_judge(box, result), true);
+    return cell::judge(criteria, shipped.acceptance).accepted;
   };
   const cell::AcceptanceLimits& limits = shipped.acceptance;
   IdentificationProblem problem = cell::identification_problem(shipped, recipe);

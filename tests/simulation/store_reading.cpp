@@ -26,8 +26,9 @@ void add_undisturbed_result(const cell::TipRegions& regions, RunRecord& record) 
   record.undisturbed_json = cell::result_json(again, regions);
   const calib::IdentificationResult& latest = again.run.latest();
   const cell::TipPrediction tip = cell::predict_tip(regions, again.run.problem(), latest);
-  const auto criteria = cell::criteria(latest, again.run.recipe(), regions.cell(), cell::judged_tip(tip));
-  record.reasons = cell::judge(latest, criteria, regions.cell().acceptance, is_whole).reasons;
+  const auto criteria =
+      cell::criteria(latest, again.run.recipe(), regions.cell(), cell::judged_tip(tip), is_whole);
+  record.reasons = cell::judge(criteria, regions.cell().acceptance).reasons;
 }
 
 }  // namespace

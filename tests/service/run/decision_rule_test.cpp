@@ -50,7 +50,7 @@ calib::IdentificationResult good_result() {
 
 std::vector<Criterion> list_of(const calib::IdentificationResult& result,
                                const Cell& cell = cell_with_limits(), const JudgedTip& tip = kGoodTip) {
-  return criteria(result, Recipe{}, cell, tip);
+  return criteria(result, Recipe{}, cell, tip, true);
 }
 
 const Criterion& named(const std::vector<Criterion>& list, const std::string& name,
@@ -63,14 +63,35 @@ const Criterion& named(const std::vector<Criterion>& list, const std::string& na
 
 TEST(Criteria, AreAllThatCanRejectAResult) {
   const auto list = list_of(good_result());
-  for (const char* name : {"scale", "artefact", "condition_number", "lack_of_fit", "rejected_touches",
-                           "held_parameters", "unknown_errors", "nominal_miss"})
+  for (const char* name : {"complete", "converged", "scale", "artefact", "condition_number", "lack_of_fit",
+                           "rejected_touches", "held_parameters", "unknown_errors", "nominal_miss"})
     EXPECT_TRUE(named(list, name).within_limit()) << name;
   for (const int plane : {1, 2}) {
     for (const char* name : {"lack_of_fit", "held_out_mean", "held_out_rms"})
       EXPECT_TRUE(named(list, name, plane).within_limit()) << name;
   }
-  EXPECT_EQ(list.size(), 14U);
+  EXPECT_EQ(list.size(), 16U);
+}
+
+TEST(Criteria, ARunThatWasNotCompletedOrDidNotConvergeMissesALimitOfItsOwn) {
+  calib::IdentificationResult diverged = good_result();
+  diverged.status = calib::IdentificationStatus::kNotConverged;
+  diverged.message = "after 20 iterations";
+  const auto list = criteria(diverged, Recipe{}, cell_with_limits(), kGoodTip, false);
+  EXPECT_FALSE(named(list, "complete").within_limit());
+  EXPECT_FALSE(named(list, "converged").within_limit());
+  EXPECT_EQ(named(list, "converged").miss, "after 20 iterations");
+}
+
+TEST(Criteria, AGuardedRuleWantsTouchesHeldOut) {
+  Cell guarded = cell_with_limits();
+  guarded.acceptance.guarded = true;
+  EXPECT_EQ(named(list_of(good_result(), guarded), "held_out_touches").value, 2.0 * kHeldOut);
+  calib::IdentificationResult none = good_result();
+  none.distances.clear();
+  EXPECT_FALSE(named(list_of(none, guarded), "held_out_touches").within_limit());
+  EXPECT_THAT(list_of(none), Each(Field(&Criterion::name, Not("held_out_touches"))))
+      << "a simple rule does not";
 }
 
 TEST(Criteria, ACalibrationMustSayMoreOfTheTipThanWasAssumedBefore) {
@@ -151,7 +172,7 @@ TEST(Criteria, ProvedIsSaidOnlyWhereValueAndUncertaintyAreWithinTheLimit) {
 
 TEST(Criteria, TheTipIsLimitedByItsRmsItsWorstPostureAndForEachTool) {
   Cell cell = cell_with_limits();
-  EXPECT_EQ(list_of(good_result(), cell, {.box_rms_m = 1.0}).size(), 14U) << "no limit";
+  EXPECT_EQ(list_of(good_result(), cell, {.box_rms_m = 1.0}).size(), 16U) << "no limit";
   cell.acceptance.tip_box_rms_max_m = 6e-5;
   cell.acceptance.tip_box_max_m = 2e-4;
   cell.acceptance.tool_box_rms_max_m = {{"gripper", 1e-4}};
@@ -171,12 +192,12 @@ TEST(Criteria, TheLimitOfARecipeOutranksThatOfAll) {
   cell.acceptance.tip_box_max_m = 5e-3;
   cell.acceptance.tip_box_max_by_recipe_m = {{"quick", 1e-4}};
   const auto limit_mm = [&](const char* recipe) {
-    return named(criteria(good_result(), Recipe{.name = recipe}, cell, kGoodTip), "tip_box_max").limit;
+    return named(criteria(good_result(), Recipe{.name = recipe}, cell, kGoodTip, true), "tip_box_max").limit;
   };
   EXPECT_DOUBLE_EQ(limit_mm("quick"), 0.1);
   EXPECT_DOUBLE_EQ(limit_mm("edf-23"), 5.0);
-  EXPECT_FALSE(
-      named(criteria(good_result(), Recipe{.name = "quick"}, cell, kGoodTip), "tip_box_max").within_limit());
+  EXPECT_FALSE(named(criteria(good_result(), Recipe{.name = "quick"}, cell, kGoodTip, true), "tip_box_max")
+                   .within_limit());
   cell.acceptance.tip_box_max_m.reset();
   EXPECT_DOUBLE_EQ(limit_mm("quick"), 0.1) << "alone as well";
 }

@@ -43,7 +43,7 @@ Judgement judged(const calib::IdentificationResult& result, const AcceptanceLimi
   cell.acceptance = limits;
   const JudgedTip tip{.box_rms_m = tip_box_rms_m, .box_max_m = kNominalMiss};
   const Recipe recipe{.identification = options};
-  return judge(result, criteria(result, recipe, cell, tip), limits, complete);
+  return judge(criteria(result, recipe, cell, tip, complete), limits);
 }
 
 std::vector<std::string> reasons_against(const calib::IdentificationResult& result, bool complete = true) {
