@@ -214,8 +214,9 @@ ApiReply ApiClient::get(const std::string& target, std::chrono::seconds deadline
   return request(false, target, {}, deadline);
 }
 
-ApiReply ApiClient::post(const std::string& target, const std::string& body) const {
-  return request(true, target, body, std::chrono::seconds(10));
+ApiReply ApiClient::post(const std::string& target, const std::string& body,
+                         std::chrono::seconds deadline) const {
+  return request(true, target, body, deadline);
 }
 
 ApiReply ApiClient::request(bool post, const std::string& target, const std::string& body,

@@ -37,7 +37,8 @@ class ApiClient {
 
   /// `target` with its query; `body` is JSON. Throws DaemonUnreachable.
   ApiReply get(const std::string& target, std::chrono::seconds deadline = std::chrono::seconds(10)) const;
-  ApiReply post(const std::string& target, const std::string& body) const;
+  ApiReply post(const std::string& target, const std::string& body,
+                std::chrono::seconds deadline = std::chrono::seconds(10)) const;
 
   [[nodiscard]] std::string url() const;
   /// The same without the Unix socket: what a browser would reach.

@@ -116,6 +116,7 @@ struct ReportArguments {
   std::string format = "html";  // html, csv or pdf
   std::string file = "-";       // "-" is standard output
   bool overwrite = false;
+  std::optional<int> monte_carlo_count;  // simulated calibrations, if any are wanted; the daemon draws them
 };
 /// Writes a run's report; with `json` its document on standard output, whatever the format.
 ExitCode report_command(const ApiClient& daemon, const ReportArguments& arguments, bool json);

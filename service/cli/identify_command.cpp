@@ -61,14 +61,7 @@ void simulate(const TipRegions& regions, const Recipe& recipe, const calib::Iden
       regions, problem, recipe.identification, result, count, threads,
       [&bar, count](int done) { bar.show("simulated calibrations", static_cast<double>(done) / count); });
   bar.finish();
-  if (!context.monte_carlo) {
-    context.warnings.emplace_back(
-        "no Monte Carlo: the noise of a touch is neither declared nor measured by these touches");
-  } else if (!context.monte_carlo->box_rms_m) {
-    context.warnings.emplace_back(
-        "no Monte Carlo figure for the workspace box: the arm has no posture in it, or the draws did not "
-        "converge");
-  }
+  if (auto missing = missing_draws(context.monte_carlo)) context.warnings.push_back(*std::move(missing));
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/completion.hpp"
 #include "service/run/run_conditions.hpp"
+#include "service/run/simulated_calibrations.hpp"
 
 namespace {
 
@@ -234,6 +235,11 @@ class CommandLine {
     report->add_option("--out", report_.file, "the file to write; - is standard output")
         ->default_str(report_.file);
     report->add_flag("--force", report_.overwrite, "overwrite the file");
+    report
+        ->add_option("--monte-carlo", report_.monte_carlo_count,
+                     "with this many simulated calibrations beside the linear uncertainty")
+        ->check(cell::refuse_integer)
+        ->check(CLI::Range(cell::kReportDrawsMin, cell::kReportDrawsMax));
   }
 
   void add_audit() {

@@ -91,15 +91,6 @@ TipDocument::ArmFrame arm_frame_of(const TipPrediction::InArmFrame& tip) {
           .expanded = expanded_of(tip.expanded)};
 }
 
-ResultDocument::MonteCarlo monte_carlo_of(const calib::MonteCarloFigures& figures) {
-  return {.count = figures.count,
-          .converged = figures.converged,
-          .box_rms_mm = finite_mm(figures.box_rms_m),
-          .box_p95_mm = finite_mm(figures.box_p95_m),
-          .joint_ranges_rms_mm = finite_mm(figures.joint_ranges_rms_m),
-          .linear_over_monte_carlo = finite(figures.linear_over_monte_carlo)};
-}
-
 /// A plane without fitted touches has no p.
 std::vector<ResultDocument::PlaneFit> plane_fits_of(const calib::IdentificationResult& result) {
   std::vector<ResultDocument::PlaneFit> planes;
@@ -330,10 +321,7 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
   document.validation = validation_of(problem, options, result, context.complete, document.parameters);
   const TipPrediction tip = predict_tip(regions, problem, result);
   document.tip_uncertainty = tip_of(cell, tip);
-  if (context.monte_carlo) {
-    document.monte_carlo = monte_carlo_of(*context.monte_carlo);
-    if (!context.monte_carlo->warning.empty()) document.warnings.push_back(context.monte_carlo->warning);
-  }
+  if (context.monte_carlo) add_monte_carlo(*context.monte_carlo, document);
   const std::vector<Criterion> judged = criteria(result, recipe, cell, judged_tip(tip), context.complete);
   Judgement judgement = judge(judged, cell.acceptance);
   document.verdict = {.accepted = judgement.accepted,
@@ -341,6 +329,16 @@ ResultDocument result_of(const TipRegions& regions, const Recipe& recipe,
                       .decision_rule = decision_rule_of(judged, cell.acceptance)};
   document.conditions.text = context.conditions.empty() ? conditions_document(cell, {}) : context.conditions;
   return document;
+}
+
+void add_monte_carlo(const calib::MonteCarloFigures& figures, ResultDocument& document) {
+  document.monte_carlo = {.count = figures.count,
+                          .converged = figures.converged,
+                          .box_rms_mm = finite_mm(figures.box_rms_m),
+                          .box_p95_mm = finite_mm(figures.box_p95_m),
+                          .joint_ranges_rms_mm = finite_mm(figures.joint_ranges_rms_m),
+                          .linear_over_monte_carlo = finite(figures.linear_over_monte_carlo)};
+  if (!figures.warning.empty()) document.warnings.push_back(figures.warning);
 }
 
 std::string result_document(const TipRegions& regions, const Recipe& recipe,

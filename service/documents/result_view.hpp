@@ -31,6 +31,9 @@ std::string result_document(const TipRegions& regions, const Recipe& recipe,
                             const calib::IdentificationProblem& problem,
                             const calib::IdentificationResult& result, const ResultContext& context);
 
+/// Sets what simulated calibrations say beside the linear figures.
+void add_monte_carlo(const calib::MonteCarloFigures& figures, ResultDocument& document);
+
 /// `tip_uncertainty` of a result and of a plan.
 TipDocument tip_of(const Cell& cell, const TipPrediction& tip);
 

@@ -192,18 +192,21 @@ std::string summary_section(const ResultDocument& result) {
 }
 
 /// Nothing where none were asked for.
-std::string monte_carlo_table(const std::optional<ResultDocument::MonteCarlo>& simulated) {
+std::string monte_carlo_table(const ResultDocument& result) {
+  const std::optional<ResultDocument::MonteCarlo>& simulated = result.monte_carlo;
   if (!simulated) return {};
-  return pairs_table(
-      "Simulated calibrations (Monte Carlo by the GUM, Supplement 1)",
-      {{"drawn, converged", std::to_string(simulated->count) + ", " + std::to_string(simulated->converged)},
-       {"standard uncertainty of the tip in the workspace box, rms",
-        figure_text(simulated->box_rms_mm, "{:.3f} mm")},
-       {"over the joint ranges, rms", figure_text(simulated->joint_ranges_rms_mm, "{:.3f} mm")},
-       {"95 % of the tip errors in the workspace box within",
-        figure_text(simulated->box_p95_mm, "{:.3f} mm")},
-       {"linear uncertainty over that of the simulation",
-        figure_text(simulated->linear_over_monte_carlo, "{:.3f}")}});
+  const TipDocument& linear = result.tip_uncertainty;
+  return html::table(
+      fmt::format("Simulated calibrations (Monte Carlo by the GUM, Supplement 1): {} drawn, {} converged",
+                  simulated->count, simulated->converged),
+      {"uncertainty of the tip, mm", "linear", "Monte Carlo"},
+      {{"standard, rms in the workspace box", figure_text(linear.workspace_box_rms_mm, "{:.3f}"),
+        figure_text(simulated->box_rms_mm, "{:.3f}")},
+       {"standard, rms over the joint ranges", figure_text(linear.joint_ranges_rms_mm, "{:.3f}"),
+        figure_text(simulated->joint_ranges_rms_mm, "{:.3f}")},
+       {"95 % of the errors in the workspace box within", "", figure_text(simulated->box_p95_mm, "{:.3f}")},
+       {"linear over Monte Carlo, same postures of the box",
+        figure_text(simulated->linear_over_monte_carlo, "{:.3f}"), ""}});
 }
 
 std::string budget_section(const ResultDocument& result) {
@@ -254,7 +257,7 @@ std::string budget_section(const ResultDocument& result) {
                                             {"source", "rms mm"}, sources) +
                                     html::table("Predicted uncertainty of the tip elsewhere",
                                                 {"where", "rms mm"}, elsewhere) +
-                                    monte_carlo_table(result.monte_carlo) + pairs_table("Lack of fit", lack) +
+                                    monte_carlo_table(result) + pairs_table("Lack of fit", lack) +
                                     html::table("Strongest correlations of identified errors",
                                                 {"error of", "and of", "coefficient"}, correlations));
 }

@@ -57,4 +57,12 @@ std::optional<calib::MonteCarloFigures> simulate_calibrations(const TipRegions& 
   return figures;
 }
 
+std::optional<std::string> missing_draws(const std::optional<calib::MonteCarloFigures>& figures) {
+  if (!figures)
+    return "no Monte Carlo: the noise of a touch is neither declared nor measured by these touches";
+  if (figures->box_rms_m) return std::nullopt;
+  return "no Monte Carlo figure for the workspace box: the arm has no posture in it, or the draws did not "
+         "converge";
+}
+
 }  // namespace cell

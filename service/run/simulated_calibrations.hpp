@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "calib_core/identification/monte_carlo.hpp"
 #include "service/run/tip_prediction.hpp"
@@ -12,7 +13,12 @@ namespace cell {
 /// draw are then good to a few per cent and cost no more than its identification.
 inline constexpr int kMonteCarloPostureCount = 100;
 
-/// Told how many draws are done, on the calling thread and in between its own draws.
+/// Of a run's report, which the daemon makes: some ten seconds at most.
+inline constexpr int kReportDrawsMin = 100;
+inline constexpr int kReportDrawsMax = 10'000;
+
+/// Told how many draws are done, on the calling thread and in between its own draws. With one thread it may
+/// throw, which ends the simulation.
 using DrawProgress = std::function<void(int done)>;
 
 /// As many simulated calibrations as `count` says, on `threads` threads, the calling one among them; the
@@ -24,5 +30,8 @@ std::optional<calib::MonteCarloFigures> simulate_calibrations(const TipRegions& 
                                                               const calib::IdentificationResult& result,
                                                               int count, int threads,
                                                               const DrawProgress& progress);
+
+/// What is missing of the figures, in words; nothing where they are complete.
+std::optional<std::string> missing_draws(const std::optional<calib::MonteCarloFigures>& figures);
 
 }  // namespace cell

@@ -99,10 +99,12 @@ struct Api::Desk {
       : waiting_max(to_have_waiting), when_full(to_say), reads(operation, operation.store().file()) {
     if (!given) given = thread.emplace(1).get_executor();
     executor = std::move(given);
+    reads.end_with(ending.get_token());
   }
   ~Desk() { end(); }
   void end() {
     if (!thread) return;
+    ending.request_stop();
     thread->stop();  // nobody waits for an answer any more
     thread->join();
   }
@@ -112,6 +114,7 @@ struct Api::Desk {
   int waiting = 0;  // of the thread that serves, as the next two
   int waiting_max;
   const char* when_full;
+  std::stop_source ending;
   Reads reads;                                     // of its own thread
   std::optional<boost::asio::thread_pool> thread;  // none where it was handed in
   boost::asio::any_io_executor executor;

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <utility>
 
 #include "service/acquisition/active_run.hpp"
 #include "service/acquisition/block_location.hpp"
@@ -34,6 +36,9 @@ class Reads {
   [[nodiscard]] const RunStore& store() const { return store_; }
   [[nodiscard]] const Cell& cell() const { return located_->cell; }
   [[nodiscard]] const std::optional<BlockPose>& place() const { return located_->place; }
+  /// What takes long on this thread looks at it in between: nobody waits for the answer any more.
+  [[nodiscard]] bool is_ending() const { return ending_.stop_requested(); }
+  void end_with(std::stop_token ending) { ending_ = std::move(ending); }
   /// By the clock of the operation.
   [[nodiscard]] std::chrono::system_clock::time_point now() const;
   [[nodiscard]] const TipRegions& tip_regions() const { return *regions_; }
@@ -49,6 +54,7 @@ class Reads {
   std::shared_ptr<const LocatedCell> located_;
   std::optional<TipRegions> regions_;  // of located_
   std::shared_ptr<const ActiveRun> live_;
+  std::stop_token ending_;
 };
 
 }  // namespace cell

@@ -3,7 +3,10 @@
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 
+#include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
 #include "service/documents/conditions_view.hpp"
@@ -15,6 +18,7 @@
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/run_recipe.hpp"
 #include "service/run/run_repeats.hpp"
+#include "service/run/simulated_calibrations.hpp"
 #include "service/store/fault_log.hpp"
 
 namespace cell {
@@ -50,7 +54,8 @@ std::optional<std::string> why_not_again(const Reads& reads, const StoredRun& ru
 /// that of the run.
 std::variant<Identified, HttpResponse> identify_stored(const Reads& reads, std::int64_t id) try {
   const StoredRun run = reads.store().run(id).value();
-  if (const auto why = why_not_again(reads, run)) return conflict("no result was stored, and " + *why);
+  if (const auto why = why_not_again(reads, run))
+    return conflict("it would have to be computed again, but " + *why);
   const Cell cell = with_block_temperature(reads.cell(), temperature_of(run, reads.cell()));
   if (!reads.cell().recipes.contains(run.recipe))
     return conflict("there is no result: this cell no longer has the run's recipe");
@@ -93,6 +98,43 @@ HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64
                        fmt::format("attachment; filename=\"touchcal-run-{}.{}\"", run, ending)}}};
 }
 
+/// The report of a record in a format.
+HttpResponse report_of(const RunRecord& record, const std::string& format) {
+  if (format != "html" && format != "csv" && format != "json") {
+    return to_response({.status = 400,
+                        .kind = ProblemKind::kQuery,
+                        .detail = "format is html, csv or json; touchcal report makes a PDF of the first",
+                        .parameter = "format"});
+  }
+  // Once to text and back: replaces bytes from outside that are not UTF-8, for all formats.
+  const std::string document = report_document(record);
+  if (format == "json") return {.body = document};
+  const RunReport report = read_report(document);
+  if (format == "html") return saved_as("html", kHtml, record.run.id, report_html(report));
+  return saved_as("csv", kCsv, record.run.id, report_csv(report));
+}
+
+/// Whether an identification made again has the uncertainty that is told of the first.
+bool is_same_result(const ResultDocument& told, const Identified& again, const TipRegions& regions) {
+  constexpr double kRoundedShare = 1e-6;
+  if (!again.result.uncertainty) return !told.tip_uncertainty.workspace_box_rms_mm;
+  const auto rms_m = predicted_rms_m(regions.tip().workspace_box, *again.result.uncertainty);
+  const auto& told_mm = told.tip_uncertainty.workspace_box_rms_mm;
+  if (!rms_m || !told_mm) return rms_m.has_value() == told_mm.has_value();
+  return std::abs(calib::mm_from_metres(*rms_m) - *told_mm) <= kRoundedShare * *told_mm;
+}
+
+void simulate(const Reads& reads, const Identified& again, int count, ResultDocument& told) {
+  const auto figures = simulate_calibrations(reads.tip_regions(), again.problem, again.recipe.identification,
+                                             again.result, count, 1, [&reads](int done) {
+                                               (void)done;
+                                               if (reads.is_ending())
+                                                 throw std::runtime_error("the daemon ends");
+                                             });
+  if (figures) add_monte_carlo(*figures, told);
+  if (auto missing = missing_draws(figures)) told.warnings.push_back(*std::move(missing));
+}
+
 }  // namespace
 
 HttpResponse get_result(const Reads& reads, std::int64_t id) {
@@ -115,18 +157,25 @@ HttpResponse get_arm(const Reads& reads, std::int64_t id) {
 }
 
 HttpResponse get_report(const Reads& reads, const StoredRun& run, const std::string& format) {
-  if (format != "html" && format != "csv" && format != "json") {
-    return to_response({.status = 400,
-                        .kind = ProblemKind::kQuery,
-                        .detail = "format is html, csv or json; touchcal report makes a PDF of the first",
-                        .parameter = "format"});
-  }
-  // Once to text and back: replaces bytes from outside that are not UTF-8, for all formats.
-  const std::string document = report_document(record_of(reads, run));
-  if (format == "json") return {.body = document};
-  const RunReport report = read_report(document);
-  if (format == "html") return saved_as("html", kHtml, run.id, report_html(report));
-  return saved_as("csv", kCsv, run.id, report_csv(report));
+  return report_of(record_of(reads, run), format);
+}
+
+HttpResponse get_simulated_report(const Reads& reads, const StoredRun& run, const std::string& format,
+                                  int count) {
+  if (run.outcome == RunOutcome::kRunning)
+    return conflict("the run is not over: it has no result that stays");
+  RunRecord record = record_of(reads, run);
+  const auto found = identify_stored(reads, run.id);
+  if (const auto* response = std::get_if<HttpResponse>(&found)) return *response;
+  const Identified& again = std::get<Identified>(found);
+  ResultDocument told = read_result(record.result_json.value());
+  if (!is_same_result(told, again, reads.tip_regions()))
+    return conflict(
+        "this version of touchcal identifies the touches otherwise than when the run ended: a "
+        "simulation would not be of its result; take the version that its conditions name");
+  simulate(reads, again, count, told);
+  record.result_json = document_text(told);
+  return report_of(record, format);
 }
 
 }  // namespace cell

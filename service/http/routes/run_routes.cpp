@@ -8,6 +8,7 @@
 #include "service/http/routes/internal/result_routes.hpp"
 #include "service/http/routes/internal/start_body.hpp"
 #include "service/http/routes/route_table.hpp"
+#include "service/run/simulated_calibrations.hpp"
 #include "service/store/run_page.hpp"
 
 namespace cell {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr int kRunsPageDefault = 50;
 constexpr int kRunsPageMax = 200;
+constexpr int kReportDrawsDefault = 1000;
 constexpr std::int64_t kRunIdMax = std::int64_t{1} << 53;
 
 HttpResponse get_runs(const Call& call) {
@@ -37,6 +39,10 @@ HttpResponse result_view(const Call& call, const StoredRun& run) { return get_re
 HttpResponse arm_view(const Call& call, const StoredRun& run) { return get_arm(call.reads, run.id); }
 HttpResponse report_view(const Call& call, const StoredRun& run) {
   return get_report(call.reads, run, call.text("format").value_or("html"));
+}
+HttpResponse simulated_report_view(const Call& call, const StoredRun& run) {
+  const auto count = static_cast<int>(call.number("count").value_or(kReportDrawsDefault));
+  return get_simulated_report(call.reads, run, call.text("format").value_or("html"), count);
 }
 HttpResponse plan_view(const Call& call, const StoredRun& run) { return get_plan(call.reads, run.id); }
 
@@ -112,6 +118,16 @@ std::vector<Route> run_routes() {
        .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true}},
        .dispatch = DispatchMode::kStored,
        .tells_result = true},
+      {.method = "POST",
+       .path = "/api/v1/runs/{id}/report/monte-carlo",
+       .summary = "The report of a run that is over with simulated calibrations beside its linear "
+                  "uncertainty; takes about a millisecond for each",
+       .access = Access::kOperate,
+       .handle = of_run<simulated_report_view>,
+       .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "Report"}},
+       .query = {{"count", kReportDrawsMin, kReportDrawsMax, "simulated calibrations; 1000 by default"},
+                 {.name = "format", .words = "html, csv or json; html by default", .is_text = true}},
+       .dispatch = DispatchMode::kWorker},
   };
 }
 

@@ -116,7 +116,7 @@ TEST(Report, ThePageShowsSimulatedCalibrationsWhereTheResultHasThem) {
   RunRecord made = record();
   made.result_json = more.dump();
   const std::string page = page_of(made);
-  for (const char* text : {"Simulated calibrations", "400, 399", "0.125 mm", "1.020"})
+  for (const char* text : {"Simulated calibrations", "400 drawn, 399 converged", "<td>0.125</td>", "1.020"})
     EXPECT_THAT(page, HasSubstr(text));
 }
 

@@ -62,6 +62,48 @@ TEST_F(ResultRoutesTest, ARunThatWasCutOffHasAResultThatSaysSo) {
   EXPECT_EQ(document.at("identifiable_count"), 25);
 }
 
+TEST_F(ResultRoutesTest, TheReportSetsSimulatedCalibrationsBesideTheLinearUncertainty) {
+  const StoredRun open = cell_.store().run(run_).value();
+  EXPECT_EQ(get_simulated_report(cell_.operation(), open, "json", 100).status, 409u) << "it is not over";
+  cell_.store().finish_run(
+      run_, {.outcome = RunOutcome::kComplete, .result_json = get_result(cell_.operation(), run_).body});
+  const StoredRun stored = cell_.store().run(run_).value();
+  const auto report = [&] {
+    return json::parse(get_simulated_report(cell_.operation(), stored, "json", 100).body).at("result");
+  };
+  const json result = report();
+  EXPECT_EQ(result.at("monte_carlo").at("count"), 100);
+  EXPECT_NEAR(result.at("monte_carlo").at("linear_over_monte_carlo").get<double>(), 1.0, 0.3);
+  EXPECT_EQ(report(), result) << "it can be repeated";
+  const std::string page = get_simulated_report(cell_.operation(), stored, "html", 100).body;
+  EXPECT_THAT(page, HasSubstr("100 drawn, 100 converged"));
+  json without = result;
+  without["monte_carlo"] = nullptr;
+  EXPECT_EQ(without, json::parse(get_report(cell_.operation(), stored, "json").body).at("result"));
+}
+
+TEST_F(ResultRoutesTest, AResultThatIsNotThatOfTheTouchesIsNotSimulated) {
+  json other = json::parse(get_result(cell_.operation(), run_).body);
+  json& rms_mm = other["tip_uncertainty"]["workspace_box_rms_mm"];
+  rms_mm = 1.001 * rms_mm.get<double>();
+  cell_.store().finish_run(run_, {.outcome = RunOutcome::kComplete, .result_json = other.dump()});
+  const HttpResponse response =
+      get_simulated_report(cell_.operation(), cell_.store().run(run_).value(), "json", 100);
+  EXPECT_EQ(response.status, 409u);
+  EXPECT_THAT(response.body, HasSubstr("this version of touchcal"));
+}
+
+TEST_F(ResultRoutesTest, ADaemonThatEndsDoesNotWaitForASimulation) {
+  cell_.store().finish_run(
+      run_, {.outcome = RunOutcome::kComplete, .result_json = get_result(cell_.operation(), run_).body});
+  std::stop_source ending;
+  Reads reads(cell_.operation());
+  reads.end_with(ending.get_token());
+  ending.request_stop();
+  EXPECT_THROW(get_simulated_report(reads, cell_.store().run(run_).value(), "json", 10'000),
+               std::runtime_error);
+}
+
 TEST_F(ResultRoutesTest, ARunIsIdentifiedAtItsOwnTemperature) {
   const std::int64_t warm = cell_.store().begin_run(
       {.recipe = "edf-25",
