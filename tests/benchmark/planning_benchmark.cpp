@@ -4,13 +4,18 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <limits>
 #include <random>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "calib_core/geometry/units.hpp"
+#include "calib_core/identification/identify.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/planning/candidate_pool.hpp"
 #include "calib_core/planning/touch_planning.hpp"
+#include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "config/read_config.hpp"
 #include "service/run/planning_problem.hpp"
 
@@ -94,6 +99,50 @@ void plan_time(const cell::Cell& cell, const std::string& recipe, double limit_s
               touches > 0 && seconds <= limit_s ? "met" : "MISSED");
 }
 
+calib::PlanningProblem without_compliance(calib::PlanningProblem problem) {
+  problem.identification.stiffness = false;
+  for (int joint = 0; joint < calib::kJointCount; ++joint)
+    problem.knowledge.nongeometric_std[static_cast<std::size_t>(calib::compliance_position(joint))].reset();
+  for (int frame = 1; frame <= calib::kMassCount; ++frame)
+    problem.knowledge.nongeometric_std[static_cast<std::size_t>(calib::mass_position(frame))].reset();
+  return problem;
+}
+
+/// Predicted tip uncertainty over the workspace box after the fitted touches of a plan, rms. NaN where it is
+/// unknown.
+double box_rms_mm(const calib::PlanningProblem& problem, const calib::TouchPlan& plan) {
+  calib::IdentificationProblem knowledge = problem.knowledge;
+  for (const calib::PlannedTouch& touch : plan.touches) {
+    if (touch.role == calib::TouchRole::kFit)
+      knowledge.touches.push_back({.face = touch.face, .joints = touch.joints});
+  }
+  calib::IdentificationOptions options = problem.identification;
+  options.measure_noise = false;  // exact touches have none
+  options.robust = false;
+  options.harmonics = calib::Harmonics::kLeaveOut;
+  const calib::IdentificationResult result = calib::identify(knowledge, options);
+  if (!result.uncertainty) return std::numeric_limits<double>::quiet_NaN();
+  return calib::mm_from_metres(
+      calib::region_over_box(problem.nominal, problem.joint_ranges, problem.workspace_box)
+          .rms_m(result.uncertainty->covariance())
+          .value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
+/// What the geometry pays for touches that show the compliance as well, and what is had for it.
+void price_of_compliance(const cell::Cell& cell, const std::string& recipe) {
+  const calib::PlanningProblem problem = cell::planning_problem(cell, cell.recipes.at(recipe));
+  const calib::PlanningProblem rigid = without_compliance(problem);
+  const auto with = std::get<calib::TouchPlan>(calib::plan_touches(problem));
+  const auto without = std::get<calib::TouchPlan>(calib::plan_touches(rigid));
+  const double paid_mm = box_rms_mm(rigid, with), least_mm = box_rms_mm(rigid, without);
+  std::printf(
+      "%-4s %-6s tip in the box, geometry alone: %.4f mm where planned for it, %.4f mm where planned "
+      "with compliance (%+.1f %%)\n",
+      cell.name.c_str(), recipe.c_str(), least_mm, paid_mm, 100.0 * (paid_mm / least_mm - 1.0));
+  std::printf("            with the compliance estimated: %.4f mm and %.4f mm\n",
+              box_rms_mm(problem, without), box_rms_mm(problem, with));
+}
+
 }  // namespace
 
 int main() {
@@ -105,4 +154,6 @@ int main() {
   candidate_rate(demo, "quick");
   plan_time(demo, "quick", 3.0);
   plan_time(demo, "best", 6.0);
+  price_of_compliance(demo, "quick");
+  price_of_compliance(demo, "best");
 }

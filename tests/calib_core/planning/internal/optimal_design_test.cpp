@@ -187,6 +187,32 @@ TEST(TouchChoice, IsTheBestOfAllByItsOwnCriterion) {
   }
 }
 
+/// The same cell with an arm that carries its weight on joints 2 and 3 and yields there by an unknown amount.
+PlanningProblem yielding_problem() {
+  PlanningProblem problem = problem_by(PlanCriterion::kTipInBox);
+  for (KinematicModel* model : {&problem.nominal, &problem.knowledge.nominal}) {
+    model->masses[3] = {30.0, {0.2, 0.0, 0.1}};
+    model->masses[6] = {10.0, {0.0, 0.0, 0.1}};
+  }
+  for (const int joint : {1, 2})
+    problem.knowledge.nongeometric_std[static_cast<std::size_t>(compliance_position(joint))] = 3e-6;
+  problem.identification.stiffness = true;
+  return problem;
+}
+
+TEST(TouchChoice, ShowsTheComplianceBetterWhereItIsEstimated) {
+  const PlanningProblem problem = yielding_problem();
+  const std::vector<std::size_t> with = chosen(problem).fit;
+  const std::vector<std::size_t> rigid = chosen(problem_by(PlanCriterion::kTipInBox)).fit;
+  EXPECT_NE(std::set(with.begin(), with.end()), std::set(rigid.begin(), rigid.end()));
+  const auto deviation = [&](const std::vector<std::size_t>& fit, int joint) {
+    const IdentificationResult result = identified(problem, fit);
+    EXPECT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
+    return result.uncertainty->std_error(nongeometric_index(compliance_position(joint)));
+  };
+  for (const int joint : {1, 2}) EXPECT_LT(deviation(with, joint), deviation(rigid, joint)) << joint;
+}
+
 TEST(TouchChoice, TakesTheFewestThatReachAWantedAccuracy) {
   PlanningProblem problem = problem_by(PlanCriterion::kTipInBox);
   problem.goal.fit_count = 30;
