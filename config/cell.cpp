@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "calib_core/kinematics/place_group.hpp"
 #include "config/config_error.hpp"
 
 namespace cell {
@@ -56,7 +57,9 @@ calib::ErrorTolerances prior_tolerances(const Cell& cell) {
   calib::ErrorTolerances tolerances = cell.arm.std_errors;
   const auto& parameters = calib::error_parameters();
   for (std::size_t i = 0; i < parameters.size(); ++i) {
-    if (tolerances[i] || parameters[i].group() != calib::ParameterGroup::kBlockPose) continue;
+    if (tolerances[i] ||
+        calib::group_on(cell.arm.model, static_cast<int>(i)) != calib::ParameterGroup::kBlockPose)
+      continue;
     tolerances[i] =
         parameters[i].is_length() ? cell.unknown_place_std.length_m : cell.unknown_place_std.angle_rad;
   }

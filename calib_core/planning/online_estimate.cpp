@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "calib_core/estimation/least_squares.hpp"
+#include "calib_core/kinematics/place_group.hpp"
 
 namespace calib {
 namespace {
@@ -28,8 +29,9 @@ constexpr double kAimedSphereStdMetres = kPredictedPositionErrorMinMetres / 6.0;
 constexpr int kUpdatesMax = 4;
 constexpr double kUpdateSmall = 1e-4;  // metres and radians; the remaining error is its square
 
-double prior_std(const ErrorParameter& parameter, double nominal_position_error_m) {
-  if (parameter.group() != ParameterGroup::kBlockPose) return kErrorShare * nominal_position_error_m;
+double prior_std(const KinematicModel& nominal, int index, double nominal_position_error_m) {
+  const ErrorParameter& parameter = error_parameters()[static_cast<std::size_t>(index)];
+  if (group_on(nominal, index) != ParameterGroup::kBlockPose) return kErrorShare * nominal_position_error_m;
   return kBlockPoseShare * nominal_position_error_m / (parameter.is_length() ? 1.0 : kBlockPoseLeverMetres);
 }
 
@@ -40,8 +42,9 @@ IdentificationProblem widened(const PlanningProblem& problem) {
   knowledge.touches.clear();
   knowledge.touch_noise_m = std::hypot(kTouchNoiseMetres, problem.knowledge.touch_noise_m);
   for (std::size_t i = 0; i < kErrorParameterCount; ++i) {
-    knowledge.tolerances[i] = std::max(prior_std(error_parameters()[i], problem.nominal_position_error_m),
-                                       knowledge.tolerances[i].value_or(0.0));
+    knowledge.tolerances[i] =
+        std::max(prior_std(problem.nominal, static_cast<int>(i), problem.nominal_position_error_m),
+                 knowledge.tolerances[i].value_or(0.0));
   }
   for (ArtefactParameter& parameter : knowledge.artefact.parameters) {
     if (parameter.std) continue;

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/kinematics/place_group.hpp"
 #include "calib_core/numerics/condition_number.hpp"
 #include "calib_core/numerics/decompositions.hpp"
 #include "calib_core/numerics/gram_matrix.hpp"
@@ -141,7 +142,7 @@ class ScaleTest {
         std = (is_estimated ? problem.nongeometric_std[position]
                             : std_unless_estimated(problem, column, shares))
                   .value_or(kExactStd);
-      } else if (error_parameters()[static_cast<std::size_t>(column)].group() != ParameterGroup::kBlockPose) {
+      } else if (group_on(problem.nominal, column) != ParameterGroup::kBlockPose) {
         std = problem.tolerances[static_cast<std::size_t>(column)];
       }
       precision[row++] = 1.0 / std::pow(std::max(std.value_or(kFreeStd), kExactStd), 2);

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "calib_core/geometry/units.hpp"
+#include "calib_core/kinematics/place_group.hpp"
 #include "service/documents/figures.hpp"
 #include "service/run/verdict.hpp"
 
@@ -113,7 +114,7 @@ Parameter identity_of(const calib::KinematicModel& nominal, int index) {
   identity.name = parameter.name();
   identity.frame = parameter.frame;
   identity.kind = identity.name.substr(0, identity.name.size() - 1);
-  identity.group = group_name(parameter.group());
+  identity.group = group_name(calib::group_on(nominal, index));
   identity.unit = parameter.is_length() ? "mm" : "rad";
   identity.nominal = finite(shown(index, calib::parameter_value(nominal, index)));
   return identity;

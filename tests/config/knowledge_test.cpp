@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "calib_core/geometry/units.hpp"
 #include "config/block_file.hpp"
 #include "config/cell.hpp"
 #include "config/utc_text.hpp"
@@ -118,6 +119,16 @@ TEST_F(Knowledge, ThePlaceOfTheBlockIsAsUncertainAsTheArmMayMissUnlessTheCellSay
   EXPECT_DOUBLE_EQ(tolerance(given, "r0"), 0.001);  // the file's own
   EXPECT_DOUBLE_EQ(tolerance(given, "d1"), 0.005);
   EXPECT_DOUBLE_EQ(tolerance(given, "alpha1"), 0.004);
+}
+
+TEST_F(Knowledge, WhereTheBaseStandsUprightOnTheBlockItsOtherTiltIsOfThePlaceToo) {
+  Cell upright = read();
+  upright.arm.model.links[1].alpha_rad = 0.0;
+  const auto beta1 = static_cast<std::size_t>(calib::error_parameter_index("beta1").value());
+  upright.arm.std_errors[beta1].reset();
+  EXPECT_EQ(tolerance(prior_tolerances(upright), "beta1"), upright.unknown_place_std.angle_rad);
+  upright.arm.model.links[1].alpha_rad = calib::radians_from_degrees(90.0);
+  EXPECT_FALSE(prior_tolerances(upright)[beta1]) << "an error of the arm";
 }
 
 TEST_F(Knowledge, AcceptanceNeedsNoLimitOnLackOfFitOrTheBox) {

@@ -10,6 +10,8 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/gravity.hpp"
+#include "calib_core/kinematics/place_group.hpp"
+#include "calib_core/numerics/decompositions.hpp"
 #include "tests/calib_core/paper.hpp"
 
 namespace calib {
@@ -326,6 +328,35 @@ TEST(ArmParameters, PointOnAnEarlierFrameIsNotMovedByTheFramesAfterIt) {
       if (i < kErrorParameterCount && error_parameters()[static_cast<std::size_t>(i)].frame > last_frame) {
         EXPECT_EQ(derivatives.col(i).norm(), 0.0) << arm_parameter_name(i);
       }
+    }
+  }
+}
+
+/// In how many directions the parameters of the block's pose displace and turn the whole arm.
+Eigen::Index directions_of_the_place(const KinematicModel& model) {
+  std::vector<int> place;
+  for (int i = 0; i < kErrorParameterCount; ++i)
+    if (group_on(model, i) == ParameterGroup::kBlockPose) place.push_back(i);
+  Eigen::MatrixXd of_tips(12, std::ssize(place));
+  for (int posture = 0; posture < 4; ++posture) {
+    const Chain chain = forward_chain(prepare(model), some_joints(0.4 * posture));
+    of_tips.middleRows<3>(3 * posture) = tip_derivatives(model, chain)(Eigen::all, place);
+  }
+  return rank(of_tips, 1e-6);
+}
+
+TEST(ParameterGroup, ThePlaceOfTheBlockHasAllSixDirectionsWhicheverWayJoint1Stands) {
+  const int beta1 = error_parameter_index("beta1").value();
+  for (const double alpha_rad : {0.0, 0.3, 1.5707963, 3.1415927}) {
+    KinematicModel model = paper::nominal();
+    model.links[1].alpha_rad = alpha_rad;
+    EXPECT_EQ(directions_of_the_place(model), 6) << alpha_rad;
+    const bool is_tilt = alpha_rad != 1.5707963;
+    EXPECT_EQ(group_on(model, beta1), is_tilt ? ParameterGroup::kBlockPose : ParameterGroup::kArm)
+        << alpha_rad;
+    for (int i = 0; i < kErrorParameterCount; ++i) {
+      if (i == beta1) continue;
+      EXPECT_EQ(group_on(model, i), error_parameters()[static_cast<std::size_t>(i)].group());
     }
   }
 }
