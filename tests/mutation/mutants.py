@@ -1,0 +1,64 @@
+"""The mutants of one source: small mistakes, each in one place. The format of the tree tells an operator, which has a space
+on both sides, from a bracket of a template or a reference."""
+
+import re
+from dataclasses import dataclass
+
+SWAPS = {"<": "<=", "<=": "<", ">": ">=", ">=": ">", "==": "!=", "!=": "==", "&&": "||", "||": "&&", "+": "-", "-": "+",
+         "+=": "-=", "-=": "+="}
+OPERATOR = re.compile(r"(?<= )(" + "|".join(map(re.escape, sorted(SWAPS, key=len, reverse=True))) + r")(?=[ \n])")
+NOT = re.compile(r"(?<![\w)])!(?=[\w(*:])")
+NUMBER = re.compile(r"(?<![\w.'\"])(?:\d+\.\d*(?:e-?\d+)?|\d+e-?\d+|\d+)[uUlL]*(?![\w.'])")
+TRUTH = re.compile(r"(?<=return )(true|false)(?=;)")
+STATEMENT = re.compile(r"(?:(?<=[{})])\s+|(?<=;)\s*\n\s*)((?:(?:\+\+|\()?[\w:][^;{}=\n]*\([^;{}]*\)|[\w:.>\[\]-]+ = [^;{}]+|\+\+[^;{}]+);)")
+NO_STATEMENT = re.compile(r"(return|co_return|throw|static_assert|using|case|const|constexpr|else|if|for|while|switch|template|[\w:<>]+ [\w:]+\()")
+SKIPPED_LINE = re.compile(r"\s*(#|static_assert|assert|template <|requires |using |namespace )")
+
+
+@dataclass(frozen=True)
+class Mutant:
+    line: int  # from 1
+    begin: int  # where in the text
+    end: int
+    before: str
+    after: str
+    nth: int  # of the same mutation in its line, from 1
+
+    def name(self):
+        words = f"{' '.join(self.before.split())} -> {self.after or 'nothing'}"
+        return words if self.nth == 1 else f"{words} #{self.nth}"
+
+    def of(self, text):
+        return text[: self.begin] + self.after + text[self.end:]
+
+
+def _masked(text):
+    """The same length without what is in comments, strings, characters and lines that are skipped."""
+    blank = lambda found: re.sub(r"[^\n]", "\"" if found.group()[0] in "\"'" else " ", found.group())
+    text = re.sub(r"//[^\n]*|/\*.*?\*/|\"(?:\\.|[^\"\\\n])*\"|(?<!\d)'(?:\\.|[^'\\\n])'", blank, text, flags=re.S)
+    lines = text.split("\n")
+    return "\n".join(" " * len(line) if SKIPPED_LINE.match(line) else line for line in lines)
+
+
+def _places(masked):
+    for found in OPERATOR.finditer(masked):
+        yield found.start(1), found.end(1), SWAPS[found.group(1)]
+    for found in NOT.finditer(masked):
+        yield found.start(), found.end(), ""
+    for found in NUMBER.finditer(masked):
+        yield found.start(), found.end(), f"({found.group()} + 1)"
+    for found in TRUTH.finditer(masked):
+        yield found.start(), found.end(), "false" if found.group() == "true" else "true"
+    for found in STATEMENT.finditer(masked):
+        if not NO_STATEMENT.match(found.group(1)):
+            yield found.start(1), found.end(1), ";"
+
+
+def mutants_of(text):
+    seen, mutants = {}, []
+    for begin, end, after in sorted(_places(_masked(text))):
+        line = text.count("\n", 0, begin) + 1
+        key = (line, text[begin:end], after)
+        seen[key] = seen.get(key, 0) + 1
+        mutants.append(Mutant(line, begin, end, text[begin:end], after, seen[key]))
+    return mutants
