@@ -154,6 +154,12 @@ std::vector<Unmet> CellOperation::unmet_preconditions() const {
   return unmet_by_controller(session_.connected(), session_.latest_state(), status_.fault());
 }
 
+std::vector<Unmet> CellOperation::unmet_before_start() const {
+  std::vector<Unmet> unmet = unmet_preconditions();
+  if (lost_place_ && !place()) unmet.push_back(*lost_place_);
+  return unmet;
+}
+
 std::optional<CommandRefusal> CellOperation::command(Command command, std::optional<std::int64_t> run_id) {
   if (run_id && (!run_ || run_->run.id() != *run_id)) {
     return CommandRefusal{.kind = CommandRefusal::Kind::kNotThisRun,
@@ -284,7 +290,7 @@ asio::awaitable<void> CellOperation::touch_stored() { return location_.stored();
 /// Whether a run can start that touches by itself. What its recipe asks for is told when it is refused.
 bool CellOperation::is_ready_to_start() const {
   const auto& fault = status_.fault();
-  return unmet_preconditions().empty() && (!fault || is_link_fault(fault->code));
+  return unmet_before_start().empty() && (!fault || is_link_fault(fault->code));
 }
 
 /// What State says may be older than the answer of the command that was broken off: who takes the arm back
@@ -322,6 +328,7 @@ std::vector<Command> CellOperation::exits() const {
 
 void CellOperation::keep_place_in(const std::filesystem::path& file) {
   if (location_.keep_in(file)) forget_plans();
+  lost_place_ = unmet_by_lost_place(run_page(store_.store(), 1, {}), config_digest(), place().has_value());
   location_.keep_dialogue_in(file.parent_path() / kLocatingFile, recovery_.config_digest());
 }
 

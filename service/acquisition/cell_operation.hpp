@@ -90,6 +90,9 @@ class CellOperation {
   void on_change(std::function<void(const Status&)> listener) { status_.on_change(std::move(listener)); }
   /// Every precondition of a start that is not met now.
   [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
+  /// The same with a place that the daemon before knew and that is lost: a start is refused for it, and
+  /// touchcal locate finds it.
+  [[nodiscard]] std::vector<Unmet> unmet_before_start() const;
   /// The run under way or the last one of this daemon; null before the first.
   [[nodiscard]] const Run* run() const { return run_ ? &run_->run : nullptr; }
   /// The same with what belongs to it.
@@ -226,6 +229,7 @@ class CellOperation {
   RunRecovery recovery_;
   std::optional<ActiveRun> run_;
   std::optional<UnstoredEnd> unstored_end_;
+  std::optional<Unmet> lost_place_;  // as the daemon began
   Loop loop_;
   bool is_starting_ = false;  // a start waits for the store
   bool is_settling_ = false;  // the run's last answer is asked for: it stays until that is stored

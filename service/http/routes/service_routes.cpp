@@ -37,7 +37,7 @@ std::optional<Unmet> unmet_by_disk(const RunStore& store) {
 
 /// A cell is ready if it accepts a run now, or executes one.
 Asked ask_readiness(const Call&, CellOperation& operation) {
-  return {.unmet = operation.unmet_preconditions()};
+  return {.unmet = operation.unmet_before_start()};
 }
 
 HttpResponse get_readiness(const Call& call) {

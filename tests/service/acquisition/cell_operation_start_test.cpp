@@ -35,6 +35,16 @@ TEST_F(StartBehindADamagedRun, IsRefusedWhereNobodyCanTellWhetherThatRunHadAPlac
                                                         ::testing::HasSubstr("touchcal locate")));
 }
 
+TEST_F(StartBehindADamagedRun, IsNotAnExitWhereThePlaceIsLostAndNotReady) {
+  damage(end_a_run());
+  operation_.keep_place_in(folder_.path() / "place.json");
+  launch();
+  EXPECT_EQ(operation_.status().state, State::kIdle);
+  EXPECT_THAT(operation_.exits(), ::testing::Not(::testing::Contains(Command::kStart)));
+  EXPECT_EQ(operation_.unmet_before_start().at(0).code, "place_lost");
+  EXPECT_TRUE(operation_.unmet_preconditions().empty()) << "the block can be located";
+}
+
 TEST_F(StartBehindADamagedRun, GoesOnWhereAPlaceIsLoaded) {
   damage(end_a_run());
   const std::filesystem::path place = folder_.path() / "place.json";
