@@ -276,7 +276,7 @@ TEST(Val3Application, StateHasTheFlagsOfTheProtocol) {
                                                                          {"isEmpty()", kQueueEmpty},
                                                                          {"bContactWas", kProbeTouched},
                                                                          {"bRetractDue", kRetractDue},
-                                                                         {"diLoop", kProbeLoopClosed},
+                                                                         {"diLoop==true", kProbeLoopClosed},
                                                                          {"nTest==3", kTouchTested},
                                                                          {"bClosed", kCellClosed}})
     expect_code("stateFlags", "addFlag(" + expression + "," + text(flag) + ",");

@@ -147,6 +147,7 @@ TEST(FaultOf, ARefusalHoldsWhatAPersonCanMendAndEndsTheRest) {
   };
   constexpr Refusal kMended{FaultCode::kTouchRejected, Event::kHoldFault};
   constexpr Refusal kOurs{FaultCode::kTouchRejected, Event::kAbortFault};
+  constexpr Refusal kPermission{FaultCode::kPermissionLost, Event::kHoldFault};
   constexpr Refusal kPlan{FaultCode::kPlanInvalid, Event::kAbortFault};
   const std::map<cs8::RejectReason, Refusal> refusals{
       {kProbeInputs, {FaultCode::kProbeFault, Event::kHoldFault}},
@@ -158,12 +159,12 @@ TEST(FaultOf, ARefusalHoldsWhatAPersonCanMendAndEndsTheRest) {
       {kBadField, kPlan},
       {kSearchTooLong, kPlan},
       {kSearchTooFast, kPlan},
-      {kNotRemote, kMended},
-      {kNotPowered, kMended},
-      {kHold, kMended},
-      {kEmergencyStop, kMended},
-      {kNotCalibrated, kMended},
-      {kNotPermitted, kMended},
+      {kNotRemote, kPermission},
+      {kNotPowered, kPermission},
+      {kHold, kPermission},
+      {kEmergencyStop, kPermission},
+      {kNotCalibrated, kPermission},
+      {kNotPermitted, kPermission},
       {kResultUnacknowledged, kMended},
       {kBusy, kOurs},
       {kStaleSequence, kOurs},
