@@ -36,6 +36,25 @@ TEST(ApplicationFaults, VariablesLeftFromBeforeChangeNothing) {
   EXPECT_EQ(bench.state().task_error, 0);
 }
 
+TEST(ApplicationFaults, NoTaskIsMissedWhileTheTasksAreStillBeingCreated) {
+  // What the controller says shifts the turns in which `start` creates the tasks.
+  for (const char* version : {"s7.7.2", "s7.7.2 - Mar 23 2012", "s8.1", "s8.1 - Mar 23 2012"}) {
+    for (const char* arm : {"", "tx90"}) {
+      Bench bench({.differs = [=](Cabinet& cabinet) {
+        cabinet.version = version;
+        cabinet.arm_type = arm;
+      }});
+      for (int starts = 0; starts < 2; ++starts) {
+        EXPECT_EQ(bench.variable<double>("nTaskError"), 0) << version << ", " << arm << '\n' << bench.log();
+        bench.interpreter.stop();
+        bench.seconds(0.2);
+        bench.interpreter.start();
+        bench.seconds(0.1);
+      }
+    }
+  }
+}
+
 TEST(ApplicationFaults, ALatchThatSeesNothingIsReplacedByTheCycle) {
   Bench bench;
   bench.cabinet.latch_blind = true;
