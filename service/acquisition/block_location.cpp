@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "calib_core/geometry/units.hpp"
-#include "calib_core/motion/transfer_path.hpp"
 #include "calib_core/planning/touch_feasibility.hpp"
 #include "service/acquisition/block_pass.hpp"
 #include "service/acquisition/link_fault.hpp"
 #include "service/acquisition/preconditions.hpp"
+#include "service/base/run_on.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/block_pose_file.hpp"
 #include "service/run/touch_command.hpp"
@@ -64,10 +64,11 @@ std::optional<std::string> why_too_vague(const Cell& there, std::optional<double
 
 }  // namespace
 
-BlockLocation::BlockLocation(boost::asio::any_io_executor operation, const Cell& configured,
-                             StoreQueue& store, ControllerSession& session, PublishedStatus& status,
-                             Wake& wake, Clocks clocks)
-    : configured_(configured),
+BlockLocation::BlockLocation(boost::asio::any_io_executor operation, boost::asio::any_io_executor computation,
+                             const Cell& configured, StoreQueue& store, ControllerSession& session,
+                             PublishedStatus& status, Wake& wake, Clocks clocks)
+    : computation_(std::move(computation)),
+      configured_(configured),
       store_(store),
       session_(session),
       status_(status),
@@ -267,9 +268,6 @@ std::optional<CommandRefusal> BlockLocation::prepare_pass() {
   const Cell there = cell_with_block_pose(configured_, located(place_, dialogue_->locating));
   if (auto why = why_too_vague(there, session_.search_length_max_m()))
     return CommandRefusal{.detail = *std::move(why)};
-  auto postures = pass_postures(there, dialogue_->locating.touches());
-  if (auto* why = std::get_if<std::string>(&postures)) return CommandRefusal{.detail = std::move(*why)};
-  pass_stops_ = std::get<std::vector<calib::JointVector>>(std::move(postures));
   passing_ = true;
   return std::nullopt;
 }
@@ -305,30 +303,39 @@ asio::awaitable<bool> BlockLocation::pass() {
   co_return false;
 }
 
+/// Postures and ways are computed beside the link; a stop that comes meanwhile is looked at behind each.
 asio::awaitable<bool> BlockLocation::go_around_block() {
   session_.forget_standing();
+  Cell there = cell_with_block_pose(configured_, located(place_, dialogue_->locating));
+  there.speeds.travel_m_s *= kPassSpeedShare;
+  const auto find_postures = [there, touches = dialogue_->locating.touches()] {
+    return pass_postures(there, touches);
+  };
+  const std::variant<std::vector<calib::JointVector>, std::string> postures =
+      co_await run_on(computation_, find_postures);
+  if (status_.state() != State::kStarting) co_return false;
+  if (const auto* why = std::get_if<std::string>(&postures)) {
+    status_.raise({FaultCode::kNoSafeWay, *why}, Event::kNotReadyFault);
+    co_return false;
+  }
   const bool permitted = co_await session_.obtain_permit(0);  // it is no run
   if (!permitted) co_return false;
   const auto from = co_await session_.standing_joints();
   if (!from || status_.state() != State::kStarting) co_return false;
-  Cell there = cell_with_block_pose(configured_, located(place_, dialogue_->locating));
-  there.speeds.travel_m_s *= kPassSpeedShare;
-  const calib::TransferSpace space(there.arm.model, there.collision_scene(), there.park_joints,
-                                   there.face_error_m());
-  std::vector<calib::JointVector> stops = pass_stops_;
-  stops.push_back(there.park_joints);
-  calib::JointVector at = *from;
-  for (const calib::JointVector& stop : stops) {
-    const auto via = calib::find_path(space, at, stop);
-    if (!via) {
-      status_.raise({FaultCode::kNoSafeWay, "around the block: jog the arm to its park posture first"},
-                    Event::kAbortFault);
-      co_return false;
-    }
-    const cs8::Travel command = travel_command(there, stop, *via);
+  const auto find_ways = [there, from = *from, stops = std::get<std::vector<calib::JointVector>>(postures)] {
+    return pass_ways(there, from, stops);
+  };
+  const std::optional<std::vector<PassWay>> ways = co_await run_on(computation_, find_ways);
+  if (status_.state() != State::kStarting) co_return false;
+  if (!ways) {
+    status_.raise({FaultCode::kNoSafeWay, "around the block: jog the arm to its park posture first"},
+                  Event::kAbortFault);
+    co_return false;
+  }
+  for (const PassWay& way : *ways) {
+    const cs8::Travel command = travel_command(there, way.to, way.via);
     const bool arrived = co_await session_.travel(command);
     if (!arrived || status_.state() != State::kStarting) co_return false;
-    at = stop;
   }
   co_return true;
 }

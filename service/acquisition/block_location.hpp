@@ -36,10 +36,11 @@ struct LocatedCell {
 /// place_check.hpp.
 class BlockLocation {
  public:
-  /// All must outlive it; `operation` is the executor that it is used on, `configured` the cell as its file
-  /// has it.
-  BlockLocation(boost::asio::any_io_executor operation, const Cell& configured, StoreQueue& store,
-                ControllerSession& session, PublishedStatus& status, Wake& wake, Clocks clocks);
+  /// All must outlive it; `operation` is the executor that it is used on, `computation` that of the postures
+  /// and ways of a pass, `configured` the cell as its file has it.
+  BlockLocation(boost::asio::any_io_executor operation, boost::asio::any_io_executor computation,
+                const Cell& configured, StoreQueue& store, ControllerSession& session,
+                PublishedStatus& status, Wake& wake, Clocks clocks);
 
   /// Sets the file of the block's pose; call it before the cell operates. A pose in the file is used, unless
   /// it is of another cell. Returns whether one is used. Throws when the file cannot be read.
@@ -63,7 +64,7 @@ class BlockLocation {
   /// Empty while the block is where the cell file says.
   [[nodiscard]] const std::optional<BlockPose>& place() const { return place_; }
 
-  /// Begins the dialogue; once the block is found, makes the pass ready: is_passing() is true then. The place
+  /// Begins the dialogue; once the block is found, asks for the pass: is_passing() is true then. The place
   /// counts for all runs that follow, also of later daemons.
   std::optional<CommandRefusal> locate();
   [[nodiscard]] bool is_locating() const { return dialogue_.has_value(); }
@@ -86,7 +87,7 @@ class BlockLocation {
   /// The instruction shown to the person; empty without a dialogue.
   [[nodiscard]] std::optional<HandGuide> guide() const;
 
-  /// True from the time the pass is ready until it ends.
+  /// True from the time the pass is asked for until it ends.
   [[nodiscard]] bool is_passing() const { return passing_; }
   /// Past every face at 30 mm, where any contact is a fault; then to the park posture. True when the block
   /// was found: its place is on the disk and used, and all that was planned before holds no more; a stop that
@@ -116,6 +117,7 @@ class BlockLocation {
   void use(BlockPose place);
   void publish_cell();
 
+  boost::asio::any_io_executor computation_;
   const Cell& configured_;
   StoreQueue& store_;
   ControllerSession& session_;
@@ -130,7 +132,6 @@ class BlockLocation {
   std::filesystem::path file_;  // empty: nowhere
   LocatingJournal journal_;
   std::optional<Dialogue> dialogue_;
-  std::vector<calib::JointVector> pass_stops_;  // once around the block
   bool passing_ = false;
 };
 

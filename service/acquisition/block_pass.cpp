@@ -11,6 +11,7 @@
 #include "calib_core/geometry/rotation.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "calib_core/motion/collision.hpp"
+#include "calib_core/motion/transfer_path.hpp"
 
 namespace cell {
 namespace {
@@ -100,6 +101,22 @@ std::variant<std::vector<calib::JointVector>, std::string> pass_postures(
           face + 1, kPassMetres * 1e3);
   }
   return postures;
+}
+
+std::optional<std::vector<PassWay>> pass_ways(const Cell& cell, const calib::JointVector& from,
+                                              std::vector<calib::JointVector> postures) {
+  postures.push_back(cell.park_joints);
+  const calib::TransferSpace space(cell.arm.model, cell.collision_scene(), cell.park_joints,
+                                   cell.face_error_m());
+  std::vector<PassWay> ways;
+  calib::JointVector at = from;
+  for (const calib::JointVector& to : postures) {
+    auto via = calib::find_path(space, at, to);
+    if (!via) return std::nullopt;
+    ways.push_back({*std::move(via), to});
+    at = to;
+  }
+  return ways;
 }
 
 }  // namespace cell

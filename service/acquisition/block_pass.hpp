@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -19,5 +20,16 @@ inline constexpr double kPassSpeedShare = 0.1;
 /// it is said which face has none.
 std::variant<std::vector<calib::JointVector>, std::string> pass_postures(
     const Cell& cell, const std::vector<calib::RegistrationTouch>& touches);
+
+/// A joint move and the postures on it.
+struct PassWay {
+  std::vector<calib::JointVector> via;
+  calib::JointVector to;
+};
+
+/// Clear ways from where the arm stands by all of the postures to the park posture; nothing where one has no
+/// clear way.
+std::optional<std::vector<PassWay>> pass_ways(const Cell& cell, const calib::JointVector& from,
+                                              std::vector<calib::JointVector> postures);
 
 }  // namespace cell

@@ -171,8 +171,7 @@ std::optional<std::string> implausibility_reason(const Cell& cell, const calib::
   if (result.phase != cs8::Phase::kIdle)
     return fmt::format("it was broken off in the phase '{}'", cs8::name(result.phase));
   if (result.overtravel_dmm < 0) return "its overtravel is negative";
-  if (result.source == cs8::CaptureSource::kLatched && result.edges == 0)
-    return "it was latched and no edge of the probe was counted";
+  if (result.edges == 0) return "no edge of the probe was counted";
   const std::int32_t speed_um_s = cs8::um_s_from_metres_per_second(cell.speeds.contact_m_s());
   if (result.search_speed_um_s != speed_um_s)
     return fmt::format("it was made at {} um/s and commanded at {}: the pre-travel holds at one speed only",

@@ -72,7 +72,8 @@ class BlockLocationTest : public ::testing::Test, public OwnersBench {
     for (const PlaceSpot& spot : place_spots(cell_of_owners())) touch(location, at(spot));
   }
 
-  BlockLocation location_{io.get_executor(), cell_of_owners(), queue, session, status, wake, time.clocks()};
+  BlockLocation location_{
+      io.get_executor(), io.get_executor(), cell_of_owners(), queue, session, status, wake, time.clocks()};
 };
 
 TEST_F(BlockLocationTest, WithoutALinkThereIsNoDialogue) {
@@ -123,7 +124,8 @@ TEST_F(BlockLocationTest, APlaceCountsOnceTheArmWentAroundTheBlockAndItIsStored)
   EXPECT_TRUE(location_.located_cell()->place) << "so do other threads see it";
   EXPECT_FALSE(before->place) << "what one of them has already stays as it was";
   EXPECT_FALSE(location_.is_locating());
-  BlockLocation next_daemon(io.get_executor(), cell_of_owners(), queue, session, status, wake, time.clocks());
+  BlockLocation next_daemon(io.get_executor(), io.get_executor(), cell_of_owners(), queue, session, status,
+                            wake, time.clocks());
   EXPECT_TRUE(next_daemon.keep_in(file));
   EXPECT_TRUE(next_daemon.place());
 }
@@ -165,7 +167,8 @@ TEST_F(BlockLocationTest, AnArmThatMeetsSomethingOnItsWayForgetsThePlace) {
 TEST_F(BlockLocationTest, APassEndsOnceThePlaceIsOnTheDiskAndHoldsUpNothingUntilThen) {
   boost::asio::io_context disk{1};
   StoreQueue slow{store, disk.get_executor()};
-  BlockLocation location(io.get_executor(), cell_of_owners(), slow, session, status, wake, time.clocks());
+  BlockLocation location(io.get_executor(), io.get_executor(), cell_of_owners(), slow, session, status, wake,
+                         time.clocks());
   const auto file = folder.path() / "place.json";
   location.keep_in(file);
   touch_all_spots(location);
@@ -186,6 +189,37 @@ TEST_F(BlockLocationTest, APassEndsOnceThePlaceIsOnTheDiskAndHoldsUpNothingUntil
   EXPECT_EQ(found, true);
   EXPECT_TRUE(location.place());
   EXPECT_FALSE(location.is_passing() || location.is_locating());
+}
+
+TEST_F(BlockLocationTest, AStopDoesNotWaitForTheComputationOfAPassAndNothingMovesBehindIt) {
+  boost::asio::io_context arithmetic{1};
+  BlockLocation location(io.get_executor(), arithmetic.get_executor(), cell_of_owners(), queue, session,
+                         status, wake, time.clocks());
+  const auto compute = [&] {
+    arithmetic.restart();
+    EXPECT_EQ(arithmetic.run(), 1u);
+    io.restart();
+    io.poll();
+  };
+  touch_all_spots(location);
+  for (int computed = 0; computed < 2; ++computed) {  // the postures, then the ways
+    ASSERT_FALSE(location.locate());
+    status.enter(State::kStarting);
+    controller.asked.clear();
+    std::optional<bool> found;
+    boost::asio::co_spawn(io, location.pass(),
+                          [&found](const std::exception_ptr&, bool was_found) { found = was_found; });
+    io.restart();
+    io.poll();
+    for (int i = 0; i < computed; ++i) compute();
+    EXPECT_EQ(found, std::nullopt);
+    status.enter(State::kStopping);
+    compute();
+    EXPECT_EQ(found, false);
+    EXPECT_THAT(controller.asked, Not(Contains(StartsWith("travel"))));
+    EXPECT_FALSE(location.is_passing());
+    EXPECT_TRUE(location.is_locating()) << "it can be tried again";
+  }
 }
 
 TEST_F(BlockLocationTest, APlaceThatCannotBeStoredIsNotUsed) {
@@ -214,7 +248,8 @@ TEST_F(BlockLocationTest, APassWaitsUntilWhatIsOpenAtTheControllerIsSettled) {
 class KeptDialogueTest : public BlockLocationTest {
  protected:
   void launch_daemon(const std::string& config_digest = "digest") {
-    daemon_.emplace(io.get_executor(), cell_of_owners(), queue, session, status, wake, time.clocks());
+    daemon_.emplace(io.get_executor(), io.get_executor(), cell_of_owners(), queue, session, status, wake,
+                    time.clocks());
     daemon_->keep_in(place_file());
     daemon_->keep_dialogue_in(dialogue_file(), config_digest);
   }
@@ -274,7 +309,8 @@ TEST_F(KeptDialogueTest, ATouchCountsOnceItIsOnTheDiskAndOneAtATimeIsWritten) {
   boost::asio::io_context disk{1};
   StoreQueue slow{store, disk.get_executor()};
   const auto launch_slow = [&] {
-    daemon_.emplace(io.get_executor(), cell_of_owners(), slow, session, status, wake, time.clocks());
+    daemon_.emplace(io.get_executor(), io.get_executor(), cell_of_owners(), slow, session, status, wake,
+                    time.clocks());
     daemon_->keep_dialogue_in(dialogue_file(), "digest");
   };
   launch_slow();
@@ -381,7 +417,8 @@ TEST_F(KeptDialogueTest, ADialogueWhosePlaceIsOnTheDiskAlreadyIsOver) {
 }
 
 TEST_F(KeptDialogueTest, ATouchThatCannotBeWrittenDoesNotCountWhichIsSaid) {
-  daemon_.emplace(io.get_executor(), cell_of_owners(), queue, session, status, wake, time.clocks());
+  daemon_.emplace(io.get_executor(), io.get_executor(), cell_of_owners(), queue, session, status, wake,
+                  time.clocks());
   daemon_->keep_dialogue_in(folder.path() / "no such folder" / "locating.json", "digest");
   touch_spots(1);
   EXPECT_EQ(guide().index, 1);

@@ -184,11 +184,13 @@ TEST(FaultOf, ARefusalHoldsWhatAPersonCanMendAndEndsTheRest) {
   EXPECT_EQ(fault_of(cs8::Rejected{static_cast<cs8::RejectReason>(99), 0}).event(), Event::kAbortFault);
 }
 
-TEST(Implausible, AContactThatWasPolledNeedsNoEdge) {
+TEST(Implausible, AContactHasAnEdgeHoweverItWasSeen) {
   cs8::TouchResult result = contact({0, 0, 0});
   result.edges = 0;
   EXPECT_THAT(implausibility_reason(edf(), planned_touch(), result).value_or(""), HasSubstr("no edge"));
   result.source = cs8::CaptureSource::kPolled;
+  EXPECT_THAT(implausibility_reason(edf(), planned_touch(), result).value_or(""), HasSubstr("no edge"));
+  result.edges = 1;
   EXPECT_EQ(implausibility_reason(edf(), planned_touch(), result), std::nullopt);
 }
 
