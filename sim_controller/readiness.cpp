@@ -4,6 +4,7 @@
 
 namespace sim {
 
+using cs8::PermitState;
 using cs8::RejectReason;
 
 std::optional<cs8::Rejected> cabinet_refusal(const Cabinet& cabinet) {

@@ -55,6 +55,18 @@ TEST(ApplicationFaults, NoTaskIsMissedWhileTheTasksAreStillBeingCreated) {
   }
 }
 
+TEST(ApplicationFaults, BehindAStartThatBrokeOffNothingIsPermitted) {
+  Bench bench;
+  bench.make_ready();
+  bench.loaded_.application.globals.at("bStarted").place.write(false);
+  bench.seconds(0.1);
+  EXPECT_EQ(bench.expect<Permit>(0).state, PermitState::kNone);
+  bench.send(0, Begin{1, 30000});
+  const Permit refused = bench.expect<Permit>(0);
+  EXPECT_EQ(refused.reason, PermitReason::kRefused);
+  EXPECT_EQ(refused.detail, static_cast<std::int32_t>(RejectReason::kTaskFailed));
+}
+
 TEST(ApplicationFaults, ALatchThatSeesNothingIsReplacedByTheCycle) {
   Bench bench;
   bench.cabinet.latch_blind = true;

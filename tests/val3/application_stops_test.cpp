@@ -110,6 +110,21 @@ TEST(ApplicationStops, ASecondHelloEndsWhatALostHostEnds) {
   }
 }
 
+TEST(ApplicationStops, ASecondHelloEndsAPermitAndWhatIsOnItsWay) {
+  Bench bench;
+  bench.make_ready();
+  EXPECT_EQ(bench.permit(), PermitState::kGranted);
+  bench.greet_again();
+  EXPECT_EQ(bench.state().permit, PermitState::kNone);
+  bench.send(0, Begin{1, 30000});
+  EXPECT_EQ(bench.expect<Permit>(0).state, PermitState::kAwaited);
+  bench.send(0, Begin{2, 30000});
+  bench.send(0, Hello{500});
+  bench.expect<Welcome>(0);  // and not the answer to Begin before it
+  bench.expect_silence(0.5);
+  EXPECT_EQ(bench.state().permit, PermitState::kNone);
+}
+
 TEST(ApplicationStops, AReceiveTaskThatStandsStillStopsTheArm) {
   Bench bench;
   into_phase(bench, phases().front());
@@ -135,6 +150,20 @@ TEST(ApplicationStops, AMoveThatTheArmDoesNotBeginIsAMotionErrorAtOnce) {
   EXPECT_EQ(result.outcome, Outcome::kMotionError) << name(result.outcome);
   EXPECT_EQ(result.error_number, 150);
   EXPECT_EQ(bench.state().permit, PermitState::kNone);
+}
+
+TEST(ApplicationStops, AMoveThatStandsStillOnItsWayIsAMotionErrorUnlessTheOperatorHoldsItsSpeedAtZero) {
+  Bench bench;
+  into_phase(bench, phases().front());
+  bench.cabinet.monitor_speed = 0;
+  bench.seconds(5);
+  EXPECT_EQ(bench.state().active_sequence, 2u) << "the deadline decides";
+  bench.cabinet.monitor_speed = 100;
+  bench.seconds(0.1);
+  bench.cabinet.stopped = true;
+  const TouchResult result = bench.expect<TouchResult>(2, 5);
+  EXPECT_EQ(result.outcome, Outcome::kMotionError) << name(result.outcome);
+  EXPECT_EQ(result.error_number, 60) << "it had begun";
 }
 
 TEST(ApplicationStops, LostPermissionEndsATouchForGood) {
