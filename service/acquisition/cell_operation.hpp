@@ -189,13 +189,16 @@ class CellOperation {
   struct UnstoredEnd {
     std::int64_t run_id = 0;
     RunEnd end;
-    bool finished = false;  // as ActiveRun::finished
+    bool finished = false;          // as ActiveRun::finished
+    std::optional<Fault> ended_by;  // what was shown before it could not be stored
+    std::string told;               // that it could not be, as it is shown since
     std::chrono::steady_clock::time_point try_at;
   };
   boost::asio::awaitable<void> close_run(RunOutcome outcome);
   boost::asio::awaitable<std::optional<std::string>> store_end(UnstoredEnd closed);
   boost::asio::awaitable<void> store_end_again();
   [[nodiscard]] bool is_end_due() const;
+  [[nodiscard]] std::optional<Unmet> unmet_by_unstored_end() const;
   [[nodiscard]] std::chrono::milliseconds quiet_wait() const;
   void break_off_for_end();
   boost::asio::awaitable<void> leave_for_next_daemon();

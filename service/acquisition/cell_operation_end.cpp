@@ -1,5 +1,6 @@
 // The end of a run, and that of a CellOperation with its daemon. Each co_await stands alone in its statement,
 // see cs8_controller.cpp.
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 
 #include <utility>
@@ -99,14 +100,20 @@ asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
   run_->interruption.reset();
   spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome),
                verdict_name(end.verdict), run.touches_done(), run.touches_total());
-  const UnstoredEnd closed{.run_id = run.id(), .end = end, .finished = concluded.finished, .try_at = {}};
+  const UnstoredEnd closed{.run_id = run.id(),
+                           .end = end,
+                           .finished = concluded.finished,
+                           .ended_by = status_.fault(),
+                           .told = {},
+                           .try_at = {}};
   const auto failure = co_await store_end(closed);
   if (!failure) co_return;
   unstored_end_ = closed;
   unstored_end_->try_at = clocks_.steady() + kEndAgain;
   status_.set_verdict(Verdict::kIncomplete);
   status_.set_fault({FaultCode::kStoreFailed, *failure});
-  spdlog::error("run {}: its end could not be stored: {}", run.id(), *failure);
+  unstored_end_->told = status_.fault()->message();
+  spdlog::error("run {}: its end could not be stored: {}", closed.run_id, *failure);
 }
 
 /// Returns why it failed. What is not on the disk is not accepted.
@@ -123,8 +130,8 @@ asio::awaitable<std::optional<std::string>> CellOperation::store_end(UnstoredEnd
   co_return std::nullopt;
 }
 
-/// The end of a run that the disk did not take. Nothing moves, and no other run begins in between: it needs
-/// the same disk.
+/// The end of a run that the disk did not take. No run begins before: see unmet_by_unstored_end(). What ended
+/// the run is shown again then, where nobody has read that it could not be stored.
 asio::awaitable<void> CellOperation::store_end_again() {
   const UnstoredEnd closed = *unstored_end_;
   const auto failure = co_await store_end(closed);
@@ -135,11 +142,22 @@ asio::awaitable<void> CellOperation::store_end_again() {
   unstored_end_.reset();
   spdlog::info("run {}: its end is stored now: {}", closed.run_id, verdict_name(closed.end.verdict));
   const auto& fault = status_.fault();
-  if (fault && fault->code == FaultCode::kStoreFailed && !is_active(status_.state())) status_.clear_fault();
+  if (fault && fault->code == FaultCode::kStoreFailed && fault->message() == closed.told) {
+    status_.clear_fault();
+    if (closed.ended_by) status_.set_fault(*closed.ended_by);
+  }
   status_.publish();
 }
 
 bool CellOperation::is_end_due() const { return unstored_end_ && clocks_.steady() >= unstored_end_->try_at; }
+
+std::optional<Unmet> CellOperation::unmet_by_unstored_end() const {
+  if (!unstored_end_) return std::nullopt;
+  return Unmet{
+      "store_not_writable",
+      fmt::format("the end of run {} is not stored yet: free disk space or repair the state directory",
+                  unstored_end_->run_id)};
+}
 
 /// How long there is nothing to do, unless something wakes.
 std::chrono::milliseconds CellOperation::quiet_wait() const {

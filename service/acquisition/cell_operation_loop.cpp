@@ -177,7 +177,7 @@ asio::awaitable<void> CellOperation::await_readiness() {
 }
 
 asio::awaitable<void> CellOperation::connect() {
-  const std::uint32_t sequence = co_await session_.connect(is_interrupted());
+  const std::uint32_t sequence = co_await session_.connect(is_interrupted(), [this] { return is_end_due(); });
   // An answer to a run of other files stays with the controller: these say nothing of it.
   if (sequence != 0 && !waits_for_its_files()) co_await settle(sequence);
 }

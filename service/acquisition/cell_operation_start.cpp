@@ -23,6 +23,7 @@ std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request, const E
                              status_.fault(), no_plan);
   if (auto lost = unmet_by_lost_place(earlier.last, recovery_.config_digest(), place().has_value()))
     unmet.push_back(*std::move(lost));
+  if (auto unstored = unmet_by_unstored_end()) unmet.push_back(*std::move(unstored));
   return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
 }
 

@@ -166,12 +166,13 @@ std::optional<std::int64_t> ControllerSession::data_age_ms() const {
   return std::chrono::duration_cast<std::chrono::milliseconds>(clocks_.steady() - told_at).count();
 }
 
-asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted) {
+asio::awaitable<std::uint32_t> ControllerSession::connect(bool run_interrupted,
+                                                          std::function<bool()> gives_up) {
   const State state = status_.state();
   const cs8::ExpectedController expected{.arm = cell_.arm.name,
                                          .lower_limits = to_wire(cell_.arm.joint_ranges.lower),
                                          .upper_limits = to_wire(cell_.arm.joint_ranges.upper)};
-  while (status_.state() == state && !status_.is_ending()) {
+  while (status_.state() == state && !status_.is_ending() && !(gives_up && gives_up())) {
     const auto pause = std::chrono::ceil<std::chrono::milliseconds>(pause_.earliest() - clocks_.steady());
     if (pause > 0ms) {
       co_await wake_.wait(pause);

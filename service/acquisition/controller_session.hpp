@@ -4,6 +4,7 @@
 #include <boost/asio/awaitable.hpp>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <set>
 #include <span>
@@ -70,7 +71,8 @@ class ControllerSession {
   /// Tries until there is a link, the state changes or the daemon ends. Moves nothing. Returns the sequence
   /// of a command that the controller still has and that must be settled now; 0 without one. The fault that
   /// holds a run stays. `run_interrupted`: by the end of the daemon before.
-  boost::asio::awaitable<std::uint32_t> connect(bool run_interrupted);
+  /// `gives_up`: asked between two tries, for what else is to be done; 0 then too.
+  boost::asio::awaitable<std::uint32_t> connect(bool run_interrupted, std::function<bool()> gives_up = {});
   void close();
   /// The link was lost. Why a run ended or is on hold stays to be read.
   void on_link_lost(const cs8::LinkError& error, Event event);

@@ -53,6 +53,7 @@ void PublishedStatus::warn(Fault fault) {
 }
 
 void PublishedStatus::end_warning(FaultCode code) {
+  if (warning_before_ && warning_before_->code == code) warning_before_.reset();
   if (!status_.warning || status_.warning->code != code) return;
   spdlog::info("the warning {} is over", describe(code).name);
   status_.warning = std::exchange(warning_before_, std::nullopt);

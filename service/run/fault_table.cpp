@@ -62,7 +62,7 @@ constexpr std::array kTable{
                "the probe reads touched before the touch began",
                "the arm did not start and stands clear of the face",
                "free the stylus and check its cable, then touchcal retry to make this touch again, touchcal "
-               "skip to leave it out, or touchcal stop; behind a stop touchcal reset, in ABORTED touchcal "
+               "skip to leave it out, or touchcal stop; after a stop touchcal reset, in ABORTED touchcal "
                "clear first",
                FaultKind::kHeld, "P12"},
     FaultEntry{FaultCode::kEarlyContact, "early_contact",
@@ -81,7 +81,7 @@ constexpr std::array kTable{
                "the monitor speed was changed during the run",
                "the arm stands still; where it goes on it makes the touch again",
                "set the monitor speed to 100 %: the run goes on by itself, one on hold by touchcal resume; "
-               "touchcal pause keeps it, touchcal stop ends it; behind a stop touchcal reset, in ABORTED "
+               "touchcal pause keeps it, touchcal stop ends it; after a stop touchcal reset, in ABORTED "
                "touchcal clear first",
                FaultKind::kSuspended, "P19"},
     FaultEntry{FaultCode::kTouchSpread, "touch_spread",

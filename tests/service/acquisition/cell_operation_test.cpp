@@ -21,6 +21,14 @@ class CellOperationTest : public ::testing::Test, protected OperationBench {
  protected:
   using OperationBench::OperationBench;
 
+  /// What waits looks at what has become due meanwhile.
+  void look_again_in(std::chrono::seconds later) {
+    time_.pass(later);
+    for (const int percent : {50, 100}) {  // each change of the readiness wakes
+      controller_->state->monitor_speed_percent = percent;
+      tell_state();
+    }
+  }
   std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run_id; }
   /// The contact of an arm without errors at a touch of the plan.
   static cs8::TouchResult contact_of(std::size_t touch) {
@@ -384,13 +392,38 @@ TEST_F(CellOperationTest, TheEndOfARunThatTheDiskDidNotTakeIsStoredWhenItDoes) {
       handle, [](void*) { return 1; }, nullptr);
   EXPECT_FALSE(operation_.command(Command::kStop));
   run_until([this] { return operation_.status().state == State::kStopped; });
-  sqlite3_commit_hook(handle, nullptr, nullptr);
   EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kStoreFailed);
   EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kRunning);
-  EXPECT_FALSE(operation_.command(Command::kReset));  // each change of the state tries it again
+  EXPECT_FALSE(operation_.command(Command::kReset));
   run_until([this] { return operation_.status().state == State::kIdle; });
+  EXPECT_EQ(operation_.unmet_before_start().at(0).code, "store_not_writable");
+  const auto exits = operation_.exits();
+  EXPECT_EQ(std::ranges::count(exits, Command::kStart), 0);
+  sqlite3_commit_hook(handle, nullptr, nullptr);
+  EXPECT_EQ(std::get<CommandRefusal>(start({.recipe = "few"})).unmet.at(0).code, "store_not_writable");
+  look_again_in(std::chrono::seconds(5));
   EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kStopped);
-  EXPECT_FALSE(operation_.status().fault);
+  EXPECT_THAT(operation_.unmet_before_start(), IsEmpty());
+}
+
+TEST_F(CellOperationTest, WhatEndedARunIsShownAgainOnceItsEndIsStored) {
+  controller_->state->permit = cs8::PermitState::kGranted;
+  sqlite3* const handle = store_.database()->getHandle();
+  controller_->on_touch = [handle](const cs8::Touch&) {
+    sqlite3_commit_hook(
+        handle, [](void*) { return 1; }, nullptr);
+    cs8::TouchResult collided;
+    collided.outcome = cs8::Outcome::kCollision;
+    return collided;
+  };
+  launch();
+  const std::int64_t id = start_few();
+  run_until([this] { return operation_.status().state == State::kAborted; });
+  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kStoreFailed);
+  sqlite3_commit_hook(handle, nullptr, nullptr);
+  look_again_in(std::chrono::seconds(5));
+  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kAborted);
+  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kCollision);
 }
 
 TEST_F(CellOperationTest, ChangesAreToldAtOnceAndNumbered) {

@@ -330,6 +330,15 @@ TEST_F(ControllerSessionTest, AResumeWithoutALinkHidesOnlyUntilItIsBackThatTheLi
   EXPECT_EQ(status.fault().value().message(), lost.message()) << "why it is on hold";
 }
 
+TEST_F(ControllerSessionTest, GivesUpToConnectForWhatElseIsToBeDone) {
+  status.enter(State::kComplete);
+  controller.is_connected = false;
+  controller.on_connect = [] { return cs8::LinkError{cs8::LinkErrorKind::kUnreachable, "refused"}; };
+  const auto is_due = [this] { return controller.asked.size() == 3; };
+  EXPECT_EQ(run(session.connect(false, is_due)), 0u);
+  EXPECT_THAT(controller.asked, ElementsAre("connect", "connect", "connect"));
+}
+
 TEST_F(ControllerSessionTest, AMoveThatDoesNotArriveIsAFaultUnlessSomebodyAskedForAStop) {
   cs8::MoveResult stopped;
   stopped.outcome = cs8::Outcome::kStopped;

@@ -82,6 +82,11 @@ TEST_F(PublishedStatusTest, AWarningThatIsOverUncoversTheOneBefore) {
   status_.warn({FaultCode::kLatchMissing, {}});
   status_.end_warning(FaultCode::kComputationSlow);
   EXPECT_EQ(status_.latest().warning.value().code, FaultCode::kLatchMissing) << "newer";
+  status_.warn({FaultCode::kComputationSlow, {}});
+  status_.warn({FaultCode::kStoreSlow, {}});
+  status_.end_warning(FaultCode::kComputationSlow);
+  status_.end_warning(FaultCode::kStoreSlow);
+  EXPECT_FALSE(status_.latest().warning) << "one that is over does not come back";
 }
 
 TEST_F(PublishedStatusTest, WhatIsAwaitedIsPublishedWhenItIsAnother) {
