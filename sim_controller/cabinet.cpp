@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "sim_controller/jog.hpp"
-
 namespace sim {
 namespace {
 
@@ -39,6 +37,21 @@ void watch_touch_test(Cabinet& cabinet) {
       break;
   }
   if (cabinet.probe_disagrees()) cabinet.touch_test = TouchTest::kNone;
+}
+
+/// Whether the pendant lets the arm move on.
+bool jog_permitted(const Cabinet& cabinet) {
+  const Panel& panel = cabinet.panel;
+  return cabinet.jog && panel.mode == cs8::WorkingMode::kManual && panel.powered && !panel.held &&
+         panel.emergency_stop == 0;
+}
+
+/// After each tick: a trip stops the jog, and one that has come to rest is over.
+void watch_jog(Cabinet& cabinet, const Sensed& sensed) {
+  if (!cabinet.jog) return;
+  if (cabinet.jog->until_touch && sensed.edges > 0) reset_motion(cabinet.drives);
+  if (!jog_permitted(cabinet) && !cabinet.drives.braking) reset_motion(cabinet.drives);
+  if (is_empty(cabinet.drives) && is_settled(cabinet.drives)) cabinet.jog.reset();
 }
 
 }  // namespace

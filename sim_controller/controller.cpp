@@ -8,6 +8,7 @@
 #include "sim_controller/admission.hpp"
 #include "sim_controller/readiness.hpp"
 #include "sim_controller/reports.hpp"
+#include "sim_controller/trouble_effects.hpp"
 
 namespace sim {
 namespace {
@@ -350,18 +351,6 @@ Replies step(const Plant& plant, ControllerState& state, const Event& event, Tim
   Step step(plant, state, now);
   std::visit(step, event);
   return std::move(step.replies);
-}
-
-void restart_application(ControllerState& state) {
-  ++state.session;
-  state.motion = {};
-  reset_motion(state.cabinet.drives);
-  state.permit = {};
-  state.last_sequence = 0;
-  state.stored_result.reset();
-  state.cabinet.touch_test = TouchTest::kNone;
-  state.cabinet.task_error = 0;
-  state.cabinet.overruns = 0;
 }
 
 }  // namespace sim

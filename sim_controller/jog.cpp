@@ -24,12 +24,6 @@ std::optional<calib::JointVector> target_of(const Plant& plant, const calib::Joi
 
 }  // namespace
 
-bool jog_permitted(const Cabinet& cabinet) {
-  const Panel& panel = cabinet.panel;
-  return cabinet.jog && panel.mode == cs8::WorkingMode::kManual && panel.powered && !panel.held &&
-         panel.emergency_stop == 0;
-}
-
 std::optional<std::string> begin_jog(const Plant& plant, Cabinet& cabinet, const cell::JogOrder& order) {
   const Panel& panel = cabinet.panel;
   if (panel.mode != cs8::WorkingMode::kManual) return "the controller is not in manual mode";
@@ -48,13 +42,6 @@ std::optional<std::string> begin_jog(const Plant& plant, Cabinet& cabinet, const
   cabinet.jog = Jog{.until_touch = order.until_touch};
   cabinet.jogged = true;
   return std::nullopt;
-}
-
-void watch_jog(Cabinet& cabinet, const Sensed& sensed) {
-  if (!cabinet.jog) return;
-  if (cabinet.jog->until_touch && sensed.edges > 0) reset_motion(cabinet.drives);
-  if (!jog_permitted(cabinet) && !cabinet.drives.braking) reset_motion(cabinet.drives);
-  if (is_empty(cabinet.drives) && is_settled(cabinet.drives)) cabinet.jog.reset();
 }
 
 }  // namespace sim

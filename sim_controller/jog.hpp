@@ -17,10 +17,4 @@ inline constexpr double kJogSpeedMaxMetresPerSecond = 0.25;
 /// stop, the arm moves, a target that cannot be reached.
 std::optional<std::string> begin_jog(const Plant& plant, Cabinet& cabinet, const cell::JogOrder& order);
 
-/// Whether the pendant lets the arm move on.
-bool jog_permitted(const Cabinet& cabinet);
-
-/// After each tick: a trip stops the jog, and one that has come to rest is over.
-void watch_jog(Cabinet& cabinet, const Sensed& sensed);
-
 }  // namespace sim

@@ -1,6 +1,6 @@
 #include "sim_controller/readiness.hpp"
 
-#include "sim_controller/controller.hpp"
+#include "sim_controller/controller_state.hpp"
 
 namespace sim {
 

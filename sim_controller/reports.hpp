@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cs8_protocol/messages.hpp"
-#include "sim_controller/controller.hpp"
+#include "sim_controller/controller_state.hpp"
 
 namespace sim {
 

@@ -2,8 +2,6 @@
 
 namespace sim {
 
-struct ControllerState;
-
 /// What can be wrong with the probe, the controller or the confirmation at the cell.
 enum class TroubleKind {
   // The probe.
@@ -39,8 +37,5 @@ struct Trouble {
   int number = 0;
   double seconds = 0.0;  // simulated
 };
-
-/// Between two ticks. Of a restart only what the application forgets: its connection is the caller's.
-void apply(const Trouble& trouble, ControllerState& state);
 
 }  // namespace sim

@@ -7,12 +7,9 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 
-#include "config/fault_file.hpp"
-#include "sim_controller/fault_names.hpp"
 #include "tests/simulation/invariants.hpp"
-#include "tests/simulation/rest.hpp"
+#include "tests/simulation/running_world.hpp"
 #include "tests/simulation/store_reading.hpp"
-#include "tests/simulation/watcher.hpp"
 
 namespace simulation {
 namespace {
@@ -21,9 +18,6 @@ using namespace std::chrono_literals;
 
 /// Who does what the cell asks for is at the end of the last run long before.
 constexpr Time kPatience = 3h;
-/// A daemon that ends has so much time; then systemd kills it.
-constexpr Time kEndPatience = 20s;
-
 /// The daemon's log, as lines of the journal.
 class LogSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  public:
@@ -39,73 +33,7 @@ class LogSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
   Watcher& watcher_;
 };
 
-/// The process of the daemon, as the machine sees it.
-struct Process {
-  std::unique_ptr<SimulatedDaemon> daemon;
-  Time starts_at{0};
-  Time due{0};                    // it has nothing to do before
-  std::optional<Time> killed_by;  // it was told to end
-  std::optional<int> writes_left;
-  bool dies_now = false;
-  bool power_fails = false;
-  Time store_answers_at{0};
-};
-
-std::string refusal_text(const cell::CommandRefusal& refusal) {
-  if (refusal.code) return fmt::format("refused {}", cell::describe(*refusal.code).name);
-  return refusal.unmet.empty() ? "refused" : fmt::format("refused {}", refusal.unmet.front().code);
-}
-
-class World {
- public:
-  explicit World(const Scenario& scenario);
-  ~World();
-  World(const World&) = delete;
-  World& operator=(const World&) = delete;
-
-  Outcome run();
-
- private:
-  void go_on_to_end();
-  void begin_daemon();
-  void end_daemon(const std::string& how);
-  [[nodiscard]] std::string death_text() const;
-  void kill_if_due();
-  void let_happen();
-  void begin(const DrawnFault& fault);
-  void begin_for_a_time(const DrawnFault& fault, const std::function<void()>& end);
-  void disk_trouble(const DrawnFault& fault, DiskTrouble trouble);
-  void poke() { process_.due = cell_due_ = clock_.now(); }
-  void strike_due();
-  void look_for_rest();
-  void mend();
-  void take_turn_of_daemon();
-  void take_turns();
-  [[nodiscard]] Time next_event() const;
-  void start_run();
-  void note_store(const std::string& occasion, bool with_results);
-
-  const Scenario& scenario_;
-  VirtualClock clock_;
-  Journal journal_{clock_};
-  Record record_;
-  Watcher watcher_{clock_, journal_, record_};
-  Network network_{clock_, scenario_.seed + 1};
-  Disk disk_{clock_, scenario_.seed + 2};
-  Context cell_context_;
-  sim::Server controller_;
-  Person person_;
-  Clients clients_{clock_, network_, journal_, record_, scenario_.seed + 4};
-  Process process_;
-  std::shared_ptr<const cell::Plan> plan_;
-  std::multimap<Time, std::function<void()>> events_;
-  Script script_{scenario_.script};
-  RestWatch rest_{record_.rest};
-  Time next_look_for_rest_{0};
-  std::vector<std::function<void()>> mended_;  // ends of what lasts until then
-  std::ptrdiff_t given_before_rest_ = 0;       // commands, by the script's start
-  Time cell_due_{0};
-};
+}  // namespace
 
 World::World(const Scenario& scenario)
     : scenario_(scenario),
@@ -229,138 +157,6 @@ void World::start_run() {
                         });
 }
 
-// ---- what goes wrong ----
-
-void World::begin_for_a_time(const DrawnFault& fault, const std::function<void()>& end) {
-  const auto is_over = [this, &fault, end] {
-    journal_.note("fault", fmt::format("is over: {}", fault_kind_name(fault.kind)));
-    end();
-  };
-  if (fault.lasts == kUntilMended) {
-    mended_.push_back(is_over);
-  } else {
-    events_.emplace(clock_.now() + fault.lasts, is_over);
-  }
-}
-
-void World::disk_trouble(const DrawnFault& fault, DiskTrouble trouble) {
-  disk_.trouble = trouble;
-  begin_for_a_time(fault, [this] { disk_.trouble = DiskTrouble::kNone; });
-}
-
-void World::begin(const DrawnFault& fault) {
-  journal_.note("fault", fault_text(fault));
-  switch (fault.kind) {
-    case FaultKind::kController:
-      controller_.inject(sim::planned(std::get<cell::DeclaredFault>(cell::parse_control_line(fault.line))));
-      break;
-    case FaultKind::kLinkCut:
-      network_.cut();
-      break;
-    case FaultKind::kLinkHalfOpen:
-      network_.half_open();
-      break;
-    case FaultKind::kLinkHeldUp:
-      network_.hold_up(fault.lasts);
-      break;
-    case FaultKind::kLinkInPieces:
-      network_.conditions.piece_max = static_cast<std::size_t>(fault.number);
-      begin_for_a_time(fault, [this] { network_.conditions.piece_max = 0; });
-      break;
-    case FaultKind::kLinkRefuses:
-      network_.conditions.refuses = true;
-      begin_for_a_time(fault, [this] { network_.conditions.refuses = false; });
-      break;
-    case FaultKind::kLinkSwallows:
-      network_.conditions.swallows = true;
-      begin_for_a_time(fault, [this] { network_.conditions.swallows = false; });
-      break;
-    case FaultKind::kDiskFull:
-      disk_trouble(fault, DiskTrouble::kFull);
-      break;
-    case FaultKind::kDiskWriteFails:
-      disk_trouble(fault, DiskTrouble::kWriteFails);
-      break;
-    case FaultKind::kDiskSyncFails:
-      disk_trouble(fault, DiskTrouble::kSyncFails);
-      break;
-    case FaultKind::kDiskWritesShort:
-      disk_trouble(fault, DiskTrouble::kWritesShort);
-      break;
-    case FaultKind::kDiskStalls:
-      process_.store_answers_at = fault.lasts == kUntilMended ? kUntilMended : clock_.now() + fault.lasts;
-      begin_for_a_time(fault, [this, &fault] {
-        if (fault.lasts == kUntilMended) process_.store_answers_at = clock_.now();
-      });
-      break;
-    case FaultKind::kClockJumps:
-      clock_.set_wall_clock_ahead(clock_.wall_ahead() + fault.lasts);
-      break;
-    case FaultKind::kKilled:
-      process_.dies_now = process_.daemon != nullptr;
-      break;
-    case FaultKind::kKilledAtStart:
-    case FaultKind::kPowerFailsAtStart:
-      if (process_.daemon) end_daemon("the daemon is killed");
-      [[fallthrough]];  // it is the next one that dies by its writes
-    case FaultKind::kKilledAtWrite:
-    case FaultKind::kPowerFails:
-      process_.writes_left = fault.number;
-      process_.power_fails = takes_power(fault.kind);
-      break;
-    case FaultKind::kTerminated:
-      if (!process_.daemon || process_.killed_by) break;
-      process_.killed_by = clock_.now() + kEndPatience;
-      process_.daemon->begin_end();
-      break;
-    case FaultKind::kCommand:
-      if (!process_.daemon) break;
-      if (fault.command == cell::Command::kStart) {
-        start_run();
-      } else if (const auto refusal = process_.daemon->operation().command(fault.command)) {
-        journal_.note("fault", "refused: " + refusal->detail);
-        rest_.see(refusal_text(*refusal));
-      }
-      break;
-    case FaultKind::kClientsFlood:
-    case FaultKind::kClientRepeatsKey:
-    case FaultKind::kClientsStopReading:
-      clients_.begin(fault);
-      break;
-  }
-}
-
-// ---- by what is seen ----
-
-/// Not from where it was seen, which is in the middle of what somebody does.
-void World::strike_due() {
-  while (const std::vector<DrawnFault>* due = script_.take_due()) {
-    if (script_.is_over()) rest_.on_struck(clock_.now(), controller_.report());
-    for (const DrawnFault& fault : *due) begin(fault);
-    kill_if_due();
-    poke();
-  }
-}
-
-void World::look_for_rest() {
-  constexpr Time kBetweenLooks = 20ms;
-  if (scenario_.script.empty() || rest_.is_over() || next_look_for_rest_ > clock_.now()) return;
-  next_look_for_rest_ = clock_.now() + kBetweenLooks;
-  const bool is_served = process_.daemon && !process_.killed_by;
-  rest_.look(clock_.now(), is_served ? &process_.daemon->operation() : nullptr, controller_.report());
-  if (rest_.is_over()) mend();
-}
-
-/// What lasts until a person comes is over, and what has not come does not come any more.
-void World::mend() {
-  journal_.note("watcher", record_.rest.at ? "it is at rest: the person comes" : "it does not come to rest");
-  given_before_rest_ = std::ssize(person_.given());
-  for (const auto& end : mended_) end();
-  mended_.clear();
-  process_.writes_left.reset();
-  poke();
-}
-
 // ---- time ----
 
 /// What is due now.
@@ -455,8 +251,6 @@ Outcome World::run() {
   outcome.record = record_;
   return outcome;
 }
-
-}  // namespace
 
 Scenario scenario_of(std::uint64_t seed) {
   Chance chance(seed * 2);

@@ -1,5 +1,5 @@
 // What each fault of probe, controller and people makes of a touch.
-#include "sim_controller/troubles.hpp"
+#include "sim_controller/trouble_effects.hpp"
 
 #include <gtest/gtest.h>
 

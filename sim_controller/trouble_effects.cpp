@@ -1,6 +1,4 @@
-#include "sim_controller/troubles.hpp"
-
-#include "sim_controller/controller.hpp"
+#include "sim_controller/trouble_effects.hpp"
 
 namespace sim {
 namespace {
