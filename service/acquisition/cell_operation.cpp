@@ -327,9 +327,13 @@ std::vector<Command> CellOperation::exits() const {
   return commands;
 }
 
+void CellOperation::look_for_lost_place(const RunPage& last) {
+  lost_place_ = unmet_by_lost_place(last, config_digest(), place().has_value());
+}
+
 void CellOperation::keep_place_in(const std::filesystem::path& file) {
   if (location_.keep_in(file)) forget_plans();
-  lost_place_ = unmet_by_lost_place(run_page(store_.store(), 1, {}), config_digest(), place().has_value());
+  look_for_lost_place(run_page(store_.store(), 1, {}));
   location_.keep_dialogue_in(file.parent_path() / kLocatingFile, recovery_.config_digest());
 }
 

@@ -133,9 +133,8 @@ class CellOperation {
   [[nodiscard]] static std::optional<std::variant<Started, CommandRefusal>> repeated_start(
       const StartRequest& request, const Earlier& earlier);
   [[nodiscard]] static CommandRefusal refusal_at_the_end();
-  [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request,
-                                                           const Earlier& earlier) const;
-  [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request, const Earlier& earlier) const;
+  [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request) const;
+  [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request) const;
   boost::asio::awaitable<std::variant<Started, CommandRefusal>> start_alone(const StartRequest& request);
   boost::asio::awaitable<void> give_up(std::int64_t run_id);
   [[nodiscard]] NewRun new_run(const StartRequest& request) const;
@@ -152,6 +151,7 @@ class CellOperation {
   void describe_to(Status& status);
   void store_fault(const std::string& name, const std::string& message);
   void forget_plans();
+  void look_for_lost_place(const RunPage& last);
   [[nodiscard]] ActiveRun* active() { return run_ ? &*run_ : nullptr; }
   [[nodiscard]] bool is_interrupted() const { return run_ && run_->interruption; }
   [[nodiscard]] bool waits_for_its_files() const { return run_ && run_->open && run_->is_of_other_files(); }
@@ -232,7 +232,7 @@ class CellOperation {
   RunRecovery recovery_;
   std::optional<ActiveRun> run_;
   std::optional<UnstoredEnd> unstored_end_;
-  std::optional<Unmet> lost_place_;  // as the daemon began
+  std::optional<Unmet> lost_place_;  // by the newest run, as it was read last
   Loop loop_;
   bool is_starting_ = false;  // a start waits for the store
   bool is_settling_ = false;  // the run's last answer is asked for: it stays until that is stored

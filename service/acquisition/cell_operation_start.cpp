@@ -16,14 +16,11 @@ namespace cell {
 
 namespace asio = boost::asio;
 
-std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request, const Earlier& earlier) const {
+std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request) const {
   const auto outcome = plans_.planned(request.recipe, given_to(request, cell()));
   const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
-  auto unmet = unmet_for_run(unmet_preconditions(), cell(), {request.block_temperature, clocks_.system()},
+  auto unmet = unmet_for_run(unmet_before_start(), cell(), {request.block_temperature, clocks_.system()},
                              status_.fault(), no_plan);
-  if (auto lost = unmet_by_lost_place(earlier.last, recovery_.config_digest(), place().has_value()))
-    unmet.push_back(*std::move(lost));
-  if (auto unstored = unmet_by_unstored_end()) unmet.push_back(*std::move(unstored));
   return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
 }
 
@@ -41,8 +38,7 @@ std::optional<std::variant<Started, CommandRefusal>> CellOperation::repeated_sta
 
 CommandRefusal CellOperation::refusal_at_the_end() { return {.detail = "the daemon is ending"}; }
 
-std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& request,
-                                                          const Earlier& earlier) const {
+std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& request) const {
   if (!cell().recipes.contains(request.recipe)) {
     std::string known;
     for (const auto& [name, unused] : cell().recipes) known += (known.empty() ? "" : ", ") + name;
@@ -57,7 +53,7 @@ std::optional<CommandRefusal> CellOperation::refuse_start(const StartRequest& re
         .detail = fmt::format("run {} is active; stop or abort it first", run_ ? run_->run.id() : 0),
         .code = FaultCode::kRunActive};
   }
-  auto unmet = unmet_for(request, earlier);
+  auto unmet = unmet_for(request);
   if (!unmet.empty()) {
     return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
                           .detail = "the cell is not ready",
@@ -106,14 +102,15 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
   };
   const Earlier earlier = co_await store_.run(read);
   if (auto repeated = repeated_start(request, earlier)) co_return *std::move(repeated);
-  if (auto refusal = refuse_start(request, earlier)) co_return *std::move(refusal);
+  look_for_lost_place(earlier.last);
+  if (auto refusal = refuse_start(request)) co_return *std::move(refusal);
   // An ended run that cannot be read forbids no other: nothing of it is needed any more.
   for (const DamagedRun& run : earlier.last.damaged) spdlog::error("beside a damaged run: {}", run.what);
   const NewRun begun = new_run(request);
   const auto write = [begun](RunStore& store) { return store.begin_run(begun); };
   const std::int64_t id = co_await store_.run(write);
   // Meanwhile a person may have stopped the cell, or its link may have gone.
-  if (auto refusal = refuse_start(request, earlier)) {
+  if (auto refusal = refuse_start(request)) {
     co_await give_up(id);
     co_return *std::move(refusal);
   }

@@ -29,9 +29,9 @@ bool ControllerSession::has_permit(std::uint32_t run_number) const {
 }
 
 std::optional<cs8::Rejected> ControllerSession::refusal_without_permit() const {
+  // a lost link says so itself
+  if (!controller_.connected() || (permitted_run_ && has_permit(*permitted_run_))) return std::nullopt;
   const auto permit = controller_.latest_permit();
-  if (!controller_.connected() || (permit && permit->state == cs8::PermitState::kGranted))
-    return std::nullopt;  // a lost link says so itself
   const auto state = permit ? permit->state : cs8::PermitState::kNone;
   return cs8::Rejected{cs8::RejectReason::kNotPermitted, static_cast<std::int32_t>(state)};
 }
@@ -49,7 +49,7 @@ void ControllerSession::wait_for(const AwaitedAction* awaited) {
 }
 
 void ControllerSession::give_permit_back() {
-  is_permitted_ = false;
+  permitted_run_.reset();
   controller_.finish();
 }
 
@@ -72,7 +72,7 @@ void ControllerSession::end_permit() {
 }
 
 void ControllerSession::on_permit(const cs8::Permit& permit) {
-  if (is_permitted_ && permit.state != cs8::PermitState::kGranted)
+  if (permitted_run_ && permit.state != cs8::PermitState::kGranted)
     spdlog::warn("the controller changed the permit of run {} to {}: {}", permit.run, cs8::name(permit.state),
                  cs8::name(permit.reason));
   if (asking_ && permit.state == cs8::PermitState::kAwaited) wait_for(&awaited_confirmation());
@@ -103,8 +103,9 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
   }
   wait_for(nullptr);
   permission_ = {};
-  is_permitted_ = status_.state() == state && has_permit(run_number);
-  co_return is_permitted_;
+  permitted_run_.reset();
+  if (status_.state() == state && has_permit(run_number)) permitted_run_ = run_number;
+  co_return permitted_run_.has_value();
 }
 
 /// Waits for what a person at the cell can fix. Anything else ends a start; a run on hold stays there.

@@ -48,8 +48,10 @@ ControllerSession::ControllerSession(const Cell& cell, Controller& controller, P
     : cell_(cell), controller_(controller), status_(status), wake_(wake), clocks_(std::move(clocks)) {}
 
 void ControllerSession::on_controller_state(const cs8::State& state) {
-  inputs_disagree_count_ = cs8::probe_inputs(state.flags).agree() ? 0 : inputs_disagree_count_ + 1;
-  inputs_disagreed_ = inputs_disagreed_ || inputs_disagree_count_ > kDisagreementsMax;
+  const cs8::ProbeInputs inputs = cs8::probe_inputs(state.flags);
+  inputs_disagree_count_ = inputs.agree() ? 0 : inputs_disagree_count_ + 1;
+  if (inputs.agree() && !inputs.free()) inputs_disagreed_ = false;  // both wires know of the hand
+  if (inputs_disagree_count_ > kDisagreementsMax) inputs_disagreed_ = true;
   const ControllerView& shown = status_.latest().controller;
   if (shown != view(shown.probe)) status_.publish();
   const bool watched = status_.state() == State::kResetting || status_.state() == State::kSuspended;
@@ -77,7 +79,7 @@ bool ControllerSession::is_moving_state() const {
 /// With a permit the arm moves in STARTING on the way around the block, in RESETTING on the way back.
 bool ControllerSession::is_watched() const {
   const State state = status_.state();
-  return is_permitted_ && (is_moving_state() || state == State::kStarting || state == State::kResetting);
+  return permitted_run_ && (is_moving_state() || state == State::kStarting || state == State::kResetting);
 }
 
 void ControllerSession::on_heartbeat() {
@@ -201,7 +203,7 @@ void ControllerSession::close() {
 
 void ControllerSession::on_link_lost(const cs8::LinkError& error, Event event) {
   standing_.reset();
-  is_permitted_ = false;
+  permitted_run_.reset();
   loss_ = link_fault(error);
   pause_.on_link_end(clocks_.steady());
   if (pause_.short_links() == 0) told_faults_.clear();
@@ -242,7 +244,7 @@ void ControllerSession::on_welcome(const cs8::Welcome& welcome, State state, boo
   application_ = application_text(welcome);
   overruns_.reset();
   asking_ = false;
-  is_permitted_ = false;
+  permitted_run_.reset();
   search_length_max_dmm_ = welcome.search_length_max_dmm;
   search_speed_max_um_s_ = welcome.search_speed_max_um_s;
   // A fault that ended a run or holds it stays until somebody has read it.
@@ -342,7 +344,8 @@ Event ControllerSession::hold_or_abort() const {
 
 /// Of a move. Only among touches something goes on by itself.
 Event ControllerSession::event_of(const OutcomeFault& fault) const {
-  if (!is_moving_state() || !(fault.holds || fault.suspends)) return Event::kAbortFault;
+  const bool keeps_touches = is_moving_state() || status_.state() == State::kHolding;  // State told it first
+  if (!keeps_touches || !(fault.holds || fault.suspends)) return Event::kAbortFault;
   return status_.state() == State::kExecute ? fault.event() : Event::kHoldFault;
 }
 

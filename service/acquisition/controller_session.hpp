@@ -171,8 +171,8 @@ class ControllerSession {
   bool asking_ = false;                                            // for a permit
   int stop_count_ = 0;                                             // stops of a person
   bool stop_sent_ = false;                                         // since the last command
-  bool is_permitted_ = false;  // from the confirmation until the permit is given back
-  bool is_doubted_ = false;    // the permit: State says that there is none
+  std::optional<std::uint32_t> permitted_run_;  // from the confirmation until the permit is given back
+  bool is_doubted_ = false;                     // the permit: State says that there is none
   PermissionWatch permission_;
   ReconnectPause pause_;
   std::set<std::string> told_faults_;       // of links, since one of them lasted

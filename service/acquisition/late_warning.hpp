@@ -23,8 +23,9 @@ class LateWarning {
               std::unique_ptr<Alarm> alarm)
       : code_(code), untold_max_(untold_max), status_(status), alarm_(std::move(alarm)) {}
 
-  /// Returns what `work` returned or threw; `what` says in words what is waited for. Of two waits at a time
-  /// the first is told, until both are over. Where the wait is given up with its context, the alarm goes with
+  /// Returns what `work` returned or threw; `what` says in words what is waited for. Of several waits at a
+  /// time none is told as long as one of them ends now and then; what is told, the first, is told until all
+  /// are over. Where the wait is given up with its context, the alarm goes with
   /// this owner: nothing is published then.
   template <class Result>
   boost::asio::awaitable<Result> told_when_late(std::string what, boost::asio::awaitable<Result> work) {
@@ -54,13 +55,16 @@ class LateWarning {
 
  private:
   void begin(std::string what);
+  void set_alarm();
   void end();
 
   FaultCode code_;
   std::chrono::seconds untold_max_;
   PublishedStatus& status_;
   std::unique_ptr<Alarm> alarm_;
+  std::string what_;  // the first of those that wait
   int waits_ = 0;
+  bool is_told_ = false;
 };
 
 }  // namespace cell

@@ -21,7 +21,7 @@ struct Criterion {
   std::string name;                 // "held_out_mean"
   std::optional<int> plane = {};    // from 1
   std::optional<std::string> tool;  // of the cell's file; nothing for the stylus
-  std::string unit;                 // "mm", or "1" for a ratio or a count
+  std::string unit;                 // "mm", or "1" for a ratio, a count or a yes (1) or no (0)
   std::optional<double> value;      // in that unit; absent if it cannot be computed
   double limit = 0.0;
   bool at_least = false;  // the value must not be under the limit; else not over it
@@ -58,7 +58,8 @@ JudgedTip judged_tip(const TipPrediction& tip);
 bool is_estimated(const calib::IdentificationOptions& options, const calib::IdentifiableSet& identifiable,
                   int index);
 
-/// Everything that can reject a result of this recipe: each is a reason of a verdict, and there is no other.
+/// Everything that can reject a result of this recipe: each is a reason of a verdict. A guarded
+/// rule adds what is within its limit and not proved.
 /// `complete`: every touch of the recipe was made. The uncertainty of the mean of held-out
 /// touches is that of FaceDistances::calibrated_mean_std_m, that of their rms reaches the upper confidence
 /// bound of a chi-square variable.

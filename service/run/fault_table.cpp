@@ -233,8 +233,9 @@ constexpr std::array kTable{
         FaultCode::kPermissionLost, "permission_lost",
         "power, mode, hold, emergency stop or an opened cell took the permission to move",
         "the arm stopped and stands where it was",
-        "restore power and remote mode, close the cell, then touchcal resume to go on with the touch that "
-        "was broken off, or touchcal stop; in ABORTED touchcal clear, then touchcal reset",
+        "restore power, remote mode and the arm's references, release the hold, close the cell, then "
+        "touchcal resume to go on with the touch that was broken off or did not begin, or touchcal stop; in "
+        "ABORTED touchcal clear, then touchcal reset",
         FaultKind::kHeld, "P20"},
     FaultEntry{FaultCode::kCollision, "collision", "the arm collided with something",
                "the drives cut out; the arm is where it was",

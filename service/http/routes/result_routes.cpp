@@ -10,6 +10,7 @@
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
 #include "service/documents/conditions_view.hpp"
+#include "service/documents/parameter_view.hpp"
 #include "service/documents/result_view.hpp"
 #include "service/http/server/problem.hpp"
 #include "service/report/report_document.hpp"
@@ -114,14 +115,22 @@ HttpResponse report_of(const RunRecord& record, const std::string& format) {
   return saved_as("csv", kCsv, record.run.id, report_csv(report));
 }
 
-/// Whether an identification made again has the uncertainty that is told of the first.
-bool is_same_result(const ResultDocument& told, const Identified& again, const TipRegions& regions) {
+/// A figure of a result that was made again on another machine, perhaps by another compiler.
+bool is_same_figure(const std::optional<double>& told, const std::optional<double>& again) {
   constexpr double kRoundedShare = 1e-6;
+  if (!told || !again) return told.has_value() == again.has_value();
+  return std::abs(*again - *told) <= kRoundedShare * std::abs(*told);
+}
+
+/// Whether an identification made again has the errors and the uncertainty that are told of the first.
+bool is_same_result(const ResultDocument& told, const Identified& again, const TipRegions& regions) {
+  const auto parameters = parameters_of(again.problem, again.recipe.identification, again.result);
+  if (!std::ranges::equal(told.parameters, parameters, is_same_figure, &Parameter::error, &Parameter::error))
+    return false;
   if (!again.result.uncertainty) return !told.tip_uncertainty.workspace_box_rms_mm;
   const auto rms_m = predicted_rms_m(regions.tip().workspace_box, *again.result.uncertainty);
-  const auto& told_mm = told.tip_uncertainty.workspace_box_rms_mm;
-  if (!rms_m || !told_mm) return rms_m.has_value() == told_mm.has_value();
-  return std::abs(calib::mm_from_metres(*rms_m) - *told_mm) <= kRoundedShare * *told_mm;
+  return is_same_figure(told.tip_uncertainty.workspace_box_rms_mm,
+                        rms_m ? std::optional(calib::mm_from_metres(*rms_m)) : std::nullopt);
 }
 
 void simulate(const Reads& reads, const Identified& again, int count, ResultDocument& told) {

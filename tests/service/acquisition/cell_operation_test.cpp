@@ -8,7 +8,7 @@
 #include "cs8_protocol/wire_units.hpp"
 #include "service/documents/configuration_digest.hpp"
 #include "service/run/touch_command.hpp"
-#include "tests/service/acquisition/operation_bench.hpp"
+#include "tests/service/acquisition/cell_operation_bench.hpp"
 
 namespace cell {
 namespace {
@@ -16,25 +16,6 @@ namespace {
 using ::testing::Contains;
 using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
-
-class CellOperationTest : public ::testing::Test, protected OperationBench {
- protected:
-  using OperationBench::OperationBench;
-
-  /// What waits looks at what has become due meanwhile.
-  void look_again_in(std::chrono::seconds later) {
-    time_.pass(later);
-    for (const int percent : {50, 100}) {  // each change of the readiness wakes
-      controller_->state->monitor_speed_percent = percent;
-      tell_state();
-    }
-  }
-  std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run_id; }
-  /// The contact of an arm without errors at a touch of the plan.
-  static cs8::TouchResult contact_of(std::size_t touch) {
-    return contact_at(plan_of_owners().touches.touches.at(touch).joints);
-  }
-};
 
 TEST_F(CellOperationTest, FindsItsControllerAndIsIdleOnceNothingStandsInTheWay) {
   controller_->is_connected = false;
@@ -243,94 +224,6 @@ TEST_F(ResumedOperationTest, IsNotResumedByADaemonThatEnds) {
   expect_left_for_the_next_daemon();
 }
 
-/// A run that a person ends while its first touch has been commanded and the link is lost: the controller is
-/// there again soon, and has the answer still.
-class EndedRunTest : public CellOperationTest {
- protected:
-  EndedRunTest() {
-    controller_->state->joints = to_wire(cell_of_owners().park_joints);
-    controller_->state->permit = cs8::PermitState::kGranted;
-    controller_->on_touch = [this](const cs8::Touch&) {
-      controller_->is_connected = false;
-      controller_->hooks.on_loss(ScriptedController::lost());
-      EXPECT_FALSE(operation_.command(ends_by_));
-      on_ended_();
-      return ScriptedController::lost();
-    };
-    controller_->on_query = [](std::uint32_t) { return contact_of(0); };
-    launch();
-    controller_->on_connect = [this] {
-      state_before_ = operation_.status().state;
-      fault_before_ = fault();
-      cs8::Welcome welcome;
-      welcome.open_sequence = 1;
-      return welcome;
-    };
-  }
-  ~EndedRunTest() override { controller_->on_connect = ScriptedController::lost; }
-  void run_until_asked(const std::string& what) {
-    run_until([&] { return std::ranges::find(controller_->asked, what) != controller_->asked.end(); });
-  }
-  [[nodiscard]] std::string fault() const { return operation_.status().fault.value_or(Fault{}).message(); }
-
-  Command ends_by_ = Command::kAbort;
-  std::function<void()> on_ended_ = [] {};
-  State state_before_ = State::kExecute;
-  std::string fault_before_;
-};
-
-TEST_F(EndedRunTest, TakesTheAnswerThatTheControllerStillHasAndStaysAsItEnded) {
-  const std::int64_t id = start_few();
-  run_until_asked("acknowledge 1");
-  EXPECT_EQ(state_before_, State::kAborted);
-  EXPECT_EQ(operation_.status().state, State::kAborted);
-  EXPECT_THAT(fault_before_, ::testing::HasSubstr("scripted"));
-  EXPECT_EQ(fault(), fault_before_);
-  EXPECT_EQ(store_.touches(id).size(), 1u);
-  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kAborted);
-  EXPECT_EQ(operation_.status().verdict, Verdict::kIncomplete);
-}
-
-TEST_F(EndedRunTest, TakesItAlsoWhereItWasStopped) {
-  ends_by_ = Command::kStop;
-  const std::int64_t id = start_few();
-  run_until_asked("acknowledge 1");
-  EXPECT_EQ(operation_.status().state, State::kStopped);
-  EXPECT_EQ(store_.touches(id).size(), 1u);
-}
-
-TEST_F(EndedRunTest, AnAnswerThatCannotBeStoredIsKeptByTheControllerUntilItCan) {
-  on_ended_ = [this] {
-    store_.database()->exec(
-        "CREATE TRIGGER broken BEFORE INSERT ON touches BEGIN SELECT RAISE(ABORT, 'scripted'); END");
-  };
-  const std::int64_t id = start_few();
-  run_until_asked("query 1");
-  EXPECT_EQ(operation_.status().state, State::kAborted);
-  EXPECT_EQ(fault(), fault_before_) << "why it ended stays to be read";
-  EXPECT_EQ(operation_.status().warning.value().code, FaultCode::kStoreFailed);
-  EXPECT_TRUE(store_.touches(id).empty());
-  EXPECT_THAT(controller_->asked, ::testing::Not(Contains("acknowledge 1")));
-  store_.database()->exec("DROP TRIGGER broken");
-  EXPECT_FALSE(operation_.command(Command::kClear));
-  run_until_asked("acknowledge 1");
-  EXPECT_EQ(operation_.status().state, State::kStopped);
-  EXPECT_EQ(store_.touches(id).size(), 1u);
-}
-
-TEST_F(EndedRunTest, ARunOnHoldTakesItTooAndTheTimeThatIsLeftIsThatOfItsWork) {
-  ends_by_ = Command::kPause;
-  start_few();
-  run_until_asked("acknowledge 1");
-  const double left_s = operation_.status().eta_s.value();
-  time_.set_wall_clock(std::chrono::hours(1));
-  time_.pass(std::chrono::hours(1));  // on hold
-  controller_->state->flags &= ~static_cast<std::uint32_t>(cs8::kPowered);
-  tell_state();
-  ASSERT_EQ(operation_.status().controller.powered, false) << "the status is made anew";
-  EXPECT_EQ(operation_.status().eta_s, left_s);
-}
-
 /// A run whose second touch is made while the result of the first is still being computed.
 class SlowArithmeticTest : public CellOperationTest {
  protected:
@@ -379,51 +272,6 @@ TEST_F(SlowArithmeticTest, IsNotWaitedForToStopTheArmWhereTheDaemonEnds) {
   EXPECT_EQ(operation_.status().state, State::kHeld);
   EXPECT_EQ(store_.run(id_).value().outcome, RunOutcome::kRunning) << "the next daemon takes it up";
   EXPECT_EQ(store_.touches(id_).size(), 2u) << "what was answered meanwhile is kept";
-}
-
-TEST_F(CellOperationTest, TheEndOfARunThatTheDiskDidNotTakeIsStoredWhenItDoes) {
-  controller_->state->permit = cs8::PermitState::kGranted;
-  controller_->on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
-  launch();
-  const std::int64_t id = start_few();
-  run_until([this] { return operation_.status().state == State::kExecute; });
-  sqlite3* const handle = store_.database()->getHandle();
-  sqlite3_commit_hook(
-      handle, [](void*) { return 1; }, nullptr);
-  EXPECT_FALSE(operation_.command(Command::kStop));
-  run_until([this] { return operation_.status().state == State::kStopped; });
-  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kStoreFailed);
-  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kRunning);
-  EXPECT_FALSE(operation_.command(Command::kReset));
-  run_until([this] { return operation_.status().state == State::kIdle; });
-  EXPECT_EQ(operation_.unmet_before_start().at(0).code, "store_not_writable");
-  const auto exits = operation_.exits();
-  EXPECT_EQ(std::ranges::count(exits, Command::kStart), 0);
-  sqlite3_commit_hook(handle, nullptr, nullptr);
-  EXPECT_EQ(std::get<CommandRefusal>(start({.recipe = "few"})).unmet.at(0).code, "store_not_writable");
-  look_again_in(std::chrono::seconds(5));
-  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kStopped);
-  EXPECT_THAT(operation_.unmet_before_start(), IsEmpty());
-}
-
-TEST_F(CellOperationTest, WhatEndedARunIsShownAgainOnceItsEndIsStored) {
-  controller_->state->permit = cs8::PermitState::kGranted;
-  sqlite3* const handle = store_.database()->getHandle();
-  controller_->on_touch = [handle](const cs8::Touch&) {
-    sqlite3_commit_hook(
-        handle, [](void*) { return 1; }, nullptr);
-    cs8::TouchResult collided;
-    collided.outcome = cs8::Outcome::kCollision;
-    return collided;
-  };
-  launch();
-  const std::int64_t id = start_few();
-  run_until([this] { return operation_.status().state == State::kAborted; });
-  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kStoreFailed);
-  sqlite3_commit_hook(handle, nullptr, nullptr);
-  look_again_in(std::chrono::seconds(5));
-  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kAborted);
-  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kCollision);
 }
 
 TEST_F(CellOperationTest, ChangesAreToldAtOnceAndNumbered) {

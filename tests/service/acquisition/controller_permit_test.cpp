@@ -68,6 +68,23 @@ TEST_F(ControllerPermitTest, AHandOnTheStylusThatOneWireOnlyKnowsIsToldAsTheOthe
   EXPECT_THAT(faults, ElementsAre("probe_fault"));
 }
 
+TEST_F(ControllerPermitTest, AWireThatWasMendedLeavesTheTouchTestToBeMade) {
+  status.enter(State::kStarting);
+  controller.state->flags &= ~static_cast<std::uint32_t>(cs8::kTouchTested);
+  controller.on_begin = [](std::uint32_t run) { return refused(run, cs8::RejectReason::kTouchTestMissing); };
+  int waits = 0;
+  std::optional<std::string> awaited;
+  wake.on_wait = [&] {
+    awaited = status.latest().waiting_for;
+    controller.state->flags ^= cs8::kProbeLoopClosed;
+    if (++waits > 4) controller.state->flags ^= cs8::kProbeTouched;  // both wires know of the hand now
+    for (int i = 0; i < 3; ++i) session.on_controller_state(*controller.state);
+  };
+  EXPECT_FALSE(run(session.obtain_permit(7)));
+  EXPECT_EQ(awaited, "touch_test");
+  EXPECT_THAT(faults, ElementsAre("touch_test_missing"));
+}
+
 TEST_F(ControllerPermitTest, APermitOfTheRunBeforeIsNone) {
   status.enter(State::kStarting);
   controller.permit = cs8::Permit{.run = 6, .state = cs8::PermitState::kGranted};

@@ -86,6 +86,7 @@ TEST_F(ControllerSessionTest, ASearchThatWasBrokenOffIsNotLeftWithAPermitThatHas
 }
 
 TEST_F(ControllerSessionTest, AWayThatNobodyPermitsAnyMoreIsNotTaken) {
+  confirm(7);
   for (const auto state :
        {cs8::PermitState::kNone, cs8::PermitState::kAwaited, cs8::PermitState::kRetractOnly}) {
     status.enter(State::kCompleting);
@@ -93,12 +94,15 @@ TEST_F(ControllerSessionTest, AWayThatNobodyPermitsAnyMoreIsNotTaken) {
     EXPECT_FALSE(run(session.travel({})));
     EXPECT_EQ(status.state(), State::kHolding) << "the run keeps its touches";
   }
+  controller.permit = ScriptedController::granted(6);
+  status.enter(State::kCompleting);
+  EXPECT_FALSE(run(session.travel({}))) << "of another run";
   EXPECT_THAT(controller.asked, IsEmpty());
   EXPECT_THAT(faults, Each("permission_lost"));
 }
 
 TEST_F(ControllerSessionTest, AWayAtAnotherMonitorSpeedHoldsTheRunOrSuspendsItsTouches) {
-  controller.permit = ScriptedController::granted(7);
+  confirm(7);
   controller.on_move = [] { return cs8::Rejected{cs8::RejectReason::kMonitorSpeed, 50}; };
   const auto after_way_in = [this](State state) {
     status.enter(state);
@@ -107,6 +111,7 @@ TEST_F(ControllerSessionTest, AWayAtAnotherMonitorSpeedHoldsTheRunOrSuspendsItsT
   };
   EXPECT_EQ(after_way_in(State::kExecute), State::kSuspending);
   EXPECT_EQ(after_way_in(State::kCompleting), State::kHolding);
+  EXPECT_EQ(after_way_in(State::kHolding), State::kHolding) << "State told of it first";
   EXPECT_EQ(after_way_in(State::kStarting), State::kAborting) << "the way around the block begins anew";
 }
 
@@ -343,7 +348,7 @@ TEST_F(ControllerSessionTest, AMoveThatDoesNotArriveIsAFaultUnlessSomebodyAskedF
   cs8::MoveResult stopped;
   stopped.outcome = cs8::Outcome::kStopped;
   controller.on_move = [&] { return stopped; };
-  controller.permit = ScriptedController::granted(7);
+  confirm(7);
   status.enter(State::kStopping);
   EXPECT_FALSE(run(session.travel({})));
   EXPECT_TRUE(faults.empty());

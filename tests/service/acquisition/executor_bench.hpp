@@ -19,7 +19,7 @@ class ExecutorBench : public ::testing::Test, public OwnersBench {
  protected:
   ExecutorBench() {
     controller.on_touch = [this](const cs8::Touch&) { return contact(); };
-    controller.permit = ScriptedController::granted(1);
+    confirm(static_cast<std::uint32_t>(active_.run.id()));
     touches_.begin_run(active_);
     status.enter(State::kExecute);
   }

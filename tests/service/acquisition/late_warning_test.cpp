@@ -37,6 +37,18 @@ class LateWarningTest : public ::testing::Test, public OwnersBench {
   std::vector<int> ended_;
 };
 
+TEST_F(LateWarningTest, IsNotGivenWhereSomethingIsDoneNowAndThen) {
+  wait_for("one", [] { return 1; });
+  wait_for("another", [] { return 2; });
+  alarm_->set_for = std::chrono::seconds(0);
+  do_one_elsewhere();
+  EXPECT_EQ(alarm_->set_for, std::chrono::seconds(7)) << "it begins anew";
+  alarm_->ring();
+  EXPECT_TRUE(status.latest().warning);
+  do_one_elsewhere();
+  EXPECT_FALSE(status.latest().warning);
+}
+
 TEST_F(LateWarningTest, OfTwoWaitsTheFirstIsToldUntilBothAreOver) {
   wait_for("one", [] { return 1; });
   wait_for("another", [] { return 2; });

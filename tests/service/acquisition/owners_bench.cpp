@@ -58,6 +58,12 @@ void OwnersBench::run(boost::asio::awaitable<void> work) {
   if (failure) std::rethrow_exception(failure);
 }
 
+void OwnersBench::confirm(std::uint32_t run_number) {
+  controller.state->permit = cs8::PermitState::kGranted;
+  if (!run(session.obtain_permit(run_number))) throw std::runtime_error("nobody confirms");
+  controller.asked.clear();
+}
+
 void OwnersBench::tell_state() {
   if (controller.is_connected) session.on_controller_state(controller.state.value());
 }

@@ -49,6 +49,8 @@ class OwnersBench {
     return *std::move(result);
   }
 
+  /// A person confirms the run; that it was asked for is not in `controller.asked`.
+  void confirm(std::uint32_t run_number);
   /// The controller's newest state, as it reaches the session.
   void tell_state();
 

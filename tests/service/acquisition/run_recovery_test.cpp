@@ -158,7 +158,7 @@ TEST_F(RunRecoveryTest, ALastTouchThatTheOthersContradictIsMadeAgainBeforeAnythi
   hold(active);
   ASSERT_TRUE(run(recovery_.make_resumable(active)));
   status.enter(State::kExecute);
-  controller.permit = ScriptedController::granted(1);
+  confirm(static_cast<std::uint32_t>(id));
   controller.on_touch = [this](const cs8::Touch&) { return contact(); };
   run(touches_.make_next_touch(active));
   EXPECT_EQ(active.run.touches_done(), 25) << "the repetition counts in its place";

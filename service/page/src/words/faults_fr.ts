@@ -103,7 +103,7 @@ export const kFaultsFr: Record<string, FaultWords> = {
   overtravel: words('le bras s’est arrêté trop loin derrière le déclenchement', 'le bras s’est arrêté et s’est retiré',
     `vérifiez le stylet et baissez la vitesse de recherche, ${kAnew}`),
   permission_lost: words('puissance, mode, pause, arrêt d’urgence ou cellule ouverte ont retiré la permission de bouger', kStopped,
-    `remettez la puissance et le mode déporté, fermez la cellule, ${kResumeBroken}`),
+    `remettez la puissance, le mode déporté et les zéros du bras, relâchez la pause, fermez la cellule, ${kResumeBroken}`),
   collision: words('le bras a heurté quelque chose', 'les variateurs ont coupé ; le bras se tient où il était',
     `regardez le bras, le palpeur et le bloc, dégagez le bras à la main, ${kAnew}`),
   motion_error: words('la baie n’a pas pu exécuter un mouvement', kStopped, `cherchez le numéro d’erreur de la baie, ${kAnew}`),

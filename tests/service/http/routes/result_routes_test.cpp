@@ -83,14 +83,21 @@ TEST_F(ResultRoutesTest, TheReportSetsSimulatedCalibrationsBesideTheLinearUncert
 }
 
 TEST_F(ResultRoutesTest, AResultThatIsNotThatOfTheTouchesIsNotSimulated) {
-  json other = json::parse(get_result(cell_.operation(), run_).body);
-  json& rms_mm = other["tip_uncertainty"]["workspace_box_rms_mm"];
-  rms_mm = 1.001 * rms_mm.get<double>();
-  cell_.store().finish_run(run_, {.outcome = RunOutcome::kComplete, .result_json = other.dump()});
-  const HttpResponse response =
-      get_simulated_report(cell_.operation(), cell_.store().run(run_).value(), "json", 100);
-  EXPECT_EQ(response.status, 409u);
-  EXPECT_THAT(response.body, HasSubstr("this version of touchcal"));
+  const json same = json::parse(get_result(cell_.operation(), run_).body);
+  std::size_t estimated = 0;
+  while (same.at("parameters").at(estimated).at("error").is_null()) ++estimated;
+  const std::vector<json::json_pointer> figures{
+      json::json_pointer("/tip_uncertainty/workspace_box_rms_mm"),
+      json::json_pointer("/parameters/" + std::to_string(estimated) + "/error")};
+  for (const auto& figure : figures) {
+    json other = same;
+    other[figure] = 1.001 * other[figure].get<double>();
+    cell_.store().finish_run(run_, {.outcome = RunOutcome::kComplete, .result_json = other.dump()});
+    const HttpResponse response =
+        get_simulated_report(cell_.operation(), cell_.store().run(run_).value(), "json", 100);
+    EXPECT_EQ(response.status, 409u) << figure.to_string();
+    EXPECT_THAT(response.body, HasSubstr("this version of touchcal"));
+  }
 }
 
 TEST_F(ResultRoutesTest, ADaemonThatEndsDoesNotWaitForASimulation) {
