@@ -177,6 +177,7 @@ void Tasks::run_synchronous() {
     run(task, limits_.lines_per_period);
     if (task.status != 1 || task.waits) continue;
     task.drops_cycle = true;
+    ++task.overruns;
     task.overrun->at<bool>() = true;
   }
 }
@@ -225,7 +226,8 @@ std::vector<TaskView> Tasks::views() const {
                      .program = program.name,
                      .file = program.file,
                      .line = here.next < program.lines.size() ? program.lines[here.next].line : 0,
-                     .error = task->error});
+                     .error = task->error,
+                     .overruns = task->overruns});
   }
   return views;
 }

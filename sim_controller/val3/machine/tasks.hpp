@@ -21,6 +21,7 @@ struct Task {
   int period_ticks = 0;             // 0: asynchronous
   std::optional<Ref> overrun;       // of a synchronous one
   bool drops_cycle = false;         // the next period is left out: the last one was too long
+  int overruns = 0;
   std::vector<std::unique_ptr<Activation>> stack;
   int status = 1;      // as taskStatus
   std::string error;   // in words
