@@ -57,6 +57,8 @@ struct MoveOrder {
   Trsf tool;              // flange to the tool's end
   Mdesc descriptor;       // lengths in mm
   bool reachable = true;  // false: no joints bring the tool there; it fails when the arm should begin it
+  /// Of kLine and kCircle, what the end may be: kSame means as at the move's start. What the point asks for.
+  Config config{Shoulder::kFree, Elbow::kFree, Wrist::kFree};
 };
 
 class System {
