@@ -176,6 +176,12 @@ void reset_motion(Drives& drives, const std::optional<calib::JointVector>& start
   if (drives.rate == 0.0) finish_reset(drives);
 }
 
+void fail_motion(Drives& drives, std::int32_t error) {
+  if (is_empty(drives)) return;
+  reset_motion(drives);
+  drives.error = error;
+}
+
 void stop_move(Drives& drives) { drives.stopped = true; }
 
 void restart_move(Drives& drives) { drives.stopped = false; }

@@ -86,6 +86,9 @@ void follow(const Plant& plant, Drives& drives, Stretch stretch, double tip_spee
 /// resetMotion(): brakes along the path (begins with the next tick), then drops the queue and zeroes the move
 /// id. Clears `error` and a stop. The next move begins at `start`, where it is given.
 void reset_motion(Drives& drives, const std::optional<calib::JointVector>& start = std::nullopt);
+/// The move under way cannot be completed: slows down on the path as a reset does, drops the queue and keeps
+/// `error` until the next reset. Nothing where no move is under way.
+void fail_motion(Drives& drives, std::int32_t error);
 /// stopMove(): slows down on the path as the move does; the queue stays. Until restart_move() or a reset.
 void stop_move(Drives& drives);
 void restart_move(Drives& drives);
