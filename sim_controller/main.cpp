@@ -20,6 +20,7 @@
 #include "config/truth.hpp"
 #include "sim_controller/control.hpp"
 #include "sim_controller/fault_names.hpp"
+#include "sim_controller/run_command.hpp"
 #include "sim_controller/server.hpp"
 #include "sim_controller/val3/files/read_application.hpp"
 #include "sim_controller/val3/language/resolver.hpp"
@@ -38,6 +39,9 @@ struct Arguments {
   std::string listen;
   std::string faults_file;
   std::string val3;
+  std::string run;
+  std::string script_file;
+  double run_seconds = 0.0;
   std::string control;
   std::uint64_t seed = 1;
   std::string speed = "1";
@@ -101,13 +105,25 @@ std::optional<val3::Application> load_val3(const std::string& folder) {
   return std::nullopt;
 }
 
-int run(const Arguments& arguments) {
+std::filesystem::path truth_file_of(const Arguments& arguments) {
+  if (!arguments.truth_file.empty()) return arguments.truth_file;
+  return std::filesystem::path(arguments.cell_file).parent_path() / "truth.json";
+}
+
+int run_script(const Arguments& arguments) {
+  return sim::run_application({.application = arguments.run,
+                               .script_file = arguments.script_file,
+                               .cell_file = arguments.cell_file,
+                               .truth_file = truth_file_of(arguments).string(),
+                               .seconds = arguments.run_seconds,
+                               .seed = arguments.seed},
+                              std::cout, std::cerr);
+}
+
+int serve(const Arguments& arguments) {
   const cell::Cell cell = cell::read_cell(arguments.cell_file);
   cell::demand_revolute(cell);
-  const auto truth_file = arguments.truth_file.empty()
-                              ? std::filesystem::path(arguments.cell_file).parent_path() / "truth.json"
-                              : std::filesystem::path(arguments.truth_file);
-  const cell::Truth truth = cell::read_truth(truth_file);
+  const cell::Truth truth = cell::read_truth(truth_file_of(arguments));
   const cell::Endpoint endpoint =
       arguments.listen.empty() ? cell.controller : *cell::parse_endpoint(arguments.listen);
 
@@ -202,6 +218,20 @@ int main(int argc, char** argv) {
                  "runs the VAL3 application in this folder instead of the C++ twin of touchcal's")
       ->type_name("DIR")
       ->check(cell::refuse_empty);
+  auto* run = app.add_option("--run", arguments.run,
+                             "runs the VAL3 application in this folder without a host, and ends")
+                  ->type_name("DIR")
+                  ->check(cell::refuse_empty);
+  app.add_option("--script", arguments.script_file, "of --run: what is done to the application, and when")
+      ->type_name("FILE")
+      ->check(cell::refuse_empty)
+      ->needs(run);
+  app.add_option(
+         "--for", arguments.run_seconds,
+         "of --run: simulated seconds; default: to a second behind the script's last line, 10 without one")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.004, 86400.0))
+      ->needs(run);
   app.add_option("--control", arguments.control,
                  "takes faults while it runs, a line of JSON each; port 0 takes a free one")
       ->type_name("HOST:PORT")
@@ -225,7 +255,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? kDone : kWrongUsage;
   }
   try {
-    return run(arguments);
+    return arguments.run.empty() ? serve(arguments) : run_script(arguments);
   } catch (const cell::ConfigError& error) {
     std::cerr << error.what() << '\n';
     return kBadInput;
