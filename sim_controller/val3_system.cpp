@@ -12,6 +12,8 @@ namespace {
 constexpr double kClockStepsPerSecond = 1000.0;
 constexpr int kPowerUpTicks = static_cast<int>(kPowerUpSeconds / kTickSeconds);
 constexpr int kConnectionStatus = 1;
+/// A search that begins nearer to the last contact is its second one.
+constexpr double kSecondSearchMetres = 5e-3;
 
 /// The number of hold is another one in each mode (manual 6, page 102).
 int status_of_hold(cs8::WorkingMode mode) {
@@ -95,6 +97,7 @@ int Val3System::set_channel(int channel, std::string_view name, std::optional<do
 
 val3::RunError Val3System::arm_latch(int digital) {
   if (!signals_.has_latch(digital)) return val3::kErrorParameter;
+  if (signals_.cell_signal(digital) == CellSignal::kContact) draw_for_search();
   latch_ = {.armed = digital, .was_on = signals_.digital(digital, cabinet_), .joints = {}};
   return val3::kErrorNone;
 }
@@ -102,6 +105,14 @@ val3::RunError Val3System::arm_latch(int digital) {
 std::optional<val3::Joint> Val3System::latched() const {
   if (!latch_.joints) return std::nullopt;
   return val3_from_joints(*latch_.joints);
+}
+
+/// What differs from one touch to the next is drawn where a search begins: with the latch armed, at
+/// standstill. A second search from just before the contact finds arm and face as the first one did.
+void Val3System::draw_for_search() {
+  const calib::JointVector& here = cabinet_.drives.joints;
+  const bool is_second = contact_ && tip_distance_m(plant_, *contact_, here) < kSecondSearchMetres;
+  if (cabinet_.drives.rate == 0.0 && !is_second) begin_search(plant_, cabinet_.world, cabinet_.chance);
 }
 
 /// The probe knows its edge to 0.2 ms; an input that a script sets changes between two ticks.
@@ -117,6 +128,7 @@ void Val3System::watch_latch(const CabinetTick& seen) {
   }
   if (!share) return;
   latch_.joints = encoder_reading(plant_, seen.motion.at(*share));
+  if (signals_.cell_signal(*latch_.armed) == CellSignal::kContact) contact_ = latch_.joints;
   latch_.armed.reset();
 }
 

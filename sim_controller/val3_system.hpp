@@ -137,6 +137,7 @@ class Val3System final : public val3::System {
  private:
   [[nodiscard]] calib::JointVector joint_speeds() const;
   void power_up();
+  void draw_for_search();
   void watch_latch(const CabinetTick& seen);
   void keep(const std::string& message);
 
@@ -156,6 +157,7 @@ class Val3System final : public val3::System {
     bool was_on = false;       // of one that a script sets
     std::optional<calib::JointVector> joints;
   } latch_;
+  std::optional<calib::JointVector> contact_;  // where the probe's edge was latched last
 };
 
 /// getDate(): %y %Y %m %d %H %I %p %M %S, the rest as it stands.

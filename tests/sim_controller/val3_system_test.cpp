@@ -145,7 +145,7 @@ TEST_F(Val3Cell, TheLatchHasTheJointsOfTheEdgeAndKeepsThemUntilItIsArmedAgain) {
   }
   const auto latched = system.latched();
   ASSERT_TRUE(latched);
-  const auto expected = search_contact(plant(), search());
+  const auto expected = search_contact(plant(), search(), cabinet.world.noise_m);
   ASSERT_TRUE(expected);
   // 0.2 ms at 20 mm/s, and the play of a sharp latch step.
   EXPECT_LT(tip_distance_m(plant(), joints_from_val3(*latched), *expected), 8e-6);
