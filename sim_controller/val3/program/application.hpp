@@ -92,6 +92,7 @@ struct UserType {
   std::string name;
   std::vector<Global> fields;  // with their stored values as defaults
   Position at;
+  std::string project;  // its .pjx, which tells types of one name apart; empty: it was not found
 };
 
 struct Application {
