@@ -47,7 +47,7 @@ std::vector<Line::Kind> kinds_of(const ParsedProgram& program) {
   return result;
 }
 
-using Kind = Line::Kind;
+using LineKind = Line::Kind;
 
 TEST(Parser, ReadsEveryKindOfLine) {
   const ParsedProgram program =
@@ -55,10 +55,11 @@ TEST(Parser, ReadsEveryKindOfLine) {
                     "taskCreate \"t\",10,run(a)", "taskCreateSync \"s\",0.004,over,lib:run(a,b)",
                     "lib:libLoad(\"x\")", "a[0].b=lib:c", "?a+1", "return", "{1}"});
   EXPECT_THAT(rules_of(program), ElementsAre("15 no-effect"));
-  EXPECT_THAT(kinds_of(program),
-              ElementsAre(Kind::kAssign, Kind::kAssign, Kind::kInstruction, Kind::kCall, Kind::kCall,
-                          Kind::kTaskCreate, Kind::kTaskCreateSync, Kind::kInstruction, Kind::kAssign,
-                          Kind::kInstruction, Kind::kReturn, Kind::kEnd));
+  EXPECT_THAT(
+      kinds_of(program),
+      ElementsAre(LineKind::kAssign, LineKind::kAssign, LineKind::kInstruction, LineKind::kCall,
+                  LineKind::kCall, LineKind::kTaskCreate, LineKind::kTaskCreateSync, LineKind::kInstruction,
+                  LineKind::kAssign, LineKind::kInstruction, LineKind::kReturn, LineKind::kEnd));
   EXPECT_EQ(program.lines[0].line, 4);
   EXPECT_EQ(program.lines[1].expressions.size(), 3U);
   EXPECT_EQ(program.lines[3].program, "doIt");
@@ -140,8 +141,8 @@ TEST(Parser, TellsOfSwitchesThatAControllerRefuses) {
 TEST(Parser, KeepsTheLinesAroundABrokenOne) {
   const ParsedProgram program = parsed_lines({"a=1", "a=(", "if (b", "c=1", "endIf", "do", "until )", "a=2"});
   EXPECT_THAT(rules_of(program), ElementsAre("3 syntax", "4 missing-bracket", "8 syntax"));
-  EXPECT_THAT(kinds_of(program),
-              ElementsAre(Kind::kAssign, Kind::kAssign, Kind::kDo, Kind::kUntil, Kind::kAssign, Kind::kEnd));
+  EXPECT_THAT(kinds_of(program), ElementsAre(LineKind::kAssign, LineKind::kAssign, LineKind::kDo,
+                                             LineKind::kUntil, LineKind::kAssign, LineKind::kEnd));
   EXPECT_EQ(program.lines[2].close, 3U);
   EXPECT_EQ(program.lines[3].expressions.size(), 1U);
 }
@@ -152,7 +153,7 @@ TEST(Parser, WantsOneBeginAndOneEnd) {
   EXPECT_THAT(rules_of(parsed("begin\na=1\n")), ElementsAre("3 missing-end"));
   EXPECT_THAT(rules_of(parsed("begin\nend\n\n// done\na=1\n")), ElementsAre("5 code-behind-end"));
   EXPECT_THAT(rules_of(parsed("\r\n  begin\r\n  a=1\r\n  end\r\n")), IsEmpty());
-  EXPECT_THAT(kinds_of(parsed("begin\na=1\n")), ElementsAre(Kind::kAssign, Kind::kEnd));
+  EXPECT_THAT(kinds_of(parsed("begin\na=1\n")), ElementsAre(LineKind::kAssign, LineKind::kEnd));
 }
 
 TEST(Parser, CountsLinesFromWhereTheCodeBegins) {
@@ -186,7 +187,7 @@ TEST(Parser, NotesALineThatIsSwitchedOff) {
   const ParsedProgram program = parsed_lines({"  ; a=(", "a=1"});
   ASSERT_THAT(rules_of(program), ElementsAre("2 disabled-line"));
   EXPECT_EQ(program.findings[0].severity, Severity::kNote);
-  EXPECT_THAT(kinds_of(program), ElementsAre(Kind::kAssign, Kind::kEnd));
+  EXPECT_THAT(kinds_of(program), ElementsAre(LineKind::kAssign, LineKind::kEnd));
 }
 
 TEST(Parser, RefusesALineThatIsTooLongAndAProgramThatIsNone) {
