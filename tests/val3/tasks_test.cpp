@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sim_controller/val3/machine/geometry.hpp"
 #include "tests/val3/running.hpp"
 
 namespace val3 {
@@ -20,8 +21,8 @@ TEST(Tasks, SynchronousOnesRunOncePerPeriod) {
   run.ticks(101);
   EXPECT_EQ(run.number("n", 0), 100);
   EXPECT_EQ(run.number("n", 1), 20);
-  EXPECT_FALSE(run.get<bool>("bOver"));
-  EXPECT_EQ(run.interpreter.task_status("small~"), -1) << "start has returned";
+  EXPECT_FALSE(run.truth("bOver"));
+  EXPECT_EQ(run.machine().task_status("small~"), -1) << "start has returned";
 }
 
 TEST(Tasks, ASynchronousOneThatDoesNotFinishTellsAnOverrunAndGoesOn) {
@@ -29,13 +30,13 @@ TEST(Tasks, ASynchronousOneThatDoesNotFinishTellsAnOverrunAndGoesOn) {
   project.number("n").flag("bOver");
   project.program("count", "while true\nfor n=1 to 20\nendFor\ndelay(0)\nendWhile");
   project.program("start", "taskCreateSync \"count\",0.004,bOver,count()");
-  Running few(project, {.statements_per_period = 50});
+  Running few(project, {.lines_per_period = 15});
   few.ticks(4);
-  EXPECT_TRUE(few.get<bool>("bOver"));
-  EXPECT_EQ(few.interpreter.task_status("count"), 1);
-  Running enough(project, {.statements_per_period = 100});
+  EXPECT_TRUE(few.truth("bOver"));
+  EXPECT_EQ(few.machine().task_status("count"), 1);
+  Running enough(project, {.lines_per_period = 100});
   enough.ticks(10);
-  EXPECT_FALSE(enough.get<bool>("bOver"));
+  EXPECT_FALSE(enough.truth("bOver"));
 }
 
 TEST(Tasks, AThirdPeriodIsError32AndASecondTaskOfAName31) {
@@ -46,11 +47,11 @@ TEST(Tasks, AThirdPeriodIsError32AndASecondTaskOfAName31) {
                   "taskCreateSync \"c\",0.012,bOver,idle()");
   Running three(project);
   three.ticks(1);
-  EXPECT_EQ(three.interpreter.task_status("small~"), kErrorSyncPeriods);
+  EXPECT_EQ(three.machine().task_status("small~"), kErrorPeriods);
   project.program("start", "taskCreate \"a\",10,idle()\ntaskCreate \"a\",10,idle()");
   Running twice(project);
   twice.ticks(1);
-  EXPECT_EQ(twice.interpreter.task_status("small~"), kErrorTaskName);
+  EXPECT_EQ(twice.machine().task_status("small~"), kErrorTaskExists);
 }
 
 TEST(Tasks, AreSeenAndKilled) {
@@ -65,15 +66,16 @@ TEST(Tasks, AreSeenAndKilled) {
   EXPECT_EQ(run.number("n", 0), kErrorIndex);
   EXPECT_EQ(run.number("n", 1), 1);
   EXPECT_EQ(run.number("n", 2), -1);
-  EXPECT_TRUE(run.interpreter.tasks().empty());
+  EXPECT_TRUE(run.controller.tasks().empty());
 }
 
 TEST(Tasks, WaitForTimeAndForConditions) {
   SmallProject project;
   project.number("n", 4).flag("b").data("di", "dio", "<Value key=\"0\" link=\"FastIO\\fIn0\"/>");
-  project.program("start",
-                  "n[0]=clock()\ndelay(0.1)\nn[0]=clock()-n[0]\nb=watch(di==true,0.04)\nn[1]=clock()\n"
-                  "if b==false\n n[2]=1\nendIf\nif watch(di,10)\n n[2]=2\nendIf\nwait(!di)\nn[3]=1");
+  project.program(
+      "start",
+      "n[0]=clock()\ndelay(0.1)\nn[0]=clock()-n[0]\nb=watch(di==true,0.04)\nn[1]=clock()\n"
+      "if b==false\n n[2]=1\nendIf\nif watch(di==true,10)\n n[2]=2\nendIf\nwait(di==false)\nn[3]=1");
   Running run(project);
   run.ticks(60);
   EXPECT_NEAR(run.number("n", 0), 0.1, 1e-9);
@@ -133,7 +135,7 @@ TEST(Sockets, AReadWaitsUnlessItsTimeOutSaysOtherwise) {
 
 TEST(Arm, StandsFiftyFiftyNineFiftyAboveTheShoulderAtZero) {
   const NominalArm arm;
-  const Trsf pose = trsf(arm.world_from_flange(Joint{}));
+  const Trsf pose = scaled(trsf_of(arm.world_from_flange(Joint{})), 1000.0);
   EXPECT_NEAR(pose.x, 50, 1e-9);
   EXPECT_NEAR(pose.y, 50, 1e-9);
   EXPECT_NEAR(pose.z, 950, 1e-9);
@@ -141,7 +143,7 @@ TEST(Arm, StandsFiftyFiftyNineFiftyAboveTheShoulderAtZero) {
 }
 
 TEST(Arm, AnglesOfAFrameComeBack) {
-  const Trsf back = trsf(isometry({1, 2, 3, 10, -20, 170}));
+  const Trsf back = trsf_of(isometry({1, 2, 3, 10, -20, 170}));
   EXPECT_NEAR(back.x, 1, 1e-9);
   EXPECT_NEAR(back.rx, 10, 1e-9);
   EXPECT_NEAR(back.ry, -20, 1e-9);
@@ -164,8 +166,8 @@ TEST(Arm, MovesToAPointAndStandsAtItsJoints) {
                   "n[2]=distance(here(flange,world),p)");
   Running run(project);
   run.ticks(3000);
-  EXPECT_EQ(run.interpreter.tasks().size(), 0u) << run.log();
-  EXPECT_TRUE(run.get<bool>("b"));
+  EXPECT_EQ(run.controller.tasks().size(), 0u) << run.log();
+  EXPECT_TRUE(run.truth("b"));
   EXPECT_GT(run.number("n", 0), 100);
   EXPECT_NEAR(run.number("n", 1), 0.5, 0.03) << "50 mm at 100 mm/s";
   EXPECT_NEAR(run.number("n", 2), 0, 1e-6);
@@ -176,30 +178,27 @@ TEST(Arm, LatchKeepsTheJointsOfTheEdgeWhileTheArmStopsBehindIt) {
   project.data("j", "jointRx", "<Value key=\"1\" j1=\"10\"/>", 2).data("m", "mdesc", kMoveData);
   project.data("di", "dio", "<Value key=\"0\" link=\"FastIO\\fIn0\"/>").flag("b");
   project.program("start",
-                  "setLatch(di)\nmovej(j[1],flange,m)\nwait(di)\nresetMotion()\nwait(isSettled())\n"
+                  "setLatch(di)\nmovej(j[1],flange,m)\nwait(di==true)\nresetMotion()\nwait(isSettled())\n"
                   "b=getLatch(j[0])\nj[1]=herej()");
   Running run(project);
   run.cabinet.world = [](Cabinet& cabinet) { cabinet.inputs["FastIO\\fIn0"] = cabinet.joints_deg[0] > 3.0; };
   run.ticks(600);
-  EXPECT_TRUE(run.get<bool>("b"));
-  EXPECT_NEAR(run.get<Joint>("j", 0)[0], 3.0, 0.05);
-  EXPECT_GT(run.get<Joint>("j", 1)[0], run.get<Joint>("j", 0)[0]);
-  EXPECT_LT(run.get<Joint>("j", 1)[0], 6.0);
+  EXPECT_TRUE(run.truth("b"));
+  EXPECT_NEAR(run.machine().joint("j", 0)[0], 3.0, 0.05);
+  EXPECT_GT(run.machine().joint("j", 1)[0], run.machine().joint("j", 0)[0]);
+  EXPECT_LT(run.machine().joint("j", 1)[0], 6.0);
 }
 
-TEST(Arm, AnotherTaskMaySeeAnEmptyQueueForAMoment) {
+TEST(Arm, TheQueueMayLookEmptyForAMoment) {
   SmallProject project;
-  project.data("j", "jointRx", "<Value key=\"0\" j1=\"10\"/>")
-      .data("m", "mdesc", kMoveData)
-      .flag("b", 4)
-      .flag("bOver");
-  project.program("look", "b[1]=isEmpty()\ndelay(0)\nb[2]=isEmpty()");
-  project.program("start", "taskCreate \"look\",10,look()\nmovej(j,flange,m)\nb[0]=isEmpty()");
+  project.data("j", "jointRx", "<Value key=\"0\" j1=\"10\"/>").data("m", "mdesc", kMoveData).flag("b", 2);
+  project.program("look", "b[0]=isEmpty()\ndelay(0)\nb[1]=isEmpty()");
+  project.program("start", "taskCreate \"look\",10,look()\nmovej(j,flange,m)");
   Running run(project);
+  run.cabinet.looks_empty_at_first = true;
   run.ticks(3);
-  EXPECT_FALSE(run.get<bool>("b", 0));
-  EXPECT_TRUE(run.get<bool>("b", 1));
-  EXPECT_FALSE(run.get<bool>("b", 2));
+  EXPECT_TRUE(run.machine().truth("b", 0));
+  EXPECT_FALSE(run.machine().truth("b", 1));
 }
 
 TEST(Arm, HeldItKeepsItsQueueAndAResetForgetsIt) {

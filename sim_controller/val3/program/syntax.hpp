@@ -22,6 +22,7 @@ struct Reference {
     kInstruction,  // instruction, and index of its signature
     kWorld,        // the frame that is always there
     kFlange,       // the tool that is always there
+    kSystemIo,     // io:name of s5 and s6 where no application `io` is: the controller's own signal
   };
   To to = To::kNothing;
   int library = -1;  // index of Application::libraries; -1: the application itself
@@ -52,7 +53,8 @@ struct Expression {
 
   // The resolver's.
   Type type;
-  bool is_place = false;  // can be assigned to or passed by reference
+  bool is_place = false;    // can be assigned to or passed by reference
+  bool is_unknown = false;  // of a library that is not there, or found to be wrong: it has no type
   Reference reference;
 };
 
