@@ -30,6 +30,11 @@ class SmallProject {
              "\" size=\"" + std::to_string(size) + "\">" + values + "</Data>\n";
     return *this;
   }
+  /// A whole Data element.
+  SmallProject& file_data(const std::string& element) {
+    data_ += element + "\n";
+    return *this;
+  }
   /// `declarations`: the Parameters and Locals elements.
   SmallProject& program(const std::string& program, const std::string& code,
                         const std::string& declarations = "") {

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim_controller/val3/machine/nodes.hpp"
@@ -24,6 +25,23 @@ class Operation {
   Operation& operator=(const Operation&) = delete;
   virtual Flow run(Context& context) const = 0;
 };
+
+using OperationPtr = std::unique_ptr<const Operation>;
+
+/// An operation of a function.
+template <class F>
+class LambdaOperation final : public Operation {
+ public:
+  explicit LambdaOperation(F f) : f_(std::move(f)) {}
+  Flow run(Context& context) const override { return f_(context); }
+
+ private:
+  F f_;
+};
+template <class F>
+OperationPtr operation(F f) {
+  return std::make_unique<const LambdaOperation<F>>(std::move(f));
+}
 
 struct Instance;
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "sim_controller/val3/machine/builtins.hpp"
+#include "sim_controller/val3/machine/calls.hpp"
 #include "sim_controller/val3/machine/channels.hpp"
 #include "sim_controller/val3/machine/signals.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
@@ -11,61 +12,10 @@ namespace {
 
 using LKind = Line::Kind;
 
-constexpr double kTickSecondsOfTasks = 0.004;
-constexpr double kPriorityMax = 100.0;
-
-template <class F>
-class LambdaOperation final : public Operation {
- public:
-  explicit LambdaOperation(F f) : f_(std::move(f)) {}
-  Flow run(Context& context) const override { return f_(context); }
-
- private:
-  F f_;
-};
-using OperationPtr = std::unique_ptr<const Operation>;
-template <class F>
-OperationPtr operation(F f) {
-  return std::make_unique<const LambdaOperation<F>>(std::move(f));
-}
-
 Flow go_to(const Context& context, std::size_t line) {
   context.here->next = line;
   return Flow::kGo;
 }
-
-/// Fills a parameter of the program that is called.
-using SetParameter = std::unique_ptr<const Node<Nothing>>;
-class Hand {
- public:
-  Hand() = default;
-  virtual ~Hand() = default;
-  Hand(const Hand&) = delete;
-  Hand& operator=(const Hand&) = delete;
-  virtual void over(Context& caller, Activation& called, std::size_t slot) const = 0;
-};
-class HandPlace final : public Hand {
- public:
-  explicit HandPlace(RefNodePtr ref) : ref_(std::move(ref)) {}
-  void over(Context& caller, Activation& called, std::size_t slot) const override {
-    called.slots[slot] = ref_->get(caller);
-  }
-
- private:
-  RefNodePtr ref_;
-};
-template <class T>
-class HandValue final : public Hand {
- public:
-  explicit HandValue(NodePtr<T> value) : value_(std::move(value)) {}
-  void over(Context& caller, Activation& called, std::size_t slot) const override {
-    called.slots[slot].at<T>() = value_->get(caller);
-  }
-
- private:
-  NodePtr<T> value_;
-};
-using Hands = std::vector<std::unique_ptr<const Hand>>;
 
 /// Writes one value to all places of an assignment, the last one first.
 template <class T>
@@ -131,10 +81,10 @@ class LineCompiler {
       case LKind::kInstruction:
         return instruction(line.expressions.at(0));
       case LKind::kCall:
-        return call(line);
+        return call_operation(compiler_, program_, line);
       case LKind::kTaskCreate:
       case LKind::kTaskCreateSync:
-        return creation(line);
+        return creation_operation(compiler_, program_, line);
       case LKind::kReturn:
       case LKind::kEnd:
         return operation([](Context& c) {
@@ -321,83 +271,6 @@ class LineCompiler {
       (void)node->get(c);
       return Flow::kGo;
     });
-  }
-
-  const Code& code_of(const Line& line, const Expression* at) {
-    const Instance* owner = &compiler_.instance();
-    if (line.called_library >= 0) owner = owner->libraries.at(static_cast<std::size_t>(line.called_library));
-    if (owner == nullptr || line.called_program < 0)
-      throw NotSimulated{{program_.file, line.line, at != nullptr ? at->column : line.column},
-                         "program " + line.program + " is of a library that is not there"};
-    return owner->programs.at(static_cast<std::size_t>(line.called_program));
-  }
-
-  Hands hands(const Program& called, const Line& line, std::size_t first) {
-    Hands made;
-    for (std::size_t i = 0; i < called.parameters.size(); ++i) {
-      const Parameter& parameter = called.parameters[i];
-      const Expression& argument = line.expressions.at(first + i);
-      if (parameter.by_reference) {
-        made.push_back(std::make_unique<const HandPlace>(compiler_.ref(argument)));
-        continue;
-      }
-      if (!is_simulated(parameter.type.kind))
-        compiler_.refuse(argument, "values of this type are not simulated");
-      made.push_back(with_type_of(parameter.type.kind, [&]<class T>() -> std::unique_ptr<const Hand> {
-        return std::make_unique<const HandValue<T>>(compiler_.value<T>(argument));
-      }));
-    }
-    return made;
-  }
-
-  OperationPtr call(const Line& line) {
-    const Code* code = &code_of(line, nullptr);
-    const auto& programs = code->program;
-    return operation([code, made = hands(*programs, line, 0)](Context& c) {
-      auto called = Tasks::activate(*code, c.tasks.fathers);
-      for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
-      c.tasks.enter(c, std::move(called));
-      return Flow::kGo;
-    });
-  }
-
-  OperationPtr creation(const Line& line) {
-    const bool is_sync = line.kind == LKind::kTaskCreateSync;
-    const Code* code = &code_of(line, nullptr);
-    auto name = compiler_.value<std::string>(line.expressions.at(0));
-    auto second = compiler_.value<double>(line.expressions.at(1));
-    RefNodePtr overrun;
-    if (is_sync) overrun = compiler_.ref(line.expressions.at(2));
-    auto made = hands(*code->program, line, is_sync ? 3 : 2);
-    return operation([code, name = std::move(name), second = std::move(second), overrun = std::move(overrun),
-                      made = std::move(made), owner = &compiler_.instance()](Context& c) {
-      auto task = std::make_unique<Task>();
-      task->name = name->get(c);
-      task->owner = owner;
-      const double number = second->get(c);
-      if (overrun) {
-        task->period_ticks = period_in_ticks(number);
-        task->overrun = overrun->get(c);
-      } else {
-        if (number < 1.0 || number > kPriorityMax)
-          throw RunFailure(kErrorParameter, "a priority that is not from 1 to 100");
-        task->priority = static_cast<int>(number);
-      }
-      auto called = Tasks::activate(*code, c.tasks.fathers);
-      for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
-      task->stack.push_back(std::move(called));
-      c.tasks.create(std::move(task));
-      return Flow::kGo;
-    });
-  }
-
-  /// Rounded down to a multiple of 4 ms (manual 6, page 88).
-  static int period_in_ticks(double period_s) {
-    constexpr double kSlack = 1e-9;
-    constexpr double kTicksMax = 1e6;
-    const double ticks = std::floor(period_s / kTickSecondsOfTasks + kSlack);
-    if (!(ticks >= 1.0) || ticks > kTicksMax) throw RunFailure(kErrorPeriods, "a period below 4 ms");
-    return static_cast<int>(ticks);
   }
 
   Compiler& compiler_;

@@ -8,15 +8,15 @@
 namespace val3 {
 namespace {
 
-constexpr std::size_t kTaskNameMax = 15;
-constexpr std::size_t kPeriodsMax = 2;
+constexpr std::size_t kTaskNameBytesMax = 15;
+constexpr std::size_t kSynchronousPeriodsMax = 2;
 /// Activations of one program that are kept for its next calls.
 constexpr std::size_t kIdleMax = 64;
 /// Clocks of two sources agree by this.
 constexpr double kInstantSeconds = 1e-9;
 
 bool is_task_name(std::string_view name) {
-  return !name.empty() && name.size() <= kTaskNameMax && std::ranges::all_of(name, [](unsigned char c) {
+  return !name.empty() && name.size() <= kTaskNameBytesMax && std::ranges::all_of(name, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '~';
   });
 }
@@ -79,7 +79,8 @@ Task& Tasks::create(std::unique_ptr<Task> task) {
   for (const auto& other : tasks_)
     if (other->period_ticks != 0) periods.insert(other->period_ticks);
   if (task->period_ticks != 0) periods.insert(task->period_ticks);
-  if (periods.size() > kPeriodsMax) throw RunFailure(kErrorPeriods, "more than two synchronous periods");
+  if (periods.size() > kSynchronousPeriodsMax)
+    throw RunFailure(kErrorPeriods, "more than two synchronous periods");
   tasks_.push_back(std::move(task));
   return *tasks_.back();
 }

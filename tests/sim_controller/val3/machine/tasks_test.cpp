@@ -1,4 +1,4 @@
-// Tasks, time, sockets and motion as the interpreter's cabinet gives them to a program.
+// Tasks, time, sockets and motion as a cabinet gives them to a program.
 #include <gtest/gtest.h>
 
 #include <cmath>

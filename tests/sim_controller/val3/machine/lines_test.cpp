@@ -1,4 +1,4 @@
-// What the interpreter makes of the language, on programs of a few lines.
+// What the machine makes of the language, on programs of a few lines.
 #include <gtest/gtest.h>
 
 #include "tests/val3/running.hpp"
