@@ -66,6 +66,7 @@ class ScriptedRun {
  private:
   Val3SystemOptions options() {
     Val3SystemOptions made;
+    made.links = {};  // every input is the script's
     made.operator_owns_monitor_speed = false;
     made.log = [this](const std::string& text) { tell("log: " + text); };
     return made;
@@ -216,7 +217,9 @@ class ScriptedRun {
 
   void show_page() {
     tell("page: " + system_.page().title());
-    out_ << system_.page().text();
+    std::string lines = system_.page().text();
+    lines.erase(lines.find_last_not_of('\n') + 1);
+    if (!lines.empty()) out_ << lines << '\n';
   }
 
   /// Tells a task that died and a period that was too short, each once.

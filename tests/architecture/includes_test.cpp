@@ -20,7 +20,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"cs8_protocol", {"cs8_protocol", "boost"}},
     {"config", {"config", "calib_core", "nlohmann", "Eigen"}},
     {"sim_controller",
-     {"sim_controller", "config", "cs8_protocol", "calib_core", "boost", "spdlog", "CLI", "Eigen",
+     {"sim_controller", "config", "cs8_protocol", "calib_core", "boost", "nlohmann", "spdlog", "CLI", "Eigen",
       "pugixml.hpp"}},
     {"service",
      {"service", "config", "cs8_protocol", "calib_core", "boost", "nlohmann", "spdlog", "SQLiteCpp",

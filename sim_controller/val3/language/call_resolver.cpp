@@ -59,19 +59,22 @@ const Instruction* ExpressionResolver::called_instruction(Expression& e) {
       return nullptr;
     }
     if (instruction != nullptr && instruction->on_library) return instruction;
+    if (e.text.starts_with('$')) {
+      tell_addon(e);
+      return nullptr;
+    }
     fail(resolver_rules::kProgramWithoutCall, e, full_name(e) + " is no instruction for a library",
          "to call a program, write call " + full_name(e) + "(...)");
     return nullptr;
   }
+  // A program of an instruction's name is reached by `call` only.
+  if (instruction != nullptr) return instruction;
   if (scope_.program(e.text) >= 0) {
     fail(resolver_rules::kProgramWithoutCall, e, e.text + " is a program", "write call " + e.text + "(...)");
     return nullptr;
   }
-  if (instruction != nullptr) return instruction;
   if (e.text.starts_with('$')) {
-    tell(Severity::kNote, resolver_rules::kUnknownAddon, e,
-         e.text + " is of an add-on: its arguments are not checked");
-    e.is_unknown = true;
+    tell_addon(e);
     return nullptr;
   }
   if (scope_.application().language >= Version{8, 0, 0}) {
@@ -82,6 +85,12 @@ const Instruction* ExpressionResolver::called_instruction(Expression& e) {
   }
   fail(resolver_rules::kUndefinedInstruction, e, "no instruction is called " + e.text);
   return nullptr;
+}
+
+void ExpressionResolver::tell_addon(Expression& e) {
+  tell(Severity::kNote, resolver_rules::kUnknownAddon, e,
+       e.text + "() is of an add-on: its arguments are not checked");
+  e.is_unknown = true;
 }
 
 void ExpressionResolver::resolve_call(Expression& e) {

@@ -140,7 +140,9 @@ void ExpressionResolver::resolve_unary(Expression& e) {
   e.type = value.type;
   if (e.text == "!") {
     if (has_kind(value, Kind::kTrsf)) return;
-    e.is_unknown = !be_bool(value);
+    // The opposite of an input's state: programs in use have it.
+    e.type = kBoolType;
+    e.is_unknown = !has_kind(value, Kind::kDio) && !be_bool(value);
     return;
   }
   if (has_kind(value, Kind::kAio)) e.type = kNumType;

@@ -50,6 +50,7 @@ class ExpressionResolver {
   void resolve_field(Expression& e);
   void resolve_call(Expression& e);
   const Instruction* called_instruction(Expression& e);
+  void tell_addon(Expression& e);
   void tell_misfit(const Instruction& instruction, Expression& e);
   void type_arguments(const Signature& signature, Expression& e);
   void resolve_unary(Expression& e);

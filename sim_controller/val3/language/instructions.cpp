@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "sim_controller/val3/language/instruction_table.hpp"
 
@@ -44,10 +45,16 @@ InstructionParameter parameter_from(std::string_view text) {
 }
 
 Signature signature_from(std::string_view text) {
+  Signature signature;
+  for (const auto& [mark, version] : {std::pair{std::string_view("s6.4 "), instruction_table::kS64},
+                                      std::pair{std::string_view("s7 "), instruction_table::kS7}}) {
+    if (!text.starts_with(mark)) continue;
+    signature.since = version;
+    text.remove_prefix(mark.size());
+  }
   const std::size_t open = text.find('(');
   if (open == std::string_view::npos || !text.ends_with(')'))
     throw std::logic_error("no signature: " + std::string(text));
-  Signature signature;
   const std::string_view result = text.substr(0, open);
   signature.any_result = result == "any";
   signature.result = kind_named(result);

@@ -23,6 +23,7 @@ struct Signature {
   Kind result = Kind::kVoid;
   bool any_result = false;  // no manual says of what type
   std::vector<InstructionParameter> parameters;
+  Version since{5, 0};  // where it is newer than the instruction itself
 };
 
 /// One instruction of the language: the table of the manuals (val3 5.3 and 6, the add-ons) and of s7 and s8

@@ -12,16 +12,8 @@ constexpr Type kNumber{Kind::kNum, -1};
 constexpr Type kTruth{Kind::kBool, -1};
 constexpr Type kText{Kind::kString, -1};
 constexpr std::size_t kTaskNameMax = 15;
+constexpr std::size_t kTaskNameMaxS8 = 36;  // as other names
 constexpr double kTaskPriorityMax = 100.0;
-
-/// The variable at the root of a place: of x[i].f it is x.
-const Expression& root_of(const Expression& place) {
-  const Expression* root = &place;
-  while ((root->kind == Expression::Kind::kIndex || root->kind == Expression::Kind::kField) &&
-         !root->parts.empty())
-    root = &root->parts[0];
-  return *root;
-}
 
 std::string called_name(const Line& line) {
   return line.alias.empty() ? line.program : line.alias + ":" + line.program;
@@ -144,8 +136,8 @@ void LineResolver::check_argument(Line& line, const Program& called, const Param
   const Application& owner =
       line.called_library < 0 ? scope_.application() : scope_.of_library(line.called_library)->application();
   const Type wanted = scope_.imported(owner, parameter.type);
-  // A type that the reader did not know is told there.
-  if (wanted.kind == Kind::kVoid) return;
+  const bool is_scara = wanted.kind == Kind::kJointRs || wanted.kind == Kind::kPointRs;
+  if (is_scara || !is_known(scope_.application(), wanted)) return;
   const std::string where = "parameter " + parameter.name + " of " + called.name;
   if (parameter.by_reference) return check_reference(line, parameter, wanted, argument, where);
   expressions_.expect(argument, wanted, where);
@@ -206,13 +198,16 @@ void LineResolver::resolve_task(Line& line) {
 
 void LineResolver::check_task_name(Expression& name) {
   if (name.kind != Expression::Kind::kText || name.is_unknown) return;
-  const bool is_valid = !name.text.empty() && name.text.size() <= kTaskNameMax &&
+  const std::size_t longest =
+      scope_.application().language >= Version{8, 0, 0} ? kTaskNameMaxS8 : kTaskNameMax;
+  const bool is_valid = !name.text.empty() && name.text.size() <= longest &&
                         std::ranges::all_of(name.text, [](unsigned char c) {
                           return c < 0x80 && (std::isalnum(c) != 0 || c == '_');
                         });
   if (!is_valid)
-    expressions_.fail(resolver_rules::kTaskName, name,
-                      "a task's name has 1 to 15 letters, digits and _: this is error 29");
+    expressions_.fail(
+        resolver_rules::kTaskName, name,
+        "a task's name has 1 to " + std::to_string(longest) + " letters, digits and _: this is error 29");
 }
 
 }  // namespace val3

@@ -35,6 +35,12 @@ std::string meant_name(const Application& application, const Program& program, s
   return {};
 }
 
+/// Of a SCARA. What gives joints or points gives those of the arm, which of the two is not known here: its
+/// variables are not checked.
+bool is_of_scara(Kind kind) {
+  return kind == Kind::kJointRs || kind == Kind::kPointRs || kind == Kind::kConfigRs;
+}
+
 /// Digits behind a word: bIn7 of bIn.
 bool is_numbered(std::string_view text, std::string_view word) {
   if (!text.starts_with(word)) return false;
@@ -56,11 +62,11 @@ Kind system_signal(std::string_view name) {
 void ExpressionResolver::resolve_name(Expression& e) {
   if (!e.alias.empty()) return resolve_library_name(e);
   using To = Reference::To;
-  const auto found = [&e](To to, int index, const Type& type, bool is_place) {
+  const auto found = [&](To to, int index, const Type& type, bool is_place) {
     e.reference = {to, -1, index, nullptr};
     e.type = type;
     e.is_place = is_place;
-    e.is_unknown = type.kind == Kind::kVoid;  // of a type that the reader did not know, and told
+    e.is_unknown = !is_known(scope_.application(), type) || is_of_scara(type.kind);
   };
   if (const int local = place_in(program_.locals, e.text, local_name); local >= 0)
     return found(To::kLocal, local, program_.locals[static_cast<std::size_t>(local)].type, true);
@@ -116,7 +122,7 @@ void ExpressionResolver::resolve_library_name(Expression& e) {
   e.reference = {Reference::To::kGlobal, library, global, nullptr};
   e.type = scope_.imported(there->application(), found.declared.type);
   e.is_place = true;
-  e.is_unknown = e.type.kind == Kind::kVoid;
+  e.is_unknown = !is_known(scope_.application(), e.type) || is_of_scara(e.type.kind);
   if (!found.is_public)
     tell(Severity::kError, resolver_rules::kNotPublic, e, full_name(e) + " is not public in that library",
          "make it public there");
@@ -170,7 +176,7 @@ void ExpressionResolver::resolve_field(Expression& e) {
   if (base.kind == Expression::Kind::kBraces)
     return fail(resolver_rules::kBraces, e, "no type says what the values in braces are");
   e.type = field_type(scope_.application(), base.type, e.text);
-  if (e.type.kind != Kind::kVoid) return;
+  if (is_known(scope_.application(), e.type)) return;
   // A field whose type the reader did not know is told there.
   if (shape(e).has_elements())
     e.is_unknown = true;

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "sim_controller/val3/language/line_resolver.hpp"
+#include "sim_controller/val3/language/unify_types.hpp"
 
 namespace val3 {
 namespace {
@@ -29,6 +30,7 @@ void resolve_programs(Scope& scope, Application& application, Findings& findings
 void resolve(Application& application, Findings& findings) {
   std::vector<Application*> all;
   collect(application, all);
+  for (Application* const one : all) unify_types(*one);
   std::deque<Scope> scopes;
   std::unordered_map<const Application*, const Scope*> scope_of;
   for (Application* const one : all) scope_of.emplace(one, &scopes.emplace_back(*one));

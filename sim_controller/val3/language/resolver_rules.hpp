@@ -25,7 +25,6 @@ inline constexpr std::string_view kConstantByReference = "constant-by-reference"
 inline constexpr std::string_view kIndexNotAllowed = "index-not-allowed";
 inline constexpr std::string_view kIndexCount = "index-count";
 inline constexpr std::string_view kIndexType = "index-type";
-inline constexpr std::string_view kIndexRange = "index-range";
 inline constexpr std::string_view kElementIndex = "element-index";
 inline constexpr std::string_view kArrayDimensions = "array-dimensions";
 inline constexpr std::string_view kBraces = "braces";  // too many fields, or no type to be of

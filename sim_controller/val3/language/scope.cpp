@@ -32,11 +32,33 @@ const Global* user_field(const Application& application, const Type& type, std::
   return found == user->fields.end() ? nullptr : &*found;
 }
 
+constexpr int kTypesComparedDeepMax = 16;
+
+bool compare_fields(const Application& of_a, const UserType& a, const Application& of_b, const UserType& b,
+                    int deep) {
+  if (deep > kTypesComparedDeepMax) return false;
+  return std::ranges::equal(a.fields, b.fields, [&](const Global& x, const Global& y) {
+    const Type& of_x = x.declared.type;
+    const Type& of_y = y.declared.type;
+    if (x.declared.name != y.declared.name || x.declared.sizes != y.declared.sizes || of_x.kind != of_y.kind)
+      return false;
+    const UserType* const inner_a = user_type(of_a, of_x);
+    const UserType* const inner_b = user_type(of_b, of_y);
+    if (inner_a == nullptr || inner_b == nullptr) return inner_a == inner_b;
+    return compare_fields(of_a, *inner_a, of_b, *inner_b, deep + 1);
+  });
+}
+
 Shape shape_from(const Declaration& declared) {
   return {static_cast<int>(declared.sizes.size()), declared.is_collection(), false, &declared};
 }
 
 }  // namespace
+
+bool have_same_fields(const Application& of_a, const UserType& a, const Application& of_b,
+                      const UserType& b) {
+  return compare_fields(of_a, a, of_b, b, 0);
+}
 
 Scope::Scope(Application& application)
     : application_(application), library_scopes_(application.libraries.size(), nullptr) {
@@ -54,11 +76,14 @@ Scope::Scope(Application& application)
 Type Scope::imported(const Application& library, const Type& type) {
   const UserType* const user = user_type(library, type);
   if (user == nullptr || &library == &application_) return type;
-  const int known = application_.user_type_named(user->name);
-  if (known >= 0) return {Kind::kUser, known};
+  const auto& types = application_.user_types;
+  const auto known = std::ranges::find_if(types, [&](const UserType& one) {
+    return one.name == user->name && have_same_fields(library, *user, application_, one);
+  });
+  if (known != types.end()) return {Kind::kUser, static_cast<int>(known - types.begin())};
   const auto index = application_.user_types.size();
   // Its place is taken before its fields are looked at: a type that contains itself ends here.
-  application_.user_types.push_back({user->name, {}, user->at});
+  application_.user_types.push_back({user->name, {}, {}, user->project});
   std::vector<Global> fields = user->fields;
   for (Global& field : fields) field.declared.type = imported(library, field.declared.type);
   application_.user_types[index].fields = std::move(fields);
@@ -90,6 +115,20 @@ Shape shape_of(const Scope& scope, const Program& program, const Expression& var
     default:
       return {.dimensions = 0};
   }
+}
+
+const Expression& root_of(const Expression& place) {
+  const Expression* root = &place;
+  while ((root->kind == Expression::Kind::kIndex || root->kind == Expression::Kind::kField) &&
+         !root->parts.empty())
+    root = &root->parts[0];
+  return *root;
+}
+
+bool is_known(const Application& application, const Type& type) {
+  if (type.kind != Kind::kUser) return type.kind != Kind::kVoid;
+  const UserType* const user = user_type(application, type);
+  return user != nullptr && !user->fields.empty();
 }
 
 Word word_named(std::string_view text) {

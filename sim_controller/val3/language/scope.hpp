@@ -52,6 +52,9 @@ struct Shape {
 /// Of a variable or of a field of a user type, without an index; no dimensions for any other expression.
 Shape shape_of(const Scope& scope, const Program& program, const Expression& variable);
 
+/// The variable at the root of a place: of x[i].f it is x.
+const Expression& root_of(const Expression& place);
+
 /// The place of a word in its type's list: off, righty, epositive ...; kVoid when it is none.
 struct Word {
   Kind kind = Kind::kVoid;
@@ -59,6 +62,11 @@ struct Word {
 };
 Word word_named(std::string_view text);
 
+/// Types of two applications, or of one, that are the same but for their names and the places of their
+/// projects.
+bool have_same_fields(const Application& of_a, const UserType& a, const Application& of_b, const UserType& b);
+/// False for a type that the reader did not know, or whose project it did not find: that is told there.
+bool is_known(const Application& application, const Type& type);
 /// A type's fields, of a user type or built in: kVoid when there is none of that name.
 Type field_type(const Application& application, const Type& type, std::string_view field);
 std::vector<Type> field_types(const Application& application, const Type& type);

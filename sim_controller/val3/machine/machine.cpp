@@ -72,7 +72,8 @@ struct Machine::State {
     if (global < 0) throw std::out_of_range("no variable " + std::string(name));
     ArrayBase& array = *root->globals[static_cast<std::size_t>(global)];
     if (array.type().kind != kind_of<T>()) throw std::bad_variant_access();
-    return static_cast<Array<T>&>(array).elements.at(index);
+    if (index >= array.size()) throw std::out_of_range("no such element of " + std::string(name));
+    return static_cast<Array<T>&>(array).elements[index];
   }
 
   const Application& application;
