@@ -166,6 +166,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"sim_controller/main", "the program: end_to_end/programs_test"},
     {"sim_controller/operator", "the round of the operator: permit_test, trouble_effects_test"},
     {"sim_controller/plant", "reads the shipped truths: world_test, motion_test (stopping distance)"},
+    {"sim_controller/planned_move", "how fast each part of a move is: stored_moves_test, drives_test"},
     {"sim_controller/readiness", "refusals of an unready cabinet: controller_test, admission_test"},
     {"sim_controller/reports", "what the host is told: controller_test, motion_task_test"},
     {"sim_controller/val3/files/application_reader", "whole applications: val3/files/read_application_test"},
@@ -193,6 +194,9 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"sim_controller/val3/language/block_links", "how blocks pair: val3/language/parser_test"},
     {"sim_controller/val3/language/lexer", "what is no token: val3/language/expression_parser_test"},
     {"sim_controller/val3/program/application", "looked up by name in val3/files/read_application_test"},
+    {"sim_controller/val3_motion", "the arm of a VAL3 system: val3_system_test"},
+    {"sim_controller/val3_signals", "links of the cell and on demand: val3_system_test"},
+    {"sim_controller/val3_units", "poses and back: controller_arm_test"},
 };
 
 }  // namespace architecture
