@@ -110,7 +110,7 @@ void Link::greet(const DecodeResult& frame, const ExpectedController& expected) 
 void Link::establish(const Welcome& welcome) {
   welcome_ = welcome;
   last_sequence_ = welcome.last_sequence;
-  heard_at_ = Clock::now();
+  heard_at_ = greeted_at_ = Clock::now();
   established_ = true;
   spawn(read_loop());
   spawn(heartbeat_loop());
@@ -144,11 +144,14 @@ asio::awaitable<void> Link::read_loop() {
   }
 }
 
+void Link::send_heartbeat() {
+  const auto host_clock = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - greeted_at_);
+  send(Message{0, Heartbeat{static_cast<std::uint32_t>(host_clock.count())}});
+}
+
 asio::awaitable<void> Link::heartbeat_loop() {
-  const auto start = Clock::now();
   while (!error_) {
-    const auto host_clock = std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
-    send(Message{0, Heartbeat{static_cast<std::uint32_t>(host_clock.count())}});
+    send_heartbeat();
     const auto on_heartbeat = hooks_.on_heartbeat;  // a copy, as for on_loss
     if (on_heartbeat) on_heartbeat();
     if (error_) co_return;
@@ -275,6 +278,7 @@ void Link::take_state(const State& state) {
     return;
   }
   latest_state_ = state;
+  send_heartbeat();  // a controller whose time runs faster than this host's waits for it
   watch_command(state);
   const auto on_state = hooks_.on_state;  // a copy, as for on_loss
   if (on_state) on_state(state);

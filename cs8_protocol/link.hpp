@@ -112,6 +112,7 @@ class Link : public std::enable_shared_from_this<Link> {
   void establish(const Welcome& welcome);
   void spawn(asio::awaitable<void> loop);
   asio::awaitable<void> read_loop();
+  void send_heartbeat();
   asio::awaitable<void> heartbeat_loop();
   asio::awaitable<void> silence_loop();
   void flush();
@@ -141,6 +142,7 @@ class Link : public std::enable_shared_from_this<Link> {
   std::optional<State> latest_state_;
   std::optional<Permit> latest_permit_;
   std::optional<Clock::time_point> heard_at_;
+  Clock::time_point greeted_at_;        // zero of the clock in heartbeats
   std::set<std::uint32_t> runs_begun_;  // on this connection
   Waiting* waiting_ = nullptr;
   Asking* asking_ = nullptr;

@@ -77,7 +77,7 @@ CabinetTick tick(const Plant& plant, Cabinet& cabinet) {
   seen.sensed = sense(plant, cabinet.world, seen.motion);
   if (seen.sensed.collision) {
     cabinet.panel.powered = false;
-    cabinet.drives = Drives{.joints = seen.motion.to};
+    displace(cabinet.drives, seen.motion.to);
   }
   watch_jog(cabinet, seen.sensed);
   count_inputs(cabinet);

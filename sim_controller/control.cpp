@@ -14,7 +14,7 @@
 #include "config/fault_file.hpp"
 #include "cs8_protocol/names.hpp"
 #include "sim_controller/fault_names.hpp"
-#include "sim_controller/server.hpp"
+#include "sim_controller/served_controller.hpp"
 
 namespace sim {
 namespace {
@@ -137,17 +137,17 @@ std::uint16_t Control::port() const { return core_->port(); }
 
 void Control::stop() { core_->stop(); }
 
-std::string answer_control_line(Server& server, std::string_view line) {
+std::string answer_control_line(ServedController& target, std::string_view line) {
   try {
     const cell::ControlRequest request = cell::parse_control_line(line);
     if (const auto* declared = std::get_if<cell::DeclaredFault>(&request)) {
-      server.inject(planned(*declared));
+      target.inject(planned(*declared));
     } else if (const auto* change = std::get_if<cell::OperatorChange>(&request)) {
-      server.change(*change);
+      target.change(*change);
     } else if (const auto* order = std::get_if<cell::JogOrder>(&request)) {
-      if (const auto why_not = server.jog(*order)) return cell::control_refusal(*why_not);
+      if (const auto why_not = target.jog(*order)) return cell::control_refusal(*why_not);
     } else {
-      return cell::control_answer(shown(server.report()));
+      return cell::control_answer(shown(target.report()));
     }
     return cell::control_answer();
   } catch (const cell::ConfigError& error) {

@@ -9,7 +9,7 @@
 
 namespace sim {
 
-class Server;
+class ServedController;
 
 /// Bounds of the control connections.
 inline constexpr std::size_t kControlConnectionsMax = 8;
@@ -37,7 +37,7 @@ class Control {
   std::shared_ptr<Core> core_;
 };
 
-/// Does what the line says to the server. Whatever is in the line, this returns an answer.
-std::string answer_control_line(Server& server, std::string_view line);
+/// Does what the line says to the simulated controller. Whatever is in the line, this returns an answer.
+std::string answer_control_line(ServedController& target, std::string_view line);
 
 }  // namespace sim

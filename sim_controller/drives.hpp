@@ -1,53 +1,46 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "calib_core/geometry/joint_vector.hpp"
 #include "sim_controller/motion.hpp"
+#include "sim_controller/planned_move.hpp"
 #include "sim_controller/plant.hpp"
 
 namespace sim {
 
-/// Period of motion and slow inputs on a CS8.
-inline constexpr double kTickSeconds = 0.004;
-/// A joint's ramp from standstill to its full speed.
-inline constexpr double kJointRampSeconds = 0.4;
-/// What reset_motion() brakes with: the tool centre at least this hard (joints harder by the same factor) ...
-inline constexpr double kResetDecelerationMetresPerSecond2 = 2.0;
-/// ... and harder where that would take longer than this from the move's top speed to standstill.
-inline constexpr double kResetSeconds = 0.125;
-/// The arm counts as settled after so many ticks at standstill.
-inline constexpr int kSettledTicks = 3;
+/// The arm counts as settled after so many ticks at standstill: 50 ms (manual 6, page 161). Its following
+/// error is taken as below 1 % of the allowed one at standstill and nowhere else.
+inline constexpr int kSettledTicks = 13;
 /// The tool's speed may leave the commanded one by this share, from joint moves between a line's knots.
 inline constexpr double kToolSpeedErrorMax = 2e-3;
+/// An arm that stands within this of where its path was left gets back by itself in remote mode; farther away
+/// somebody has to agree (manual 6, page 161). The tolerance of a CS8 is not known.
+inline constexpr double kDriftRadians = 2e-3;
 
-/// A queued motion: a trapezoid in progress (0 to 1, even along the stretch) that begins and ends at
-/// standstill.
-struct Move {
-  std::shared_ptr<const Path> path;
-  double from = 0.0;  // the stretch of the path that is travelled; back when `to` is less
-  double to = 1.0;
-  double top_rate = 0.0;       // progress per second, at monitor speed 100 %
-  double acceleration = 0.0;   // progress per second^2; no monitor speed scales it
-  bool ends_in_error = false;  // the arm cannot follow farther: kImpossibleMoveError when it is there
-
-  /// Progress along the path after a share of the move.
-  [[nodiscard]] double along_path(double progress) const { return from + (to - from) * progress; }
-};
-
-/// The motion side of a CS8: a value; to put the arm elsewhere at standstill (freed by hand,
-/// held by its brakes after a collision) makes a new one, Drives{.joints = there}.
+/// The motion side of a CS8: a value.
 struct Drives {
   calib::JointVector joints = calib::JointVector::Zero();  // commanded: what herej() gives
   std::deque<Move> queue;                                  // the first is being travelled
   double progress = 0.0;                                   // of the first move
   double rate = 0.0;                                       // of its progress, 1/s
   bool braking = false;                                    // a reset; the queue is dropped at standstill
-  std::int32_t error = 0;       // run-time error that stopped the last move; until reset_motion()
-  std::int32_t moves_done = 0;  // since the last reset
+  std::deque<Move> after_reset;                            // ... and these are the queue then
+  bool stopped = false;                                    // by stop_move()
+  std::int32_t error = 0;  // run-time error that stopped the last move; until reset_motion()
   int standing_ticks = kSettledTicks;
+  // Where a path was left, and how the arm gets back there.
+  double left_at = 0.0;                         // progress of the move behind a connection move
+  std::optional<calib::JointVector> begins_at;  // of the next move to be stored; else where the queue ends
+  bool auto_connect = false;                    // connects from anywhere
+  bool connect_agreed = false;                  // somebody lets it connect, once
+  // Numbers of moves.
+  double last_id = 0.0;   // of the last stored one
+  double ended_id = 0.0;  // what getMoveId reads while nothing is stored
 };
 
 /// Where the arm is during one tick.
@@ -66,10 +59,21 @@ struct TickMotion {
   [[nodiscard]] calib::JointVector at(double share) const;
 };
 
+// ---- what the VAL3 runtime stores ----
+
+/// Where the next move begins: at the end of what is stored; behind a reset, where the arm will stand.
+calib::JointVector end_of_queue(const Drives& drives);
+/// Stores a move that begins there, behind a reset too. Returns its number.
+double store(Drives& drives, Move move);
+/// The next move gets the number behind this one.
+void set_move_id(Drives& drives, double id);
+
+// ---- what the C++ twin queues ----
+
 /// Queue a motion from the end of the queue; blend off. A speed is the cap of the nominal tool centre's, m/s,
-/// above 0; joints keep their own. What cannot be done (a target outside the joint ranges, a line the arm
-/// cannot follow to its end) is travelled as far as it can be; then `error` is set and the queue dropped.
-/// While a reset brakes, new motions are swallowed, as a CS8 does: wait for is_settled().
+/// above 0; joints keep their own. A target outside the joint ranges is not begun, a line the arm cannot
+/// follow to its end is travelled as far as it can be; then `error` is set and the queue dropped. While a
+/// reset brakes, new motions are swallowed: wait for is_settled().
 void movej(const Plant& plant, Drives& drives, const calib::JointVector& target, double tip_speed_m_s);
 /// Straight line of the nominal tool centre.
 void movel(const Plant& plant, Drives& drives, const calib::JointVector& target, double tip_speed_m_s);
@@ -77,20 +81,34 @@ void movel(const Plant& plant, Drives& drives, const calib::JointVector& target,
 /// ends.
 void follow(const Plant& plant, Drives& drives, Stretch stretch, double tip_speed_m_s);
 
+// ---- both ----
+
 /// resetMotion(): brakes along the path (begins with the next tick), then drops the queue and zeroes the move
-/// id. Clears `error`.
-void reset_motion(Drives& drives);
+/// id. Clears `error` and a stop. The next move begins at `start`, where it is given.
+void reset_motion(Drives& drives, const std::optional<calib::JointVector>& start = std::nullopt);
+/// The move under way cannot be completed: slows down on the path as a reset does, drops the queue and keeps
+/// `error` until the next reset. Nothing where no move is under way.
+void fail_motion(Drives& drives, std::int32_t error);
+/// stopMove(): slows down on the path as the move does; the queue stays. Until restart_move() or a reset.
+void stop_move(Drives& drives);
+void restart_move(Drives& drives);
+/// The arm is put elsewhere at standstill, by hand or by what it hit. The queue stays: a connection move goes
+/// first.
+void displace(Drives& drives, const calib::JointVector& joints);
 
 /// One tick. Without permission (hold) the arm decelerates on its path and keeps the queue; with it, it goes
 /// on.
 TickMotion tick(Drives& drives, double monitor_speed_percent, bool permitted);
 
-/// getMoveId(): moves done since the last reset and the progress of the present one.
+/// getMoveId(): the number of the move that is travelled and its progress; behind the last one, the number
+/// that follows.
 double move_id(const Drives& drives);
 /// isEmpty(): no motion is pending. True before the arm is settled, after a move's end and during a reset.
 bool is_empty(const Drives& drives);
 /// isSettled(): the arm stands. Still true for a tick after a motion is queued, and with a queue that is
 /// held.
 bool is_settled(const Drives& drives);
+/// A connection move is travelled, or is wanted and nobody has agreed to it.
+bool is_connecting(const Drives& drives);
 
 }  // namespace sim

@@ -10,6 +10,8 @@
 #include <chrono>
 #include <csignal>
 #include <iostream>
+#include <memory>
+#include <optional>
 
 #include "config/decimal_text.hpp"
 #include "config/fault_file.hpp"
@@ -18,7 +20,11 @@
 #include "config/truth.hpp"
 #include "sim_controller/control.hpp"
 #include "sim_controller/fault_names.hpp"
+#include "sim_controller/run_command.hpp"
 #include "sim_controller/server.hpp"
+#include "sim_controller/val3/files/read_application.hpp"
+#include "sim_controller/val3/language/resolver.hpp"
+#include "sim_controller/val3_server.hpp"
 
 namespace {
 
@@ -32,6 +38,10 @@ struct Arguments {
   std::string truth_file;
   std::string listen;
   std::string faults_file;
+  std::string val3;
+  std::string run;
+  std::string script_file;
+  double run_seconds = 0.0;
   std::string control;
   std::uint64_t seed = 1;
   std::string speed = "1";
@@ -56,13 +66,64 @@ std::string check_speed(const std::string& text) {
   return parse_speed(text) ? "" : "'" + text + "' is neither a number from 0.001 to 1000 nor max";
 }
 
-int run(const Arguments& arguments) {
+/// The same for the other twin.
+sim::Val3ServerOptions val3_options(const sim::ServerOptions& options) {
+  sim::Val3ServerOptions same;
+  same.controller.seed = options.controller.seed;
+  same.controller.duties = options.controller.duties;
+  same.controller.faults = options.faults;
+  // An application makes its session of the time since the controller was switched on: another at each start.
+  constexpr std::uint32_t kUpSecondsMax = 900'000;
+  same.controller.system.clock_s = options.controller.session % kUpSecondsMax;
+  same.controller.system.date = std::chrono::sys_seconds(std::chrono::seconds(options.controller.session));
+  same.speed = options.controller.speed;
+  same.log = options.log;
+  return same;
+}
+
+/// What was found, for people. True when a controller would refuse the application.
+bool tell(const val3::Findings& findings) {
+  bool is_refused = false;
+  for (const val3::Finding& finding : findings) {
+    if (finding.severity != val3::Severity::kError) continue;
+    is_refused = true;
+    std::cerr << finding.at.file << ':' << finding.at.line << ": " << finding.what
+              << (finding.remedy.empty() ? "" : "; " + finding.remedy) << '\n';
+  }
+  return is_refused;
+}
+
+/// The application in a folder; nothing when a controller would refuse it: that is told.
+std::optional<val3::Application> load_val3(const std::string& folder) {
+  val3::ReadApplication read = val3::read_application(folder);
+  if (!tell(read.findings)) {
+    read.findings.clear();
+    val3::resolve(read.application, read.findings);
+    if (!tell(read.findings)) return std::move(read.application);
+  }
+  std::cerr << "cs8sim: a controller would not load " << folder << '\n';
+  return std::nullopt;
+}
+
+std::filesystem::path truth_file_of(const Arguments& arguments) {
+  if (!arguments.truth_file.empty()) return arguments.truth_file;
+  return std::filesystem::path(arguments.cell_file).parent_path() / "truth.json";
+}
+
+int run_script(const Arguments& arguments) {
+  return sim::run_application({.application = arguments.run,
+                               .script_file = arguments.script_file,
+                               .cell_file = arguments.cell_file,
+                               .truth_file = truth_file_of(arguments).string(),
+                               .seconds = arguments.run_seconds,
+                               .seed = arguments.seed},
+                              std::cout, std::cerr);
+}
+
+int serve(const Arguments& arguments) {
   const cell::Cell cell = cell::read_cell(arguments.cell_file);
   cell::demand_revolute(cell);
-  const auto truth_file = arguments.truth_file.empty()
-                              ? std::filesystem::path(arguments.cell_file).parent_path() / "truth.json"
-                              : std::filesystem::path(arguments.truth_file);
-  const cell::Truth truth = cell::read_truth(truth_file);
+  const cell::Truth truth = cell::read_truth(truth_file_of(arguments));
   const cell::Endpoint endpoint =
       arguments.listen.empty() ? cell.controller : *cell::parse_endpoint(arguments.listen);
 
@@ -80,8 +141,15 @@ int run(const Arguments& arguments) {
     options.controller.duties = faults.duties;
   }
 
+  std::optional<val3::Application> application;
+  if (!arguments.val3.empty()) {
+    application = load_val3(arguments.val3);
+    if (!application) return kBadInput;
+  }
+
   boost::asio::io_context io;
-  std::optional<sim::Server> server;
+  std::unique_ptr<sim::ServedController> server;
+  val3::Findings findings;
   std::optional<sim::Control> control;
   const auto listen = [](const cell::Endpoint& at, const char* option, const auto& begin) {
     try {
@@ -94,10 +162,17 @@ int run(const Arguments& arguments) {
     return true;
   };
   if (!listen(endpoint, "--listen", [&] {
-        server.emplace(io, endpoint.host, endpoint.port, sim::make_plant(cell, truth), options);
+        sim::Plant plant = sim::make_plant(cell, truth);
+        if (application) {
+          server = std::make_unique<sim::Val3Server>(io, endpoint.host, endpoint.port, std::move(plant),
+                                                     *application, val3_options(options), findings);
+        } else {
+          server = std::make_unique<sim::Server>(io, endpoint.host, endpoint.port, std::move(plant), options);
+        }
       })) {
     return kRefused;
   }
+  if (tell(findings)) return kBadInput;
   if (!arguments.control.empty()) {
     const cell::Endpoint at = *cell::parse_endpoint(arguments.control);
     const auto answer = [&server](std::string_view line) { return sim::answer_control_line(*server, line); };
@@ -139,6 +214,24 @@ int main(int argc, char** argv) {
   app.add_option("--faults", arguments.faults_file, "what goes wrong, and what the operator leaves undone")
       ->type_name("FILE")
       ->check(cell::refuse_empty);
+  app.add_option("--val3", arguments.val3,
+                 "runs the VAL3 application in this folder instead of the C++ twin of touchcal's")
+      ->type_name("DIR")
+      ->check(cell::refuse_empty);
+  auto* run = app.add_option("--run", arguments.run,
+                             "runs the VAL3 application in this folder without a host, and ends")
+                  ->type_name("DIR")
+                  ->check(cell::refuse_empty);
+  app.add_option("--script", arguments.script_file, "of --run: what is done to the application, and when")
+      ->type_name("FILE")
+      ->check(cell::refuse_empty)
+      ->needs(run);
+  app.add_option(
+         "--for", arguments.run_seconds,
+         "of --run: simulated seconds; default: to a second behind the script's last line, 10 without one")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.004, 86400.0))
+      ->needs(run);
   app.add_option("--control", arguments.control,
                  "takes faults while it runs, a line of JSON each; port 0 takes a free one")
       ->type_name("HOST:PORT")
@@ -153,14 +246,16 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.footer(
       "Motions take simulated time (--speed); deadlines, the silence that ends a link and the wait for a "
-      "confirmation are wall time.\nSPDLOG_LEVEL=debug in the environment logs each touch.");
+      "confirmation are wall time. With --val3 these are the application's and simulated too: it waits for "
+      "the "
+      "host's heartbeats.\nSPDLOG_LEVEL=debug in the environment logs each touch.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kWrongUsage;
   }
   try {
-    return run(arguments);
+    return arguments.run.empty() ? serve(arguments) : run_script(arguments);
   } catch (const cell::ConfigError& error) {
     std::cerr << error.what() << '\n';
     return kBadInput;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <vector>
 
@@ -31,26 +32,43 @@ inline constexpr std::int32_t kImpossibleMoveError = 150;
 /// Spacing of the postures on a straight line; joint moves between them leave the line by 0.1 um at most.
 inline constexpr double kLineSpacingMetres = 0.5e-3;
 
-/// A straight line of the nominal tool centre.
-struct StraightLine {
+/// ... and turn the tool between two postures by no more than this.
+inline constexpr double kLineTurnRadians = 2e-3;
+
+/// A way of a tool's centre as postures of the nominal arm. A tool is given by its pose in the nominal arm's
+/// frame 7, whose origin is the nominal tool centre.
+struct ToolPath {
   Path path;
   double length_m = 0.0;  // of `path`
   bool complete = true;   // false: `path` ends where the arm cannot follow (range, reach, singular posture)
 };
 
-/// From one posture's nominal tool pose to the other's; the orientation turns evenly between both ends.
-StraightLine straight_line(const Plant& plant, const calib::JointVector& from, const calib::JointVector& to);
+/// A straight line from one posture's nominal tool pose to the other's; the orientation turns evenly between
+/// both ends.
+ToolPath straight_line(const Plant& plant, const calib::JointVector& from, const calib::JointVector& to);
+/// A straight line of the tool to a pose in R_-1, in whatever posture the arm comes to there.
+ToolPath line_to_pose(const Plant& plant, const calib::JointVector& from,
+                      const Eigen::Isometry3d& block_from_target,
+                      const Eigen::Isometry3d& tip_from_tool = Eigen::Isometry3d::Identity());
+/// An arc through a pose to another, both of the tool in R_-1; the orientation turns evenly to the via pose
+/// and on from there. Not complete, and without a way, when the three points give no circle or one of them is
+/// half a turn or more from the start (manual of VAL3, version 6, pages 141 to 149).
+ToolPath arc_to_pose(const Plant& plant, const calib::JointVector& from,
+                     const Eigen::Isometry3d& block_from_via, const Eigen::Isometry3d& block_from_target,
+                     const Eigen::Isometry3d& tip_from_tool = Eigen::Isometry3d::Identity());
 
 /// How far the nominal tool centre is between two postures.
 double tip_distance_m(const Plant& plant, const calib::JointVector& from, const calib::JointVector& to);
 
 /// The steepest place of a stretch, per unit of its share.
 struct PathSlope {
-  double tip_m = 0.0;          // way of the nominal tool centre
+  double tip_m = 0.0;          // way of the tool centre
+  double turn_rad = 0.0;       // turn of the tool
   double joint_seconds = 0.0;  // what the slowest joint would need at its full speed
 };
 
-PathSlope path_slope(const Plant& plant, const Stretch& stretch);
+PathSlope path_slope(const Plant& plant, const Stretch& stretch,
+                     const Eigen::Isometry3d& tip_from_tool = Eigen::Isometry3d::Identity());
 
 /// Bound on the way of any point of the arm, out to the stylus ball and the bodies around it, on a straight
 /// joint move between two postures; of either model.

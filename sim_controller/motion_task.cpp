@@ -91,6 +91,7 @@ class MotionStep {
     running_.outcome = Outcome::kCollision;
     running_.broken_in = phase_of(running_.stage);
     running_.collision = *seen_.sensed.collision;
+    reset_motion(cabinet_.drives);
     return true;
   }
 

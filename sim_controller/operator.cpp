@@ -82,6 +82,7 @@ void perform(const Plant& plant, Cabinet& cabinet, Act act) {
       break;
     case Act::kMove:
       panel.held = false;
+      cabinet.drives.connect_agreed = true;
       break;
     case Act::kEmergencyStop:
       panel.emergency_stop = 2;
@@ -94,7 +95,7 @@ void perform(const Plant& plant, Cabinet& cabinet, Act act) {
       if (panel.emergency_stop == 1) panel.emergency_stop = 0;
       break;
     case Act::kJogHome:
-      cabinet.drives = Drives{.joints = plant.start_joints};
+      displace(cabinet.drives, plant.start_joints);
       free_probe(cabinet.world.probe);
       cabinet.jogged = true;
       break;

@@ -12,6 +12,7 @@
 #include "sim_controller/controller.hpp"
 #include "sim_controller/fault_plan.hpp"
 #include "sim_controller/plant.hpp"
+#include "sim_controller/served_controller.hpp"
 
 namespace spdlog {
 class logger;
@@ -28,28 +29,21 @@ struct ServerOptions {
 
 /// The simulated controller on a TCP port, on the io_context's one thread. Serves one host; others are told
 /// kOccupied. Lives as long as this object, which may go before the io_context does.
-class Server {
+class Server final : public ServedController {
  public:
   /// Listens at once; port 0 takes a free one. boost::system::system_error when the address cannot be had.
   Server(boost::asio::io_context& io, const std::string& host, std::uint16_t port, Plant plant,
          ServerOptions options);
-  ~Server();
+  ~Server() override;
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;
 
-  [[nodiscard]] std::uint16_t port() const;
-
-  /// Closes every socket; nothing of the server stays in the io_context.
-  void stop();
-
-  /// Adds a fault; it counts messages and touches from now on.
-  void inject(const PlannedFault& fault);
-  /// Changes what the operator does by himself from now on.
-  void change(const cell::OperatorChange& change);
-  /// Jogs with the pendant; returns why the pendant refuses, or nothing.
-  std::optional<std::string> jog(const cell::JogOrder& order);
-  /// What the controller would report now.
-  [[nodiscard]] cs8::State report() const;
+  [[nodiscard]] std::uint16_t port() const override;
+  void stop() override;
+  void inject(const PlannedFault& fault) override;
+  void change(const cell::OperatorChange& change) override;
+  std::optional<std::string> jog(const cell::JogOrder& order) override;
+  [[nodiscard]] cs8::State report() const override;
 
  private:
   class Core;

@@ -65,47 +65,33 @@ void collide(ControllerState& state) {
 
 }  // namespace
 
-void apply(const Trouble& trouble, ControllerState& state) {
-  Cabinet& cabinet = state.cabinet;
-  if (apply_to_probe(trouble, cabinet.world.probe.troubles)) return;
+bool apply(const Trouble& trouble, Cabinet& cabinet) {
+  if (apply_to_probe(trouble, cabinet.world.probe.troubles)) return true;
   switch (trouble.kind) {
-    case TroubleKind::kTaskDies:
-      cabinet.task_error = trouble.number;
-      break;
-    case TroubleKind::kOverruns:
-      cabinet.overruns += static_cast<std::uint32_t>(trouble.number);
-      break;
     case TroubleKind::kMonitorSpeed:
       cabinet.panel.monitor_speed_percent = trouble.number;
-      break;
+      return true;
     case TroubleKind::kReferencesLost:
       cabinet.panel.arm_calibrated = false;
-      break;
+      return true;
     case TroubleKind::kReferencesFound:
       cabinet.panel.arm_calibrated = true;
-      break;
-    case TroubleKind::kMotionError:
-      if (state.motion.running)
-        break_off(cabinet, *state.motion.running, cs8::Outcome::kMotionError, trouble.number);
-      break;
-    case TroubleKind::kCollision:
-      collide(state);
-      break;
+      return true;
     case TroubleKind::kNeverSettles:
       cabinet.never_settles = true;
-      break;
+      return true;
     case TroubleKind::kSettles:
       cabinet.never_settles = false;
-      break;
-    case TroubleKind::kRestarts:
-      restart_application(state);
-      break;
-    case TroubleKind::kConfirmsLate:
-      state.person.confirms_after_s = trouble.seconds;
-      break;
+      return true;
     case TroubleKind::kConfirmationKeyStuck:
       cabinet.panel.confirm_key = cabinet.panel.confirm_key_stuck = true;
-      break;
+      return true;
+    case TroubleKind::kTaskDies:
+    case TroubleKind::kOverruns:
+    case TroubleKind::kMotionError:
+    case TroubleKind::kCollision:
+    case TroubleKind::kRestarts:
+    case TroubleKind::kConfirmsLate:
     case TroubleKind::kStylusSticks:
     case TroubleKind::kStylusStaysTouched:
     case TroubleKind::kStylusNeverTouches:
@@ -117,7 +103,52 @@ void apply(const Trouble& trouble, ControllerState& state) {
     case TroubleKind::kLoopCut:
     case TroubleKind::kLoopShort:
     case TroubleKind::kProbeMended:
-      break;  // applied above
+      break;
+  }
+  return false;
+}
+
+void apply(const Trouble& trouble, ControllerState& state) {
+  Cabinet& cabinet = state.cabinet;
+  if (apply(trouble, cabinet)) return;
+  switch (trouble.kind) {
+    case TroubleKind::kTaskDies:
+      cabinet.task_error = trouble.number;
+      break;
+    case TroubleKind::kOverruns:
+      cabinet.overruns += static_cast<std::uint32_t>(trouble.number);
+      break;
+    case TroubleKind::kMotionError:
+      if (state.motion.running)
+        break_off(cabinet, *state.motion.running, cs8::Outcome::kMotionError, trouble.number);
+      break;
+    case TroubleKind::kCollision:
+      collide(state);
+      break;
+    case TroubleKind::kRestarts:
+      restart_application(state);
+      break;
+    case TroubleKind::kConfirmsLate:
+      state.person.confirms_after_s = trouble.seconds;
+      break;
+    case TroubleKind::kMonitorSpeed:
+    case TroubleKind::kReferencesLost:
+    case TroubleKind::kReferencesFound:
+    case TroubleKind::kNeverSettles:
+    case TroubleKind::kSettles:
+    case TroubleKind::kConfirmationKeyStuck:
+    case TroubleKind::kStylusSticks:
+    case TroubleKind::kStylusStaysTouched:
+    case TroubleKind::kStylusNeverTouches:
+    case TroubleKind::kProbeBounces:
+    case TroubleKind::kVibration:
+    case TroubleKind::kLatchLost:
+    case TroubleKind::kContactCut:
+    case TroubleKind::kContactShort:
+    case TroubleKind::kLoopCut:
+    case TroubleKind::kLoopShort:
+    case TroubleKind::kProbeMended:
+      break;  // the cabinet's
   }
 }
 

@@ -65,8 +65,8 @@ double touch_time_s(const PreparedModel& model, const MotionLimits& limits, cons
   const double length_m = longest_tool_path_m(model, touch.approach, line);
   // A search has one acceleration ramp and ends at full speed.
   const auto search_s = [&](double path_m, double speed_m_s) {
-    return path_m / speed_m_s + speed_m_s / (2.0 * kToolAccelerationMetresPerSecond2) + kProbeSteadySeconds +
-           kStopLatencySeconds;
+    return path_m / speed_m_s + speed_m_s / (2.0 * kToolAccelerationMetresPerSecond2) + kStopLatencySeconds +
+           std::max(kProbeSteadySeconds, kSettlingSeconds);
   };
   double sum = 2.0 * approach_s + search_s(length_m, limits.search_m_s);
   if (limits.second_m_s > 0.0) {

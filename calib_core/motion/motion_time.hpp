@@ -22,8 +22,9 @@ struct MotionLimits {
 /// CS8 has the same values; a test compares them.
 inline constexpr double kToolAccelerationMetresPerSecond2 = 0.5;
 inline constexpr double kJointRampSeconds = 0.4;
-inline constexpr double kSettlingSeconds = 0.012;
-/// A search ends when both probe inputs have been steady for this time (cs8_protocol/PROTOCOL.md, section 6).
+inline constexpr double kSettlingSeconds = 0.052;
+/// A search ends when the arm has settled and both probe inputs have been steady for this time
+/// (cs8_protocol/PROTOCOL.md, section 6).
 inline constexpr double kProbeSteadySeconds = 0.020;
 /// From the probe's edge to the start of braking.
 inline constexpr double kStopLatencySeconds = 0.008;

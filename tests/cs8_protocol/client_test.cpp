@@ -287,6 +287,23 @@ TEST_F(ClientTest, HeartbeatsAreSentWithARisingClock) {
   for (std::size_t i = 1; i < clocks.size(); ++i) EXPECT_GE(clocks[i], clocks[i - 1] + 5);
 }
 
+TEST_F(ClientTest, AStateIsAnsweredWithAHeartbeat) {
+  ClientOptions options = patient();
+  options.heartbeat_period = std::chrono::hours(1);
+  Client client = make_client(options);
+  int beats = 0;
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> {
+    co_await peer.shake_hands(welcome());
+    co_await peer.receive<Heartbeat>();  // the first one, unasked
+    for (; beats < 3; ++beats) {
+      peer.send(0, State{.session = 3});
+      co_await peer.receive<Heartbeat>();
+    }
+  }});
+  run([&]() -> asio::awaitable<void> { co_await connect(client); });
+  EXPECT_EQ(beats, 3);
+}
+
 TEST_F(ClientTest, AfterABreakTheNextConnectionTellsWhatBecameOfTheOpenTouch) {
   Client client = make_client();
   const TouchResult result{.outcome = Outcome::kHeartbeatLost, .phase = Phase::kSearch};

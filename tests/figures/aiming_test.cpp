@@ -152,7 +152,7 @@ class SimulatedRun {
   void search(const AimedTouch& aimed, const std::string& name) {
     const PlannedTouch& touch = aimed.touch;
     const double noise_m = planned_.cell.touch_noise_m * sim::gaussian(chance_);
-    const sim::StraightLine line = sim::straight_line(plant_, touch.approach_joints, touch.search_end_joints);
+    const sim::ToolPath line = sim::straight_line(plant_, touch.approach_joints, touch.search_end_joints);
     const auto trip = sim::testing::find_trip(plant_, line.path, noise_m);
     if (!trip || *trip <= 0.0) {
       flight_.trouble = "no face was met by" + name;

@@ -59,7 +59,7 @@ AimedTouch aimed_touch(const cell::Cell& cell, const Aim& aim) {
                               nominal.joint_ranges.contains(*approach) && nominal.joint_ranges.contains(*end);
         const TouchMotion motion{{*clear}, *approach, *end, 0.25, 0.02, 0.008};
         if (!in_range) continue;
-        const StraightLine line = straight_line(nominal, *approach, *end);
+        const ToolPath line = straight_line(nominal, *approach, *end);
         const double until = find_trip(nominal, line.path, 0.0).value_or(1.0);
         if (!line.complete || find_hit(nominal, {*clear, *approach}, 1.0) ||
             find_hit(nominal, line.path, until))
@@ -73,7 +73,7 @@ AimedTouch aimed_touch(const cell::Cell& cell, const Aim& aim) {
 
 std::optional<calib::JointVector> search_contact(const Plant& plant, const TouchMotion& motion,
                                                  double noise_m) {
-  const StraightLine line = straight_line(plant, motion.approach, motion.search_end);
+  const ToolPath line = straight_line(plant, motion.approach, motion.search_end);
   const auto trip = find_trip(plant, line.path, noise_m);
   return trip ? std::optional(posture(line.path, *trip)) : std::nullopt;
 }

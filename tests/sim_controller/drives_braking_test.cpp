@@ -112,7 +112,7 @@ TEST(Hold, StopsOnThePathWithItsRampKeepsTheQueueAndGoesOn) {
   EXPECT_NEAR(on_search_line(drives.joints).along_m - pressed_m, stopping_distance_m(speed, 0.0), 1e-5);
 
   const calib::JointVector held = drives.joints;
-  for (int i = 0; i < 10; ++i) tick(drives, 100.0, false);
+  for (int i = 0; i < kSettledTicks; ++i) tick(drives, 100.0, false);
   EXPECT_EQ(drives.joints, held);
   EXPECT_FALSE(is_empty(drives));
   EXPECT_TRUE(is_settled(drives));

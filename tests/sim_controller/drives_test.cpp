@@ -134,7 +134,7 @@ TEST(Queue, MovesFollowOneAnotherFromStandstillToStandstill) {
   ASSERT_EQ(drives.queue.size(), 3U);
   std::vector<calib::JointVector> stops;
   double id = move_id(drives);
-  EXPECT_EQ(id, 0.0);
+  EXPECT_EQ(id, 1.0);
   while (!drives.queue.empty()) {
     const TickMotion motion = tick(drives, 100.0, true);
     EXPECT_GT(move_id(drives), id);
@@ -144,14 +144,14 @@ TEST(Queue, MovesFollowOneAnotherFromStandstillToStandstill) {
     EXPECT_FALSE(is_settled(drives));
   }
   EXPECT_EQ(stops, (std::vector<calib::JointVector>{search().search_end, search().approach, corner}));
-  EXPECT_EQ(id, 3.0);
+  EXPECT_EQ(id, 4.0);
 }
 
-TEST(Queue, HalfWayThroughTheSecondMoveTheIdIsOneAndAHalf) {
+TEST(Queue, HalfWayThroughTheSecondMoveTheIdIsTwoAndAHalf) {
   Drives drives = at_approach();
   movel(plant(), drives, search().search_end, 0.02);
   movel(plant(), drives, search().approach, 0.02);
-  while (move_id(drives) < 1.5) tick(drives, 100.0, true);
+  while (move_id(drives) < 2.5) tick(drives, 100.0, true);
   EXPECT_NEAR(on_search_line(drives.joints).along_m, search_length_m() / 2.0, 0.02 * kTickSeconds);
 }
 
@@ -185,7 +185,7 @@ TEST(Queue, AMoveToWhereTheArmIsEndsInATickOrTwo) {
   movel(plant(), drives, search().approach, 0.25);
   EXPECT_LE(run(drives).size(), 6U);
   EXPECT_EQ(drives.joints, search().approach);
-  EXPECT_EQ(move_id(drives), 2.0);
+  EXPECT_EQ(move_id(drives), 3.0);
 }
 
 TEST(Follow, GoesBackOverThePosturesOfASearchThatWasStopped) {

@@ -27,7 +27,7 @@ TEST(Plant, StopsAnEighthOfAMillimetreBehindTheEdgeAtTheProbesSpeed) {
 TEST(StraightLine, KeepsDirectionAndOrientationBetweenItsKnotsToo) {
   const Plant plant = testing::true_plant("demo");
   const auto touch = aimed_touch(testing::read_cell("demo"), {.face = 0, .tilt_rad = 0.7});
-  const StraightLine line = straight_line(plant, touch.motion.approach, touch.motion.search_end);
+  const ToolPath line = straight_line(plant, touch.motion.approach, touch.motion.search_end);
   ASSERT_TRUE(line.complete);
   EXPECT_NEAR(line.length_m, 2.0 * testing::kStandoffMetres, 1e-9);
   const Eigen::Isometry3d start = calib::forward_kinematics(plant.nominal, touch.motion.approach);
@@ -55,10 +55,10 @@ TEST(StraightLine, CannotChangeTheArmsBranch) {
 TEST(StraightLine, EndsWhereAJointReachesItsLimit) {
   Plant plant = testing::perfect_plant("demo");
   const auto touch = aimed_touch(testing::read_cell("demo"), {});
-  const StraightLine whole = straight_line(plant, touch.motion.approach, touch.motion.search_end);
+  const ToolPath whole = straight_line(plant, touch.motion.approach, touch.motion.search_end);
   const calib::JointVector middle = posture(whole.path, 0.5);
   (middle[1] > touch.motion.approach[1] ? plant.joint_ranges.upper : plant.joint_ranges.lower)[1] = middle[1];
-  const StraightLine cut = straight_line(plant, touch.motion.approach, touch.motion.search_end);
+  const ToolPath cut = straight_line(plant, touch.motion.approach, touch.motion.search_end);
   EXPECT_FALSE(cut.complete);
   EXPECT_NEAR(cut.length_m, 0.5 * whole.length_m, 1.01 * kLineSpacingMetres);
   EXPECT_TRUE(plant.joint_ranges.contains(cut.path.back()));
@@ -84,7 +84,7 @@ TEST(PathSlope, OfATurnOfJoint1IsItsArc) {
 TEST(PathSlope, OfALineIsItsLength) {
   const Plant plant = testing::perfect_plant("demo");
   const auto touch = aimed_touch(testing::read_cell("demo"), {.face = 0, .tilt_rad = 0.7});
-  const StraightLine line = straight_line(plant, touch.motion.approach, touch.motion.search_end);
+  const ToolPath line = straight_line(plant, touch.motion.approach, touch.motion.search_end);
   EXPECT_NEAR(path_slope(plant, {line.path}).tip_m, line.length_m, 2e-3 * line.length_m);
 }
 

@@ -24,6 +24,8 @@ constexpr double kOfAPlan = 0.05;
 static_assert(calib::kToolAccelerationMetresPerSecond2 == kAccelerationMetresPerSecond2);
 static_assert(calib::kJointRampSeconds == kJointRampSeconds);
 static_assert(calib::kStopLatencySeconds == kStopLatencySeconds);
+static_assert(calib::kSettlingSeconds - kSettledTicks * kTickSeconds < 1e-12 &&
+              kSettledTicks * kTickSeconds - calib::kSettlingSeconds < 1e-12);
 
 class MotionTime : public testing::DemoTouch {
  protected:

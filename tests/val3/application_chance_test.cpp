@@ -28,8 +28,8 @@ class BadDay {
   explicit BadDay(std::uint32_t seed) : chance_(seed) { bench.make_ready(); }
 
   void run(double seconds) {
-    const double end_s = bench.cabinet.clock_s + seconds;
-    while (bench.cabinet.clock_s < end_s && !testing::Test::HasFailure()) {
+    const double end_s = bench.cabinet.now_s + seconds;
+    while (bench.cabinet.now_s < end_s && !testing::Test::HasFailure()) {
       somebody_acts();
       for (int left = draw(60) * (draw(3) == 0 ? 25 : 1); left > 0 && !testing::Test::HasFailure(); --left)
         tick();
@@ -45,7 +45,7 @@ class BadDay {
 
   /// What was sent and done, newest last: for whoever looks into a failure.
   void note(const std::string& what) {
-    notes_.push_back(std::to_string(bench.cabinet.clock_s) + ' ' + what);
+    notes_.push_back(std::to_string(bench.cabinet.now_s) + ' ' + what);
     if (notes_.size() > 30) notes_.erase(notes_.begin());
   }
   std::string notes() const {
@@ -67,7 +67,7 @@ class BadDay {
       }
       if (std::holds_alternative<MoveResult>(message->payload)) open_ = message->sequence;
     }
-    const double now_s = bench.cabinet.clock_s;
+    const double now_s = bench.cabinet.now_s;
     if (bench.permit() != PermitState::kNone) permitted_s_ = now_s;
     // a search that was stopped goes back to approach by itself
     const bool back_from_search = depth_before_mm > -0.01 && bench.depth_mm() < depth_before_mm;
@@ -77,8 +77,8 @@ class BadDay {
     if (bench.face_mm) {
       EXPECT_LT(bench.depth_mm(), *bench.face_mm + 1.0) << "the arm presses on\n" << notes();
     }
-    for (const std::string& task : bench.interpreter.tasks())
-      EXPECT_EQ(bench.interpreter.task_status(task), 1) << task << '\n' << notes();
+    for (const std::string& task : bench.controller.tasks())
+      EXPECT_EQ(bench.controller.machine().task_status(task), 1) << task << '\n' << notes();
   }
 
   void send(std::uint32_t sequence, const Payload& payload) {
@@ -156,7 +156,7 @@ class BadDay {
         bench.cabinet.held = true;
         break;
       case 4:
-        bench.cabinet.emergency_stop = static_cast<int>(draw(3));
+        bench.cabinet.es_status = static_cast<int>(draw(3));
         break;
       case 5:
         bench.wires.hand = draw(2) == 0;
@@ -181,7 +181,7 @@ class BadDay {
     if (what != 1) return;
     bench.cabinet.powered = true;
     bench.cabinet.held = false;
-    bench.cabinet.emergency_stop = 0;
+    bench.cabinet.es_status = 0;
     bench.wires = {};
     bench.cell_closed = true;
     bench.cabinet.mode = 1;

@@ -12,7 +12,7 @@ using namespace cs8;
 /// Runs one tick at a time until the touch answers; the deepest place on the way.
 double deepest_mm(Bench& bench, TouchResult& result, double& seconds) {
   double deepest = bench.depth_mm();
-  const double begin_s = bench.cabinet.clock_s;
+  const double begin_s = bench.cabinet.now_s;
   for (int left = 100000; left > 0; --left) {
     const auto message = bench.next(kTickSeconds);
     deepest = std::max(deepest, bench.depth_mm());
@@ -22,7 +22,7 @@ double deepest_mm(Bench& bench, TouchResult& result, double& seconds) {
       break;
     }
   }
-  seconds = bench.cabinet.clock_s - begin_s;
+  seconds = bench.cabinet.now_s - begin_s;
   return deepest;
 }
 
@@ -37,7 +37,7 @@ TEST(ApplicationCommissioning, ADryRunGoesSlowlyToEachApproachAndTouchesNothing)
     EXPECT_NEAR(deepest_mm(bench, result, usual_s), 20, 0.1) << "there is no face";
   }
   Bench bench;
-  bench.loaded_.application.globals.at("kDryRun").place.write(true);
+  bench.controller.machine().set_truth("kDryRun", true);
   bench.make_ready();
   bench.send(1, bench.touch());
   EXPECT_NEAR(deepest_mm(bench, result, dry_s), 0, 0.1);
@@ -52,13 +52,13 @@ TEST(ApplicationCommissioning, ADryRunGoesSlowlyToEachApproachAndTouchesNothing)
 /// Whether the application starts its tasks on a controller that is otherwise as `differs` says.
 bool starts(std::function<void(Cabinet&)> differs) {
   Bench bench({.differs = std::move(differs)});
-  const bool runs = bench.interpreter.task_status("receive") == 1;
+  const bool runs = bench.controller.machine().task_status("receive") == 1;
   EXPECT_EQ(bench.cabinet.pop_ups, runs ? 0 : 1);
   return runs;
 }
 
 TEST(ApplicationCommissioning, StartsOnTheVersionsThatItIsMadeFor) {
-  const auto version = [](const char* text) { return [text](Cabinet& c) { c.version = text; }; };
+  const auto version = [](const char* text) { return [text](Cabinet& c) { c.val3_version = text; }; };
   EXPECT_TRUE(starts(version("s7.7.2 - Mar 23 2012 - 16:01:17")));
   EXPECT_TRUE(starts(version("s7.7.2")));
   EXPECT_TRUE(starts(version("s7.11.1 - Sep 27 2016 - 16:01:17")));
@@ -97,7 +97,7 @@ TEST(ApplicationCommissioning, SetsItsSocketAndDoesNotStartWithoutThat) {
 TEST(ApplicationCommissioning, ItsTimesAndNumbersGoOnBeyond32Bits) {
   Bench bench({.clock_s = 5e6});  // 58 days: 5e9 milliseconds
   bench.make_ready();
-  const auto now_ms = static_cast<std::uint32_t>(std::llround(bench.cabinet.clock_s * 1000));  // modulo 2^32
+  const auto now_ms = static_cast<std::uint32_t>(std::llround(bench.cabinet.now_s * 1000));  // modulo 2^32
   EXPECT_LE(bench.state().clock_ms - now_ms, 40u);
   EXPECT_EQ(bench.variable<double>("nTaskError"), 0);
 }

@@ -19,13 +19,13 @@ Permit begin(Bench& bench) {
 
 TEST(ApplicationPermit, BeginIsRefusedWithTheFirstThatIsNotSo) {
   const std::vector<std::pair<RejectReason, std::function<void(Bench&)>>> wrongs{
-      {RejectReason::kEmergencyStop, [](Bench& b) { b.cabinet.emergency_stop = 2; }},
-      {RejectReason::kEmergencyStop, [](Bench& b) { b.cabinet.emergency_stop = 1; }},
+      {RejectReason::kEmergencyStop, [](Bench& b) { b.cabinet.es_status = 2; }},
+      {RejectReason::kEmergencyStop, [](Bench& b) { b.cabinet.es_status = 1; }},
       {RejectReason::kNotRemote, [](Bench& b) { b.cabinet.mode = 3; }},
       {RejectReason::kNotPowered, [](Bench& b) { b.cabinet.powered = false; }},
       {RejectReason::kHold, [](Bench& b) { b.cabinet.held = true; }},
       {RejectReason::kNotCalibrated, [](Bench& b) { b.cabinet.calibrated = false; }},
-      {RejectReason::kMonitorSpeed, [](Bench& b) { b.cabinet.monitor_speed = 99; }},
+      {RejectReason::kMonitorSpeed, [](Bench& b) { b.cabinet.monitor_speed_percent = 99; }},
       {RejectReason::kCellOpen, [](Bench& b) { b.cell_closed = false; }},
       {RejectReason::kProbeInputs, [](Bench& b) { b.wires.loop = false; }},
       {RejectReason::kProbeInputs, [](Bench& b) { b.wires.contact = true; }},
@@ -143,7 +143,7 @@ TEST(ApplicationPermit, IsLostWithPermissionCellAndProbe) {
       {PermitReason::kPermissionLost, [](Bench& b) { b.cabinet.mode = 1; }},
       {PermitReason::kPermissionLost, [](Bench& b) { b.cabinet.powered = false; }},
       {PermitReason::kPermissionLost, [](Bench& b) { b.cabinet.held = true; }},
-      {PermitReason::kPermissionLost, [](Bench& b) { b.cabinet.emergency_stop = 2; }},
+      {PermitReason::kPermissionLost, [](Bench& b) { b.cabinet.es_status = 2; }},
       {PermitReason::kPermissionLost, [](Bench& b) { b.cell_closed = false; }},
       {PermitReason::kProbeFault, [](Bench& b) { b.wires.loop = false; }},
   };
@@ -201,12 +201,13 @@ std::function<Payload(Bench&)> touch_with(Change change) {
 std::vector<Refused> refusals() {
   using R = RejectReason;
   return {
-      {"emergency stop", R::kEmergencyStop, 0, [](Bench& b) { b.cabinet.emergency_stop = 2; }, plain_touch},
+      {"emergency stop", R::kEmergencyStop, 0, [](Bench& b) { b.cabinet.es_status = 2; }, plain_touch},
       {"manual", R::kNotRemote, 0, [](Bench& b) { b.cabinet.mode = 1; }, plain_touch},
       {"no power", R::kNotPowered, 0, [](Bench& b) { b.cabinet.powered = false; }, plain_touch},
       {"hold", R::kHold, 0, [](Bench& b) { b.cabinet.held = true; }, plain_touch},
       {"not referenced", R::kNotCalibrated, 0, [](Bench& b) { b.cabinet.calibrated = false; }, plain_touch},
-      {"monitor speed", R::kMonitorSpeed, 40, [](Bench& b) { b.cabinet.monitor_speed = 40; }, plain_touch},
+      {"monitor speed", R::kMonitorSpeed, 40, [](Bench& b) { b.cabinet.monitor_speed_percent = 40; },
+       plain_touch},
       {"open cell", R::kCellOpen, 0, [](Bench& b) { b.cell_closed = false; }, plain_touch},
       {"retract", R::kNothingToRetract, 0, as_it_is,
        [](Bench&) {

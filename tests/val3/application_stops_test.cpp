@@ -155,10 +155,10 @@ TEST(ApplicationStops, AMoveThatTheArmDoesNotBeginIsAMotionErrorAtOnce) {
 TEST(ApplicationStops, AMoveThatStandsStillOnItsWayIsAMotionErrorUnlessTheOperatorHoldsItsSpeedAtZero) {
   Bench bench;
   into_phase(bench, phases().front());
-  bench.cabinet.monitor_speed = 0;
+  bench.cabinet.monitor_speed_percent = 0;
   bench.seconds(5);
   EXPECT_EQ(bench.state().active_sequence, 2u) << "the deadline decides";
-  bench.cabinet.monitor_speed = 100;
+  bench.cabinet.monitor_speed_percent = 100;
   bench.seconds(0.1);
   bench.cabinet.stopped = true;
   const TouchResult result = bench.expect<TouchResult>(2, 5);
@@ -171,7 +171,7 @@ TEST(ApplicationStops, LostPermissionEndsATouchForGood) {
       {"mode", [](Bench& b, bool lost) { b.cabinet.mode = lost ? 1 : 4; }},
       {"power", [](Bench& b, bool lost) { b.cabinet.powered = !lost; }},
       {"hold", [](Bench& b, bool lost) { b.cabinet.held = lost; }},
-      {"emergency stop", [](Bench& b, bool lost) { b.cabinet.emergency_stop = lost ? 2 : 0; }},
+      {"emergency stop", [](Bench& b, bool lost) { b.cabinet.es_status = lost ? 2 : 0; }},
       {"cell", [](Bench& b, bool lost) { b.cell_closed = !lost; }}};
   for (const auto& [what, set] : losses) {
     SCOPED_TRACE(what);
@@ -264,13 +264,13 @@ TEST(ApplicationStops, ARetractThatIsBrokenOffGoesOnLater) {
 
 TEST(ApplicationStops, ATaskThatDiesIsNoticedAndNothingMovesAnyMore) {
   Bench idle;
-  const std::vector<std::string> tasks = idle.interpreter.tasks();
+  const std::vector<std::string> tasks = idle.controller.tasks();
   EXPECT_GE(tasks.size(), 4u);
   for (const std::string& task : tasks) {
     SCOPED_TRACE(task);
     Bench bench;
     into_phase(bench, phases()[2]);
-    bench.interpreter.fail_task(task, 150);
+    bench.controller.machine().fail_task(task, 150);
     bench.seconds(0.3);
     const Joint stands = bench.cabinet.joints_deg;
     bench.seconds(1);
@@ -282,9 +282,9 @@ TEST(ApplicationStops, ATaskThatDiesIsNoticedAndNothingMovesAnyMore) {
 TEST(ApplicationStops, StopLeavesNoTaskAlive) {
   Bench bench;
   into_phase(bench, phases()[2]);
-  bench.interpreter.stop();
+  bench.controller.machine().stop();
   bench.seconds(0.3);
-  EXPECT_TRUE(bench.interpreter.tasks().empty()) << testing::PrintToString(bench.interpreter.tasks());
+  EXPECT_TRUE(bench.controller.tasks().empty()) << testing::PrintToString(bench.controller.tasks());
   EXPECT_TRUE(bench.cabinet.is_empty());
   const Joint stands = bench.cabinet.joints_deg;
   bench.seconds(1);

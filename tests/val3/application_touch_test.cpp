@@ -25,7 +25,7 @@ TEST(ApplicationTouch, MeetsTheFaceAndTellsWhere) {
               0.002);
   EXPECT_EQ(result.search_speed_um_s, 8000);
   EXPECT_EQ(result.monitor_speed_percent, 100);
-  EXPECT_NEAR(result.contact_clock_ms, bench.cabinet.clock_s * 1000, 4000);
+  EXPECT_NEAR(result.contact_clock_ms, bench.cabinet.now_s * 1000, 4000);
   EXPECT_GT(result.contact_clock_ms, 0u);
   EXPECT_EQ(result.error_number, 0);
   EXPECT_EQ(result.first_source, CaptureSource::kNone);
@@ -186,19 +186,19 @@ TEST(ApplicationTouch, TravelGoesThroughViaAtItsSpeed) {
   travel.via[0] = bench.at_depth(-60);
   travel.via[1] = bench.at_depth(-100);
   travel.travel_speed_um_s = 50000;
-  const double before_s = bench.cabinet.clock_s;
+  const double before_s = bench.cabinet.now_s;
   bench.send(1, travel);
   bench.expect<Accepted>(1);
   double highest = 0;
   std::optional<Message> end;
-  while (!end && bench.cabinet.clock_s < before_s + 20) {
+  while (!end && bench.cabinet.now_s < before_s + 20) {
     end = bench.next(0.004);
     highest = std::min(highest, bench.depth_mm());
   }
   ASSERT_TRUE(end);
   EXPECT_EQ(std::get<MoveResult>(end->payload).outcome, Outcome::kArrived);
   EXPECT_NEAR(highest, -100, 0.5);
-  EXPECT_GE(bench.cabinet.clock_s - before_s, 160 / 50.0) << "never faster than asked";
+  EXPECT_GE(bench.cabinet.now_s - before_s, 160 / 50.0) << "never faster than asked";
 }
 
 // ---- repeats ----

@@ -23,14 +23,10 @@ std::filesystem::path project_path() {
 }
 
 Bench::Bench(Hardware hardware)
-    : loaded_(load(project_path())),
-      cabinet(cabinet_of(hardware)),
-      interpreter(loaded_.application, cabinet) {
-  for (const Problem& problem : loaded_.problems) ADD_FAILURE() << problem.message();
+    : controller(project_path(), cabinet, [this, &hardware] { set_up(hardware); }) {
   inputs_ = {&cabinet.inputs[link(kContact)], &cabinet.inputs[link(kLoop)], &cabinet.inputs[link(kClosed)],
              &cabinet.inputs[link(kConfirm)]};
-  if (hardware.latch) cabinet.latch_inputs.insert(link(kContact));
-  loaded_.application.globals.at(kHasLatch).place.write(hardware.latch);
+  controller.machine().set_truth(kHasLatch, hardware.latch);
   socket_ = &cabinet.sockets[link(kSocket)];
   cabinet.joints_deg = kApproachDeg;
   z_of_approach_m_ = cabinet.arm.world_from_flange(kApproachDeg).translation().z();
@@ -38,43 +34,44 @@ Bench::Bench(Hardware hardware)
   for (std::size_t i = 0; i < clear.size(); ++i) cabinet.joints_deg[i] = clear[i] / 1e6;
   cabinet.world = [this](Cabinet&) { update_inputs(); };
   update_inputs();
-  interpreter.start();
+  controller.machine().start();
   seconds(0.1);
 }
 
-Cabinet Bench::cabinet_of(Hardware hardware) {
-  Cabinet cabinet;
-  cabinet.clock_s = hardware.clock_s;
+void Bench::set_up(const Hardware& hardware) {
+  for (const char* input : {kContact, kLoop, kClosed, kConfirm}) cabinet.inputs[link(input)];
+  if (hardware.latch) cabinet.latch_inputs.insert(link(kContact));
+  cabinet.now_s = hardware.clock_s;
+  cabinet.looks_empty_at_first = true;
   if (hardware.differs) hardware.differs(cabinet);
-  return cabinet;
 }
 
 void Bench::spoil_globals(const std::set<std::string>& kept) {
-  for (const auto& [name, global] : loaded_.application.globals) {
-    if (global.line == 0 || name.starts_with("k") || kept.contains(name)) continue;
-    for (std::size_t i = 0; i < global.place.size(); ++i) {
-      const Place place = global.place.element(static_cast<double>(i));
-      if (global.type == Type::kNum) place.write(12345.5);
-      if (global.type == Type::kBool) place.write(!std::get<bool>(place.read()));
-      if (global.type == Type::kString) place.write(std::string("left from before"));
-      if (global.type == Type::kJoint) place.write(Joint{200, 200, 200, 200, 200, 200});
-      if (global.type == Type::kMdesc) place.write(Mdesc{.decel = 1});
+  Machine& machine = controller.machine();
+  for (const Global& global : controller.application().globals) {
+    const Declaration& declared = global.declared;
+    if (declared.name.starts_with("k") || kept.contains(declared.name)) continue;
+    for (std::size_t i = 0; i < declared.sizes.at(0); ++i) {
+      if (declared.type.kind == Kind::kNum) machine.set_number(declared.name, 12345.5, i);
+      if (declared.type.kind == Kind::kBool)
+        machine.set_truth(declared.name, !machine.truth(declared.name, i), i);
+      if (declared.type.kind == Kind::kString) machine.set_text(declared.name, "left from before", i);
+      if (declared.type.kind == Kind::kJoint)
+        machine.set_joint(declared.name, {200, 200, 200, 200, 200, 200}, i);
     }
   }
 }
 
 std::string Bench::link(const std::string& variable) const {
-  const auto found = loaded_.application.globals.find(variable);
-  if (found == loaded_.application.globals.end())
-    throw std::logic_error("the application has no " + variable);
-  const Value value = found->second.place.read();
-  if (const Sio* sio = std::get_if<Sio>(&value)) return sio->link;
-  return std::get<Dio>(value).link;
+  const int global = controller.application().global_named(variable);
+  if (global < 0) throw std::logic_error("the application has no " + variable);
+  return controller.application().globals[static_cast<std::size_t>(global)].values.at(0).attributes.at(
+      "link");
 }
 
 std::string Bench::log() const {
   std::string all;
-  for (const std::string& line : cabinet.log) all += line + '\n';
+  for (const std::string& line : cabinet.lines) all += line + '\n';
   return all;
 }
 
@@ -96,7 +93,7 @@ void Bench::ticks(int count) {
   for (int i = 0; i < count; ++i) {
     if (heartbeats && connected() && ++ticks_ % 25 == 0)
       send(0, cs8::Heartbeat{static_cast<std::uint32_t>(ticks_)});
-    interpreter.tick();
+    controller.tick();
     read_frames();
   }
 }

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cs8_protocol/codec.hpp"
-#include "tests/val3/application.hpp"
-#include "tests/val3/interpreter.hpp"
+#include "tests/val3/cabinet.hpp"
+#include "tests/val3/controller.hpp"
 
 namespace val3 {
 
@@ -95,21 +95,21 @@ class Bench {
   [[nodiscard]] Socket& socket() { return *socket_; }
   [[nodiscard]] std::string log() const;
   template <class T>
-  T variable(const std::string& name) {
-    return std::get<T>(loaded_.application.globals.at(name).place.read());
+  [[nodiscard]] T variable(const std::string& name) const {
+    if constexpr (std::is_same_v<T, bool>) return controller.machine().truth(name);
+    return controller.machine().number(name);
   }
 
-  /// Every variable of the application that is no constant and no link gets a value that makes no sense, but
-  /// for `kept`.
+  /// Every number, bool, string and joint of the application that is no constant gets a value that makes no
+  /// sense, but for `kept`.
   void spoil_globals(const std::set<std::string>& kept);
 
-  Loaded loaded_;
   Cabinet cabinet;
-  Interpreter interpreter;
+  Controller controller;
   bool heartbeats = true;
 
  private:
-  static Cabinet cabinet_of(Hardware hardware);
+  void set_up(const Hardware& hardware);
   [[nodiscard]] std::string link(const std::string& variable) const;
   void update_inputs();
   void read_frames();

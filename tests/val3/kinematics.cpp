@@ -1,15 +1,11 @@
 #include "tests/val3/kinematics.hpp"
 
-#include <cmath>
-#include <numbers>
-
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/arm_file.hpp"
+#include "sim_controller/val3/machine/geometry.hpp"
 
 namespace val3 {
 namespace {
-
-constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 
 calib::JointVector radians(const Joint& joints_deg) {
   calib::JointVector result;
@@ -54,27 +50,6 @@ bool NominalArm::in_range(const Joint& joints_deg) const {
   const calib::JointVector joints = radians(joints_deg);
   return (joints.array() >= ranges_.lower.array() - slack).all() &&
          (joints.array() <= ranges_.upper.array() + slack).all();
-}
-
-Eigen::Isometry3d isometry(const Trsf& t) {
-  Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
-  result.translation() = Eigen::Vector3d(t.x, t.y, t.z) / 1000.0;
-  result.linear() = (Eigen::AngleAxisd(t.rx * kRadiansPerDegree, Eigen::Vector3d::UnitX()) *
-                     Eigen::AngleAxisd(t.ry * kRadiansPerDegree, Eigen::Vector3d::UnitY()) *
-                     Eigen::AngleAxisd(t.rz * kRadiansPerDegree, Eigen::Vector3d::UnitZ()))
-                        .toRotationMatrix();
-  return result;
-}
-
-Trsf trsf(const Eigen::Isometry3d& isometry) {
-  const Eigen::Matrix3d& r = isometry.linear();
-  const Eigen::Vector3d mm = isometry.translation() * 1000.0;
-  return {.x = mm.x(),
-          .y = mm.y(),
-          .z = mm.z(),
-          .rx = std::atan2(-r(1, 2), r(2, 2)) / kRadiansPerDegree,
-          .ry = std::atan2(r(0, 2), std::hypot(r(0, 0), r(0, 1))) / kRadiansPerDegree,
-          .rz = std::atan2(-r(0, 1), r(0, 0)) / kRadiansPerDegree};
 }
 
 }  // namespace val3

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "calib_core/kinematics/kinematic_model.hpp"
-#include "tests/val3/values.hpp"
+#include "sim_controller/val3/program/values.hpp"
 
 namespace val3 {
 
@@ -26,9 +26,5 @@ class NominalArm {
   calib::JointRanges ranges_;
   Joint speeds_deg_s_{};
 };
-
-/// mm and degrees to metres and back.
-Eigen::Isometry3d isometry(const Trsf& trsf);
-Trsf trsf(const Eigen::Isometry3d& isometry);
 
 }  // namespace val3

@@ -2,45 +2,48 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/val3/application.hpp"
-#include "tests/val3/interpreter.hpp"
+#include <string>
+
+#include "tests/val3/controller.hpp"
 #include "tests/val3/small_project.hpp"
 
 namespace val3 {
 
-/// A small project that runs in a cabinet of its own.
+/// A small project that runs in a cabinet of its own, with an input that has a latch, an output and a socket.
 class Running {
  public:
-  explicit Running(SmallProject& project, Limits limits = {})
-      : loaded_(load(project.write().path())), interpreter(loaded_.application, cabinet, limits) {
-    for (const Problem& problem : loaded_.problems) ADD_FAILURE() << problem.message();
-    cabinet.inputs["FastIO\\fIn0"] = false;
-    cabinet.latch_inputs.insert("FastIO\\fIn0");
-    cabinet.outputs["BasicIO-1\\%Q0"] = false;
-    cabinet.sockets["Socket\\host"];
-    if (loaded_.problems.empty()) interpreter.start();
+  explicit Running(SmallProject& project, MachineLimits limits = {})
+      : controller(
+            project.write().path(), cabinet, [this] { set_up(); }, limits) {
+    machine().start();
   }
+  [[nodiscard]] Machine& machine() { return controller.machine(); }
   void ticks(int count) {
-    for (int i = 0; i < count; ++i) interpreter.tick();
+    for (int i = 0; i < count; ++i) controller.tick();
   }
-  template <class T>
-  T get(const std::string& variable, double index = 0) {
-    return std::get<T>(loaded_.application.globals.at(variable).place.element(index).read());
+  double number(const std::string& variable, std::size_t index = 0) {
+    return machine().number(variable, index);
   }
-  double number(const std::string& variable, double index = 0) { return get<double>(variable, index); }
+  std::string text(const std::string& variable, std::size_t index = 0) {
+    return machine().text(variable, index);
+  }
+  bool truth(const std::string& variable) { return machine().truth(variable); }
   std::string log() {
     std::string all;
-    for (const std::string& line : cabinet.log) all += line + "\n";
+    for (const std::string& line : cabinet.lines) all += line + "\n";
     return all;
   }
 
   Cabinet cabinet;
+  Controller controller;
 
  private:
-  Loaded loaded_;
-
- public:
-  Interpreter interpreter;
+  void set_up() {
+    cabinet.inputs["FastIO\\fIn0"] = false;
+    cabinet.inputs["BasicIO-1\\%I0"] = false;
+    cabinet.latch_inputs.insert("FastIO\\fIn0");
+    cabinet.outputs["BasicIO-1\\%Q0"] = false;
+  }
 };
 
 }  // namespace val3

@@ -7,8 +7,6 @@
 #include <map>
 #include <string>
 
-#include "tests/val3/application.hpp"
-
 namespace val3 {
 
 /// A VAL3 project of a few lines, written to a folder of its own that goes with it.
@@ -30,6 +28,11 @@ class SmallProject {
                      int size = 1) {
     data_ += "<Data name=\"" + variable + "\" access=\"private\" xsi:type=\"array\" type=\"" + type +
              "\" size=\"" + std::to_string(size) + "\">" + values + "</Data>\n";
+    return *this;
+  }
+  /// A whole Data element.
+  SmallProject& file_data(const std::string& element) {
+    data_ += element + "\n";
     return *this;
   }
   /// `declarations`: the Parameters and Locals elements.

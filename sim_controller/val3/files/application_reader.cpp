@@ -1,0 +1,164 @@
+#include "sim_controller/val3/files/application_reader.hpp"
+
+#include <algorithm>
+
+#include "sim_controller/val3/files/data_file.hpp"
+#include "sim_controller/val3/files/declaration_checks.hpp"
+#include "sim_controller/val3/files/declared_names.hpp"
+#include "sim_controller/val3/files/file_rules.hpp"
+#include "sim_controller/val3/files/library_path.hpp"
+#include "sim_controller/val3/files/program_file.hpp"
+#include "sim_controller/val3/files/read_application.hpp"
+
+namespace val3 {
+namespace {
+
+/// The library that every application of s5 and s6 has: the controller's inputs and outputs.
+bool is_built_in(std::string_view path) {
+  const auto parts = path_parts(path);
+  return !parts.empty() && (in_lower_case(parts.back()) == "io" || in_lower_case(parts.back()) == "io.pjx");
+}
+
+/// Files of a section, without those that are listed twice.
+std::vector<ProjectFile::Listed> without_twins(const std::vector<ProjectFile::Listed>& listed,
+                                               FileFindings& findings) {
+  std::vector<ProjectFile::Listed> result;
+  std::set<std::string> seen;
+  for (const ProjectFile::Listed& one : listed) {
+    if (seen.insert(in_lower_case(one.file)).second)
+      result.push_back(one);
+    else
+      findings.error(file_rules::kDuplicateName, one.line,
+                     "the file " + shown_word(one.file) + " is listed twice", "remove one of them");
+  }
+  return result;
+}
+
+}  // namespace
+
+std::shared_ptr<Application> ApplicationReader::read(const std::filesystem::path& file, int depth) {
+  if (const auto known = read_.find(file); known != read_.end()) return known->second;
+  FileFindings findings(files_.name_of(file), findings_);
+  const auto xml = files_.read(file, findings);
+  const auto project = xml ? read_project_file(*xml, findings) : std::nullopt;
+  if (!project) return read_[file] = nullptr;
+  being_read_.insert(file);
+  auto application = std::make_shared<Application>();
+  application->name = file.stem().string();
+  application->folder = file.parent_path().string();
+  application->project = file.filename().string();
+  application->version = project->version;
+  application->language = project->language;
+  application->form = project->form;
+  application->stack_bytes = project->stack_bytes;
+  application->is_metric = project->is_metric;
+
+  UserTypeReader types(files_, *application);
+  types.read(*project, findings, types_told_);
+  read_data(*application, *project, types, findings);
+  read_programs(*application, *project, types, findings);
+  note_unlisted(*project, file.parent_path(), findings);
+  read_libraries(*application, *project, findings, depth);
+  check_fathers(*application, findings_);
+  being_read_.erase(file);
+  return read_[file] = application;
+}
+
+void ApplicationReader::read_data(Application& application, const ProjectFile& project,
+                                  const UserTypeReader& types, FileFindings& findings) {
+  const DataContext context{types.words(), application.user_types, types.elements_of_user(), elements_};
+  DeclaredNames names(application.language);
+  for (const ProjectFile::Listed& listed : without_twins(project.data, findings)) {
+    const auto path = files_.listed(application.folder, listed, findings);
+    if (!path) continue;
+    FileFindings of_data(files_.name_of(*path), findings_);
+    const auto xml = files_.read(*path, of_data);
+    if (!xml) continue;
+    std::vector<Global> globals;
+    read_data_file(*xml, context, of_data, globals);
+    for (Global& global : globals)
+      if (names.add(global.declared.name, "variable", global.declared.line, of_data))
+        application.globals.push_back(std::move(global));
+  }
+}
+
+void ApplicationReader::read_programs(Application& application, const ProjectFile& project,
+                                      const UserTypeReader& types, FileFindings& findings) {
+  const ProgramContext context{types.words(), types.elements_of_user(), application.language};
+  DeclaredNames names(application.language);
+  for (const ProjectFile::Listed& listed : without_twins(project.programs, findings)) {
+    const auto path = files_.listed(application.folder, listed, findings);
+    if (!path) continue;
+    FileFindings of_program(files_.name_of(*path), findings_);
+    const auto xml = files_.read(*path, of_program);
+    if (!xml) continue;
+    std::vector<Program> programs;
+    read_program_file(*xml, context, of_program, programs);
+    if (programs.size() == 1 && in_lower_case(path->stem().string()) != in_lower_case(programs[0].name))
+      of_program.note(file_rules::kFileName, programs[0].line,
+                      "the program of this file is called " + shown_word(programs[0].name),
+                      "call the file by the program's name");
+    for (Program& program : programs)
+      if (names.add(program.name, "program", program.line, of_program))
+        application.programs.push_back(std::move(program));
+  }
+}
+
+void ApplicationReader::note_unlisted(const ProjectFile& project, const std::filesystem::path& folder,
+                                      FileFindings& findings) {
+  std::set<std::string> listed;
+  for (const ProjectFile::Listed& one : project.programs) {
+    const auto parts = path_parts(one.file);
+    if (parts.size() == 1) listed.insert(in_lower_case(parts[0]));
+  }
+  for (const std::string& name : files_.names().names_in(folder)) {
+    const std::string lower = in_lower_case(name);
+    if (lower.ends_with(".pgx") && !listed.contains(lower))
+      findings.note(file_rules::kUnlistedProgram, 0, "the project does not list " + shown_word(name),
+                    "list it, or remove it");
+  }
+}
+
+void ApplicationReader::read_libraries(Application& application, const ProjectFile& project,
+                                       FileFindings& findings, int depth) {
+  DeclaredNames aliases(application.language);
+  for (const ProjectFile::Other& listed : project.libraries) {
+    if (!aliases.add(listed.name, "library", listed.line, findings)) continue;
+    Library library{listed.name, listed.path, listed.autoload, {findings.file(), listed.line, 0}, nullptr};
+    if (!listed.path.empty()) read_library(application.folder, listed, library, findings, depth);
+    application.libraries.push_back(std::move(library));
+  }
+}
+
+void ApplicationReader::read_library(const std::filesystem::path& folder, const ProjectFile::Other& listed,
+                                     Library& library, FileFindings& findings, int depth) {
+  const LibraryPlace place = find_library(files_.names(), folder, listed.path);
+  const std::string called = "the library " + listed.name + " at " + shown_word(listed.path);
+  switch (place.is) {
+    case LibraryPlace::Is::kMissing:
+      if (!is_built_in(listed.path))
+        findings.warning(file_rules::kLibraryMissing, listed.line,
+                         called + " is not there: nothing of it is checked",
+                         "put its folder beside this one");
+      return;
+    case LibraryPlace::Is::kOutside:
+      return findings.error(file_rules::kFileOutside, listed.line,
+                            called + " is outside of the user's applications");
+    case LibraryPlace::Is::kEncrypted:
+      return findings.warning(file_rules::kLibraryEncrypted, listed.line,
+                              called + " is encrypted: nothing of it is checked");
+    case LibraryPlace::Is::kProject:
+      break;
+  }
+  if (being_read_.contains(place.file))
+    return findings.error(file_rules::kCircularLibrary, listed.line,
+                          called + " uses this project in its turn",
+                          "libraries must not use each other in a circle");
+  if (depth >= kLibrariesDeepMax)
+    return findings.error(
+        file_rules::kLibrariesTooDeep, listed.line,
+        called + " is nested deeper than " + std::to_string(kLibrariesDeepMax) + " libraries");
+  library.application = read(place.file, depth + 1);
+}
+
+}  // namespace val3

@@ -1,0 +1,39 @@
+#include "sim_controller/val3/machine/builtins.hpp"
+
+namespace val3 {
+
+NodePtr<Father> Argument<FrameRef>::make(Compiler& compiler, const Expression& e) {
+  if (e.reference.to == Reference::To::kWorld)
+    return lambda_node<Father>([](Context&) { return Father{kWorldArray, 0}; });
+  return lambda_node<Father>([frame = compiler.ref(e), fathers = &compiler.fathers()](Context& c) {
+    return fathers->father_of(frame->get(c));
+  });
+}
+
+const Builtins::Make* Builtins::find(const Expression& call) const {
+  const auto found = overloads_.find(call.text);
+  if (found == overloads_.end()) return nullptr;
+  for (const Overload& overload : found->second)
+    if (overload.fits(call.parts)) return &overload.make;
+  return nullptr;
+}
+
+const Builtins& builtins() {
+  static const Builtins all = [] {
+    Builtins list;
+    define_numbers(list);
+    define_texts(list);
+    define_arrays(list);
+    define_signals(list);
+    define_channels(list);
+    define_tasks(list);
+    define_geometry(list);
+    define_motion(list);
+    define_panel(list);
+    define_page(list);
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace val3

@@ -1,0 +1,144 @@
+// Programs that are called, and tasks that are made of them.
+#include "sim_controller/val3/machine/calls.hpp"
+
+#include <cmath>
+
+#include "sim_controller/val3/machine/tasks.hpp"
+
+namespace val3 {
+namespace {
+
+using CalledKind = Line::Kind;
+
+constexpr double kTickSecondsOfTasks = 0.004;
+constexpr double kPriorityMax = 100.0;
+
+/// Fills a parameter of the program that is called.
+class Hand {
+ public:
+  Hand() = default;
+  virtual ~Hand() = default;
+  Hand(const Hand&) = delete;
+  Hand& operator=(const Hand&) = delete;
+  virtual void over(Context& caller, Activation& called, std::size_t slot) const = 0;
+};
+class HandPlace final : public Hand {
+ public:
+  explicit HandPlace(RefNodePtr ref) : ref_(std::move(ref)) {}
+  void over(Context& caller, Activation& called, std::size_t slot) const override {
+    called.slots[slot] = ref_->get(caller);
+  }
+
+ private:
+  RefNodePtr ref_;
+};
+template <class T>
+class HandValue final : public Hand {
+ public:
+  explicit HandValue(NodePtr<T> value) : value_(std::move(value)) {}
+  void over(Context& caller, Activation& called, std::size_t slot) const override {
+    called.slots[slot].at<T>() = value_->get(caller);
+  }
+
+ private:
+  NodePtr<T> value_;
+};
+using Hands = std::vector<std::unique_ptr<const Hand>>;
+
+class CallCompiler {
+ public:
+  CallCompiler(Compiler& compiler, const Program& program) : compiler_(compiler), program_(program) {}
+
+  OperationPtr call(const Line& line) {
+    const Code* code = &code_of(line, nullptr);
+    const auto& programs = code->program;
+    return operation([code, made = hands(*programs, line, 0)](Context& c) {
+      auto called = Tasks::activate(*code, c.tasks.fathers);
+      for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
+      c.tasks.enter(c, std::move(called));
+      return Flow::kGo;
+    });
+  }
+
+  OperationPtr creation(const Line& line) {
+    const bool is_sync = line.kind == CalledKind::kTaskCreateSync;
+    const Code* code = &code_of(line, nullptr);
+    auto name = compiler_.value<std::string>(line.expressions.at(0));
+    auto second = compiler_.value<double>(line.expressions.at(1));
+    RefNodePtr overrun;
+    if (is_sync) overrun = compiler_.ref(line.expressions.at(2));
+    auto made = hands(*code->program, line, is_sync ? 3 : 2);
+    return operation([code, name = std::move(name), second = std::move(second), overrun = std::move(overrun),
+                      made = std::move(made), owner = &compiler_.instance()](Context& c) {
+      auto task = std::make_unique<Task>();
+      task->name = name->get(c);
+      task->owner = owner;
+      const double number = second->get(c);
+      if (overrun) {
+        task->period_ticks = period_in_ticks(number);
+        task->overrun = overrun->get(c);
+      } else {
+        if (number < 1.0 || number > kPriorityMax)
+          throw RunFailure(kErrorParameter, "a priority that is not from 1 to 100");
+        task->priority = static_cast<int>(number);
+      }
+      auto called = Tasks::activate(*code, c.tasks.fathers);
+      for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
+      task->stack.push_back(std::move(called));
+      c.tasks.create(std::move(task));
+      return Flow::kGo;
+    });
+  }
+
+ private:
+  const Code& code_of(const Line& line, const Expression* at) {
+    const Instance* owner = &compiler_.instance();
+    if (line.called_library >= 0) owner = owner->libraries.at(static_cast<std::size_t>(line.called_library));
+    if (owner == nullptr || line.called_program < 0)
+      throw NotSimulated{{program_.file, line.line, at != nullptr ? at->column : line.column},
+                         "program " + line.program + " is of a library that is not there"};
+    return owner->programs.at(static_cast<std::size_t>(line.called_program));
+  }
+
+  Hands hands(const Program& called, const Line& line, std::size_t first) {
+    Hands made;
+    for (std::size_t i = 0; i < called.parameters.size(); ++i) {
+      const Parameter& parameter = called.parameters[i];
+      const Expression& argument = line.expressions.at(first + i);
+      if (parameter.by_reference) {
+        made.push_back(std::make_unique<const HandPlace>(compiler_.ref(argument)));
+        continue;
+      }
+      if (!is_simulated(parameter.type.kind))
+        compiler_.refuse(argument, "values of this type are not simulated");
+      made.push_back(with_type_of(parameter.type.kind, [&]<class T>() -> std::unique_ptr<const Hand> {
+        return std::make_unique<const HandValue<T>>(compiler_.value<T>(argument));
+      }));
+    }
+    return made;
+  }
+
+  /// Rounded down to a multiple of 4 ms (manual 6, page 88).
+  static int period_in_ticks(double period_s) {
+    constexpr double kSlack = 1e-9;
+    constexpr double kTicksMax = 1e6;
+    const double ticks = std::floor(period_s / kTickSecondsOfTasks + kSlack);
+    if (!(ticks >= 1.0) || ticks > kTicksMax) throw RunFailure(kErrorPeriods, "a period below 4 ms");
+    return static_cast<int>(ticks);
+  }
+
+  Compiler& compiler_;
+  const Program& program_;
+};
+
+}  // namespace
+
+OperationPtr call_operation(Compiler& compiler, const Program& program, const Line& line) {
+  return CallCompiler(compiler, program).call(line);
+}
+
+OperationPtr creation_operation(Compiler& compiler, const Program& program, const Line& line) {
+  return CallCompiler(compiler, program).creation(line);
+}
+
+}  // namespace val3

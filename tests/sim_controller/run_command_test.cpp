@@ -1,0 +1,117 @@
+#include "sim_controller/run_command.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/val3/small_project.hpp"
+
+namespace sim {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kCellFolder = TOUCHCAL_SOURCE_DIR "/config/cells/demo/";
+
+struct Ran {
+  int code = 0;
+  std::string out;
+  std::string error;
+};
+
+Ran run(const std::filesystem::path& application, const std::string& script, double seconds = 0.0) {
+  const std::filesystem::path file = application.parent_path() / "script.txt";
+  if (!script.empty()) std::ofstream(file) << script;
+  std::ostringstream out;
+  std::ostringstream error;
+  const RunCommand command{.application = application.string(),
+                           .script_file = script.empty() ? "" : file.string(),
+                           .cell_file = kCellFolder + "cell.json",
+                           .truth_file = kCellFolder + "truth.json",
+                           .seconds = seconds};
+  Ran ran;
+  ran.code = run_application(command, out, error);
+  ran.out = out.str();
+  ran.error = error.str();
+  return ran;
+}
+
+TEST(RunCommand, DrivesInputsPowerKeysAndSocketsByTheScript) {
+  val3::SmallProject project;
+  project.number("n", 3).number("in", 4).number("out", 2).flag("b");
+  project.data("di", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%I0\"/>");
+  project.data("dq", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%Q0\"/>");
+  project.data("si", "sio", "<Value key=\"0\" link=\"Socket\\host\"/>");
+  project.data("j", "jointRx", "<Value key=\"0\" j1=\"5\" j2=\"10\" j3=\"90\" j5=\"60\"/>")
+      .data("m", "mdesc", "");
+  project.program("start",
+                  "userPage()\ntitle(\"small\")\nputln(\"hello\")\nwait(di==true)\ndq=true\nn[0]=getKey()\n"
+                  "n[1]=sioGet(si,in)\nout[0]=in[0]+1\nout[1]=in[1]+1\nsioSet(si,out)\n"
+                  "wait(isPowered())\nmovej(j,flange,m)\nwaitEndMove()\nlogMsg(\"done\")");
+  const Ran ran =
+      run(project.write().path(),
+          "0 power off\n0.1 expect-output BasicIO-1\\%Q0 off\n0.2 key 271\n"
+          "0.2 input BasicIO-1\\%I0 on\n0.3 expect-output BasicIO-1\\%Q0 on\n"
+          "0.3 expect-number n 271\n0.4 connect Socket\\host\n0.4 send Socket\\host \"AB\"\n"
+          "0.5 expect-sent Socket\\host \"BC\"\n0.5 expect-task small~ 1\n0.6 power on\n60 end\n");
+  EXPECT_EQ(ran.code, kRanWell) << ran.out << ran.error;
+  EXPECT_THAT(ran.out, AllOf(HasSubstr("log: done"), HasSubstr("page: small"), HasSubstr("hello"),
+                             HasSubstr("the application has ended"), HasSubstr("0 failures")));
+}
+
+TEST(RunCommand, TellsADeadTaskWithItsErrorAndLine) {
+  val3::SmallProject project;
+  project.number("n", 2).program("start", "n=1\nn=n[7]");
+  const Ran ran = run(project.write().path(), "");
+  EXPECT_EQ(ran.code, kRanWithFailures);
+  EXPECT_THAT(ran.out, HasSubstr("FAILED task small~ ends with error 20 at start.pgx:4"));
+}
+
+TEST(RunCommand, TellsAPeriodThatWasTooShort) {
+  val3::SmallProject project;
+  project.number("n").flag("bLate").program("busy", "while true\nn=n+1\nendWhile");
+  project.program("start", "taskCreateSync \"busy\",0.004,bLate,busy()");
+  const Ran ran = run(project.write().path(), "", 0.1);
+  EXPECT_EQ(ran.code, kRanWithFailures);
+  EXPECT_THAT(ran.out, HasSubstr("task busy did not end within its period"));
+}
+
+TEST(RunCommand, TellsWhatWasExpectedAndIsNot) {
+  val3::SmallProject project;
+  project.number("n").program("start", "n=4\ndelay(10)");
+  const Ran ran = run(project.write().path(),
+                      "0.1 expect-number n 4\n0.2 expect-number n 5\n0.3 expect-number none 1\n"
+                      "0.3 expect-number n[9] 1\n0.3 send Socket\\x \"a\"\n0.4 stop\n1 end\n");
+  EXPECT_EQ(ran.code, kRanWithFailures);
+  EXPECT_THAT(ran.out,
+              AllOf(HasSubstr("FAILED line 2: n: it is 4"), HasSubstr("line 3: none: the application"),
+                    HasSubstr("line 4: n[9]"), HasSubstr("line 5: Socket\\x: not connected"),
+                    HasSubstr("the application has ended"), Not(HasSubstr("line 1:"))));
+}
+
+TEST(RunCommand, RefusesWhatAControllerWouldNotLoadAndAScriptThatIsNone) {
+  val3::SmallProject broken;
+  broken.number("n").program("start", "n=nothing");
+  const Ran ran = run(broken.write().path(), "");
+  EXPECT_EQ(ran.code, kCannotRun);
+  EXPECT_THAT(ran.error, AllOf(HasSubstr("start.pgx:3"), HasSubstr("a controller would not load it")));
+  val3::SmallProject right;
+  right.program("start", "");
+  const Ran script = run(right.write().path(), "0 jump\n");
+  EXPECT_EQ(script.code, kCannotRun);
+  EXPECT_THAT(script.error, HasSubstr("script.txt:1: 'jump' is no command"));
+  EXPECT_EQ(run(right.path().parent_path() / "none.pjx", "").code, kCannotRun);
+}
+
+TEST(RunCommand, RunsOurOwnApplication) {
+  const Ran ran = run(TOUCHCAL_SOURCE_DIR "/cs8_protocol/val3/touchcal/touchcal.pjx", "", 2.0);
+  EXPECT_EQ(ran.code, kRanWell) << ran.out << ran.error;
+  EXPECT_THAT(ran.out, HasSubstr("task motion: status 1"));
+}
+
+}  // namespace
+}  // namespace sim

@@ -1,0 +1,60 @@
+// Arrays of s7: sizes, growing and shrinking, collections.
+#include "tests/sim_controller/val3/machine/evaluated.hpp"
+
+namespace val3 {
+namespace {
+
+TEST(Arrays, TellTheirSizesAndWhatIsLeftFromAnElement) {
+  expect_values({{"size(n)", 20}, {"size(n[5])", 15}, {"size(j)", 4}});
+  expect_errors({{"size(n,2)", kErrorParameter}, {"n[20]", kErrorIndex}, {"n[-1]", kErrorIndexNegative}});
+  EXPECT_EQ(evaluated("n[5.9]", "n[5]=3").number, 3) << "the integer part is taken: manual 6, page 21";
+}
+
+TEST(Arrays, GrowAndShrink) {
+  SmallProject project;
+  project.number("n", 3).number("size", 6);
+  project.program(
+      "start",
+      "n[0]=1\nn[1]=2\nn[2]=3\nappend(n)\nsize[0]=size(n)\nn[3]=4\ninsert(n[1])\nsize[1]=n[1]\n"
+      "size[2]=n[2]\ndelete(n[0])\nsize[3]=n[0]\nsize[4]=size(n)\nresize(n,1,2)\nsize[5]=size(n)\nn[2]=0");
+  Running run(project);
+  run.ticks(2);
+  const std::vector<double> expected{4, 0, 2, 0, 4, 2};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(run.number("size", i), expected[i]) << i;
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorIndex) << "the third element is gone";
+  expect_errors({{"size(n)", kErrorRunMemory}}, "resize(n,1,2000000)");
+}
+
+TEST(Arrays, OfTwoDimensionsAreRowsAfterRows) {
+  SmallProject project;
+  project.file_data("<Data name=\"m\" access=\"private\" xsi:type=\"array\" type=\"num\" size=\"2 3\"/>");
+  project.number("n", 4).program("start",
+                                 "m[1,2]=5\nn[0]=m[1,2]\nn[1]=size(m,1)\nn[2]=size(m,2)\nn[3]=m[2,0]");
+  Running run(project);
+  run.ticks(2);
+  EXPECT_EQ(run.number("n", 0), 5);
+  EXPECT_EQ(run.number("n", 1), 2);
+  EXPECT_EQ(run.number("n", 2), 3);
+  EXPECT_EQ(run.machine().number("m", 5), 5) << "the last of six";
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorIndex);
+}
+
+TEST(Arrays, ACollectionFindsItsElementsByKey) {
+  SmallProject project;
+  project.file_data(
+      "<Data name=\"c\" access=\"private\" xsi:type=\"collection\" type=\"num\">"
+      "<Value key=\"one\" value=\"1\"/><Value key=\"two\" value=\"2\"/></Data>");
+  project.number("n", 3).data("s", "string", "", 3);
+  project.program("start",
+                  "n[0]=c[\"two\"]\nc[\"one\"]=7\nn[1]=c[\"one\"]\ns[0]=first(c)\ns[1]=next(c[s[0]])\n"
+                  "s[2]=next(c[s[1]])\nn[2]=c[\"none\"]");
+  Running run(project);
+  run.ticks(2);
+  EXPECT_EQ(run.number("n", 0), 2);
+  EXPECT_EQ(run.number("n", 1), 7);
+  EXPECT_EQ(run.text("s", 0) + "," + run.text("s", 1) + "," + run.text("s", 2), "one,two,");
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorIndex);
+}
+
+}  // namespace
+}  // namespace val3

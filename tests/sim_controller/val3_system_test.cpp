@@ -1,0 +1,291 @@
+// The simulated cell under a VAL3 application.
+#include "sim_controller/val3_system.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "drive_runs.hpp"
+#include "sim_controller/operator.hpp"
+#include "sim_controller/val3_units.hpp"
+
+namespace sim {
+namespace {
+
+using namespace testing;
+using val3::MoveOrder;
+
+constexpr val3::Mdesc kSlow{.tvel = 20.0, .blend = val3::Blend::kOff};
+constexpr val3::Trsf kProbeTool{.z = 218.9};
+
+/// A powered cell in remote mode, the arm over a face.
+class Val3Cell : public ::testing::Test {
+ protected:
+  explicit Val3Cell(Val3SystemOptions options = {}) : system(plant(), cabinet, std::move(options)) {
+    cabinet.panel.powered = true;
+    displace(cabinet.drives, search().approach);
+    ticks(10);
+  }
+  void ticks(int count) {
+    for (int i = 0; i < count; ++i) system.tick();
+  }
+  void until_empty() {
+    for (int i = 0; i < kTicksMax && !system.is_empty(); ++i) system.tick();
+    EXPECT_TRUE(system.is_empty());
+  }
+  static MoveOrder joint_move(const calib::JointVector& to) {
+    return {.to = val3_from_joints(to), .descriptor = {.blend = val3::Blend::kOff}};
+  }
+  /// A line of the probe's ball.
+  MoveOrder line_to(const calib::JointVector& to) {
+    MoveOrder order{.shape = MoveOrder::Shape::kLine, .to = val3_from_joints(to)};
+    order.tool = kProbeTool;
+    order.to_pose = val3_from_pose(system.arm().world_from_flange(to) * pose_from_val3(kProbeTool));
+    order.descriptor = kSlow;
+    return order;
+  }
+
+  /// 12 mm down the search, before the face.
+  static calib::JointVector above_face() {
+    const ToolPath line = straight_line(plant(), search().approach, search().search_end);
+    return posture(line.path, kFreeMetres / line.length_m);
+  }
+  static calib::JointVector clear() { return search().waypoints.back(); }
+
+  static constexpr double kFreeMetres = 0.012;
+  Cabinet cabinet = make_cabinet(plant(), 1);
+  Val3System system;
+};
+
+TEST_F(Val3Cell, ClockGoesOnByTicksInMilliseconds) {
+  const double before = system.clock_s();
+  ticks(250);
+  EXPECT_DOUBLE_EQ(system.clock_s() - before, 1.0);
+}
+
+TEST_F(Val3Cell, ALineOfTheProbeIsTheSearchOfTheTwin) {
+  ASSERT_EQ(system.store(line_to(above_face())), val3::kErrorNone);
+  EXPECT_FALSE(system.is_empty());
+  double fastest = 0.0;
+  for (int i = 0; i < kTicksMax && !system.is_empty(); ++i) {
+    system.tick();
+    EXPECT_LT(on_search_line(cabinet.drives.joints).off_m, 1e-6);
+    fastest = std::max(fastest, system.tool_speed(kProbeTool));
+  }
+  EXPECT_NEAR(fastest, 20.0, 0.1);
+  EXPECT_NEAR(on_search_line(cabinet.drives.joints).along_m, kFreeMetres, 1e-6);
+  EXPECT_FALSE(system.is_settled());
+  ticks(kSettledTicks);
+  EXPECT_TRUE(system.is_settled());
+}
+
+TEST_F(Val3Cell, AJointMoveGoesThereAndCountsItsNumber) {
+  EXPECT_EQ(system.move_id(), 0.0);
+  ASSERT_EQ(system.store(joint_move(clear())), val3::kErrorNone);
+  EXPECT_EQ(system.last_move_id(), 1.0);
+  EXPECT_LT((joints_from_val3(system.last_stored()) - clear()).norm(), 1e-9);
+  until_empty();
+  EXPECT_LT((cabinet.drives.joints - clear()).norm(), 1e-9);
+  EXPECT_EQ(system.move_id(), 2.0);
+}
+
+TEST_F(Val3Cell, AFollowingErrorIsThereWhileTheArmMoves) {
+  EXPECT_EQ(system.position_error(), val3::Joint{});
+  ASSERT_EQ(system.store(joint_move(clear())), val3::kErrorNone);
+  ticks(10);
+  EXPECT_NE(system.position_error(), val3::Joint{});
+}
+
+TEST_F(Val3Cell, AnImpossibleMoveIsToldWithTheNextOneUntilAReset) {
+  calib::JointVector beyond = plant().start_joints;
+  beyond[0] = plant().joint_ranges.upper[0] + 0.01;
+  EXPECT_EQ(system.store(joint_move(beyond)), val3::kErrorNone);
+  EXPECT_EQ(system.move_error(), val3::kErrorNone);
+  ticks(2);
+  EXPECT_EQ(system.move_error(), val3::kErrorImpossibleMove);
+  EXPECT_EQ(system.store(joint_move(plant().start_joints)), val3::kErrorImpossibleMove);
+  EXPECT_TRUE(system.is_empty());
+  system.reset_motion(std::nullopt);
+  EXPECT_EQ(system.store(joint_move(plant().start_joints)), val3::kErrorNone);
+}
+
+TEST_F(Val3Cell, ALineIntoAnotherConfigurationOrOutOfReachIsImpossible) {
+  MoveOrder forced = line_to(search().search_end);
+  forced.config = system.config_of(system.joints());
+  forced.config.elbow =
+      forced.config.elbow == val3::Elbow::kPositive ? val3::Elbow::kNegative : val3::Elbow::kPositive;
+  MoveOrder unreachable = line_to(search().search_end);
+  unreachable.reachable = false;
+  MoveOrder far = line_to(search().search_end);
+  far.to_pose.x += 3000.0;
+  MoveOrder no_circle = line_to(search().search_end);
+  no_circle.shape = MoveOrder::Shape::kCircle;
+  no_circle.via_pose = no_circle.to_pose;
+  for (const MoveOrder& order : {forced, unreachable, far, no_circle}) {
+    system.reset_motion(std::nullopt);
+    EXPECT_EQ(system.store(order), val3::kErrorNone);
+    ticks(2);
+    EXPECT_EQ(system.move_error(), val3::kErrorImpossibleMove);
+  }
+}
+
+TEST_F(Val3Cell, TheStoreIsFullAtItsSize) {
+  while (!system.store_is_full()) ASSERT_EQ(system.store(joint_move(search().approach)), val3::kErrorNone);
+  EXPECT_EQ(cabinet.drives.queue.size(), Val3SystemOptions{}.moves_max);
+}
+
+TEST_F(Val3Cell, TheLatchHasTheJointsOfTheEdgeAndKeepsThemUntilItIsArmedAgain) {
+  const int contact = system.find_digital("FastIO\\fIn0").value();
+  EXPECT_FALSE(system.latched());
+  ASSERT_EQ(system.arm_latch(contact), val3::kErrorNone);
+  ASSERT_EQ(system.store(line_to(search().search_end)), val3::kErrorNone);
+  for (int i = 0; i < kTicksMax && !system.digital(contact); ++i) {
+    EXPECT_FALSE(system.latched());
+    system.tick();
+  }
+  const auto latched = system.latched();
+  ASSERT_TRUE(latched);
+  const auto expected = search_contact(plant(), search(), cabinet.world.noise_m);
+  ASSERT_TRUE(expected);
+  // 0.2 ms at 20 mm/s, and the play of a sharp latch step.
+  EXPECT_LT(tip_distance_m(plant(), joints_from_val3(*latched), *expected), 8e-6);
+  system.reset_motion(std::nullopt);
+  ticks(100);
+  EXPECT_EQ(system.latched(), latched);
+  ASSERT_EQ(system.arm_latch(contact), val3::kErrorNone);
+  EXPECT_FALSE(system.latched());
+}
+
+TEST_F(Val3Cell, OnlyFastInputsHaveALatchAndAScriptCanTripOne) {
+  EXPECT_EQ(system.arm_latch(system.find_digital("BasicIO-1\\%I0").value()), val3::kErrorParameter);
+  const int other = system.find_digital("fIn1").value();
+  ASSERT_EQ(system.arm_latch(other), val3::kErrorNone);
+  ticks(2);
+  EXPECT_FALSE(system.latched());
+  ASSERT_TRUE(system.signals().set("FastIO\\fIn1", true));
+  ticks(1);
+  EXPECT_TRUE(system.latched());
+}
+
+TEST_F(Val3Cell, LinksOfTheCellReadTheCabinet) {
+  const int contact = system.find_digital("FastIO\\fIn0").value();
+  const int loop = system.find_digital("BasicIO-1\\%I0").value();
+  const int closed = system.find_digital("BasicIO-1\\%I1").value();
+  const int confirm = system.find_digital("BasicIO-1\\%I2").value();
+  EXPECT_EQ(system.find_digital("fIn0"), contact) << "the name of s5 and s6";
+  EXPECT_EQ(system.find_digital("bIn0"), loop);
+  const auto levels = [&] {
+    return std::array{system.digital(contact), system.digital(loop), system.digital(closed),
+                      system.digital(confirm)};
+  };
+  EXPECT_EQ(levels(), (std::array{false, true, true, false}));
+  for (const Act act : {Act::kTouchStylus, Act::kOpenCell, Act::kPressConfirm})
+    perform(plant(), cabinet, act);
+  ticks(1);
+  EXPECT_EQ(levels(), (std::array{true, false, false, true}));
+  EXPECT_EQ(system.set_digital(contact, true), val3::kErrorWriteToInput);
+  EXPECT_FALSE(system.signals().set("BasicIO-1\\%I1", true)) << "the cell has it";
+}
+
+TEST_F(Val3Cell, OtherLinksAreInputsAndOutputsByTheirNames) {
+  const int output = system.find_digital("BasicIO-1\\%Q3").value();
+  EXPECT_EQ(system.set_digital(output, true), val3::kErrorNone);
+  EXPECT_TRUE(system.digital(output));
+  const int input = system.find_digital("UserIO\\usrIn0").value();
+  EXPECT_EQ(system.set_digital(input, true), val3::kErrorWriteToInput);
+  EXPECT_FALSE(system.digital(input));
+  EXPECT_TRUE(system.signals().set("UserIO\\usrIn0", true));
+  EXPECT_TRUE(system.digital(input));
+  const int level = system.find_analogue("ModbusSrv-0\\Analogs\\level").value();
+  EXPECT_EQ(system.set_analogue(level, 2.5), val3::kErrorNone);
+  EXPECT_EQ(system.analogue(level), 2.5);
+  EXPECT_EQ(system.find_digital(""), std::nullopt);
+}
+
+TEST_F(Val3Cell, ModeStatusAndHoldAreNumberedByMode) {
+  EXPECT_EQ(system.working_mode(), 4);
+  EXPECT_EQ(system.mode_status(), 0);
+  perform(plant(), cabinet, Act::kHold);
+  EXPECT_EQ(system.mode_status(), 2);
+  perform(plant(), cabinet, Act::kManualMode);
+  EXPECT_EQ(system.working_mode(), 1);
+  EXPECT_EQ(system.mode_status(), 6);
+  perform(plant(), cabinet, Act::kEmergencyStop);
+  EXPECT_EQ(system.emergency_stop(), 2);
+  EXPECT_FALSE(system.is_powered());
+}
+
+TEST_F(Val3Cell, PowerComesUpInRemoteModeOnlyAndTakesItsTime) {
+  system.disable_power();
+  EXPECT_FALSE(system.is_powered());
+  cabinet.panel.mode = cs8::WorkingMode::kLocal;
+  system.enable_power();
+  ticks(2000);
+  EXPECT_FALSE(system.is_powered());
+  cabinet.panel.mode = cs8::WorkingMode::kRemote;
+  system.enable_power();
+  ticks(static_cast<int>(kPowerUpSeconds / kTickSeconds) - 1);
+  EXPECT_FALSE(system.is_powered());
+  ticks(1);
+  EXPECT_TRUE(system.is_powered());
+}
+
+TEST_F(Val3Cell, PowerThatGoesInAMoveLeavesItStored) {
+  ASSERT_EQ(system.store(line_to(above_face())), val3::kErrorNone);
+  ticks(100);
+  system.disable_power();
+  ticks(200);
+  EXPECT_FALSE(system.is_empty());
+  EXPECT_GT(kFreeMetres - on_search_line(cabinet.drives.joints).along_m, 1e-3);
+  cabinet.panel.powered = true;
+  until_empty();
+  EXPECT_NEAR(on_search_line(cabinet.drives.joints).along_m, kFreeMetres, 1e-6);
+}
+
+TEST_F(Val3Cell, ACollisionTakesThePowerAndLeavesTheMoveStored) {
+  ASSERT_EQ(system.store(line_to(search().search_end)), val3::kErrorNone);
+  for (int i = 0; i < kTicksMax && system.is_powered(); ++i) system.tick();
+  EXPECT_FALSE(system.is_powered());
+  EXPECT_FALSE(system.is_empty());
+}
+
+TEST_F(Val3Cell, MonitorSpeedBelongsToTheOperator) {
+  EXPECT_EQ(system.monitor_speed(), 100.0);
+  EXPECT_EQ(system.set_monitor_speed(50), -2);
+  cabinet.panel.mode = cs8::WorkingMode::kLocal;
+  EXPECT_EQ(system.set_monitor_speed(50), -1);
+}
+
+TEST_F(Val3Cell, SaysWhatItIs) {
+  EXPECT_EQ(system.version("ArmType"), plant().arm_name + "-S1");
+  EXPECT_TRUE(system.version("VAL3").starts_with("s7.7.2 "));
+  EXPECT_EQ(system.version("compliance"), "");
+}
+
+TEST_F(Val3Cell, TheEndOfAnApplicationStopsTheArmAndClosesItsChannels) {
+  const int channel = system.find_channel("Socket\\host").value();
+  ASSERT_TRUE(system.channels().at(channel).accept());
+  ASSERT_EQ(system.store(line_to(search().search_end)), val3::kErrorNone);
+  ticks(50);
+  system.end_application();
+  EXPECT_TRUE(system.is_empty());
+  EXPECT_FALSE(system.connect(channel));
+}
+
+TEST_F(Val3Cell, KeepsTheNewestMessages) {
+  for (std::size_t i = 0; i < Val3System::kMessagesMax + 5; ++i) system.log(std::to_string(i));
+  system.pop_up("last");
+  EXPECT_EQ(system.messages().size(), Val3System::kMessagesMax);
+  EXPECT_EQ(system.messages().back(), "last");
+}
+
+TEST(Val3Date, IsWrittenByItsFormat) {
+  using namespace std::chrono;
+  const sys_seconds at = sys_days(year(2026) / 3 / 9) + hours(15) + minutes(4) + seconds(5);
+  EXPECT_EQ(date_text("%Y-%m-%d %H:%M:%S", at), "2026-03-09 15:04:05");
+  EXPECT_EQ(date_text("%y %I %p %x %", at), "26 03 PM %x %");
+  EXPECT_EQ(date_text("%I%p", sys_days(year(2026) / 3 / 9)), "12AM");
+}
+
+}  // namespace
+}  // namespace sim
