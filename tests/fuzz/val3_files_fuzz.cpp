@@ -4,10 +4,13 @@
 #include <string>
 #include <string_view>
 
+#include "sim_controller/val3/checks/checks.hpp"
 #include "sim_controller/val3/files/read_application.hpp"
+#include "sim_controller/val3/language/resolver.hpp"
 
 /// Arbitrary bytes as the files of a small VAL3 project: "=== app/app.pjx" is a line that begins a file.
-/// Nothing crashes or throws, findings have a rule and a file, and the blocks of programs are linked.
+/// It is read, resolved and checked: nothing crashes or throws, findings have a rule and a file, and the
+/// blocks of programs are linked.
 namespace {
 
 /// A folder in memory where there is one, and gone with the program.
@@ -73,9 +76,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const auto& entry : std::filesystem::directory_iterator(apps_folder()))
     std::filesystem::remove_all(entry.path());
   write_files({reinterpret_cast<const char*>(data), size});
-  const val3::ReadApplication read = val3::read_application(apps_folder() / "app");
+  val3::ReadApplication read = val3::read_application(apps_folder() / "app");
+  check_programs(read.application);
+  val3::resolve(read.application, read.findings);
+  val3::check(read.application, {}, read.findings);
   for (const val3::Finding& finding : read.findings)
     if (finding.rule.empty() || finding.at.file.empty() || finding.what.empty()) std::abort();
-  check_programs(read.application);
   return 0;
 }

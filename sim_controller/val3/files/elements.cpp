@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "sim_controller/val3/files/file_rules.hpp"
+#include "sim_controller/val3/files/folder_names.hpp"
 
 namespace val3 {
 
@@ -16,9 +17,9 @@ std::vector<pugi::xml_node> Elements::children(pugi::xml_node parent, std::strin
     if (found == name)
       result.push_back(node);
     else if (std::ranges::find(others, found) == others.end())
-      findings_.error(file_rules::kUnknownElement, line_of(node),
-                      shown_word(found) + " does not belong into " + shown_word(local_name(parent.name())),
-                      "remove it");
+      findings_.warning(file_rules::kUnknownElement, line_of(node),
+                        shown_word(found) + " does not belong into " + shown_word(local_name(parent.name())),
+                        "remove it");
   }
   return result;
 }
@@ -48,11 +49,11 @@ std::string Elements::optional(pugi::xml_node node, std::string_view name, std::
 bool Elements::truth(pugi::xml_node node, std::string_view name, bool otherwise) {
   const pugi::xml_attribute found = attribute_of(node, name);
   if (!found) return otherwise;
-  const std::string value = found.value();
+  const std::string value = in_lower_case(found.value());
   if (value == "true" || value == "1") return true;
   if (value == "false" || value == "0") return false;
-  findings_.error(file_rules::kBadValue, line_of(node), std::string(name) + " is " + shown_word(value),
-                  "write true or false");
+  findings_.error(file_rules::kBadValue, line_of(node),
+                  std::string(name) + " is " + shown_word(found.value()), "write true or false");
   return otherwise;
 }
 
@@ -61,9 +62,9 @@ void Elements::allow(pugi::xml_node node, std::initializer_list<std::string_view
     const std::string_view name = attribute.name();
     if (name == "xmlns" || name.find(':') != std::string_view::npos) continue;
     if (std::ranges::find(names, name) == names.end())
-      findings_.error(file_rules::kUnknownAttribute, line_of(node),
-                      shown_word(local_name(node.name())) + " has no attribute " + shown_word(name),
-                      "remove it");
+      findings_.warning(file_rules::kUnknownAttribute, line_of(node),
+                        shown_word(local_name(node.name())) + " has no attribute " + shown_word(name),
+                        "remove it");
   }
 }
 

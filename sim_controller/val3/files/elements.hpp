@@ -10,7 +10,7 @@
 namespace val3 {
 
 /// The elements and attributes of one file, as its readers ask for them: what is missing, unknown or of the
-/// wrong form is found once, here.
+/// wrong form is found once, here. What is unknown is a warning: a later version may know it.
 class Elements {
  public:
   Elements(const XmlFile& xml, FileFindings& findings) : xml_(xml), findings_(findings) {}

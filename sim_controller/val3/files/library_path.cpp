@@ -16,7 +16,7 @@ bool is_file(const std::filesystem::path& path) {
 
 /// The project of a folder: the one of its name, else the only one.
 std::optional<std::filesystem::path> project_in(FolderNames& names, const std::filesystem::path& folder) {
-  if (const auto named = names.find(folder, folder.filename().string() + ".pjx")) return named;
+  if (auto named = names.find(folder, folder.filename().string() + ".pjx")) return named;
   std::optional<std::filesystem::path> only;
   for (const std::string& name : names.names_in(folder)) {
     if (!ends_like(name, ".pjx")) continue;

@@ -219,6 +219,14 @@ TEST(Files, ProgramsThatAControllerRefusesAreRefused) {
   EXPECT_THAT(declaring("<Remark/>\n"), ElementsAre("stop.pgx:4 unknown-element"));
 }
 
+TEST(Files, WhatALaterVersionMayHaveAddedIsAWarning) {
+  ProjectFolder folder;
+  folder.small("<Data name=\"a\" type=\"num\" newer=\"1\"><Newer/></Data>\n");
+  const ReadApplication read = folder.read();
+  ASSERT_THAT(told(read.findings), ElementsAre("app.dtx:4 unknown-attribute", "app.dtx:4 unknown-element"));
+  for (const Finding& finding : read.findings) EXPECT_EQ(finding.severity, Severity::kWarning);
+}
+
 TEST(Files, AnApplicationHasStartAndStop) {
   ProjectFolder folder;
   folder.project("app", "<Programs><Program file=\"start.pgx\"/></Programs>").program("app/start.pgx");
