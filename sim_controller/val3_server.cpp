@@ -271,7 +271,7 @@ class Val3Server::Core : public std::enable_shared_from_this<Val3Server::Core> {
     for (FrameStream::Piece& piece : sent_frames_.feed(bytes)) {
       if (piece.message) {
         controller_.note_sent(*piece.message);
-        send_message(host, std::move(*piece.message));
+        send_message(host, *piece.message);
       } else {
         host->send(std::move(piece.bytes), false);
       }

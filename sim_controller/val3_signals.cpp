@@ -18,7 +18,7 @@ std::optional<std::string_view> number_behind(std::string_view name, std::string
 
 /// The names of s5 and s6 as those of s7: there a signal stands without its card.
 std::string with_card(std::string_view link) {
-  const std::string name(link);
+  std::string name(link);
   if (name.find('\\') != std::string::npos) return name;
   if (const auto number = number_behind(name, "bIn")) return "BasicIO-1\\%I" + std::string(*number);
   if (const auto number = number_behind(name, "bOut")) return "BasicIO-1\\%Q" + std::string(*number);

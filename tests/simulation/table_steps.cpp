@@ -60,7 +60,8 @@ std::vector<TableStep> steps_of_touch() {
       {"way to the approach", at_touch("phase: travel of")},
       {"approach", at_touch("phase: approach of")},
       {"search", at_touch("phase: search of")},
-      {"contact", at_touch("contact of")},
+      // Between two States the probe can be free again: this is a touch whose contact one of them shows.
+      {"contact", at_touch("contact of", 1)},
       {"way back from the face", at_touch("phase: retract of")},
       {"answer on its way", at_touch("controller: touch_result of")},
       {"answer stored", until(at_touch("read: touch_result of"), "disk: synced")},
