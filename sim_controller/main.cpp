@@ -22,6 +22,7 @@
 #include "sim_controller/fault_names.hpp"
 #include "sim_controller/run_command.hpp"
 #include "sim_controller/server.hpp"
+#include "sim_controller/val3/check_command.hpp"
 #include "sim_controller/val3/files/read_application.hpp"
 #include "sim_controller/val3/language/resolver.hpp"
 #include "sim_controller/val3_server.hpp"
@@ -45,6 +46,9 @@ struct Arguments {
   std::string control;
   std::uint64_t seed = 1;
   std::string speed = "1";
+  std::string check;  // folder of VAL3 projects; then nothing is simulated
+  std::string language;
+  bool json = false;
 };
 
 std::optional<double> parse_speed(const std::string& text) {
@@ -64,6 +68,34 @@ std::string check_listen(const std::string& text) {
 
 std::string check_speed(const std::string& text) {
   return parse_speed(text) ? "" : "'" + text + "' is neither a number from 0.001 to 1000 nor max";
+}
+
+std::string check_language(const std::string& text) {
+  return val3::language_named(text) ? "" : "'" + text + "' is no version from s5 to s8, such as s7 or s6.4";
+}
+
+CLI::Option* add_check_options(CLI::App& app, Arguments& arguments) {
+  CLI::Option* const folder =
+      app.add_option(
+             "--check", arguments.check,
+             "checks the VAL3 projects in this folder and simulates nothing; ends with 0 when nothing "
+             "above a note is found, else with 1, with 3 when they cannot be read")
+          ->type_name("DIR")
+          ->check(cell::refuse_empty);
+  app.add_option("--language", arguments.language,
+                 "of --check: the version to check against; default: each project's own")
+      ->type_name("s5|s6|s7|s8")
+      ->check(check_language)
+      ->needs(folder);
+  app.add_flag("--json", arguments.json, "of --check: findings as SARIF 2.1.0")->needs(folder);
+  return folder;
+}
+
+int check(const Arguments& arguments) {
+  val3::CheckCommand command{
+      .folder = arguments.check, .language = {}, .json = arguments.json, .tool_version = TOUCHCAL_VERSION};
+  if (!arguments.language.empty()) command.language = val3::language_named(arguments.language);
+  return val3::run_check(command, std::cout, std::cerr);
 }
 
 /// The same for the other twin.
@@ -199,10 +231,10 @@ int main(int argc, char** argv) {
   CLI::App app("cs8sim: a simulated CS8 controller with a TX90, a touch probe and a block", "cs8sim");
   Arguments arguments;
   app.set_version_flag("--version", "cs8sim " TOUCHCAL_VERSION);
-  app.add_option("--cell", arguments.cell_file, "cell file")
-      ->required()
+  app.add_option("--cell", arguments.cell_file, "cell file; all but --check needs it")
       ->type_name("FILE")
-      ->check(cell::refuse_empty);
+      ->check(cell::refuse_empty)
+      ->excludes(add_check_options(app, arguments));
   app.add_option("--listen", arguments.listen,
                  "default: the cell's controller endpoint; port 0 takes a free one")
       ->type_name("HOST:PORT")
@@ -251,9 +283,11 @@ int main(int argc, char** argv) {
       "host's heartbeats.\nSPDLOG_LEVEL=debug in the environment logs each touch.");
   try {
     app.parse(argc, argv);
+    if (arguments.check.empty() && arguments.cell_file.empty()) throw CLI::RequiredError("--cell");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kDone : kWrongUsage;
   }
+  if (!arguments.check.empty()) return check(arguments);
   try {
     return arguments.run.empty() ? serve(arguments) : run_script(arguments);
   } catch (const cell::ConfigError& error) {

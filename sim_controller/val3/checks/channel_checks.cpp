@@ -93,11 +93,19 @@ class ChannelChecks {
   void line_of(const ProgramGraph::Node& node, const Line& line) {
     visit_closed(node, line,
                  [&](const Expression& channel) { closed_.insert(global_of(*node.application, channel)); });
-    visit_uses(*node.application, line, [&](const Expression& name, Use) {
-      if (name.type.kind != Kind::kSio) return;
-      if (const Global* const global = global_of(*node.application, name))
-        used_.try_emplace(global, FirstUse{node.program, &line});
+    visit_expressions(line, [&](const Expression& e) {
+      if (e.kind == Expression::Kind::kCall && (e.text == "sioGet" || e.text == "sioSet") && !e.parts.empty())
+        add_use(node, line, e.parts[0]);
     });
+    // By =, or by a program that has it as a parameter.
+    if (line.kind == Line::Kind::kInstruction) return;
+    for (const Expression& e : line.expressions) add_use(node, line, e);
+  }
+
+  void add_use(const ProgramGraph::Node& node, const Line& line, const Expression& channel) {
+    if (channel.type.kind != Kind::kSio) return;
+    if (const Global* const global = global_of(*node.application, root_of(channel)))
+      used_.try_emplace(global, FirstUse{node.program, &line});
   }
 
   const CheckSubject& subject_;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kControllerPeriod_s = 0.004;
 constexpr double kShortPeriod_s = 0.002;  // s8 has controllers with this one
-constexpr std::size_t kPeriodsMax = 2;
+constexpr std::size_t kPeriodsAtOnceMax = 2;
 
 std::string period_text(double seconds) {
   char text[32];
@@ -119,7 +119,7 @@ class TaskChecks {
       subject_.tell(Severity::kWarning, check_rules::kSyncPeriod, program, e,
                     "a period of " + period_text(*seconds) + " is no multiple of " + period_text(unit) +
                         (whole >= 1.0 ? ": it becomes " + period_text(whole * unit) : ""));
-    if (periods_.insert(whole).second && periods_.size() > kPeriodsMax)
+    if (periods_.insert(whole).second && periods_.size() > kPeriodsAtOnceMax)
       subject_.tell(Severity::kWarning, check_rules::kSyncPeriods, program, e,
                     std::to_string(periods_.size()) +
                         " different periods in this application: a third at the same time is error 32");

@@ -11,8 +11,8 @@ namespace {
 constexpr Type kNumber{Kind::kNum, -1};
 constexpr Type kTruth{Kind::kBool, -1};
 constexpr Type kText{Kind::kString, -1};
-constexpr std::size_t kTaskNameMax = 15;
-constexpr std::size_t kTaskNameMaxS8 = 36;  // as other names
+constexpr std::size_t kTaskNameCharactersMax = 15;
+constexpr std::size_t kTaskNameCharactersMaxS8 = 36;  // as other names
 constexpr double kTaskPriorityMax = 100.0;
 
 std::string called_name(const Line& line) {
@@ -199,7 +199,7 @@ void LineResolver::resolve_task(Line& line) {
 void LineResolver::check_task_name(Expression& name) {
   if (name.kind != Expression::Kind::kText || name.is_unknown) return;
   const std::size_t longest =
-      scope_.application().language >= Version{8, 0, 0} ? kTaskNameMaxS8 : kTaskNameMax;
+      scope_.application().language >= Version{8, 0, 0} ? kTaskNameCharactersMaxS8 : kTaskNameCharactersMax;
   const bool is_valid = !name.text.empty() && name.text.size() <= longest &&
                         std::ranges::all_of(name.text, [](unsigned char c) {
                           return c < 0x80 && (std::isalnum(c) != 0 || c == '_');

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <random>
+
 #include "sim_controller/val3/language/resolver.hpp"
 #include "tests/sim_controller/val3/small_application.hpp"
 
@@ -254,6 +257,46 @@ TEST(Checks, FindingsAreInOrderAndToldOnce) {
     findings.push_back({Severity::kNote, "rule", {file, line, 1}, "what", ""});
   sort_findings(findings);
   EXPECT_THAT(in_short(findings), ElementsAre("a.pgx:3 rule", "a.pgx:20 rule", "b.pgx:1 rule"));
+}
+
+TEST(Checks, ASocketThatIsOnlySetUpIsNotUsed) {
+  SmallApplication small = cell();
+  small.application.programs.clear();
+  small.program("start", "n=sioCtrl(si,\"port\",5000)\nn=ioStatus(si)").program("stop", "n=1");
+  EXPECT_THAT(found_in(std::move(small)), IsEmpty());
+}
+
+/// Words of the language in any order: most lines are wrong, and some are right.
+std::string any_program(std::mt19937& chance) {
+  constexpr std::array kWords{
+      "n",       "b",      "s",         "d",      "j",      "p",           "m",
+      "si",      "nBytes", "l_n",       "x_n",    "q",      "1",           "2.5",
+      "\"t\"",   "true",   "=",         "==",     "+",      "-",           "*",
+      "!",       "<",      "(",         ")",      "[",      "]",           "{",
+      "}",       ",",      ".",         ":",      "x",      "trsf",        "lib",
+      "io",      "if ",    "elseIf ",   "else",   "endIf",  "while ",      "endWhile",
+      "do",      "until ", "for ",      " to ",   "endFor", "switch ",     "case ",
+      "default", "break",  "endSwitch", "call ",  "return", "start",       "other",
+      "sioGet",  "movej",  "abs",       "toNum",  "size",   "delay",       "first",
+      " and ",   " or ",   "world",     "flange", "off",    "taskCreate ", "taskCreateSync ",
+      "\n",      "\n"};
+  std::uniform_int_distribution<std::size_t> word(0, kWords.size() - 1);
+  std::string code;
+  for (int i = 0; i < 80; ++i) code += kWords[word(chance)];
+  return code;
+}
+
+TEST(Checks, AnyProgramIsResolvedAndCheckedToItsEnd) {
+  constexpr unsigned kSeed = 17;
+  std::mt19937 chance(kSeed);
+  std::size_t found = 0;
+  for (int i = 0; i < 3000; ++i) {
+    SmallApplication small = cell();
+    small.library("lib", nullptr).program("start", any_program(chance));
+    small.program("other", any_program(chance), {small.reference("num", "x_n", 1)}, {{"num", "l_n"}});
+    found += found_in(std::move(small)).size();
+  }
+  EXPECT_GT(found, 3000U);
 }
 
 TEST(Checks, BrokenProgramsAreCheckedToo) {

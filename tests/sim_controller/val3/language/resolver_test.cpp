@@ -273,6 +273,33 @@ TEST(Resolver, FieldsOfAUserTypeAreItsPublicData) {
               ElementsAre("start.pgx:4 undefined-field", "start.pgx:5 wrong-type"));
 }
 
+TEST(Resolver, ATypeOfWhichACopyLiesInAnotherFolderIsOneType) {
+  SmallApplication small = everything();
+  const auto point = [&](std::string_view field, const char* project) {
+    return UserType{"tPlace", {{small.declared("num", field, {1}), true, {}}}, {}, project};
+  };
+  small.application.user_types = {point("nX", "a/tPlace.pjx"), point("nX", "b/tPlace.pjx"),
+                                  point("nY", "c/tPlace.pjx")};
+  for (int type = 0; type < 3; ++type) {
+    small.global("num", "place" + std::to_string(type));
+    small.application.globals.back().declared.type = {Kind::kUser, type};
+  }
+  small.program("start", "place0=place1\nplace0=place2");
+  EXPECT_THAT(refused_in(std::move(small)), ElementsAre("start.pgx:3 wrong-type"));
+}
+
+TEST(Resolver, AVariableOfAScaraIsTakenAsItComes) {
+  SmallApplication small = everything();
+  small.program("start", "jRs=herej()\nmovej(jRs,tl,m)\njRs=jRs-jRs\nn=jRs.j1");
+  EXPECT_THAT(refused_in(std::move(small)), IsEmpty());
+}
+
+TEST(Resolver, AProgramMayHaveAnInstructionsName) {
+  SmallApplication small = everything();
+  small.program("stopMove", "stopMove()\ncall stopMove()");
+  EXPECT_THAT(refused_in(std::move(small)), IsEmpty());
+}
+
 TEST(Resolver, ALibraryGivesItsPublicNames) {
   SmallApplication there;
   UserType message{"tMessage", {{there.declared("num", "nSize", {1}), true, {}}}, {}};
