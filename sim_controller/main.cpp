@@ -262,6 +262,7 @@ int main(int argc, char** argv) {
          "--for", arguments.run_seconds,
          "of --run: simulated seconds; default: to a second behind the script's last line, 10 without one")
       ->type_name("SECONDS")
+      ->check(cell::refuse_number)
       ->check(CLI::Range(0.004, 86400.0))
       ->needs(run);
   app.add_option("--control", arguments.control,

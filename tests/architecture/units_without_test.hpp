@@ -115,7 +115,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/run/touch_benefit", "run_test"},
     {"service/store/run_store_queries", "the reading half of run_store.cpp: run_store_test"},
     {"service/store/touch_change", "a touch that is superseded or confirmed: run_store_test, schema_test"},
-    {"sim_controller/val3/check_command", "the command as a user gives it: val3/checks/check_command_test"},
     {"sim_controller/val3/machine/arrays", "as programs see them: val3/machine/builtins_arrays_test"},
     {"sim_controller/val3/machine/builtins", "finds what the other tests of val3/machine call"},
     {"sim_controller/val3/machine/builtins_motion",

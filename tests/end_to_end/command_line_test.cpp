@@ -202,6 +202,7 @@ TEST_F(CommandLine, NumbersAreDecimal) {
       {"touchcal", "plan", "--place", "--place-yaw", "0,0x10"},
       {"touchcal", "plan", "--place", "--places", "0x10"},
       {"cs8sim", "--seed", "0x10"},
+      {"cs8sim", "--run", "x", "--for", "0x10"},
       {"cs8sim", "--speed", "0x10"}};
   std::set<std::string> tried;
   for (const auto& call : calls) {
