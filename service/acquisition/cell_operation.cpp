@@ -89,7 +89,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       controller_(std::move(controller)),
       session_(cell, *controller_, status_, wake_, clocks_),
       location_(threads.operation, threads.computation, cell, store_, session_, status_, wake_, clocks_),
-      plans_(threads.operation, location_.cell()),
+      plans_(threads.operation, threads.planning, location_.cell()),
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
       computation_(threads.computation, location_.regions(), status_,
                    std::make_unique<TimerAlarm>(threads.operation)),

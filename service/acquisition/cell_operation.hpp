@@ -43,14 +43,15 @@ struct Started {
 /// Threads::operation, but for what says that it is for any.
 class CellOperation {
  public:
-  /// Where it works: its own thread, and that of a run's arithmetic (RunComputation).
+  /// Where it works: its own thread, that of a run's arithmetic (RunComputation), and that of the plans.
   struct Threads {
     boost::asio::any_io_executor operation;
     boost::asio::any_io_executor computation;
+    boost::asio::any_io_executor planning;
   };
 
   /// `cell` and the store must outlive the operation; the store's executor and that of the computation must
-  /// have ended their work when the operation is destroyed.
+  /// have ended their work when the operation is destroyed, which that of the plans need not.
   CellOperation(const Threads& threads, const Cell& cell, StoreQueue store, Endpoint controller,
                 std::string instance_id, Clocks clocks);
   /// With a controller of any kind.
@@ -107,7 +108,7 @@ class CellOperation {
   [[nodiscard]] const RunStore& store() const { return store_.store(); }
   [[nodiscard]] const Clocks& clocks() const { return clocks_; }
 
-  /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on a thread of its own.
+  /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on Threads::planning.
   boost::asio::awaitable<PlanOutcome> plan_recipe(std::string name) { return plans_.plan(std::move(name)); }
   /// See PlanCache::hand_in(); call it before launch().
   void hand_in_plan(std::shared_ptr<const Plan> plan) { plans_.hand_in(std::move(plan)); }
