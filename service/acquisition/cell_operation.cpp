@@ -155,6 +155,12 @@ std::vector<Unmet> CellOperation::unmet_preconditions() const {
 }
 
 std::vector<Unmet> CellOperation::unmet_before_start() const {
+  std::vector<Unmet> unmet = unmet_whatever_is_given();
+  if (auto one = unmet_by_temperature(cell(), {{}, clocks_.system()})) unmet.push_back(*std::move(one));
+  return unmet;
+}
+
+std::vector<Unmet> CellOperation::unmet_whatever_is_given() const {
   std::vector<Unmet> unmet = unmet_preconditions();
   if (lost_place_ && !place()) unmet.push_back(*lost_place_);
   if (auto unstored = unmet_by_unstored_end()) unmet.push_back(*std::move(unstored));

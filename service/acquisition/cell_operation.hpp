@@ -91,8 +91,9 @@ class CellOperation {
   void on_change(std::function<void(const Status&)> listener) { status_.on_change(std::move(listener)); }
   /// Every precondition of a start that is not met now.
   [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
-  /// The same with a place that the daemon before knew and that is lost: a start is refused for it, and
-  /// touchcal locate finds it.
+  /// The same with all that a start is refused for that brings nothing: also a place that the daemon before
+  /// knew and that is lost, which touchcal locate finds, and a temperature of the block that is missing or
+  /// too old, which a start may bring.
   [[nodiscard]] std::vector<Unmet> unmet_before_start() const;
   /// The run under way or the last one of this daemon; null before the first.
   [[nodiscard]] const Run* run() const { return run_ ? &run_->run : nullptr; }
@@ -136,6 +137,7 @@ class CellOperation {
   [[nodiscard]] static CommandRefusal refusal_at_the_end();
   [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request) const;
   [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request) const;
+  [[nodiscard]] std::vector<Unmet> unmet_whatever_is_given() const;
   boost::asio::awaitable<std::variant<Started, CommandRefusal>> start_alone(const StartRequest& request);
   boost::asio::awaitable<void> give_up(std::int64_t run_id);
   [[nodiscard]] NewRun new_run(const StartRequest& request) const;
