@@ -161,10 +161,11 @@ TEST_F(CommandLine, AnEmptyDatabaseOfAStateDirectoryThatWasInUseIsNoNewOne) {
   std::filesystem::create_directory(state);
   std::ofstream(state / "touchcal.sqlite").close();
   std::ofstream(state / "touchcal.begun") << "by an earlier daemon";
-  for (const char* how : {"--check", "--loopback-needs-token"}) {
+  for (const auto& [how, exit_code] : {std::pair("--check", cell::kExitBadInput),  // it is damage
+                                       std::pair("--loopback-needs-token", cell::kExitFailed)}) {
     const Finished refused = run({"touchcald", how, "--cell", cell_file("demo"), "--state", state.string(),
                                   "--listen", "127.0.0.1:0"});
-    EXPECT_EQ(refused.exit_code, cell::kExitFailed);
+    EXPECT_EQ(refused.exit_code, exit_code);
     EXPECT_THAT(refused.err, HasSubstr("touchcal.sqlite: is empty"));
     EXPECT_THAT(refused.err, HasSubstr("restore the last backup"));
   }
