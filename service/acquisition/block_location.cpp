@@ -25,21 +25,16 @@ using namespace std::chrono_literals;
 
 namespace {
 
-BlockPose located(const std::optional<BlockPose>& before, const Locating& locating) {
-  const calib::BlockRegistration& fit = locating.fit().value();
-  BlockPose place{.cell_from_block = fit.old_from_new,
-                  .covariance = fit.covariance,
-                  .std_block_pose = fit.std_block_pose,
-                  .touches = locating.touches()};
-  if (before) place.cell_from_block = before->cell_from_block * fit.old_from_new;
-  return place;
-}
-
 /// Whether the place was found by just these touches.
 bool is_made_of(const BlockPose& place, const std::vector<LocatingTouch>& touches) {
   return std::ranges::equal(place.touches, touches, [](const auto& fitted, const LocatingTouch& made) {
     return to_wire(fitted.joints) == made.joints;
   });
+}
+
+/// Null where the arm can go around the block, or where that is not found.
+const std::string* why_no_pass(const std::optional<FoundBlock>& found) {
+  return found ? std::get_if<std::string>(&found->pass) : nullptr;
 }
 
 /// Why nothing can be planned around a block whose place is known no better than `there` has it: every path
@@ -77,7 +72,7 @@ BlockLocation::BlockLocation(boost::asio::any_io_executor operation, boost::asio
       cell_(configured),
       regions_(std::in_place, cell_),
       located_(std::make_shared<const LocatedCell>(LocatedCell{cell_, std::nullopt, regions_->shared()})),
-      journal_(store, std::move(operation)) {}
+      journal_(store, std::move(operation), computation_) {}
 
 bool BlockLocation::keep_in(const std::filesystem::path& file) {
   file_ = file;
@@ -119,9 +114,9 @@ void BlockLocation::take_up(const LocatingJournal::Left& left) {
       left.record ? left.record->touches : std::vector<LocatingTouch>();
   for (const LocatingTouch& touch : touches) {
     const HandTouch made{touch.joints, from_wire(touch.joints), touch.moved_m};
-    if (!why_not) why_not = dialogue_->locating.why_not(made);
+    if (!why_not) why_not = dialogue_->block.locating.why_not(made);
     if (why_not) break;
-    dialogue_->locating.take(made);
+    dialogue_->block.take(made, configured_, place_);  // no link waits for it yet
     dialogue_->made.push_back(touch);
   }
   if (why_not) {
@@ -136,7 +131,7 @@ void BlockLocation::take_up(const LocatingJournal::Left& left) {
         touches.size() == 1 ? "1 touch is" : fmt::format("{} touches are", touches.size()),
         touches.back().touched_at);
   }
-  spdlog::warn("locating the block: {}{}", dialogue_->note, dialogue_->locating.guide().words);
+  spdlog::warn("locating the block: {}{}", dialogue_->note, dialogue_->block.locating.guide().words);
 }
 
 std::optional<std::string> BlockLocation::place_before() const {
@@ -154,7 +149,7 @@ std::optional<CommandRefusal> BlockLocation::locate() {
     return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
                           .detail = "the cell is not ready",
                           .unmet = unmet_by_controller(false, {}, status_.fault())};
-  if (dialogue_) return dialogue_->locating.fit() ? prepare_pass() : std::nullopt;
+  if (dialogue_) return dialogue_->block.found ? prepare_pass() : std::nullopt;
   try {
     dialogue_.emplace(cell_);
   } catch (const std::invalid_argument& error) {
@@ -170,18 +165,20 @@ bool BlockLocation::can_undo() const { return awaits_touch() && !is_storing() &&
 void BlockLocation::undo() {
   std::vector<LocatingTouch> others = dialogue_->made;
   others.pop_back();
-  journal_.write(std::move(others), place_before(), [this](const std::optional<std::string>& failure) {
+  const auto take_back = [this](const std::optional<std::string>& failure) {
     if (failure) {
       spdlog::error("a touch by hand is not taken back: {}", *failure);
-      dialogue_->locating.refuse("the last touch could not be taken back, which is to be stored: " +
-                                 *failure);
+      dialogue_->block.locating.refuse("the last touch could not be taken back, which is to be stored: " +
+                                       *failure);
     } else {
       dialogue_->note.clear();
       dialogue_->made.pop_back();
-      dialogue_->locating.undo();
+      dialogue_->block.undo();
     }
     status_.publish();
-  });
+  };
+  journal_.write(
+      std::move(others), place_before(), [] {}, take_back);
 }
 
 std::optional<CommandRefusal> BlockLocation::take() {
@@ -198,34 +195,40 @@ void BlockLocation::on_controller_state(const cs8::State& state) {
 
 /// Why it was not taken, if it was not; else it is on its way to the disk.
 std::optional<std::string> BlockLocation::take_touch(const HandTouch& touch) {
-  if (dialogue_->locating.guide().step != HandStep::kTouch) return "no touch is awaited now";
-  std::optional<std::string> why = dialogue_->locating.why_not(touch);
+  const Locating& locating = dialogue_->block.locating;
+  if (locating.guide().step != HandStep::kTouch) return "no touch is awaited now";
+  std::optional<std::string> why = locating.why_not(touch);
   if (is_storing()) why = "the one before was still being stored: touch again";
   if (why) {
     spdlog::info("touch by hand not taken: {}", *why);
-    dialogue_->locating.refuse(*why);
+    dialogue_->block.locating.refuse(*why);
     status_.publish();
     return why;
   }
   const LocatingTouch made{touch.wire_joints, touch.moved_m, format_utc(clocks_.system())};
   std::vector<LocatingTouch> with = dialogue_->made;
   with.push_back(made);
-  journal_.write(std::move(with), place_before(),
-                 [this, touch, made](const auto& failure) { keep_touch(touch, made, failure); });
+  const auto touched = std::make_shared<TouchedBlock>(dialogue_->block);
+  const auto reckon = [touched, touch, &cell = configured_, before = place_] {
+    touched->take(touch, cell, before);
+  };
+  journal_.write(std::move(with), place_before(), reckon, [this, touched, made](const auto& failure) {
+    keep_touch(std::move(*touched), made, failure);
+  });
   return std::nullopt;
 }
 
-/// It is on the disk, or cannot be written there.
-void BlockLocation::keep_touch(const HandTouch& touch, const LocatingTouch& made,
+/// It is on the disk and `touched` has it, or that failed.
+void BlockLocation::keep_touch(TouchedBlock touched, const LocatingTouch& made,
                                const std::optional<std::string>& failure) {
   if (failure) {
     spdlog::error("touch by hand not taken: {}", *failure);
-    dialogue_->locating.refuse("it could not be stored: " + *failure);
+    dialogue_->block.locating.refuse("it could not be stored: " + *failure);
   } else {
     dialogue_->note.clear();
     dialogue_->made.push_back(made);
-    dialogue_->locating.take(touch);
-    spdlog::info("touch by hand; {}", dialogue_->locating.guide().words);
+    dialogue_->block = std::move(touched);
+    spdlog::info("touch by hand; {}", dialogue_->block.locating.guide().words);
   }
   status_.publish();
 }
@@ -250,8 +253,9 @@ void BlockLocation::forget_touches() {
 
 std::optional<HandGuide> BlockLocation::guide() const {
   if (!dialogue_) return std::nullopt;
-  HandGuide guide = dialogue_->locating.guide();
+  HandGuide guide = dialogue_->block.locating.guide();
   guide.words = dialogue_->note + guide.words;
+  if (const auto* why = why_no_pass(dialogue_->block.found)) guide.problem = *why;
   if (passing_) {
     guide.step = HandStep::kPassing;
     guide.words = "the arm goes once around the block: keep away from it";
@@ -265,9 +269,10 @@ std::optional<CommandRefusal> BlockLocation::prepare_pass() {
   if (status_.fault() && !is_link_fault(status_.fault()->code))
     return CommandRefusal{.detail = "a fault is there to be read first: " + status_.fault()->message(),
                           .code = FaultCode::kFaultUnacknowledged};
-  const Cell there = cell_with_block_pose(configured_, located(place_, dialogue_->locating));
-  if (auto why = why_too_vague(there, session_.search_length_max_m()))
+  const std::optional<FoundBlock>& found = dialogue_->block.found;
+  if (auto why = why_too_vague(found->cell, session_.search_length_max_m()))
     return CommandRefusal{.detail = *std::move(why)};
+  if (const auto* why = why_no_pass(found)) return CommandRefusal{.detail = *why};
   passing_ = true;
   return std::nullopt;
 }
@@ -303,26 +308,18 @@ asio::awaitable<bool> BlockLocation::pass() {
   co_return false;
 }
 
-/// Postures and ways are computed beside the link; a stop that comes meanwhile is looked at behind each.
+/// The ways are computed beside the link; a stop that comes meanwhile is looked at behind that.
 asio::awaitable<bool> BlockLocation::go_around_block() {
   session_.forget_standing();
-  Cell there = cell_with_block_pose(configured_, located(place_, dialogue_->locating));
-  there.speeds.travel_m_s *= kPassSpeedShare;
-  const auto find_postures = [there, touches = dialogue_->locating.touches()] {
-    return pass_postures(there, touches);
-  };
-  const std::variant<std::vector<calib::JointVector>, std::string> postures =
-      co_await run_on(computation_, find_postures);
-  if (status_.state() != State::kStarting) co_return false;
-  if (const auto* why = std::get_if<std::string>(&postures)) {
-    status_.raise({FaultCode::kNoSafeWay, *why}, Event::kNotReadyFault);
-    co_return false;
-  }
   const bool permitted = co_await session_.obtain_permit(0);  // it is no run
   if (!permitted) co_return false;
   const auto from = co_await session_.standing_joints();
   if (!from || status_.state() != State::kStarting) co_return false;
-  const auto find_ways = [there, from = *from, stops = std::get<std::vector<calib::JointVector>>(postures)] {
+  const FoundBlock& found = dialogue_->block.found.value();
+  Cell there = found.cell;
+  there.speeds.travel_m_s *= kPassSpeedShare;
+  const auto find_ways = [there, from = *from,
+                          stops = std::get<std::vector<calib::JointVector>>(found.pass)] {
     return pass_ways(there, from, stops);
   };
   const std::optional<std::vector<PassWay>> ways = co_await run_on(computation_, find_ways);
@@ -342,11 +339,14 @@ asio::awaitable<bool> BlockLocation::go_around_block() {
 
 /// On the store's thread: a disk may take seconds, and the link and a stop do not wait for it.
 asio::awaitable<bool> BlockLocation::keep_found_place() {
-  BlockPose place = located(place_, dialogue_->locating);
+  BlockPose place = dialogue_->block.found.value().place;
   place.located_at = format_utc(clocks_.system());
   place.digest = block_pose_digest(configured_);
   if (!file_.empty()) {
-    const auto write = [file = file_, place](RunStore&) { write_block_pose(file, place); };
+    const auto write = [file = file_, place](RunStore& store) {
+      store.demand_in_place();
+      write_block_pose(file, place);
+    };
     const auto failure = co_await store_.write(write);
     if (failure) {
       status_.raise({FaultCode::kStoreFailed, *failure}, Event::kAbortFault);

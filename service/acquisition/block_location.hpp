@@ -13,10 +13,10 @@
 #include "service/acquisition/command_refusal.hpp"
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/hand_touch.hpp"
-#include "service/acquisition/locating.hpp"
 #include "service/acquisition/locating_journal.hpp"
 #include "service/acquisition/published_status.hpp"
 #include "service/acquisition/store_queue.hpp"
+#include "service/acquisition/touched_block.hpp"
 #include "service/base/clocks.hpp"
 #include "service/run/block_pose.hpp"
 #include "service/run/tip_prediction.hpp"
@@ -36,8 +36,8 @@ struct LocatedCell {
 /// place_check.hpp.
 class BlockLocation {
  public:
-  /// All must outlive it; `operation` is the executor that it is used on, `computation` that of the postures
-  /// and ways of a pass, `configured` the cell as its file has it.
+  /// All must outlive it; `operation` is the executor that it is used on, `computation` that of the place
+  /// and of the pass around it, `configured` the cell as its file has it.
   BlockLocation(boost::asio::any_io_executor operation, boost::asio::any_io_executor computation,
                 const Cell& configured, StoreQueue& store, ControllerSession& session,
                 PublishedStatus& status, Wake& wake, Clocks clocks);
@@ -64,12 +64,14 @@ class BlockLocation {
   /// Empty while the block is where the cell file says.
   [[nodiscard]] const std::optional<BlockPose>& place() const { return place_; }
 
-  /// Begins the dialogue; once the block is found, asks for the pass: is_passing() is true then. The place
-  /// counts for all runs that follow, also of later daemons.
+  /// Begins the dialogue; once the block is found, asks for the pass: is_passing() is true then. Refused
+  /// where there is no pass, before anything is changed. The place counts for all runs that follow, also of
+  /// later daemons.
   std::optional<CommandRefusal> locate();
   [[nodiscard]] bool is_locating() const { return dialogue_.has_value(); }
   [[nodiscard]] bool awaits_touch() const { return dialogue_ && !passing_; }
-  /// A touch, or one less, is on its way to the disk; until it is there nothing else is taken.
+  /// A touch, or one less, is on its way to the disk, or its place is computed; until both are done nothing
+  /// else is taken.
   [[nodiscard]] bool is_storing() const { return journal_.is_writing(); }
   /// Returns when it is there, or cannot be; after a while also when the disk does not answer.
   boost::asio::awaitable<void> stored() { return journal_.written(); }
@@ -98,17 +100,16 @@ class BlockLocation {
  private:
   /// What a person has touched so far.
   struct Dialogue {
-    explicit Dialogue(const Cell& cell) : locating(cell), watch(cell.arm.model) {}
-    Locating locating;
+    explicit Dialogue(const Cell& cell) : block{Locating(cell), std::nullopt}, watch(cell.arm.model) {}
+    TouchedBlock block;
     HandTouchWatch watch;
-    std::vector<LocatingTouch> made;  // those of `locating`, as they are stored
+    std::vector<LocatingTouch> made;  // those of `block`, as they are stored
     std::string note;  // what has become of touches of the daemon before, in front of the words
   };
 
   std::optional<CommandRefusal> prepare_pass();
   void take_up(const LocatingJournal::Left& left);
-  void keep_touch(const HandTouch& touch, const LocatingTouch& made,
-                  const std::optional<std::string>& failure);
+  void keep_touch(TouchedBlock touched, const LocatingTouch& made, const std::optional<std::string>& failure);
   void forget_touches();
   [[nodiscard]] std::optional<std::string> place_before() const;
   boost::asio::awaitable<bool> go_around_block();

@@ -89,7 +89,7 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       controller_(std::move(controller)),
       session_(cell, *controller_, status_, wake_, clocks_),
       location_(threads.operation, threads.computation, cell, store_, session_, status_, wake_, clocks_),
-      plans_(threads.operation, location_.cell()),
+      plans_(threads.operation, threads.planning, location_.cell()),
       planning_(location_.cell(), location_.place(), store_, plans_, preparation_, status_, wake_),
       computation_(threads.computation, location_.regions(), status_,
                    std::make_unique<TimerAlarm>(threads.operation)),
@@ -155,6 +155,12 @@ std::vector<Unmet> CellOperation::unmet_preconditions() const {
 }
 
 std::vector<Unmet> CellOperation::unmet_before_start() const {
+  std::vector<Unmet> unmet = unmet_whatever_is_given();
+  if (auto one = unmet_by_temperature(cell(), {{}, clocks_.system()})) unmet.push_back(*std::move(one));
+  return unmet;
+}
+
+std::vector<Unmet> CellOperation::unmet_whatever_is_given() const {
   std::vector<Unmet> unmet = unmet_preconditions();
   if (lost_place_ && !place()) unmet.push_back(*lost_place_);
   if (auto unstored = unmet_by_unstored_end()) unmet.push_back(*std::move(unstored));

@@ -43,14 +43,15 @@ struct Started {
 /// Threads::operation, but for what says that it is for any.
 class CellOperation {
  public:
-  /// Where it works: its own thread, and that of a run's arithmetic (RunComputation).
+  /// Where it works: its own thread, that of a run's arithmetic (RunComputation), and that of the plans.
   struct Threads {
     boost::asio::any_io_executor operation;
     boost::asio::any_io_executor computation;
+    boost::asio::any_io_executor planning;
   };
 
   /// `cell` and the store must outlive the operation; the store's executor and that of the computation must
-  /// have ended their work when the operation is destroyed.
+  /// have ended their work when the operation is destroyed, which that of the plans need not.
   CellOperation(const Threads& threads, const Cell& cell, StoreQueue store, Endpoint controller,
                 std::string instance_id, Clocks clocks);
   /// With a controller of any kind.
@@ -90,8 +91,9 @@ class CellOperation {
   void on_change(std::function<void(const Status&)> listener) { status_.on_change(std::move(listener)); }
   /// Every precondition of a start that is not met now.
   [[nodiscard]] std::vector<Unmet> unmet_preconditions() const;
-  /// The same with a place that the daemon before knew and that is lost: a start is refused for it, and
-  /// touchcal locate finds it.
+  /// The same with all that a start is refused for that brings nothing: also a place that the daemon before
+  /// knew and that is lost, which touchcal locate finds, and a temperature of the block that is missing or
+  /// too old, which a start may bring.
   [[nodiscard]] std::vector<Unmet> unmet_before_start() const;
   /// The run under way or the last one of this daemon; null before the first.
   [[nodiscard]] const Run* run() const { return run_ ? &run_->run : nullptr; }
@@ -107,7 +109,7 @@ class CellOperation {
   [[nodiscard]] const RunStore& store() const { return store_.store(); }
   [[nodiscard]] const Clocks& clocks() const { return clocks_; }
 
-  /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on a thread of its own.
+  /// Plans a recipe of this cell, unless it has been planned. Takes seconds, on Threads::planning.
   boost::asio::awaitable<PlanOutcome> plan_recipe(std::string name) { return plans_.plan(std::move(name)); }
   /// See PlanCache::hand_in(); call it before launch().
   void hand_in_plan(std::shared_ptr<const Plan> plan) { plans_.hand_in(std::move(plan)); }
@@ -135,6 +137,7 @@ class CellOperation {
   [[nodiscard]] static CommandRefusal refusal_at_the_end();
   [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request) const;
   [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request) const;
+  [[nodiscard]] std::vector<Unmet> unmet_whatever_is_given() const;
   boost::asio::awaitable<std::variant<Started, CommandRefusal>> start_alone(const StartRequest& request);
   boost::asio::awaitable<void> give_up(std::int64_t run_id);
   [[nodiscard]] NewRun new_run(const StartRequest& request) const;

@@ -26,6 +26,7 @@ constexpr std::chrono::seconds kEndAgain{5};
 
 asio::awaitable<void> CellOperation::shut_down() {
   status_.end();
+  plans_.end();
   break_off_for_end();
   wake_.wake();
   if (is_starting_) {

@@ -336,8 +336,12 @@ asio::awaitable<bool> CellOperation::park() {
   const auto from = co_await session_.standing_joints();
   if (!from || status_.state() != State::kCompleting) co_return false;
   const calib::JointVector& to = cell().park_joints;
-  const auto via = calib::find_aimed_transfer(preparation_.problem(), preparation_.aim(),
-                                              preparation_.leaving(*from), {to, std::nullopt, nullptr});
+  const auto find_way = [from = *from, to](const TouchPreparation& preparation, const Run&) {
+    return calib::find_aimed_transfer(preparation.problem(), preparation.aim(), preparation.leaving(from),
+                                      {to, std::nullopt, nullptr});
+  };
+  const auto via = co_await computation_.prepared(preparation_, run_->run, find_way);
+  if (status_.state() != State::kCompleting) co_return false;
   if (!via) {
     status_.raise({FaultCode::kNoSafeWay, "to the park posture"}, Event::kHoldFault);
     co_return false;

@@ -19,7 +19,7 @@ namespace asio = boost::asio;
 std::vector<Unmet> CellOperation::unmet_for(const StartRequest& request) const {
   const auto outcome = plans_.planned(request.recipe, given_to(request, cell()));
   const auto* no_plan = outcome ? std::get_if<PlanRefusal>(&*outcome) : nullptr;
-  auto unmet = unmet_for_run(unmet_before_start(), cell(), {request.block_temperature, clocks_.system()},
+  auto unmet = unmet_for_run(unmet_whatever_is_given(), cell(), {request.block_temperature, clocks_.system()},
                              status_.fault(), no_plan);
   return request.guided ? unmet_without_motion(std::move(unmet)) : unmet;
 }

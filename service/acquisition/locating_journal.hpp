@@ -23,8 +23,9 @@ class LocatingJournal {
   /// Longest wait for a disk that does not answer: whoever waited is told then that it is being written.
   static constexpr std::chrono::seconds kWrittenPatience{2};
 
-  /// `operation` is where it is told that something is written.
-  LocatingJournal(StoreQueue& store, boost::asio::any_io_executor operation);
+  /// `operation` is where it is told that something is written, `computation` where something is made of it.
+  LocatingJournal(StoreQueue& store, boost::asio::any_io_executor operation,
+                  boost::asio::any_io_executor computation);
 
   /// Sets the file, and the digest of the cell's files that its touches belong to. Until then nothing is
   /// kept.
@@ -38,9 +39,11 @@ class LocatingJournal {
   };
   [[nodiscard]] Left left(const std::optional<std::string>& from_place) const;
 
-  /// Writes all touches of the dialogue, without any the file goes. Calls `then` with why that failed, with
-  /// nothing when they are on the disk; at once where nothing is kept. Not while it is writing.
-  void write(std::vector<LocatingTouch> touches, std::optional<std::string> from_place, Then then);
+  /// Writes all touches of the dialogue, without any the file goes. `reckon` is called once they are on the
+  /// disk, on the thread of the arithmetic: what it refers to must outlive that. Calls `then` with why either
+  /// failed, with nothing when both are done. Not while it is writing, which lasts until then.
+  void write(std::vector<LocatingTouch> touches, std::optional<std::string> from_place,
+             std::function<void()> reckon, Then then);
   [[nodiscard]] bool is_writing() const { return is_writing_; }
   /// Returns when nothing is being written any more, at the latest kWrittenPatience after that began.
   boost::asio::awaitable<void> written();
@@ -51,6 +54,7 @@ class LocatingJournal {
  private:
   StoreQueue& store_;
   boost::asio::any_io_executor operation_;
+  boost::asio::any_io_executor computation_;
   boost::asio::steady_timer patience_;  // from the beginning of a write to its end
   std::filesystem::path file_;          // empty: nowhere
   std::optional<std::string> config_digest_;

@@ -1,12 +1,11 @@
 // Each co_await stands alone in its statement, see cs8_controller.cpp.
 #include "service/acquisition/plan_cache.hpp"
 
-#include <boost/asio/bind_executor.hpp>
 #include <boost/asio/co_spawn.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <exception>
 #include <string_view>
+
+#include "service/base/run_on.hpp"
 
 namespace cell {
 
@@ -20,8 +19,7 @@ class GivenUp : public std::exception {
   [[nodiscard]] const char* what() const noexcept override { return "nobody waits for this plan any more"; }
 };
 
-/// On the planner's thread: nothing may be thrown there, the coroutine would go on beside the sockets.
-/// `goes_on` is called now and then.
+/// On the planner's thread. `goes_on` is called now and then.
 PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe, const std::function<bool()>& goes_on) {
   const auto end_unless_wanted = [&goes_on](std::string_view, double) {
     if (!goes_on()) throw GivenUp();
@@ -67,7 +65,7 @@ asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe, PlanGiven given
   return make(std::move(recipe), given, std::make_shared<std::atomic<bool>>(false));
 }
 
-asio::awaitable<PlanOutcome> PlanCache::make(std::string recipe, PlanGiven given, Cancelled cancelled) {
+asio::awaitable<PlanOutcome> PlanCache::make(std::string recipe, PlanGiven given, Flag cancelled) {
   const Key key = key_of(recipe, given);
   for (;;) {
     if (const auto made = plans_.find(key); made != plans_.end()) co_return made->second;
@@ -77,12 +75,12 @@ asio::awaitable<PlanOutcome> PlanCache::make(std::string recipe, PlanGiven given
     if (given.stiffness) chosen.identification.stiffness = *given.stiffness;
     const int clear_count = clear_count_;
     ++under_way_count_;
-    co_await asio::post(asio::bind_executor(planner_.get_executor(), asio::use_awaitable));
-    const std::function<bool()> goes_on = [this, cancelled] { return !ending_ && !*cancelled; };
-    const PlanOutcome made = make_outcome(*cell, chosen, goes_on);
-    co_await asio::post(asio::bind_executor(executor_, asio::use_awaitable));
+    const auto plan = [cell, chosen, cancelled, ended = ended_] {
+      return make_outcome(*cell, chosen, [&] { return !*ended && !*cancelled; });
+    };
+    const PlanOutcome made = co_await run_on(planner_, plan);
     --under_way_count_;
-    if (*cancelled) co_return made;
+    if (*cancelled || *ended_) co_return made;
     if (clear_count == clear_count_) keep(key, made);
   }
 }

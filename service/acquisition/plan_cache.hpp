@@ -3,7 +3,6 @@
 #include <atomic>
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <compare>
 #include <functional>
 #include <map>
@@ -27,17 +26,15 @@ struct PlanGiven {
   std::optional<bool> stiffness;
 };
 
-/// The plans of a cell, by recipe and what was given in place of the cell's. Planning takes seconds and has
-/// its own thread; everything else runs on the executor's.
+/// The plans of a cell, by recipe and what was given in place of the cell's. Planning takes seconds and is
+/// done on the executor that is handed in for it; everything else runs on the other one.
 class PlanCache {
  public:
-  /// `cell` must outlive it. Call clear() when its block is found elsewhere.
-  PlanCache(boost::asio::any_io_executor executor, const Cell& cell)
-      : executor_(std::move(executor)), cell_(cell) {}
-  ~PlanCache() {
-    ending_ = true;
-    planner_.join();
-  }
+  /// `cell` must outlive it; whoever calls plan() is on `executor`. Call clear() when its block is found
+  /// elsewhere.
+  PlanCache(boost::asio::any_io_executor executor, boost::asio::any_io_executor planner, const Cell& cell)
+      : executor_(std::move(executor)), planner_(std::move(planner)), cell_(cell) {}
+  ~PlanCache() { end(); }
   PlanCache(const PlanCache&) = delete;
   PlanCache& operator=(const PlanCache&) = delete;
 
@@ -55,6 +52,8 @@ class PlanCache {
   /// What plan() gave; nothing before.
   [[nodiscard]] std::optional<PlanOutcome> planned(const std::string& recipe,
                                                    const PlanGiven& given = {}) const;
+  /// Gives up all that is being planned, and nothing is planned any more: the daemon ends.
+  void end() { *ended_ = true; }
   [[nodiscard]] bool is_planning() const { return under_way_count_ > 0; }
   /// Null when no plan that is kept has this id and is of what the cell's files say.
   [[nodiscard]] std::shared_ptr<const Plan> plan_with_id(const std::string& id) const;
@@ -71,14 +70,14 @@ class PlanCache {
   };
   [[nodiscard]] Key key_of(const std::string& recipe, const PlanGiven& given) const;
   void keep(const Key& key, const PlanOutcome& made);
-  using Cancelled = std::shared_ptr<std::atomic<bool>>;  // set here, read by the planner
-  boost::asio::awaitable<PlanOutcome> make(std::string recipe, PlanGiven given, Cancelled cancelled);
+  using Flag = std::shared_ptr<std::atomic<bool>>;  // set here, read by the planner
+  boost::asio::awaitable<PlanOutcome> make(std::string recipe, PlanGiven given, Flag cancelled);
 
   boost::asio::any_io_executor executor_;
+  boost::asio::any_io_executor planner_;
   const Cell& cell_;
-  std::atomic<bool> ending_ = false;  // read by the planner
-  Cancelled begun_;
-  boost::asio::thread_pool planner_{1};
+  Flag ended_ = std::make_shared<std::atomic<bool>>(false);
+  Flag begun_;
   std::map<Key, PlanOutcome> plans_;
   int under_way_count_ = 0;  // on the planner's thread, or waiting for it
   int clear_count_ = 0;      // a plan that was begun before the last one is none

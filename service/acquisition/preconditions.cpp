@@ -56,6 +56,12 @@ const AwaitedAction* awaited_before_start(const std::vector<Unmet>& unmet) {
   return nullptr;
 }
 
+std::optional<Unmet> unmet_by_temperature(const Cell& cell, const StartConditions& start) {
+  auto refusal = refuse_temperature(cell, start.block_temperature, start.now);
+  if (!refusal) return std::nullopt;
+  return Unmet{std::move(refusal->code), std::move(refusal->words)};
+}
+
 std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& cell,
                                  const StartConditions& start, const std::optional<Fault>& fault,
                                  const PlanRefusal* no_plan) {
@@ -65,8 +71,7 @@ std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& c
     found.push_back(unmet(FaultCode::kFaultUnacknowledged, fault->message()));
   if (!cell.probe.tip_is_contact_point && cell.speeds.contact_m_s() != cell.probe.calibration_speed_m_s)
     found.push_back(unmet(FaultCode::kProbeNotCalibrated));
-  if (const auto refusal = refuse_temperature(cell, start.block_temperature, start.now))
-    found.push_back({refusal->code, refusal->words});
+  if (auto one = unmet_by_temperature(cell, start)) found.push_back(*std::move(one));
   if (no_plan) found.push_back(unmet(FaultCode::kRecipeUnreachable, no_plan->message));
   return found;
 }

@@ -29,6 +29,9 @@ struct StartConditions {
   std::chrono::system_clock::time_point now;
 };
 
+/// The temperature of the block, where no run may begin with it.
+std::optional<Unmet> unmet_by_temperature(const Cell& cell, const StartConditions& start);
+
 /// Those of a run: `by_controller`, the unacknowledged fault, the cell's files with what the request gives,
 /// and why its recipe has no plan (null: it has one, or was not planned).
 std::vector<Unmet> unmet_for_run(std::vector<Unmet> by_controller, const Cell& cell,

@@ -5,8 +5,6 @@
 
 #include <utility>
 
-#include "service/base/run_on.hpp"
-
 namespace cell {
 
 namespace asio = boost::asio;

@@ -188,7 +188,7 @@ asio::awaitable<bool> RunRecovery::plan_again(ActiveRun& active) {
   }
   planning_.begin_touches(active);
   if (!active.guided) {
-    preparation_.recall(run);
+    co_await touches_.recall(active);
     co_await touches_.restore_reference(active);
     touches_.suspect_last(active);
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "service/acquisition/commanded_touch.hpp"
+#include "service/acquisition/touch_ways.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/run/touch_command.hpp"
 
@@ -85,6 +86,14 @@ void TouchExecutor::begin_run(const ActiveRun& active) {
   false_trigger_count_ = 0;
 }
 
+asio::awaitable<void> TouchExecutor::recall(ActiveRun& active) {
+  const auto recall_last = [](TouchPreparation& preparation, Run& run) {
+    preparation.recall(run);
+    return preparation.next().has_value();
+  };
+  co_await computation_.prepared(preparation_, active.run, recall_last);
+}
+
 asio::awaitable<void> TouchExecutor::make_next_touch(ActiveRun& active) {
   held_by_ = HeldBy::kNothing;
   Run& run = active.run;
@@ -136,21 +145,25 @@ asio::awaitable<bool> TouchExecutor::prepare(ActiveRun& active) {
     co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
     co_return false;
   }
-  Run& run = active.run;
-  // An aimed touch is kept after a hold or a restart; only the path to it is planned again.
-  if (preparation_.reroute_from(*from, *run.next())) co_return true;
-  preparation_.add_contacts(run);
-  if (preparation_.prepare_next(run, *from)) co_return true;
+  session_.set_standing(*from);  // a State that tells otherwise meanwhile forgets it
+  const auto find_way = [from = *from](TouchPreparation& preparation, Run& run) {
+    return find_way_of_plan(preparation, run, from);
+  };
+  const WayOfPlan way = co_await computation_.prepared(preparation_, active.run, find_way);
+  if (status_.state() != State::kExecute || !session_.standing()) co_return false;
+  if (way.is_there) co_return true;
+  const Run& run = active.run;
   const int plane = run.next()->face + 1;
-  hold_without_way(*from, fmt::format("to touch {} on plane {}", run.touches_done() + 1, plane),
+  hold_without_way(way.can_leave, fmt::format("to touch {} on plane {}", run.touches_done() + 1, plane),
                    HeldBy::kTouch);
   co_return false;
 }
 
 /// A person can jog the arm to where there is a way, or leave the touch out.
-void TouchExecutor::hold_without_way(const calib::JointVector& from, const std::string& to, HeldBy held_by) {
+void TouchExecutor::hold_without_way(bool can_leave, const std::string& to, HeldBy held_by) {
   held_by_ = held_by;
-  const char* stuck = preparation_.can_leave(from) ? "" : "; where it stands it has no room to leave";
+  session_.forget_standing();  // somebody is about to jog it
+  const char* stuck = can_leave ? "" : "; where it stands it has no room to leave";
   status_.raise({FaultCode::kNoSafeWay, to + stuck}, Event::kHoldFault);
 }
 
@@ -207,20 +220,12 @@ asio::awaitable<void> TouchExecutor::work_ahead(ActiveRun& active) {
   tell_kept();
   store_.behind([id = active.run.id()](RunStore& store) { store.make_durable(id); });
   co_await identify(active);
-  preparation_.add_contacts(active.run);
-  const std::size_t behind = active.run.touches_made() + 1;
-  stop_when_good_enough(active, behind);
-  look_ahead(active);
-}
-
-/// What comes behind the touch under way, from its clear posture.
-void TouchExecutor::look_ahead(ActiveRun& active) {
-  const std::size_t behind = active.run.touches_made() + 1;
-  preparation_.look_ahead(active.run, behind);
-  reference_ahead_.reset();
-  const bool is_due = reference_.is_due(active.run.touches_done() + 1, !active.run.planned(behind));
-  if (is_due && reference_.aimed())
-    reference_ahead_ = preparation_.prepare(*reference_.aimed(), preparation_.made()->touch.clear_joints);
+  const auto look = [reference = reference_](TouchPreparation& preparation, Run& run) {
+    return look_ahead(preparation, run, reference);
+  };
+  LookAhead ahead = co_await computation_.prepared(preparation_, active.run, look);
+  reference_ahead_ = std::move(ahead.to_reference);
+  tell_left_out(active.run, ahead.dropped);
 }
 
 asio::awaitable<void> TouchExecutor::identify(ActiveRun& active) {
@@ -239,9 +244,11 @@ asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch o
   calib::OnlineArmEstimate without = preparation_.aim();
   bool contradicted = false;
   std::optional<OpenTouch> next;
-  std::exception_ptr unforeseen;  // what is stored counts all the same
+  std::exception_ptr unforeseen;              // what is stored counts all the same
+  session_.set_standing(touch.clear_joints);  // a State that tells otherwise meanwhile forgets it
   try {
-    contradicted = aim_ahead(active, storing.touch, contact);
+    const bool does_not_fit = co_await aim_ahead(active, storing.touch);
+    contradicted = does_not_fit;
     next = command_behind(active, contradicted);
   } catch (...) {
     unforeseen = std::current_exception();
@@ -249,7 +256,6 @@ asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch o
   StoredCommand stored;
   std::function<void(RunStore&)> behind;
   if (next) behind = storing_of(active, *next, path_of(*preparation_.next()), stored);
-  session_.set_standing(touch.clear_joints);  // a State that tells otherwise meanwhile forgets it
   const bool kept = co_await finish_storing(active, storing, result.edges, behind);
   active.stored_changes += stored.changes;
   if (!kept) {
@@ -274,18 +280,15 @@ asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch o
   }
 }
 
-/// While the contact is stored: the aim knows it, and what comes next, which was aimed before it was known,
-/// is aimed again where it has to be. True for a contact that the others contradict: it is made again while
-/// the arm is there.
-bool TouchExecutor::aim_ahead(ActiveRun& active, const StoredTouch& touch,
-                              const calib::JointVector& contact) {
-  preparation_.set_missed(false);
-  const bool contradicted = preparation_.add_ahead(active.run, to_touch(touch));
-  if (!preparation_.is_surprise(contact)) return contradicted;
-  preparation_.drop_next();
-  reference_ahead_.reset();
-  if (!contradicted) look_ahead(active);
-  return contradicted;
+/// While the contact is stored. True for one that the others contradict.
+asio::awaitable<bool> TouchExecutor::aim_ahead(ActiveRun& active, StoredTouch touch) {
+  const auto aim = [touch = to_touch(touch), reference = reference_](TouchPreparation& preparation,
+                                                                     Run& run) {
+    return aim_behind(preparation, run, touch, reference);
+  };
+  AimBehindContact aimed = co_await computation_.prepared(preparation_, active.run, aim);
+  if (aimed.is_surprise) reference_ahead_ = std::move(aimed.to_reference);
+  co_return aimed.contradicted;
 }
 
 /// True when the answer is a measurement, which the caller keeps and acknowledges; else the answer is dealt

@@ -28,10 +28,10 @@ enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus };
 ///
 /// A contact counts when it is stored; only then may the controller forget it. The arm does not wait for
 /// arithmetic: the estimate from the last touch and the path to the next are computed while it moves, and
-/// what a contact changes in them while the disk writes it. Behind the contact, on the same way to the disk,
-/// goes the command that follows, which leaves when both are stored and nothing has come between. Called
-/// by the cell's loop in EXECUTE. Failures are raised at the status and end the step; a lost link ends the
-/// step without a fault, which the controller's hook raises.
+/// what a contact changes in them while the disk writes it, both beside the link (RunComputation). Behind the
+/// contact, on the same way to the disk, goes the command that follows, which leaves when both are stored and
+/// nothing has come between. Called by the cell's loop in EXECUTE. Failures are raised at the status and end
+/// the step; a lost link ends the step without a fault, which the controller's hook raises.
 class TouchExecutor {
  public:
   /// All must outlive it.
@@ -51,6 +51,8 @@ class TouchExecutor {
   boost::asio::awaitable<void> make_next_touch(ActiveRun& active);
   /// Computes the result of all touches so far, unless it exists.
   boost::asio::awaitable<void> identify(ActiveRun& active);
+  /// When a run continues after a restart: see TouchPreparation::recall().
+  boost::asio::awaitable<void> recall(ActiveRun& active);
   /// When a run continues after a restart, or a contact was kept late: a last touch that the others
   /// contradict is made again before anything else. The estimate must be that without it.
   void suspect_last(const ActiveRun& active);
@@ -78,14 +80,13 @@ class TouchExecutor {
 
  private:
   boost::asio::awaitable<bool> prepare(ActiveRun& active);
-  void hold_without_way(const calib::JointVector& from, const std::string& to, HeldBy held_by);
+  void hold_without_way(bool can_leave, const std::string& to, HeldBy held_by);
   boost::asio::awaitable<bool> keep_open_command(ActiveRun& active, OpenTouch open);
   std::optional<OpenTouch> command_behind(const ActiveRun& active, bool contradicted) const;
   bool take_stored_ahead(const Run& run);
   void forget_stored_command(std::int64_t run_id);
   boost::asio::awaitable<void> work_ahead(ActiveRun& active);
-  void look_ahead(ActiveRun& active);
-  void stop_when_good_enough(ActiveRun& active, std::size_t first);
+  void tell_left_out(const Run& run, int dropped);
   boost::asio::awaitable<void> take_contact(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
   void tell_unstored(const std::string& failure);
   /// A contact on its way to the store.
@@ -100,7 +101,7 @@ class TouchExecutor {
   boost::asio::awaitable<bool> finish_storing(ActiveRun& active, Storing storing, std::uint32_t edges,
                                               std::function<void(RunStore&)> behind);
   void tell_kept();
-  bool aim_ahead(ActiveRun& active, const StoredTouch& touch, const calib::JointVector& contact);
+  boost::asio::awaitable<bool> aim_ahead(ActiveRun& active, StoredTouch touch);
   bool accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
               const cs8::TouchResult& result, HeldBy held_by);
   void take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
@@ -115,8 +116,10 @@ class TouchExecutor {
   boost::asio::awaitable<void> work_beside_plan(ActiveRun& active, HeldBy held_by, calib::JointVector from);
   void settle_beside_plan();
   boost::asio::awaitable<void> touch_reference(ActiveRun& active);
-  bool aim_at_reference();
-  void look_ahead_from_reference(Run& run, const calib::JointVector& from);
+  boost::asio::awaitable<bool> aim_at_reference(ActiveRun& active);
+  boost::asio::awaitable<std::optional<PreparedTouch>> prepare_beside_plan(ActiveRun& active,
+                                                                           calib::AimedTouch aimed,
+                                                                           HeldBy held_by);
   void judge_reference(const ActiveRun& active, const calib::JointVector& contact);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
   boost::asio::awaitable<bool> replace(ActiveRun& active, OutlierRetest::Replaced replaced);

@@ -25,11 +25,7 @@ void TouchExecutor::tell_kept() {
               cs8::metres_from_dmm(touch.overtravel_dmm) * 1e3);
 }
 
-/// A run that reached the accuracy it was asked for leaves out the touches that it would still fit.
-void TouchExecutor::stop_when_good_enough(ActiveRun& active, std::size_t first) {
-  Run& run = active.run;
-  if (!run.meets_accuracy_goal()) return;
-  const int dropped = run.drop_fit_touches(first);
+void TouchExecutor::tell_left_out(const Run& run, int dropped) {
   if (dropped == 0) return;
   spdlog::info("run {} is accurate enough: {} touches are left out", run.id(), dropped);
   total_is_due_ = true;
@@ -45,6 +41,17 @@ asio::awaitable<void> TouchExecutor::end_touches(ActiveRun& active) {
   if (suspect_one(active.run, left)) co_return;
   if (!left.empty()) status_.warn(outlier_.warning_of(left));
   status_.apply(Event::kDone);
+}
+
+void TouchExecutor::suspect_last(const ActiveRun& active) {
+  const Run& run = active.run;
+  const calib::PlannedTouch* planned = run.touches_made() > 0 ? run.planned(run.touches_made() - 1) : nullptr;
+  if (!planned) return;
+  calib::OnlineArmEstimate with = preparation_.aim();
+  if (!with.add(run.problem().touches.back()).contradicts) return;
+  auto made = preparation_.aim_or_nominal(*planned);
+  if (auto* aimed = std::get_if<calib::AimedTouch>(&made))
+    outlier_.begin({run.touches_done(), std::move(*aimed), preparation_.aim()});
 }
 
 void TouchExecutor::warn_of_outliers(ActiveRun& active) {

@@ -12,6 +12,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/planning/aimed_touch.hpp"
 #include "service/acquisition/touch_executor.hpp"
+#include "service/acquisition/touch_ways.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/run/touch_command.hpp"
 
@@ -35,35 +36,13 @@ asio::awaitable<void> TouchExecutor::restore_reference(ActiveRun& active) {
   reference_.restore(*planned, from_wire(first->joints), reference, there.empty() ? 0 : there.back().number);
 }
 
-void TouchExecutor::suspect_last(const ActiveRun& active) {
-  const Run& run = active.run;
-  const calib::PlannedTouch* planned = run.touches_made() > 0 ? run.planned(run.touches_made() - 1) : nullptr;
-  if (!planned) return;
-  calib::OnlineArmEstimate with = preparation_.aim();
-  if (!with.add(run.problem().touches.back()).contradicts) return;
-  auto made = preparation_.aim_or_nominal(*planned);
-  if (auto* aimed = std::get_if<calib::AimedTouch>(&made))
-    outlier_.begin({run.touches_done(), std::move(*aimed), preparation_.aim()});
-}
-
 /// Makes a touch as it is given, unless the contact of the last one is still to be stored; false when there
 /// is no measurement. The controller keeps the contact until settle_beside_plan().
 asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib::AimedTouch aimed,
                                                        HeldBy held_by) {
   if (beside_plan_) co_return true;
-  const auto from = co_await session_.standing_joints();
-  if (status_.state() != State::kExecute) co_return false;
-  if (!from) {
-    co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
-    co_return false;
-  }
-  std::optional<PreparedTouch> ready = std::exchange(reference_ahead_, std::nullopt);
-  if (!ready || held_by != HeldBy::kReference || ready->from != *from)
-    ready = preparation_.prepare(std::move(aimed), *from);
-  if (!ready) {
-    hold_without_way(*from, "to a place that was touched before", held_by);
-    co_return false;
-  }
+  std::optional<PreparedTouch> ready = co_await prepare_beside_plan(active, std::move(aimed), held_by);
+  if (!ready) co_return false;
   const OutgoingTouch outgoing = preparation_.send(*std::move(ready));
   session_.forget_standing();
   history_.last_contact.reset();  // this touch repeats an earlier place on purpose
@@ -85,12 +64,39 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
   co_return true;
 }
 
+/// The touch with its way; nothing where there is none, or where another state was entered or the arm moved.
+asio::awaitable<std::optional<PreparedTouch>> TouchExecutor::prepare_beside_plan(ActiveRun& active,
+                                                                                 calib::AimedTouch aimed,
+                                                                                 HeldBy held_by) {
+  const auto from = co_await session_.standing_joints();
+  if (status_.state() != State::kExecute) co_return std::nullopt;
+  if (!from) {
+    co_await wake_.wait(20ms);  // the link is lost; its hook is about to report it
+    co_return std::nullopt;
+  }
+  std::optional<PreparedTouch> ahead = std::exchange(reference_ahead_, std::nullopt);
+  if (ahead && held_by == HeldBy::kReference && ahead->from == *from) co_return ahead;
+  session_.set_standing(*from);  // a State that tells otherwise meanwhile forgets it
+  const auto find_way = [from = *from, aimed = std::move(aimed)](const TouchPreparation& preparation,
+                                                                 const Run&) {
+    return find_way_beside_plan(preparation, aimed, from);
+  };
+  WayBesidePlan way = co_await computation_.prepared(preparation_, active.run, find_way);
+  if (status_.state() != State::kExecute || !session_.standing()) co_return std::nullopt;
+  if (!way.touch) hold_without_way(way.can_leave, "to a place that was touched before", held_by);
+  co_return std::move(way.touch);
+}
+
 /// While the arm moves.
 asio::awaitable<void> TouchExecutor::work_beside_plan(ActiveRun& active, HeldBy held_by,
                                                       calib::JointVector from) {
   co_await asio::this_coro::reset_cancellation_state(asio::disable_cancellation());  // as work_ahead()
   co_await identify(active);
-  if (held_by == HeldBy::kReference) look_ahead_from_reference(active.run, from);
+  if (held_by != HeldBy::kReference) co_return;
+  const auto look = [from](TouchPreparation& preparation, Run& run) {
+    return look_ahead_from_reference(preparation, run, from);
+  };
+  co_await computation_.prepared(preparation_, active.run, look);
 }
 
 /// What the contact says is stored, or there is nothing to store: the controller may forget it.
@@ -99,28 +105,25 @@ void TouchExecutor::settle_beside_plan() {
   beside_plan_.reset();
 }
 
-bool TouchExecutor::aim_at_reference() {
-  if (reference_.aimed()) return true;
-  auto made = preparation_.aim_or_nominal(reference_.planned());
+asio::awaitable<bool> TouchExecutor::aim_at_reference(ActiveRun& active) {
+  if (reference_.aimed()) co_return true;
+  const auto aim = [planned = reference_.planned()](const TouchPreparation& preparation, const Run&) {
+    return preparation.aim_or_nominal(planned);
+  };
+  auto made = co_await computation_.prepared(preparation_, active.run, aim);
+  if (status_.state() != State::kExecute) co_return false;
   if (const auto* why = std::get_if<std::string>(&made)) {
     held_by_ = HeldBy::kReference;
     status_.raise({FaultCode::kNoSafeWay, "to the reference place: " + *why}, Event::kHoldFault);
-    return false;
+    co_return false;
   }
   reference_.set_aimed(std::get<calib::AimedTouch>(std::move(made)));
-  return true;
-}
-
-/// While the arm moves to the reference place: the way from there to the next touch of the plan.
-void TouchExecutor::look_ahead_from_reference(Run& run, const calib::JointVector& from) {
-  const calib::PlannedTouch* next = run.next();
-  if (!next || preparation_.reroute_from(from, *next)) return;
-  preparation_.add_contacts(run);  // one that was kept late may be why there is nothing to take up
-  preparation_.prepare_next(run, from);
+  co_return true;
 }
 
 asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
-  if (!aim_at_reference()) co_return;
+  const bool is_aimed = co_await aim_at_reference(active);
+  if (!is_aimed) co_return;
   const bool touched = co_await touch_beside_plan(active, *reference_.aimed(), HeldBy::kReference);
   if (!touched) co_return;
   const Run& run = active.run;

@@ -206,9 +206,13 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   Context context(1);
   asio::thread_pool disk(1);
   asio::thread_pool arithmetic(1);
+  asio::thread_pool planner(1);
   const StoreQueue store_queue(store, disk.get_executor());
-  CellOperation operation({context.get_executor(), arithmetic.get_executor()}, cell, store_queue,
-                          options.controller.value_or(cell.controller), random_hex(8), clocks);
+  CellOperation operation({.operation = context.get_executor(),
+                           .computation = arithmetic.get_executor(),
+                           .planning = planner.get_executor()},
+                          cell, store_queue, options.controller.value_or(cell.controller), random_hex(8),
+                          clocks);
   operation.keep_place_in(options.state_directory / kBlockPoseFile);
   if (options.retain_days) {
     asio::co_spawn(context, delete_old_runs(store, disk.get_executor(), clocks, *options.retain_days),
@@ -252,7 +256,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   std::fflush(stdout);
   supervision.notify_ready(fmt::format("cell {} at {}", cell.name, address));
   const NothingWaits nothing_waits(context, http, api);
-  const WorkDone done(arithmetic, disk, end_watch, patience,
+  const WorkDone done({&disk, &arithmetic, &planner}, end_watch, patience,
                       [&] { return end_without_work(operation.run(), store_queue.waiting_count()); });
   const HttpThread http_thread(http);
   context.run();

@@ -4,13 +4,16 @@
 #include <unistd.h>
 
 #include <functional>
+#include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "config/config_error.hpp"
 #include "config/read_config.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/daemon/listen_address.hpp"
 #include "service/documents/block_pose_file.hpp"
+#include "service/documents/locating_file.hpp"
 #include "service/http/auth/operator_tokens.hpp"
 #include "service/http/auth/token_file.hpp"
 #include "service/store/maintenance.hpp"
@@ -59,25 +62,52 @@ void check_address(const DaemonOptions& options) {
       fmt::format("--listen {}: {}; give another address", endpoint_text(options.listen), failure.message()));
 }
 
+/// What is there of a dialogue that finds the block is discarded where it is damaged; that keeps no daemon
+/// from starting.
+void check_locating(const fs::path& file, SelfCheck& check) {
+  try {
+    read_locating(file);
+  } catch (const ConfigError& error) {
+    check.remarks.push_back(fmt::format("{}; its touches by hand will be made again", error.what()));
+  }
+}
+
+/// What `read` refuses with an Error is a bad file, whatever the error's words say of the start.
+template <class Error>
+std::function<void()> bad_file_at(std::function<void()> read, SelfCheck& check) {
+  return [read = std::move(read), &check] {
+    try {
+      read();
+    } catch (const TokenUnreadable&) {
+      throw;  // nobody knows what it holds
+    } catch (const Error& error) {
+      check.bad_files.emplace_back(error.what());
+    }
+  };
+}
+
 }  // namespace
 
 SelfCheck check_daemon(const fs::path& cell_file, const DaemonOptions& options) {
   SelfCheck check;
   const fs::path& state = options.state_directory;
-  const std::initializer_list<std::function<void()>> parts{[&] {
-                                                             const Cell cell = read_cell(cell_file);
-                                                             demand_revolute(cell);
-                                                             check.cell_name = cell.name;
-                                                           },
-                                                           [&] { check_state(state); },
-                                                           [&] { refuse_lost_store(state); },
-                                                           [&] { check_store(state / kStoreFile, check); },
-                                                           [&] { read_block_pose(state / kBlockPoseFile); },
-                                                           [&] { read_token(state / kOperateTokenFile); },
-                                                           [&] { read_token(state / kViewTokenFile); },
-                                                           [&] { read_operator_tokens(state); },
-                                                           [&] { check_address(options); },
-                                                           [&] { tls_context(options); }};
+  const auto read_cell_of_daemon = [&] {
+    const Cell cell = read_cell(cell_file);
+    demand_revolute(cell);
+    check.cell_name = cell.name;
+  };
+  const std::initializer_list<std::function<void()>> parts{
+      read_cell_of_daemon,
+      [&] { check_state(state); },
+      bad_file_at<std::runtime_error>([&] { refuse_lost_store(state); }, check),
+      [&] { check_store(state / kStoreFile, check); },
+      [&] { read_block_pose(state / kBlockPoseFile); },
+      [&] { check_locating(state / kLocatingFile, check); },
+      bad_file_at<NoToken>([&] { read_token(state / kOperateTokenFile); }, check),
+      bad_file_at<NoToken>([&] { read_token(state / kViewTokenFile); }, check),
+      bad_file_at<std::runtime_error>([&] { read_operator_tokens(state); }, check),
+      [&] { check_address(options); },
+      [&] { tls_context(options); }};
   for (const auto& part : parts) {
     try {
       part();

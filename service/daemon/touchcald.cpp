@@ -18,6 +18,7 @@
 #include "service/base/version.hpp"
 #include "service/daemon/daemon.hpp"
 #include "service/daemon/self_check.hpp"
+#include "service/store/damaged_store.hpp"
 #include "service/store/maintenance.hpp"
 
 namespace {
@@ -55,7 +56,12 @@ int keep_state(const std::filesystem::path& database, const std::string& backup,
     std::cout << database.string() << " is in order\n";
   }
   if (backup.empty()) return cell::kExitDone;
-  cell::back_up(database, backup);
+  try {
+    cell::back_up(database, backup);
+  } catch (const cell::DamagedStore& damage) {
+    std::cerr << damage.what() << '\n';
+    return cell::kExitBadInput;
+  }
   std::cout << backup << " is a copy of " << database.string() << '\n';
   return cell::kExitDone;
 }

@@ -4,8 +4,7 @@ namespace cell {
 
 WorkDone::~WorkDone() {
   watch_.begin(patience_, give_up_());
-  disk_.join();  // first: nobody hears of what is computed any more
-  arithmetic_.join();
+  for (boost::asio::thread_pool* thread : threads_) thread->join();
 }
 
 }  // namespace cell

@@ -3,6 +3,8 @@
 #include <boost/asio/thread_pool.hpp>
 #include <chrono>
 #include <functional>
+#include <utility>
+#include <vector>
 
 #include "service/daemon/end_watch.hpp"
 
@@ -13,21 +15,17 @@ namespace cell {
 /// end is given up, see EndWatch.
 class WorkDone {
  public:
-  /// All must outlive it. `patience` and `give_up` are looked at then.
-  WorkDone(boost::asio::thread_pool& arithmetic, boost::asio::thread_pool& disk, EndWatch& watch,
+  /// All must outlive it. Of `threads` one is waited for after the other: the disk is first, so that nobody
+  /// hears of what is computed any more. `patience` and `give_up` are looked at then.
+  WorkDone(std::vector<boost::asio::thread_pool*> threads, EndWatch& watch,
            const std::chrono::milliseconds& patience, std::function<EndWatch::GiveUp()> give_up)
-      : arithmetic_(arithmetic),
-        disk_(disk),
-        watch_(watch),
-        patience_(patience),
-        give_up_(std::move(give_up)) {}
+      : threads_(std::move(threads)), watch_(watch), patience_(patience), give_up_(std::move(give_up)) {}
   ~WorkDone();
   WorkDone(const WorkDone&) = delete;
   WorkDone& operator=(const WorkDone&) = delete;
 
  private:
-  boost::asio::thread_pool& arithmetic_;
-  boost::asio::thread_pool& disk_;
+  std::vector<boost::asio::thread_pool*> threads_;
   EndWatch& watch_;
   const std::chrono::milliseconds& patience_;
   std::function<EndWatch::GiveUp()> give_up_;

@@ -17,6 +17,7 @@
 #include "service/base/durable_file.hpp"
 #include "service/base/state_directory.hpp"
 #include "service/store/audit_chain.hpp"
+#include "service/store/damaged_store.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
 #include "service/store/log_damage.hpp"
@@ -26,6 +27,9 @@ namespace {
 
 /// How long to wait for a daemon that writes.
 constexpr int kReadBusyMilliseconds = 5000;
+
+/// A file that no version has begun, or that has lost all that it had.
+constexpr const char* kHoldsNothing = "it holds nothing";
 
 /// A row of touches that no run can have made.
 std::string impossible_touches() {
@@ -41,6 +45,10 @@ std::string impossible_touches() {
 void find_damaged_rows(SQLite::Database& database, std::vector<std::string>& damage) {
   row::add_checksum_function(database);
   const auto version = static_cast<std::size_t>(database.execAndGet("PRAGMA user_version").getInt());
+  if (version == 0) {
+    damage.emplace_back(kHoldsNothing);
+    return;
+  }
   const bool has_checksums =
       database.execAndGet("SELECT count(*) FROM pragma_table_info('touches') WHERE name = 'checksum'")
           .getInt() > 0;
@@ -131,6 +139,12 @@ SQLite::Database open_without_trace(const std::filesystem::path& file) {
   }
 }
 
+/// A daemon that writes meanwhile, or a disk that cannot be read now, is none.
+bool is_damage(const SQLite::Exception& error) {
+  const int code = error.getErrorCode();
+  return code == SQLITE_CORRUPT || code == SQLITE_NOTADB;
+}
+
 /// What a newer version has written is no damage, and no backup is the remedy.
 void demand_known_schema(SQLite::Database& database, const std::filesystem::path& file) {
   const int version = database.execAndGet("PRAGMA user_version").getInt();
@@ -152,8 +166,7 @@ std::optional<std::string> damage_by_a_look(const std::filesystem::path& file) t
   const int code = error.getErrorCode();
   if (code == SQLITE_CANTOPEN)
     throw StoreNotChecked(file.string() + ": cannot be read by this user; make it this user's own");
-  // A daemon that writes beside this look, or a disk that cannot be read now, is no damage.
-  if (code != SQLITE_CORRUPT && code != SQLITE_NOTADB) throw not_looked_at(file, error.what());
+  if (!is_damage(error)) throw not_looked_at(file, error.what());
   return error.what();
 } catch (const std::exception& error) {
   return error.what();
@@ -170,6 +183,8 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
   try {
     if (std::filesystem::exists(place)) std::filesystem::copy_file(place, place_copy);
     SQLite::Database from = open_to_read(database_file);
+    if (from.execAndGet("PRAGMA user_version").getInt() == 0)
+      throw DamagedStore(database_file, "no backup was made", kHoldsNothing);
     SQLite::Database to(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     to.exec("PRAGMA synchronous = FULL");
     SQLite::Backup backup(to, from);
@@ -179,6 +194,10 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
     std::error_code ignored;
     std::filesystem::remove(copy, ignored);
     std::filesystem::remove(place_copy, ignored);
+    if (dynamic_cast<const DamagedStore*>(&error)) throw;
+    const auto* of_store = dynamic_cast<const SQLite::Exception*>(&error);
+    if (of_store && is_damage(*of_store))
+      throw DamagedStore(database_file, "no backup was made", error.what());
     throw std::runtime_error(copy.string() + ": no backup was made: " + error.what());
   }
 }

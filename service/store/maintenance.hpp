@@ -13,7 +13,8 @@ namespace cell {
 
 /// Copies the database into a new file, also beside a running daemon; everything committed before the call is
 /// in the copy. The place of the block, which lies beside the database, is copied to the file of the same
-/// name with ".place.json" behind it. Throws std::runtime_error if it fails; no partial file remains.
+/// name with ".place.json" behind it. Throws std::runtime_error if it fails, DamagedStore if that is the
+/// database's; no partial file remains.
 void back_up(const std::filesystem::path& database_file, const std::filesystem::path& copy);
 
 /// Throws std::runtime_error, with what to do, for a state directory that was in use (what mark_begun() left,

@@ -219,8 +219,10 @@ void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& cha
   transaction.commit();
 }
 
+void RunStore::demand_in_place() const { row::demand_file(database_->getFilename(), statements_->opened); }
+
 void RunStore::set_open_command(std::int64_t run_id, const OpenCommand& command) {
-  row::demand_file(database_->getFilename(), statements_->opened);
+  demand_in_place();
   const RelaxedDurability unsynced(*database_);
   OneUse insert(statements_->set_open_command);
   insert->bind(1, run_id);

@@ -150,6 +150,10 @@ class RunStore {
   /// The file, for another connection.
   [[nodiscard]] std::filesystem::path file() const;
 
+  /// Throws, with what to do, where the file was moved, removed or replaced since it was opened: who finds
+  /// its directory by the path now is not who is meant.
+  void demand_in_place() const;
+
   std::int64_t begin_run(const NewRun& run);
   /// Removes a run that was begun here and nowhere else: nobody was told of it, and its key is new again.
   void withdraw_run(std::int64_t run_id);

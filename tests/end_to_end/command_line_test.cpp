@@ -1,8 +1,13 @@
 // What a person meets first: help, manual pages, completion, and being told what is wrong.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 
 #include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read_until.hpp>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +17,7 @@
 #include <string>
 
 #include "service/base/exit_code.hpp"
+#include "tests/end_to_end/environment.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
 
@@ -161,10 +167,11 @@ TEST_F(CommandLine, AnEmptyDatabaseOfAStateDirectoryThatWasInUseIsNoNewOne) {
   std::filesystem::create_directory(state);
   std::ofstream(state / "touchcal.sqlite").close();
   std::ofstream(state / "touchcal.begun") << "by an earlier daemon";
-  for (const char* how : {"--check", "--loopback-needs-token"}) {
+  for (const auto& [how, exit_code] : {std::pair("--check", cell::kExitBadInput),  // it is damage
+                                       std::pair("--loopback-needs-token", cell::kExitFailed)}) {
     const Finished refused = run({"touchcald", how, "--cell", cell_file("demo"), "--state", state.string(),
                                   "--listen", "127.0.0.1:0"});
-    EXPECT_EQ(refused.exit_code, cell::kExitFailed);
+    EXPECT_EQ(refused.exit_code, exit_code);
     EXPECT_THAT(refused.err, HasSubstr("touchcal.sqlite: is empty"));
     EXPECT_THAT(refused.err, HasSubstr("restore the last backup"));
   }
@@ -272,6 +279,38 @@ TEST_F(CommandLine, AnIpv6AddressIsToldInBrackets) {
   const std::string elsewhere = "[2001:db8::1]:11000";  // an address for documentation (RFC 3849)
   const Finished simulator = run({"cs8sim", "--cell", cell_file("edf"), "--listen", elsewhere});
   EXPECT_THAT(simulator.err, HasSubstr("cannot listen on " + elsewhere + ": "));
+}
+
+/// 0.0.0.0 is not named as this machine and leads to it, so that what leaves is seen here.
+TEST_F(CommandLine, AnOperateTokenGoesInClearToAnotherMachineByThatWordOnly) {
+  const Environment token("TOUCHCAL_TOKEN", "token-of-somebody");
+  boost::asio::io_context io;
+  boost::asio::ip::tcp::acceptor server(io, {boost::asio::ip::address_v4::loopback(), 0});
+  const auto call = [&](const std::string& host) {
+    const std::string url = "http://" + host + ":" + std::to_string(server.local_endpoint().port());
+    return std::vector<std::string>{"touchcal", "stop", "--daemon", url, "--state", folder_.path().string()};
+  };
+  const auto is_called = [&](int milliseconds) {
+    pollfd caller{server.native_handle(), POLLIN, 0};
+    return ::poll(&caller, 1, milliseconds) == 1;
+  };
+  const Finished refused = run(call("0.0.0.0"));
+  EXPECT_EQ(refused.exit_code, cell::kExitUsage);
+  EXPECT_THAT(refused.err, HasSubstr("the token would go to another machine in clear; use https, or say "
+                                     "--token-in-clear"));
+  EXPECT_FALSE(is_called(0)) << "nothing has left";
+  std::vector<std::string> by_word = call("0.0.0.0");
+  by_word.emplace_back("--token-in-clear");
+  for (const std::vector<std::string>& allowed : {by_word, call("127.0.0.1")}) {
+    Process client(allowed, folder_ / "call.err");
+    ASSERT_TRUE(is_called(60'000));
+    boost::asio::ip::tcp::socket called = server.accept();
+    std::string head;
+    boost::asio::read_until(called, boost::asio::dynamic_buffer(head), "\r\n\r\n");
+    EXPECT_THAT(head, HasSubstr("Authorization: Bearer token-of-somebody\r\n"));
+    called.close();
+    EXPECT_EQ(client.wait().exit_code, cell::kExitUnreachable);
+  }
 }
 
 TEST_F(CommandLine, ACertificateWithoutItsKeyIsToldBeforeAnythingElse) {

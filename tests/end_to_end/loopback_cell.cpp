@@ -44,7 +44,7 @@ cell::Recipe& LoopbackCell::use(cell::Cell other, int candidate_count) {
 void LoopbackCell::shut_down() {
   bool down = false;
   boost::asio::co_spawn(io_, operation_->shut_down(), [&down](const std::exception_ptr&) { down = true; });
-  run_until([&down](const cell::Status&) { return down; });
+  run_until([&](const cell::Status&) { return down && !operation_->is_planning(); });
 }
 
 void LoopbackCell::relaunch() {
@@ -83,10 +83,10 @@ void LoopbackCell::inject(const std::string& line) {
 }
 
 void LoopbackCell::launch(std::optional<std::uint16_t> port) {
-  operation_.emplace(cell::CellOperation::Threads{io_.get_executor(), computation_.get_executor()}, cell,
-                     cell::StoreQueue(store_, io_.get_executor()),
-                     cell::Endpoint{"127.0.0.1", port.value_or(port_)}, "end-to-end",
-                     cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
+  operation_.emplace(
+      cell::CellOperation::Threads{io_.get_executor(), computation_.get_executor(), planner_.get_executor()},
+      cell, cell::StoreQueue(store_, io_.get_executor()), cell::Endpoint{"127.0.0.1", port.value_or(port_)},
+      "end-to-end", cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
   if (!place_file.empty()) operation_->keep_place_in(place_file);
   operation_->launch();
 }

@@ -91,6 +91,7 @@ class LoopbackCell {
   std::uint16_t port_ = 0;
   std::optional<cell::CellOperation> operation_;
   boost::asio::thread_pool computation_{1};  // ends before the operation
+  boost::asio::thread_pool planner_{1};
 };
 
 }  // namespace touchcal::testing

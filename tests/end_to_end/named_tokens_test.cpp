@@ -140,9 +140,10 @@ TEST_F(NamedTokens, TheTokensWithoutANameAreReadAgainToo) {
 
 TEST_F(NamedTokens, ABadOneKeepsTheDaemonFromStartingAndTheCheckTellsIt) {
   write("cora", std::string(64, '1'));
-  for (const auto& more : {std::vector<std::string>{"--check"}, std::vector<std::string>{}}) {
+  for (const bool checks : {true, false}) {
+    const auto more = checks ? std::vector<std::string>{"--check"} : std::vector<std::string>{};
     const Finished refused = Process(daemon(more), folder_ / "touchcald.err").wait();
-    EXPECT_EQ(refused.exit_code, cell::kExitFailed);
+    EXPECT_EQ(refused.exit_code, checks ? cell::kExitBadInput : cell::kExitFailed);
     EXPECT_THAT(refused.err,
                 AllOf(HasSubstr("operators/anna"), HasSubstr("operators/cora: holds the token")));
   }

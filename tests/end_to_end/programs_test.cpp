@@ -1,6 +1,10 @@
 // The three programs as processes: their exit codes, what they print and where.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
@@ -254,11 +258,14 @@ TEST(Daemon, SaysThatTheControllerWasLostWhenItIsKilledInARun) {
   EXPECT_EQ(cell.daemon().wait().exit_code, 0);
 }
 
-TEST(Daemon, EndsAtASignalInTheMiddleOfARunAndLeavesItForTheNextOne) {
+/// SIGHUP comes from a terminal that is closed.
+class DaemonAtASignal : public ::testing::TestWithParam<int> {};
+
+TEST_P(DaemonAtASignal, EndsInTheMiddleOfARunAndLeavesItForTheNextOne) {
   RunningCell cell("edf", "50");
   Process run(cell.call({"run", kRecipe, "--json"}), cell.folder() / "run.err");
   cell.wait_for_touches(3);
-  cell.daemon().signal(SIGTERM);
+  cell.daemon().signal(GetParam());
   EXPECT_EQ(cell.daemon().wait().exit_code, 0);
   EXPECT_EQ(run.wait().exit_code, cell::kExitUnreachable);
   cell.controller().signal(SIGTERM);
@@ -266,6 +273,49 @@ TEST(Daemon, EndsAtASignalInTheMiddleOfARunAndLeavesItForTheNextOne) {
   const cell::RunStore store(cell.store_file());
   EXPECT_EQ(store.run(1)->outcome, cell::RunOutcome::kRunning);
   EXPECT_GE(store.touches(1).size(), 3U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, DaemonAtASignal, ::testing::Values(SIGTERM, SIGHUP, SIGINT));
+
+/// A pipe at this path, which nobody reads any more once it goes.
+class LogReader {
+ public:
+  explicit LogReader(std::filesystem::path pipe) : pipe_(std::move(pipe)) {
+    std::filesystem::remove(pipe_);
+    if (::mkfifo(pipe_.c_str(), 0600) != 0) throw std::runtime_error("no pipe");
+    reads_ = ::open(pipe_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  }
+  ~LogReader() {
+    ::close(reads_);
+    std::filesystem::remove(pipe_);
+  }
+  LogReader(const LogReader&) = delete;
+  LogReader& operator=(const LogReader&) = delete;
+  [[nodiscard]] bool has_something() const {
+    pollfd readable{reads_, POLLIN, 0};
+    return ::poll(&readable, 1, 0) == 1;
+  }
+
+ private:
+  std::filesystem::path pipe_;
+  int reads_ = -1;
+};
+
+TEST(Daemon, GoesOnWithItsRunWhereTheReaderOfItsLogHasEnded) {
+  RunningCell cell("edf", "50");
+  cell.daemon().signal(SIGTERM);
+  EXPECT_EQ(cell.daemon().wait().exit_code, 0);
+  {
+    const LogReader reader(cell.folder() / "touchcald.err");
+    cell.start_daemon();
+    EXPECT_TRUE(reader.has_something()) << "it is the log";
+  }
+  Process run(cell.call({"run", kRecipe, "--json"}), cell.folder() / "run.err");
+  cell.wait_for_touches(3);  // each of them is a line of the log
+  EXPECT_EQ(cell.run({"stop"}).exit_code, cell::kExitDone);
+  EXPECT_EQ(run.wait().exit_code, cell::kExitFailed);
+  cell.daemon().signal(SIGTERM);
+  EXPECT_EQ(cell.daemon().wait().exit_code, 0);
 }
 
 TEST(Daemon, ThatWasKilledFindsItsRunAndResumesItOrRunsAgain) {

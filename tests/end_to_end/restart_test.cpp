@@ -51,8 +51,9 @@ class MortalDaemon {
     computation_ = std::make_unique<boost::asio::thread_pool>(1);
     store_ = std::make_unique<cell::RunStore>(store_file());
     operation_ = std::make_unique<cell::CellOperation>(
-        cell::CellOperation::Threads{io_->get_executor(), computation_->get_executor()}, cell,
-        cell::StoreQueue(*store_, io_->get_executor()), cell::Endpoint{"127.0.0.1", server_->port()},
+        cell::CellOperation::Threads{io_->get_executor(), computation_->get_executor(),
+                                     computation_->get_executor()},
+        cell, cell::StoreQueue(*store_, io_->get_executor()), cell::Endpoint{"127.0.0.1", server_->port()},
         "restart", cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
     operation_->launch();
   }

@@ -4,6 +4,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <exception>
 #include <optional>
 #include <utility>
@@ -51,8 +52,9 @@ class QuietCell {
   RunStore store_{folder_.path() / "touchcal.sqlite"};
   boost::asio::io_context context_{1};
   boost::asio::ip::tcp::socket held_port_{context_};
+  boost::asio::thread_pool planner_{1};
   CellOperation operation_{
-      {context_.get_executor(), context_.get_executor()},
+      {context_.get_executor(), context_.get_executor(), planner_.get_executor()},
       shipped_,
       StoreQueue(store_, context_.get_executor()),
       nobody(),

@@ -17,11 +17,12 @@ std::optional<Time> Context::until_next_timer() {
 
 SimulatedDaemon::SimulatedDaemon(const cell::TipRegions& regions, std::shared_ptr<const cell::Plan> plan)
     : store_(kStoreFile) {
-  operation_.emplace(
-      cell::CellOperation::Threads{operation_context_.get_executor(), computation_context_.get_executor()},
-      regions.cell(), cell::StoreQueue(store_, store_context_.get_executor()),
-      cell::Endpoint{"127.0.0.1", kControllerPort}, "simulated",
-      cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
+  operation_.emplace(cell::CellOperation::Threads{.operation = operation_context_.get_executor(),
+                                                  .computation = computation_context_.get_executor(),
+                                                  .planning = computation_context_.get_executor()},
+                     regions.cell(), cell::StoreQueue(store_, store_context_.get_executor()),
+                     cell::Endpoint{"127.0.0.1", kControllerPort}, "simulated",
+                     cell::Clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now});
   operation_->hand_in_plan(std::move(plan));
   operation_->hand_in_regions(regions.shared());
   api_.emplace(http_context_.get_executor(),

@@ -77,7 +77,7 @@ std::optional<std::string> read_token(const std::filesystem::path& file, std::st
   const std::string& token = *line;
   const bool is_visible = std::ranges::all_of(token, [](char c) { return c > ' ' && c <= '~'; });
   if (token.size() < 2 * kTokenBytes || token.size() > kTokenCharactersMax || !is_visible) {
-    throw std::runtime_error(fmt::format("{}: does not hold a token; {}", file.string(), replacement));
+    throw NoToken(fmt::format("{}: does not hold a token; {}", file.string(), replacement));
   }
   return line;
 }

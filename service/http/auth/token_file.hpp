@@ -25,9 +25,15 @@ class TokenUnreadable : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The token in this file; nothing if there is no such file. Throws TokenUnreadable if it cannot be read, and
-/// std::runtime_error if its permissions are too wide or it holds no token, both of which name the file:
-/// fewer characters than one has, more than kTokenCharactersMax, or others than visible ones of ASCII.
+/// A file that holds no token.
+class NoToken : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// The token in this file; nothing if there is no such file. Throws TokenUnreadable if it cannot be read,
+/// std::runtime_error if its permissions are too wide and NoToken if it holds none, all of which name the
+/// file: fewer characters than one has, more than kTokenCharactersMax, or others than visible ones of ASCII.
 /// `replacement` is the remedy that the error tells.
 std::optional<std::string> read_token(const std::filesystem::path& file,
                                       std::string_view replacement = kMadeAtStart);

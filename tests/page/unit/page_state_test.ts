@@ -32,6 +32,21 @@ test('AWarningThatEndsByItselfGoesWithItsCause', () => {
   assert.deepEqual(take(kFirstState, slow, statusWith({sequence: 2, state: 'EXECUTE', run_id: '1'})).faults, []);
 });
 
+test('AWarningThatAPersonHasNotedStaysAwayBehindOneThatPasses', () => {
+  const told = {state: 'EXECUTE', run_id: '1'} as const;
+  const bounced = {...told, warning_code: 'probe_bounced', warning_message: 'w'};
+  const first = take(kFirstState, statusWith({sequence: 1, ...bounced}));
+  const noted = reduce(first, {type: 'noted', key: first.faults[0]!.key});
+  const slow = statusWith({sequence: 2, ...told, warning_code: 'store_slow', warning_message: 's'});
+  const uncovered = statusWith({sequence: 3, ...bounced});
+  assert.deepEqual(take(noted, slow, uncovered).faults, []);
+  assert.deepEqual(take(first, slow, uncovered).faults.map(({code}) => code), ['probe_bounced'], 'nobody has noted it');
+  const newer = statusWith({sequence: 3, ...bounced, warning_message: 'another'});
+  assert.deepEqual(take(noted, slow, newer).faults.map(({message}) => message), ['another']);
+  const ofNext = statusWith({sequence: 3, ...bounced, run_id: '2'});
+  assert.deepEqual(take(noted, slow, ofNext).faults.map(({code}) => code), ['probe_bounced']);
+});
+
 test('AnAcknowledgementTakesOnlyTheFaultThatItWasOf', () => {
   const held = {...kFault, fault_code: 'probe_stuck', fault_message: 'the probe still reads touched'};
   let state = take(kFirstState, statusWith({sequence: 1, state: 'HELD', run_id: '1', ...held}),

@@ -1,5 +1,6 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
+import {isReadyFor} from 'page/model/readiness.ts';
 import {shownTemperature, startBody} from 'page/model/start_body.ts';
 
 const kBlock = {name: 'block', temperature_c: 20, std_temperature_k: 1, faces: []};
@@ -34,4 +35,13 @@ test('WhatIsMissingOrNoNumberIsLeftToTheDaemonToRefuse', () => {
   assert.deepEqual(startBody('quick', {temperature: {celsius: 'warm'}}, kBlock),
                    {recipe: 'quick', block_temperature_c: 'warm', std_block_temperature_k: 1});
   assert.deepEqual(startBody('quick', {temperature: {celsius: ''}}, kBlock), {recipe: 'quick', std_block_temperature_k: 1});
+});
+
+test('AStartThatBringsATemperatureWaitsForNoneOfTheFile', () => {
+  const old = {code: 'temperature_old', detail: 'd'};
+  assert.equal(isReadyFor(null, true), false, 'nobody knows');
+  assert.equal(isReadyFor([], false), true);
+  assert.equal(isReadyFor([old], false), false);
+  assert.equal(isReadyFor([old], true), true);
+  assert.equal(isReadyFor([old, {code: 'place_lost', detail: 'd'}], true), false);
 });

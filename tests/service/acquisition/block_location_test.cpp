@@ -40,6 +40,7 @@ TEST_F(BlockLocationTest, AsksForOneTouchAfterTheOtherAndTakesTheLastOneBack) {
   EXPECT_EQ(location_.guide().value().index, 2);
   EXPECT_TRUE(location_.can_undo());
   location_.undo();
+  settle();
   EXPECT_EQ(location_.guide().value().index, 1);
   location_.leave();
   EXPECT_FALSE(location_.guide());
@@ -145,28 +146,83 @@ TEST_F(BlockLocationTest, AStopDoesNotWaitForTheComputationOfAPassAndNothingMove
   const auto compute = [&] {
     arithmetic.restart();
     EXPECT_EQ(arithmetic.run(), 1u);
-    io.restart();
-    io.poll();
+    settle();
   };
-  touch_all_spots(location);
-  for (int computed = 0; computed < 2; ++computed) {  // the postures, then the ways
-    ASSERT_FALSE(location.locate());
-    status.enter(State::kStarting);
-    controller.asked.clear();
-    std::optional<bool> found;
-    boost::asio::co_spawn(io, location.pass(),
-                          [&found](const std::exception_ptr&, bool was_found) { found = was_found; });
-    io.restart();
-    io.poll();
-    for (int i = 0; i < computed; ++i) compute();
-    EXPECT_EQ(found, std::nullopt);
-    status.enter(State::kStopping);
+  ASSERT_FALSE(location.locate());
+  for (const PlaceSpot& spot : place_spots(cell_of_owners())) {
+    touch(location, at(spot));
     compute();
-    EXPECT_EQ(found, false);
-    EXPECT_THAT(controller.asked, Not(Contains(StartsWith("travel"))));
-    EXPECT_FALSE(location.is_passing());
-    EXPECT_TRUE(location.is_locating()) << "it can be tried again";
   }
+  ASSERT_FALSE(location.locate());
+  status.enter(State::kStarting);
+  std::optional<bool> found;
+  boost::asio::co_spawn(io, location.pass(),
+                        [&found](const std::exception_ptr&, bool was_found) { found = was_found; });
+  settle();
+  EXPECT_EQ(found, std::nullopt);
+  status.enter(State::kStopping);
+  compute();
+  EXPECT_EQ(found, false);
+  EXPECT_THAT(controller.asked, Not(Contains(StartsWith("travel"))));
+  EXPECT_FALSE(location.is_passing());
+  EXPECT_TRUE(location.is_locating()) << "it can be tried again";
+}
+
+TEST_F(BlockLocationTest, APlaceIsComputedBesideTheLinkAndAStopMeanwhileForgetsIt) {
+  boost::asio::io_context arithmetic{1};
+  BlockLocation location(io.get_executor(), arithmetic.get_executor(), cell_of_owners(), queue, session,
+                         status, wake, time.clocks());
+  ASSERT_FALSE(location.locate());
+  const std::vector<PlaceSpot> spots = place_spots(cell_of_owners());
+  for (const PlaceSpot& spot : spots) {
+    touch(location, at(spot));
+    EXPECT_EQ(location.guide().value().index, static_cast<int>(&spot - spots.data()) + 1);
+    EXPECT_THAT(location.locate().value().detail, HasSubstr("being stored"));
+    if (&spot == &spots.back()) break;
+    arithmetic.restart();
+    EXPECT_EQ(arithmetic.run(), 1u);
+    settle();
+  }
+  EXPECT_EQ(location.guide().value().step, HandStep::kTouch) << "its place is not computed yet";
+  location.leave();
+  arithmetic.restart();
+  EXPECT_EQ(arithmetic.run(), 1u);
+  settle();
+  EXPECT_FALSE(location.is_locating());
+}
+
+TEST_F(BlockLocationTest, ABlockThatLeavesNoRoomForThePassIsNotGoneAroundWhichIsSaid) {
+  const Cell cramped = cramped_cell();
+  BlockLocation location(io.get_executor(), io.get_executor(), cramped, queue, session, status, wake,
+                         time.clocks());
+  touch_all_spots(location);
+  const std::string why = location.guide().value().problem.value_or("");
+  EXPECT_THAT(why, HasSubstr("leaves no room to pass it at 30 mm"));
+  EXPECT_EQ(location.locate().value().detail, why);
+  EXPECT_FALSE(location.is_passing());
+  EXPECT_TRUE(location.is_locating()) << "the touches stay";
+  EXPECT_TRUE(faults.empty());
+}
+
+TEST_F(BlockLocationTest, NothingIsWrittenToADirectoryThatTookThePlaceOfItsOwn) {
+  const std::filesystem::path own = folder.path(), aside = own.string() + ".aside";
+  location_.keep_in(own / "place.json");
+  location_.keep_dialogue_in(own / "locating.json", "digest");
+  touch_all_spots();
+  ASSERT_FALSE(location_.locate());
+  status.enter(State::kStarting);
+  std::filesystem::rename(own, aside);
+  std::filesystem::create_directory(own);
+  EXPECT_FALSE(run(location_.pass()));
+  EXPECT_THAT(status.fault().value().message(), HasSubstr("moved, removed or replaced"));
+  EXPECT_FALSE(location_.place());
+  status.enter(State::kIdle);
+  location_.undo();
+  settle();
+  EXPECT_THAT(location_.guide().value().problem.value_or(""), HasSubstr("moved, removed or replaced"));
+  EXPECT_TRUE(std::filesystem::is_empty(own));
+  std::filesystem::remove(own);
+  std::filesystem::rename(aside, own);
 }
 
 TEST_F(BlockLocationTest, APlaceThatCannotBeStoredIsNotUsed) {

@@ -1,8 +1,10 @@
-// What a start makes of a store in which the row of an earlier run is damaged.
+// What stands in the way of a start, and what a refusal leaves as it was.
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include "service/documents/block_pose_file.hpp"
+#include "service/run/touch_command.hpp"
+#include "tests/service/acquisition/block_location_bench.hpp"
 #include "tests/service/acquisition/operation_bench.hpp"
 
 namespace cell {
@@ -68,6 +70,77 @@ TEST_F(StartBehindADamagedRun, GoesOnWhereItIsNotTheLastOne) {
   end_a_run();
   launch();
   EXPECT_TRUE(std::holds_alternative<Started>(start()));
+}
+
+Cell with_temperature(std::optional<double> celsius,
+                      std::optional<std::chrono::system_clock::time_point> at) {
+  Cell cell = cell_of_owners();
+  cell.block.temperature_c = celsius;
+  cell.block.temperature_at = at;
+  return cell;
+}
+
+class TemperatureOfTheBlock : public ::testing::Test {
+ protected:
+  struct Operation : OperationBench {
+    explicit Operation(const Cell& cell) : OperationBench(nullptr, cell) { launch(); }
+    using OperationBench::operation_;
+    using OperationBench::start;
+  };
+  static void expect_told_and_brought(const Cell& cell, const std::string& code) {
+    Operation of(cell);
+    EXPECT_EQ(of.operation_.status().state, State::kIdle);
+    EXPECT_THAT(of.operation_.exits(), ::testing::Not(::testing::Contains(Command::kStart)));
+    ASSERT_EQ(of.operation_.unmet_before_start().size(), 1U);
+    EXPECT_EQ(of.operation_.unmet_before_start()[0].code, code);
+    EXPECT_TRUE(of.operation_.unmet_preconditions().empty()) << "the arm may move";
+    const auto refused = of.start({.recipe = "few"});
+    ASSERT_TRUE(std::holds_alternative<CommandRefusal>(refused));
+    EXPECT_EQ(std::get<CommandRefusal>(refused).unmet.at(0).code, code);
+    EXPECT_TRUE(std::holds_alternative<Started>(
+        of.start({.recipe = "few", .block_temperature = BlockTemperature{.celsius = 21.0, .std_k = 0.5}})));
+  }
+};
+
+TEST_F(TemperatureOfTheBlock, ThatIsMissingIsToldBeforeAStartAndAStartMayBringIt) {
+  expect_told_and_brought(with_temperature(std::nullopt, std::nullopt), "temperature_missing");
+}
+
+TEST_F(TemperatureOfTheBlock, ThatIsTooOldIsToldBeforeAStartAndAStartMayBringIt) {
+  const auto long_ago = std::chrono::system_clock::time_point{} - std::chrono::hours(1000);
+  expect_told_and_brought(with_temperature(20.0, long_ago), "temperature_old");
+}
+
+/// A block that the arm cannot go around.
+class CrampedBlock : public ::testing::Test, protected OperationBench {
+ protected:
+  CrampedBlock() : OperationBench(nullptr, cramped_cell()) {}
+  void touch_by_hand(const calib::JointVector& joints) {
+    cs8::State& state = controller_->state.value();
+    const std::uint32_t free = state.flags;
+    state.joints = to_wire(joints);
+    tell_state();
+    state.flags = (free | cs8::kProbeTouched) & ~static_cast<std::uint32_t>(cs8::kProbeLoopClosed);
+    tell_state();
+    state.flags = free;
+    tell_state();
+  }
+};
+
+TEST_F(CrampedBlock, LeavesTheLastRunAsItWasWhereThePassAroundItIsRefused) {
+  launch();
+  const std::int64_t id = std::get<Started>(start({.recipe = "few"})).run_id;
+  ASSERT_FALSE(operation_.command(Command::kStop));
+  run_until([this] { return operation_.status().state == State::kStopped; });
+  ASSERT_FALSE(operation_.command(Command::kLocate));
+  for (const PlaceSpot& spot : place_spots(cell_)) touch_by_hand(at(spot));
+  ASSERT_EQ(operation_.status().by_hand.value().step, HandStep::kPass);
+  const auto refused = operation_.command(Command::kLocate);
+  ASSERT_TRUE(refused);
+  EXPECT_THAT(refused->detail, ::testing::HasSubstr("leaves no room to pass it"));
+  EXPECT_EQ(operation_.status().state, State::kStopped);
+  EXPECT_EQ(operation_.status().run_id, id);
+  EXPECT_TRUE(operation_.run());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/thread_pool.hpp>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,13 +18,15 @@ namespace cell {
 class OperationBench {
  protected:
   /// With the arithmetic of a run on another context, which waits until a test lets it.
-  explicit OperationBench(std::unique_ptr<boost::asio::io_context> arithmetic = nullptr)
-      : arithmetic_(std::move(arithmetic)) {
+  explicit OperationBench(std::unique_ptr<boost::asio::io_context> arithmetic = nullptr,
+                          const Cell& cell = cell_of_owners())
+      : cell_(cell), arithmetic_(std::move(arithmetic)) {
     spdlog::set_level(spdlog::level::off);
   }
   ~OperationBench() {
     controller_->is_connected = false;  // nobody whose answer the end waits for
     shut_down();
+    planner_.join();
   }
   OperationBench(const OperationBench&) = delete;
   OperationBench& operator=(const OperationBench&) = delete;
@@ -66,14 +69,18 @@ class OperationBench {
     io_.poll();
   }
 
+  const Cell cell_;
   Folder folder_;
   RunStore store_{folder_.path() / "touchcal.sqlite"};
   boost::asio::io_context io_{1};
   std::unique_ptr<boost::asio::io_context> arithmetic_;
+  boost::asio::thread_pool planner_{1};
   MadeUpTime time_;
   ScriptedController* controller_ = new ScriptedController;  // the operation's
-  CellOperation operation_{{io_.get_executor(), (arithmetic_ ? *arithmetic_ : io_).get_executor()},
-                           cell_of_owners(),
+  CellOperation operation_{{.operation = io_.get_executor(),
+                            .computation = (arithmetic_ ? *arithmetic_ : io_).get_executor(),
+                            .planning = planner_.get_executor()},
+                           cell_,
                            StoreQueue(store_, io_.get_executor()),
                            std::unique_ptr<Controller>(controller_),
                            "instance",

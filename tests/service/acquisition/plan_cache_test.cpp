@@ -9,7 +9,7 @@ namespace {
 
 class PlanCacheTest : public ::testing::Test, public OwnersBench {
  protected:
-  PlanCache plans_{io.get_executor(), cell_of_owners()};
+  PlanCache plans_{io.get_executor(), io.get_executor(), cell_of_owners()};
 };
 
 TEST_F(PlanCacheTest, PlansARecipeOnceAndGivesItAgain) {
@@ -32,18 +32,52 @@ TEST_F(PlanCacheTest, APlanThatIsHandedInIsNotMadeAgain) {
   EXPECT_TRUE(plans_.planned("few", {{}, cell_of_owners().recipes.at("few").identification.stiffness}));
 }
 
-TEST_F(PlanCacheTest, APlanThatWasBegunBeforeTheBlockStoodElsewhereIsMadeAgain) {
-  bool done = false;
-  plans_.begin("few", {}, [&done] { done = true; });
-  io.poll();  // up to the planner's thread
-  EXPECT_TRUE(plans_.is_planning());
+/// Plans are made when the test lets the planner.
+class PlannerOfItsOwn : public PlanCacheTest {
+ protected:
+  void begin() {
+    plans_.begin("few", {}, [this] { is_done_ = true; });
+    io.restart();
+    io.poll();
+    EXPECT_TRUE(plans_.is_planning());
+  }
+  void let_plan() {
+    planner_.restart();
+    EXPECT_EQ(planner_.run(), 1u);
+    io.restart();
+    io.poll();
+  }
+
+  boost::asio::io_context planner_{1};
+  PlanCache plans_{io.get_executor(), planner_.get_executor(), cell_of_owners()};
+  bool is_done_ = false;
+};
+
+TEST_F(PlannerOfItsOwn, IsTheOnlyOneThatPlans) {
+  begin();
+  EXPECT_FALSE(is_done_ || plans_.planned("few"));
+  let_plan();
+  EXPECT_TRUE(is_done_ && plans_.planned("few"));
+}
+
+TEST_F(PlannerOfItsOwn, MakesAPlanAgainThatWasBegunBeforeTheBlockStoodElsewhere) {
+  begin();
   plans_.clear();
-  io.restart();
-  io.run();
-  EXPECT_TRUE(done);
+  let_plan();
+  EXPECT_FALSE(is_done_);
+  let_plan();
+  EXPECT_TRUE(is_done_);
   EXPECT_TRUE(plans_.planned("few"));
   plans_.clear();
   EXPECT_FALSE(plans_.planned("few"));
+}
+
+TEST_F(PlannerOfItsOwn, MakesNoPlanAtTheEnd) {
+  begin();
+  plans_.end();
+  let_plan();
+  EXPECT_TRUE(is_done_);
+  EXPECT_FALSE(plans_.planned("few") || plans_.is_planning());
 }
 
 TEST_F(PlanCacheTest, APlanThatIsGivenUpIsNeitherMadeNorRefusedTheNextTime) {

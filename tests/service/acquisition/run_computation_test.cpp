@@ -16,6 +16,15 @@ using ::testing::HasSubstr;
 /// The arithmetic waits until the test lets it.
 class RunComputationTest : public ExecutorBench {
  protected:
+  /// The operation and the arithmetic in turn, until neither has anything to do.
+  void let_both_run() {
+    do {
+      io.restart();
+      io.poll();
+      arithmetic_.restart();
+    } while (arithmetic_.poll() > 0);
+  }
+
   boost::asio::io_context arithmetic_{1};
   MadeUpAlarm* const alarm_ = new MadeUpAlarm;  // the computation's
   RunComputation withheld_{arithmetic_.get_executor(), regions, status, std::unique_ptr<Alarm>(alarm_)};
@@ -31,9 +40,7 @@ TEST_F(RunComputationTest, TheCommandLeavesBeforeTheResultOfTheTouchesBeforeIt) 
   io.poll();
   EXPECT_THAT(controller.asked, ElementsAre("touch 1", "acknowledge 1", "touch 2"));
   EXPECT_EQ(active_.run.latest().fitted_touch_count, 0);
-  arithmetic_.run();
-  io.restart();
-  io.run();
+  let_both_run();
   EXPECT_EQ(active_.run.latest().fitted_touch_count, 1);
   EXPECT_EQ(active_.run.touches_done(), 2);
   expect_run_is_as_stored();
@@ -51,9 +58,7 @@ TEST_F(RunComputationTest, AResultThatTakesLongIsToldUntilItIsThere) {
   EXPECT_EQ(status.latest().warning.value().code, FaultCode::kComputationSlow);
   EXPECT_THAT(status.latest().warning->message(), HasSubstr("the result up to touch 1, for 30 s now"));
   EXPECT_EQ(status.state(), State::kExecute) << "it warns only";
-  arithmetic_.run();
-  io.restart();
-  io.run();
+  let_both_run();
   EXPECT_EQ(active_.run.latest().fitted_touch_count, 1);
   EXPECT_EQ(status.latest().warning.value().code, FaultCode::kProbeBounced) << "as before";
 }
@@ -64,9 +69,7 @@ TEST_F(RunComputationTest, NoAlarmIsLeftBehindAResultInTime) {
   io.restart();
   io.poll();
   EXPECT_TRUE(alarm_->is_set());
-  arithmetic_.run();
-  io.restart();
-  io.run();
+  let_both_run();
   EXPECT_FALSE(alarm_->is_set());
   EXPECT_FALSE(status.latest().warning);
 }

@@ -13,7 +13,7 @@ class RunPlanningTest : public ::testing::Test, public OwnersBench {
 
   ActiveRun active_ = begun_run();
   std::optional<BlockPose> place_;
-  PlanCache plans_{io.get_executor(), cell_of_owners()};
+  PlanCache plans_{io.get_executor(), io.get_executor(), cell_of_owners()};
   RunPlanning planning_{cell_of_owners(), place_, queue, plans_, preparation, status, wake};
 };
 

@@ -42,7 +42,7 @@ class RunRecoveryTest : public ::testing::Test, public OwnersBench {
   }
 
   std::optional<BlockPose> nowhere_;
-  PlanCache plans_{io.get_executor(), cell_of_owners()};
+  PlanCache plans_{io.get_executor(), io.get_executor(), cell_of_owners()};
   RunPlanning planning_{cell_of_owners(), nowhere_, queue, plans_, preparation, status, wake};
   TouchExecutor touches_{cell_of_owners(), computation, queue, session,
                          preparation,      status,      wake,  time.clocks()};

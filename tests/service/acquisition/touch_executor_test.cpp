@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <boost/asio/co_spawn.hpp>
 #include <functional>
 #include <utility>
 
@@ -44,6 +45,67 @@ TEST_F(TouchExecutorTest, TheNextCommandIsStoredOnTheWayOfTheContactBeforeIt) {
   mend_store();
   EXPECT_THAT(controller.asked, ElementsAre("touch 1", "acknowledge 1", "touch 2"));
   EXPECT_EQ(session.open_touch().value().sequence, 2u);
+}
+
+/// The arithmetic goes on when the test lets it.
+class WaysBesideTheLink : public ExecutorBench {
+ protected:
+  void begin_touch() {
+    boost::asio::co_spawn(io, executor_.make_next_touch(active_),
+                          [this](const std::exception_ptr& failure) { has_ended_ = !failure; });
+    let_run();
+  }
+  void compute() {
+    arithmetic_.restart();
+    EXPECT_EQ(arithmetic_.run(), 1u);
+    let_run();
+  }
+  void let_run() {
+    io.restart();
+    io.poll();
+  }
+
+  boost::asio::io_context arithmetic_{1};
+  RunComputation beside_{arithmetic_.get_executor(), regions, status, std::make_unique<MadeUpAlarm>()};
+  TouchExecutor executor_{cell_of_owners(), beside_, queue, session,
+                          preparation,      status,  wake,  time.clocks()};
+  bool has_ended_ = false;
+};
+
+TEST_F(WaysBesideTheLink, BehindAStopNothingLeaves) {
+  begin_touch();
+  EXPECT_FALSE(has_ended_);
+  status.enter(State::kStopping);
+  compute();
+  EXPECT_TRUE(has_ended_);
+  EXPECT_THAT(controller.asked, ::testing::IsEmpty());
+}
+
+TEST_F(WaysBesideTheLink, AreLookedForAnewWhereTheArmWasMovedMeanwhile) {
+  begin_touch();
+  controller.state->joints[0] += 2'000'000;
+  tell_state();
+  compute();
+  EXPECT_TRUE(has_ended_);
+  EXPECT_THAT(controller.asked, ::testing::IsEmpty());
+  begin_touch();
+  compute();
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1"));
+}
+
+TEST_F(WaysBesideTheLink, AContactIsStoredMeanwhileAndBehindAHoldNoCommandFollowsIt) {
+  begin_touch();
+  compute();  // the way to it
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1"));
+  compute();  // what comes behind it, while the arm moves
+  EXPECT_EQ(store.touches(active_.run.id()).size(), 1U) << "the disk waits for no arithmetic";
+  EXPECT_EQ(active_.run.touches_done(), 0);
+  status.enter(State::kHolding);
+  compute();  // what the contact changes
+  EXPECT_TRUE(has_ended_);
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  EXPECT_THAT(controller.asked, ElementsAre("touch 1", "acknowledge 1"));
+  EXPECT_FALSE(store.open_command(active_.run.id()));
 }
 
 TEST_F(TouchExecutorTest, AStopWhileAContactIsStoredKeepsTheCommandBehindItFromLeaving) {

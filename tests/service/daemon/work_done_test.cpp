@@ -18,7 +18,7 @@ class WorkDoneTest : public ::testing::Test {
     std::promise<void> given_up;
     boost::asio::post(blocked, [over = given_up.get_future().share()] { over.wait(); });
     const std::chrono::milliseconds patience = 1ms;
-    WorkDone(arithmetic_, disk_, watch_.emplace(), patience,
+    WorkDone({&disk_, &arithmetic_}, watch_.emplace(), patience,
              [&] { return [&](const std::string&) { given_up.set_value(); }; });
     watch_.reset();
   }
@@ -34,7 +34,7 @@ TEST_F(WorkDoneTest, WaitsForBothThreads) {
   boost::asio::post(arithmetic_, [&] { ++computed; });
   boost::asio::post(disk_, [&] { ++written; });
   const std::chrono::milliseconds patience = 1h;
-  WorkDone(arithmetic_, disk_, watch_.emplace(), patience, [] { return EndWatch::GiveUp(); });
+  WorkDone({&disk_, &arithmetic_}, watch_.emplace(), patience, [] { return EndWatch::GiveUp(); });
   EXPECT_EQ(computed, 1);
   EXPECT_EQ(written, 1);
 }

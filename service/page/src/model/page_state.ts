@@ -2,7 +2,7 @@ import type {Cell, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Resul
 import type {Link} from '../api/live.ts';
 import {addToSeries, kNoSeries, type Series} from './series.ts';
 import {isActive, type Command} from './states.ts';
-import {dropAcknowledged, dropFault, noteFaults, type StickyFault} from './sticky_faults.ts';
+import {dropAcknowledged, dropFault, lastingWarning, noteFaults, type StickyFault} from './sticky_faults.ts';
 
 export type View = 'cell' | 'live' | 'result' | 'history';
 export const kViews: View[] = ['cell', 'live', 'result', 'history'];
@@ -24,6 +24,7 @@ export interface PageState {
   statusKnown_ms: number | null;        // when the status was last heard, or known to be still the newest
   series: Series;
   faults: StickyFault[];
+  lastingWarning: string | null;        // told last of those that do not end by themselves, noted or not
   unmet: Unmet[] | null;  // what stands in the way of a start; null: not known
   role: Role | null;
   hasToken: boolean;
@@ -48,7 +49,8 @@ export interface PageState {
 }
 
 export const kFirstState: PageState = {
-  link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], unmet: null, role: null, hasToken: false,
+  link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], lastingWarning: null, unmet: null,
+  role: null, hasToken: false,
   view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], damagedRuns: [], nextBefore: null,
   shownRun: null, compared: [], results: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
   busy: null,
@@ -112,7 +114,8 @@ function takeStatus(state: PageState, status: Status): PageState {
     ...state,
     status,
     series,
-    faults: noteFaults(state.faults, before, status),
+    faults: noteFaults(state.faults, before, status, state.lastingWarning),
+    lastingWarning: lastingWarning(state.lastingWarning, status),
     view: nextView(state.view, before, status),
     shownRun: status.run_id !== null && before?.run_id !== status.run_id ? null : state.shownRun,  // a new run is looked at
   };

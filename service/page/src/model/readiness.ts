@@ -38,6 +38,14 @@ export function conditions(status: Status | null, unmet: Unmet[] | null): Condit
   return list;
 }
 
+/** Of the block's file; a start may bring another one. */
+const kOfTemperature = ['temperature_missing', 'temperature_old', 'temperature_in_future'];
+
+/** Whether a start is taken, as far as the daemon's list tells. Unknown is not ready. */
+export function isReadyFor(unmet: Unmet[] | null, bringsTemperature: boolean): boolean {
+  return unmet !== null && unmet.every(({code}) => bringsTemperature && kOfTemperature.includes(code));
+}
+
 function condition({name, codes, met}: Rule, status: Status, told: Unmet[]): Condition {
   const reason = told.find(({code}) => codes.includes(code));
   if (reason) return {name, state: 'unmet', code: reason.code, detail: reason.detail};

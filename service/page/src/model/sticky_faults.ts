@@ -19,7 +19,8 @@ const kPassing = ['computation_slow', 'store_slow'];
 /** The newest warnings are enough to read; the run keeps all of them. */
 const kWarningsMax = 5;
 
-export function noteFaults(known: StickyFault[], before: Status | null, status: Status): StickyFault[] {
+/** `lasting`: see lastingWarning(), before this status. */
+export function noteFaults(known: StickyFault[], before: Status | null, status: Status, lasting: string | null): StickyFault[] {
   let faults = known;
   const restarted = before !== null && before.instance_id !== status.instance_id;
   const same = !restarted && before?.fault_code === status.fault_code && before?.fault_message === status.fault_message;
@@ -27,14 +28,22 @@ export function noteFaults(known: StickyFault[], before: Status | null, status: 
     faults = faults.map((fault) => (fault.isWarning || fault.isOver ? fault : {...fault, isOver: true}));
     if (status.fault_code) faults = [toFault(status), ...faults.filter((fault) => !isSameFault(fault, status))];
   }
-  const isNewWarning = status.warning_code !== null &&
-      (before === null || restarted || before.run_id !== status.run_id || before.warning_code !== status.warning_code ||
-       before.warning_message !== status.warning_message);
   const passed = before?.warning_code;
-  if (passed && kPassing.includes(passed) && status.warning_code !== passed)
-    faults = faults.filter(({code}) => code !== passed);
-  if (isNewWarning) faults = withWarning(faults, status);
+  const isOver = passed !== undefined && passed !== null && kPassing.includes(passed) && status.warning_code !== passed;
+  if (isOver) faults = faults.filter(({code}) => code !== passed);
+  const warning = warningId(status);
+  const isUncovered = isOver && warning === lasting;  // it was told before the one that has passed
+  if (warning !== null && warning !== (before && warningId(before)) && !isUncovered) faults = withWarning(faults, status);
   return faults;
+}
+
+/** The warning that stays until a newer one comes, by what tells it from others: a passing one covers it for a while. */
+export function lastingWarning(known: string | null, status: Status): string | null {
+  return status.warning_code === null || kPassing.includes(status.warning_code) ? known : warningId(status);
+}
+
+function warningId({instance_id, run_id, warning_code, warning_message}: Status): string | null {
+  return warning_code === null ? null : JSON.stringify([instance_id, run_id, warning_code, warning_message]);
 }
 
 function isSameFault(fault: StickyFault, status: Status): boolean {

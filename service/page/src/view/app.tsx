@@ -103,7 +103,7 @@ export function App({desk}: {desk: Desk}) {
         <Shown state={state} desk={desk} conditions={conditions} onConditions={takeConditions} />
         {state.view === 'cell' ? <p class="keys">{say('keysHelp')}</p> : null}
       </main>
-      <RunControls state={state} desk={desk} onStart={() => void startRun()} />
+      <RunControls state={state} desk={desk} conditions={conditions} onStart={() => void startRun()} />
     </LanguageContext.Provider>
   );
 }

@@ -1,20 +1,22 @@
 import type {Desk} from '../model/desk.ts';
 import type {PageState} from '../model/page_state.ts';
+import {isReadyFor} from '../model/readiness.ts';
+import {startBody, type Conditions} from '../model/start_body.ts';
 import {isLocating, mainAction, mayPause} from '../model/states.ts';
 import {HoldButton} from './hold_button.tsx';
 import {useSay} from './texts.tsx';
 
-interface Props { state: PageState; desk: Desk; onStart: () => void }
+interface Props { state: PageState; desk: Desk; conditions: Conditions; onStart: () => void }
 
 /** START and its like, PAUSE, STOP MOTION: always in the same places. */
-export function RunControls({state, desk, onStart}: Props) {
+export function RunControls({state, desk, conditions, onStart}: Props) {
   const say = useSay();
   const {status, link, role} = state;
   const reached = link === 'live' || link === 'polling';
   const operates = role === 'operate';
   return (
     <aside class="run-controls" aria-label={say('runControls')}>
-      <MainButton state={state} desk={desk} onStart={onStart} usable={reached && operates} />
+      <MainButton state={state} desk={desk} conditions={conditions} onStart={onStart} usable={reached && operates} />
       <button
         type="button"
         class="run pause"
@@ -38,7 +40,7 @@ export function RunControls({state, desk, onStart}: Props) {
   );
 }
 
-function MainButton({state, desk, onStart, usable}: Props & {usable: boolean}) {
+function MainButton({state, desk, conditions, onStart, usable}: Props & {usable: boolean}) {
   const say = useSay();
   const {status, busy, recipe} = state;
   const action = status ? mainAction(status.state, status.retract_due === true) : null;
@@ -68,7 +70,8 @@ function MainButton({state, desk, onStart, usable}: Props & {usable: boolean}) {
     );
   }
   const locating = status !== null && isLocating(status);
-  const isReady = state.unmet !== null && state.unmet.length === 0;
+  const body = startBody(recipe ?? '', conditions, state.cell?.block ?? null);
+  const isReady = isReadyFor(state.unmet, body.block_temperature_c !== undefined);
   return (
     <HoldButton class="main" note={say(locating ? 'locatingFirst' : action ? 'startHold' : 'wait')}
                 disabled={disabled || locating || !isReady || !recipe} onHeld={onStart}>
