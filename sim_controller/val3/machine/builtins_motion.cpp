@@ -45,6 +45,7 @@ double store(Context& context, MoveOrder order, const Tool& tool, const Mdesc& d
 MoveOrder order_to(const Context& context, MoveOrder::Shape shape, const Point& point, const Tool& tool) {
   const double unit_mm = context.here->code->instance->unit_mm;
   MoveOrder order{.shape = shape, .to_pose = scaled(point_in_world(context, point), unit_mm)};
+  order.config = point.config;
   const auto joints = joints_at(context, tool, context.system.last_stored(), point);
   order.reachable = joints.has_value();
   if (joints) order.to = *joints;

@@ -69,6 +69,16 @@ struct LoopEnd {
   }
 };
 
+/// An expression by itself: its value is dropped.
+template <class T>
+OperationPtr evaluation(AnyNode any) {
+  auto node = NodePtr<T>(static_cast<const Node<T>*>(any.release()));
+  return operation([node = std::move(node)](Context& c) {
+    (void)node->get(c);
+    return Flow::kGo;
+  });
+}
+
 class LineCompiler {
  public:
   LineCompiler(Compiler& compiler, const Program& program) : compiler_(compiler), program_(program) {}
@@ -261,16 +271,6 @@ class LineCompiler {
     if (!is_simulated(e.type.kind)) compiler_.refuse(e, "values of this type are not simulated");
     return with_type_of(e.type.kind,
                         [&]<class T>() -> OperationPtr { return evaluation<T>(compiler_.any(e)); });
-  }
-
-  /// The value is dropped.
-  template <class T>
-  static OperationPtr evaluation(AnyNode any) {
-    auto node = NodePtr<T>(static_cast<const Node<T>*>(any.release()));
-    return operation([node = std::move(node)](Context& c) {
-      (void)node->get(c);
-      return Flow::kGo;
-    });
   }
 
   Compiler& compiler_;
