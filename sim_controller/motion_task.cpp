@@ -55,7 +55,7 @@ class MotionStep {
       case Stage::kTripped:
         return tripped();
       case Stage::kBackOff:
-        if (cabinet_.arm_rests()) enter(Stage::kReseat);
+        if (has_arrived()) enter(Stage::kReseat);
         return false;
       case Stage::kReseat:
         return reseat();
@@ -101,12 +101,19 @@ class MotionStep {
            !std::holds_alternative<cs8::Retract>(running_.order);
   }
 
+  /// Nothing is left to travel and the arm rests; drives that never say so are not waited for for ever.
+  bool has_arrived() {
+    const bool stands = is_empty(cabinet_.drives) && cabinet_.drives.standing_ticks > 0;
+    running_.unsettled_ticks = stands ? running_.unsettled_ticks + 1 : 0;
+    return cabinet_.arm_rests() || running_.unsettled_ticks > kStandstillTicksMax;
+  }
+
   // ---- the way there ----
 
   bool travel() {
     if (not_free()) {
       break_off(cabinet_, running_, Outcome::kUnexpectedContact);
-    } else if (cabinet_.arm_rests()) {
+    } else if (has_arrived()) {
       if (!std::holds_alternative<cs8::Touch>(running_.order)) return true;
       movej(plant_, cabinet_.drives, joints_from_wire(touch().approach),
             metres_per_second(touch().approach_speed_um_s));
@@ -125,7 +132,7 @@ class MotionStep {
   bool approach() {
     if (not_free()) {
       break_off(cabinet_, running_, Outcome::kUnexpectedContact);
-    } else if (cabinet_.arm_rests()) {
+    } else if (has_arrived()) {
       enter(Stage::kReady);
     }
     return false;
@@ -150,7 +157,6 @@ class MotionStep {
     running_.search_speed_um_s = speed_um_s;
     running_.last.reset();
     running_.latch_armed = true;
-    running_.edges = 0;
     enter(Stage::kSearch);
     return false;
   }
@@ -165,12 +171,13 @@ class MotionStep {
         std::min(running_.monitor_speed_percent, cabinet_.panel.monitor_speed_percent);
     if (not_free()) {
       running_.last = Capture{.at = at_};
+      running_.edges = 0;  // until here those of the trigger before count
       running_.stop_in_ticks =
           std::max(0, static_cast<int>(std::lround(plant_.stop_latency_s / kTickSeconds)) - 1);
       enter(Stage::kTripped);
       return tripped();
     }
-    if (cabinet_.arm_rests()) {
+    if (has_arrived()) {
       running_.outcome = Outcome::kNoContact;
       return begin_retract();
     }
@@ -256,7 +263,7 @@ class MotionStep {
       break_off(cabinet_, running_, Outcome::kUnexpectedContact);
       return false;
     }
-    if (!cabinet_.arm_rests()) return false;
+    if (!has_arrived()) return false;
     retract_path_.erase(retract_path_.begin());
     return next_stretch();
   }
@@ -304,7 +311,7 @@ class MotionStep {
   }
 
   bool returned() {
-    if (!cabinet_.arm_rests()) return false;
+    if (!has_arrived()) return false;
     retract_path_.erase(retract_path_.begin());
     return true;
   }
@@ -319,12 +326,7 @@ class MotionStep {
 
 template <class Order>
 RunningCommand begin(std::uint32_t sequence, const Order& order, Stage stage, Outcome outcome) {
-  RunningCommand running;
-  running.sequence = sequence;
-  running.order = order;
-  running.stage = stage;
-  running.outcome = outcome;
-  return running;
+  return {.sequence = sequence, .order = order, .stage = stage, .outcome = outcome};
 }
 
 void travel_through(const Plant& plant, Cabinet& cabinet, const std::vector<calib::JointVector>& waypoints,

@@ -64,6 +64,7 @@ struct RunningCommand {
   std::uint32_t edges = 0;  // of the latch input, since the trigger
   int stop_in_ticks = 0;    // from the trigger to the brakes
   int ticks_in_stage = 0;
+  int unsettled_ticks = 0;  // at the end of a move, while the drives do not say that the arm stands
   bool returning = false;  // a stopped search has set out for its approach posture: the next stop is the last
   std::string collision;   // which body hit what
 };

@@ -119,8 +119,7 @@ void apply(const Trouble& trouble, ControllerState& state) {
       cabinet.overruns += static_cast<std::uint32_t>(trouble.number);
       break;
     case TroubleKind::kMotionError:
-      if (state.motion.running)
-        break_off(cabinet, *state.motion.running, cs8::Outcome::kMotionError, trouble.number);
+      if (state.motion.running) fail_motion(cabinet.drives, trouble.number);
       break;
     case TroubleKind::kCollision:
       collide(state);

@@ -143,8 +143,8 @@ void Val3Controller::apply_due_faults(Brought& brought) {
     if (const auto* of_link = std::get_if<LinkFault>(&due)) {
       brought.link_faults.push_back(*of_link);
     } else if (const auto* act = std::get_if<Act>(&due)) {
-      if (*act == Act::kJogHome && !sim::is_empty(cabinet_.drives))
-        perform(plant_, cabinet_, Act::kManualMode);
+      const bool runs = (state_ && state_->active_sequence != 0) || !sim::is_empty(cabinet_.drives);
+      if (*act == Act::kJogHome && runs) perform(plant_, cabinet_, Act::kManualMode);
       perform(plant_, cabinet_, *act);
     } else if (const Trouble& trouble = std::get<Trouble>(due); !apply(trouble, cabinet_)) {
       apply_to_application(trouble, brought);

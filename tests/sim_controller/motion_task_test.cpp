@@ -197,6 +197,30 @@ TEST_F(MotionTask, AnArmThatDoesNotComeToRestIsNotWaitedForForEver) {
   EXPECT_NE(result.error_number, 0);
 }
 
+TEST_F(MotionTask, AnArmAtItsTargetHasArrivedThoughTheDrivesNeverSaySo) {
+  Bench bench = Bench::ready(plant());
+  bench.state.cabinet.never_settles = true;
+  bench.answer<cs8::Accepted>(1, travel_command(beside_park()));
+  const auto result = bench.result<cs8::MoveResult>();
+  EXPECT_EQ(result.outcome, Outcome::kArrived);
+  EXPECT_EQ(result.joints, wire_from_joints(beside_park()));
+}
+
+TEST_F(MotionTask, EdgesAreThoseOfTheLastTriggerThoughASecondOneWasToCome) {
+  Bench bench = Bench::ready(plant());
+  bench.answer<cs8::Accepted>(1, twice());
+  const auto searches_again = [&bench] {
+    return bench.state.motion.running->first && bench.state.motion.running->stage == Stage::kSearch;
+  };
+  while (bench.state.motion.running && !searches_again()) bench.pass(milliseconds(4));
+  ASSERT_TRUE(bench.state.motion.running);
+  bench.send(0, cs8::Stop{});
+  const auto result = bench.result<cs8::TouchResult>();
+  EXPECT_EQ(result.outcome, Outcome::kStopped);
+  EXPECT_EQ(result.first_source, cs8::CaptureSource::kLatched);
+  EXPECT_EQ(result.edges, 1u);
+}
+
 TEST_F(MotionTask, OvertravelIsNoMeasurement) {
   Plant slow = plant();
   slow.stop_latency_s = 0.04;

@@ -106,6 +106,18 @@ TEST_F(Troubles, EndATouchWithTheirOutcome) {
   }
 }
 
+TEST_F(Troubles, AMotionErrorStrikesAMoveAndNothingElse) {
+  Bench bench = Bench::ready(plant());
+  bench.answer<cs8::Accepted>(1, touch());
+  const auto brakes = [&bench] {
+    return bench.state.motion.running->stage == Stage::kTripped && bench.state.cabinet.drives.braking;
+  };
+  while (bench.state.motion.running && !brakes()) bench.pass(milliseconds(4));
+  ASSERT_TRUE(bench.state.motion.running);
+  apply(Trouble{TroubleKind::kMotionError, 150}, bench.state);
+  EXPECT_EQ(bench.result<cs8::TouchResult>().outcome, Outcome::kContact);
+}
+
 TEST_F(Troubles, ACollisionNearAFaceLeavesTheWayBackDue) {
   Bench bench = Bench::ready(plant());
   touch_with(bench, R"({"fault":"collision","touch":1,"phase":"approach"})");

@@ -41,6 +41,17 @@ void into_phase(Bench& bench, const PhaseCase& wanted) {
   EXPECT_EQ(bench.state().phase, wanted.phase);
 }
 
+TEST(ApplicationStops, AStopAtOnceBehindItsCommandEndsItInItsFirstPhase) {
+  Bench bench;
+  bench.make_ready();
+  bench.send(1, bench.travel_to(-120));
+  bench.send(0, Stop{});
+  bench.expect<Accepted>(1);
+  const MoveResult result = bench.expect<MoveResult>(1, 3);
+  EXPECT_EQ(result.outcome, Outcome::kStopped);
+  EXPECT_EQ(result.phase, Phase::kTravel);
+}
+
 TEST(ApplicationStops, StopEndsATouchInEachPhase) {
   for (const PhaseCase& wanted : phases()) {
     SCOPED_TRACE(name(wanted.phase));

@@ -1,0 +1,82 @@
+// The two programs for one controller, driven by the same scenarios: what a host sees is the same, but for
+// what is listed.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "sim_controller/fault_names.hpp"
+#include "tests/twins/comparison.hpp"
+#include "tests/twins/host.hpp"
+#include "tests/twins/known_differences.hpp"
+#include "tests/twins/scenarios.hpp"
+#include "tests/twins/twin.hpp"
+
+namespace twins {
+namespace {
+
+using Group = std::vector<Scenario> (*)();
+constexpr Group kGroups[] = {whole_runs,
+                             interrupted_touches,
+                             interrupted_second_touches,
+                             interrupted_ways_back,
+                             sequences,
+                             fields,
+                             links,
+                             permits};
+
+void expect_alike(const std::vector<Scenario>& scenarios) {
+  for (const Scenario& scenario : scenarios) {
+    SCOPED_TRACE(scenario.name);
+    const Record fast = carry_out(scenario, *make_fast_twin(scenario));
+    const Record val3 = carry_out(scenario, *make_val3_twin(scenario));
+    bool is_told = false;
+    for (const Difference& found : differences(fast, val3)) {
+      if (known(scenario, found) != nullptr) continue;
+      ADD_FAILURE() << scenario.name << ": " << found.where << ": C++ " << found.fast << ", VAL3 "
+                    << found.val3 << (is_told ? std::string() : "\n" + side_by_side(fast, val3));
+      is_told = true;
+    }
+  }
+}
+
+TEST(Twins, WholeRunsAreAlike) { expect_alike(whole_runs()); }
+TEST(Twins, InterruptedTouchesAreAlike) { expect_alike(interrupted_touches()); }
+TEST(Twins, InterruptedSecondTouchesAreAlike) { expect_alike(interrupted_second_touches()); }
+TEST(Twins, InterruptedWaysBackAreAlike) { expect_alike(interrupted_ways_back()); }
+TEST(Twins, SequencesAreAlike) { expect_alike(sequences()); }
+TEST(Twins, RefusedFieldsAreAlike) { expect_alike(fields()); }
+TEST(Twins, LinksAreAlike) { expect_alike(links()); }
+TEST(Twins, PermitsAreAlike) { expect_alike(permits()); }
+
+TEST(Twins, AreDrivenByEveryFaultOrSomethingSaysWhyNot) {
+  std::set<std::string> names;
+  for (const Group group : kGroups) {
+    for (const Scenario& scenario : group()) {
+      EXPECT_TRUE(names.insert(scenario.name).second) << scenario.name << " is there twice";
+    }
+  }
+  EXPECT_GE(names.size(), 300u);
+  for (const std::string& fault : sim::fault_names()) {
+    const bool is_struck =
+        std::ranges::any_of(names, [&](const std::string& name) { return name.starts_with(fault + " "); });
+    const bool is_left_out = std::ranges::find(left_out(), fault, &LeftOut::fault) != left_out().end();
+    EXPECT_NE(is_struck, is_left_out) << fault;
+  }
+}
+
+TEST(Twins, EveryKnownDifferenceIsStillThere) {
+  std::set<const KnownDifference*> seen;
+  for (const Group group : kGroups) {
+    for (const Scenario& scenario : group()) {
+      const Record fast = carry_out(scenario, *make_fast_twin(scenario));
+      const Record val3 = carry_out(scenario, *make_val3_twin(scenario));
+      for (const Difference& found : differences(fast, val3)) seen.insert(known(scenario, found));
+    }
+  }
+  for (const KnownDifference& known : known_differences())
+    EXPECT_TRUE(seen.contains(&known)) << known.scenario << ": " << known.where << " differs no more";
+}
+
+}  // namespace
+}  // namespace twins
