@@ -64,6 +64,14 @@ void Connection::send_with(const std::vector<LinkFault>& faults, std::vector<std
   send(std::move(frame), is_state);
 }
 
+void Connection::meet(const LinkFault& fault) {
+  if (fault.kind == Fault::kCloseSocket) close_now();
+  if (fault.kind == Fault::kHalfOpen) go_half_open();
+  if (fault.kind == Fault::kGoSilent) go_silent();
+  if (fault.kind == Fault::kStopStates) stop_states(fault.seconds);
+  if (fault.kind == Fault::kGarbage) send(garbage(), false);
+}
+
 void Connection::stop_states(double seconds) {
   states_from_ = seconds == 0.0 ? Clock::time_point::max()
                                 : Clock::now() + std::chrono::duration_cast<Clock::duration>(

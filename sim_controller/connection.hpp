@@ -32,6 +32,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   /// The same with the link faults that apply to this frame; its bytes are already altered.
   void send_with(const std::vector<LinkFault>& faults, std::vector<std::uint8_t> frame, bool is_state);
 
+  /// What a fault of the connection makes of it, now; another kind changes nothing.
+  void meet(const LinkFault& fault);
   void go_silent() { silent_ = true; }
   void stop_states(double seconds);  // 0: for good
   /// As if the cable were pulled: from here nothing is sent, not even the end. The socket is closed a minute

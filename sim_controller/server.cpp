@@ -192,13 +192,7 @@ class Server::Core : public std::enable_shared_from_this<Server::Core> {
   void apply_connection_faults(const std::vector<LinkFault>& faults) {
     for (const LinkFault& fault : faults) {
       if (fault.kind == Fault::kRefuse) stop_listening(fault.seconds);
-      if (!host_) continue;
-      const ConnectionPtr host = host_;
-      if (fault.kind == Fault::kCloseSocket) host->close_now();
-      if (fault.kind == Fault::kHalfOpen) host->go_half_open();
-      if (fault.kind == Fault::kGoSilent) host->go_silent();
-      if (fault.kind == Fault::kStopStates) host->stop_states(fault.seconds);
-      if (fault.kind == Fault::kGarbage) host->send(garbage(), false);
+      if (const ConnectionPtr host = host_) host->meet(fault);
     }
   }
 
