@@ -114,6 +114,8 @@ void Watcher::on_read(const cs8::Message& message) {
   }
   if (const auto* result = std::get_if<cs8::TouchResult>(&message.payload))
     record_.answers[{session_, message.sequence}] = *result;
+  if (std::holds_alternative<cs8::ResultUnknown>(message.payload))
+    unknown_.insert({session_, message.sequence});
 }
 
 std::string Watcher::excuse_of(const CommandNumber& command, const cs8::TouchResult& result) const {
@@ -128,6 +130,7 @@ std::string Watcher::excuse_of(const CommandNumber& command, const cs8::TouchRes
 
 void Watcher::on_acknowledge(std::uint32_t sequence) {
   const CommandNumber command{session_, sequence};
+  if (unknown_.contains(command)) return;
   const auto answer = record_.answers.find(command);
   if (answer == record_.answers.end() || answer->second.outcome != cs8::Outcome::kContact) return;
   Acknowledged acknowledged{clock_.now(), command, answer->second, excuse_of(command, answer->second)};

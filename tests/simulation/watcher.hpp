@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -60,6 +61,8 @@ class Watcher {
   std::uint32_t session_ = 0;
   std::optional<CommandNumber> asked_for_;  // by a query, the last one
   std::map<CommandNumber, std::int64_t> run_of_;
+  /// The controller said that it has no answer of these any more: an acknowledgement takes none away.
+  std::set<CommandNumber> unknown_;
   std::optional<cell::State> state_;
   // For on_sight alone.
   int touches_sent_ = 0;
