@@ -59,7 +59,9 @@ struct Cabinet {
   [[nodiscard]] bool probe_free() const { return free_ticks >= kSteadyTicks; }
   [[nodiscard]] bool probe_touched() const { return touched_ticks >= kSteadyTicks; }
   [[nodiscard]] bool probe_disagrees() const { return disagree_ticks >= kSteadyTicks; }
-  [[nodiscard]] bool arm_rests() const { return is_empty(drives) && is_settled(drives) && !never_settles; }
+  /// What the drives say, also between two moves of a command.
+  [[nodiscard]] bool arm_stands() const { return is_settled(drives) && !never_settles; }
+  [[nodiscard]] bool arm_rests() const { return is_empty(drives) && arm_stands(); }
 };
 
 Cabinet make_cabinet(const Plant& plant, std::uint64_t seed);

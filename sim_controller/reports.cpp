@@ -78,7 +78,7 @@ cs8::State state_report(const ControllerState& state, TimePoint now) {
   flag(cs8::kPowered, panel.powered);
   flag(cs8::kHeld, panel.held);
   flag(cs8::kArmCalibrated, panel.arm_calibrated);
-  flag(cs8::kSettled, !running && cabinet.arm_rests());
+  flag(cs8::kSettled, cabinet.arm_stands());
   flag(cs8::kQueueEmpty, is_empty(cabinet.drives));
   flag(cs8::kProbeTouched, cabinet.world.probe.inputs.contact);
   flag(cs8::kProbeLoopClosed, cabinet.world.probe.inputs.loop);

@@ -122,7 +122,7 @@ cs8::State Val3Controller::report() const {
   flag(cs8::kPowered, panel.powered);
   flag(cs8::kHeld, panel.held);
   flag(cs8::kArmCalibrated, panel.arm_calibrated);
-  flag(cs8::kSettled, cabinet_.arm_rests());
+  flag(cs8::kSettled, cabinet_.arm_stands());
   flag(cs8::kQueueEmpty, sim::is_empty(cabinet_.drives));
   flag(cs8::kProbeTouched, cabinet_.world.probe.inputs.contact);
   flag(cs8::kProbeLoopClosed, cabinet_.world.probe.inputs.loop);

@@ -67,6 +67,7 @@ val3::RunError Val3System::store(const val3::MoveOrder& order) {
     return arm_.block_from_world() * pose_from_val3(in_world);
   };
   ToolPath way;
+  if (order.shape == val3::MoveOrder::Shape::kJoint) searched_ = false;
   switch (order.shape) {
     case val3::MoveOrder::Shape::kJoint:
       way.path = {from, joints_from_val3(order.to)};
@@ -107,7 +108,7 @@ void Val3System::reset_motion(const std::optional<val3::Joint>& start) {
 void Val3System::stop_move() { sim::stop_move(cabinet_.drives); }
 void Val3System::restart_move() { sim::restart_move(cabinet_.drives); }
 bool Val3System::is_empty() const { return sim::is_empty(cabinet_.drives); }
-bool Val3System::is_settled() const { return sim::is_settled(cabinet_.drives) && !cabinet_.never_settles; }
+bool Val3System::is_settled() const { return cabinet_.arm_stands(); }
 double Val3System::move_id() const { return sim::move_id(cabinet_.drives); }
 double Val3System::last_move_id() const { return cabinet_.drives.last_id; }
 void Val3System::set_move_id(double id) { sim::set_move_id(cabinet_.drives, id); }

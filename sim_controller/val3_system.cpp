@@ -12,8 +12,6 @@ namespace {
 constexpr double kClockStepsPerSecond = 1000.0;
 constexpr int kPowerUpTicks = static_cast<int>(kPowerUpSeconds / kTickSeconds);
 constexpr int kConnectionStatus = 1;
-/// Two places of the tip that are one, and a way that is straight.
-constexpr double kOnTheWayMetres = 5e-5;
 
 /// The number of hold is another one in each mode (manual 6, page 102).
 int status_of_hold(cs8::WorkingMode mode) {
@@ -108,20 +106,12 @@ std::optional<val3::Joint> Val3System::latched() const {
 }
 
 /// What differs from one touch to the next is drawn where a search begins: with the latch armed, at
-/// standstill. A second search, from a place on the way to the contact, finds arm and face as the first did.
+/// standstill. A search that no joint move parts from the one before belongs to the same touch: it finds arm
+/// and face as the first did.
 void Val3System::draw_for_search() {
-  if (cabinet_.drives.rate != 0.0) return;
-  const calib::JointVector& here = cabinet_.drives.joints;
-  const auto apart_m = [this](const calib::JointVector& from, const calib::JointVector& to) {
-    return tip_distance_m(plant_, from, to);
-  };
-  const bool is_second = searched_ && searched_->contact &&
-                         apart_m(searched_->start, here) > kOnTheWayMetres &&
-                         apart_m(searched_->start, here) + apart_m(here, *searched_->contact) <
-                             apart_m(searched_->start, *searched_->contact) + kOnTheWayMetres;
-  if (is_second) return;
+  if (cabinet_.drives.rate != 0.0 || searched_) return;
   begin_search(plant_, cabinet_.world, cabinet_.chance);
-  searched_ = Search{.start = here, .contact = {}};
+  searched_ = true;
 }
 
 /// The probe knows its edge to 0.2 ms; an input that a script sets changes between two ticks.
@@ -137,8 +127,6 @@ void Val3System::watch_latch(const CabinetTick& seen) {
   }
   if (!share) return;
   latch_.joints = encoder_reading(plant_, seen.motion.at(*share));
-  if (searched_ && signals_.cell_signal(*latch_.armed) == CellSignal::kContact)
-    searched_->contact = latch_.joints;
   latch_.armed.reset();
 }
 

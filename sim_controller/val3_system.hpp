@@ -157,11 +157,7 @@ class Val3System final : public val3::System {
     bool was_on = false;       // of one that a script sets
     std::optional<calib::JointVector> joints;
   } latch_;
-  struct Search {
-    calib::JointVector start;
-    std::optional<calib::JointVector> contact;  // as latched
-  };
-  std::optional<Search> searched_;  // the last one that was no second one
+  bool searched_ = false;  // since the last joint move
 };
 
 /// getDate(): %y %Y %m %d %H %I %p %M %S, the rest as it stands.

@@ -69,15 +69,6 @@ constexpr std::array kKnown{
     KnownDifference{"motion_error", "time.", "an arm that stands before its target is given 2 s: error 60",
                     "PROTOCOL.md 4, error_number"},
     KnownDifference{
-        "back-off longer", "touch_result.contact",
-        "OPEN: the noise is drawn where a line begins behind a joint move, and so the second search "
-        "of this touch has one of its own",
-        "val3_system.hpp"},
-    KnownDifference{"back-off", "state.settled",
-                    "OPEN: the C++ twin says settled only when no command runs. The page says: the arm "
-                    "stands. Settled by changing its report, behind a run of simulation_test",
-                    "PROTOCOL.md 4, flags"},
-    KnownDifference{
         "drop at hello", "time.closed",
         "the bytes behind a Fault are read for up to 500 ms; of the C++ twin that is the server's",
         "PROTOCOL.md 5"},
