@@ -9,6 +9,7 @@
 #include "config/file_bytes.hpp"
 #include "config/joint_units.hpp"
 #include "config/shapes.hpp"
+#include "config/strict_json.hpp"
 
 namespace cell {
 namespace {
@@ -335,9 +336,9 @@ void read_frame(const JsonValue& value, int frame, Arm& arm) {
   read_standard_deviations(object, frame, arm);
 }
 
-Arm read_arm(const std::filesystem::path& file) {
-  const std::string source = file.string();
-  const nlohmann::json document = read_json_file(file);
+namespace {
+
+Arm arm_from_document(const std::string& source, const nlohmann::json& document) {
   const JsonValue value(source, document);
   const bool is_first_schema = has_schema(document, kFirstArmSchema);
   const bool is_second_schema = has_schema(document, kSecondArmSchema);
@@ -366,6 +367,16 @@ Arm read_arm(const std::filesystem::path& file) {
   }
   arm.bodies = capsules_from_json(object.at("bodies"));
   return arm;
+}
+
+}  // namespace
+
+Arm read_arm(const std::filesystem::path& file) {
+  return arm_from_document(file.string(), read_json_file(file));
+}
+
+Arm read_arm_text(const std::string& source, std::string_view text) {
+  return arm_from_document(source, parse_strict_json(source, text, kConfigFileSizeMax));
 }
 
 }  // namespace cell

@@ -95,10 +95,13 @@ ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool j
 
 struct ExportArguments {
   std::string run_id;
-  std::string arm_file;  // "-" is standard output
+  std::string arm_file;   // as an arm file; empty for none, "-" is standard output
+  std::string urdf_file;  // as a URDF robot; likewise
+  std::string dh_file;    // as DH tables, JSON where the name ends in .json, else CSV; likewise
   bool overwrite = false;
 };
-/// Writes a run's calibrated arm as an arm file.
+/// Writes a run's calibrated arm in the forms that are asked for: all of them, or none where one cannot be
+/// written.
 ExitCode export_command(const ApiClient& daemon, const ExportArguments& arguments, bool json);
 
 /// Upper bound of --limit: all that the daemon keeps.

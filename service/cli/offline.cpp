@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <stdexcept>
@@ -69,13 +70,21 @@ void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) fmt::print(stderr, "warning: {}\n", warning);
 }
 
+void demand_writable(const std::vector<std::string>& files, bool overwrite) {
+  if (std::ranges::count(files, "-") > 1)
+    throw std::invalid_argument("standard output takes one file only; give the others names");
+  for (const std::string& file : files) {
+    if (file != "-" && !overwrite && std::filesystem::exists(file))
+      throw std::invalid_argument(file + " exists; choose another name or give --force");
+  }
+}
+
 void write_whole_file(const std::string& file, const std::string& text, bool overwrite) {
+  demand_writable({file}, overwrite);
   if (file == "-") {
     fmt::print("{}", text);
     return;
   }
-  if (!overwrite && std::filesystem::exists(file))
-    throw std::invalid_argument(file + " exists; choose another name or give --force");
   const std::string unfinished = fmt::format("{}.{}.unfinished", file, getpid());
   std::ofstream stream(unfinished, std::ios::binary);
   stream << text;

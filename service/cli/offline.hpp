@@ -30,6 +30,10 @@ void print_warnings(const std::vector<std::string>& warnings);
 /// and must not be overwritten, std::runtime_error if it cannot be written.
 void write_whole_file(const std::string& file, const std::string& text, bool overwrite);
 
+/// As write_whole_file() refuses before it writes: throws std::invalid_argument if one of the files exists
+/// and must not be overwritten, or if more than one is standard output.
+void demand_writable(const std::vector<std::string>& files, bool overwrite);
+
 /// Warnings for users of the exported arm.
 std::vector<std::string> export_warnings(const std::vector<int>& cell_frames, bool accepted,
                                          const std::vector<std::string>& reasons);

@@ -65,11 +65,14 @@ class CommandLine {
     });
     show->add_option("RUN", run_id_, "id of the run")->required();
     auto* exported = add_for_daemon(
-        "export", "write a run's calibrated arm as an arm file",
+        "export", "write a run's calibrated arm as an arm file, a URDF robot or DH tables",
         [this](const cell::ApiClient& daemon) { return cell::export_command(daemon, export_, json_); });
     exported->add_option("RUN", export_.run_id, "id of the run")->required();
-    exported->add_option("--arm", export_.arm_file, "the file to write; - is standard output")->required();
-    exported->add_flag("--force", export_.overwrite, "overwrite the file");
+    exported->add_option("--arm", export_.arm_file, "write an arm file; - is standard output");
+    exported->add_option("--urdf", export_.urdf_file, "write a URDF robot; - is standard output");
+    exported->add_option("--dh", export_.dh_file,
+                         "write DH tables, JSON to a FILE.json, else CSV; - is standard output");
+    exported->add_flag("--force", export_.overwrite, "overwrite the files");
     add_report();
     add_audit();
     for (const auto& [name, description] : kCellCommands) {

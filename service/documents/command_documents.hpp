@@ -37,7 +37,9 @@ struct PageLinkDocument {
 /// `touchcal export --json`.
 struct ExportDocument {
   std::string run_id;
-  std::string arm_file;
+  std::optional<std::string> arm_file;  // what was written
+  std::optional<std::string> urdf_file;
+  std::optional<std::string> dh_file;
   CarriedJson verdict;  // of the run's result
   std::vector<std::string> warnings;
 
@@ -45,6 +47,8 @@ struct ExportDocument {
   static void visit(Self& self, Fields& fields) {
     fields("run_id", self.run_id);
     fields("arm_file", self.arm_file);
+    fields("urdf_file", self.urdf_file);
+    fields("dh_file", self.dh_file);
     fields("verdict", self.verdict);
     fields("warnings", self.warnings);
   }

@@ -22,11 +22,12 @@ const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"documents", {"base", "store", "run"}},
     {"acquisition", {"base", "store", "run", "documents"}},
     {"report", {"base", "store", "documents"}},
+    {"exports", {}},
     {"http/server", {"base"}},
     {"http/auth", {"base", "http/server"}},
     {"http/routes",
      {"base", "store", "run", "documents", "acquisition", "report", "page", "http/server", "http/auth"}},
-    {"cli", {"base", "run", "documents"}},
+    {"cli", {"base", "run", "documents", "exports"}},
     {"daemon", {"base", "store", "documents", "acquisition", "http/server", "http/auth", "http/routes"}},
 };
 

@@ -68,6 +68,7 @@ TEST_F(Programs, EndWithTwoWhenTheyAreUsedWrongly) {
       {"touchcal", "validate", "--cell", cell},
       {"touchcal", "export", "1"},
       {"touchcal", "export", "one", "--arm", "-"},
+      {"touchcal", "export", "1", "--urdf", "-", "--dh", "-"},
       {"touchcal", "status", "--daemon", "gopher://127.0.0.1"},
       {"cs8sim"},
       {"cs8sim", "--cell", cell, "--speed", "-1"},
@@ -209,6 +210,14 @@ TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   const Finished printed = cell.run({"export", "1", "--arm", "-"});
   EXPECT_EQ(nlohmann::json::parse(printed.out).at("schema"), "touchcal/arm/3");
   EXPECT_EQ(cell.run({"export", "2", "--arm", "-"}).exit_code, cell::kExitUsage) << "no such run";
+  const std::string urdf_file = (cell.folder() / "arm.urdf").string();
+  const Finished forms = cell.run({"export", "1", "--urdf", urdf_file, "--dh", "-"});
+  EXPECT_EQ(forms.exit_code, cell::kExitDone) << forms.err;
+  EXPECT_THAT(forms.out, StartsWith("# tx90: the calibrated arm of run 1\n"));
+  EXPECT_TRUE(std::filesystem::exists(urdf_file));
+  const std::string dh_file = (cell.folder() / "dh.json").string();
+  EXPECT_EQ(cell.run({"export", "1", "--urdf", urdf_file, "--dh", dh_file}).exit_code, cell::kExitUsage);
+  EXPECT_FALSE(std::filesystem::exists(dh_file)) << "all or nothing";
 
   const Finished page = cell.run({"report", "1", "--html"});
   EXPECT_EQ(page.exit_code, cell::kExitDone) << page.err;
