@@ -75,16 +75,20 @@ class ChannelSocket : public Val3Socket {
     peer_.emplace(Peer{std::move(stream)});
     read();
   }
+  /// While there is a peer.
   void turn_away(Val3Stream stream, TimePoint now) {
-    tell("a second client, " + stream.peer() + ", is turned away; close the first one before");
+    if (!std::exchange(peer_->has_rivals, true))
+      tell("a second client, " + stream.peer() +
+           ", is turned away, as are more of them; close the first one");
     endings_.add(std::move(stream), now + kEndMax);
   }
 
  private:
   struct Peer {
     Val3Stream stream;
-    bool has_ended = false;  // nothing more comes
-    bool is_lost = false;    // and nothing can be sent
+    bool has_ended = false;   // nothing more comes
+    bool is_lost = false;     // and nothing can be sent
+    bool has_rivals = false;  // that is told once
   };
 
   void write() {

@@ -149,7 +149,9 @@ TEST_F(Val3SocketTest, ASecondClientIsTurnedAwayAndTheFirstGoesOn) {
   TcpPeer second = client();
   second.write("let me in");
   EXPECT_TRUE(look_until([&] { return second.has_ended(); }));
-  EXPECT_THAT(told_, Contains(HasSubstr("a second client, 127.0.0.1:")));
+  TcpPeer third = client();
+  EXPECT_TRUE(look_until([&] { return third.has_ended(); }));
+  EXPECT_THAT(told_, Contains(HasSubstr("a second client, 127.0.0.1:")).Times(1)) << "a log has bounds";
   first.write("a");
   EXPECT_TRUE(look_until([&] { return channel_.waiting() > 0; }));
   EXPECT_EQ(read(), "a");
