@@ -42,6 +42,7 @@ struct Arguments {
   std::string val3;
   std::string run;
   std::string script_file;
+  std::vector<std::string> sockets;
   double run_seconds = 0.0;
   std::string control;
   std::uint64_t seed = 1;
@@ -64,6 +65,12 @@ std::optional<double> parse_speed(const std::string& text) {
 std::string check_listen(const std::string& text) {
   if (std::string refusal = cell::refuse_empty(text); !refusal.empty()) return refusal;
   return cell::parse_endpoint(text) ? "" : "'" + text + "' is not HOST:PORT";
+}
+
+std::string check_socket(const std::string& text) {
+  return sim::parse_run_socket(text)
+             ? ""
+             : "'" + text + "' is not NAME=PLACE; NAME is the link of a sio, PLACE is " + sim::kRunSocketForm;
 }
 
 std::string check_speed(const std::string& text) {
@@ -143,12 +150,16 @@ std::filesystem::path truth_file_of(const Arguments& arguments) {
 }
 
 int run_script(const Arguments& arguments) {
+  std::vector<sim::RunSocket> sockets;
+  for (const std::string& text : arguments.sockets) sockets.push_back(*sim::parse_run_socket(text));
   return sim::run_application({.application = arguments.run,
                                .script_file = arguments.script_file,
                                .cell_file = arguments.cell_file,
                                .truth_file = truth_file_of(arguments).string(),
                                .seconds = arguments.run_seconds,
-                               .seed = arguments.seed},
+                               .seed = arguments.seed,
+                               .sockets = std::move(sockets),
+                               .speed = *parse_speed(arguments.speed)},
                               std::cout, std::cerr);
 }
 
@@ -258,9 +269,18 @@ int main(int argc, char** argv) {
       ->type_name("FILE")
       ->check(cell::refuse_empty)
       ->needs(run);
-  app.add_option(
-         "--for", arguments.run_seconds,
-         "of --run: simulated seconds; default: to a second behind the script's last line, 10 without one")
+  app.add_option("--socket", arguments.sockets,
+                 "of --run, for each socket that is to be a real one: the link of the application's sio, as "
+                 "'Socket\\host' or host, and where; PORT makes it a server on 127.0.0.1 (0: any free port, "
+                 "which is told), HOST:PORT a client that connects there. Time is wall time then, and "
+                 "without --script and --for the run goes on until SIGINT or SIGTERM")
+      ->type_name("NAME=[HOST:]PORT")
+      ->check(check_socket)
+      ->allow_extra_args(false)
+      ->needs(run);
+  app.add_option("--for", arguments.run_seconds,
+                 "of --run: simulated seconds; default: to a second behind the script's last line, without "
+                 "one 10, with --socket without end")
       ->type_name("SECONDS")
       ->check(cell::refuse_number)
       ->check(CLI::Range(0.004, 86400.0))

@@ -2,263 +2,28 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <ostream>
-#include <set>
-#include <vector>
+#include <utility>
+#include <variant>
 
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
-#include "sim_controller/operator.hpp"
 #include "sim_controller/run_script.hpp"
+#include "sim_controller/scripted_run.hpp"
+#include "sim_controller/socket_run.hpp"
 #include "sim_controller/val3/files/read_application.hpp"
 #include "sim_controller/val3/language/resolver.hpp"
-#include "sim_controller/val3/machine/machine.hpp"
-#include "sim_controller/val3_system.hpp"
 
 namespace sim {
 namespace {
 
 constexpr double kSecondsWithoutScript = 10.0;
-/// Numbers of a script and of a program are the same within this.
-constexpr double kSameNumber = 1e-6;
-
-/// An application, the cell under it, and a script that is carried out.
-class ScriptedRun {
- public:
-  ScriptedRun(const Plant& plant, const val3::Application& application, std::vector<ScriptStep> steps,
-              std::uint64_t seed, std::ostream& out)
-      : plant_(plant),
-        cabinet_(make_cabinet(plant, seed)),
-        system_(plant, cabinet_, options()),
-        steps_(std::move(steps)),
-        out_(out),
-        application_(application) {}
-
-  /// False where this machine does not have what the application wants.
-  bool load(val3::Findings& findings) {
-    const std::size_t before = findings.size();
-    machine_.emplace(application_, system_, findings);
-    return findings.size() == before;
-  }
-
-  /// How many failures there were.
-  int run(double seconds) {
-    machine_->start();
-    while (!is_over_ && seconds_ <= seconds) {
-      carry_out_due();
-      machine_->tick();
-      watch_tasks();
-      system_.tick();
-      perform_person();
-      seconds_ = static_cast<double>(++ticks_) * kTickSeconds;
-      if (machine_->ended()) {
-        tell("the application has ended");
-        break;
-      }
-    }
-    return summary();
-  }
-
- private:
-  Val3SystemOptions options() {
-    Val3SystemOptions made;
-    made.links = {};  // every input is the script's
-    made.operator_owns_monitor_speed = false;
-    made.log = [this](const std::string& text) { tell("log: " + text); };
-    return made;
-  }
-
-  void tell(const std::string& text) { out_ << fmt::format("{:9.3f}  {}\n", seconds_, text); }
-
-  void fail(const std::string& text) {
-    ++failures_;
-    tell("FAILED " + text);
-  }
-
-  void carry_out_due() {
-    for (; next_ < steps_.size() && steps_[next_].at_s <= seconds_ + kTickSeconds / 2.0; ++next_)
-      carry_out(steps_[next_]);
-  }
-
-  void perform_person() { tick(plant_, person_, cabinet_); }
-
-  void carry_out(const ScriptStep& step) {
-    const ScriptAct& act = step.act;
-    switch (act.kind) {
-      case ScriptAct::Kind::kInput:
-        if (!system_.signals().set(act.name, act.on)) refuse(step, "no input of that name can be set");
-        break;
-      case ScriptAct::Kind::kAnalogue:
-        if (!system_.signals().set(act.name, act.number)) refuse(step, "no input of that name can be set");
-        break;
-      case ScriptAct::Kind::kConnect:
-      case ScriptAct::Kind::kDisconnect:
-      case ScriptAct::Kind::kSend:
-      case ScriptAct::Kind::kExpectSent:
-        at_channel(step);
-        break;
-      case ScriptAct::Kind::kExpectOutput:
-      case ScriptAct::Kind::kExpectNumber:
-      case ScriptAct::Kind::kExpectTask:
-        expect(step);
-        break;
-      case ScriptAct::Kind::kKey:
-        system_.page().press(static_cast<int>(act.number));
-        system_.page().release(static_cast<int>(act.number));
-        break;
-      case ScriptAct::Kind::kPage:
-        show_page();
-        break;
-      case ScriptAct::Kind::kStop:
-        machine_->stop();
-        break;
-      case ScriptAct::Kind::kEnd:
-        is_over_ = true;
-        break;
-      default:
-        at_panel(act);
-    }
-  }
-
-  void refuse(const ScriptStep& step, const std::string& why) {
-    fail(fmt::format("line {}: {}: {}", step.line, step.act.name, why));
-  }
-
-  void at_panel(const ScriptAct& act) {
-    Panel& panel = cabinet_.panel;
-    switch (act.kind) {
-      case ScriptAct::Kind::kPower:
-        return perform(plant_, cabinet_, act.on ? Act::kPowerOn : Act::kPowerOff);
-      case ScriptAct::Kind::kHold:
-        return perform(plant_, cabinet_, act.on ? Act::kHold : Act::kMove);
-      case ScriptAct::Kind::kEmergency:
-        if (act.number == 2.0) return perform(plant_, cabinet_, Act::kEmergencyStop);
-        perform(plant_, cabinet_, Act::kReleaseEmergencyStop);
-        if (act.number == 0.0) perform(plant_, cabinet_, Act::kAcknowledgeEmergencyStop);
-        return;
-      case ScriptAct::Kind::kMode: {
-        const auto mode = static_cast<cs8::WorkingMode>(static_cast<int>(act.number));
-        panel.powered = panel.powered && panel.mode == mode;
-        panel.mode = mode;
-        return;
-      }
-      case ScriptAct::Kind::kSpeed:
-        panel.monitor_speed_percent = static_cast<std::int32_t>(std::clamp(act.number, 0.0, 100.0));
-        return;
-      default:
-        return;
-    }
-  }
-
-  /// The script's own peer at a socket.
-  void at_channel(const ScriptStep& step) {
-    const ScriptAct& act = step.act;
-    const auto id = system_.channels().find(act.name);
-    if (!id) return refuse(step, "there is no such socket");
-    Val3Channel& channel = system_.channels().at(*id);
-    if (act.kind == ScriptAct::Kind::kConnect) {
-      if (!channel.accept()) refuse(step, "somebody is connected, or the application does not listen");
-      return;
-    }
-    if (act.kind == ScriptAct::Kind::kDisconnect) return channel.leave();
-    if (act.kind == ScriptAct::Kind::kSend) {
-      const std::vector<std::uint8_t> bytes(act.text.begin(), act.text.end());
-      if (channel.peer() != Val3Channel::Peer::kConnected || channel.give(bytes) != bytes.size())
-        refuse(step, "not connected, or the application does not read; connect it first");
-      return;
-    }
-    const std::vector<std::uint8_t> bytes = channel.take();
-    const std::string sent(bytes.begin(), bytes.end());
-    if (sent != act.text) refuse(step, fmt::format("sent {:?}", sent));
-  }
-
-  void expect(const ScriptStep& step) {
-    const ScriptAct& act = step.act;
-    if (act.kind == ScriptAct::Kind::kExpectTask) {
-      const int status = machine_->task_status(act.name);
-      if (status != static_cast<int>(act.number))
-        refuse(step, fmt::format("the task's status is {}", status));
-      return;
-    }
-    if (act.kind == ScriptAct::Kind::kExpectOutput) {
-      const auto id = system_.signals().find_digital(act.name);
-      const bool is_on = id && system_.digital(*id);
-      if (is_on != act.on) refuse(step, is_on ? "it is on" : "it is off");
-      return;
-    }
-    const auto value = number_of(act.name);
-    if (!value) return refuse(step, "the application has no such num or bool");
-    if (!(std::abs(*value - act.number) <= kSameNumber)) refuse(step, fmt::format("it is {}", *value));
-  }
-
-  /// "n", "n[3]"; a bool is 0 or 1.
-  std::optional<double> number_of(const std::string& place) const {
-    std::string name = place;
-    std::size_t index = 0;
-    if (const std::size_t open = place.find('['); open != std::string::npos) {
-      name = place.substr(0, open);
-      index = std::strtoul(place.c_str() + open + 1, nullptr, 10);
-    }
-    const int global = application_.global_named(name);
-    if (global < 0) return std::nullopt;
-    try {
-      const val3::Kind kind = application_.globals[static_cast<std::size_t>(global)].declared.type.kind;
-      if (kind == val3::Kind::kBool) return machine_->truth(name, index) ? 1.0 : 0.0;
-      if (kind == val3::Kind::kNum) return machine_->number(name, index);
-    } catch (const std::out_of_range&) {
-      return std::nullopt;
-    }
-    return std::nullopt;
-  }
-
-  void show_page() {
-    tell("page: " + system_.page().title());
-    std::string lines = system_.page().text();
-    lines.erase(lines.find_last_not_of('\n') + 1);
-    if (!lines.empty()) out_ << lines << '\n';
-  }
-
-  /// Tells a task that died and a period that was too short, each once.
-  void watch_tasks() {
-    for (const val3::TaskView& task : machine_->tasks()) {
-      if (task.status > 1 && dead_.insert(task.name).second)
-        fail(fmt::format("task {} ends with error {} at {}:{}: {}", task.name, task.status, task.file,
-                         task.line, task.error));
-      if (task.overruns > 0 && late_.insert(task.name).second)
-        fail(fmt::format("task {} did not end within its period", task.name));
-    }
-  }
-
-  int summary() {
-    show_page();
-    for (const val3::TaskView& task : machine_->tasks())
-      tell(fmt::format("task {}: status {}, at {}:{}, {} overruns, at most {} lines between two waits",
-                       task.name, task.status, task.file, task.line, task.overruns,
-                       machine_->most_lines(task.name)));
-    tell(fmt::format("{} lines of program; {} failures", machine_->lines(), failures_));
-    return failures_;
-  }
-
-  const Plant& plant_;
-  Cabinet cabinet_;
-  Operator person_;
-  double seconds_ = 0.0;
-  std::int64_t ticks_ = 0;
-  int failures_ = 0;
-  bool is_over_ = false;
-  std::set<std::string> dead_;
-  std::set<std::string> late_;
-  Val3System system_;
-  std::vector<ScriptStep> steps_;
-  std::size_t next_ = 0;
-  std::ostream& out_;
-  const val3::Application& application_;
-  std::optional<val3::Machine> machine_;
-};
+constexpr double kSecondsBehindScript = 1.0;
 
 /// Errors only: what a controller would not load, or this machine not run.
 bool tell_errors(const val3::Findings& findings, std::ostream& error) {
@@ -272,24 +37,36 @@ bool tell_errors(const val3::Findings& findings, std::ostream& error) {
   return any;
 }
 
+/// Nothing where it is no script: that is told.
+std::optional<std::vector<ScriptStep>> read_script(const std::string& file_name, std::ostream& error) {
+  if (file_name.empty()) return std::vector<ScriptStep>{};
+  std::ifstream file(file_name, std::ios::binary);
+  if (!file) {
+    error << file_name << ": cannot be read; give the path of a script with --script\n";
+    return std::nullopt;
+  }
+  const std::string text(std::istreambuf_iterator<char>(file), {});
+  auto parsed = parse_script(text);
+  if (const auto* refused = std::get_if<ScriptError>(&parsed)) {
+    error << file_name << ':' << refused->line << ": " << refused->what << '\n';
+    return std::nullopt;
+  }
+  return std::get<std::vector<ScriptStep>>(std::move(parsed));
+}
+
+/// Simulated seconds of the run.
+double end_of(const RunCommand& command, const std::vector<ScriptStep>& steps, bool has_sockets) {
+  if (command.seconds > 0.0) return command.seconds;
+  if (!steps.empty() && steps.back().act.kind != ScriptAct::Kind::kSocket)
+    return steps.back().at_s + kSecondsBehindScript;
+  return has_sockets ? std::numeric_limits<double>::infinity() : kSecondsWithoutScript;
+}
+
 }  // namespace
 
 int run_application(const RunCommand& command, std::ostream& out, std::ostream& error) {
-  std::vector<ScriptStep> steps;
-  if (!command.script_file.empty()) {
-    std::ifstream file(command.script_file, std::ios::binary);
-    if (!file) {
-      error << command.script_file << ": cannot be read; give the path of a script with --script\n";
-      return kCannotRun;
-    }
-    std::string text(std::istreambuf_iterator<char>(file), {});
-    auto parsed = parse_script(text);
-    if (const auto* refused = std::get_if<ScriptError>(&parsed)) {
-      error << command.script_file << ':' << refused->line << ": " << refused->what << '\n';
-      return kCannotRun;
-    }
-    steps = std::get<std::vector<ScriptStep>>(std::move(parsed));
-  }
+  std::optional<std::vector<ScriptStep>> steps = read_script(command.script_file, error);
+  if (!steps) return kCannotRun;
   const cell::Cell cell = cell::read_cell(command.cell_file);
   cell::demand_revolute(cell);
   const Plant plant = make_plant(cell, cell::read_truth(command.truth_file));
@@ -299,14 +76,33 @@ int run_application(const RunCommand& command, std::ostream& out, std::ostream& 
     error << command.application << ": a controller would not load it; `cs8sim --check` tells more\n";
     return kCannotRun;
   }
-  const double last_s = steps.empty() ? kSecondsWithoutScript - 1.0 : steps.back().at_s;
-  ScriptedRun run(plant, read.application, std::move(steps), command.seed, out);
+  std::vector<RunSocket> wanted = command.sockets;
+  for (const ScriptStep& step : *steps) {
+    if (step.act.kind == ScriptAct::Kind::kSocket)
+      wanted.push_back(*run_socket_at(step.act.name, step.act.text));
+  }
+  const double until_s = end_of(command, *steps, !wanted.empty());
+  ScriptedRun run(plant, read.application, *steps, command.seed, out);
   val3::Findings missing;
-  if (!run.load(missing)) {
+  if (!run.start(missing)) {
     tell_errors(missing, error);
     return kCannotRun;
   }
-  return run.run(command.seconds > 0.0 ? command.seconds : last_s + 1.0) == 0 ? kRanWell : kRanWithFailures;
+  if (wanted.empty()) {
+    while (!run.is_over() && run.seconds() <= until_s) run.step();
+    return run.summary() == 0 ? kRanWell : kRanWithFailures;
+  }
+  try {
+    SocketRun sockets(run, wanted, *steps);
+    sockets.run(until_s, command.speed);
+    return run.summary() == 0 ? kRanWell : kRanWithFailures;
+  } catch (const WrongSocket& wrong) {
+    error << wrong.what() << '\n';
+    return kWrongSocket;
+  } catch (const SocketRefusal& refusal) {
+    error << refusal.what() << '\n';
+    return kNoSocket;
+  }
 }
 
 }  // namespace sim

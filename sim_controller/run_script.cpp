@@ -5,13 +5,25 @@
 #include <cmath>
 #include <optional>
 
+#include "sim_controller/run_socket.hpp"
+
 namespace sim {
 namespace {
 
 using Kind = ScriptAct::Kind;
 
 /// What follows a command's name.
-enum class Shape { kNothing, kSwitch, kWord, kNumber, kName, kNameSwitch, kNameNumber, kNameText };
+enum class Shape {
+  kNothing,
+  kSwitch,
+  kWord,
+  kNumber,
+  kName,
+  kNameSwitch,
+  kNameNumber,
+  kNameText,
+  kNamePlace
+};
 
 struct ScriptCommand {
   std::string_view name;
@@ -32,6 +44,7 @@ constexpr std::array kCommands{
     ScriptCommand{"connect", Kind::kConnect, Shape::kName, "connect SOCKET"},
     ScriptCommand{"disconnect", Kind::kDisconnect, Shape::kName, "disconnect SOCKET"},
     ScriptCommand{"send", Kind::kSend, Shape::kNameText, "send SOCKET \"TEXT\""},
+    ScriptCommand{"socket", Kind::kSocket, Shape::kNamePlace, "socket SOCKET PORT|HOST:PORT"},
     ScriptCommand{"expect-output", Kind::kExpectOutput, Shape::kNameSwitch, "expect-output LINK on|off"},
     ScriptCommand{"expect-number", Kind::kExpectNumber, Shape::kNameNumber, "expect-number VARIABLE VALUE"},
     ScriptCommand{"expect-sent", Kind::kExpectSent, Shape::kNameText, "expect-sent SOCKET \"TEXT\""},
@@ -129,7 +142,7 @@ bool read_word_of(std::string_view word, ScriptAct& act) {
 /// Whether what follows the command is as its shape wants it.
 bool read_arguments(Shape shape, std::string_view rest, ScriptAct& act) {
   const bool named = shape == Shape::kName || shape == Shape::kNameSwitch || shape == Shape::kNameNumber ||
-                     shape == Shape::kNameText;
+                     shape == Shape::kNameText || shape == Shape::kNamePlace;
   if (named) {
     act.name = std::string(take_word(rest));
     if (act.name.empty()) return false;
@@ -151,6 +164,9 @@ bool read_arguments(Shape shape, std::string_view rest, ScriptAct& act) {
       if (text) act.text = *std::move(text);
       return text.has_value();
     }
+    case Shape::kNamePlace:
+      act.text = std::string(rest);
+      return run_socket_at(act.name, act.text).has_value();
   }
   return false;
 }
@@ -174,6 +190,8 @@ std::variant<ScriptStep, ScriptError> parse_step(std::string_view text, int line
   for (const ScriptCommand& command : kCommands) {
     if (command.name != name) continue;
     step.act.kind = command.kind;
+    if (command.kind == Kind::kSocket && step.at_s != 0.0)
+      return ScriptError{line, "a real socket is there from the start; begin its line with 0"};
     if (read_arguments(command.shape, text, step.act)) return step;
     return ScriptError{line, "write '" + std::string(command.usage) + "'"};
   }

@@ -22,6 +22,7 @@ struct ScriptAct {
     kConnect,       // name: a socket; a peer of the script's own connects
     kDisconnect,    // name
     kSend,          // name, text: bytes from that peer
+    kSocket,        // name; text: as run_socket_at() takes it. A real socket, from the start
     kExpectOutput,  // name, on
     kExpectNumber,  // name: a variable, "x" or "x[3]"; number
     kExpectSent,    // name, text: what the application has sent to the peer since the last such line

@@ -56,6 +56,7 @@ Val3Channel::Val3Channel(std::string link) : link_(std::move(link)), is_socket_(
 
 bool Val3Channel::connect() {
   is_active_ = true;
+  is_requested_ = peer_ == Peer::kNone;
   return peer_ == Peer::kConnected;
 }
 
@@ -76,6 +77,7 @@ std::size_t Val3Channel::send(std::span<const std::uint8_t> bytes) {
 
 bool Val3Channel::close() {
   in_.clear();
+  is_requested_ = false;
   if (!is_socket_) return true;
   return std::exchange(peer_, Peer::kNone) != Peer::kNone;
 }
@@ -113,6 +115,7 @@ int Val3Channel::set(std::string_view name, std::optional<double> number, std::o
 bool Val3Channel::accept() {
   if (peer_ != Peer::kNone) return false;
   peer_ = Peer::kConnected;
+  is_requested_ = false;
   in_.clear();
   out_.clear();
   return true;
@@ -139,6 +142,17 @@ std::optional<int> Val3Channels::find(std::string_view link) {
   channels_.emplace_back(std::string(link));
   ids_.emplace(link, id);
   return id;
+}
+
+std::optional<int> Val3Channels::known(std::string_view name) const {
+  if (const auto link = ids_.find(name); link != ids_.end()) return link->second;
+  std::optional<int> found;
+  for (const auto& [link, id] : ids_) {
+    if (link.substr(link.rfind('\\') + 1) != name) continue;
+    if (found) return std::nullopt;
+    found = id;
+  }
+  return found;
 }
 
 }  // namespace sim

@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace sim {
@@ -20,6 +21,8 @@ class Val3Channel {
   explicit Val3Channel(std::string link);
 
   [[nodiscard]] const std::string& link() const { return link_; }
+  /// Else a serial port: always active, and its cable is always there.
+  [[nodiscard]] bool is_socket() const { return is_socket_; }
 
   // ---- the program's end ----
   /// Makes it active; true when a peer is there.
@@ -44,6 +47,9 @@ class Val3Channel {
   [[nodiscard]] Peer peer() const { return peer_; }
   /// A program has used it: a server listens, a client asks for its connection.
   [[nodiscard]] bool is_active() const { return is_active_; }
+  /// Whether the program has asked for a peer since the last call, and there is none: what a client connects
+  /// for.
+  bool take_request() { return std::exchange(is_requested_, false); }
   [[nodiscard]] bool is_client() const { return !target_.empty(); }
   [[nodiscard]] const std::string& target() const { return target_; }
   [[nodiscard]] std::optional<std::uint16_t> port() const { return port_; }
@@ -59,13 +65,14 @@ class Val3Channel {
   /// The peer closed. What it wrote before can still be read.
   void leave();
 
-  /// Bytes under way in each direction; a program that writes into a full one waits.
+  /// Bytes under way in each direction; what a program writes beyond them is not sent.
   static constexpr std::size_t kBufferedMax = 65'536;
 
  private:
   std::string link_;
   bool is_socket_ = true;
   bool is_active_ = false;
+  bool is_requested_ = false;
   Peer peer_ = Peer::kNone;
   std::deque<std::uint8_t> in_;
   std::vector<std::uint8_t> out_;
@@ -82,6 +89,9 @@ class Val3Channels {
  public:
   /// Nothing for an empty link, and beyond kChannelsMax.
   std::optional<int> find(std::string_view link);
+  /// One that was found before, by its link or by what stands behind its "\"; nothing when there is none, or
+  /// several end so.
+  [[nodiscard]] std::optional<int> known(std::string_view name) const;
   [[nodiscard]] Val3Channel& at(int id) { return channels_.at(static_cast<std::size_t>(id)); }
   [[nodiscard]] const Val3Channel& at(int id) const { return channels_.at(static_cast<std::size_t>(id)); }
   [[nodiscard]] int count() const { return static_cast<int>(channels_.size()); }

@@ -76,6 +76,9 @@ val3::RunError Val3System::set_analogue(int id, double value) { return signals_.
 
 std::optional<int> Val3System::find_channel(std::string_view link) { return channels_.find(link); }
 bool Val3System::connect(int channel) { return channels_.at(channel).connect(); }
+bool Val3System::peer_is_gone(int channel) const {
+  return channels_.at(channel).peer() == Val3Channel::Peer::kGone;
+}
 std::size_t Val3System::waiting(int channel) const { return channels_.at(channel).waiting(); }
 std::size_t Val3System::receive(int channel, std::span<std::uint8_t> bytes) {
   return channels_.at(channel).receive(bytes);

@@ -72,6 +72,7 @@ class Val3System final : public val3::System {
 
   std::optional<int> find_channel(std::string_view link) override;
   bool connect(int channel) override;
+  [[nodiscard]] bool peer_is_gone(int channel) const override;
   [[nodiscard]] std::size_t waiting(int channel) const override;
   std::size_t receive(int channel, std::span<std::uint8_t> bytes) override;
   std::size_t send(int channel, std::span<const std::uint8_t> bytes) override;

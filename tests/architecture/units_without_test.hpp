@@ -138,6 +138,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"sim_controller/planned_move", "how fast each part of a move is: stored_moves_test, drives_test"},
     {"sim_controller/readiness", "refusals of an unready cabinet: controller_test, admission_test"},
     {"sim_controller/reports", "what the host is told: controller_test, motion_task_test"},
+    {"sim_controller/scripted_run", "scripts carried out: run_command_test"},
     {"sim_controller/val3/checks/channel_checks", "sockets that are never closed: val3/checks/checks_test"},
     {"sim_controller/val3/checks/flow_checks", "lines that are never reached: val3/checks/checks_test"},
     {"sim_controller/val3/checks/global_checks",
@@ -193,6 +194,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"sim_controller/val3/program/application", "looked up by name in val3/files/read_application_test"},
     {"sim_controller/val3_motion", "the arm of a VAL3 system: val3_system_test"},
     {"sim_controller/val3_signals", "links of the cell and on demand: val3_system_test"},
+    {"sim_controller/val3_stream", "every end of a connection: val3_socket_test"},
     {"sim_controller/val3_units", "poses and back: controller_arm_test"},
 };
 

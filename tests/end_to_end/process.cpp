@@ -81,6 +81,15 @@ std::string Process::wait_for_address() {
   return out_.substr(kBefore.size(), out_.find('\n') - kBefore.size());
 }
 
+std::string Process::wait_for(std::string_view text) {
+  for (;;) {
+    const std::size_t found = out_.find(text);
+    const std::size_t end = found == std::string::npos ? found : out_.find('\n', found);
+    if (end != std::string::npos) return out_.substr(found + text.size(), end - found - text.size());
+    if (!read_more()) throw std::runtime_error("it ends without '" + std::string(text) + "': " + out_);
+  }
+}
+
 Finished Process::wait() {
   while (read_more()) {
   }

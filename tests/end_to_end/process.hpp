@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace touchcal::testing {
@@ -27,6 +28,8 @@ class Process {
   /// "HOST:PORT" of the line "listening on HOST:PORT"; std::runtime_error when it says something else or
   /// nothing.
   std::string wait_for_address();
+  /// What stands behind `text` in its first line with it; std::runtime_error when there is none.
+  std::string wait_for(std::string_view text);
   void signal(int number) const;
   /// Waits for its end; std::runtime_error when there is none.
   Finished wait();

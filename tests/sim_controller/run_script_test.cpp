@@ -35,6 +35,15 @@ TEST(RunScript, HasOneStepALineWithTimeAndArguments) {
   EXPECT_EQ(steps[5].line, 8);
 }
 
+TEST(RunScript, SaysWhichSocketsAreRealFromTheStart) {
+  const auto steps = steps_of("0 socket Socket\\host 5000\n0.0 socket Socket\\eye  127.0.0.1:81 \n1 end");
+  ASSERT_EQ(steps.size(), 3u);
+  EXPECT_EQ(steps[0].act.kind, ScriptAct::Kind::kSocket);
+  EXPECT_EQ(steps[0].act.name, "Socket\\host");
+  EXPECT_EQ(steps[0].act.text, "5000");
+  EXPECT_EQ(steps[1].act.text, "127.0.0.1:81");
+}
+
 TEST(RunScript, RefusesWhatItDoesNotKnowWithLineAndRemedy) {
   const std::vector<std::tuple<std::string, int, std::string>> mistakes{
       {"input x on", 1, "'input' is no time"},
@@ -48,6 +57,10 @@ TEST(RunScript, RefusesWhatItDoesNotKnowWithLineAndRemedy) {
       {"0 mode press", 1, "write 'mode manual|test|local|remote'"},
       {"0 key x", 1, "write 'key CODE'"},
       {"0 end now", 1, "write 'end'"},
+      {"0 socket s", 1, "write 'socket SOCKET PORT|HOST:PORT'"},
+      {"0 socket s 70000", 1, "write 'socket"},
+      {"0 socket s peer:0", 1, "write 'socket"},
+      {"1 socket s 5000", 1, "begin its line with 0"},
       {"0 send s text", 1, "write 'send SOCKET \"TEXT\"'"},
       {"0 send s \"a\\x4\"", 1, "write 'send"},
       {"0 send s \"a\\\"", 1, "write 'send"},

@@ -26,6 +26,26 @@ TEST(Val3Channel, IsActiveFromTheFirstUseAndConnectedWhenAPeerIsThere) {
   EXPECT_FALSE(channel.accept()) << "a second client";
 }
 
+TEST(Val3Channel, AsksForAPeerWhenTheProgramUsesItWithoutOne) {
+  Val3Channel channel("Socket\\eye");
+  EXPECT_FALSE(channel.take_request());
+  channel.connect();
+  EXPECT_TRUE(channel.take_request());
+  EXPECT_FALSE(channel.take_request()) << "not asked since";
+  channel.connect();
+  ASSERT_TRUE(channel.accept());
+  EXPECT_FALSE(channel.take_request()) << "a peer is there";
+  channel.leave();
+  channel.connect();
+  EXPECT_FALSE(channel.take_request()) << "the program has to close first";
+  channel.close();
+  channel.connect();
+  EXPECT_TRUE(channel.take_request());
+  channel.connect();
+  channel.close();
+  EXPECT_FALSE(channel.take_request()) << "it was given up";
+}
+
 TEST(Val3Channel, CarriesBytesBothWays) {
   Val3Channel channel("Socket\\host");
   EXPECT_EQ(channel.give(Bytes{1, 2, 3}), 0U) << "nobody is connected";
@@ -117,6 +137,20 @@ TEST(Val3Channels, AreOneForALink) {
   EXPECT_EQ(channels.find("Socket\\a"), first);
   EXPECT_NE(channels.find("Socket\\A"), first) << "names are case-sensitive";
   EXPECT_EQ(channels.find(""), std::nullopt);
+}
+
+TEST(Val3Channels, AreKnownByTheirLinkOrItsEndWhereOneEndsSo) {
+  Val3Channels channels;
+  const auto host = channels.find("Socket\\host");
+  const auto server = channels.find("Socket\\eye");
+  const auto udp = channels.find("UdpSocket\\eye");
+  EXPECT_EQ(channels.known("Socket\\host"), host);
+  EXPECT_EQ(channels.known("host"), host);
+  EXPECT_EQ(channels.known("ost"), std::nullopt);
+  EXPECT_EQ(channels.known("eye"), std::nullopt) << "two end so";
+  EXPECT_EQ(channels.known("Socket\\eye"), server);
+  EXPECT_EQ(channels.known("UdpSocket\\eye"), udp);
+  EXPECT_EQ(channels.count(), 3) << "asking makes none";
 }
 
 TEST(Val3Channels, AreBounded) {

@@ -81,6 +81,9 @@ class Cabinet final : public System {
   RunError set_analogue(int, double) override { return kErrorNotLinked; }
   std::optional<int> find_channel(std::string_view link) override;
   bool connect(int channel) override;
+  [[nodiscard]] bool peer_is_gone(int channel) const override {
+    return socket(channel).link == Socket::Link::kClosedByHost;
+  }
   [[nodiscard]] std::size_t waiting(int channel) const override;
   std::size_t receive(int channel, std::span<std::uint8_t> bytes) override;
   std::size_t send(int channel, std::span<const std::uint8_t> bytes) override;

@@ -21,8 +21,8 @@ int linked(const Sio& channel) {
   return channel.id;
 }
 
-/// Whether there is something to do now. True: yes. False: the time-out is over, or the channel does not
-/// wait. Else the line waits: Wait.
+/// Whether there is something to do now. True: yes. False: the time-out is over, the channel does not wait,
+/// or its peer has gone, which no time mends. Else the line waits: Wait.
 template <class IsReady>
 bool ready(Context& context, int channel, IsReady is_ready) {
   if (is_ready()) {
@@ -31,6 +31,10 @@ bool ready(Context& context, int channel, IsReady is_ready) {
   }
   const double timeout_s = context.system.channel_timeout_s(channel);
   if (timeout_s < 0.0) return false;
+  if (context.system.peer_is_gone(channel)) {
+    Tasks::stop_waiting(context.task);
+    return false;
+  }
   constexpr double kForeverSeconds = 1e9;
   const void* who = context.here->code->operations[context.here->next - 1].get();
   if (context.tasks.is_over(context.task, who, timeout_s == 0.0 ? kForeverSeconds : timeout_s)) return false;
@@ -73,15 +77,20 @@ double set(Context& context, const Sio& sio, const Slice<double>& from) {
   return static_cast<double>(context.system.send(channel, bytes));
 }
 
-void demand_ready(bool is_ready) {
-  if (!is_ready) throw RunFailure(kErrorTimeout, "the time-out of a socket or serial port is over");
+/// As ready(), for what cannot answer -1.
+template <class IsReady>
+void demand_ready(Context& context, int channel, IsReady is_ready) {
+  if (ready(context, channel, is_ready)) return;
+  if (context.system.peer_is_gone(channel))
+    throw RunFailure(kErrorInputOutput, "the peer of a socket has closed the connection");
+  throw RunFailure(kErrorTimeout, "the time-out of a socket or serial port is over");
 }
 
 }  // namespace
 
 double read_byte(Context& context, const Sio& sio) {
   const int channel = linked(sio);
-  demand_ready(ready(context, channel, [&] { return has_input(context, channel); }));
+  demand_ready(context, channel, [&] { return has_input(context, channel); });
   std::array<std::uint8_t, 1> byte{};
   context.system.receive(channel, byte);
   return static_cast<double>(byte[0]);
@@ -92,7 +101,7 @@ std::string read_text(Context& context, const Sio& sio) {
   std::string& text = context.tasks.half_read[channel];
   const std::uint8_t end = context.system.end_of_string(channel);
   for (;;) {
-    demand_ready(ready(context, channel, [&] { return has_input(context, channel); }));
+    demand_ready(context, channel, [&] { return has_input(context, channel); });
     std::array<std::uint8_t, 1> byte{};
     context.system.receive(channel, byte);
     if (byte[0] != end) text += static_cast<char>(byte[0]);
@@ -102,7 +111,7 @@ std::string read_text(Context& context, const Sio& sio) {
 
 void write_byte(Context& context, const Sio& sio, double value) {
   const int channel = linked(sio);
-  demand_ready(ready(context, channel, [&] { return context.system.connect(channel); }));
+  demand_ready(context, channel, [&] { return context.system.connect(channel); });
   const std::array<std::uint8_t, 1> byte{byte_of(value)};
   if (context.system.send(channel, byte) != byte.size())
     throw RunFailure(kErrorInputOutput, "a byte was not sent");
@@ -110,7 +119,7 @@ void write_byte(Context& context, const Sio& sio, double value) {
 
 void write_text(Context& context, const Sio& sio, const std::string& text) {
   const int channel = linked(sio);
-  demand_ready(ready(context, channel, [&] { return context.system.connect(channel); }));
+  demand_ready(context, channel, [&] { return context.system.connect(channel); });
   std::vector<std::uint8_t> bytes(text.begin(), text.end());
   bytes.push_back(context.system.end_of_string(channel));
   if (context.system.send(channel, bytes) != bytes.size())

@@ -86,6 +86,8 @@ class System {
   virtual std::optional<int> find_channel(std::string_view link) = 0;
   /// Makes it active where it is not: a server listens, a client connects. True when a peer is there.
   virtual bool connect(int channel) = 0;
+  /// The peer has closed the connection, and the program has not: nobody is there until it does (close()).
+  [[nodiscard]] virtual bool peer_is_gone(int channel) const = 0;
   /// Bytes that can be read at once.
   [[nodiscard]] virtual std::size_t waiting(int channel) const = 0;
   /// Takes up to bytes.size() of them; returns how many.

@@ -39,6 +39,25 @@ TEST(Channels, ATimeOutEndsAReadAndIsAnErrorBehindAnEqualsSign) {
   EXPECT_EQ(run.machine().task_status("small~"), kErrorTimeout);
 }
 
+TEST(Channels, AConnectionThatThePeerClosedIsReadToItsEndAndNotWaitedFor) {
+  SmallProject project;
+  with_socket(project,
+              "n[0]=sioCtrl(si,\"timeout\",0)\nn[1]=sioGet(si,n[5])\nn[2]=sioGet(si,n[5])\n"
+              "n[3]=sioSet(si,n[5])\nn[4]=si");
+  Running run(project);
+  run.ticks(2);
+  Socket& socket = run.cabinet.sockets["Socket\\host"];
+  ASSERT_TRUE(socket.connect());
+  socket.to_controller = {65};
+  socket.close_by_host();
+  run.ticks(2);
+  EXPECT_EQ(run.number("n", 1), 1);
+  EXPECT_EQ(run.number("n", 5), 65);
+  EXPECT_EQ(run.number("n", 2), -1);
+  EXPECT_EQ(run.number("n", 3), -1);
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorInputOutput);
+}
+
 TEST(Channels, WithoutALinkTheyAreError123) {
   for (const std::string line : {"n[0]=sioGet(siNone,n)", "n[0]=siNone", "siNone=1", "clearBuffer(siNone)"}) {
     SmallProject project;
