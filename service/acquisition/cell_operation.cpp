@@ -100,10 +100,21 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
                 touches_, status_, clocks_),
       loop_{.executor = threads.operation, .ended = TimerWake(threads.operation)} {
   store_.tell_when_slow(status_, std::make_unique<TimerAlarm>(threads.operation));
-  controller_->listen({.on_state = [this](const cs8::State& state) { on_controller_state(state); },
-                       .on_permit = [this](const cs8::Permit& permit) { session_.on_permit(permit); },
-                       .on_heartbeat = [this] { session_.on_heartbeat(); },
-                       .on_loss = [this](const cs8::LinkError& error) { on_link_lost(error); }});
+  // What a hook throws would leave the link's loops, and with them the program.
+  const auto guarded = [this](auto hook) {
+    return [this, hook](const auto&... told) {
+      try {
+        hook(told...);
+      } catch (const std::exception& error) {
+        on_failed_hook(error.what());
+      }
+    };
+  };
+  controller_->listen(
+      {.on_state = guarded([this](const cs8::State& state) { on_controller_state(state); }),
+       .on_permit = guarded([this](const cs8::Permit& permit) { session_.on_permit(permit); }),
+       .on_heartbeat = guarded([this] { session_.on_heartbeat(); }),
+       .on_loss = guarded([this](const cs8::LinkError& error) { on_link_lost(error); })});
   if (const auto accepted = store_.store().last_accepted())
     status_.set_last_accepted(accepted->id, accepted->ended_at);
 }

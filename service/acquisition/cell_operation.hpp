@@ -163,6 +163,7 @@ class CellOperation {
   // what the controller tells (cell_operation_link.cpp)
   void on_controller_state(const cs8::State& state);
   void on_link_lost(const cs8::LinkError& error);
+  void on_failed_hook(std::string why);
   [[nodiscard]] Event after_lost_link() const;
   [[nodiscard]] bool moves_without_run() const;
 

@@ -1,4 +1,8 @@
 // What the controller tells a CellOperation.
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
 #include "service/acquisition/cell_operation.hpp"
 
 namespace cell {
@@ -22,6 +26,14 @@ void CellOperation::on_link_lost(const cs8::LinkError& error) {
   if (status_.is_ending()) return;
   session_.on_link_lost(error, after_lost_link());
   wake_.wake();
+}
+
+/// As what an act throws: it ends what moves, never the daemon with its STOP.
+void CellOperation::on_failed_hook(std::string why) {
+  spdlog::error("on what the controller told, in the state {}: {}", state_name(status_.state()), why);
+  if (status_.state() == State::kAborting) return;
+  if (is_active(status_.state()) || way_back_.is_under_way())
+    status_.raise({FaultCode::kInternalError, std::move(why)}, Event::kAbortFault);
 }
 
 }  // namespace cell

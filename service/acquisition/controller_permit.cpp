@@ -82,6 +82,7 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
   const State state = status_.state();
   const auto ready_by = clocks_.steady() + cell_.deadlines.ready;
   inputs_disagreed_ = false;
+  permitted_run_.reset();  // each refusal from here on is an answer, no loss
   const auto is_needless = [this, state] {
     const auto told = controller_.latest_state();
     return state == State::kResetting && told && (told->flags & cs8::kRetractDue) == 0;
@@ -103,7 +104,6 @@ asio::awaitable<bool> ControllerSession::obtain_permit(std::uint32_t run_number)
   }
   wait_for(nullptr);
   permission_ = {};
-  permitted_run_.reset();
   if (status_.state() == state && has_permit(run_number)) permitted_run_ = run_number;
   co_return permitted_run_.has_value();
 }

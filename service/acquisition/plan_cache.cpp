@@ -62,7 +62,8 @@ void PlanCache::keep(const Key& key, const PlanOutcome& made) {
 }
 
 asio::awaitable<PlanOutcome> PlanCache::plan(std::string recipe, PlanGiven given) {
-  return make(std::move(recipe), given, std::make_shared<std::atomic<bool>>(false));
+  asked_ = std::make_shared<std::atomic<bool>>(false);
+  return make(std::move(recipe), given, asked_);
 }
 
 asio::awaitable<PlanOutcome> PlanCache::make(std::string recipe, PlanGiven given, Flag cancelled) {
@@ -86,6 +87,7 @@ asio::awaitable<PlanOutcome> PlanCache::make(std::string recipe, PlanGiven given
 }
 
 void PlanCache::begin(std::string recipe, PlanGiven given, std::function<void()> done) {
+  if (asked_) *asked_ = true;
   begun_ = std::make_shared<std::atomic<bool>>(false);
   asio::co_spawn(executor_, make(std::move(recipe), given, begun_),
                  [done = std::move(done)](auto&&...) { done(); });

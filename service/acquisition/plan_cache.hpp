@@ -39,10 +39,12 @@ class PlanCache {
   PlanCache& operator=(const PlanCache&) = delete;
 
   /// Plans a recipe of the cell, unless it has been planned; again when clear() was called meanwhile. What
-  /// the planner throws becomes a refusal. `given`: what the run has in place of the cell's; of each recipe
-  /// the plan with the latest one is kept.
+  /// the planner throws becomes a refusal, and so does a plan that was given up for a run's: planned() has
+  /// none then. `given`: what the run has in place of the cell's; of each recipe the plan with the latest one
+  /// is kept.
   boost::asio::awaitable<PlanOutcome> plan(std::string recipe, PlanGiven given = {});
-  /// The same without waiting: `done` is called when planned() has the outcome.
+  /// The same for a run, without waiting: `done` is called when planned() has the outcome. What plan() makes
+  /// meanwhile is given up: a run does not wait for a plan that somebody looks at.
   void begin(std::string recipe, PlanGiven given, std::function<void()> done);
   /// Gives up what begin() began last, unless it is done: nobody waits for it any more, and the planner is
   /// free for the next.
@@ -77,6 +79,7 @@ class PlanCache {
   boost::asio::any_io_executor planner_;
   const Cell& cell_;
   Flag ended_ = std::make_shared<std::atomic<bool>>(false);
+  Flag asked_;  // of the latest plan()
   Flag begun_;
   std::map<Key, PlanOutcome> plans_;
   int under_way_count_ = 0;  // on the planner's thread, or waiting for it

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "calib_core/geometry/units.hpp"
 
@@ -53,20 +54,37 @@ ReferenceMonitor::Reading ReferenceMonitor::add_contact(const calib::JointVector
           .told_m = is_first ? std::nullopt : std::optional(place_->drift_m)};
 }
 
-ReferenceMonitor::Finding ReferenceMonitor::judge(const calib::JointVector& contact, double limit_m,
-                                                  const HeightM& height_m) const {
-  Finding finding;
-  if (place_->count == 1) {
-    const double bias_m = height_m(place_->first_joints) - height_m(contact);
-    if (std::abs(bias_m) > limit_m)
-      finding.warning = {FaultCode::kFirstTouchBiased,
-                         fmt::format("by {:.3f} mm", calib::mm_from_metres(bias_m))};
-  } else if (std::abs(place_->drift_m - place_->allowed_drift_m) > limit_m) {
-    finding.hold = {FaultCode::kReferenceDrift,
-                    fmt::format("by {:.3f} mm, over {:.3f} mm", calib::mm_from_metres(place_->drift_m),
-                                calib::mm_from_metres(limit_m))};
-  }
-  return finding;
+std::optional<ReferenceMonitor::Doubt> ReferenceMonitor::doubt(const calib::JointVector& contact,
+                                                               double limit_m, const HeightM& height_m) {
+  if (place_->reference || place_->trusts_next) return std::nullopt;
+  const double from_plan_m = height_m(contact) - height_m(place_->first_joints);
+  if (std::abs(from_plan_m) <= limit_m) return std::nullopt;
+  const auto before = std::exchange(place_->doubted, contact);
+  const double from_plan_mm = calib::mm_from_metres(from_plan_m);
+  if (!before)
+    return Doubt{.warning = Fault{FaultCode::kFirstTouchBiased,
+                                  fmt::format("by {:.3f} mm; it is touched again", from_plan_mm)},
+                 .hold = {}};
+  const double from_before_m = height_m(contact) - height_m(*before);
+  if (std::abs(from_before_m) <= limit_m) return std::nullopt;
+  return Doubt{.warning = {},
+               .hold = Fault{FaultCode::kReferenceDrift,
+                             fmt::format("by {:.3f} mm from the touch of the plan there, and by {:.3f} mm "
+                                         "from its repetition before, over {:.3f} mm",
+                                         from_plan_mm, calib::mm_from_metres(from_before_m),
+                                         calib::mm_from_metres(limit_m))}};
+}
+
+std::optional<Fault> ReferenceMonitor::drift_fault(double limit_m) const {
+  if (std::abs(place_->drift_m - place_->allowed_drift_m) <= limit_m) return std::nullopt;
+  return Fault{FaultCode::kReferenceDrift,
+               fmt::format("by {:.3f} mm, over {:.3f} mm", calib::mm_from_metres(place_->drift_m),
+                           calib::mm_from_metres(limit_m))};
+}
+
+void ReferenceMonitor::allow_drift() {
+  place_->allowed_drift_m = place_->drift_m;
+  place_->trusts_next = true;
 }
 
 void ReferenceMonitor::skip(int touches_done) {

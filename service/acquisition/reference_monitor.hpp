@@ -24,10 +24,10 @@ class ReferenceMonitor {
     double drift_m = 0.0;          // against the first one
     std::optional<double> told_m;  // the same; nothing of the first one, which drift counts from
   };
-  /// At most one of both.
-  struct Finding {
-    std::optional<Fault> warning;  // the touch of the plan at this place was biased
-    std::optional<Fault> hold;     // the place has drifted
+  /// Why a contact is no reference yet; one of both.
+  struct Doubt {
+    std::optional<Fault> warning;  // the place is touched again
+    std::optional<Fault> hold;     // a person looks at it
   };
 
   /// Begins a run with a reference touch after every `every` touches; 0: never.
@@ -51,14 +51,17 @@ class ReferenceMonitor {
   /// Sets how the place is touched from now on.
   void set_aimed(calib::AimedTouch aimed) { place_->aimed = std::move(aimed); }
 
+  /// Looks at a contact before it counts. The reference is a contact that agrees with the touch of the plan
+  /// at this place, or with the contact before it: one that lies apart from both would make the whole run
+  /// drift. Nothing when it counts.
+  std::optional<Doubt> doubt(const calib::JointVector& contact, double limit_m, const HeightM& height_m);
   Reading add_contact(const calib::JointVector& contact, int touches_done, const HeightM& height_m);
-  /// What the last contact means, the same that add_contact() was given.
-  [[nodiscard]] Finding judge(const calib::JointVector& contact, double limit_m,
-                              const HeightM& height_m) const;
+  /// The place has drifted, by the last contact.
+  [[nodiscard]] std::optional<Fault> drift_fault(double limit_m) const;
 
   // A person's answer to a hold.
   void look_again() { place_->due = true; }
-  void allow_drift() { place_->allowed_drift_m = place_->drift_m; }
+  void allow_drift();
   void skip(int touches_done);
 
  private:
@@ -67,6 +70,8 @@ class ReferenceMonitor {
     calib::JointVector first_joints;              // of the plan's own touch there
     std::optional<calib::AimedTouch> aimed;       // how it is made
     std::optional<calib::JointVector> reference;  // its first contact, which drift counts from
+    std::optional<calib::JointVector> doubted;    // the latest contact that was no reference
+    bool trusts_next = false;                     // by a person's word the next contact is the reference
     int count = 0;                                // contacts there
     int made_at = -1;                             // touches done when the last one was made
     double drift_m = 0.0;                         // of the last one

@@ -120,7 +120,8 @@ class TouchExecutor {
   boost::asio::awaitable<std::optional<PreparedTouch>> prepare_beside_plan(ActiveRun& active,
                                                                            calib::AimedTouch aimed,
                                                                            HeldBy held_by);
-  void judge_reference(const ActiveRun& active, const calib::JointVector& contact);
+  void doubt_reference(std::int64_t run_id, const ReferenceMonitor::Doubt& doubt);
+  void judge_reference(const ActiveRun& active);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
   boost::asio::awaitable<bool> replace(ActiveRun& active, OutlierRetest::Replaced replaced);
   boost::asio::awaitable<bool> confirm(ActiveRun& active, StoredTouch again);

@@ -131,6 +131,8 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
   const auto height_m = [this](const calib::JointVector& joints) {
     return preparation_.height_m(reference_.planned().face, joints);
   };
+  if (const auto doubt = reference_.doubt(contact, reference_drift_max_m(cell_), height_m))
+    co_return doubt_reference(run.id(), *doubt);
   ReferenceMonitor with_contact = reference_;
   const ReferenceMonitor::Reading reading = with_contact.add_contact(contact, run.touches_done(), height_m);
   const double drift_mm = calib::mm_from_metres(reading.drift_m);
@@ -155,18 +157,24 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
   spdlog::info("run {} reference touch {}: drift {:.3f} mm", run.id(), reading.number, drift_mm);
   active.run.note_references(there);  // identified while the arm moves on
   status_.publish();
-  judge_reference(active, contact);
+  judge_reference(active);
 }
 
-void TouchExecutor::judge_reference(const ActiveRun& active, const calib::JointVector& contact) {
-  const auto height_m = [this](const calib::JointVector& joints) {
-    return preparation_.height_m(reference_.planned().face, joints);
-  };
-  const ReferenceMonitor::Finding found = reference_.judge(contact, reference_drift_max_m(cell_), height_m);
-  if (found.warning) status_.warn(*found.warning);
-  if (found.hold) {
+/// The contact is no reference, and no measurement: the log alone has it.
+void TouchExecutor::doubt_reference(std::int64_t run_id, const ReferenceMonitor::Doubt& doubt) {
+  if (beside_plan_->session == session_.number())
+    session_.discard(run_id, beside_plan_->sequence, beside_plan_->result);
+  beside_plan_.reset();
+  if (doubt.warning) status_.warn(*doubt.warning);
+  if (!doubt.hold) return;
+  held_by_ = HeldBy::kDrift;
+  status_.raise(*doubt.hold, Event::kHoldFault);
+}
+
+void TouchExecutor::judge_reference(const ActiveRun& active) {
+  if (const auto drifted = reference_.drift_fault(reference_drift_max_m(cell_))) {
     held_by_ = HeldBy::kDrift;
-    status_.raise(*found.hold, Event::kHoldFault);
+    status_.raise(*drifted, Event::kHoldFault);
     return;
   }
   if (stylus_allowed_) return;

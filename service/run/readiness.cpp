@@ -34,9 +34,12 @@ constexpr std::array kRemedies{
     Remedy{RejectReason::kMonitorSpeed,
            FaultCode::kMonitorSpeed,
            {"monitor_speed", "set the monitor speed to 100 %"}},
-    Remedy{RejectReason::kProbeTriggered,
-           FaultCode::kProbeTouched,
-           {"probe_free", "free the probe: it reads touched"}},
+    Remedy{
+        RejectReason::kProbeTriggered,
+        FaultCode::kProbeTouched,
+        {"probe_free",
+         "free the probe: it reads touched; where its stylus rests on a face, jog the arm off it in manual "
+         "mode"}},
     Remedy{RejectReason::kProbeInputs,
            FaultCode::kProbeFault,
            {"probe_inputs", "check the probe's cable: its two inputs disagree"}},
@@ -52,9 +55,11 @@ const AwaitedAction& remedy_of(RejectReason refusal) {
 
 const AwaitedAction* awaited_after_rejection(RejectReason refusal, std::uint32_t flags) {
   if (std::ranges::find(kRemedies, refusal, &Remedy::refusal) == kRemedies.end()) return nullptr;
-  const bool untested = (flags & cs8::kTouchTested) == 0;
-  return &remedy_of(untested && refusal != RejectReason::kProbeInputs ? RejectReason::kTouchTestMissing
-                                                                      : refusal);
+  const bool tested = (flags & cs8::kTouchTested) != 0;
+  if (tested || refusal == RejectReason::kProbeInputs) return &remedy_of(refusal);
+  constexpr std::uint32_t kAtFace = cs8::kRetractDue | cs8::kProbeTouched;
+  return &remedy_of((flags & kAtFace) == kAtFace ? RejectReason::kProbeTriggered
+                                                 : RejectReason::kTouchTestMissing);
 }
 
 const AwaitedAction* awaited_by_precondition(std::string_view name) {

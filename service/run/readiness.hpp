@@ -17,7 +17,8 @@ struct AwaitedAction {
 
 /// What a refused Begin waits for; null if no person at the cell can remove the reason. The touch test comes
 /// before other reasons, since it is made in manual mode or with power off, but not while the two inputs of
-/// the probe disagree. `flags` are those of State.
+/// the probe disagree, and not while a face holds the stylus: there the arm is jogged off it. `flags` are
+/// those of State.
 const AwaitedAction* awaited_after_rejection(cs8::RejectReason refusal, std::uint32_t flags);
 
 /// What a start waits for whose precondition of this name (a code of the fault table) is not met; null if no

@@ -88,7 +88,7 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
     case cs8::Outcome::kOvertravel:
       return OutcomeFault{{FaultCode::kOvertravel, {}}};
     case cs8::Outcome::kProbeFault:
-      return OutcomeFault{{FaultCode::kProbeFault, where}};
+      return OutcomeFault{{FaultCode::kProbeFault, where}, true};
     case cs8::Outcome::kTaskFailed:
       return OutcomeFault{{FaultCode::kTaskFailed, fmt::format("run-time error {} {}", error_number, where)},
                           true};

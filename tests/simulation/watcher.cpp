@@ -12,9 +12,10 @@ namespace simulation {
 namespace {
 
 /// Faults and warnings by which the host says that the answer it has just acknowledged is no measurement.
-constexpr std::array<std::string_view, 9> kNoMeasurement{
-    "early_contact", "implausible_touch", "repeated_touch",        "overtravel",        "touch_spread",
-    "retries_worse", "permission_lost",   "monitor_speed_changed", "touch_does_not_fit"};
+constexpr std::array<std::string_view, 11> kNoMeasurement{
+    "early_contact",      "implausible_touch",  "repeated_touch",  "overtravel",
+    "touch_spread",       "retries_worse",      "permission_lost", "monitor_speed_changed",
+    "touch_does_not_fit", "first_touch_biased", "reference_drift"};
 
 /// "fault NAME: ..." and "warning NAME: ..." of the daemon's log.
 bool says_no_measurement(std::string_view line) {

@@ -282,6 +282,21 @@ TEST_F(SlowArithmeticTest, IsNotWaitedForToStopTheArmWhereTheDaemonEnds) {
   EXPECT_EQ(store_.touches(id_).size(), 2u) << "what was answered meanwhile is kept";
 }
 
+/// It left the link's loops, and the program ended in a run.
+TEST_F(CellOperationTest, WhatIsThrownWhereTheControllerTellsSomethingEndsTheRunAndNotTheDaemon) {
+  controller_->state->permit = cs8::PermitState::kGranted;
+  controller_->on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  launch();
+  start({.recipe = "few"});
+  run_until([this] { return operation_.status().state == State::kExecute; });
+  time_.is_broken = true;
+  EXPECT_NO_THROW(controller_->hooks.on_state(*controller_->state));
+  time_.is_broken = false;
+  run_until([this] { return operation_.status().state == State::kAborted; });
+  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kInternalError);
+  EXPECT_THAT(operation_.status().fault->detail, ::testing::HasSubstr("the clock is broken"));
+}
+
 TEST_F(CellOperationTest, ChangesAreToldAtOnceAndNumbered) {
   std::vector<std::uint64_t> told;
   operation_.on_change([&](const Status& status) { told.push_back(status.sequence); });

@@ -6,7 +6,10 @@ namespace cell {
 
 Clocks MadeUpTime::clocks() {
   return {[this] { return std::chrono::system_clock::time_point{} + since_begin_ + wall_ahead_; },
-          [this] { return std::chrono::steady_clock::time_point{} + since_begin_; }};
+          [this] {
+            if (is_broken) throw std::runtime_error("the clock is broken");
+            return std::chrono::steady_clock::time_point{} + since_begin_;
+          }};
 }
 
 boost::asio::awaitable<void> MadeUpWake::wait(std::chrono::milliseconds at_most) {

@@ -1,5 +1,6 @@
 #include "service/acquisition/plan_cache.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/service/acquisition/owners_bench.hpp"
@@ -70,6 +71,20 @@ TEST_F(PlannerOfItsOwn, MakesAPlanAgainThatWasBegunBeforeTheBlockStoodElsewhere)
   EXPECT_TRUE(plans_.planned("few"));
   plans_.clear();
   EXPECT_FALSE(plans_.planned("few"));
+}
+
+/// A start waited half a minute for a plan that somebody had asked to see.
+TEST_F(PlannerOfItsOwn, GivesUpAPlanThatIsOnlyLookedAtForThatOfARun) {
+  std::optional<PlanOutcome> looked_at;
+  boost::asio::co_spawn(io.get_executor(), plans_.plan("few"),
+                        [&looked_at](auto&&, PlanOutcome made) { looked_at = std::move(made); });
+  begin();
+  let_plan();
+  ASSERT_TRUE(looked_at);
+  EXPECT_THAT(std::get<PlanRefusal>(*looked_at).message, ::testing::HasSubstr("nobody waits for this plan"));
+  EXPECT_FALSE(is_done_ || plans_.planned("few"));
+  let_plan();
+  EXPECT_TRUE(is_done_ && plans_.planned("few"));
 }
 
 TEST_F(PlannerOfItsOwn, MakesNoPlanAtTheEnd) {

@@ -28,9 +28,12 @@ class ReferenceMonitorTest : public ::testing::Test {
     monitor_.begin_run(5);
     monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.0));
   }
-  ReferenceMonitor::Finding touch(double height_m, int touches_done) {
+  std::optional<Fault> touch(double height_m, int touches_done) {
     monitor_.add_contact(at(height_m), touches_done, first_joint);
-    return monitor_.judge(at(height_m), kLimitMetres, first_joint);
+    return monitor_.drift_fault(kLimitMetres);
+  }
+  std::optional<ReferenceMonitor::Doubt> doubt(double height_m) {
+    return monitor_.doubt(at(height_m), kLimitMetres, first_joint);
   }
 
   ReferenceMonitor monitor_;
@@ -82,22 +85,49 @@ TEST_F(ReferenceMonitorTest, DriftCountsFromTheFirstContactThere) {
   EXPECT_NEAR(second.told_m.value(), 0.0005, 1e-12);
 }
 
-TEST_F(ReferenceMonitorTest, AFirstContactFarFromThePlansOwnWarnsAndHoldsNothing) {
-  EXPECT_FALSE(touch(0.0009, 1).warning);
-  monitor_.begin_run(5);
-  monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.0));
-  const auto found = touch(0.0011, 1);
-  EXPECT_EQ(found.warning.value().code, FaultCode::kFirstTouchBiased);
-  EXPECT_FALSE(found.hold);
+TEST_F(ReferenceMonitorTest, AFirstContactNearThePlansOwnIsTheReference) {
+  EXPECT_FALSE(doubt(0.0009));
+  touch(0.0009, 1);
+  EXPECT_FALSE(doubt(0.9)) << "what comes later is drift";
+}
+
+TEST_F(ReferenceMonitorTest, WhereTheTouchOfThePlanWasBiasedItsRepetitionsAgree) {
+  const auto first = doubt(0.005);
+  ASSERT_TRUE(first && first->warning && !first->hold);
+  EXPECT_EQ(first->warning->code, FaultCode::kFirstTouchBiased);
+  EXPECT_EQ(first->warning->detail, "by 5.000 mm; it is touched again");
+  EXPECT_TRUE(monitor_.is_due(1, kMoreToMake)) << "it does not count";
+  EXPECT_FALSE(doubt(0.0055));
+  EXPECT_FALSE(touch(0.0055, 1));
+  EXPECT_EQ(touch(0.0, 5).value().code, FaultCode::kReferenceDrift) << "drift counts from the repetition";
+}
+
+/// It was the base of the drift of the whole run: 90 good touches were rejected with it.
+TEST_F(ReferenceMonitorTest, AContactThatNothingAgreesWithIsNoReference) {
+  EXPECT_TRUE(doubt(-0.005));
+  EXPECT_FALSE(doubt(0.0002));
+  EXPECT_FALSE(touch(0.0002, 1));
+  EXPECT_FALSE(touch(0.0, 5));
+}
+
+TEST_F(ReferenceMonitorTest, WhereNothingAgreesAPersonLooksAtIt) {
+  EXPECT_TRUE(doubt(0.005));
+  const auto second = doubt(0.008);
+  ASSERT_TRUE(second && second->hold && !second->warning);
+  EXPECT_EQ(second->hold->code, FaultCode::kReferenceDrift);
+  EXPECT_TRUE(doubt(-0.004)->hold) << "looked at again, and there is none still";
+  monitor_.allow_drift();
+  EXPECT_FALSE(doubt(0.011)) << "by a person's word";
+  EXPECT_FALSE(touch(0.011, 1));
 }
 
 TEST_F(ReferenceMonitorTest, DriftOverTheLimitHoldsUntilAPersonAllowsIt) {
   touch(0.0, 1);
-  EXPECT_FALSE(touch(0.0009, 5).hold);
-  EXPECT_EQ(touch(0.0012, 10).hold.value().code, FaultCode::kReferenceDrift);
+  EXPECT_FALSE(touch(0.0009, 5));
+  EXPECT_EQ(touch(0.0012, 10).value().code, FaultCode::kReferenceDrift);
   monitor_.allow_drift();
-  EXPECT_FALSE(touch(0.0020, 15).hold) << "less than the limit from what was allowed";
-  EXPECT_TRUE(touch(0.0023, 20).hold);
+  EXPECT_FALSE(touch(0.0020, 15)) << "less than the limit from what was allowed";
+  EXPECT_TRUE(touch(0.0023, 20));
 }
 
 TEST_F(ReferenceMonitorTest, APersonsWordIsToLookAgainOrToGoOnWithout) {
@@ -110,7 +140,7 @@ TEST_F(ReferenceMonitorTest, APersonsWordIsToLookAgainOrToGoOnWithout) {
 
 TEST_F(ReferenceMonitorTest, APersonsWordToLookAgainHoldsBetweenTwoDueTouchesToo) {
   monitor_.restore(planned(4, calib::TouchRole::kFit), at(0.0), at(0.0), 3);
-  EXPECT_TRUE(touch(0.0012, 7).hold);
+  EXPECT_TRUE(touch(0.0012, 7));
   monitor_.look_again();
   EXPECT_TRUE(monitor_.is_due(7, kMoreToMake)) << "seven is no multiple of five";
 }
@@ -135,17 +165,18 @@ TEST_F(ReferenceMonitorTest, ARestartedDaemonHasNoPlaceWhereTheRecipeWantsNone) 
 }
 
 TEST_F(ReferenceMonitorTest, TheLimitItselfIsAllowed) {
-  EXPECT_FALSE(touch(kLimitMetres, 1).warning);
-  EXPECT_FALSE(touch(2 * kLimitMetres, 5).hold);
+  EXPECT_FALSE(doubt(kLimitMetres));
+  EXPECT_FALSE(touch(kLimitMetres, 1));
+  EXPECT_FALSE(touch(2 * kLimitMetres, 5));
 }
 
 TEST_F(ReferenceMonitorTest, TheBiasCountsFromThePlansOwnTouch) {
   monitor_.begin_run(5);
   monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.5));
-  EXPECT_FALSE(touch(0.5, 1).warning);
+  EXPECT_FALSE(doubt(0.5));
   monitor_.begin_run(5);
   monitor_.note_fitted(planned(0, calib::TouchRole::kFit), at(0.5));
-  EXPECT_EQ(touch(0.498, 1).warning.value().detail, "by 2.000 mm");
+  EXPECT_EQ(doubt(0.498).value().warning.value().detail, "by -2.000 mm; it is touched again");
 }
 
 TEST_F(ReferenceMonitorTest, AFirstContactThatAPersonSkipsCountsAsMade) {

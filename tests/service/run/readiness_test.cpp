@@ -57,6 +57,17 @@ TEST(Readiness, TheTouchTestComesFirstAsItIsMadeWithoutPowerOrRemoteMode) {
   EXPECT_EQ(name_after(RejectReason::kTaskFailed, untested), "");
 }
 
+/// It asked for a touch by hand that nobody can make.
+TEST(Readiness, WhereAFaceHoldsTheStylusTheArmIsJoggedOffItFirst) {
+  const std::uint32_t untested = kTested & ~cs8::kTouchTested;
+  const std::uint32_t at_face = untested | cs8::kRetractDue | cs8::kProbeTouched;
+  EXPECT_EQ(name_after(RejectReason::kTouchTestMissing, at_face), "probe_free");
+  EXPECT_THAT(std::string(awaited_instruction("probe_free")), ::testing::HasSubstr("jog the arm off it"));
+  EXPECT_EQ(name_after(RejectReason::kTouchTestMissing, untested | cs8::kProbeTouched), "touch_test")
+      << "a hand";
+  EXPECT_EQ(name_after(RejectReason::kProbeInputs, at_face), "probe_inputs");
+}
+
 TEST(Readiness, APreconditionOfAStartIsAwaitedAsTheRefusalForTheSameReasonIs) {
   EXPECT_EQ(awaited_by_precondition("not_remote"),
             awaited_after_rejection(RejectReason::kNotRemote, kTested));

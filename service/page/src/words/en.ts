@@ -121,7 +121,7 @@ export const en = {
   wait_emergency_stop_released: 'Release the emergency stop and acknowledge it.',
   wait_arm_referenced: 'Let the controller find its joint references.',
   wait_monitor_speed: 'Set the monitor speed to 100 %.',
-  wait_probe_free: 'Free the probe: it reads touched.',
+  wait_probe_free: 'Free the probe: it reads touched. Where its stylus rests on a face, jog the arm off it in manual mode.',
   wait_probe_inputs: 'Check the probe’s cable: its two inputs disagree.',
   wait_confirmation: 'Press the confirmation key at the cell. The arm moves then.',
 

@@ -123,7 +123,7 @@ export const fr: Words = {
   wait_emergency_stop_released: 'Relâchez l’arrêt d’urgence et acquittez-le.',
   wait_arm_referenced: 'Laissez la baie retrouver ses références.',
   wait_monitor_speed: 'Réglez la vitesse moniteur à 100 %.',
-  wait_probe_free: 'Libérez le palpeur : il se lit touché.',
+  wait_probe_free: 'Libérez le palpeur : il se lit touché. Si son stylet repose sur une face, dégagez le bras en mode manuel.',
   wait_probe_inputs: 'Vérifiez le câble du palpeur : ses deux entrées se contredisent.',
   wait_confirmation: 'Appuyez sur la touche de confirmation à la cellule. Ensuite le bras bouge.',
 
