@@ -42,7 +42,8 @@ ArmBend arm_bend(const Chain& chain) {
   const auto axis = [&chain](std::size_t frame) -> Eigen::Vector3d {
     return chain.block_from_frame[frame].linear().col(2);
   };
-  const Eigen::Vector3d ahead = axis(1).cross(axis(2));
+  const Eigen::Vector3d ahead =
+      chain.block_from_frame[1].linear().col(0);  // across the axes of joints 1 and 2
   const Eigen::Vector3d reach_m =
       chain.block_from_frame[4].translation() - chain.block_from_frame[1].translation();
   ArmBend bend{.elbow_rad = elbow_angle(chain), .wrist_rad = angle_about(axis(5), axis(4), axis(6))};

@@ -32,7 +32,10 @@ CompensationTool drawn_tool(const Eigen::Isometry3d& frame6_from_tool);
 CompensationTool stylus_tool(const KinematicModel& nominal, const KinematicModel& calibrated);
 
 /// Near a straight wrist or a stretched (or folded) elbow a correction turns joints far: nearer than these a
-/// target is refused, nearer than twice these it is warned of.
+/// target is refused, nearer than twice these it is warned of. Of the nominal posture and the one to be
+/// commanded the nearer counts, by the nominal arm's geometry. Measured: 6 of 1,000 targets take more than
+/// three steps, all of them nearer than these; joints turn by up to 33 degrees within 1 degree of a straight
+/// wrist, by up to 3.7 from 5 degrees on.
 inline constexpr double kWristMarginMinRad = 2.0 * kRadiansPerDegree;
 inline constexpr double kElbowMarginMinRad = 4.0 * kRadiansPerDegree;
 inline constexpr double kWarnedWithin = 2.0;  // times the two
