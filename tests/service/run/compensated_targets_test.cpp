@@ -95,7 +95,7 @@ TEST(CompensatedTargets, RefuseAnotherArm) {
   expect_refused(arm, "/frames/2/joint_type", "another");
   arm = calibrated();
   arm.model.links[3].d_m += 0.06;
-  expect_refused(arm, "/frames/3", "d is 59.8 mm from");
+  expect_refused(arm, "/frames/3", "d is 60.2 mm from");
   arm = calibrated();
   arm.model.links[5].alpha_rad += 0.2;
   expect_refused(arm, "/frames/5", "alpha is 11.5 deg from");
