@@ -179,7 +179,13 @@ std::optional<JointVector> Compensation::nominal_posture(const Eigen::Isometry3d
     }
     return joints;
   };
-  if (const auto joints = inverse_.follow(world_from_frame6, near); joints && is_on_their_side(*joints))
+  // A straight wrist or a stretched elbow is on no side: it is refused as such.
+  const auto is_on_no_side = [&](const JointVector& joints) {
+    const ArmBend bend = arm_bend(forward_chain(nominal_, joints));
+    return bend.wrist_margin_rad() < kWristMarginMinRad || bend.elbow_margin_rad() < kElbowMarginMinRad;
+  };
+  if (const auto joints = inverse_.follow(world_from_frame6, near);
+      joints && (is_on_their_side(*joints) || is_on_no_side(*joints)))
     return with_turns_of_near(*joints);
   // Only an arm without the closed form gets here with a pose that it reaches.
   std::optional<JointVector> nearest;

@@ -286,6 +286,17 @@ TEST(Compensation, RefusesAPoseThatTheNominalArmDoesNotReach) {
   EXPECT_FALSE(target.moved_m);
 }
 
+TEST(Compensation, APoseWithAStraightWristIsRefusedForThat) {
+  const Compensation compensation(problem_with(true_arm(Droops::kYes)));
+  const JointVector straight = tx90::degrees(20.0, 30.0, 60.0, 10.0, 0.0, -20.0);
+  const Eigen::Isometry3d pose = compensation.nominal_world_from_tool(gripper(), straight);
+  for (const double near_deg : {-15.0, 15.0}) {
+    JointVector near = straight;
+    near[4] = radians_from_degrees(near_deg);
+    expect_refused(compensation.at_pose(gripper(), pose, near), CompensationReason::kStraightWrist);
+  }
+}
+
 /// A longer nominal arm reaches what the calibrated one does not: stretched but for 9 degrees, 20 mm shorter.
 TEST(Compensation, RefusesAPoseThatOnlyTheNominalArmReaches) {
   KinematicModel shorter = nominal_arm();
