@@ -16,8 +16,9 @@
 /// Poses are in the controller's `world`: R_1 with joint 1 at 0 and at its nominal place. What lies before
 /// the motion of joint 1 (frames 0 and 1) is nominal on both sides, as the controller's world is kept: theta0
 /// r0 alpha1 d1 theta1 r1 and beta1, which a block's place cannot be told from. Frames 2 to 6, droop and
-/// gears are the calibrated ones, except theta6, which no touch sees. The nominal arm is rigid with even
-/// gears, as a controller has it.
+/// gears are the calibrated ones, except theta6, which no touch sees. Of r6 touches see the sum with the
+/// stylus' r7 only: it counts as the calibrated model has it, and the shipped recipes leave it nominal there.
+/// The nominal arm is rigid with even gears, as a controller has it.
 namespace calib {
 
 /// A tool by its pose in R_6 (the wrist's centre) on either arm.
