@@ -336,12 +336,9 @@ void read_frame(const JsonValue& value, int frame, Arm& arm) {
   read_standard_deviations(object, frame, arm);
 }
 
-Arm read_arm(const std::filesystem::path& file) {
-  return arm_from_json(file.string(), read_file_bytes(file, kConfigFileSizeMax));
-}
+namespace {
 
-Arm arm_from_json(const std::string& source, std::string_view bytes) {
-  const nlohmann::json document = parse_strict_json(source, bytes, kConfigFileSizeMax);
+Arm arm_from_document(const std::string& source, const nlohmann::json& document) {
   const JsonValue value(source, document);
   const bool is_first_schema = has_schema(document, kFirstArmSchema);
   const bool is_second_schema = has_schema(document, kSecondArmSchema);
@@ -370,6 +367,16 @@ Arm arm_from_json(const std::string& source, std::string_view bytes) {
   }
   arm.bodies = capsules_from_json(object.at("bodies"));
   return arm;
+}
+
+}  // namespace
+
+Arm read_arm(const std::filesystem::path& file) {
+  return arm_from_document(file.string(), read_json_file(file));
+}
+
+Arm read_arm_text(const std::string& source, std::string_view text) {
+  return arm_from_document(source, parse_strict_json(source, text, kConfigFileSizeMax));
 }
 
 }  // namespace cell

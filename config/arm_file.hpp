@@ -15,8 +15,8 @@ inline constexpr std::string_view kFirstArmSchema = "touchcal/arm/1";   // witho
 
 /// Joint ranges, speeds, frames, bodies of an arm. ConfigError.
 Arm read_arm(const std::filesystem::path& file);
-/// The same from memory. `source` is how messages call the bytes.
-Arm arm_from_json(const std::string& source, std::string_view bytes);
+/// The same of a document's text; messages call it `source`.
+Arm read_arm_text(const std::string& source, std::string_view text);
 
 /// The entry of "frames" for `frame` into the arm: its parameters and standard deviations replace what was
 /// there.

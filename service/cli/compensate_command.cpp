@@ -36,7 +36,7 @@ ExitCode compensate_command(const CompensateArguments& arguments, bool json) {
   demand_revolute(cell);
   const std::string arm_source = arguments.arm_file.string();
   const std::string arm_bytes = read_file_bytes(arguments.arm_file, kConfigFileSizeMax);
-  const Arm arm = arm_from_json(arm_source, arm_bytes);
+  const Arm arm = read_arm_text(arm_source, arm_bytes);
   demand_arm_of(cell, arm, arm_source);
   const TargetsFile file = given_targets(arguments);
   const calib::CompensationTool tool =

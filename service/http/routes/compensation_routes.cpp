@@ -28,7 +28,7 @@ HttpResponse compensate_for(const Call& call, std::int64_t run, const std::strin
   const std::string source = fmt::format("the arm of run {}", run);
   Arm arm;
   try {
-    arm = arm_from_json(source, arm_json);
+    arm = read_arm_text(source, arm_json);
     demand_arm_of(cell, arm, source);
   } catch (const ConfigError& error) {
     return no_arm(error.what());
