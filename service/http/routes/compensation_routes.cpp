@@ -10,6 +10,7 @@
 namespace cell {
 namespace {
 
+constexpr const char* kTargetsBody = "request body";
 constexpr std::int64_t kArmRunMax = std::int64_t{1} << 53;
 
 HttpResponse no_arm(std::string detail) {
@@ -23,7 +24,12 @@ std::optional<std::int64_t> run_to_apply(const Call& call) {
   return accepted ? std::optional(accepted->id) : std::nullopt;
 }
 
-HttpResponse compensate_for(const Call& call, std::int64_t run, const std::string& arm_json) {
+HttpResponse wrong_body(const ConfigError& error) {
+  return to_response({.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()});
+}
+
+HttpResponse compensate_for(const Call& call, const TargetsFile& file, std::int64_t run,
+                            const std::string& arm_json) {
   const Cell& cell = call.reads.cell();
   const std::string source = fmt::format("the arm of run {}", run);
   Arm arm;
@@ -34,17 +40,22 @@ HttpResponse compensate_for(const Call& call, std::int64_t run, const std::strin
     return no_arm(error.what());
   }
   try {
-    const TargetsFile file = targets_from_json("request body", call.request.body, kTargetsBytesMax);
-    const calib::CompensationTool tool = tool_named(cell, arm, file.tool, "request body", "/tool");
+    const calib::CompensationTool tool = tool_named(cell, arm, file.tool, kTargetsBody, "/tool");
     return {.body =
                 document_text(compensation_of(cell, file.targets, compensated(cell, arm, tool, file.targets),
                                               arm_digest(source, arm_json)))};
   } catch (const ConfigError& error) {
-    return to_response({.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()});
+    return wrong_body(error);
   }
 }
 
 HttpResponse post_compensate(const Call& call) {
+  TargetsFile file;
+  try {
+    file = targets_from_json(kTargetsBody, call.request.body, kTargetsBytesMax);
+  } catch (const ConfigError& error) {
+    return wrong_body(error);
+  }
   const auto run = run_to_apply(call);
   if (!run) return no_arm("no run was accepted yet; name one with ?run=ID, or calibrate");
   if (!call.reads.store().run(*run)) {
@@ -55,7 +66,7 @@ HttpResponse post_compensate(const Call& call) {
   }
   const auto arm_json = call.reads.store().arm_json(*run);
   if (!arm_json) return no_arm(fmt::format("run {} has no calibrated arm; name another with ?run=ID", *run));
-  return compensate_for(call, *run, *arm_json);
+  return compensate_for(call, file, *run, *arm_json);
 }
 
 }  // namespace

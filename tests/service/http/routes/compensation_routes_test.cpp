@@ -77,6 +77,7 @@ TEST_F(CompensationRoutes, TakeTheArmOfTheRunThatIsNamed) {
 
 TEST_F(CompensationRoutes, RefuseWhereThereIsNoArm) {
   EXPECT_EQ(problem(compensate()).at("status"), 409);
+  EXPECT_EQ(problem(compensate("", "{}")).at("status"), 400) << "a wrong body is wrong without an arm too";
   const std::int64_t without = run_with(std::nullopt);
   EXPECT_THAT(problem(compensate()).at("detail").get<std::string>(), HasSubstr("has no calibrated arm"));
   EXPECT_EQ(problem(compensate("?run=" + std::to_string(without))).at("status"), 409);
