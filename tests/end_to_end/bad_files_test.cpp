@@ -196,6 +196,22 @@ TEST_F(BadFiles, AValidationEndsWhateverItsFilesHold) {
                   10});
 }
 
+TEST_F(BadFiles, ACompensationEndsWhateverItsFilesHold) {
+  write("arm.json", read("config/arms/tx90.json"));
+  write("targets.json", R"({"schema":"touchcal/targets/1","tool":"stylus","targets":[
+    {"name":"a","joints_deg":[20,30,60,10,50,-20]},
+    {"name":"b","position_mm":[450,120,300],"rotation_deg":[180,0,90],"near_joints_deg":[15,40,80,0,60,0]}]})");
+  write("targets.csv",
+        "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\nb,1,2,30,4,50,6\n");
+  for (const std::string targets : {"targets.json", "targets.csv"}) {
+    change_and_run({{"touchcal", "compensate", "--cell", "{}/" + kCell, "--arm", "{}/arm.json", "--targets",
+                     "{}/" + targets},
+                    {"arm.json", targets},
+                    60});
+  }
+  EXPECT_GT(refused_, 90);
+}
+
 TEST_F(BadFiles, APlanEndsWhateverItsFilesHold) {
   // Only what can be told before planning: a plan takes seconds.
   for (const std::string& file : kCellFiles) {
