@@ -60,7 +60,12 @@ Eigen::Vector3d tool_centre_in_block_m(const Chain& chain, const ToolCentre& too
 double tip_std_m(const KinematicModel& model, const JointVector& joints, const ArmMatrix& covariance,
                  const ToolCentre& tool) {
   const PreparedModel prepared = prepare(model);
-  const PointDerivatives derivatives = derivatives_of(prepared, forward_chain(prepared, joints), tool);
+  return tip_std_m(prepared, forward_chain(prepared, joints), covariance, tool);
+}
+
+double tip_std_m(const PreparedModel& model, const Chain& chain, const ArmMatrix& covariance,
+                 const ToolCentre& tool) {
+  const PointDerivatives derivatives = derivatives_of(model, chain, tool);
   const PointDerivatives carried = derivatives * covariance;
   return root_of_sum_of_squares(carried.cwiseProduct(derivatives).sum());
 }

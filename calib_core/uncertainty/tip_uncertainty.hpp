@@ -27,6 +27,9 @@ Eigen::Vector3d tool_centre_in_block_m(const Chain& chain, const ToolCentre& too
 /// sqrt(trace(J C J^T)), J the derivative of the point, 3 x 39. Metres.
 double tip_std_m(const KinematicModel& model, const JointVector& joints, const ArmMatrix& covariance,
                  const ToolCentre& tool = std::nullopt);
+/// The same at a chain of the model; takes no heap memory.
+double tip_std_m(const PreparedModel& model, const Chain& chain, const ArmMatrix& covariance,
+                 const ToolCentre& tool);
 
 /// Coverage factor of the expanded uncertainty of the tip.
 inline constexpr double kTipCoverageFactor = 2.0;

@@ -35,6 +35,7 @@ const std::map<std::string, std::set<std::string>> kCoreLayerMayInclude{
     {"observability", {"geometry", "numerics", "kinematics"}},
     {"estimation", {"geometry", "numerics", "kinematics", "observability"}},
     {"uncertainty", {"geometry", "numerics", "kinematics", "estimation"}},
+    {"compensation", {"geometry", "kinematics", "uncertainty"}},
     {"identification", {"numerics", "estimation", "uncertainty"}},
     {"motion", {"geometry", "kinematics"}},
     {"planning", {"geometry", "numerics", "kinematics", "estimation", "uncertainty", "motion"}},

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <new>
 
+#include "calib_core/compensation/compensation.hpp"
 #include "calib_core/identification/identify.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "tests/calib_core/block_study.hpp"
@@ -93,6 +94,24 @@ TEST(Allocations, FindingPosturesWithoutASphericalWristTakesNone) {
   const Postures found = inverse.solve(pose);
   EXPECT_EQ(allocations, before);
   EXPECT_FALSE(found.empty());
+}
+
+TEST(Allocations, OfACompensatedTargetAreNone) {
+  const KinematicModel truth = apply(paper::nominal(), paper::table3());
+  ArmCovariance covariance = no_covariance();
+  covariance.diagonal().setConstant(1e-8);
+  const Compensation compensation({.nominal = paper::nominal(),
+                                   .calibrated = truth,
+                                   .joint_ranges = tx90::joint_ranges(),
+                                   .covariance = covariance});
+  const CompensationTool tool = stylus_tool(paper::nominal(), truth);
+  const JointVector joints = tx90::degrees(20.0, 30.0, 60.0, 10.0, 50.0, -20.0);
+  const int before = allocations;
+  const Eigen::Isometry3d pose = compensation.nominal_world_from_tool(tool, joints);
+  const CompensatedTarget by_joints = compensation.at_joints(tool, joints);
+  const CompensatedTarget by_pose = compensation.at_pose(tool, pose, joints);
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_TRUE(by_joints.joints && by_joints.tip_std_m && by_pose.joints && by_pose.tip_std_m);
 }
 
 }  // namespace
