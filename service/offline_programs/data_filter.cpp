@@ -115,7 +115,7 @@ class DataFilter {
 
   void filter_joint(const StoredElement& element, const std::string& tool, FilteredValue& value) {
     const Correction correction =
-        correction_of({value.name, JointTarget{numbers_of(*element.numbers)}, tool}, value);
+        correction_of({value.name, OfflineJoints{numbers_of(*element.numbers)}, tool}, value);
     if (correction.status != CorrectionStatus::kRefused)
       value.inserted = append_edits(xml_, *element.numbers, kJointNames, correction.joints_deg, edits_);
   }
@@ -134,7 +134,7 @@ class DataFilter {
     const SixNumbers stored = numbers_of(*element.numbers);
     const Eigen::Isometry3d world_from_tool = frame.world_from_frame * pose_of_trsf(stored, mm_per_unit_);
     const Correction correction =
-        correction_of({value.name, PoseTarget{world_from_tool, element.posture}, tool}, value);
+        correction_of({value.name, OfflinePose{world_from_tool, element.posture}, tool}, value);
     if (correction.status == CorrectionStatus::kRefused) return;
     const Eigen::Isometry3d frame_from_tool = frame.world_from_frame.inverse() * correction.world_from_tool;
     value.inserted = append_edits(xml_, *element.numbers, kTrsfNames,

@@ -21,17 +21,17 @@ struct PostureWords {
   bool operator==(const PostureWords&) const = default;
 };
 
-struct JointTarget {
+struct OfflineJoints {
   std::array<double, 6> joints_deg{};
 };
 /// Where the tool's tip is to be, in the controller's world; metres.
-struct PoseTarget {
+struct OfflinePose {
   Eigen::Isometry3d world_from_tool = Eigen::Isometry3d::Identity();
   PostureWords posture;
 };
 struct OfflineTarget {
   std::string name;  // "pPick[3]"
-  std::variant<JointTarget, PoseTarget> place;
+  std::variant<OfflineJoints, OfflinePose> place;
   std::string tool;  // of the list; empty where it names none
 };
 
@@ -43,7 +43,7 @@ struct Correction {
   std::array<double, 6> joints_deg{};
   /// The pose that the nominal arm has at these joints, of the same tool, in the controller's world; metres.
   Eigen::Isometry3d world_from_tool = Eigen::Isometry3d::Identity();
-  double moved_mm = 0.0;  // of the tip, from what was asked to what is told
+  double moved_mm = 0.0;  // how far the tip would have been off without the correction
 };
 using Corrector = std::function<Correction(const OfflineTarget&)>;
 

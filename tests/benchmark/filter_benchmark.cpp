@@ -60,7 +60,7 @@ std::vector<cell::ProgramFile> program_files() {
 /// Every point a millimetre along the world's z.
 cell::Correction lifted(const cell::OfflineTarget& target) {
   cell::Correction correction{.status = cell::CorrectionStatus::kOk};
-  correction.world_from_tool = std::get<cell::PoseTarget>(target.place).world_from_tool;
+  correction.world_from_tool = std::get<cell::OfflinePose>(target.place).world_from_tool;
   correction.world_from_tool.pretranslate(Eigen::Vector3d(0.0, 0.0, kStep_m));
   return correction;
 }

@@ -65,7 +65,7 @@ TEST(DataFilter, AsksInTheWorldAndWritesInThePointsOwnFrame) {
   ASSERT_EQ(asked.size(), 1U);
   EXPECT_EQ(asked[0].name, "pA[0]");
   EXPECT_EQ(asked[0].tool, "gripper");
-  const auto& place = std::get<PoseTarget>(asked[0].place);
+  const auto& place = std::get<OfflinePose>(asked[0].place);
   EXPECT_TRUE(place.world_from_tool.translation().isApprox(Eigen::Vector3d(0.04, 0, 0)));
   EXPECT_EQ(place.posture.wrist, WristWord::kPositive);
   EXPECT_THAT(found.notes, ElementsAre(HasSubstr("fPiece[1] is taken as it is stored")));
@@ -78,7 +78,7 @@ TEST(DataFilter, TurnsAPointAndKeepsTheWritingOfItsAngles) {
   };
   const Corrector corrector = [](const OfflineTarget& target) {
     Correction correction{.status = CorrectionStatus::kOk};
-    correction.world_from_tool = std::get<PoseTarget>(target.place).world_from_tool *
+    correction.world_from_tool = std::get<OfflinePose>(target.place).world_from_tool *
                                  Eigen::AngleAxisd(1e-3, Eigen::Vector3d::UnitZ());
     return correction;
   };

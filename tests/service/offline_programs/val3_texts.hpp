@@ -53,11 +53,11 @@ inline std::string old_program(const std::string& name, const std::string& code,
 inline Corrector shifted_by(const Eigen::Vector3d& shift_mm, double joint_step_deg = 0.25) {
   return [=](const OfflineTarget& target) {
     Correction correction{.status = CorrectionStatus::kOk, .moved_mm = shift_mm.norm()};
-    if (const auto* joints = std::get_if<JointTarget>(&target.place)) {
+    if (const auto* joints = std::get_if<OfflineJoints>(&target.place)) {
       for (std::size_t i = 0; i < 6; ++i)
         correction.joints_deg[i] = joints->joints_deg[i] + joint_step_deg * static_cast<double>(i + 1);
     } else {
-      correction.world_from_tool = std::get<PoseTarget>(target.place).world_from_tool;
+      correction.world_from_tool = std::get<OfflinePose>(target.place).world_from_tool;
       correction.world_from_tool.pretranslate(1e-3 * shift_mm);
     }
     return correction;
