@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <random>
+#include <string_view>
 
 #include "tests/config/folder.hpp"
 #include "tests/service/offline_programs/val3_texts.hpp"
@@ -190,6 +191,47 @@ TEST(RandomDataFiles, StayAsTheyAreWhereNothingIsCorrected) {
     const DrawnFile file(seed);
     ASSERT_EQ(filtered(file.before, file.list, unchanged()).text, file.before) << "seed " << seed;
   }
+}
+
+// Bytes that are turned, taken out and put in, by chance: refused by name, or read; never anything else.
+TEST(RandomDataFiles, AreRefusedOrReadWhenTheyAreDamaged) {
+  int refused = 0, read = 0;
+  std::mt19937_64 chance(11);
+  constexpr std::string_view kSigns = "<>\"'&;=/!-[]? \t\r\n0.xz\xC3";
+  for (std::uint64_t seed = 0; seed < kFiles; ++seed) {
+    const DrawnFile file(seed);
+    for (int round = 0; round < 10; ++round) {
+      std::string damaged = file.before;
+      for (int i = 0; i <= round / 2; ++i) {
+        const std::size_t at = chance() % damaged.size();
+        const char sign = kSigns[chance() % kSigns.size()];
+        switch (chance() % 4) {
+          case 0:
+            damaged[at] = sign;
+            break;
+          case 1:
+            damaged.insert(at, 1, sign);
+            break;
+          case 2:
+            damaged.erase(at, 1);
+            break;
+          default:
+            damaged.erase(at, chance() % 40);
+        }
+        if (damaged.empty()) damaged = "<";
+      }
+      try {
+        const std::string changed = filtered(damaged, file.list, shifted_by({1, 1, 1})).text;
+        EXPECT_NO_THROW(XmlText("changed.dtx", changed)) << "what was read stays XML; seed " << seed;
+        ++read;
+      } catch (const ConfigError& error) {
+        EXPECT_THAT(error.what(), ::testing::HasSubstr("; ")) << "with what to do";
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, kFiles) << "the test damages too little to mean anything";
+  EXPECT_GT(read, kFiles);
 }
 
 // Angles of every writing, in frames that turn: back in their own frame the numbers are the ones that were
