@@ -9,6 +9,7 @@
 #include "config/file_bytes.hpp"
 #include "config/joint_units.hpp"
 #include "config/shapes.hpp"
+#include "config/strict_json.hpp"
 
 namespace cell {
 namespace {
@@ -336,8 +337,11 @@ void read_frame(const JsonValue& value, int frame, Arm& arm) {
 }
 
 Arm read_arm(const std::filesystem::path& file) {
-  const std::string source = file.string();
-  const nlohmann::json document = read_json_file(file);
+  return arm_from_json(file.string(), read_file_bytes(file, kConfigFileSizeMax));
+}
+
+Arm arm_from_json(const std::string& source, std::string_view bytes) {
+  const nlohmann::json document = parse_strict_json(source, bytes, kConfigFileSizeMax);
   const JsonValue value(source, document);
   const bool is_first_schema = has_schema(document, kFirstArmSchema);
   const bool is_second_schema = has_schema(document, kSecondArmSchema);

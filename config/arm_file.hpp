@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "config/cell.hpp"
@@ -14,6 +15,8 @@ inline constexpr std::string_view kFirstArmSchema = "touchcal/arm/1";   // witho
 
 /// Joint ranges, speeds, frames, bodies of an arm. ConfigError.
 Arm read_arm(const std::filesystem::path& file);
+/// The same from memory. `source` is how messages call the bytes.
+Arm arm_from_json(const std::string& source, std::string_view bytes);
 
 /// The entry of "frames" for `frame` into the arm: its parameters and standard deviations replace what was
 /// there.

@@ -85,22 +85,10 @@ std::optional<JsonValue> find_since(int since, const JsonObject& object, const c
   return value;
 }
 
-/// Rotation as in VAL3's trsf: Rot(x) Rot(y) Rot(z), degrees.
-Eigen::Isometry3d tool_from_json(const JsonObject& object) {
-  const Eigen::Vector3d position_m = object.at("position_mm").numbers<3>() * calib::kMetresPerMillimetre;
-  const Eigen::Vector3d angles = object.at("rotation_deg").numbers<3>() * calib::kRadiansPerDegree;
-  Eigen::Isometry3d wrist_from_tool = Eigen::Isometry3d::Identity();
-  wrist_from_tool.translate(position_m);
-  wrist_from_tool.rotate(Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()));
-  wrist_from_tool.rotate(Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()));
-  wrist_from_tool.rotate(Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()));
-  return wrist_from_tool;
-}
-
 void read_tools(const JsonValue& tools, int version, Cell& cell) {
   for (const auto& [name, value] : tools.members()) {
     const JsonObject object = value.object({"position_mm", "rotation_deg", "tip_box_rms_max_mm"});
-    cell.tools.emplace(name, tool_from_json(object));
+    cell.tools.emplace(name, pose_from_json(object));
     if (const auto limit = find_since(2, object, "tip_box_rms_max_mm", version))
       cell.acceptance.tool_box_rms_max_m[name] = calib::kMetresPerMillimetre * limit->number(kPositive);
   }

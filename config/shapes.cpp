@@ -25,6 +25,17 @@ calib::Capsule capsule_from_json(const JsonValue& value, std::optional<int> only
 
 }  // namespace
 
+Eigen::Isometry3d pose_from_json(const JsonObject& object) {
+  const Eigen::Vector3d position_m = object.at("position_mm").numbers<3>() * calib::kMetresPerMillimetre;
+  const Eigen::Vector3d angles = object.at("rotation_deg").numbers<3>() * calib::kRadiansPerDegree;
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(position_m);
+  pose.rotate(Eigen::AngleAxisd(angles.x(), Eigen::Vector3d::UnitX()));
+  pose.rotate(Eigen::AngleAxisd(angles.y(), Eigen::Vector3d::UnitY()));
+  pose.rotate(Eigen::AngleAxisd(angles.z(), Eigen::Vector3d::UnitZ()));
+  return pose;
+}
+
 calib::Box box_from_json(const JsonValue& value) {
   const JsonObject object = value.object({"name", "min_mm", "max_mm"});
   calib::Box box;

@@ -1,13 +1,18 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <optional>
 #include <vector>
 
 #include "calib_core/motion/collision.hpp"
 #include "config/json_value.hpp"
 
-/// The solids that several files describe in the same words.
+/// The solids and poses that several files describe in the same words.
 namespace cell {
+
+/// "position_mm":[3] and "rotation_deg":[3] of an object: a frame in another one. The rotation is Rot(x)
+/// Rot(y) Rot(z), as in VAL3's trsf.
+Eigen::Isometry3d pose_from_json(const JsonObject& object);
 
 /// {"name","min_mm":[3],"max_mm":[3]}: edges along R_-1's axes, min below max.
 calib::Box box_from_json(const JsonValue& value);

@@ -1,7 +1,6 @@
 #include "config/touches_file.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -13,6 +12,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
+#include "config/internal/csv_line.hpp"
 #include "config/internal/repeat_reader.hpp"
 #include "config/joint_units.hpp"
 #include "config/json_value.hpp"
@@ -249,79 +249,16 @@ void warn_of_references(const std::vector<calib::Touch>& references, const Arm& 
   }
 }
 
-std::string_view trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+/// A line "plane,j1,...,j6".
+calib::Touch touch_from_csv(const CsvLine& line, std::string_view text, int face_count,
+                            const calib::JointVector& units) {
+  const auto cells = line.split<1 + kJointCount>(text, "a plane and 6 joints");
+  calib::Touch touch;
+  touch.face = line.integer(cells[0], "plane", 1, face_count) - 1;
+  for (int joint = 0; joint < kJointCount; ++joint)
+    touch.joints[joint] = line.joint(cells[static_cast<std::size_t>(joint) + 1], joint) * units[joint];
+  return touch;
 }
-
-std::string_view first_line(std::string_view text) { return trimmed(text.substr(0, text.find('\n'))); }
-
-/// Lines of a CSV, with complaints that name the line.
-class CsvLine {
- public:
-  CsvLine(const std::string& source, std::size_t number) : source_(source), number_(number) {}
-
-  [[noreturn]] void fail(const std::string& message) const {
-    throw ConfigError(source_, "", "line " + std::to_string(number_) + ": " + message);
-  }
-
-  [[nodiscard]] calib::Touch touch(std::string_view text, int face_count,
-                                   const calib::JointVector& units) const {
-    const auto cells = split(text);
-    calib::Touch touch;
-    touch.face = plane(cells[0], face_count) - 1;
-    for (int joint = 0; joint < kJointCount; ++joint) {
-      touch.joints[joint] = number(cells[static_cast<std::size_t>(joint) + 1], joint) * units[joint];
-    }
-    return touch;
-  }
-
- private:
-  static constexpr std::size_t kCellCount = 1 + kJointCount;
-
-  [[nodiscard]] std::array<std::string_view, kCellCount> split(std::string_view text) const {
-    std::array<std::string_view, kCellCount> cells;
-    std::size_t count = 0;
-    for (std::size_t begin = 0; begin <= text.size(); ++count) {
-      const std::size_t end = std::min(text.find(',', begin), text.size());
-      if (count < kCellCount) cells[count] = trimmed(text.substr(begin, end - begin));
-      begin = end + 1;
-    }
-    if (count != kCellCount) {
-      fail("wants a plane and 6 joints, has " + std::to_string(count) +
-           " values; separate 7 values by commas");
-    }
-    return cells;
-  }
-
-  [[nodiscard]] int plane(std::string_view text, int face_count) const {
-    int plane = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), plane);
-    if (error != std::errc{} || end != text.data() + text.size() || plane < 1 || plane > face_count) {
-      fail("plane is " + in_quotes(std::string(text)) + "; give a whole number from 1 to " +
-           std::to_string(face_count));
-    }
-    return plane;
-  }
-
-  [[nodiscard]] double number(std::string_view text, int joint) const {
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number)) {
-      fail("joint " + std::to_string(joint + 1) + " is " + in_quotes(std::string(text)) +
-           "; give a finite number");
-    }
-    if (std::abs(number) > kNumberMax) {
-      fail("joint " + std::to_string(joint + 1) + " is " + plain_number(number) + "; give " +
-           plain_number(-kNumberMax) + " to " + plain_number(kNumberMax));
-    }
-    return number;
-  }
-
-  const std::string& source_;
-  std::size_t number_;
-};
 
 }  // namespace
 
@@ -368,7 +305,7 @@ TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, 
     if (result.touches.size() == kTouchCountMax) {
       line.fail("more than " + std::to_string(kTouchCountMax) + " touches; split the file");
     }
-    result.touches.push_back(line.touch(text, face_count, units));
+    result.touches.push_back(touch_from_csv(line, text, face_count, units));
   }
   warn_of_ranges("touch", result.touches, cell.arm, result.warnings);
   return result;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "calib_core/compensation/compensation_status.hpp"
 #include "calib_core/geometry/joint_vector.hpp"
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/kinematics/inverse_kinematics.hpp"
@@ -45,7 +46,6 @@ inline constexpr double kCompensationResidualMax = 1e-7;
 /// A joint this far outside its range is a rounding.
 inline constexpr double kRangeRoundingRad = 1e-6 * kRadiansPerDegree;
 
-enum class CompensationStatus { kOk, kWarned, kRefused };
 enum class CompensationReason {
   kNone,
   kStraightWrist,       // warned or refused; angle_rad: from the straight wrist

@@ -71,6 +71,17 @@ struct PlanArguments {
 /// (at any place).
 ExitCode plan_command(const PlanArguments& arguments, bool json);
 
+struct CompensateArguments {
+  std::filesystem::path cell_file;
+  std::filesystem::path arm_file;  // calibrated
+  std::filesystem::path targets_file;
+  std::string tool;        // of the targets of a CSV, which names none; the stylus when empty
+  std::string file;        // where the corrected targets are written, if anywhere: CSV by its name, else JSON
+  bool overwrite = false;  // that one
+};
+/// Corrects targets for a calibrated arm; kExitLimitsMissed when a target is refused.
+ExitCode compensate_command(const CompensateArguments& arguments, bool json);
+
 struct RunArguments {
   std::string recipe;         // of the cell; ignored with a plan
   std::string plan_id;        // of a plan of the daemon; empty for none

@@ -51,6 +51,7 @@ class CommandLine {
     add_identify();
     add_validate();
     add_plan();
+    add_compensate();
     add_run();
     add_for_daemon("watch", "watch the run under way",
                    [this](const cell::ApiClient& daemon) { return cell::watch_command(daemon, json_); });
@@ -168,6 +169,25 @@ class CommandLine {
     plan->add_flag("--force", plan_.overwrite, "overwrite it");
     plan->add_flag("--json", json_, "one JSON document on standard output");
     plan->callback([this] { action_ = [this] { return cell::plan_command(plan_, json_); }; });
+  }
+
+  void add_compensate() {
+    auto* compensate =
+        app_.add_subcommand("compensate", "correct the targets of a program for a calibrated arm (offline)");
+    compensate->add_option("--cell", compensate_.cell_file, "cell file, with the nominal arm and the tools")
+        ->required();
+    compensate
+        ->add_option("--arm", compensate_.arm_file, "arm file of the calibrated arm, as export writes it")
+        ->required();
+    compensate->add_option("--targets", compensate_.targets_file, "targets, JSON or CSV")->required();
+    compensate->add_option("--tool", compensate_.tool, "tool of the targets of a CSV; default: stylus")
+        ->check(cell::refuse_empty);
+    compensate->add_option("--out", compensate_.file,
+                           "write the corrected targets to this file: a CSV when it ends in .csv, else JSON");
+    compensate->add_flag("--force", compensate_.overwrite, "overwrite it");
+    compensate->add_flag("--json", json_, "one JSON document on standard output");
+    compensate->callback(
+        [this] { action_ = [this] { return cell::compensate_command(compensate_, json_); }; });
   }
 
   void add_run() {
@@ -302,6 +322,7 @@ class CommandLine {
   cell::IdentifyArguments identify_;
   cell::ValidateArguments validate_;
   cell::PlanArguments plan_;
+  cell::CompensateArguments compensate_;
   cell::ExportArguments export_;
   cell::ReportArguments report_;
   cell::AuditArguments audit_;

@@ -220,6 +220,41 @@ constexpr std::string_view kReport = R"({
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","use"]}},
   "result":{"type":["object","null"]}}})";
 
+constexpr std::string_view kTargets = R"({
+"type":"object",
+"required":["schema","tool","targets"],
+"properties":{
+  "schema":{"const":"touchcal/targets/1"},
+  "tool":{"type":"string","description":"stylus, or a tool of the cell"},
+  "targets":{"type":"array","minItems":1,"maxItems":100000,"items":{"type":"object","required":["name"],
+    "description":"joints_deg, or position_mm, rotation_deg and near_joints_deg",
+    "properties":{
+      "name":{"type":"string","description":"at most 64 bytes, without commas and quotes; each once"},
+      "joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"},
+        "description":"the pose that the nominal arm has there"},
+      "position_mm":{"type":"array","minItems":3,"maxItems":3,"items":{"type":"number"}},
+      "rotation_deg":{"type":"array","minItems":3,"maxItems":3,"items":{"type":"number"},
+        "description":"about x, then the new y, then the new z"},
+      "near_joints_deg":{"type":"array","minItems":6,"maxItems":6,"items":{"type":"number"}},
+      "frame":{"const":"world"}}}}}})";
+
+constexpr std::string_view kCompensated = R"({
+"type":"object",
+"required":["schema","model","targets"],
+"properties":{
+  "schema":{"const":"touchcal/compensated/1"},
+  "model":{"type":"string","description":"SHA-256 of the calibrated arm"},
+  "targets":{"type":"array","items":{"type":"object",
+    "required":["name","status","joints_deg","moved_mm","residual_um","tip_uncertainty_mm","reason"],
+    "properties":{
+      "name":{"type":"string"},
+      "status":{"enum":["ok","warned","refused"]},
+      "joints_deg":{"type":["array","null"],"minItems":6,"maxItems":6,"items":{"type":"number"}},
+      "moved_mm":{"type":["number","null"],"minimum":0},
+      "residual_um":{"type":["number","null"],"minimum":0},
+      "tip_uncertainty_mm":{"type":["number","null"],"minimum":0},
+      "reason":{"type":["string","null"]}}}}}})";
+
 constexpr std::array kFileSchemas{DocumentSchema{"Touches", kTouches},
                                   DocumentSchema{"Result", kResult},
                                   DocumentSchema{"Distances", kDistances},
@@ -227,7 +262,9 @@ constexpr std::array kFileSchemas{DocumentSchema{"Touches", kTouches},
                                   DocumentSchema{"ExpandedTipUncertainty", kExpandedTipUncertainty},
                                   DocumentSchema{"Plan", kPlan},
                                   DocumentSchema{"Arm", kArm},
-                                  DocumentSchema{"Report", kReport}};
+                                  DocumentSchema{"Report", kReport},
+                                  DocumentSchema{"Targets", kTargets},
+                                  DocumentSchema{"Compensated", kCompensated}};
 
 }  // namespace
 

@@ -10,12 +10,12 @@ namespace {
 using calib::degrees_from_radians;
 using calib::mm_from_metres;
 
-std::array<double, 3> millimetres(const Eigen::Vector3d& vector_m) {
+std::array<double, 3> in_millimetres(const Eigen::Vector3d& vector_m) {
   return {mm_from_metres(vector_m.x()), mm_from_metres(vector_m.y()), mm_from_metres(vector_m.z())};
 }
 
 TipDocument::Box box_of(const calib::Box& box) {
-  return {.name = box.name, .min_mm = millimetres(box.min_m), .max_mm = millimetres(box.max_m)};
+  return {.name = box.name, .min_mm = in_millimetres(box.min_m), .max_mm = in_millimetres(box.max_m)};
 }
 
 /// The changed values of frames 0 and 1, as in the arm's file.
@@ -33,7 +33,7 @@ std::array<PlacesDocument::Frame, 2> frames_of(const calib::KinematicModel& mode
 
 PlacesDocument::Place block_pose_of(const Cell& cell, const PlaceCandidate& candidate) {
   const Cell there = with_block_displaced(cell, candidate.place);
-  PlacesDocument::Place place{.shift_mm = millimetres(candidate.place.shift_m),
+  PlacesDocument::Place place{.shift_mm = in_millimetres(candidate.place.shift_m),
                               .yaw_deg = degrees_from_radians(candidate.place.yaw_rad),
                               .present = candidate.present,
                               .feasible = candidate.figures.has_value(),

@@ -60,4 +60,16 @@ std::string_view word_of(TouchUse use) {
   return "";
 }
 
+std::string_view word_of(calib::CompensationStatus status) {
+  switch (status) {
+    case calib::CompensationStatus::kOk:
+      return "ok";
+    case calib::CompensationStatus::kWarned:
+      return "warned";
+    case calib::CompensationStatus::kRefused:
+      return "refused";
+  }
+  return "";
+}
+
 }  // namespace cell

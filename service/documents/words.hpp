@@ -3,6 +3,7 @@
 #include <array>
 #include <string_view>
 
+#include "calib_core/compensation/compensation_status.hpp"
 #include "calib_core/estimation/identification_problem.hpp"
 #include "calib_core/geometry/touch.hpp"
 #include "calib_core/observability/identifiability.hpp"
@@ -28,11 +29,12 @@ inline std::string_view word_of(Verdict verdict) { return verdict_name(verdict);
 inline std::string_view word_of(RunOutcome outcome) { return run_outcome_name(outcome); }
 inline std::string_view word_of(HandActivity activity) { return hand_activity_name(activity); }
 inline std::string_view word_of(HandStep step) { return hand_step_name(step); }
-std::string_view word_of(calib::TouchRole role);          // "held_out"
-std::string_view word_of(calib::RejectionReason reason);  // "wrong_plane"
-std::string_view word_of(calib::ParameterStatus status);  // "no_effect"
-std::string_view word_of(ArtefactStatus status);          // "prior"
-std::string_view word_of(TouchUse use);                   // "used"
+std::string_view word_of(calib::TouchRole role);             // "held_out"
+std::string_view word_of(calib::RejectionReason reason);     // "wrong_plane"
+std::string_view word_of(calib::ParameterStatus status);     // "no_effect"
+std::string_view word_of(ArtefactStatus status);             // "prior"
+std::string_view word_of(TouchUse use);                      // "used"
+std::string_view word_of(calib::CompensationStatus status);  // "warned"
 
 template <class Enumeration>
 inline constexpr std::array<Enumeration, 0> kAllOf{};
@@ -65,5 +67,8 @@ template <>
 inline constexpr std::array kAllOf<ArtefactStatus>{ArtefactStatus::kIdentified, ArtefactStatus::kPrior};
 template <>
 inline constexpr std::array kAllOf<TouchUse>{TouchUse::kUsed, TouchUse::kRejected};
+template <>
+inline constexpr std::array kAllOf<calib::CompensationStatus>{
+    calib::CompensationStatus::kOk, calib::CompensationStatus::kWarned, calib::CompensationStatus::kRefused};
 
 }  // namespace cell

@@ -53,6 +53,8 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/cli/api_client",
      "needs a daemon: end_to_end/programs_test and bad_input_test use it over sockets"},
     {"service/cli/audit_command", "end_to_end/programs_test runs the command"},
+    {"service/cli/compensate_command", "end_to_end/compensate_command_test runs the command"},
+    {"service/cli/compensation_text", "the table that end_to_end/compensate_command_test reads"},
     {"service/cli/completion", "end_to_end/command_line_test runs the scripts it writes"},
     {"service/cli/daemon_commands", "end_to_end/programs_test runs the commands"},
     {"service/cli/daemon_reply", "end_to_end/programs_test and bad_input_test read its replies"},

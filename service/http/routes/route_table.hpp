@@ -63,6 +63,8 @@ struct Answer {
 
 /// Largest touches document for identification.
 inline constexpr std::size_t kTouchesBytesMax = 1024 * 1024;
+/// Largest targets document: 5,000 and more.
+inline constexpr std::size_t kTargetsBytesMax = 1024 * 1024;
 
 /// An admitted request.
 struct Call {
@@ -113,6 +115,7 @@ std::vector<Route> status_routes();
 std::vector<Route> run_routes();
 std::vector<Route> command_routes();
 std::vector<Route> plan_routes();  // plan, identify
+std::vector<Route> compensation_routes();
 std::vector<Route> cell_routes();  // what is configured
 std::vector<Route> audit_routes();
 std::vector<Route> page_routes();

@@ -30,6 +30,7 @@ TEST(Words, EachValueOfAnEnumerationHasAWordOfItsOwn) {
   expect_a_word_for_each<calib::ParameterStatus>();
   expect_a_word_for_each<ArtefactStatus>();
   expect_a_word_for_each<TouchUse>();
+  expect_a_word_for_each<calib::CompensationStatus>();
 }
 
 }  // namespace

@@ -1,0 +1,60 @@
+#include "config/internal/csv_line.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "config/config_error.hpp"
+#include "config/json_value.hpp"
+
+namespace cell {
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::string_view first_line(std::string_view text) { return trimmed(text.substr(0, text.find('\n'))); }
+
+void CsvLine::fail(const std::string& message) const {
+  throw ConfigError(source_, "", "line " + std::to_string(number_) + ": " + message);
+}
+
+void CsvLine::split_into(std::string_view text, std::string_view what,
+                         std::span<std::string_view> cells) const {
+  std::size_t count = 0;
+  for (std::size_t begin = 0; begin <= text.size(); ++count) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (count < cells.size()) cells[count] = trimmed(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  if (count == cells.size()) return;
+  fail("wants " + std::string(what) + ", has " + std::to_string(count) + " values; separate " +
+       std::to_string(cells.size()) + " values by commas");
+}
+
+int CsvLine::integer(std::string_view text, std::string_view what, int min, int max) const {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || number < min || number > max) {
+    fail(std::string(what) + " is " + in_quotes(std::string(text)) + "; give a whole number from " +
+         std::to_string(min) + " to " + std::to_string(max));
+  }
+  return number;
+}
+
+double CsvLine::joint(std::string_view text, int joint) const {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc{} || end != text.data() + text.size() || !std::isfinite(number)) {
+    fail("joint " + std::to_string(joint + 1) + " is " + in_quotes(std::string(text)) +
+         "; give a finite number");
+  }
+  if (std::abs(number) > kNumberMax) {
+    fail("joint " + std::to_string(joint + 1) + " is " + plain_number(number) + "; give " +
+         plain_number(-kNumberMax) + " to " + plain_number(kNumberMax));
+  }
+  return number;
+}
+
+}  // namespace cell

@@ -1,0 +1,60 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <stdexcept>
+
+#include "config/arm_file.hpp"
+#include "config/file_bytes.hpp"
+#include "config/read_config.hpp"
+#include "service/cli/commands.hpp"
+#include "service/cli/compensation_text.hpp"
+#include "service/cli/offline.hpp"
+#include "service/documents/compensation_view.hpp"
+#include "service/run/compensated_targets.hpp"
+
+namespace cell {
+namespace {
+
+bool is_csv(const std::filesystem::path& file) { return file.extension() == ".csv"; }
+
+TargetsFile given_targets(const CompensateArguments& arguments) {
+  TargetsFile file = read_targets(arguments.targets_file);
+  if (arguments.tool.empty()) return file;
+  if (file.names_tool) {
+    throw std::invalid_argument("--tool: " + arguments.targets_file.string() +
+                                " names its tool itself; leave --tool out or give a CSV");
+  }
+  file.tool = arguments.tool;
+  return file;
+}
+
+}  // namespace
+
+ExitCode compensate_command(const CompensateArguments& arguments, bool json) {
+  if (arguments.file == "-")
+    throw std::invalid_argument("--out: standard output has the targets with --json; name a file");
+  const Cell cell = read_cell(arguments.cell_file);
+  demand_revolute(cell);
+  const std::string arm_source = arguments.arm_file.string();
+  const std::string arm_bytes = read_file_bytes(arguments.arm_file, kConfigFileSizeMax);
+  const Arm arm = arm_from_json(arm_source, arm_bytes);
+  demand_arm_of(cell, arm, arm_source);
+  const TargetsFile file = given_targets(arguments);
+  const calib::CompensationTool tool =
+      file.names_tool ? tool_named(cell, arm, file.tool, arguments.targets_file.string(), "/tool")
+                      : tool_named(cell, arm, file.tool, "--tool", "");
+  const CompensationDocument document = compensation_of(
+      cell, file.targets, compensated(cell, arm, tool, file.targets), arm_digest(arm_source, arm_bytes));
+  if (is_uncalibrated(cell, arm)) {
+    print_warnings({arm_source + " is as the cell's own arm, no target is changed; give one that was "
+                                 "calibrated and exported"});
+  }
+  if (!arguments.file.empty()) {
+    write_whole_file(arguments.file,
+                     is_csv(arguments.file) ? compensated_csv(document) : document_text(document) + "\n",
+                     arguments.overwrite);
+  }
+  fmt::print("{}", json ? document_text(document) + "\n" : compensation_text(document, file.tool));
+  return document.count(calib::CompensationStatus::kRefused) == 0 ? kExitDone : kExitLimitsMissed;
+}
+
+}  // namespace cell

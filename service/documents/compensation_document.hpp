@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib_core/compensation/compensation.hpp"
+#include "service/documents/words.hpp"
+
+namespace cell {
+
+/// touchcal/compensated/1 (service/doc/surfaces.md).
+struct CompensationDocument {
+  struct Target {
+    std::string name;
+    calib::CompensationStatus status = calib::CompensationStatus::kRefused;
+    std::optional<std::array<double, calib::kJointCount>> joints_deg;  // nothing when refused
+    std::optional<double> moved_mm;
+    std::optional<double> residual_um;
+    std::optional<double> tip_uncertainty_mm;
+    std::optional<std::string> reason;  // of a warning or a refusal
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("name", self.name);
+      fields("status", self.status);
+      fields("joints_deg", self.joints_deg);
+      fields("moved_mm", self.moved_mm);
+      fields("residual_um", self.residual_um);
+      fields("tip_uncertainty_mm", self.tip_uncertainty_mm);
+      fields("reason", self.reason);
+    }
+  };
+
+  std::string schema = "touchcal/compensated/1";
+  std::string model;  // SHA-256 of the calibrated arm, see arm_digest()
+  std::vector<Target> targets;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("schema", self.schema);
+    fields("model", self.model);
+    fields("targets", self.targets);
+  }
+
+  /// How many targets have this status.
+  [[nodiscard]] int count(calib::CompensationStatus status) const;
+};
+
+std::string document_text(const CompensationDocument& document);
+
+/// As lines "name,j1_deg,...,j6_deg", 9 decimals; a refused target keeps its line, with empty cells.
+std::string compensated_csv(const CompensationDocument& document);
+
+/// DocumentError when the text is no such document.
+CompensationDocument read_compensation(std::string_view text);
+
+}  // namespace cell

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib_core/compensation/compensation.hpp"
+#include "config/cell.hpp"
+#include "config/targets_file.hpp"
+
+namespace cell {
+
+/// How far a length or an angle of a calibrated arm may be from the cell's arm: an arm of the same type is
+/// within these, another one is not.
+inline constexpr double kSameArmMetres = 0.05;
+inline constexpr double kSameArmRadians = 0.1;
+
+/// ConfigError, which names `arm_source`, unless `arm` can be a calibration of the cell's arm: the same
+/// name, joints and directions, frames 2 to 7 within kSameArm. Frames 0 and 1 are not looked at, as they say
+/// where the block stood.
+void demand_arm_of(const Cell& cell, const Arm& arm, const std::string& arm_source);
+
+/// Whether the arm has the errors and the compliances of the cell's own: then there is nothing to correct.
+bool is_uncalibrated(const Cell& cell, const Arm& arm);
+
+/// The stylus or the tool of the cell of this name; ConfigError with all of them where there is none.
+/// `source` and `pointer`: what names the tool.
+calib::CompensationTool tool_named(const Cell& cell, const Arm& arm, const std::string& name,
+                                   const std::string& source, const std::string& pointer);
+
+/// The targets in their order. `covariance`: of the arm's errors, where it is known. The cell has revolute
+/// joints only (demand_revolute()) and the arm is one of its own (demand_arm_of()).
+std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& arm,
+                                                  const calib::CompensationTool& tool,
+                                                  const std::vector<Target>& targets,
+                                                  const std::optional<calib::ArmCovariance>& covariance = {});
+
+}  // namespace cell

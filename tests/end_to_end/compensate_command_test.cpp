@@ -1,0 +1,191 @@
+// touchcal compensate: the document, the files, the table, and what it refuses.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "calib_core/geometry/units.hpp"
+#include "config/arm_file.hpp"
+#include "config/arm_writer.hpp"
+#include "config/truth.hpp"
+#include "service/base/exit_code.hpp"
+#include "tests/end_to_end/folder.hpp"
+#include "tests/end_to_end/process.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::size_t kWristFrame = 6;
+
+std::string bytes_in(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// The demonstration's cell, the arm that its simulator hides as if it were identified, and two targets.
+class CompensateCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    arm_.model = truth_;
+    write("arm.json", cell::arm_document(arm_));
+    write("targets.json",
+          R"({"schema":"touchcal/targets/1","tool":"gripper","targets":[
+             {"name":"pick","joints_deg":[20,30,60,10,50,-20]},
+             {"name":"near","joints_deg":[20,30,60,10,3,-20]}]})");
+  }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  std::string file(const std::string& name) { return (folder_ / name).string(); }
+  Finished compensate(const std::string& targets, const std::vector<std::string>& more = {},
+                      const std::string& arm = "arm.json") {
+    std::vector<std::string> arguments{"touchcal", "compensate", "--cell",    cell_file("demo"),
+                                       "--arm",    file(arm),    "--targets", file(targets)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return Process(arguments, folder_ / "call.err").wait();
+  }
+  void expect_one_line(const Finished& finished, int exit_code, const std::vector<std::string>& parts) {
+    EXPECT_EQ(finished.exit_code, exit_code) << finished.err;
+    EXPECT_EQ(finished.out, "");
+    EXPECT_EQ(std::ranges::count(finished.err, '\n'), 1) << finished.err;
+    for (const std::string& part : parts) EXPECT_THAT(finished.err, HasSubstr(part));
+  }
+  /// Where the gripper of an arm is, in its own world.
+  Eigen::Vector3d gripper_m(const calib::KinematicModel& arm, const json& joints_deg) {
+    calib::JointVector joints;
+    for (std::size_t i = 0; i < 6; ++i)
+      joints[static_cast<Eigen::Index>(i)] = calib::radians_from_degrees(joints_deg.at(i).get<double>());
+    return (calib::frame_transform(arm.links[0]) * calib::frame_transform(arm.links[1])).inverse() *
+           (calib::forward_chain(arm, joints).block_from_frame[kWristFrame] *
+            demo_.tools.at("gripper").translation());
+  }
+
+  Folder folder_;
+  cell::Cell demo_ = shipped_cell("demo");
+  cell::Arm arm_ = demo_.arm;
+  calib::KinematicModel truth_ =
+      cell::true_model(cell::read_truth(cell_folder("demo") + "/truth-real.json"), demo_.arm);
+};
+
+TEST_F(CompensateCommand, CorrectsTargetsToWithinATenthOfAMicrometre) {
+  const Finished finished = compensate("targets.json", {"--json"});
+  EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+  EXPECT_EQ(finished.err, "");
+  const json document = json::parse(finished.out);
+  EXPECT_EQ(document.at("schema"), "touchcal/compensated/1");
+  EXPECT_EQ(document.at("model").get<std::string>().size(), 64U);
+  const json& pick = document.at("targets").at(0);
+  EXPECT_EQ(pick.at("name"), "pick");
+  EXPECT_EQ(pick.at("status"), "ok");
+  EXPECT_EQ(pick.at("reason"), nullptr);
+  EXPECT_EQ(pick.at("tip_uncertainty_mm"), nullptr);
+  const json asked = {20, 30, 60, 10, 50, -20};
+  const Eigen::Vector3d wanted_m = gripper_m(demo_.arm.model, asked);
+  EXPECT_LT((gripper_m(truth_, pick.at("joints_deg")) - wanted_m).norm(), 1e-7);
+  EXPECT_NEAR(pick.at("moved_mm").get<double>(), 1e3 * (gripper_m(truth_, asked) - wanted_m).norm(), 1e-6);
+  EXPECT_LT(pick.at("residual_um").get<double>(), 0.1);
+  EXPECT_EQ(document.at("targets").at(1).at("status"), "warned");
+  EXPECT_THAT(document.at("targets").at(1).at("reason").get<std::string>(), HasSubstr("wrist"));
+}
+
+TEST_F(CompensateCommand, TakesAPoseInTheWorldWithNearJoints) {
+  write("pose.json", R"({"schema":"touchcal/targets/1","tool":"gripper","targets":[
+        {"name":"p","position_mm":[500,100,300],"rotation_deg":[0,150,0],"near_joints_deg":[10,30,80,0,60,0],
+         "frame":"world"}]})");
+  const json document = json::parse(compensate("pose.json", {"--json"}).out);
+  const json& target = document.at("targets").at(0);
+  ASSERT_EQ(target.at("status"), "ok") << target;
+  EXPECT_LT((gripper_m(truth_, target.at("joints_deg")) - Eigen::Vector3d(0.5, 0.1, 0.3)).norm(), 1e-7);
+  EXPECT_GT(target.at("moved_mm").get<double>(), 0.1);
+}
+
+TEST_F(CompensateCommand, EndsWithOneWhereATargetIsRefusedAndLeavesItAlone) {
+  write("t.csv",
+        "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\nwrist,20,30,60,10,0.5,-20\nfar,20,30,60,10,50,271\n"
+        "good,20,30,60,10,50,-20\n");
+  const Finished table = compensate("t.csv", {"--tool", "gripper", "--out", file("corrected.csv")});
+  EXPECT_EQ(table.exit_code, cell::kExitLimitsMissed) << table.err;
+  EXPECT_EQ(table.err, "");
+  EXPECT_THAT(table.out, HasSubstr("wrist is within 0.5 deg of straight"));
+  EXPECT_THAT(table.out, HasSubstr("joint 6 at 271.000000 deg, outside its range of -270 to 270 deg"));
+  EXPECT_THAT(table.out, HasSubstr("1 targets of tool gripper corrected"));
+  const std::string csv = bytes_in(file("corrected.csv"));
+  EXPECT_THAT(csv, HasSubstr("\nwrist,,,,,,\nfar,,,,,,\ngood,"));
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 4);
+  const json document = json::parse(compensate("t.csv", {"--tool", "gripper", "--json"}).out);
+  EXPECT_EQ(document.at("targets").at(0).at("joints_deg"), nullptr);
+  EXPECT_EQ(document.at("targets").at(2).at("status"), "ok");
+}
+
+TEST_F(CompensateCommand, OverwritesAFileOnlyWithForce) {
+  EXPECT_EQ(compensate("targets.json", {"--out", file("out.json")}).exit_code, cell::kExitDone);
+  const std::string first = bytes_in(file("out.json"));
+  EXPECT_EQ(json::parse(first).at("schema"), "touchcal/compensated/1");
+  write("out.json", "mine");
+  const Finished again = compensate("targets.json", {"--out", file("out.json")});
+  expect_one_line(again, cell::kExitUsage, {"out.json exists", "--force"});
+  EXPECT_EQ(bytes_in(file("out.json")), "mine");
+  EXPECT_EQ(compensate("targets.json", {"--out", file("out.json"), "--force"}).exit_code, cell::kExitDone);
+  EXPECT_EQ(bytes_in(file("out.json")), first);
+  expect_one_line(compensate("targets.json", {"--out", "-"}), cell::kExitUsage, {"--out", "name a file"});
+}
+
+TEST_F(CompensateCommand, TheModelIsTheArmThatWasUsed) {
+  const auto model_of = [this](const std::string& arm) {
+    return json::parse(compensate("targets.json", {"--json"}, arm).out).at("model");
+  };
+  write("laid_out.json", json::parse(bytes_in(file("arm.json"))).dump(4));
+  arm_.model.links[3].d_m += 1e-6;
+  write("other.json", cell::arm_document(arm_));
+  EXPECT_EQ(model_of("arm.json"), model_of("laid_out.json"));
+  EXPECT_NE(model_of("arm.json"), model_of("other.json"));
+}
+
+TEST_F(CompensateCommand, RefusesWhatIsOfAnotherCellOrNoTarget) {
+  write("tool.json", R"({"schema":"touchcal/targets/1","tool":"welder","targets":[
+        {"name":"a","joints_deg":[20,30,60,10,50,-20]}]})");
+  expect_one_line(compensate("tool.json"), cell::kExitBadInput,
+                  {"tool.json: /tool: is \"welder\"", "give one of stylus, gripper"});
+  write("frame.json", R"({"schema":"touchcal/targets/1","tool":"gripper","targets":[
+        {"name":"a","frame":"pallet","position_mm":[1,2,3],"rotation_deg":[0,0,0],"near_joints_deg":[0,0,0,0,0,0]}]})");
+  expect_one_line(compensate("frame.json"), cell::kExitBadInput,
+                  {"frame.json: /targets/0/frame: is \"pallet\"", "no frames beside the controller's world"});
+  expect_one_line(compensate("targets.json", {"--tool", "gripper"}), cell::kExitUsage,
+                  {"--tool", "names its tool itself"});
+  write("t.csv", "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\n");
+  expect_one_line(compensate("t.csv", {"--tool", "welder"}), cell::kExitBadInput, {"--tool", "welder"});
+  arm_.name = "tx60";
+  write("tx60.json", cell::arm_document(arm_));
+  expect_one_line(compensate("targets.json", {}, "tx60.json"), cell::kExitBadInput,
+                  {"tx60.json: /name: is \"tx60\" but the cell's arm is \"tx90\""});
+  expect_one_line(compensate("missing.json"), cell::kExitBadInput, {"missing.json"});
+  expect_one_line(compensate("targets.json", {}, "missing.json"), cell::kExitBadInput, {"missing.json"});
+}
+
+TEST_F(CompensateCommand, WarnsOfAnArmThatNobodyCalibrated) {
+  write("nominal.json", cell::arm_document(demo_.arm));
+  const Finished finished = compensate("targets.json", {"--json"}, "nominal.json");
+  EXPECT_EQ(finished.exit_code, cell::kExitDone);
+  EXPECT_THAT(finished.err, HasSubstr("is as the cell's own arm"));
+  EXPECT_LT(json::parse(finished.out).at("targets").at(0).at("moved_mm").get<double>(), 1e-9);
+}
+
+/// The stylus of a CSV: frame 7 is the calibrated one.
+TEST_F(CompensateCommand, ACsvIsOfTheStylusWithoutAnotherWord) {
+  write("t.csv", "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\n");
+  const auto moved = [this](const std::vector<std::string>& more) {
+    return json::parse(compensate("t.csv", more).out).at("targets").at(0).at("moved_mm");
+  };
+  EXPECT_EQ(moved({"--json"}), moved({"--json", "--tool", "stylus"}));
+  EXPECT_NE(moved({"--json"}), moved({"--json", "--tool", "gripper"}));
+}
+
+}  // namespace
+}  // namespace touchcal::testing

@@ -1,0 +1,47 @@
+#include "service/documents/compensation_document.hpp"
+
+#include <gtest/gtest.h>
+
+#include "config/targets_file.hpp"
+#include "service/documents/document_error.hpp"
+
+namespace cell {
+namespace {
+
+using calib::CompensationStatus;
+
+CompensationDocument document() {
+  CompensationDocument document{.model = "abc"};
+  document.targets = {
+      {.name = "p1", .status = CompensationStatus::kOk, .joints_deg = {{1.0, -2.5, 3.0, 4.0, 5.0, 1e-9}}},
+      {.name = "p2", .status = CompensationStatus::kRefused, .reason = "out of reach"},
+      {.name = "p3", .status = CompensationStatus::kWarned, .joints_deg = {{0.0, 0.0, 0.0, 0.0, 0.0, 0.0}}}};
+  return document;
+}
+
+TEST(CompensationDocument, IsReadAsItWasWritten) {
+  const std::string text = document_text(document());
+  const CompensationDocument read = read_compensation(text);
+  EXPECT_EQ(document_text(read), text);
+  EXPECT_EQ(read.count(CompensationStatus::kOk), 1);
+  EXPECT_EQ(read.count(CompensationStatus::kWarned), 1);
+  EXPECT_EQ(read.count(CompensationStatus::kRefused), 1);
+  EXPECT_THROW(read_compensation("{}"), DocumentError);
+}
+
+TEST(CompensationDocument, OfRefusedTargetsTheCsvHasNoJoints) {
+  EXPECT_EQ(compensated_csv(document()),
+            "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\n"
+            "p1,1.000000000,-2.500000000,3.000000000,4.000000000,5.000000000,0.000000001\n"
+            "p2,,,,,,\n"
+            "p3,0.000000000,0.000000000,0.000000000,0.000000000,0.000000000,0.000000000\n");
+}
+
+TEST(CompensationDocument, TheCsvIsReadAsTargets) {
+  CompensationDocument taken = document();
+  taken.targets.erase(taken.targets.begin() + 1);
+  EXPECT_EQ(targets_from_csv("t.csv", compensated_csv(taken)).targets.size(), 2U);
+}
+
+}  // namespace
+}  // namespace cell
