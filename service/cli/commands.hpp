@@ -82,6 +82,18 @@ struct CompensateArguments {
 /// Corrects targets for a calibrated arm; kExitLimitsMissed when a target is refused.
 ExitCode compensate_command(const CompensateArguments& arguments, bool json);
 
+struct FilterArguments {
+  std::filesystem::path cell_file;
+  std::filesystem::path arm_file;   // calibrated
+  std::filesystem::path data_file;  // .dtx, with its programs and its project beside it
+  std::filesystem::path list_file;  // which variables are filtered; the filter is marked in it
+  std::filesystem::path file;       // the filtered data file
+  bool overwrite = false;           // that one
+};
+/// Writes a VAL3 data file with its points and joints corrected for a calibrated arm, and tells what its
+/// programs make of them; kExitLimitsMissed when a value is refused.
+ExitCode filter_command(const FilterArguments& arguments);
+
 struct RunArguments {
   std::string recipe;         // of the cell; ignored with a plan
   std::string plan_id;        // of a plan of the daemon; empty for none

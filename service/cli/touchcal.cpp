@@ -182,15 +182,37 @@ class CommandLine {
     compensate
         ->add_option("--arm", compensate_.arm_file, "arm file of the calibrated arm, as export writes it")
         ->required();
-    compensate->add_option("--targets", compensate_.targets_file, "targets, JSON or CSV")->required();
+    auto* targets = compensate->add_option("--targets", compensate_.targets_file, "targets, JSON or CSV");
+    auto* data = compensate->add_option("--dtx", filter_.data_file,
+                                        "VAL3 data file in place of targets, its programs beside it");
+    auto* list = compensate->add_option("--list", filter_.list_file,
+                                        "lines NAME offline|taught|leave [TOOL] for that data file");
+    data->excludes(targets)->needs(list);
+    list->needs(data);
     compensate->add_option("--tool", compensate_.tool, "tool of the targets of a CSV; default: stylus")
+        ->excludes(data)
         ->check(cell::refuse_empty);
     compensate->add_option("--out", compensate_.file,
-                           "write the corrected targets to this file: a CSV when it ends in .csv, else JSON");
+                           "write the corrected targets to this file: a CSV when it ends in .csv, else JSON; "
+                           "the filtered data file");
     compensate->add_flag("--force", compensate_.overwrite, "overwrite it");
-    compensate->add_flag("--json", json_, "one JSON document on standard output");
-    compensate->callback(
-        [this] { action_ = [this] { return cell::compensate_command(compensate_, json_); }; });
+    compensate->add_flag("--json", json_, "one JSON document on standard output")->excludes(data);
+    compensate->callback([this] { action_ = [this] { return compensate_or_filter(); }; });
+  }
+
+  cell::ExitCode compensate_or_filter() {
+    if (filter_.data_file.empty()) {
+      if (compensate_.targets_file.empty())
+        throw std::invalid_argument("compensate: give --targets, or --dtx with --list");
+      return cell::compensate_command(compensate_, json_);
+    }
+    if (compensate_.file.empty() || compensate_.file == "-")
+      throw std::invalid_argument("--out: name a file for the filtered data");
+    filter_.cell_file = compensate_.cell_file;
+    filter_.arm_file = compensate_.arm_file;
+    filter_.file = compensate_.file;
+    filter_.overwrite = compensate_.overwrite;
+    return cell::filter_command(filter_);
   }
 
   void add_run() {
@@ -326,6 +348,7 @@ class CommandLine {
   cell::ValidateArguments validate_;
   cell::PlanArguments plan_;
   cell::CompensateArguments compensate_;
+  cell::FilterArguments filter_;
   cell::ExportArguments export_;
   cell::ReportArguments report_;
   cell::AuditArguments audit_;

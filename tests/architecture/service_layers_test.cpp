@@ -17,6 +17,7 @@ namespace {
 const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"base", {}},
     {"page", {}},
+    {"offline_programs", {"base"}},
     {"store", {"base"}},
     {"run", {"base", "store"}},
     {"documents", {"base", "store", "run"}},
@@ -27,13 +28,13 @@ const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"http/auth", {"base", "http/server"}},
     {"http/routes",
      {"base", "store", "run", "documents", "acquisition", "report", "page", "http/server", "http/auth"}},
-    {"cli", {"base", "run", "documents", "exports"}},
+    {"cli", {"base", "run", "documents", "exports", "offline_programs"}},
     {"daemon", {"base", "store", "documents", "acquisition", "http/server", "http/auth", "http/routes"}},
 };
 
 /// The folder of a file of service/: "http/routes" of service/http/routes/internal/start_body.hpp.
 std::string service_folder(const std::string& path) {
-  static const std::regex kFolder("service/(http/[a-z]+|[a-z]+)/.*");
+  static const std::regex kFolder("service/(http/[a-z]+|[a-z_]+)/.*");
   std::smatch match;
   return std::regex_match(path, match, kFolder) ? match[1].str() : std::string();
 }
