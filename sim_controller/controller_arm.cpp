@@ -82,6 +82,15 @@ std::optional<calib::JointVector> ControllerArm::solve(const Eigen::Isometry3d& 
   return best;
 }
 
+std::optional<calib::JointVector> ControllerArm::posture_beyond_ranges(
+    const Eigen::Isometry3d& world_from_flange, const calib::JointVector& near) const {
+  std::optional<calib::JointVector> best;
+  for (const calib::JointVector& joints : inverse_.solve(world_from_flange)) {
+    if (!best || (joints - near).cwiseAbs().sum() < (*best - near).cwiseAbs().sum()) best = joints;
+  }
+  return best;
+}
+
 val3::Config ControllerArm::config_of(const calib::JointVector& joints) const {
   const double wrist_ahead_m = model_.links[2].d_m + model_.links[3].d_m * std::sin(joints[1]) +
                                model_.links[4].r_m * std::sin(joints[1] + joints[2]);

@@ -22,6 +22,10 @@ class ControllerArm {
   [[nodiscard]] std::optional<calib::JointVector> solve(const Eigen::Isometry3d& world_from_flange,
                                                         const val3::Config& config,
                                                         const calib::JointVector& near) const;
+  /// The posture nearest to `near` that brings the flange there when no joint has a range; nothing when the
+  /// pose is out of reach.
+  [[nodiscard]] std::optional<calib::JointVector> posture_beyond_ranges(
+      const Eigen::Isometry3d& world_from_flange, const calib::JointVector& near) const;
   /// Manual 6, pages 135 and 136.
   [[nodiscard]] val3::Config config_of(const calib::JointVector& joints) const;
   /// A millionth of a degree of rounding is no violation.

@@ -33,6 +33,7 @@ void finish_reset(Drives& drives) {
 
 void fail(Drives& drives) {
   drives.error = kImpossibleMoveError;
+  drives.error_why = drives.queue.front().why_impossible;
   drives.ended_id = drives.queue.front().id;
   drop_queue(drives);
 }
@@ -167,6 +168,7 @@ void follow(const Plant& plant, Drives& drives, Stretch stretch, double tip_spee
 
 void reset_motion(Drives& drives, const std::optional<calib::JointVector>& start) {
   drives.error = 0;
+  drives.error_why.clear();
   drives.stopped = false;
   drives.last_id = 0.0;
   drives.ended_id = 0.0;

@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "calib_core/geometry/joint_vector.hpp"
 #include "sim_controller/motion.hpp"
@@ -32,6 +33,7 @@ struct Drives {
   std::deque<Move> after_reset;                            // ... and these are the queue then
   bool stopped = false;                                    // by stop_move()
   std::int32_t error = 0;  // run-time error that stopped the last move; until reset_motion()
+  std::string error_why;   // of an impossible move, as it was stored
   int standing_ticks = kSettledTicks;
   // Where a path was left, and how the arm gets back there.
   double left_at = 0.0;                         // progress of the move behind a connection move

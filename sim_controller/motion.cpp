@@ -10,6 +10,8 @@
 namespace sim {
 namespace {
 
+/// Two neighbouring postures of a way are not farther apart.
+constexpr double kWayStepMaxRadians = 0.1;
 /// A line that ends this far from its target posture went through another branch of the arm.
 constexpr double kSameBranchRadians = 1e-3;
 /// A joint move's steepest place is looked for in pieces that turn all joints together by this much.
@@ -65,6 +67,14 @@ int posture_count(double length_m, double turn_rad) {
   return std::clamp(static_cast<int>(std::ceil(std::min(count, 1.0 * kPosturesMax))), 1, kPosturesMax);
 }
 
+/// Whether a way goes on from one posture to the next.
+WayEnd end_at(const Plant& plant, const calib::JointVector& from,
+              const std::optional<calib::JointVector>& to) {
+  if (!to) return WayEnd::kNoPosture;
+  if (!plant.joint_ranges.contains(*to)) return WayEnd::kJointRange;
+  return (*to - from).cwiseAbs().maxCoeff() < kWayStepMaxRadians ? WayEnd::kAtTarget : WayEnd::kJump;
+}
+
 /// The postures of a tool's poses at even shares (0 to 1) of a way, as far as the arm can follow.
 template <class PoseAt>
 ToolPath follow_poses(const Plant& plant, const calib::JointVector& from, double length_m, double turn_rad,
@@ -76,11 +86,18 @@ ToolPath follow_poses(const Plant& plant, const calib::JointVector& from, double
   for (int i = 1; i <= count && way.complete; ++i) {
     const Eigen::Isometry3d pose = block_from_tool_at(static_cast<double>(i) / count) * tool_from_tip;
     const auto joints = calib::solve_near(arm, pose, way.path.back());
-    way.complete = joints && plant.joint_ranges.contains(*joints) &&
-                   (*joints - way.path.back()).cwiseAbs().maxCoeff() < 0.1;
-    if (way.complete) way.path.push_back(*joints);
+    way.end = end_at(plant, way.path.back(), joints);
+    way.complete = way.end == WayEnd::kAtTarget;
+    if (way.complete) {
+      way.path.push_back(*joints);
+    } else if (joints) {
+      way.beyond = *joints;
+    } else {
+      way.refused = pose;
+    }
   }
-  way.length_m *= static_cast<double>(way.path.size() - 1) / count;
+  way.share = static_cast<double>(way.path.size() - 1) / count;
+  way.length_m *= way.share;
   if (way.path.size() == 1) way.path.push_back(from);
   return way;
 }
@@ -163,7 +180,7 @@ ToolPath arc_to_pose(const Plant& plant, const calib::JointVector& from,
   const Eigen::Isometry3d first = calib::forward_kinematics(plant.nominal, from) * tip_from_tool;
   const auto circle =
       circle_through(first.translation(), block_from_via.translation(), block_from_target.translation());
-  if (!circle) return {.path = {from, from}, .complete = false};
+  if (!circle) return {.path = {from, from}, .complete = false, .end = WayEnd::kNoCircle, .share = 0.0};
   const Eigen::Quaterniond first_turn(first.linear());
   const Eigen::Quaterniond via_turn(block_from_via.linear());
   const Eigen::Quaterniond last_turn(block_from_target.linear());

@@ -35,12 +35,25 @@ inline constexpr double kLineSpacingMetres = 0.5e-3;
 /// ... and turn the tool between two postures by no more than this.
 inline constexpr double kLineTurnRadians = 2e-3;
 
+/// Why a way ends before its end.
+enum class WayEnd {
+  kAtTarget,
+  kNoPosture,   // no posture near the one before brings the tool on
+  kJointRange,  // it is outside the joint ranges
+  kJump,        // it is one of another branch
+  kNoCircle,    // of an arc: there is none through its points
+};
+
 /// A way of a tool's centre as postures of the nominal arm. A tool is given by its pose in the nominal arm's
 /// frame 7, whose origin is the nominal tool centre.
 struct ToolPath {
   Path path;
   double length_m = 0.0;  // of `path`
   bool complete = true;   // false: `path` ends where the arm cannot follow (range, reach, singular posture)
+  WayEnd end = WayEnd::kAtTarget;
+  double share = 1.0;                                         // of the way that `path` is
+  Eigen::Isometry3d refused = Eigen::Isometry3d::Identity();  // frame 7 in R_-1, where kNoPosture
+  calib::JointVector beyond = calib::JointVector::Zero();     // the joints that are refused otherwise
 };
 
 /// A straight line from one posture's nominal tool pose to the other's; the orientation turns evenly between

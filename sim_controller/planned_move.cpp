@@ -42,8 +42,9 @@ Move plan_move(const Plant& plant, Stretch stretch, const MotionDescriptor& how,
   return move;
 }
 
-Move impossible_move(const calib::JointVector& at) {
+Move impossible_move(const calib::JointVector& at, std::string why) {
   Move move;
+  move.why_impossible = std::move(why);
   move.path = std::make_shared<const Path>(Path{at, at});
   move.is_impossible = true;
   return move;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 #include <memory>
+#include <string>
 
 #include "sim_controller/motion.hpp"
 #include "sim_controller/plant.hpp"
@@ -49,6 +50,7 @@ struct Move {
   bool ends_in_error = false;       // the arm cannot follow farther: kImpossibleMoveError when it is there
   bool is_connection = false;       // back to where the next move's path was left
   double id = 0.0;                  // of getMoveId
+  std::string why_impossible;       // for the log; may be empty
 
   /// Progress along the path after a share of the move.
   [[nodiscard]] double along_path(double progress) const { return from + (to - from) * progress; }
@@ -58,8 +60,8 @@ struct Move {
 Move plan_move(const Plant& plant, Stretch stretch, const MotionDescriptor& how,
                const Eigen::Isometry3d& tip_from_tool = Eigen::Isometry3d::Identity());
 
-/// A move that the arm does not begin.
-Move impossible_move(const calib::JointVector& at);
+/// A move that the arm does not begin. `why`: for the log.
+Move impossible_move(const calib::JointVector& at, std::string why = {});
 
 /// The slow joint move back to where a path was left (manual 6, page 145).
 Move connection_move(const calib::JointVector& from, const calib::JointVector& to);

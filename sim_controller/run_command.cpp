@@ -13,6 +13,7 @@
 
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
+#include "sim_controller/run_links.hpp"
 #include "sim_controller/run_script.hpp"
 #include "sim_controller/scripted_run.hpp"
 #include "sim_controller/socket_run.hpp"
@@ -74,6 +75,12 @@ int run_application(const RunCommand& command, std::ostream& out, std::ostream& 
   val3::resolve(read.application, read.findings);
   if (tell_errors(read.findings, error)) {
     error << command.application << ": a controller would not load it; `cs8sim --check` tells more\n";
+    return kCannotRun;
+  }
+  const RunLinks links = links_of(read.application, cards_of(*steps));
+  for (const std::string& note : links.not_there) error << note << '\n';
+  if (const auto refused = unknown_signal(*steps, links)) {
+    error << command.script_file << ':' << refused->line << ": " << refused->what << '\n';
     return kCannotRun;
   }
   std::vector<RunSocket> wanted = command.sockets;

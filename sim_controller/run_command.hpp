@@ -22,9 +22,9 @@ struct RunCommand {
   double speed = 1.0;              // with sockets, of motions: simulated seconds per wall second; kSpeedMax
 };
 
-/// Exit codes: nothing failed; a task ended with an error, a period was too short, or an expectation of the
-/// script was not met; a socket is none of the application's; the application, the script or the cell cannot
-/// be read or loaded; a socket cannot be had.
+/// Exit codes: nothing failed; a task ended with an error, a move could not be made, the arm hit something, a
+/// period was too short, or an expectation of the script was not met; a socket is none of the application's;
+/// the application, the script or the cell cannot be read or loaded; a socket cannot be had.
 enum RunCode { kRanWell = 0, kRanWithFailures = 1, kWrongSocket = 2, kCannotRun = 3, kNoSocket = 4 };
 
 /// Runs it and tells what happens, a line each with the simulated time. With real sockets and neither script

@@ -33,6 +33,7 @@ struct ScriptCommand {
 };
 
 constexpr std::array kCommands{
+    ScriptCommand{"card", Kind::kCard, Shape::kName, "card NAME"},
     ScriptCommand{"input", Kind::kInput, Shape::kNameSwitch, "input LINK on|off"},
     ScriptCommand{"analogue", Kind::kAnalogue, Shape::kNameNumber, "analogue LINK VALUE"},
     ScriptCommand{"power", Kind::kPower, Shape::kSwitch, "power on|off"},
@@ -192,6 +193,8 @@ std::variant<ScriptStep, ScriptError> parse_step(std::string_view text, int line
     step.act.kind = command.kind;
     if (command.kind == Kind::kSocket && step.at_s != 0.0)
       return ScriptError{line, "a real socket is there from the start; begin its line with 0"};
+    if (command.kind == Kind::kCard && step.at_s != 0.0)
+      return ScriptError{line, "a card is there from the start; begin its line with 0"};
     if (read_arguments(command.shape, text, step.act)) return step;
     return ScriptError{line, "write '" + std::string(command.usage) + "'"};
   }

@@ -11,6 +11,7 @@ namespace sim {
 /// What one line of a script does.
 struct ScriptAct {
   enum class Kind {
+    kCard,          // name: a card of inputs and outputs that the cell has, from the start
     kInput,         // name: a link; on
     kAnalogue,      // name: a link; number
     kPower,         // on

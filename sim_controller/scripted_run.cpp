@@ -14,6 +14,8 @@ namespace {
 
 /// Numbers of a script and of a program are the same within this.
 constexpr double kSameNumber = 1e-6;
+/// The task of stop() has "~" and so much of the application's name (manual 6, page 79).
+constexpr std::size_t kStopNameLength = 14;
 
 }  // namespace
 
@@ -21,14 +23,17 @@ ScriptedRun::ScriptedRun(const Plant& plant, const val3::Application& applicatio
                          std::vector<ScriptStep> steps, std::uint64_t seed, std::ostream& out)
     : plant_(plant),
       cabinet_(make_cabinet(plant, seed)),
-      system_(plant, cabinet_, options()),
+      watch_([this](const std::string& text) { tell(text); }),
+      links_(links_of(application, cards_of(steps))),
       steps_(std::move(steps)),
+      system_(plant, cabinet_, options()),
       out_(out),
       application_(application) {}
 
 Val3SystemOptions ScriptedRun::options() {
   Val3SystemOptions made;
   made.links = {};  // every input is the script's
+  made.cards = cards_of(steps_);
   made.operator_owns_monitor_speed = false;
   made.log = [this](const std::string& text) { tell("log: " + text); };
   return made;
@@ -38,6 +43,8 @@ bool ScriptedRun::start(val3::Findings& findings) {
   const std::size_t before = findings.size();
   machine_.emplace(application_, system_, findings);
   if (findings.size() != before) return false;
+  for (const std::string& link : links_.digital) system_.find_digital(link);
+  for (const std::string& link : links_.analogue) system_.find_analogue(link);
   machine_->start();
   return true;
 }
@@ -46,13 +53,19 @@ void ScriptedRun::step() {
   for (; next_ < steps_.size() && steps_[next_].at_s <= seconds() + kTickSeconds / 2.0; ++next_)
     carry_out(steps_[next_]);
   machine_->tick();
-  watch_tasks();
-  system_.tick();
+  watch_.look_at_power(cabinet_.panel, "by the program");
+  watch_.look_at_program(*machine_, system_, is_ending());
+  const CabinetTick seen = system_.tick();
+  watch_.look_at_cell(seen, cabinet_, system_);
   tick(plant_, person_, cabinet_);
   ++ticks_;
   if (!machine_->ended()) return;
   tell("the application has ended");
   is_over_ = true;
+}
+
+bool ScriptedRun::is_ending() const {
+  return machine_->ended() || machine_->task_status("~" + application_.name.substr(0, kStopNameLength)) != -1;
 }
 
 bool ScriptedRun::is_busy() const {
@@ -66,13 +79,8 @@ void ScriptedRun::tell(const std::string& text) {
   out_ << fmt::format("{:9.3f}  {}\n", seconds(), text) << std::flush;
 }
 
-void ScriptedRun::fail(const std::string& text) {
-  ++failures_;
-  tell("FAILED " + text);
-}
-
 void ScriptedRun::refuse(const ScriptStep& step, const std::string& why) {
-  fail(fmt::format("line {}: {}: {}", step.line, step.act.name, why));
+  watch_.fail(fmt::format("line {}: {}: {}", step.line, step.act.name, why));
 }
 
 void ScriptedRun::carry_out(const ScriptStep& step) {
@@ -106,12 +114,14 @@ void ScriptedRun::carry_out(const ScriptStep& step) {
       machine_->stop();
       break;
     case ScriptAct::Kind::kSocket:
+    case ScriptAct::Kind::kCard:
       break;  // is there since before the start
     case ScriptAct::Kind::kEnd:
       is_over_ = true;
       break;
     default:
       at_panel(act);
+      watch_.look_at_power(cabinet_.panel, fmt::format("line {} of the script", step.line));
   }
 }
 
@@ -171,7 +181,7 @@ void ScriptedRun::expect(const ScriptStep& step) {
     return;
   }
   if (act.kind == ScriptAct::Kind::kExpectOutput) {
-    const auto id = system_.signals().find_digital(act.name);
+    const auto id = system_.signals().known_digital(act.name);
     const bool is_on = id && system_.digital(*id);
     if (is_on != act.on) refuse(step, is_on ? "it is on" : "it is off");
     return;
@@ -208,25 +218,15 @@ void ScriptedRun::show_page() {
   if (!lines.empty()) out_ << lines << '\n';
 }
 
-/// Tells a task that died and a period that was too short, each once.
-void ScriptedRun::watch_tasks() {
-  for (const val3::TaskView& task : machine_->tasks()) {
-    if (task.status > 1 && dead_.insert(task.name).second)
-      fail(fmt::format("task {} ends with error {} at {}:{}: {}", task.name, task.status, task.file,
-                       task.line, task.error));
-    if (task.overruns > 0 && late_.insert(task.name).second)
-      fail(fmt::format("task {} did not end within its period", task.name));
-  }
-}
-
 int ScriptedRun::summary() {
   show_page();
   for (const val3::TaskView& task : machine_->tasks())
     tell(fmt::format("task {}: status {}, at {}:{}, {} overruns, at most {} lines between two waits",
                      task.name, task.status, task.file, task.line, task.overruns,
                      machine_->most_lines(task.name)));
-  tell(fmt::format("{} lines of program; {} failures", machine_->lines(), failures_));
-  return failures_;
+  const int failures = watch_.conclude(cabinet_);
+  tell(fmt::format("{} lines of program; {} failures", machine_->lines(), failures));
+  return failures;
 }
 
 }  // namespace sim

@@ -4,14 +4,15 @@
 #include <cstdint>
 #include <iosfwd>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "sim_controller/cabinet.hpp"
 #include "sim_controller/operator.hpp"
 #include "sim_controller/plant.hpp"
+#include "sim_controller/run_links.hpp"
 #include "sim_controller/run_script.hpp"
+#include "sim_controller/run_watch.hpp"
 #include "sim_controller/val3/machine/machine.hpp"
 #include "sim_controller/val3_system.hpp"
 
@@ -40,7 +41,8 @@ class ScriptedRun {
   [[nodiscard]] Val3Channels& channels() { return system_.channels(); }
 
   void tell(const std::string& text);
-  /// Tells the user page and where every task stands; returns how many failures there were.
+  /// Tells what was not handled or carried out, the user page and where every task stands; returns how many
+  /// failures there were.
   int summary();
 
  private:
@@ -49,9 +51,8 @@ class ScriptedRun {
   void at_channel(const ScriptStep& step);
   void expect(const ScriptStep& step);
   [[nodiscard]] std::optional<double> number_of(const std::string& place) const;
-  void watch_tasks();
+  [[nodiscard]] bool is_ending() const;
   void show_page();
-  void fail(const std::string& text);
   void refuse(const ScriptStep& step, const std::string& why);
   Val3SystemOptions options();
 
@@ -59,12 +60,11 @@ class ScriptedRun {
   Cabinet cabinet_;
   Operator person_;
   std::int64_t ticks_ = 0;
-  int failures_ = 0;
   bool is_over_ = false;
-  std::set<std::string> dead_;  // tasks that were told
-  std::set<std::string> late_;
-  Val3System system_;
+  RunWatch watch_;
+  RunLinks links_;
   std::vector<ScriptStep> steps_;
+  Val3System system_;
   std::size_t next_ = 0;
   std::ostream& out_;
   const val3::Application& application_;

@@ -20,7 +20,8 @@ constexpr std::chrono::milliseconds kSocketLook{4};
 std::string sockets_of(const Val3Channels& channels) {
   std::string all;
   for (int id = 0; id < channels.count(); ++id) {
-    if (channels.at(id).is_socket()) all += (all.empty() ? "" : ", ") + channels.at(id).link();
+    if (channels.at(id).is_socket() && !channels.at(id).is_udp())
+      all += (all.empty() ? "" : ", ") + channels.at(id).link();
   }
   return all;
 }
@@ -41,7 +42,17 @@ SocketRun::SocketRun(ScriptedRun& run, std::span<const RunSocket> wanted, std::s
 void SocketRun::add(const RunSocket& wanted, std::span<const ScriptStep> steps) {
   Val3Channels& channels = run_.channels();
   const auto id = channels.known(wanted.name);
-  if (!id || !channels.at(*id).is_socket()) {
+  if (id && channels.at(*id).is_udp())
+    throw WrongSocket(
+        fmt::format("--socket {}: {} is a UDP socket, and only TCP is served; leave the option out, the "
+                    "script can be its peer",
+                    wanted.name, channels.at(*id).link()));
+  if (id && !channels.at(*id).is_socket())
+    throw WrongSocket(
+        fmt::format("--socket {}: {} is a serial port, no socket; leave the option out, the script can be "
+                    "its peer",
+                    wanted.name, channels.at(*id).link()));
+  if (!id) {
     const std::string there = sockets_of(channels);
     throw WrongSocket(fmt::format(
         "--socket {}: no sio of the application is linked to it alone; {}", wanted.name,
@@ -63,7 +74,18 @@ void SocketRun::add(const RunSocket& wanted, std::span<const ScriptStep> steps) 
 }
 
 void SocketRun::exchange() {
-  for (const auto& socket : sockets_) socket->exchange(Clock::now());
+  for (std::size_t i = 0; i < sockets_.size(); ++i) {
+    sockets_[i]->exchange(Clock::now());
+    tell_overruled(i);
+  }
+}
+
+/// What sioCtrl says of the place, once.
+void SocketRun::tell_overruled(std::size_t socket) {
+  const Val3Channel& channel = run_.channels().at(channels_[socket]);
+  if (!channel.port() && !channel.is_client()) return;
+  if (!overruled_.insert(channels_[socket]).second) return;
+  run_.tell(channel.link() + ": its place is that of --socket; port and target of sioCtrl change nothing");
 }
 
 void SocketRun::run(double until_s, double speed) {

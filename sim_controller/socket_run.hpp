@@ -5,6 +5,7 @@
 #include <boost/asio/signal_set.hpp>
 #include <csignal>
 #include <memory>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <vector>
@@ -15,8 +16,8 @@
 
 namespace sim {
 
-/// A name that is no socket of the application, that comes twice, or whose peer the script plays itself. Says
-/// which, and the remedy.
+/// A name that is no TCP socket of the application, that comes twice, or whose peer the script plays itself.
+/// Says which, and the remedy.
 class WrongSocket : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -37,6 +38,7 @@ class SocketRun {
  private:
   void add(const RunSocket& wanted, std::span<const ScriptStep> steps);
   void exchange();
+  void tell_overruled(std::size_t socket);
   void end_connections();
 
   ScriptedRun& run_;
@@ -47,6 +49,7 @@ class SocketRun {
   boost::asio::signal_set signals_{io_, SIGINT, SIGTERM};
   std::vector<std::unique_ptr<Val3Socket>> sockets_;
   std::vector<int> channels_;  // of the sockets
+  std::set<int> overruled_;    // channels whose sioCtrl was told to change nothing
   bool is_stopped_ = false;    // by a signal
 };
 

@@ -99,8 +99,7 @@ int Val3Channel::set(std::string_view name, std::optional<double> number, std::o
     if (!is_whole(*number, 0.0, 255.0)) return kRefused;
     end_of_string_ = static_cast<std::uint8_t>(*number);
   } else if (name == "clients") {
-    if (!is_whole(*number, 1.0, 100.0)) return kRefused;
-    clients_ = *number;
+    if (*number != 1.0) return kRefused;
   } else if (name == "port") {
     if (!is_whole(*number, 0.0, 65'535.0)) return kRefused;
     port_ = static_cast<std::uint16_t>(*number);

@@ -23,6 +23,8 @@ class Val3Channel {
   [[nodiscard]] const std::string& link() const { return link_; }
   /// Else a serial port: always active, and its cable is always there.
   [[nodiscard]] bool is_socket() const { return is_socket_; }
+  /// A socket of s8 for datagrams. Its peer in memory is as that of any other.
+  [[nodiscard]] bool is_udp() const { return link_.starts_with("UdpSocket\\"); }
 
   // ---- the program's end ----
   /// Makes it active; true when a peer is there.
@@ -32,7 +34,7 @@ class Val3Channel {
   std::size_t send(std::span<const std::uint8_t> bytes);
   /// Drops what was read and ends the connection; false where there was none.
   bool close();
-  /// As sioCtrl answers (manual 6, page 64).
+  /// As sioCtrl answers (manual 6, page 64). More than one of `clients` is refused: one peer at a time.
   int set(std::string_view name, std::optional<double> number, std::optional<bool> truth,
           const std::string* text);
   [[nodiscard]] double timeout_s() const { return timeout_s_; }
@@ -79,7 +81,6 @@ class Val3Channel {
   double timeout_s_ = 5.0;  // of a new socket on the pendant
   std::uint8_t end_of_string_ = 13;
   bool nagle_ = true;
-  double clients_ = 1.0;
   std::string target_;
   std::optional<std::uint16_t> port_;
 };

@@ -3,6 +3,7 @@
 #include <numbers>
 #include <utility>
 
+#include "sim_controller/move_obstacle.hpp"
 #include "sim_controller/val3_system.hpp"
 #include "sim_controller/val3_units.hpp"
 
@@ -85,9 +86,13 @@ val3::RunError Val3System::store(const val3::MoveOrder& order) {
       !is_allowed(order.config, arm_.config_of(from), arm_.config_of(way.path.back())))
     way.complete = false;
   way.complete = way.complete && order.reachable;
-  sim::store(drives, way.complete ? plan_move(plant_, {std::move(way.path)},
-                                              descriptor_from_val3(order.descriptor), tip_from_tool)
-                                  : impossible_move(from));
+  if (way.complete) {
+    sim::store(drives, plan_move(plant_, {std::move(way.path)}, descriptor_from_val3(order.descriptor),
+                                 tip_from_tool));
+  } else {
+    const std::string why = move_obstacle(plant_, arm_, order, from, way);
+    sim::store(drives, impossible_move(from, impossible_move_text(order, why)));
+  }
   return val3::kErrorNone;
 }
 
@@ -97,6 +102,8 @@ bool Val3System::store_is_full() const {
 }
 
 val3::RunError Val3System::move_error() const { return static_cast<val3::RunError>(cabinet_.drives.error); }
+
+const std::string& Val3System::why_move_failed() const { return cabinet_.drives.error_why; }
 
 val3::Joint Val3System::last_stored() const { return val3_from_joints(end_of_queue(cabinet_.drives)); }
 

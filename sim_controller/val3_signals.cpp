@@ -1,6 +1,7 @@
 #include "sim_controller/val3_signals.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 namespace sim {
@@ -16,16 +17,11 @@ std::optional<std::string_view> number_behind(std::string_view name, std::string
   return name;
 }
 
-/// The names of s5 and s6 as those of s7: there a signal stands without its card.
-std::string with_card(std::string_view link) {
-  std::string name(link);
-  if (name.find('\\') != std::string::npos) return name;
-  if (const auto number = number_behind(name, "bIn")) return "BasicIO-1\\%I" + std::string(*number);
-  if (const auto number = number_behind(name, "bOut")) return "BasicIO-1\\%Q" + std::string(*number);
-  if (number_behind(name, "fIn") || number_behind(name, "fOut")) return "FastIO\\" + name;
-  if (number_behind(name, "usrIn")) return "UserIO\\" + name;
-  return name;
-}
+/// Cards that there is one of.
+constexpr std::array<std::string_view, 6> kSingleCards{"FastIO", "UserIO",     "CpuIO",
+                                                       "RsiIO",  "PtCFaultIO", "ValveIO"};
+/// ... and those that are counted: BasicIO-2, ModbusSrv-0, EncoderIO1.
+constexpr std::array<std::string_view, 3> kCountedCards{"BasicIO-", "ModbusSrv-", "EncoderIO"};
 
 /// "%I0", "%IW0", "fIn0", "usrIn1", a name that ends in In or In and a number.
 bool reads_as_input(std::string_view link) {
@@ -50,11 +46,18 @@ bool level_of(CellSignal signal, const Cabinet& cabinet) {
   return false;
 }
 
+using SignalIds = std::map<std::string, int, std::less<>>;
+
+std::optional<int> known_in(const SignalIds& ids, std::string_view link) {
+  const auto known = ids.find(signal_name(link));
+  return known == ids.end() ? std::nullopt : std::optional(known->second);
+}
+
 template <class Kind, class Make>
-std::optional<int> find_or_make(std::string_view link, std::map<std::string, int, std::less<>>& ids,
+std::optional<int> find_or_make(std::string_view link, const CardNames& cards, SignalIds& ids,
                                 std::vector<Kind>& all, const Make& make) {
-  if (link.empty()) return std::nullopt;
-  const std::string name = with_card(link);
+  if (link.empty() || missing_card(link, cards)) return std::nullopt;
+  const std::string name = signal_name(link);
   if (const auto known = ids.find(name); known != ids.end()) return known->second;
   if (all.size() >= Val3Signals::kSignalsMax) return std::nullopt;
   const int id = static_cast<int>(all.size());
@@ -65,6 +68,27 @@ std::optional<int> find_or_make(std::string_view link, std::map<std::string, int
 
 }  // namespace
 
+std::string signal_name(std::string_view link) {
+  std::string name(link);
+  if (name.find('\\') != std::string::npos) return name;
+  if (const auto number = number_behind(name, "bIn")) return "BasicIO-1\\%I" + std::string(*number);
+  if (const auto number = number_behind(name, "bOut")) return "BasicIO-1\\%Q" + std::string(*number);
+  if (number_behind(name, "fIn") || number_behind(name, "fOut")) return "FastIO\\" + name;
+  if (number_behind(name, "usrIn")) return "UserIO\\" + name;
+  return name;
+}
+
+std::optional<std::string> missing_card(std::string_view link, const CardNames& more) {
+  const std::size_t slash = link.find('\\');
+  if (slash == std::string_view::npos) return std::nullopt;
+  const std::string_view card = link.substr(0, slash);
+  const bool is_counted = std::ranges::any_of(
+      kCountedCards, [card](std::string_view prefix) { return number_behind(card, prefix).has_value(); });
+  if (is_counted || card == "EncoderIO" || std::ranges::count(kSingleCards, card) != 0 || more.contains(card))
+    return std::nullopt;
+  return std::string(card);
+}
+
 CellLinks touchcal_links() {
   return {{"FastIO\\fIn0", CellSignal::kContact},
           {"BasicIO-1\\%I0", CellSignal::kLoop},
@@ -73,7 +97,7 @@ CellLinks touchcal_links() {
 }
 
 std::optional<int> Val3Signals::find_digital(std::string_view link) {
-  return find_or_make(link, digital_ids_, digitals_, [this](const std::string& name) {
+  return find_or_make(link, cards_, digital_ids_, digitals_, [this](const std::string& name) {
     Digital made{.link = name, .is_input = reads_as_input(name)};
     made.has_latch = name == "FastIO\\fIn0" || name == "FastIO\\fIn1";
     if (const auto of_cell = links_.find(name); of_cell != links_.end()) {
@@ -85,7 +109,7 @@ std::optional<int> Val3Signals::find_digital(std::string_view link) {
 }
 
 std::optional<int> Val3Signals::find_analogue(std::string_view link) {
-  return find_or_make(link, analogue_ids_, analogues_, [](const std::string& name) {
+  return find_or_make(link, cards_, analogue_ids_, analogues_, [](const std::string& name) {
     return Analogue{.link = name, .is_input = reads_as_input(name)};
   });
 }
@@ -109,15 +133,19 @@ val3::RunError Val3Signals::write(int id, double value) {
   return val3::kErrorNone;
 }
 
+std::optional<int> Val3Signals::known_digital(std::string_view link) const {
+  return known_in(digital_ids_, link);
+}
+
 bool Val3Signals::set(std::string_view link, bool on) {
-  const auto id = find_digital(link);
+  const auto id = known_digital(link);
   if (!id || at(*id).of_cell) return false;
   digitals_[static_cast<std::size_t>(*id)].on = on;
   return true;
 }
 
 bool Val3Signals::set(std::string_view link, double value) {
-  const auto id = find_analogue(link);
+  const auto id = known_in(analogue_ids_, link);
   if (!id) return false;
   analogues_[static_cast<std::size_t>(*id)].value = value;
   return true;

@@ -40,7 +40,7 @@ Val3System::Val3System(const Plant& plant, Cabinet& cabinet, Val3SystemOptions o
       cabinet_(cabinet),
       options_(std::move(options)),
       arm_(plant, options_.wrist_to_flange_m),
-      signals_(options_.links),
+      signals_(options_.links, options_.cards),
       motion_{.from = cabinet.drives.joints, .to = cabinet.drives.joints} {
   options_.versions.emplace("ArmType", plant.arm_name + "-S1");
 }
@@ -48,8 +48,11 @@ Val3System::Val3System(const Plant& plant, Cabinet& cabinet, Val3SystemOptions o
 CabinetTick Val3System::tick() {
   ++ticks_;
   power_up();
+  const bool had_failed = cabinet_.drives.error != 0;
   CabinetTick seen = sim::tick(plant_, cabinet_);
   motion_ = seen.motion;
+  if (!had_failed && !why_move_failed().empty())
+    keep("error " + std::to_string(cabinet_.drives.error) + ": " + why_move_failed());
   watch_latch(seen);
   return seen;
 }
@@ -91,7 +94,11 @@ double Val3System::channel_timeout_s(int channel) const { return channels_.at(ch
 std::uint8_t Val3System::end_of_string(int channel) const { return channels_.at(channel).end_of_string(); }
 int Val3System::set_channel(int channel, std::string_view name, std::optional<double> number,
                             std::optional<bool> truth, const std::string* text) {
-  return channels_.at(channel).set(name, number, truth, text);
+  const int answer = channels_.at(channel).set(name, number, truth, text);
+  if (name == "clients" && number.value_or(0.0) > 1.0 && told_clients_.insert(channel).second)
+    keep(channels_.at(channel).link() + ": sioCtrl gives " + std::to_string(answer) +
+         " to more than one of clients: one is simulated");
+  return answer;
 }
 
 // ---- latch ----

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 
@@ -20,6 +21,7 @@ namespace sim {
 /// What a simulated controller says of itself, and what differs from one to the next.
 struct Val3SystemOptions {
   CellLinks links = touchcal_links();
+  CardNames cards{};               // of fieldbuses
   double wrist_to_flange_m = 0.1;  // of a TX90
   /// getVersion(), beside ArmType: the plant's arm.
   std::map<std::string, std::string, std::less<>> versions{{"VAL3", "s7.7.2 - Mar 23 2012 - 16:01:17"},
@@ -54,6 +56,9 @@ class Val3System final : public val3::System {
   [[nodiscard]] UserPage& page() { return page_; }
   /// Messages of logMsg and popUpMsg, the newest last; kMessagesMax of them.
   [[nodiscard]] const std::deque<std::string>& messages() const { return messages_; }
+  /// Which move set move_error() and why it is impossible; empty where nothing did, or something else. It
+  /// goes to the messages when the move fails.
+  [[nodiscard]] const std::string& why_move_failed() const;
   /// Digital and analogue levels, joints and time as before; channels closed, motion reset: as at the end of
   /// an application (manual 6, page 61).
   void end_application();
@@ -148,6 +153,7 @@ class Val3System final : public val3::System {
   ControllerArm arm_;
   Val3Signals signals_;
   Val3Channels channels_;
+  std::set<int> told_clients_;  // channels
   UserPage page_;
   std::deque<std::string> messages_;
   std::int64_t ticks_ = 0;

@@ -145,7 +145,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"sim_controller/planned_move", "how fast each part of a move is: stored_moves_test, drives_test"},
     {"sim_controller/readiness", "refusals of an unready cabinet: controller_test, admission_test"},
     {"sim_controller/reports", "what the host is told: controller_test, motion_task_test"},
-    {"sim_controller/scripted_run", "scripts carried out: run_command_test"},
+    {"sim_controller/scripted_run", "scripts carried out: run_command_test, run_watch_test"},
     {"sim_controller/val3/checks/channel_checks", "sockets that are never closed: val3/checks/checks_test"},
     {"sim_controller/val3/checks/flow_checks", "lines that are never reached: val3/checks/checks_test"},
     {"sim_controller/val3/checks/global_checks",

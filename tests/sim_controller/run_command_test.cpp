@@ -3,9 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
+#include "tests/sim_controller/small_run.hpp"
 #include "tests/val3/small_project.hpp"
 
 namespace sim {
@@ -15,30 +13,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kCellFolder = TOUCHCAL_SOURCE_DIR "/config/cells/demo/";
-
-struct Ran {
-  int code = 0;
-  std::string out;
-  std::string error;
-};
-
-Ran run(const std::filesystem::path& application, const std::string& script, double seconds = 0.0) {
-  const std::filesystem::path file = application.parent_path() / "script.txt";
-  if (!script.empty()) std::ofstream(file) << script;
-  std::ostringstream out;
-  std::ostringstream error;
-  const RunCommand command{.application = application.string(),
-                           .script_file = script.empty() ? "" : file.string(),
-                           .cell_file = kCellFolder + "cell.json",
-                           .truth_file = kCellFolder + "truth.json",
-                           .seconds = seconds};
-  Ran ran;
-  ran.code = run_application(command, out, error);
-  ran.out = out.str();
-  ran.error = error.str();
-  return ran;
-}
+using testing::run_small;
+using testing::SmallRun;
 
 TEST(RunCommand, DrivesInputsPowerKeysAndSocketsByTheScript) {
   val3::SmallProject project;
@@ -52,12 +28,12 @@ TEST(RunCommand, DrivesInputsPowerKeysAndSocketsByTheScript) {
                   "userPage()\ntitle(\"small\")\nputln(\"hello\")\nwait(di==true)\ndq=true\nn[0]=getKey()\n"
                   "n[1]=sioGet(si,in)\nout[0]=in[0]+1\nout[1]=in[1]+1\nsioSet(si,out)\n"
                   "wait(isPowered())\nmovej(j,flange,m)\nwaitEndMove()\nlogMsg(\"done\")");
-  const Ran ran =
-      run(project.write().path(),
-          "0 power off\n0.1 expect-output BasicIO-1\\%Q0 off\n0.2 key 271\n"
-          "0.2 input BasicIO-1\\%I0 on\n0.3 expect-output BasicIO-1\\%Q0 on\n"
-          "0.3 expect-number n 271\n0.4 connect Socket\\host\n0.4 send Socket\\host \"AB\"\n"
-          "0.5 expect-sent Socket\\host \"BC\"\n0.5 expect-task small~ 1\n0.6 power on\n60 end\n");
+  const SmallRun ran =
+      run_small(project.write().path(),
+                "0 power off\n0.1 expect-output BasicIO-1\\%Q0 off\n0.2 key 271\n"
+                "0.2 input BasicIO-1\\%I0 on\n0.3 expect-output BasicIO-1\\%Q0 on\n"
+                "0.3 expect-number n 271\n0.4 connect Socket\\host\n0.4 send Socket\\host \"AB\"\n"
+                "0.5 expect-sent Socket\\host \"BC\"\n0.5 expect-task small~ 1\n0.6 power on\n60 end\n");
   EXPECT_EQ(ran.code, kRanWell) << ran.out << ran.error;
   EXPECT_THAT(ran.out, AllOf(HasSubstr("log: done"), HasSubstr("page: small"), HasSubstr("hello"),
                              HasSubstr("the application has ended"), HasSubstr("0 failures")));
@@ -66,7 +42,7 @@ TEST(RunCommand, DrivesInputsPowerKeysAndSocketsByTheScript) {
 TEST(RunCommand, TellsADeadTaskWithItsErrorAndLine) {
   val3::SmallProject project;
   project.number("n", 2).program("start", "n=1\nn=n[7]");
-  const Ran ran = run(project.write().path(), "");
+  const SmallRun ran = run_small(project.write().path(), "");
   EXPECT_EQ(ran.code, kRanWithFailures);
   EXPECT_THAT(ran.out, HasSubstr("FAILED task small~ ends with error 20 at start.pgx:4"));
 }
@@ -75,7 +51,7 @@ TEST(RunCommand, TellsAPeriodThatWasTooShort) {
   val3::SmallProject project;
   project.number("n").flag("bLate").program("busy", "while true\nn=n+1\nendWhile");
   project.program("start", "taskCreateSync \"busy\",0.004,bLate,busy()");
-  const Ran ran = run(project.write().path(), "", 0.1);
+  const SmallRun ran = run_small(project.write().path(), "", 0.1);
   EXPECT_EQ(ran.code, kRanWithFailures);
   EXPECT_THAT(ran.out, HasSubstr("task busy did not end within its period"));
 }
@@ -83,9 +59,9 @@ TEST(RunCommand, TellsAPeriodThatWasTooShort) {
 TEST(RunCommand, TellsWhatWasExpectedAndIsNot) {
   val3::SmallProject project;
   project.number("n").program("start", "n=4\ndelay(10)");
-  const Ran ran = run(project.write().path(),
-                      "0.1 expect-number n 4\n0.2 expect-number n 5\n0.3 expect-number none 1\n"
-                      "0.3 expect-number n[9] 1\n0.3 send Socket\\x \"a\"\n0.4 stop\n1 end\n");
+  const SmallRun ran = run_small(project.write().path(),
+                                 "0.1 expect-number n 4\n0.2 expect-number n 5\n0.3 expect-number none 1\n"
+                                 "0.3 expect-number n[9] 1\n0.3 send Socket\\x \"a\"\n0.4 stop\n1 end\n");
   EXPECT_EQ(ran.code, kRanWithFailures);
   EXPECT_THAT(ran.out,
               AllOf(HasSubstr("FAILED line 2: n: it is 4"), HasSubstr("line 3: none: the application"),
@@ -96,19 +72,45 @@ TEST(RunCommand, TellsWhatWasExpectedAndIsNot) {
 TEST(RunCommand, RefusesWhatAControllerWouldNotLoadAndAScriptThatIsNone) {
   val3::SmallProject broken;
   broken.number("n").program("start", "n=nothing");
-  const Ran ran = run(broken.write().path(), "");
+  const SmallRun ran = run_small(broken.write().path(), "");
   EXPECT_EQ(ran.code, kCannotRun);
   EXPECT_THAT(ran.error, AllOf(HasSubstr("start.pgx:3"), HasSubstr("a controller would not load it")));
   val3::SmallProject right;
   right.program("start", "");
-  const Ran script = run(right.write().path(), "0 jump\n");
+  const SmallRun script = run_small(right.write().path(), "0 jump\n");
   EXPECT_EQ(script.code, kCannotRun);
   EXPECT_THAT(script.error, HasSubstr("script.txt:1: 'jump' is no command"));
-  EXPECT_EQ(run(right.path().parent_path() / "none.pjx", "").code, kCannotRun);
+  EXPECT_EQ(run_small(right.path().parent_path() / "none.pjx", "").code, kCannotRun);
+}
+
+TEST(RunCommand, RefusesAScriptThatNamesASignalWhichIsNotThere) {
+  val3::SmallProject project;
+  project.data("di", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%I7\"/>").program("start", "");
+  const std::string at = project.write().path().string();
+  const SmallRun mistyped = run_small(at, "0 power on\n0 input BasicI0-1\\%I7 on\n");
+  EXPECT_EQ(mistyped.code, kCannotRun);
+  EXPECT_EQ(mistyped.out, "");
+  EXPECT_THAT(mistyped.error, AllOf(HasSubstr("script.txt:2: 'BasicI0-1\\%I7' is no digital input or output"),
+                                    HasSubstr("there are: "), HasSubstr("BasicIO-1\\%I7")));
+  EXPECT_EQ(run_small(at, "0 input BasicIO-1\\%I7 on\n").code, kRanWell);
+}
+
+TEST(RunCommand, TellsAtLoadWhatIsLinkedToACardThatIsNotThereAndItsUseFails) {
+  val3::SmallProject project;
+  project.flag("b").number("n").data("di", "dio", "<Value key=\"0\" link=\"NoCard\\nothing\"/>");
+  project.program("start", "n=ioStatus(di)\ndelay(0.1)\nb=(di==true)");
+  const std::string at = project.write().path().string();
+  const SmallRun ran = run_small(at, "0.05 expect-number n -1\n");
+  EXPECT_EQ(ran.code, kRanWithFailures);
+  EXPECT_THAT(ran.error, HasSubstr("di is linked to NoCard\\nothing, and there is no card NoCard"));
+  EXPECT_THAT(ran.out, AllOf(HasSubstr("ends with error 123 at start.pgx:5"), HasSubstr("1 failures")));
+  const SmallRun declared = run_small(at, "0 card NoCard\n0.05 expect-number n 0\n");
+  EXPECT_EQ(declared.code, kRanWell) << declared.out;
+  EXPECT_EQ(declared.error, "");
 }
 
 TEST(RunCommand, RunsOurOwnApplication) {
-  const Ran ran = run(TOUCHCAL_SOURCE_DIR "/cs8_protocol/val3/touchcal/touchcal.pjx", "", 2.0);
+  const SmallRun ran = run_small(TOUCHCAL_SOURCE_DIR "/cs8_protocol/val3/touchcal/touchcal.pjx", "", 2.0);
   EXPECT_EQ(ran.code, kRanWell) << ran.out << ran.error;
   EXPECT_THAT(ran.out, HasSubstr("task motion: status 1"));
 }

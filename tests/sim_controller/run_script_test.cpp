@@ -44,19 +44,28 @@ TEST(RunScript, SaysWhichSocketsAreRealFromTheStart) {
   EXPECT_EQ(steps[1].act.text, "127.0.0.1:81");
 }
 
+TEST(RunScript, DeclaresCardsFromTheStart) {
+  const auto steps = steps_of("0 card J206-1");
+  ASSERT_EQ(steps.size(), 1u);
+  EXPECT_EQ(steps[0].act.kind, ScriptAct::Kind::kCard);
+  EXPECT_EQ(steps[0].act.name, "J206-1");
+}
+
 TEST(RunScript, RefusesWhatItDoesNotKnowWithLineAndRemedy) {
   const std::vector<std::tuple<std::string, int, std::string>> mistakes{
       {"input x on", 1, "'input' is no time"},
       {"-1 end", 1, "is no time"},
       {"nan end", 1, "is no time"},
       {"1e9 end", 1, "is no time"},
-      {"0 jump", 1, "'jump' is no command; there are: input LINK on|off"},
+      {"0 jump", 1, "'jump' is no command; there are: card NAME, input LINK on|off"},
       {"0", 1, "'' is no command"},
       {"0 input x", 1, "write 'input LINK on|off'"},
       {"0 input", 1, "write 'input LINK on|off'"},
       {"0 mode press", 1, "write 'mode manual|test|local|remote'"},
       {"0 key x", 1, "write 'key CODE'"},
       {"0 end now", 1, "write 'end'"},
+      {"0.5 card J206-1", 1, "a card is there from the start; begin its line with 0"},
+      {"0 card", 1, "write 'card NAME'"},
       {"0 socket s", 1, "write 'socket SOCKET PORT|HOST:PORT'"},
       {"0 socket s 70000", 1, "write 'socket"},
       {"0 socket s peer:0", 1, "write 'socket"},

@@ -29,6 +29,7 @@ class SocketRunTest : public ::testing::Test {
     project_.number("n", 4).number("in", 4).number("one");
     project_.data("si", "sio", "<Value key=\"0\" link=\"Socket\\host\"/>");
     project_.data("siEye", "sio", "<Value key=\"0\" link=\"Socket\\eye\"/>");
+    project_.data("siBeacon", "sio", "<Value key=\"0\" link=\"UdpSocket\\beacon\"/>");
     project_.data("siPort", "sio", "<Value key=\"0\" link=\"Serial\\COM1\"/>");
   }
 
@@ -83,6 +84,16 @@ TEST_F(SocketRunTest, AnApplicationAsksItsPeerOverARealSocketAndEnds) {
   EXPECT_EQ(peer.get(), "see\r and the end");
 }
 
+TEST_F(SocketRunTest, TellsOnceThatItsPlaceIsNotThatOfSioCtrl) {
+  ScriptedRun& run =
+      begin("one=sioCtrl(si,\"port\",1234)\none=sioCtrl(si,\"target\",\"10.0.0.1\")\ndelay(0.05)");
+  SocketRun(run, std::vector<RunSocket>{{"host", "", 0}, {"eye", "", 0}}, {}).run(1.0, 1.0);
+  const std::string told = "its place is that of --socket; port and target of sioCtrl change nothing";
+  const std::string out = out_.str();
+  EXPECT_THAT(out, HasSubstr("Socket\\host: " + told));
+  EXPECT_EQ(out.find(told), out.rfind(told)) << out;
+}
+
 TEST_F(SocketRunTest, TimeIsWallTime) {
   constexpr double kSeconds = 0.3;
   ScriptedRun& run = begin("wait(false)");
@@ -99,7 +110,8 @@ TEST_F(SocketRunTest, RefusesWhatIsNoSocketOfTheApplication) {
   EXPECT_THAT(refusal_of({{"hots", "", 0}}),
               HasSubstr("--socket hots: no sio of the application is linked to it alone; give one of these "
                         "links: Socket\\host, Socket\\eye"));
-  EXPECT_THAT(refusal_of({{"Serial\\COM1", "", 0}}), HasSubstr("give one of these links"));
+  EXPECT_THAT(refusal_of({{"Serial\\COM1", "", 0}}), HasSubstr("Serial\\COM1 is a serial port, no socket"));
+  EXPECT_THAT(refusal_of({{"beacon", "", 0}}), HasSubstr("UdpSocket\\beacon is a UDP socket, and only TCP"));
   EXPECT_THAT(refusal_of({{"host", "", 0}, {"Socket\\host", "", 0}}), HasSubstr("comes twice"));
   const std::vector<ScriptStep> steps{
       {.line = 3, .act = {.kind = ScriptAct::Kind::kSend, .name = "Socket\\host", .text = "x"}}};

@@ -202,6 +202,48 @@ TEST_F(Val3Cell, OtherLinksAreInputsAndOutputsByTheirNames) {
   EXPECT_EQ(system.find_digital(""), std::nullopt);
 }
 
+TEST_F(Val3Cell, ASignalOfACardThatIsNotThereIsNotLinked) {
+  EXPECT_EQ(system.find_digital("NoCard\\nothing"), std::nullopt);
+  EXPECT_EQ(system.find_digital("BasicIO\\%I0"), std::nullopt) << "boards are counted";
+  EXPECT_EQ(system.find_analogue("NoCard\\level"), std::nullopt);
+  EXPECT_TRUE(system.find_digital("valve1")) << "a system signal stands without its card";
+  EXPECT_TRUE(Val3Signals({}, {"NoCard"}).find_digital("NoCard\\nothing"));
+}
+
+TEST_F(Val3Cell, AScriptSetsNoSignalThatNobodyAskedFor) {
+  EXPECT_FALSE(system.signals().set("BasicIO-1\\%I9", true));
+  EXPECT_FALSE(system.signals().set("BasicIO-1\\%IW9", 1.0));
+  EXPECT_EQ(system.signals().known_digital("BasicIO-1\\%I9"), std::nullopt);
+}
+
+TEST_F(Val3Cell, AnImpossibleMoveGoesToTheMessagesWhenItsTurnComes) {
+  ASSERT_EQ(system.store(line_to(above_face())), val3::kErrorNone);
+  val3::MoveOrder order{.shape = val3::MoveOrder::Shape::kJoint, .to = {0, 0, 150, 0, 0, 0}};
+  order.origin = {"main~", "start.pgx", 4};
+  ASSERT_EQ(system.store(order), val3::kErrorNone);
+  ticks(1);
+  EXPECT_TRUE(system.messages().empty()) << "the line comes first";
+  until_empty();
+  ticks(1);
+  ASSERT_EQ(system.messages().size(), 1u);
+  EXPECT_TRUE(system.messages()[0].starts_with("error 150: movej at start.pgx:4 of task main~: joint 3 at "));
+  EXPECT_FALSE(system.why_move_failed().empty());
+  ticks(10);
+  EXPECT_EQ(system.messages().size(), 1u) << "once";
+  system.reset_motion({});
+  EXPECT_EQ(system.why_move_failed(), "");
+}
+
+TEST_F(Val3Cell, TellsOnceThatMoreThanOneClientIsNotSimulated) {
+  const int channel = system.find_channel("Socket\\host").value();
+  EXPECT_EQ(system.set_channel(channel, "clients", 1.0, {}, nullptr), 0);
+  EXPECT_TRUE(system.messages().empty());
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(system.set_channel(channel, "clients", 2.0, {}, nullptr), -3);
+  ASSERT_EQ(system.messages().size(), 1u);
+  EXPECT_EQ(system.messages()[0],
+            "Socket\\host: sioCtrl gives -3 to more than one of clients: one is simulated");
+}
+
 TEST_F(Val3Cell, ModeStatusAndHoldAreNumberedByMode) {
   EXPECT_EQ(system.working_mode(), 4);
   EXPECT_EQ(system.mode_status(), 0);

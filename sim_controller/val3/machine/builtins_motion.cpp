@@ -27,6 +27,12 @@ void demand_no_failed_move(const Context& context) {
     throw RunFailure(error, "an earlier move could not be completed");
 }
 
+/// The line that is carried out.
+MoveOrigin origin_of(const Context& context) {
+  const Program& program = *context.here->code->program;
+  return {context.task.name, program.file, program.lines[context.here->next - 1].line};
+}
+
 /// The number of the stored move.
 double store(Context& context, MoveOrder order, const Tool& tool, const Mdesc& descriptor) {
   demand_no_failed_move(context);
@@ -37,6 +43,7 @@ double store(Context& context, MoveOrder order, const Tool& tool, const Mdesc& d
   order.descriptor = descriptor;
   for (double Mdesc::*length : {&Mdesc::tvel, &Mdesc::leave, &Mdesc::reach})
     order.descriptor.*length *= unit_mm;
+  order.origin = origin_of(context);
   if (const RunError error = context.system.store(order); error != kErrorNone)
     throw RunFailure(error, "a move that cannot be stored");
   return context.system.last_move_id();

@@ -47,6 +47,13 @@ enum RunError : int {
   kErrorToolWithoutFather = 164,
 };
 
+/// The line that stores a motion, for the log.
+struct MoveOrigin {
+  std::string task;
+  std::string file;
+  int line = 0;
+};
+
 /// A motion that is put into the move store. Poses are of the tool's end in the world, mm.
 struct MoveOrder {
   enum class Shape { kJoint, kLine, kCircle };
@@ -59,6 +66,7 @@ struct MoveOrder {
   bool reachable = true;  // false: no joints bring the tool there; it fails when the arm should begin it
   /// Of kLine and kCircle, what the end may be: kSame means as at the move's start. What the point asks for.
   Config config{Shoulder::kFree, Elbow::kFree, Wrist::kFree};
+  MoveOrigin origin{};
 };
 
 class System {
