@@ -4,6 +4,7 @@
 #include "sim_controller/val3/machine/builtins.hpp"
 #include "sim_controller/val3/machine/channels.hpp"
 #include "sim_controller/val3/machine/geometry.hpp"
+#include "sim_controller/val3/machine/libraries.hpp"
 #include "sim_controller/val3/machine/signals.hpp"
 
 namespace val3 {
@@ -80,9 +81,10 @@ void Compiler::refuse(const Expression& e, const std::string& what) const {
 
 template <class T>
 NodePtr<T> Compiler::called(const Expression& e) {
-  const Builtins::Make* make = builtins().find(e);
-  if (make == nullptr) refuse(e, e.text + " with these arguments is not simulated");
-  AnyNode made = (*make)(*this, e);
+  const bool is_of_library = is_library_instruction(e);
+  const Builtins::Make* make = is_of_library ? nullptr : builtins().find(e);
+  if (make == nullptr && !is_of_library) refuse(e, e.text + " with these arguments is not simulated");
+  AnyNode made = is_of_library ? library_instruction(*this, e) : (*make)(*this, e);
   const auto* typed = dynamic_cast<const Node<T>*>(made.get());
   if (typed == nullptr) refuse(e, e.text + " does not give this type");
   made.release();  // NOLINT(bugprone-unused-return-value): the typed pointer owns it

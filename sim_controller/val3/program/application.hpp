@@ -78,6 +78,14 @@ struct Program {
 
 struct Application;
 
+/// A project that some line loads behind an alias: alias:libLoad("path").
+struct Loadable {
+  enum class Is { kFound, kMissing, kOutside, kEncrypted, kUnreadable };
+  std::string path;  // as the line writes it
+  Is is = Is::kMissing;
+  std::shared_ptr<Application> application;  // of kFound
+};
+
 /// Another application whose public data and programs are used as alias:name.
 struct Library {
   std::string alias;
@@ -85,6 +93,7 @@ struct Library {
   bool autoload = true;
   Position at;
   std::shared_ptr<Application> application;  // null: not found, or loaded by a path that is computed
+  std::vector<Loadable> loadable;            // what lines load by a path that is written out, each path once
 };
 
 /// A structure that the application declares: the public data of another project.
