@@ -48,7 +48,7 @@ Val3System::Val3System(const Plant& plant, Cabinet& cabinet, Val3SystemOptions o
 CabinetTick Val3System::tick() {
   ++ticks_;
   power_up();
-  CabinetTick seen = sim::tick(plant_, cabinet_);
+  CabinetTick seen = sim::tick(plant_, cabinet_, program_leave(cabinet_.panel));
   motion_ = seen.motion;
   watch_latch(seen);
   return seen;
