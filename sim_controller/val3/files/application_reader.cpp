@@ -53,6 +53,8 @@ std::shared_ptr<Application> ApplicationReader::read(const std::filesystem::path
   application->stack_bytes = project->stack_bytes;
   application->is_metric = project->is_metric;
 
+  application->has_pages = files_.names().find(application->folder, "interface").has_value();
+
   UserTypeReader types(files_, *application);
   types.read(*project, findings, types_told_);
   read_data(*application, *project, types, findings);
@@ -71,9 +73,11 @@ void ApplicationReader::read_data(Application& application, const ProjectFile& p
   DeclaredNames names(application.language);
   for (const ProjectFile::Listed& listed : without_twins(project.data, findings)) {
     const auto path = files_.listed(application.folder, listed, findings);
+    application.has_unread_data = application.has_unread_data || !path;
     if (!path) continue;
     FileFindings of_data(files_.name_of(*path), findings_);
     const auto xml = files_.read(*path, of_data);
+    application.has_unread_data = application.has_unread_data || !xml;
     if (!xml) continue;
     std::vector<Global> globals;
     read_data_file(*xml, context, of_data, globals);
@@ -89,12 +93,16 @@ void ApplicationReader::read_programs(Application& application, const ProjectFil
   DeclaredNames names(application.language);
   for (const ProjectFile::Listed& listed : without_twins(project.programs, findings)) {
     const auto path = files_.listed(application.folder, listed, findings);
-    if (!path) continue;
+    const std::string stem = in_lower_case(std::filesystem::path(listed.file).stem().string());
+    if (!path) {
+      application.unread_programs.push_back(stem);
+      continue;
+    }
     FileFindings of_program(files_.name_of(*path), findings_);
     const auto xml = files_.read(*path, of_program);
-    if (!xml) continue;
     std::vector<Program> programs;
-    read_program_file(*xml, context, of_program, programs);
+    if (xml) read_program_file(*xml, context, of_program, programs);
+    if (programs.empty()) application.unread_programs.push_back(stem);
     if (programs.size() == 1 && in_lower_case(path->stem().string()) != in_lower_case(programs[0].name))
       of_program.note(file_rules::kFileName, programs[0].line,
                       "the program of this file is called " + shown_word(programs[0].name),

@@ -76,6 +76,7 @@ class CallCompiler {
       const double number = second->get(c);
       if (overrun) {
         task->period_ticks = period_in_ticks(number);
+        tell_rounding(c, task->name, number, task->period_ticks);
         task->overrun = overrun->get(c);
       } else {
         if (number < 1.0 || number > kPriorityMax)
@@ -142,6 +143,14 @@ class CallCompiler {
     const double ticks = std::floor(period_s / kTickSecondsOfTasks + kSlack);
     if (!(ticks >= 1.0) || ticks > kTicksMax) throw RunFailure(kErrorPeriods, "a period below 4 ms");
     return static_cast<int>(ticks);
+  }
+
+  static void tell_rounding(Context& context, const std::string& name, double period_s, int ticks) {
+    constexpr double kSame = 1e-9;
+    const double taken_s = ticks * kTickSecondsOfTasks;
+    if (std::abs(period_s - taken_s) > kSame)
+      context.system.log("the period of " + name + ", " + std::to_string(period_s) +
+                         " s, is rounded down to " + std::to_string(taken_s) + " s");
   }
 
   Compiler& compiler_;
