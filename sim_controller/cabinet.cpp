@@ -54,11 +54,25 @@ void watch_jog(Cabinet& cabinet, const Sensed& sensed) {
   if (is_empty(cabinet.drives) && is_settled(cabinet.drives)) cabinet.jog.reset();
 }
 
+bool may_move(const Panel& panel) {
+  return panel.powered && !panel.held && panel.arm_calibrated && panel.emergency_stop == 0;
+}
+
 }  // namespace
 
 bool motion_permitted(const Panel& panel) {
-  return panel.powered && !panel.held && panel.arm_calibrated && panel.emergency_stop == 0 &&
-         panel.mode == cs8::WorkingMode::kRemote && panel.cell_closed;
+  return may_move(panel) && panel.mode == cs8::WorkingMode::kRemote && panel.cell_closed;
+}
+
+MotionLeave program_leave(const Panel& panel) {
+  constexpr int kMoveStatus = 0, kFastTestStatus = 2;
+  const bool is_manual = panel.mode == cs8::WorkingMode::kManual;
+  const bool is_test = panel.mode == cs8::WorkingMode::kTest;
+  const bool is_fast_test = is_test && panel.mode_status == kFastTestStatus;
+  const bool moves =
+      panel.mode != cs8::WorkingMode::kNone && (panel.mode_status == kMoveStatus || is_fast_test);
+  return {.permitted = may_move(panel) && moves && (is_manual || panel.cell_closed),
+          .is_slow = is_manual || (is_test && !is_fast_test)};
 }
 
 Cabinet make_cabinet(const Plant& plant, std::uint64_t seed) {
@@ -70,9 +84,13 @@ Cabinet make_cabinet(const Plant& plant, std::uint64_t seed) {
 }
 
 CabinetTick tick(const Plant& plant, Cabinet& cabinet) {
+  return tick(plant, cabinet, {.permitted = motion_permitted(cabinet.panel)});
+}
+
+CabinetTick tick(const Plant& plant, Cabinet& cabinet, const MotionLeave& leave) {
   CabinetTick seen;
-  const bool permitted = cabinet.drives.braking || motion_permitted(cabinet.panel) || jog_permitted(cabinet);
-  seen.motion = tick(cabinet.drives, cabinet.panel.monitor_speed_percent, permitted);
+  const bool permitted = cabinet.drives.braking || leave.permitted || jog_permitted(cabinet);
+  seen.motion = tick(cabinet.drives, cabinet.panel.monitor_speed_percent, permitted, leave.is_slow);
   cabinet.world.powered = cabinet.panel.powered;
   seen.sensed = sense(plant, cabinet.world, seen.motion);
   if (seen.sensed.collision) {

@@ -25,8 +25,16 @@ struct Panel {
   bool confirm_key_stuck = false;  // it does not go off any more
 };
 
-/// Motion needs all of these, from its first tick to its last.
+/// A motion of touchcal needs all of these, from its first tick to its last: remote mode is its own demand.
 bool motion_permitted(const Panel& panel);
+
+/// Whether a controller lets a program's motion go on, and how fast (manual 6, pages 101 and 102).
+struct MotionLeave {
+  bool permitted = false;
+  bool is_slow = false;  // 250 mm/s: manual mode, and test mode but for its status "fast"
+};
+/// Of any program: in each mode whose status is "move" or "programmed". The door stops it in all but manual.
+MotionLeave program_leave(const Panel& panel);
 
 /// A level that a reader of the probe relies on has been there for so many ticks: 20 ms.
 inline constexpr int kSteadyTicks = 5;
@@ -73,6 +81,8 @@ struct CabinetTick {
 };
 
 /// One tick of drives, probe and bodies. A collision takes the power and leaves the arm where it hit.
+CabinetTick tick(const Plant& plant, Cabinet& cabinet, const MotionLeave& leave);
+/// The same as touchcal's motions are permitted.
 CabinetTick tick(const Plant& plant, Cabinet& cabinet);
 
 /// `ticks` in which nothing moves and nobody does anything.

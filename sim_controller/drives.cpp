@@ -195,7 +195,7 @@ void displace(Drives& drives, const calib::JointVector& joints) {
   if (drives.braking) finish_reset(drives);
 }
 
-TickMotion tick(Drives& drives, double monitor_speed_percent, bool permitted) {
+TickMotion tick(Drives& drives, double monitor_speed_percent, bool permitted, bool is_slow) {
   const bool may_go = permitted && !drives.stopped && monitor_speed_percent > 0.0 && !drives.braking;
   TickMotion motion{.from = drives.joints, .to = drives.joints};
   const bool stands = drives.queue.empty() || drives.rate == 0.0;
@@ -216,8 +216,9 @@ TickMotion tick(Drives& drives, double monitor_speed_percent, bool permitted) {
     arrives = true;
     if (slowing > 0.0) motion.moving_share = std::min(1.0, remaining / slowing);
   } else {
-    motion.rate_to = next_rate(
-        drives, may_go ? move.top_rate * monitor_speed_percent / kFullSpeedPercent : 0.0, remaining);
+    const double full_rate = move.top_rate * monitor_speed_percent / kFullSpeedPercent;
+    const double allowed_rate = is_slow ? std::min(full_rate, move.manual_rate) : full_rate;
+    motion.rate_to = next_rate(drives, may_go ? allowed_rate : 0.0, remaining);
   }
   const double way = (motion.rate_from + motion.rate_to) / 2.0 * motion.moving_share * kTickSeconds;
 

@@ -99,8 +99,8 @@ void restart_move(Drives& drives);
 void displace(Drives& drives, const calib::JointVector& joints);
 
 /// One tick. Without permission (hold) the arm decelerates on its path and keeps the queue; with it, it goes
-/// on.
-TickMotion tick(Drives& drives, double monitor_speed_percent, bool permitted);
+/// on. `is_slow`: no faster than manual mode allows.
+TickMotion tick(Drives& drives, double monitor_speed_percent, bool permitted, bool is_slow = false);
 
 /// getMoveId(): the number of the move that is travelled and its progress; behind the last one, the number
 /// that follows.

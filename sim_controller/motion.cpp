@@ -224,6 +224,7 @@ PathSlope path_slope(const Plant& plant, const Stretch& stretch, const Eigen::Is
     const double slowest_joint_s =
         ((next - here).cwiseAbs().array() / plant.joint_speeds_max.array()).maxCoeff();
     slope.joint_seconds = std::max(slope.joint_seconds, segments_per_share * slowest_joint_s);
+    slope.joint_rad = std::max(slope.joint_rad, segments_per_share * (next - here).cwiseAbs().maxCoeff());
   }
   return slope;
 }

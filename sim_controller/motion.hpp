@@ -78,6 +78,7 @@ struct PathSlope {
   double tip_m = 0.0;          // way of the tool centre
   double turn_rad = 0.0;       // turn of the tool
   double joint_seconds = 0.0;  // what the slowest joint would need at its full speed
+  double joint_rad = 0.0;      // turn of the joint that turns farthest
 };
 
 PathSlope path_slope(const Plant& plant, const Stretch& stretch,

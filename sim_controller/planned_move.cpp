@@ -34,6 +34,8 @@ Move plan_move(const Plant& plant, Stretch stretch, const MotionDescriptor& how,
   move.to = stretch.to;
   move.top_rate = std::min({kRateMax, how.tip_speed_m_s / slope.tip_m, how.turn_speed_rad_s / slope.turn_rad,
                             std::max(how.joint_speed_share, kShareMin) / slope.joint_seconds});
+  move.manual_rate =
+      std::min(kManualTipMetresPerSecond / slope.tip_m, kManualJointRadiansPerSecond / slope.joint_rad);
   move.acceleration = ramp(how.tip_acceleration_m_s2, how.joint_acceleration_share);
   move.deceleration = ramp(how.tip_acceleration_m_s2, how.joint_deceleration_share);
   const double harder = kResetDecelerationMetresPerSecond2 / kAccelerationMetresPerSecond2;

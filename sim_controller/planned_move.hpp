@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <string>
 
 #include "sim_controller/motion.hpp"
@@ -19,6 +20,10 @@ inline constexpr double kJointRampSeconds = 0.4;
 inline constexpr double kResetDecelerationMetresPerSecond2 = 2.0;
 /// ... and harder where that would take longer than this from the move's top speed to standstill.
 inline constexpr double kResetSeconds = 0.125;
+
+/// How fast an arm is in manual mode at most: its tool centre, and a joint (arm manual RX160, 1.4.2).
+inline constexpr double kManualTipMetresPerSecond = 0.25;
+inline constexpr double kManualJointRadiansPerSecond = 45.0 * std::numbers::pi / 180.0;
 
 /// How a move is made, as VAL3's mdesc says it (manual 6, page 155): shares of what each joint does
 /// nominally, and caps of the tool. The nominal speeds are those of the arm file; a joint's nominal
@@ -42,7 +47,8 @@ struct Move {
   std::shared_ptr<const Path> path;
   double from = 0.0;  // the stretch of the path that is travelled; back when `to` is less
   double to = 1.0;
-  double top_rate = 0.0;            // progress per second, at monitor speed 100 %
+  double top_rate = 0.0;  // progress per second, at monitor speed 100 %
+  double manual_rate = std::numeric_limits<double>::infinity();  // and in manual mode no more than this
   double acceleration = 0.0;        // progress per second^2; no monitor speed scales it
   double deceleration = 0.0;        // likewise
   double reset_deceleration = 0.0;  // of reset_motion()

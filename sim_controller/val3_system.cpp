@@ -49,7 +49,7 @@ CabinetTick Val3System::tick() {
   ++ticks_;
   power_up();
   const bool had_failed = cabinet_.drives.error != 0;
-  CabinetTick seen = sim::tick(plant_, cabinet_);
+  CabinetTick seen = sim::tick(plant_, cabinet_, program_leave(cabinet_.panel));
   motion_ = seen.motion;
   if (!had_failed && !why_move_failed().empty())
     keep("error " + std::to_string(cabinet_.drives.error) + ": " + why_move_failed());

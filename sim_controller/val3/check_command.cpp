@@ -71,10 +71,14 @@ void add_used(const Application& application, std::set<fs::path>& used) {
   const fs::path folder = application.folder;
   for (const UserType& type : application.user_types)
     if (!type.project.empty()) used.insert(normal(folder / type.project));
-  for (const Library& library : application.libraries)
-    if (library.application &&
-        used.insert(normal(fs::path(library.application->folder) / library.application->project)).second)
-      add_used(*library.application, used);
+  const auto add = [&used](const std::shared_ptr<Application>& library) {
+    if (library && used.insert(normal(fs::path(library->folder) / library->project)).second)
+      add_used(*library, used);
+  };
+  for (const Library& library : application.libraries) {
+    add(library.application);
+    for (const Loadable& loadable : library.loadable) add(loadable.application);
+  }
 }
 
 bool is_unreadable(const Finding& finding, const fs::path& project) {

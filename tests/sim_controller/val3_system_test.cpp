@@ -257,6 +257,66 @@ TEST_F(Val3Cell, ModeStatusAndHoldAreNumberedByMode) {
   EXPECT_FALSE(system.is_powered());
 }
 
+TEST_F(Val3Cell, AProgramMovesInEachModeAsItsStatusSays) {
+  using Mode = cs8::WorkingMode;
+  const auto moves = [this](Mode mode, int status) {
+    cabinet.panel.mode = mode;
+    cabinet.panel.mode_status = status;
+    const calib::JointVector before = cabinet.drives.joints;
+    ticks(5);
+    const bool moved = cabinet.drives.joints != before;
+    cabinet.panel.mode = Mode::kNone;
+    ticks(50);  // it comes to rest
+    return moved;
+  };
+  calib::JointVector far = cabinet.drives.joints;
+  far[5] += 1.0;
+  ASSERT_EQ(system.store(joint_move(far)), val3::kErrorNone);
+  for (const Mode mode : {Mode::kRemote, Mode::kLocal, Mode::kTest, Mode::kManual}) {
+    EXPECT_TRUE(moves(mode, 0)) << static_cast<int>(mode);
+    EXPECT_FALSE(moves(mode, 1)) << static_cast<int>(mode);
+  }
+  EXPECT_TRUE(moves(Mode::kTest, 2));
+  EXPECT_FALSE(moves(Mode::kManual, 2)) << "a person jogs";
+  EXPECT_FALSE(moves(Mode::kNone, 0));
+  cabinet.panel.cell_closed = false;
+  EXPECT_FALSE(moves(Mode::kLocal, 0));
+  EXPECT_TRUE(moves(Mode::kManual, 0));
+  perform(plant(), cabinet, Act::kHold);
+  EXPECT_FALSE(moves(Mode::kManual, 0));
+}
+
+TEST_F(Val3Cell, InManualModeTheToolIsNoFasterThan250MillimetresASecond) {
+  const auto fastest = [this](cs8::WorkingMode mode, int status, bool is_line) {
+    cabinet.panel.mode = mode;
+    cabinet.panel.mode_status = status;
+    displace(cabinet.drives, search().approach);
+    MoveOrder order = joint_move(clear());
+    if (is_line) {
+      order = line_to(clear());
+      order.descriptor = {.blend = val3::Blend::kOff};
+    }
+    order.tool = kProbeTool;
+    EXPECT_EQ(system.store(order), val3::kErrorNone);
+    double speed = 0.0;
+    for (int i = 0; i < kTicksMax && !system.is_empty(); ++i) {
+      system.tick();
+      speed = std::max(speed, system.tool_speed(kProbeTool));
+    }
+    EXPECT_TRUE(system.is_empty());
+    return speed;
+  };
+  for (const bool is_line : {false, true}) {
+    EXPECT_GT(fastest(cs8::WorkingMode::kLocal, 0, is_line), 260.0);
+    EXPECT_GT(fastest(cs8::WorkingMode::kTest, 2, is_line), 260.0);
+    for (const auto slow : {cs8::WorkingMode::kManual, cs8::WorkingMode::kTest}) {
+      const double speed = fastest(slow, 0, is_line);
+      EXPECT_LT(speed, 250.0 * (1.0 + kToolSpeedErrorMax));
+      EXPECT_GT(speed, 50.0);
+    }
+  }
+}
+
 TEST_F(Val3Cell, PowerComesUpInRemoteModeOnlyAndTakesItsTime) {
   system.disable_power();
   EXPECT_FALSE(system.is_powered());

@@ -1,6 +1,7 @@
 /// Lines that are never reached.
 #include "sim_controller/val3/checks/check_rules.hpp"
 #include "sim_controller/val3/checks/subject.hpp"
+#include "sim_controller/val3/checks/uses.hpp"
 
 namespace val3 {
 namespace {
@@ -12,16 +13,16 @@ class Flow {
   Flow(const CheckSubject& subject, const Program& program)
       : subject_(subject), program_(program), lines_(program.lines) {}
 
-  void run() { sequence(0, lines_.size()); }
+  void run() { sequence(0, lines_.size(), true); }
 
  private:
-  /// Whether what stands behind these lines is reached through them.
-  bool sequence(std::size_t first, std::size_t end) {
+  /// Whether what stands behind these lines is reached through them. `entered`: whether the first of them is.
+  bool sequence(std::size_t first, std::size_t end, bool entered) {
     if (++depth_ > kBlocksDeepMax) {
       --depth_;
       return true;
     }
-    bool reached = true, told = false;
+    bool reached = entered, told = false;
     std::size_t i = first;
     while (i < end) {
       const Line& line = lines_[i];
@@ -33,7 +34,7 @@ class Flow {
                       "this line is never reached");
       }
       const std::size_t close = line.open == i && line.close > i && line.close < end ? line.close : i;
-      const bool goes_on = close > i ? block(i, close) : simple(line, reached);
+      const bool goes_on = close > i ? block(i, close, reached) : simple(line, reached);
       reached = reached && goes_on;
       i = close + 1;
     }
@@ -49,48 +50,51 @@ class Flow {
     return line.kind != Line::Kind::kReturn;
   }
 
-  bool block(std::size_t open, std::size_t close) {
+  /// Inside of a block that is not reached nothing more is told.
+  bool block(std::size_t open, std::size_t close, bool reached) {
     switch (lines_[open].kind) {
       case Line::Kind::kIf:
-        return branches(open, close, Line::Kind::kElse);
+        return branches(open, close, Line::Kind::kElse, reached);
       case Line::Kind::kSwitch: {
         const bool outer = breaks_;
         breaks_ = false;
-        const bool falls = branches(open, close, Line::Kind::kDefault);
+        const bool falls = branches(open, close, Line::Kind::kDefault, reached);
         const bool goes_on = falls || breaks_;
         breaks_ = outer;
         return goes_on;
       }
       case Line::Kind::kWhile:
-        sequence(open + 1, close);
-        return !is_always(lines_[open], 1.0);
-      case Line::Kind::kDo:
-        sequence(open + 1, close);
-        return !is_always(lines_[close], 0.0);
+        sequence(open + 1, close, !reached || !is_always(lines_[open], false));
+        return !is_always(lines_[open], true);
+      case Line::Kind::kDo: {
+        const bool through = sequence(open + 1, close, true);
+        return through && !is_always(lines_[close], false);
+      }
       default:
-        sequence(open + 1, close);
+        sequence(open + 1, close, true);
         return true;
     }
   }
 
   /// Of `if` and `switch`; behind them is reached through a branch, or where none need be taken.
-  bool branches(std::size_t open, std::size_t close, Line::Kind last) {
+  bool branches(std::size_t open, std::size_t close, Line::Kind last, bool reached) {
     bool goes_on = false, has_last = false;
     std::size_t at = open;
     while (at < close) {
       const std::size_t next = lines_[at].next > at && lines_[at].next <= close ? lines_[at].next : close;
       // Before its first case a switch has nothing.
       const bool is_head = at == open && lines_[open].kind == Line::Kind::kSwitch;
-      if (sequence(at + 1, next) && !is_head) goes_on = true;
+      const bool is_condition = lines_[at].kind == Line::Kind::kIf || lines_[at].kind == Line::Kind::kElseIf;
+      const bool entered = !reached || !is_condition || !is_always(lines_[at], false);
+      if (sequence(at + 1, next, entered) && !is_head) goes_on = true;
       has_last = has_last || lines_[at].kind == last;
       at = next;
     }
     return goes_on || !has_last;
   }
 
-  static bool is_always(const Line& condition, double truth) {
-    return condition.expressions.size() == 1 && condition.expressions[0].kind == Expression::Kind::kTruth &&
-           condition.expressions[0].number == truth;
+  static bool is_always(const Line& condition, bool truth) {
+    return condition.expressions.size() == 1 && constant_truth(condition.expressions[0]) == truth;
   }
 
   const CheckSubject& subject_;

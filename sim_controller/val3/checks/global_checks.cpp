@@ -35,7 +35,9 @@ class GlobalChecks {
       if (!program.is_public && program.name != "start" && program.name != "stop" &&
           !called_.contains(&program))
         subject_.tell(Severity::kNote, check_rules::kUnusedProgram, program.file, program.line, 0,
-                      "nothing calls the program " + program.name);
+                      "nothing calls the program " + program.name +
+                          (subject_.application.has_pages ? ", but perhaps a user page does" : ""),
+                      subject_.application.has_pages ? "look for it in the files of interface/" : "");
   }
 
  private:
@@ -84,8 +86,12 @@ class GlobalChecks {
         return;
       default:
         if (!found->second.is_written)
-          tell(Severity::kNote, check_rules::kGlobalNeverSet,
-               " is read and never set: it has the default of its type");
+          subject_.tell(Severity::kNote, check_rules::kGlobalNeverSet, declared.file, declared.line, 0,
+                        declared.name + " is read and never set: it has the default of its type",
+                        subject_.application.form == 7
+                            ? "set it in start() if another value is meant: one that equals the default is "
+                              "not stored"
+                            : "");
     }
   }
 

@@ -46,8 +46,11 @@ void ProgramGraph::add(const Application& application, std::unordered_set<const 
     places_.emplace(&program, nodes_.size());
     nodes_.push_back({.application = &application, .program = &program, .calls = {}, .writes = {}});
   }
-  for (const Library& library : application.libraries)
+  for (const Library& library : application.libraries) {
     if (library.application) add(*library.application, seen);
+    for (const Loadable& loadable : library.loadable)
+      if (loadable.application) add(*loadable.application, seen);
+  }
 }
 
 void ProgramGraph::fill(Node& node) {

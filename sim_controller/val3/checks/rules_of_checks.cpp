@@ -21,7 +21,8 @@ constexpr Rule kRulesOfChecks[] = {
      "It takes a task's whole turn each time, in a synchronous task 3,000 lines of every period (M6 pages 80 "
      "and 81).",
      "Put delay(0) into it, or wait for its end by wait() or watch()."},
-    {kUnreachable, kWarning, "A line is never reached.", "A return or an endless loop stands before it.",
+    {kUnreachable, kWarning, "A line is never reached.",
+     "A return or an endless loop stands before it, or a condition that is never true.",
      "Take it away, or what stands before it."},
     {kLocalNeverSet, kWarning, "A local is read before it is set.",
      "It has the default of its type; a point has no frame: run-time error 162 (M6 page 126).",

@@ -31,7 +31,8 @@ constexpr Rule kRulesOfNames[] = {
      "M6 page 33 and the page of each type.", "Convert one side."},
     {kConditionType, kError, "A condition is no bool.", kNotCompiled, "Compare it with something."},
     {kDioCondition, kError, "An input or output stands as a condition by itself.",
-     "A dio is compared with a bool or a dio, or assigned; it is no bool.", "Write d==true."},
+     "A dio is compared with a bool or a dio, or assigned; it is no bool. Only ! takes it as one.",
+     "Write d==true."},
     {kMissingArgument, kError, "An argument is missing.", kNotCompiled, "Give it."},
     {kExtraArgument, kError, "There is an argument too many.", kNotCompiled, "Take it away."},
     {kNotAVariable, kError, "A value stands where a variable must.",
@@ -53,9 +54,10 @@ constexpr Rule kRulesOfNames[] = {
     {kCaseType, kError, "A case is of another type than its switch.", kNotCompiled, "Convert it."},
     {kLocalToTask, kError, "A new task gets a reference to a local.",
      "References of a task are to globals: the local may be gone (M6 pages 87 and 88).", "Give it a global."},
-    {kTaskName, kError, "The name is none of a task.", "Run-time error 29 (M6 page 87).", "Rename the task."},
-    {kTaskPriority, kError, "A task's priority is outside of 1 to 100.", "M6 page 87.",
-     "Choose one from 1 to 100."},
+    {kTaskName, kWarning, "The name is none of a task.", "Run-time error 29 (M6 page 87).",
+     "Rename the task."},
+    {kTaskPriority, kWarning, "A task's priority is outside of 1 to 100.",
+     "The line fails when it runs (M6 page 87).", "Choose one from 1 to 100."},
 };
 
 }  // namespace

@@ -92,7 +92,8 @@ class TaskChecks {
   }
 
   void call(const ProgramGraph::Node& node, const Expression& e, const std::string& who) {
-    if (!e.reference.instruction->may_block || is_move(e.text)) return;
+    const Instruction& called = *e.reference.instruction;
+    if ((!called.may_block && !called.may_yield) || is_move(e.text)) return;
     if (is_timed_wait(e.text)) {
       const bool passes_turn = e.text == "delay" && constant_of(e.parts[0]).value_or(1.0) <= 0.0;
       if (!passes_turn)
@@ -109,15 +110,39 @@ class TaskChecks {
 
   void period(const Program& program, const Line& line) {
     const Expression& e = line.expressions[1];
-    const std::optional<double> seconds = constant_of(e);
-    if (!seconds) return;
+    if (const std::optional<double> seconds = constant_of(e)) return one_period(program, e, *seconds);
+    for (const double seconds : constants_in(program, e)) one_period(program, e, seconds);
+  }
+
+  /// The constants that a variable is set to: a local in its program, a global anywhere, or in the data.
+  std::set<double> constants_in(const Program& program, const Expression& name) const {
+    std::set<double> found;
+    if (name.kind != Expression::Kind::kName) return found;
+    const Global* const global = global_of(subject_.application, name);
+    const bool is_local = name.reference.to == Reference::To::kLocal;
+    for (const ProgramGraph::Node& node : subject_.graph.nodes()) {
+      if (global == nullptr && !(is_local && node.program == &program)) continue;
+      for (const Line& line : node.program->lines) {
+        if (line.kind != Line::Kind::kAssign) continue;
+        const std::optional<double> value = constant_of(line.expressions.back());
+        const Expression& place = line.expressions.front();
+        const bool is_same = global != nullptr ? global_of(*node.application, place) == global
+                                               : place.reference.to == Reference::To::kLocal &&
+                                                     place.reference.index == name.reference.index;
+        if (value && is_same) found.insert(*value);
+      }
+    }
+    return found;
+  }
+
+  void one_period(const Program& program, const Expression& e, double seconds) {
     const double unit =
         subject_.application.language >= Version{8, 0, 0} ? kShortPeriod_s : kControllerPeriod_s;
-    const double periods = *seconds / unit;
+    const double periods = seconds / unit;
     const double whole = std::floor(periods + 1e-6);
     if (!std::isfinite(periods) || whole < 1.0 || std::abs(periods - whole) > 1e-6)
       subject_.tell(Severity::kWarning, check_rules::kSyncPeriod, program, e,
-                    "a period of " + period_text(*seconds) + " is no multiple of " + period_text(unit) +
+                    "a period of " + period_text(seconds) + " is no multiple of " + period_text(unit) +
                         (whole >= 1.0 ? ": it becomes " + period_text(whole * unit) : ""));
     if (periods_.insert(whole).second && periods_.size() > kPeriodsAtOnceMax)
       subject_.tell(Severity::kWarning, check_rules::kSyncPeriods, program, e,

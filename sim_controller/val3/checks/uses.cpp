@@ -116,6 +116,32 @@ std::optional<double> constant_of(const Expression& e) {
   return std::nullopt;
 }
 
+std::optional<bool> constant_truth(const Expression& e) {
+  if (e.kind == Expression::Kind::kTruth) return e.number != 0.0;
+  if (e.kind == Expression::Kind::kUnary && e.text == "!") {
+    const auto part = constant_truth(e.parts[0]);
+    return part ? std::optional(!*part) : std::nullopt;
+  }
+  if (e.kind != Expression::Kind::kBinary) return std::nullopt;
+  if (e.text == "and" || e.text == "or") {
+    const auto left = constant_truth(e.parts[0]);
+    const auto right = constant_truth(e.parts[1]);
+    // One side decides by itself: the left one, as the right one is then not asked.
+    if (left && *left == (e.text == "or")) return left;
+    return left ? right : std::nullopt;
+  }
+  const auto left = constant_of(e.parts[0]);
+  const auto right = constant_of(e.parts[1]);
+  if (!left || !right) return std::nullopt;
+  if (e.text == "==") return *left == *right;
+  if (e.text == "!=") return *left != *right;
+  if (e.text == "<") return *left < *right;
+  if (e.text == ">") return *left > *right;
+  if (e.text == "<=") return *left <= *right;
+  if (e.text == ">=") return *left >= *right;
+  return std::nullopt;
+}
+
 const Application* owner_of(const Application& application, int library) {
   if (library < 0) return &application;
   const auto index = static_cast<std::size_t>(library);

@@ -29,6 +29,9 @@ void visit_expressions(const Expression& e, const ExpressionVisitor& visit);
 /// A number as it is written, with its sign; nothing for any other expression.
 std::optional<double> constant_of(const Expression& e);
 
+/// Whether a condition of constants holds: `false`, `1==1`, `!true`; nothing where it depends on more.
+std::optional<bool> constant_truth(const Expression& e);
+
 /// The application that a reference or a call is into; null when it is not there.
 const Application* owner_of(const Application& application, int library);
 const Program* called_program(const Application& application, const Line& line);

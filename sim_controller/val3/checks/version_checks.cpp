@@ -10,6 +10,7 @@ namespace val3 {
 namespace {
 
 constexpr Version kS6{6, 0, 0}, kS64{6, 4, 0}, kS7{7, 0, 0}, kS8{8, 0, 0};
+constexpr Version kLastOfManual{6, 4, 99};
 constexpr std::size_t kNameMaxUntilS7 = 15;
 
 std::string text_of(const Version& version) {
@@ -60,6 +61,8 @@ class VersionChecks {
   }
 
   void line_of(const Program& program, const Line& line) {
+    if (line.is_shorthand && subject_.language < kS8)
+      form(program.file, line.line, line.column, "? to print a value", kS8);
     if (subject_.language < kS64) {
       if (line.kind == Line::Kind::kElseIf) form(program.file, line.line, line.column, "elseIf", kS64);
       if (line.kind == Line::Kind::kCase && line.expressions.size() > 1)
@@ -82,19 +85,30 @@ class VersionChecks {
       since = std::max(since, known.signatures[signature].since);
     if (subject_.language < since && known.addon.empty()) {
       const bool is_form = since != known.since;
-      // Where no manual has it, the version is that of the programs in which it was seen.
-      const bool is_attested = known.page5 != 0 || known.page6 != 0;
+      // The manual of s6.4 lists all that there was until then. Between it and s7 nobody has said.
+      const bool is_attested = known.page5 != 0 || known.page6 != 0 || subject_.language <= kLastOfManual;
       subject_.tell(
-          is_attested && !is_form ? Severity::kError : Severity::kWarning, check_rules::kNewerInstruction,
-          program, e,
+          is_attested ? Severity::kError : Severity::kWarning, check_rules::kNewerInstruction, program, e,
           e.text + "()" + (is_form ? " with these arguments" : "") + " came with " + text_of(since));
     }
+    if (e.text == "sioCtrl" && subject_.language < kS7) channel_option(program, e);
     if (known.page6 == 0 && known.page5 != 0 && subject_.language >= kS6 && older_.insert(&known).second)
       subject_.tell(Severity::kNote, check_rules::kOlderInstruction, program, e,
                     e.text + "() is of s5, and the manual of s6 has it no more");
     const bool is_move = e.text == "movej" || e.text == "movel" || e.text == "movec";
     if (is_move && subject_.language < kS7 && line.kind != Line::Kind::kInstruction)
       form(program.file, e.line, e.column, "a move's result", kS7);
+  }
+
+  /// What sioCtrl of s7 takes and the manual of s6 (page 64) has not.
+  void channel_option(const Program& program, const Expression& e) {
+    if (e.parts.size() != 3 || e.parts[1].kind != Expression::Kind::kText) return;
+    const bool is_quiet = e.parts[1].text == "timeout" && constant_of(e.parts[2]).value_or(0.0) < 0.0;
+    if (is_quiet || e.parts[1].text == "nagle")
+      subject_.tell(Severity::kWarning, check_rules::kNewerForm, program, e,
+                    (is_quiet ? std::string("a time-out of -1") : std::string("\"nagle\"")) +
+                        " of sioCtrl() came with s7",
+                    is_quiet ? "give it a short time" : "");
   }
 
   const CheckSubject& subject_;

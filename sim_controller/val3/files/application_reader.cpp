@@ -53,12 +53,15 @@ std::shared_ptr<Application> ApplicationReader::read(const std::filesystem::path
   application->stack_bytes = project->stack_bytes;
   application->is_metric = project->is_metric;
 
+  application->has_pages = files_.names().find(application->folder, "interface").has_value();
+
   UserTypeReader types(files_, *application);
   types.read(*project, findings, types_told_);
   read_data(*application, *project, types, findings);
   read_programs(*application, *project, types, findings);
   note_unlisted(*project, file.parent_path(), findings);
   read_libraries(*application, *project, findings, depth);
+  read_loadable(*application, depth);
   check_fathers(*application, findings_);
   being_read_.erase(file);
   return read_[file] = application;
@@ -70,9 +73,11 @@ void ApplicationReader::read_data(Application& application, const ProjectFile& p
   DeclaredNames names(application.language);
   for (const ProjectFile::Listed& listed : without_twins(project.data, findings)) {
     const auto path = files_.listed(application.folder, listed, findings);
+    application.has_unread_data = application.has_unread_data || !path;
     if (!path) continue;
     FileFindings of_data(files_.name_of(*path), findings_);
     const auto xml = files_.read(*path, of_data);
+    application.has_unread_data = application.has_unread_data || !xml;
     if (!xml) continue;
     std::vector<Global> globals;
     read_data_file(*xml, context, of_data, globals);
@@ -88,12 +93,16 @@ void ApplicationReader::read_programs(Application& application, const ProjectFil
   DeclaredNames names(application.language);
   for (const ProjectFile::Listed& listed : without_twins(project.programs, findings)) {
     const auto path = files_.listed(application.folder, listed, findings);
-    if (!path) continue;
+    const std::string stem = in_lower_case(std::filesystem::path(listed.file).stem().string());
+    if (!path) {
+      application.unread_programs.push_back(stem);
+      continue;
+    }
     FileFindings of_program(files_.name_of(*path), findings_);
     const auto xml = files_.read(*path, of_program);
-    if (!xml) continue;
     std::vector<Program> programs;
-    read_program_file(*xml, context, of_program, programs);
+    if (xml) read_program_file(*xml, context, of_program, programs);
+    if (programs.empty()) application.unread_programs.push_back(stem);
     if (programs.size() == 1 && in_lower_case(path->stem().string()) != in_lower_case(programs[0].name))
       of_program.note(file_rules::kFileName, programs[0].line,
                       "the program of this file is called " + shown_word(programs[0].name),
@@ -124,41 +133,78 @@ void ApplicationReader::read_libraries(Application& application, const ProjectFi
   DeclaredNames aliases(application.language);
   for (const ProjectFile::Other& listed : project.libraries) {
     if (!aliases.add(listed.name, "library", listed.line, findings)) continue;
-    Library library{listed.name, listed.path, listed.autoload, {findings.file(), listed.line, 0}, nullptr};
-    if (!listed.path.empty()) read_library(application.folder, listed, library, findings, depth);
+    Library library{.alias = listed.name,
+                    .path = listed.path,
+                    .autoload = listed.autoload,
+                    .at = {findings.file(), listed.line, 0},
+                    .application = nullptr,
+                    .loadable = {}};
+    if (!listed.path.empty())
+      library.application =
+          read_library(application.folder, listed, Severity::kWarning, findings, depth).application;
     application.libraries.push_back(std::move(library));
   }
 }
 
-void ApplicationReader::read_library(const std::filesystem::path& folder, const ProjectFile::Other& listed,
-                                     Library& library, FileFindings& findings, int depth) {
+void ApplicationReader::read_loadable(Application& application, int depth) {
+  for (const Program& program : application.programs)
+    for (const Line& line : program.lines)
+      for (const Expression& e : line.expressions) add_loadable(application, program, e, depth);
+}
+
+void ApplicationReader::add_loadable(Application& application, const Program& program, const Expression& e,
+                                     int depth) {
+  for (const Expression& part : e.parts) add_loadable(application, program, part, depth);
+  const bool is_load = e.kind == Expression::Kind::kCall && e.text == "libLoad" && !e.parts.empty() &&
+                       e.parts[0].kind == Expression::Kind::kText;
+  const int index = is_load ? application.library_named(e.alias) : -1;
+  if (index < 0) return;
+  Library& library = application.libraries[static_cast<std::size_t>(index)];
+  const std::string& path = e.parts[0].text;
+  if (std::ranges::find(library.loadable, path, &Loadable::path) != library.loadable.end()) return;
+  FileFindings of_program(program.file, findings_);
+  // libLoad tells the program when it finds nothing: that is no mistake in itself.
+  Loadable found =
+      read_library(application.folder, {e.alias, path, false, e.line}, Severity::kNote, of_program, depth);
+  library.loadable.push_back(std::move(found));
+}
+
+Loadable ApplicationReader::read_library(const std::filesystem::path& folder,
+                                         const ProjectFile::Other& listed, Severity missing,
+                                         FileFindings& findings, int depth) {
   const LibraryPlace place = find_library(files_.names(), folder, listed.path);
   const std::string called = "the library " + listed.name + " at " + shown_word(listed.path);
+  Loadable found{.path = listed.path, .is = Loadable::Is::kMissing, .application = nullptr};
   switch (place.is) {
     case LibraryPlace::Is::kMissing:
       if (!is_built_in(listed.path))
-        findings.warning(file_rules::kLibraryMissing, listed.line,
-                         called + " is not there: nothing of it is checked",
-                         "put its folder beside this one");
-      return;
+        findings.tell(missing, file_rules::kLibraryMissing, listed.line,
+                      called + " is not there: nothing of it is checked", "put its folder beside this one");
+      return found;
     case LibraryPlace::Is::kOutside:
-      return findings.error(file_rules::kFileOutside, listed.line,
-                            called + " is outside of the user's applications");
+      found.is = Loadable::Is::kOutside;
+      findings.error(file_rules::kFileOutside, listed.line,
+                     called + " is outside of the user's applications");
+      return found;
     case LibraryPlace::Is::kEncrypted:
-      return findings.warning(file_rules::kLibraryEncrypted, listed.line,
-                              called + " is encrypted: nothing of it is checked");
+      found.is = Loadable::Is::kEncrypted;
+      findings.warning(file_rules::kLibraryEncrypted, listed.line,
+                       called + " is encrypted: nothing of it is checked");
+      return found;
     case LibraryPlace::Is::kProject:
       break;
   }
-  if (being_read_.contains(place.file))
-    return findings.error(file_rules::kCircularLibrary, listed.line,
-                          called + " uses this project in its turn",
-                          "libraries must not use each other in a circle");
-  if (depth >= kLibrariesDeepMax)
-    return findings.error(
-        file_rules::kLibrariesTooDeep, listed.line,
-        called + " is nested deeper than " + std::to_string(kLibrariesDeepMax) + " libraries");
-  library.application = read(place.file, depth + 1);
+  found.is = Loadable::Is::kUnreadable;
+  if (being_read_.contains(place.file)) {
+    findings.error(file_rules::kCircularLibrary, listed.line, called + " uses this project in its turn",
+                   "libraries must not use each other in a circle");
+  } else if (depth >= kLibrariesDeepMax) {
+    findings.error(file_rules::kLibrariesTooDeep, listed.line,
+                   called + " is nested deeper than " + std::to_string(kLibrariesDeepMax) + " libraries");
+  } else if ((found.application = read(place.file, depth + 1))) {
+    found.is = Loadable::Is::kFound;
+  }
+  return found;
 }
 
 }  // namespace val3

@@ -89,8 +89,12 @@ class ApplicationReader {
                      FileFindings& findings);
   void read_libraries(Application& application, const ProjectFile& project, FileFindings& findings,
                       int depth);
-  void read_library(const std::filesystem::path& folder, const ProjectFile::Other& listed, Library& library,
-                    FileFindings& findings, int depth);
+  /// What alias:libLoad("path") of its programs names.
+  void read_loadable(Application& application, int depth);
+  void add_loadable(Application& application, const Program& program, const Expression& e, int depth);
+  /// `missing`: how bad it is when it is not there.
+  Loadable read_library(const std::filesystem::path& folder, const ProjectFile::Other& listed,
+                        Severity missing, FileFindings& findings, int depth);
   void note_unlisted(const ProjectFile& project, const std::filesystem::path& folder, FileFindings& findings);
 
   FileBudget files_;

@@ -138,15 +138,17 @@ void check_fathers(const Application& application, Findings& findings) {
 void check_start_and_stop(const Application& application, Findings& findings) {
   const int start = application.program_named("start");
   const int stop = application.program_named("stop");
+  const bool start_is_unread = start < 0 && application.is_unread("start");
+  const bool stop_is_unread = stop < 0 && application.is_unread("stop");
   FileFindings project(application.project, findings);
-  if (start < 0 && stop < 0)
+  if (start < 0 && stop < 0 && !start_is_unread && !stop_is_unread)
     return project.warning(file_rules::kNoStart, 0,
                            "there is neither start() nor stop(): a library or a type, no application",
                            "write both to run it by itself");
-  if (start < 0)
+  if (start < 0 && !start_is_unread)
     project.error(file_rules::kNoStart, 0, "there is no program start()",
                   "write it: the application begins with it");
-  if (stop < 0)
+  if (stop < 0 && !stop_is_unread)
     project.error(file_rules::kNoStop, 0, "there is no program stop()",
                   "write it: the application ends with it");
   for (const int index : {start, stop}) {

@@ -114,7 +114,8 @@ void UserTypeReader::fill_fields(int index, const ProjectFile& project, const Ty
   std::size_t elements = 1;
   for (Global& field : fields) {
     FileFindings of_data(field.declared.file, findings.all());
-    if (!names.add(field.declared.name, "field", field.declared.line, of_data) || !field.is_public) continue;
+    if (!names.add(field.declared.name, "variable", field.declared.line, of_data) || !field.is_public)
+      continue;
     elements +=
         ElementBudget::of(field.declared.sizes, ElementBudget::of(field.declared.type, elements_of_user_));
     application_.user_types[at].fields.push_back(std::move(field));

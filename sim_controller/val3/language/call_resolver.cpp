@@ -139,6 +139,10 @@ void ExpressionResolver::type_arguments(const Signature& signature, Expression& 
     if (argument.kind == Expression::Kind::kBraces && !argument.is_unknown) {
       if (const Kind kind = fitting_kind(parameter, argument); kind != Kind::kVoid)
         type_braces(argument, {kind, -1});
+    } else if (!parameter.by_reference && parameter.kinds.size() == 1 &&
+               e.text != "sel") {  // programs in use have sel(d,..)
+      demand_no_signal(argument, parameter.kinds[0],
+                       "argument " + std::to_string(i + 1) + " of " + e.text + "()");
     } else if (parameter.by_reference && !argument.is_place && !argument.is_unknown) {
       fail(resolver_rules::kNotAVariable, argument,
            "argument " + std::to_string(i + 1) + " of " + e.text + "() is a variable, and this is a value");

@@ -120,6 +120,12 @@ bool ExpressionResolver::be_bool(Expression& e) {
   return false;
 }
 
+void ExpressionResolver::demand_no_signal(Expression& e, Kind wanted, const std::string& where) {
+  if (wanted != Kind::kBool || !has_kind(e, Kind::kDio)) return;
+  fail(resolver_rules::kDioCondition, e, where + " is a bool, and this is an input or output by itself",
+       "compare it, as in d==true, or assign it to a bool first");
+}
+
 void ExpressionResolver::resolve_condition(Expression& e) {
   resolve(e);
   be_bool(e);

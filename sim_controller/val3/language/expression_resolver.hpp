@@ -25,6 +25,8 @@ class ExpressionResolver {
   void resolve_as(Expression& e, const Type& wanted, std::string_view where);
   /// As resolve_as, of an expression that is resolved.
   void expect(Expression& e, const Type& wanted, std::string_view where);
+  /// A dio by itself is no bool, also where a program or an instruction takes one.
+  void demand_no_signal(Expression& e, Kind wanted, const std::string& where);
   /// Resolves what `if`, `while` and their kind ask.
   void resolve_condition(Expression& e);
   /// Resolves what a value is put into; false when it is no variable, which is told.

@@ -106,6 +106,7 @@ const Program* LineResolver::called_program(Line& line) {
   }
   line.called_program = owner->program(line.program);
   if (line.called_program < 0) {
+    if (owner->application().is_unread(line.program)) return nullptr;
     tell(line, resolver_rules::kUndefinedProgram, "no program is called " + called_name(line));
     return nullptr;
   }
@@ -140,6 +141,7 @@ void LineResolver::check_argument(Line& line, const Program& called, const Param
   if (is_scara || !is_known(scope_.application(), wanted)) return;
   const std::string where = "parameter " + parameter.name + " of " + called.name;
   if (parameter.by_reference) return check_reference(line, parameter, wanted, argument, where);
+  expressions_.demand_no_signal(argument, wanted.kind, where);
   expressions_.expect(argument, wanted, where);
 }
 
@@ -185,7 +187,8 @@ void LineResolver::resolve_task(Line& line) {
   expressions_.resolve_as(e[1], kNumber, leading == 2 ? "a task's priority" : "a task's period");
   if (leading == 2 && e[1].kind == Expression::Kind::kNumber &&
       (e[1].number < 1.0 || e[1].number > kTaskPriorityMax))
-    expressions_.fail(resolver_rules::kTaskPriority, e[1], "a task's priority is from 1 to 100");
+    expressions_.tell(Severity::kWarning, resolver_rules::kTaskPriority, e[1],
+                      "a task's priority is from 1 to 100: the line fails when it runs");
   if (leading == 3 && expressions_.resolve_place(e[2]) && !e[2].is_unknown) {
     if (e[2].type == kTruth)
       demand_global(e[2], "the overrun flag");
@@ -205,9 +208,9 @@ void LineResolver::check_task_name(Expression& name) {
                           return c < 0x80 && (std::isalnum(c) != 0 || c == '_');
                         });
   if (!is_valid)
-    expressions_.fail(
-        resolver_rules::kTaskName, name,
-        "a task's name has 1 to " + std::to_string(longest) + " letters, digits and _: this is error 29");
+    expressions_.tell(Severity::kWarning, resolver_rules::kTaskName, name,
+                      "a task's name has 1 to " + std::to_string(longest) +
+                          " letters, digits and _: error 29 when it runs");
 }
 
 }  // namespace val3

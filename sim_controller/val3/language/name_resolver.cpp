@@ -89,6 +89,11 @@ void ExpressionResolver::resolve_undefined(Expression& e) {
                 "programs have no result: give it a variable by reference, and call " + e.text + "(...)");
   if (find_instruction(e.text) != nullptr)
     return fail(resolver_rules::kUndefinedName, e, e.text + " is an instruction", "write " + e.text + "()");
+  if (scope_.application().has_unread_data) {
+    e.is_unknown = true;
+    e.is_place = true;
+    return;
+  }
   const std::string meant = meant_name(scope_.application(), program_, e.text);
   fail(
       resolver_rules::kUndefinedName, e, "nothing is called " + e.text,

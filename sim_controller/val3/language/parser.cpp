@@ -127,6 +127,7 @@ void parse_shorthand(ExpressionParser& in, Line& line) {
   in.skip();
   put.parts.push_back(in.expression());
   line.kind = Line::Kind::kInstruction;
+  line.is_shorthand = true;
   line.expressions.push_back(std::move(put));
 }
 

@@ -14,8 +14,11 @@ namespace {
 void collect(Application& application, std::vector<Application*>& all) {
   if (std::find(all.begin(), all.end(), &application) != all.end()) return;
   all.push_back(&application);
-  for (Library& library : application.libraries)
+  for (Library& library : application.libraries) {
     if (library.application) collect(*library.application, all);
+    for (Loadable& loadable : library.loadable)
+      if (loadable.application) collect(*loadable.application, all);
+  }
 }
 
 void resolve_programs(Scope& scope, Application& application, Findings& findings) {

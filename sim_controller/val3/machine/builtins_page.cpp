@@ -38,6 +38,48 @@ Nothing show(Context& context, bool fixed) {
   return {};
 }
 
+Nothing go_to(Context& context, double column, double row) {
+  constexpr double kMax = 1e6;
+  context.system.go_to(static_cast<int>(std::min(std::max(column, 0.0), kMax)),
+                       static_cast<int>(std::min(std::max(row, 0.0), kMax)));
+  return {};
+}
+
+Nothing clear(Context& context) {
+  context.system.clear_page();
+  return {};
+}
+
+Nothing set_title(Context& context, const std::string& text) {
+  context.system.title(text);
+  return {};
+}
+
+bool is_pressed(Context& context, double code) {
+  return code >= 0.0 && code <= 1e6 && context.system.key_is_pressed(static_cast<int>(code));
+}
+
+/// The forms of s7 with a screen: all screens are the one page.
+void define_screens(Builtins& list) {
+  list.define<Nothing, Screen>("cls", [](Context& c, const Screen&) { return clear(c); });
+  list.define<Nothing, Screen, double, double>(
+      "gotoxy", [](Context& c, const Screen&, double column, double row) { return go_to(c, column, row); });
+  list.define<Nothing, Screen, std::string>(
+      "put", [](Context& c, const Screen&, const std::string& text) { return put_text<false>(c, text); });
+  list.define<Nothing, Screen, double>(
+      "put", [](Context& c, const Screen&, double number) { return put_number<false>(c, number); });
+  list.define<Nothing, Screen, std::string>(
+      "putln", [](Context& c, const Screen&, const std::string& text) { return put_text<true>(c, text); });
+  list.define<Nothing, Screen, double>(
+      "putln", [](Context& c, const Screen&, double number) { return put_number<true>(c, number); });
+  list.define<Nothing, Screen, std::string>(
+      "title", [](Context& c, const Screen&, const std::string& text) { return set_title(c, text); });
+  list.define<double, Screen>("getKey", [](Context& c, const Screen&) { return key(c); });
+  list.define<double, Screen>("get", [](Context& c, const Screen&) { return awaited_key(c); });
+  list.define<bool, Screen, double>(
+      "isKeyPressed", [](Context& c, const Screen&, double code) { return is_pressed(c, code); });
+}
+
 }  // namespace
 
 void define_page(Builtins& list) {
@@ -46,31 +88,19 @@ void define_page(Builtins& list) {
   list.define<Nothing, std::string>("userPage",
                                     [](Context& c, const std::string&) { return show(c, false); });
   list.define<Nothing, Screen>("userPage", [](Context& c, const Screen&) { return show(c, false); });
-  list.define<Nothing>("cls", [](Context& c) {
-    c.system.clear_page();
-    return Nothing{};
-  });
-  list.define<Nothing, double, double>("gotoxy", [](Context& c, double column, double row) {
-    constexpr double kMax = 1e6;
-    c.system.go_to(static_cast<int>(std::min(std::max(column, 0.0), kMax)),
-                   static_cast<int>(std::min(std::max(row, 0.0), kMax)));
-    return Nothing{};
-  });
+  list.define<Nothing>("cls", clear);
+  list.define<Nothing, double, double>("gotoxy", go_to);
   list.define<Nothing, std::string>("put", put_text<false>);
   list.define<Nothing, double>("put", put_number<false>);
   list.define<Nothing, std::string>("putln", put_text<true>);
   list.define<Nothing, double>("putln", put_number<true>);
-  list.define<Nothing, std::string>("title", [](Context& c, const std::string& text) {
-    c.system.title(text);
-    return Nothing{};
-  });
+  list.define<Nothing, std::string>("title", set_title);
   list.define<double, std::string>(
       "getDisplayLen", [](Context&, const std::string& text) { return static_cast<double>(text.size()); });
+  define_screens(list);
   list.define<double>("getKey", key);
   list.define<double>("get", awaited_key);
-  list.define<bool, double>("isKeyPressed", [](Context& c, double code) {
-    return code >= 0.0 && code <= 1e6 && c.system.key_is_pressed(static_cast<int>(code));
-  });
+  list.define<bool, double>("isKeyPressed", is_pressed);
   list.define<Nothing, std::string>("popUpMsg", [](Context& c, const std::string& text) {
     c.system.pop_up(text);
     return Nothing{};

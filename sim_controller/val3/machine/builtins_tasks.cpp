@@ -1,4 +1,4 @@
-// Tasks, time and libraries (manual 6, pages 84 to 98).
+// Tasks and time (manual 6, pages 84 to 90).
 #include <cmath>
 
 #include "sim_controller/val3/machine/builtins.hpp"
@@ -51,10 +51,6 @@ double run_status(Context& context, const std::string& name) {
   return task == nullptr ? -1.0 : static_cast<double>(task->status);
 }
 
-/// Numbers that a library operation can end with (manual 6, page 95).
-constexpr double kDone = 0.0;
-constexpr double kFileNotFound = 39.0;
-
 }  // namespace
 
 /// The condition is evaluated by the instruction itself, at each turn.
@@ -93,12 +89,6 @@ void define_tasks(Builtins& list) {
   list.define<std::string, double>("help", [](Context&, double code) {
     return "error " + std::to_string(static_cast<int>(std::max(-1e6, std::min(1e6, code))));
   });
-  // Nothing is loaded or stored while a machine runs: libraries were read with the application.
-  list.define<double>("libSave", [](Context&) { return kDone; });
-  list.define<double, std::string>("libSave", [](Context&, const std::string&) { return kDone; });
-  list.define<double, std::string>("libLoad", [](Context&, const std::string&) { return kFileNotFound; });
-  list.define<double, std::string>("libDelete", [](Context&, const std::string&) { return kDone; });
-  list.define<std::string>("libPath", [](Context&) { return std::string(); });
 }
 
 }  // namespace val3

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sim_controller/val3/machine/libraries.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
 
 namespace val3 {
@@ -50,10 +51,9 @@ class CallCompiler {
   CallCompiler(Compiler& compiler, const Program& program) : compiler_(compiler), program_(program) {}
 
   OperationPtr call(const Line& line) {
-    const Code* code = &code_of(line, nullptr);
-    const auto& programs = code->program;
-    return operation([code, made = hands(*programs, line, 0)](Context& c) {
-      auto called = Tasks::activate(*code, c.tasks.fathers);
+    Called code = called_by(line);
+    return operation([code, made = hands(*code.declared->program, line, 0)](Context& c) {
+      auto called = Tasks::activate(code.get(), c.tasks.fathers);
       for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
       c.tasks.enter(c, std::move(called));
       return Flow::kGo;
@@ -62,12 +62,12 @@ class CallCompiler {
 
   OperationPtr creation(const Line& line) {
     const bool is_sync = line.kind == CalledKind::kTaskCreateSync;
-    const Code* code = &code_of(line, nullptr);
+    Called code = called_by(line);
     auto name = compiler_.value<std::string>(line.expressions.at(0));
     auto second = compiler_.value<double>(line.expressions.at(1));
     RefNodePtr overrun;
     if (is_sync) overrun = compiler_.ref(line.expressions.at(2));
-    auto made = hands(*code->program, line, is_sync ? 3 : 2);
+    auto made = hands(*code.declared->program, line, is_sync ? 3 : 2);
     return operation([code, name = std::move(name), second = std::move(second), overrun = std::move(overrun),
                       made = std::move(made), owner = &compiler_.instance()](Context& c) {
       auto task = std::make_unique<Task>();
@@ -76,13 +76,14 @@ class CallCompiler {
       const double number = second->get(c);
       if (overrun) {
         task->period_ticks = period_in_ticks(number);
+        tell_rounding(c, task->name, number, task->period_ticks);
         task->overrun = overrun->get(c);
       } else {
         if (number < 1.0 || number > kPriorityMax)
           throw RunFailure(kErrorParameter, "a priority that is not from 1 to 100");
         task->priority = static_cast<int>(number);
       }
-      auto called = Tasks::activate(*code, c.tasks.fathers);
+      auto called = Tasks::activate(code.get(), c.tasks.fathers);
       for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
       task->stack.push_back(std::move(called));
       c.tasks.create(std::move(task));
@@ -91,13 +92,30 @@ class CallCompiler {
   }
 
  private:
-  const Code& code_of(const Line& line, const Expression* at) {
+  /// The program of a line; that of a library may change while the application runs.
+  struct Called {
+    const Code* declared = nullptr;
+    const LibrarySlot* slot = nullptr;
+    int program = -1;
+
+    [[nodiscard]] const Code& get() const {
+      return slot == nullptr ? *declared : loaded_program(*slot, program);
+    }
+  };
+
+  Called called_by(const Line& line) {
     const Instance* owner = &compiler_.instance();
-    if (line.called_library >= 0) owner = owner->libraries.at(static_cast<std::size_t>(line.called_library));
+    const LibrarySlot* slot = nullptr;
+    if (line.called_library >= 0) {
+      slot = owner->slots.at(static_cast<std::size_t>(line.called_library)).get();
+      owner = slot->declared;
+    }
     if (owner == nullptr || line.called_program < 0)
-      throw NotSimulated{{program_.file, line.line, at != nullptr ? at->column : line.column},
+      throw NotSimulated{{program_.file, line.line, line.column},
                          "program " + line.program + " is of a library that is not there"};
-    return owner->programs.at(static_cast<std::size_t>(line.called_program));
+    return {.declared = &owner->programs.at(static_cast<std::size_t>(line.called_program)),
+            .slot = slot == nullptr || slot->is_fixed ? nullptr : slot,
+            .program = line.called_program};
   }
 
   Hands hands(const Program& called, const Line& line, std::size_t first) {
@@ -125,6 +143,14 @@ class CallCompiler {
     const double ticks = std::floor(period_s / kTickSecondsOfTasks + kSlack);
     if (!(ticks >= 1.0) || ticks > kTicksMax) throw RunFailure(kErrorPeriods, "a period below 4 ms");
     return static_cast<int>(ticks);
+  }
+
+  static void tell_rounding(Context& context, const std::string& name, double period_s, int ticks) {
+    constexpr double kSame = 1e-9;
+    const double taken_s = ticks * kTickSecondsOfTasks;
+    if (std::abs(period_s - taken_s) > kSame)
+      context.system.log("the period of " + name + ", " + std::to_string(period_s) +
+                         " s, is rounded down to " + std::to_string(taken_s) + " s");
   }
 
   Compiler& compiler_;

@@ -32,6 +32,8 @@ class Compiler {
   PlaceNodePtr<T> place(const Expression& e);
 
   [[noreturn]] void refuse(const Expression& e, const std::string& what) const;
+  /// An expression of another type than is wanted, or without one: names the instruction that has none here.
+  [[noreturn]] void refuse_type(const Expression& e, const std::string& what) const;
   [[nodiscard]] const Instance& instance() const { return instance_; }
   [[nodiscard]] const Fathers& fathers() const { return fathers_; }
   [[nodiscard]] const Program& program() const { return program_; }

@@ -4,6 +4,7 @@
 #include "sim_controller/val3/machine/builtins.hpp"
 #include "sim_controller/val3/machine/channels.hpp"
 #include "sim_controller/val3/machine/geometry.hpp"
+#include "sim_controller/val3/machine/libraries.hpp"
 #include "sim_controller/val3/machine/signals.hpp"
 
 namespace val3 {
@@ -78,11 +79,19 @@ void Compiler::refuse(const Expression& e, const std::string& what) const {
   throw NotSimulated{{program_.file, e.line, e.column}, what};
 }
 
+void Compiler::refuse_type(const Expression& e, const std::string& what) const {
+  if (e.kind == EKind::kCall && e.type.kind == Kind::kVoid) refuse(e, e.text + "() is not simulated");
+  for (const Expression& part : e.parts)
+    if (part.type.kind == Kind::kVoid) refuse_type(part, what);
+  refuse(e, what);
+}
+
 template <class T>
 NodePtr<T> Compiler::called(const Expression& e) {
-  const Builtins::Make* make = builtins().find(e);
-  if (make == nullptr) refuse(e, e.text + " with these arguments is not simulated");
-  AnyNode made = (*make)(*this, e);
+  const bool is_of_library = is_library_instruction(e);
+  const Builtins::Make* make = is_of_library ? nullptr : builtins().find(e);
+  if (make == nullptr && !is_of_library) refuse(e, e.text + " with these arguments is not simulated");
+  AnyNode made = is_of_library ? library_instruction(*this, e) : (*make)(*this, e);
   const auto* typed = dynamic_cast<const Node<T>*>(made.get());
   if (typed == nullptr) refuse(e, e.text + " does not give this type");
   made.release();  // NOLINT(bugprone-unused-return-value): the typed pointer owns it
@@ -105,7 +114,7 @@ NodePtr<double> Compiler::number(const Expression& e) {
   if (e.type.kind == Kind::kSio)
     return lambda_node<double>(
         [channel = structure<Sio>(e)](Context& c) { return read_byte(c, channel->get(c)); });
-  if (e.type.kind != Kind::kNum) refuse(e, "a number is wanted");
+  if (e.type.kind != Kind::kNum) refuse_type(e, "a number is wanted");
   if (e.kind == EKind::kNumber) return lambda_node<double>([number = e.number](Context&) { return number; });
   if (e.kind == EKind::kCall) return called<double>(e);
   if (e.is_place) return place<double>(e);
@@ -129,7 +138,7 @@ NodePtr<bool> Compiler::truth(const Expression& e) {
   if (e.type.kind == Kind::kDio)
     return lambda_node<bool>(
         [signal = structure<Dio>(e)](Context& c) { return read_signal(c, signal->get(c)); });
-  if (e.type.kind != Kind::kBool) refuse(e, "a bool is wanted");
+  if (e.type.kind != Kind::kBool) refuse_type(e, "a bool is wanted");
   if (e.kind == EKind::kTruth) return lambda_node<bool>([is = e.number != 0.0](Context&) { return is; });
   if (e.kind == EKind::kCall) return called<bool>(e);
   if (e.is_place) return place<bool>(e);
@@ -180,7 +189,7 @@ NodePtr<std::string> Compiler::text(const Expression& e) {
   if (e.type.kind == Kind::kSio)
     return lambda_node<std::string>(
         [channel = structure<Sio>(e)](Context& c) { return read_text(c, channel->get(c)); });
-  if (e.type.kind != Kind::kString) refuse(e, "a string is wanted");
+  if (e.type.kind != Kind::kString) refuse_type(e, "a string is wanted");
   if (e.kind == EKind::kText) return lambda_node<std::string>([text = e.text](Context&) { return text; });
   if (e.kind == EKind::kCall) return called<std::string>(e);
   if (e.is_place) return place<std::string>(e);

@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "sim_controller/val3/machine/geometry.hpp"
+#include "sim_controller/val3/machine/libraries.hpp"
 
 namespace val3 {
 namespace {
@@ -248,6 +249,9 @@ Father Fathers::father_of(const Ref& place) const {
     if (array == place.array) return {id, place.index};
   return {};
 }
+
+Instance::Instance() = default;
+Instance::~Instance() = default;
 
 ArrayBase& Instance::global(const Reference& reference) const {
   const Instance& owner =

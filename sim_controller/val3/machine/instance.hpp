@@ -30,13 +30,21 @@ class Fathers {
   int next_ = kFlangeArray + 1;
 };
 
+struct LibrarySlot;
+
 /// An application, or a library of it, with variables of its own.
 struct Instance {
+  Instance();
+  ~Instance();
+  Instance(const Instance&) = delete;
+  Instance& operator=(const Instance&) = delete;
+
   const Application* application = nullptr;
   std::string alias;  // of a library
   std::vector<std::shared_ptr<ArrayBase>> globals;
-  std::vector<Instance*> libraries;  // by Application::libraries; null where it was not found
-  std::vector<Code> programs;        // by Application::programs
+  std::vector<Instance*> libraries;                 // by Application::libraries; null where it was not found
+  std::vector<std::unique_ptr<LibrarySlot>> slots;  // by Application::libraries: what is loaded behind each
+  std::vector<Code> programs;                       // by Application::programs
   double unit_mm = 1.0;
 
   /// The array behind a reference to a global.

@@ -1,11 +1,13 @@
 #include "sim_controller/val3/machine/machine.hpp"
 
 #include <functional>
+#include <map>
 #include <stdexcept>
 #include <utility>
 #include <variant>
 
 #include "sim_controller/val3/machine/compiler.hpp"
+#include "sim_controller/val3/machine/libraries.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
 
 namespace val3 {
@@ -41,17 +43,55 @@ struct Machine::State {
     made->programs.resize(from.programs.size());
     for (std::size_t i = 0; i < from.programs.size(); ++i)
       made->programs[i] = Code{.program = &from.programs[i], .instance = made};
-    for (const Library& library : from.libraries)
-      made->libraries.push_back(library.application ? make_instance(*library.application, library.alias)
-                                                    : nullptr);
+    for (const Library& library : from.libraries) add_library(*made, library);
     return made;
   }
 
+  void add_library(Instance& made, const Library& library) {
+    made.libraries.push_back(library.application ? make_instance(*library.application, library.alias)
+                                                 : nullptr);
+    auto slot = std::make_unique<LibrarySlot>();
+    slot->library = &library;
+    slot->declared = made.libraries.back();
+    slot->is_fixed = library.autoload && library.loadable.empty();
+    if (slot->declared != nullptr)
+      slot->loadable.push_back({.path = library.path, .instance = slot->declared, .problem = {}});
+    for (const Loadable& one : library.loadable) {
+      if (slot->declared != nullptr && one.path == library.path) continue;
+      const bool is_declared = one.application == library.application;
+      Instance* instance = nullptr;
+      if (one.application)
+        instance = is_declared ? slot->declared : make_instance(*one.application, library.alias);
+      slot->loadable.push_back({.path = one.path, .is = one.is, .instance = instance, .problem = {}});
+    }
+    made.slots.push_back(std::move(slot));
+  }
+
+  /// What is loaded with the application must be simulated; what a line loads only when it does.
   void compile_all(Findings& findings) {
+    std::map<const Instance*, Findings> found;
     for (const auto& instance : instances)
       for (std::size_t i = 0; i < instance->programs.size(); ++i)
         instance->programs[i] =
-            compile(*instance, tasks.fathers, instance->application->programs[i], findings);
+            compile(*instance, tasks.fathers, instance->application->programs[i], found[instance.get()]);
+    for (const auto& instance : instances)
+      for (const auto& slot : instance->slots)
+        for (LoadableInstance& one : slot->loadable) one.problem = problem_of(one.instance, found);
+    append(*root, found, findings);
+  }
+
+  static std::string problem_of(const Instance* instance, std::map<const Instance*, Findings>& found) {
+    Findings all;
+    if (instance != nullptr) append(*instance, found, all);
+    if (all.empty()) return {};
+    return all[0].at.file + ":" + std::to_string(all[0].at.line) + ": " + all[0].what;
+  }
+
+  /// Of an instance and of the libraries that its project declares.
+  static void append(const Instance& instance, std::map<const Instance*, Findings>& found, Findings& all) {
+    all.insert(all.end(), found[&instance].begin(), found[&instance].end());
+    for (const Instance* library : instance.libraries)
+      if (library != nullptr) append(*library, found, all);
   }
 
   /// A task that runs a program of the application itself; nothing when there is no such program.
@@ -101,6 +141,7 @@ void Machine::start() {
   if (!state_->runs) return;
   state_->tasks.kill_all();
   state_->tasks.tick();
+  reset_libraries(*state_->root);
   state_->stage =
       state_->begin(state_->application.name.substr(0, 14) + "~", "start") ? Stage::kRunning : Stage::kEnded;
 }

@@ -2,6 +2,7 @@
 #include <cstddef>
 
 #include "sim_controller/val3/machine/compiler.hpp"
+#include "sim_controller/val3/machine/libraries.hpp"
 
 namespace val3 {
 namespace {
@@ -128,6 +129,17 @@ std::ptrdiff_t offset_of(Kind kind, std::string_view field) {
   }
 }
 
+/// Behind which the global of a library stands, where that may change while the application runs; else null.
+const LibrarySlot* changing_slot(const Instance& instance, const Reference& reference) {
+  if (reference.library < 0) return nullptr;
+  const LibrarySlot& slot = *instance.slots.at(static_cast<std::size_t>(reference.library));
+  return slot.is_fixed ? nullptr : &slot;
+}
+
+bool is_fixed_global(const Instance& instance, const Reference& reference) {
+  return reference.to == Reference::To::kGlobal && changing_slot(instance, reference) == nullptr;
+}
+
 std::size_t slot_of(const Program& program, const Reference& reference) {
   const auto index = static_cast<std::size_t>(reference.index);
   return reference.to == Reference::To::kParameter ? index : program.parameters.size() + index;
@@ -144,6 +156,9 @@ RefNodePtr Compiler::variable(const Expression& e) {
       return lambda_node<Ref>([slot](Context& c) { return c.here->slots[slot]; });
     }
     case Reference::To::kGlobal: {
+      if (const LibrarySlot* slot = changing_slot(instance_, reference))
+        return lambda_node<Ref>(
+            [slot, index = reference.index](Context&) { return Ref{.array = &loaded_global(*slot, index)}; });
       ArrayBase* array = &instance_.global(reference);
       return lambda_node<Ref>([array](Context&) { return Ref{.array = array}; });
     }
@@ -230,14 +245,14 @@ RefNodePtr Compiler::ref(const Expression& e) {
 template <class T>
 PlaceNodePtr<T> Compiler::place(const Expression& e) {
   if (e.kind == Expression::Kind::kName) {
-    if (e.reference.to == Reference::To::kGlobal)
+    if (is_fixed_global(instance_, e.reference))
       return std::make_unique<GlobalPlace<T>>(instance_.global(e.reference));
     if (e.reference.to == Reference::To::kLocal || e.reference.to == Reference::To::kParameter)
       return std::make_unique<SlotPlace<T>>(slot_of(program_, e.reference));
   }
   const bool one_number = e.kind == Expression::Kind::kIndex && e.parts.size() == 2 &&
                           e.parts[1].type.kind == Kind::kNum && e.parts[0].kind == Expression::Kind::kName;
-  if (one_number && e.parts[0].reference.to == Reference::To::kGlobal)
+  if (one_number && is_fixed_global(instance_, e.parts[0].reference))
     return std::make_unique<GlobalElementPlace<T>>(instance_.global(e.parts[0].reference),
                                                    value<double>(e.parts[1]));
   return std::make_unique<RefPlace<T>>(ref(e));

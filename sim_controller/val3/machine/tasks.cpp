@@ -91,6 +91,19 @@ Task* Tasks::find(const Instance& owner, std::string_view name) {
   return nullptr;
 }
 
+bool Tasks::has_task_of(const Instance& instance) const {
+  return std::ranges::any_of(
+      tasks_, [&](const auto& task) { return task->owner == &instance && task->status != -1; });
+}
+
+bool Tasks::runs_in(const Instance& instance) const {
+  return std::ranges::any_of(tasks_, [&](const auto& task) {
+    return task->status != -1 && std::ranges::any_of(task->stack, [&](const auto& call) {
+             return call->code->instance == &instance;
+           });
+  });
+}
+
 void Tasks::kill(Task& task) { task.status = -1; }
 
 void Tasks::kill_all() {

@@ -47,6 +47,10 @@ class Tasks {
   Task& create(std::unique_ptr<Task> task);
   /// Living or stopped; null when there is none.
   Task* find(const Instance& owner, std::string_view name);
+  /// It created a task that is still there.
+  [[nodiscard]] bool has_task_of(const Instance& instance) const;
+  /// Some task is in one of its programs.
+  [[nodiscard]] bool runs_in(const Instance& instance) const;
   void kill(Task& task);
   void kill_all();
   /// Goes on `skip` lines from where it stands. RunFailure 90.
@@ -73,6 +77,8 @@ class Tasks {
   void set_limits(const MachineLimits& limits) { limits_ = limits; }
 
   Fathers fathers;
+  /// Data that libSave has kept, by application; files are never written.
+  std::map<const Application*, std::vector<std::shared_ptr<ArrayBase>>> saved;
   std::map<int, std::string> half_read;  // by channel: of a string whose end has not come
 
  private:

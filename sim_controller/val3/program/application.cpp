@@ -1,6 +1,7 @@
 #include "sim_controller/val3/program/application.hpp"
 
 #include <algorithm>
+#include <cctype>
 
 namespace val3 {
 namespace {
@@ -24,6 +25,12 @@ int Application::global_named(std::string_view wanted) const {
 
 int Application::library_named(std::string_view alias) const {
   return place_of(libraries, alias, [](const Library& one) -> const std::string& { return one.alias; });
+}
+
+bool Application::is_unread(std::string_view program) const {
+  std::string lower(program);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return std::tolower(c); });
+  return std::ranges::find(unread_programs, lower) != unread_programs.end();
 }
 
 int Application::user_type_named(std::string_view wanted) const {

@@ -78,6 +78,14 @@ struct Program {
 
 struct Application;
 
+/// A project that some line loads behind an alias: alias:libLoad("path").
+struct Loadable {
+  enum class Is { kFound, kMissing, kOutside, kEncrypted, kUnreadable };
+  std::string path;  // as the line writes it
+  Is is = Is::kMissing;
+  std::shared_ptr<Application> application;  // of kFound
+};
+
 /// Another application whose public data and programs are used as alias:name.
 struct Library {
   std::string alias;
@@ -85,6 +93,7 @@ struct Library {
   bool autoload = true;
   Position at;
   std::shared_ptr<Application> application;  // null: not found, or loaded by a path that is computed
+  std::vector<Loadable> loadable{};          // what lines load by a path that is written out, each path once
 };
 
 /// A structure that the application declares: the public data of another project.
@@ -103,7 +112,11 @@ struct Application {
   Version language;     // of that
   int form = 7;         // 5 (s5 and s6 files) or 7 (s7 and s8)
   std::size_t stack_bytes = 5000;
-  bool is_metric = true;  // lengths in mm, else inch
+  bool is_metric = true;   // lengths in mm, else inch
+  bool has_pages = false;  // a folder `interface`: its user pages may call programs
+  // What its project lists and could not be read, which is found: names of it are not known.
+  bool has_unread_data = false;
+  std::vector<std::string> unread_programs;  // file names without their ending, in lower case
   std::vector<Program> programs;
   std::vector<Global> globals;
   std::vector<Library> libraries;
@@ -114,6 +127,8 @@ struct Application {
   [[nodiscard]] int global_named(std::string_view name) const;
   [[nodiscard]] int library_named(std::string_view alias) const;
   [[nodiscard]] int user_type_named(std::string_view name) const;
+  /// The program may be in a file that could not be read.
+  [[nodiscard]] bool is_unread(std::string_view program) const;
 };
 
 /// As messages write it: "num", or the user type's name.

@@ -90,6 +90,7 @@ struct Line {
   std::vector<Expression> expressions;
   std::string alias;
   std::string program;
+  bool is_shorthand = false;  // `?value` of s8, which prints
 
   // Of a line of a block (kIf to kEndSwitch), indices into Program::lines. The same index as its own where
   // there is no other.

@@ -102,6 +102,39 @@ TEST(Checks, PeriodsAreMultiplesOf4MsAndTwoAtMost) {
               ElementsAre("start.pgx:5 sync-periods", "start.pgx:6 sync-period", "start.pgx:6 sync-periods"));
 }
 
+TEST(Checks, APeriodInAVariableIsLookedAtToo) {
+  SmallApplication small = cell();
+  small.program("task", "delay(0)");
+  small.program("start", "nOther=0.01\ntaskCreateSync \"a\",nOther,bLate,task()");
+  EXPECT_THAT(found_in(std::move(small)), ElementsAre("start.pgx:3 sync-period"));
+}
+
+TEST(Checks, ADiskInstructionAndTaskResumeMakeASynchronousTaskWait) {
+  SmallApplication small = cell();
+  small.program("start", "taskCreateSync \"t\",0.004,bLate,task()");
+  small.program("task", "n=libSave()\ntaskResume(\"u\",0)\ndelay(0)");
+  EXPECT_THAT(found_in(std::move(small)),
+              ElementsAre("task.pgx:2 sync-blocking", "task.pgx:3 sync-blocking"));
+}
+
+TEST(Checks, ConditionsOfConstantsAreFollowed) {
+  EXPECT_THAT(found_in_start("while false\nn=1\nendWhile"), ElementsAre("start.pgx:3 unreachable"));
+  EXPECT_THAT(found_in_start("if false\nn=1\nendIf\nn=2"), ElementsAre("start.pgx:3 unreachable"));
+  EXPECT_THAT(found_in_start("while 1==1\ndelay(0)\nendWhile\nn=1"), ElementsAre("start.pgx:5 unreachable"));
+  EXPECT_THAT(found_in_start("do\nreturn\nuntil b\nn=1"), ElementsAre("start.pgx:5 unreachable"));
+  EXPECT_THAT(found_in_start("do\nn=1\nuntil true\nn=1"), IsEmpty());
+}
+
+TEST(Checks, FormsOfALaterVersionAreFound) {
+  const auto found_with = [](std::string_view code, Version version) {
+    return found_in(cell().program("start", code), {version});
+  };
+  EXPECT_THAT(found_with("?\"text\"", {7, 7, 2}), ElementsAre("start.pgx:2 newer-form"));
+  EXPECT_THAT(found_with("n=sioCtrl(si,\"timeout\",-1)", {6, 4, 0}), ElementsAre("start.pgx:2 newer-form"));
+  EXPECT_THAT(found_with("n=sioCtrl(si,\"nagle\",false)", {6, 4, 0}), ElementsAre("start.pgx:2 newer-form"));
+  EXPECT_THAT(found_with("n=sioCtrl(si,\"timeout\",-1)", {7, 7, 2}), IsEmpty());
+}
+
 TEST(Checks, ALoopThatWaitsForNothingIsFound) {
   for (const std::string_view loop :
        {"while true\nn=1\nendWhile", "while b==false\nn=1\nendWhile", "while !isSettled()\nendWhile",

@@ -158,6 +158,7 @@ TEST(Resolver, WhatAControllerRefusesIsFoundOnce) {
       {"b=!n", "condition-type"},
       {"if d\nendIf", "dio-condition"},
       {"b=b or d", "dio-condition"},
+      {"wait(d)", "dio-condition"},
       {"n=sin()", "missing-argument"},
       {"n=sin(1,2)", "extra-argument"},
       {"n=sin(s)", "wrong-type"},
