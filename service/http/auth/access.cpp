@@ -38,6 +38,19 @@ std::string_view role_name(Role role) {
   return "";
 }
 
+TokenRank token_rank(Role role) {
+  switch (role) {
+    case Role::kNone:
+    case Role::kWrongToken:
+      return TokenRank::kNone;
+    case Role::kView:
+      return TokenRank::kView;
+    case Role::kOperate:
+      return TokenRank::kOperate;
+  }
+  return TokenRank::kNone;
+}
+
 /// Each token is compared, whichever it is: the time does not tell which of them a guess came near.
 Caller caller_of(const HttpRequest& request, const Tokens& tokens) {
   const std::string_view token = token_of(request);

@@ -6,6 +6,7 @@
 
 #include "service/http/auth/tokens.hpp"
 #include "service/http/server/http_message.hpp"
+#include "service/http/server/token_rank.hpp"
 
 namespace cell {
 
@@ -15,6 +16,7 @@ enum class Access { kOpen, kView, kOperate };
 /// Whose token a request carries.
 enum class Role { kNone, kWrongToken, kView, kOperate };
 std::string_view role_name(Role role);  // "operate", "view", "wrong token", "none"
+TokenRank token_rank(Role role);
 
 /// Who sends a request, by its token. A value: the tokens may be others before the request is answered.
 struct Caller {

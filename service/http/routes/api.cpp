@@ -187,7 +187,7 @@ std::unique_ptr<EventSource> Api::events(const HttpRequest& request) {
 }
 
 HeaderDecision Api::decide(const HttpRequest& header) const {
-  HeaderDecision decision{.has_token = shows_token(header, services_.tokens)};
+  HeaderDecision decision{.token = token_rank(role_of(header, services_.tokens))};
   const auto outcome = admit(header, services_.tokens);
   if (const auto* admitted = std::get_if<Admitted>(&outcome)) {
     decision.takes_body = !is_stop(*admitted->route);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <boost/asio/ip/address_v6.hpp>
+#include <stdexcept>
+#include <utility>
 
 namespace cell {
 
@@ -9,12 +11,19 @@ namespace ip = boost::asio::ip;
 
 namespace {
 
-/// What is closed first has the lowest rank; what has shown a token is not closed.
-constexpr int kNotClosed = 3;
-int closing_rank(const Connection& connection) {
-  if (connection.has_token) return kNotClosed;
-  if (!connection.has_requested) return 0;
-  return connection.is_answering ? 2 : 1;
+/// What is closed first is lowest: what it is worth, then how long ago it was used. All that has not shown a
+/// token is as old as its place in the table.
+std::pair<int, std::uint64_t> closing_order(const Connection& connection) {
+  const bool is_answering = connection.is_answering;
+  switch (connection.token) {
+    case TokenRank::kNone:
+      return {!connection.has_requested ? 0 : is_answering ? 2 : 1, 0};
+    case TokenRank::kView:
+      return {is_answering ? 5 : 3, connection.last_use};
+    case TokenRank::kOperate:
+      return {is_answering ? 6 : 4, connection.last_use};
+  }
+  return {};
 }
 
 }  // namespace
@@ -29,19 +38,23 @@ ConnectionOrigin origin_of(const ip::address& client) {
   return {false, ip::address_v6(bytes).to_string() + "/64"};
 }
 
-/// Whether one more of the connections that count may come, after one that may be closed was, if need be.
-bool ConnectionTable::make_room(int most, const Test& counts, const Test& may_close) {
-  const auto counted = [&](const std::shared_ptr<Connection>& one) { return counts(*one); };
-  if (std::ranges::count_if(connections_, counted) < most) return true;
-  const auto victim = std::ranges::min_element(
-      connections_, {}, [&](const auto& one) { return may_close(*one) ? closing_rank(*one) : kNotClosed; });
-  if (victim == connections_.end() || !may_close(**victim) || closing_rank(**victim) == kNotClosed)
-    return false;
+int ConnectionTable::count_of(const Test& counts) const {
+  return static_cast<int>(std::ranges::count_if(connections_, [&](const auto& one) { return counts(*one); }));
+}
+
+/// Closes one that may be closed where as many as may be count already.
+void ConnectionTable::make_room(int most, const Test& counts, const Test& may_close) {
+  if (count_of(counts) < most) return;
+  auto victim = connections_.end();
+  for (auto one = connections_.begin(); one != connections_.end(); ++one) {
+    if (!may_close(**one)) continue;
+    if (victim == connections_.end() || closing_order(**one) < closing_order(**victim)) victim = one;
+  }
+  if (victim == connections_.end()) throw std::logic_error("a quota of connections leaves no place");
   const std::shared_ptr<Connection> closed = *victim;
   connections_.erase(victim);
   closed->is_closed = true;
   if (closed->end) closed->end();
-  return true;
 }
 
 std::shared_ptr<Connection> ConnectionTable::take(const ConnectionOrigin& origin) {
@@ -49,13 +62,15 @@ std::shared_ptr<Connection> ConnectionTable::take(const ConnectionOrigin& origin
       origin.is_loopback ? quota_.loopback_connections_max : quota_.address_connections_max;
   const auto is_of_network = [&](const Connection& one) { return one.origin.network == origin.network; };
   const auto is_remote = [](const Connection& one) { return !one.origin.is_loopback; };
+  const auto is_local = [](const Connection& one) { return one.origin.is_loopback; };
   const auto is_any = [](const Connection&) { return true; };
-  // Other machines do not close what comes from this one.
-  const auto is_closable = [&](const Connection& one) { return origin.is_loopback || is_remote(one); };
-  if (!make_room(of_network, is_of_network, is_of_network)) return nullptr;
-  if (!origin.is_loopback && !make_room(quota_.remote_connections_max, is_remote, is_remote)) return nullptr;
-  if (!make_room(quota_.connections_max, is_any, is_closable)) return nullptr;
-  connections_.push_back(std::make_shared<Connection>(Connection{.origin = origin}));
+  make_room(of_network, is_of_network, is_of_network);
+  if (!origin.is_loopback) make_room(quota_.remote_connections_max, is_remote, is_remote);
+  // What other machines may not have is kept for this one: they close none of these.
+  const int kept_for_this = quota_.connections_max - quota_.remote_connections_max;
+  const bool may_close_local = origin.is_loopback || count_of(is_local) > kept_for_this;
+  make_room(quota_.connections_max, is_any, may_close_local ? Test(is_any) : Test(is_remote));
+  connections_.push_back(std::make_shared<Connection>(Connection{.origin = origin, .uses = uses_}));
   return connections_.back();
 }
 

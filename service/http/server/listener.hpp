@@ -12,7 +12,7 @@ namespace cell {
 class RequestHandler;
 
 /// Accepts connections on one address and serves `handler` over them, HTTP/1.1, with TLS where there is a
-/// certificate. Where no place is left, a client is told so (503).
+/// certificate. It is never full: ConnectionTable says which connection is closed for a new one.
 class HttpListener {
  public:
   /// Binds at once; port 0 takes a free one. Throws boost::system::system_error if the address is in use.
@@ -27,7 +27,6 @@ class HttpListener {
 
  private:
   void serve(boost::asio::ip::tcp::socket socket);
-  void tell_full(boost::asio::ip::tcp::socket socket, const boost::asio::ip::address& client);
 
   boost::asio::any_io_executor executor_;
   boost::asio::ip::tcp::acceptor acceptor_;
@@ -37,7 +36,6 @@ class HttpListener {
   RequestHandler& handler_;
   std::shared_ptr<BodyBudget> bodies_;
   ConnectionTable connections_;
-  int turned_away_ = 0;  // and not closed yet
 };
 
 }  // namespace cell

@@ -65,7 +65,6 @@ void LocalListener::close() {
 
 void LocalListener::serve(local::socket socket) {
   const std::shared_ptr<Connection> connection = connections_.take(kThisMachine);
-  if (!connection) return;  // the socket closes here
   asio::co_spawn(executor_, serve_local_session(std::move(socket), handler_, limits_, bodies_, connection),
                  [this, connection](const std::exception_ptr& thrown) {
                    connections_.give_back(connection);

@@ -8,6 +8,7 @@
 
 #include "service/http/server/http_message.hpp"
 #include "service/http/server/problem.hpp"
+#include "service/http/server/token_rank.hpp"
 
 namespace cell {
 
@@ -30,7 +31,7 @@ class EventSource {
 struct HeaderDecision {
   bool takes_body = false;  // otherwise the answer is the same without one
   std::uint64_t body_bytes_max = 0;
-  bool has_token = false;  // one of the daemon's
+  TokenRank token = TokenRank::kNone;
 };
 
 /// What a connection calls. The server knows neither routes nor the cell.

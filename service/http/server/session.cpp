@@ -259,6 +259,7 @@ asio::awaitable<bool> Session<Stream>::answer(const HttpRequest& request, const 
   co_await write(text);
   if (is_stream && !head.is_head()) co_await write_events(request);
   connection_->is_answering = false;
+  connection_->use();
   co_return keep_alive && !is_stream;
 }
 
@@ -290,7 +291,8 @@ asio::awaitable<bool> Session<Stream>::serve_one() {
   bool keep_alive = parser.get().keep_alive();  // not what a trailer says
   const HeaderDecision decision = handler_.decide(request);
   connection_->has_requested = true;
-  connection_->has_token = connection_->has_token || decision.has_token;
+  connection_->token = std::max(connection_->token, decision.token);
+  connection_->use();
   const bool expects = head.count("Expect") > 0;
   if (expects && decision.takes_body) co_return co_await refuse(expectation_failed(), head);
   BodyClaim claim(bodies_);
@@ -316,7 +318,7 @@ asio::awaitable<void> Session<Stream>::serve() {
   }
   bool goes_on = !connection_->is_closed;
   while (goes_on) goes_on = co_await serve_one();
-  connection_->has_token = false;  // it only ends: its place may be given to another
+  connection_->token = TokenRank::kNone;  // it only ends: its place may be given to another
   co_await finish();
 }
 

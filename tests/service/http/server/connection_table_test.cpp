@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
 namespace cell {
 namespace {
 
@@ -22,27 +27,74 @@ TEST(ConnectionOrigin, AnIpv6NetworkIsOneOriginAndAnIpv4AddressIsOneInBothFamili
   EXPECT_FALSE(origin_of(make_address("2001:db8::1")).is_loopback);
 }
 
-TEST(ConnectionTable, SilentOnesAreClosedFirstThenIdleThenAnsweringAndNeverOneWithAToken) {
-  ConnectionTable table({.connections_max = 4});
-  std::string closed;
-  const auto add = [&](char name, const Connection& as) {
-    const auto connection = table.take(kLoopback);
-    if (!connection) return false;
+/// Connections with a name each, of which those that were closed are told in their order.
+class NamedConnections {
+ public:
+  explicit NamedConnections(ConnectionTable& table) : table_(table) {}
+  void add(char name, const Connection& as, const ConnectionOrigin& origin = kLoopback) {
+    const auto connection = table_.take(origin);
     connection->has_requested = as.has_requested;
-    connection->has_token = as.has_token;
+    connection->token = as.token;
     connection->is_answering = as.is_answering;
-    connection->end = [&closed, name] { closed += name; };
-    return true;
-  };
-  const Connection with_token{.has_requested = true, .has_token = true};
-  EXPECT_TRUE(add('t', with_token));
-  EXPECT_TRUE(add('a', {.has_requested = true, .is_answering = true}));
-  EXPECT_TRUE(add('i', {.has_requested = true}));
-  EXPECT_TRUE(add('s', {}));
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(add('t', with_token));
-  EXPECT_EQ(closed, "sia");
-  EXPECT_FALSE(add('n', {})) << "full of those with a token";
-  EXPECT_EQ(table.count(), 4u);
+    connection->end = [this, name] { closed_ += name; };
+    connection->use();
+    all_[name] = connection;
+  }
+  void use(char name) { all_.at(name)->use(); }
+  [[nodiscard]] const std::string& closed() const { return closed_; }
+
+ private:
+  ConnectionTable& table_;
+  std::map<char, std::shared_ptr<Connection>> all_;
+  std::string closed_;
+};
+
+const Connection kSilent{};
+const Connection kViewing{.has_requested = true, .token = TokenRank::kView};
+const Connection kOperating{.has_requested = true, .token = TokenRank::kOperate};
+const Connection kFollowing{.has_requested = true, .token = TokenRank::kView, .is_answering = true};
+const Connection kCommanding{.has_requested = true, .token = TokenRank::kOperate, .is_answering = true};
+
+TEST(ConnectionTable, ThoseWithoutATokenAreClosedFirstThenIdleOnesThatReadThenThatOperateThenTheRest) {
+  ConnectionTable table({.connections_max = 7});
+  NamedConnections connections(table);
+  connections.add('c', kCommanding);
+  connections.add('f', kFollowing);
+  connections.add('o', kOperating);
+  connections.add('v', kViewing);
+  connections.add('a', {.has_requested = true, .is_answering = true});
+  connections.add('i', {.has_requested = true});
+  connections.add('s', kSilent);
+  for (int i = 0; i < 7; ++i) connections.add('n', kCommanding);
+  EXPECT_EQ(connections.closed(), "siavofc");
+  EXPECT_EQ(table.count(), 7u);
+}
+
+TEST(ConnectionTable, OfTwoWithTheSameTokenTheOneThatWasIdleLongestIsClosed) {
+  ConnectionTable table({.connections_max = 2});
+  NamedConnections connections(table);
+  connections.add('a', kViewing);
+  connections.add('b', kViewing);
+  connections.use('a');
+  connections.add('c', kViewing);
+  EXPECT_EQ(connections.closed(), "b");
+}
+
+TEST(ConnectionTable, ANewConnectionAlwaysHasAPlaceUntilItsFirstRequestIsThere) {
+  ConnectionTable table({});
+  NamedConnections connections(table);
+  const std::array<ConnectionOrigin, 2> crowd{origin_of(make_address("127.0.0.2")),
+                                              origin_of(make_address("127.0.0.3"))};
+  for (int i = 0; i < 600; ++i) connections.add('v', kViewing, crowd.at(static_cast<std::size_t>(i % 2)));
+  for (const auto& origin : {origin_of(make_address("127.0.0.9")), remote(1)}) {
+    const auto stop = table.take(origin);
+    EXPECT_FALSE(stop->is_closed);
+    EXPECT_EQ(table.count(), 256u) << "the bound stays";
+    stop->has_requested = true;
+    stop->token = TokenRank::kOperate;
+    for (int i = 0; i < 600; ++i) connections.add('v', kViewing, crowd.at(static_cast<std::size_t>(i % 2)));
+    EXPECT_FALSE(stop->is_closed) << "others of less worth go first";
+  }
 }
 
 TEST(ConnectionTable, ThePlaceOfAConnectionThatEndedIsFreeOnce) {
@@ -61,17 +113,14 @@ TEST(ConnectionTable, OtherMachinesLeavePlacesForThisOne) {
   std::vector<std::shared_ptr<Connection>> all;
   for (int machine = 1; machine <= 10; ++machine) {
     for (int i = 0; i < 2; ++i) {
-      if (auto connection = table.take(remote(machine))) {
-        connection->has_token = true;
-        all.push_back(connection);
-      }
+      all.push_back(table.take(remote(machine)));
+      all.back()->token = TokenRank::kOperate;
     }
   }
-  EXPECT_EQ(all.size(), 8u);
+  EXPECT_EQ(table.count(), 8u);
   const auto own = table.take(kLoopback);
   const auto other_own = table.take(kLoopback);
-  EXPECT_TRUE(own && other_own);
-  EXPECT_FALSE(table.take(remote(11)));
+  EXPECT_FALSE(table.take(remote(11))->is_closed);
   EXPECT_FALSE(own->is_closed || other_own->is_closed) << "another machine closes none of this one";
 }
 

@@ -130,26 +130,40 @@ TEST_F(CrowdedListenerTest, TheOldestConnectionWithoutATokenGoesForANewOne) {
   EXPECT_EQ(operating.receive().status, 200u);
 }
 
-TEST_F(CrowdedListenerTest, WhereAllConnectionsHaveATokenANewOneIsToldSo) {
+TEST_F(CrowdedListenerTest, AStopGetsThroughWhereAllConnectionsHaveAToken) {
   RawClient first = connect();
   RawClient second = connect();
-  for (RawClient* client : {&first, &second}) {
+  for (RawClient* client : {&first, &second, &first}) {
     client->send(get_with_token());
     EXPECT_EQ(client->receive().status, 200u);
   }
-  RawClient third = connect();
-  third.send(get("/healthz"));
-  const RawAnswer answer = third.receive();
-  EXPECT_EQ(answer.status, 503u);
-  EXPECT_EQ(answer.header.at("retry-after"), "5");
-  EXPECT_THAT(json::parse(answer.body).at("detail"), HasSubstr("all connections are in use"));
-  third.send_no_more();
-  EXPECT_TRUE(third.closed());
-  first.send(get("/healthz", "Connection: close\r\n"));
-  EXPECT_EQ(first.receive().status, 200u);
+  RawClient stopping = connect();
+  stopping.send(post("/api/v1/cell/stop", "Content-Length: 0\r\n", ""));
+  EXPECT_EQ(stopping.receive().status, 202u);
+  EXPECT_TRUE(second.closed()) << "it was idle longest";
+  RawClient next = connect();
+  next.send(get_with_token());
+  EXPECT_EQ(next.receive().status, 200u);
   EXPECT_TRUE(first.closed());
-  second.send(get("/healthz"));
-  EXPECT_EQ(second.receive().status, 200u);
+  stopping.send(get("/healthz"));
+  EXPECT_EQ(stopping.receive().status, 200u) << "who operates stays";
+}
+
+TEST_F(CrowdedListenerTest, WhoFollowsTheEventsStaysLongerThanWhoIsIdle) {
+  RawClient following = connect();
+  following.send(get("/api/v1/events", "Authorization: Bearer " + kTokens.view + "\r\n"));
+  EXPECT_EQ(following.receive().status, 200u);
+  following.receive_until("\n\n");
+  following.receive_until("\n\n");
+  RawClient idle = connect();
+  idle.send(post("/api/v1/cell/stop", "Content-Length: 0\r\n", ""));
+  EXPECT_EQ(idle.receive().status, 202u);
+  RawClient next = connect();
+  next.send(get("/healthz"));
+  EXPECT_EQ(next.receive().status, 200u);
+  EXPECT_TRUE(idle.closed());
+  expect_served(202, post("/api/v1/cell/reset", "Content-Length: 0\r\n", ""));
+  EXPECT_THAT(following.receive_until("\n\n"), HasSubstr("\"state\":\"RESETTING\""));
 }
 
 class ImpatientListenerTest : public ServedApi {
