@@ -127,6 +127,21 @@ struct ExportArguments {
 /// written.
 ExitCode export_command(const ApiClient& daemon, const ExportArguments& arguments, bool json);
 
+/// Upper bound of --valid-days.
+inline constexpr int kValidDaysMax = 36'500;
+
+struct ApproveArguments {
+  std::string run_id;
+  std::string operator_name;      // who approves it; may be empty
+  std::optional<int> valid_days;  // from now; without it no end is set
+};
+/// Makes the model of an accepted run the cell's and prints it.
+ExitCode approve_command(const ApiClient& daemon, const ApproveArguments& arguments, bool json);
+/// Prints the cell's model, and below it the newest approvals and rollbacks, newest first.
+ExitCode models_command(const ApiClient& daemon, bool json);
+/// Takes the current model back and prints the one before, which is the cell's again.
+ExitCode rollback_command(const ApiClient& daemon, const std::string& operator_name, bool json);
+
 /// Upper bound of --limit: all that the daemon keeps.
 inline constexpr int kAuditLimitMax = 101'000;
 

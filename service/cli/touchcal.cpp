@@ -75,6 +75,7 @@ class CommandLine {
                          "write DH tables, JSON to a FILE.json, else CSV; - is standard output");
     exported->add_flag("--force", export_.overwrite, "overwrite the files");
     add_report();
+    add_models();
     add_audit();
     for (const auto& [name, description] : kCellCommands) {
       add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {
@@ -287,6 +288,26 @@ class CommandLine {
         ->check(CLI::Range(cell::kReportDrawsMin, cell::kReportDrawsMax));
   }
 
+  void add_models() {
+    auto* approve = add_for_daemon(
+        "approve", "make the model of a run that is complete and accepted the cell's",
+        [this](const cell::ApiClient& daemon) { return cell::approve_command(daemon, approve_, json_); });
+    approve->add_option("RUN", approve_.run_id, "id of the run")->required();
+    approve->add_option("--operator", approve_.operator_name, "the person who approves it; stored with it");
+    approve->add_option("--valid-days", approve_.valid_days, "days from now until which it is valid")
+        ->check(cell::refuse_integer)
+        ->check(CLI::Range(1, cell::kValidDaysMax));
+    add_for_daemon("models", "show the cell's model, and what was approved and rolled back, newest first",
+                   [this](const cell::ApiClient& daemon) { return cell::models_command(daemon, json_); });
+    auto* rollback =
+        add_for_daemon("rollback", "take the cell's model back; the one before is the cell's again",
+                       [this](const cell::ApiClient& daemon) {
+                         return cell::rollback_command(daemon, approve_.operator_name, json_);
+                       });
+    rollback->add_option("--operator", approve_.operator_name,
+                         "the person who takes it back; stored with it");
+  }
+
   void add_audit() {
     auto* audit = add_for_daemon(
         "audit", "list the audit log, newest first: who gave which command, from where, and what came of it",
@@ -352,6 +373,7 @@ class CommandLine {
   cell::ExportArguments export_;
   cell::ReportArguments report_;
   cell::AuditArguments audit_;
+  cell::ApproveArguments approve_;
   // Not by CLI11's envname: with it the environment of one subcommand would override the flag of another.
   std::string daemon_url_ = environment_or("TOUCHCAL_DAEMON", "http://127.0.0.1:8080");
   std::string state_directory_ = environment_or("TOUCHCAL_STATE", cell::default_state_directory().string());

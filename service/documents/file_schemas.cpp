@@ -255,6 +255,30 @@ constexpr std::string_view kCompensated = R"({
       "tip_uncertainty_mm":{"type":["number","null"],"minimum":0},
       "reason":{"type":["string","null"]}}}}}})";
 
+constexpr std::string_view kModel = R"({
+"type":"object",
+"description":"The model of a run as a person approved it; it never changes.",
+"required":["schema","hash","run_id","approved_by","approved_at","valid_until","proof_run_id","arm","arm_serial",
+  "controller_serial","config_digest","arm_moving_min","block_temperature_c","tip_uncertainty","parameters",
+  "nongeometric_parameters"],
+"properties":{
+  "schema":{"const":"touchcal/model/1"},
+  "hash":{"type":"string","description":"SHA-256 over the touches of the run as stored, the digest of the cell's files, the stored arm and the run's id"},
+  "run_id":{"type":"string"},
+  "approved_by":{"type":["string","null"],"description":"the operator who was named"},
+  "approved_at":{"type":"string"},
+  "valid_until":{"type":["string","null"],"description":"null: no end was set"},
+  "proof_run_id":{"type":["string","null"],"description":"null: the model is not proved"},
+  "arm":{"type":"string"},
+  "arm_serial":{"type":["string","null"]},
+  "controller_serial":{"type":["string","null"]},
+  "config_digest":{"type":["string","null"]},
+  "arm_moving_min":{"type":["number","null"],"description":"minutes that the arm had moved before the run: how warm it was"},
+  "block_temperature_c":{"type":["number","null"]},
+  "tip_uncertainty":{"type":["object","null"],"description":"as in the run's result"},
+  "parameters":{"type":["array","null"],"description":"likewise"},
+  "nongeometric_parameters":{"type":["array","null"],"description":"likewise"}}})";
+
 constexpr std::array kFileSchemas{DocumentSchema{"Touches", kTouches},
                                   DocumentSchema{"Result", kResult},
                                   DocumentSchema{"Distances", kDistances},
@@ -262,6 +286,7 @@ constexpr std::array kFileSchemas{DocumentSchema{"Touches", kTouches},
                                   DocumentSchema{"ExpandedTipUncertainty", kExpandedTipUncertainty},
                                   DocumentSchema{"Plan", kPlan},
                                   DocumentSchema{"Arm", kArm},
+                                  DocumentSchema{"Model", kModel},
                                   DocumentSchema{"Report", kReport},
                                   DocumentSchema{"Targets", kTargets},
                                   DocumentSchema{"Compensated", kCompensated}};

@@ -248,6 +248,36 @@ constexpr std::string_view kAudit = R"({
       "hash":{"type":"string","description":"SHA-256 of the hash of the row before and of this row"}}}},
   "next_before":{"type":["string","null"],"description":"ask for the next page with before; null on the last"}}})";
 
+constexpr std::string_view kModels = R"({
+"type":"object",
+"required":["models","next_before"],
+"properties":{
+  "models":{"type":"array","items":{
+    "type":"object",
+    "required":["id","kind","run_id","hash","by","at","valid_until","current"],
+    "properties":{
+      "id":{"type":"string"},
+      "kind":{"enum":["approved","rolled_back"]},
+      "run_id":{"type":"string","description":"of the model that was approved or taken back"},
+      "hash":{"type":"string","description":"of that model"},
+      "by":{"type":["string","null"],"description":"the operator who was named"},
+      "at":{"type":"string"},
+      "valid_until":{"type":["string","null"]},
+      "current":{"type":"boolean","description":"the approval by which its model is the cell's"}}}},
+  "next_before":{"type":["string","null"],"description":"ask for the next page with before; null on the last"}}})";
+
+constexpr std::string_view kApprovalRequest = R"({
+"type":"object",
+"additionalProperties":false,
+"properties":{
+  "operator":{"type":"string","minLength":1,"maxLength":100},
+  "valid_days":{"type":"integer","minimum":1,"maximum":36500,"description":"from now; without it no end is set"}}})";
+
+constexpr std::string_view kRollbackRequest = R"({
+"type":"object",
+"additionalProperties":false,
+"properties":{"operator":{"type":"string","minLength":1,"maxLength":100}}})";
+
 constexpr std::string_view kOpenApi = R"({
 "type":"object",
 "required":["openapi","info","paths","components"],
@@ -266,6 +296,9 @@ constexpr std::array kDaemonSchemas{DocumentSchema{"Status", kStatus},
                                     DocumentSchema{"Health", kHealth},
                                     DocumentSchema{"Access", kAccess},
                                     DocumentSchema{"Audit", kAudit},
+                                    DocumentSchema{"Models", kModels},
+                                    DocumentSchema{"ApprovalRequest", kApprovalRequest},
+                                    DocumentSchema{"RollbackRequest", kRollbackRequest},
                                     DocumentSchema{"OpenApi", kOpenApi}};
 
 }  // namespace

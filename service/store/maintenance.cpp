@@ -21,6 +21,7 @@
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
 #include "service/store/log_damage.hpp"
+#include "service/store/model_store.hpp"
 
 namespace cell {
 namespace {
@@ -74,6 +75,7 @@ void find_damaged_rows(SQLite::Database& database, std::vector<std::string>& dam
   while (lost.executeStep())
     damage.push_back("run " + lost.getColumn(0).getString() +
                      ": touches or the plan that it had are not there");
+  if (version >= kModelSchema) std::ranges::move(find_model_damage(database), std::back_inserter(damage));
 }
 
 SQLite::Database open_to_read(const std::filesystem::path& file) {
@@ -287,7 +289,8 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
   SQLite::Statement choose(*database,
                            "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
                            "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ?) AND id "
-                           "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND ? <= (SELECT "
+                           "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND id NOT IN "
+                           "(SELECT run_id FROM models) AND ? <= (SELECT "
                            "count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?)");
   choose.bind(1, oldest);
   choose.bind(2, std::string(run_outcome_name(RunOutcome::kRunning)));

@@ -34,9 +34,9 @@ class StoreNotChecked : public std::runtime_error {
 
 /// Damage of a database file, one line each; empty if there is none. Checks the log, pages, indices, foreign
 /// keys, the checksum of every row that a run rests on, that no row of an ended run is gone, plane, role and
-/// source of every touch, and the chains of the audit. Read-only, also on a disk that cannot be written;
-/// StoreNotChecked where a log lies beside the file there, which only a writer can put into it, and for a
-/// file of a newer version.
+/// source of every touch, the approved models, and the chains of the audit. Read-only, also on a disk that
+/// cannot be written; StoreNotChecked where a log lies beside the file there, which only a writer can put
+/// into it, and for a file of a newer version.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
 
 /// The log beside a database holds what is not in it yet, and cannot be read without leaving a trace.
@@ -62,10 +62,11 @@ inline constexpr int kLastRunsKept = 10;
 inline constexpr int kDaysThatAgree = 3;
 
 /// Deletes the runs that began before `oldest` (as in format_utc()) with all their rows, except the last
-/// accepted run, a running one and the last kLastRunsKept; returns how many. What is deleted does not come
-/// back, so no clock is believed alone: where runs began on fewer than `days_that_agree` days since `oldest`,
-/// nothing is deleted. More likely than a cell at rest is a clock that stands years ahead, at this start of
-/// the daemon or at one before that made some runs. Faults and audit entries have their own limits.
+/// accepted run, a running one, one with a model that was ever approved, and the last kLastRunsKept; returns
+/// how many. What is deleted does not come back, so no clock is believed alone: where runs began on fewer
+/// than `days_that_agree` days since `oldest`, nothing is deleted. More likely than a cell at rest is a clock
+/// that stands years ahead, at this start of the daemon or at one before that made some runs. Faults and
+/// audit entries have their own limits.
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest,
                        int days_that_agree = kDaysThatAgree);
 

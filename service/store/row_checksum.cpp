@@ -169,17 +169,26 @@ const CheckedRows& arm_rows() {
   return rows;
 }
 
+const CheckedRows& model_rows() {
+  static const CheckedRows rows = rows_of(
+      "models", "id, kind, run_id, at, operator_name, hash, valid_until, document, arm, chained", "id");
+  return rows;
+}
+
 std::span<const CheckedRows* const> all_checked_rows(std::size_t schema) {
+  // Those of models, which came last, stand last.
   static const auto with = [](const TouchTables& tables) {
-    return std::array{&tables.touches,     &tables.superseded,   &reference_rows(),
-                      &plan_change_rows(), &open_command_rows(), &plan_rows(),
-                      &run_rows(),         &result_rows(),       &arm_rows()};
+    return std::array{&tables.touches,      &tables.superseded, &reference_rows(), &plan_change_rows(),
+                      &open_command_rows(), &plan_rows(),       &run_rows(),       &result_rows(),
+                      &arm_rows(),          &model_rows()};
   };
   static const std::array without_noise = with(touch_tables(kChecksumSchema));
   static const std::array without_contacts = with(touch_tables(kTouchNoiseSchema));
   static const std::array newest = with(touch_tables(kTouchContactsSchema));
-  if (schema < kTouchNoiseSchema) return without_noise;
-  return schema < kTouchContactsSchema ? without_contacts : newest;
+  const std::span<const CheckedRows* const> rows = schema < kTouchNoiseSchema      ? without_noise
+                                                   : schema < kTouchContactsSchema ? without_contacts
+                                                                                   : newest;
+  return schema < kModelSchema ? rows.first(rows.size() - 1) : rows;
 }
 
 const std::string& rows_of_run() {

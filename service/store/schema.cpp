@@ -215,9 +215,27 @@ ALTER TABLE superseded_touches ADD COLUMN again_j5_microdeg INTEGER;
 ALTER TABLE superseded_touches ADD COLUMN again_j6_microdeg INTEGER;
 )sql";
 
-constexpr std::array kMigrations{kRunsAndTouches,  kPlans,        kDiary,        kTemperatures,
-                                 kStiffness,       kChecksums,    kAuditChained, kTouchNoise,
-                                 kAuditTokenNames, kTouchContacts};
+/// The models of the cell, as approvals and rollbacks behind each other: model_store.hpp. `chained` is the
+/// hash of the row before with this one's content.
+constexpr const char* kModels = R"sql(
+CREATE TABLE models(
+  id INTEGER PRIMARY KEY AUTOINCREMENT,
+  kind TEXT NOT NULL,
+  run_id INTEGER NOT NULL REFERENCES runs(id),
+  at TEXT NOT NULL,
+  operator_name TEXT,
+  hash TEXT NOT NULL,
+  valid_until TEXT,
+  document TEXT,
+  arm TEXT,
+  chained TEXT NOT NULL,
+  checksum INTEGER
+) STRICT;
+)sql";
+
+constexpr std::array kMigrations{kRunsAndTouches,  kPlans,         kDiary,        kTemperatures,
+                                 kStiffness,       kChecksums,     kAuditChained, kTouchNoise,
+                                 kAuditTokenNames, kTouchContacts, kModels};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

@@ -27,6 +27,9 @@ inline constexpr std::size_t kTouchNoiseSchema = 8;
 /// From this schema on a touch may have a first contact and a repetition, which its checksum covers.
 inline constexpr std::size_t kTouchContactsSchema = 10;
 
+/// From this schema on there are models that a person approved.
+inline constexpr std::size_t kModelSchema = 11;
+
 /// Opens or creates the file (WAL, synchronous FULL: a commit is durable on return) and migrates it to the
 /// newest schema, all or nothing. Throws std::runtime_error that names the file if that fails, also for a
 /// file of a newer schema, which is not changed.

@@ -61,6 +61,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/cli/export_command", "end_to_end/programs_test runs the command"},
     {"service/cli/filter_command", "end_to_end/filter_command_test runs the command"},
     {"service/cli/identify_command", "end_to_end/offline_commands_test runs the command"},
+    {"service/cli/model_commands", "end_to_end/approval_test runs the commands"},
     {"service/cli/offline", "end_to_end/offline_commands_test"},
     {"service/cli/plan_command", "end_to_end/plan_command_test runs the command"},
     {"service/cli/plan_text", "end_to_end/plan_command_test reads its text"},

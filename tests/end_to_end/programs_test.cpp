@@ -9,19 +9,16 @@
 #include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
-#include <chrono>
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <optional>
 
 #include "calib_core/geometry/units.hpp"
 #include "config/arm_file.hpp"
 #include "service/base/exit_code.hpp"
 #include "service/store/run_store.hpp"
-#include "sim_controller/controller.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
+#include "tests/end_to_end/running_cell.hpp"
 #include "tests/end_to_end/shipped_cell.hpp"
 
 namespace touchcal::testing {
@@ -109,82 +106,6 @@ TEST_F(Programs, TellADaemonThatIsNotThere) {
     EXPECT_THAT(finished.err, HasSubstr(url)) << command;
   }
 }
-
-/// A copy of a shipped cell whose two sides may be silent for as long as the protocol allows: the machine may
-/// be busy with other tests.
-std::string patient_cell(const Folder& folder, const std::string& name) {
-  std::filesystem::copy(std::string(TOUCHCAL_SOURCE_DIR) + "/config", folder / "config",
-                        std::filesystem::copy_options::recursive);
-  const std::filesystem::path file = folder / ("config/cells/" + name + "/cell.json");
-  std::ifstream in(file);
-  nlohmann::json cell = nlohmann::json::parse(in);
-  cell.at("deadlines").at("heartbeat_timeout_ms") = sim::kHeartbeatTimeoutMax.count();
-  std::ofstream(file) << cell.dump();
-  return file.string();
-}
-
-/// A daemon and a simulated controller on a shipped cell, each on a free port.
-class RunningCell {
- public:
-  RunningCell(const std::string& name, const std::string& speed)
-      : cell_file_(patient_cell(folder_, name)),
-        controller_({"cs8sim", "--cell", cell_file_, "--listen", "127.0.0.1:0", "--speed", speed},
-                    folder_ / "cs8sim.err"),
-        controller_address_(controller_.wait_for_address()) {
-    start_daemon();
-  }
-
-  void start_daemon() {
-    daemon_.reset();
-    daemon_.emplace(std::vector<std::string>{"touchcald", "--cell", cell_file_, "--listen", "127.0.0.1:0",
-                                             "--controller", controller_address_, "--state", state()},
-                    folder_ / "touchcald.err");
-    url_ = "http://" + daemon_->wait_for_address();
-  }
-
-  [[nodiscard]] std::vector<std::string> call(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), "touchcal");
-    for (const std::string& argument : {std::string("--daemon"), url_, std::string("--state"), state()}) {
-      arguments.push_back(argument);
-    }
-    return arguments;
-  }
-  Finished run(const std::vector<std::string>& arguments) const {
-    return Process(call(arguments), folder_ / "call.err").wait();
-  }
-  nlohmann::json status() const { return nlohmann::json::parse(run({"status", "--json"}).out); }
-
-  /// Polls as a supervisor does, until the run with this id has made so many touches. Before it starts, the
-  /// status still has the touches of the previous run.
-  void wait_for_touches(int count, const std::string& run_id = "1") const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    for (auto now = status(); now.at("run_id") != run_id || now.at("touches_done") < count; now = status()) {
-      if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(now.dump());
-    }
-  }
-
-  void wait_for_state(const std::string& state) const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    for (auto now = status(); now.at("state") != state; now = status()) {
-      if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(now.dump());
-    }
-  }
-
-  [[nodiscard]] const Folder& folder() const { return folder_; }
-  Process& controller() { return controller_; }
-  Process& daemon() { return *daemon_; }
-  [[nodiscard]] std::filesystem::path store_file() const { return folder_ / "state" / "touchcal.sqlite"; }
-
- private:
-  [[nodiscard]] std::string state() const { return (folder_ / "state").string(); }
-
-  Folder folder_;
-  std::string cell_file_;
-  Process controller_;
-  std::string controller_address_;
-  std::optional<Process> daemon_;
-  std::string url_;
-};
 
 TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   RunningCell cell("demo", "max");

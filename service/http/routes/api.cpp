@@ -125,6 +125,7 @@ Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& oper
       threads_(std::move(threads)),
       services_(operation, std::move(tokens), operation.store().file()),
       audit_(threads_.store, services_),
+      reads_of_store_(operation, operation.store().file()),
       reader_(std::make_unique<Desk>(threads_.reader, operation, kAtReaderMax,
                                      "other runs are being read; ask again")),
       worker_(std::make_unique<Desk>(threads_.worker, operation, kAtWorkerMax,
@@ -148,7 +149,8 @@ Services::Services(CellOperation& to_serve, Tokens to_ask_for,
       feed(to_serve),
       reads(store_file ? Reads(to_serve, *store_file) : Reads(to_serve)),
       answers(to_serve.store().database()),
-      audit(to_serve.store().database()) {}
+      audit(to_serve.store().database()),
+      models(to_serve.store().database()) {}
 
 HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
   services_.metrics.count_request("", "", problem.status);
@@ -215,6 +217,14 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
   if (dispatch == DispatchMode::kStored || dispatch == DispatchMode::kWorker) {
     Desk& desk = dispatch == DispatchMode::kStored ? *reader_ : *worker_;
     HttpResponse response = co_await at_desk(desk, request, admitted);
+    co_return response;
+  }
+  if (dispatch == DispatchMode::kWritten) {
+    HttpResponse response = co_await run_on(threads_.store, [&] {
+      const Asked nothing;
+      reads_of_store_.update();
+      return handle(admitted, request, services_, reads_of_store_, nothing);
+    });
     co_return response;
   }
   Asked asked;

@@ -76,6 +76,7 @@ class Api final : public RequestHandler {
   ApiThreads threads_;
   Services services_;
   RequestAudit audit_;
+  Reads reads_of_store_;          // of the thread of the store, for what is written there
   std::unique_ptr<Desk> reader_;  // of stored runs
   std::unique_ptr<Desk> worker_;  // identifies
   int at_store_ = 0;              // commands that wait for the store

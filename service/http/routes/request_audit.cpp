@@ -64,8 +64,11 @@ RequestAudit::Row RequestAudit::row_of(const HttpRequest& request, const Caller&
                     .outcome = std::move(outcome)}};
   row.is_stranger = caller.role == Role::kNone || caller.role == Role::kWrongToken;
   if (caller.role != Role::kOperate) return row;
-  if (start) row.entry.operator_name = operator_of(*start);
-  row.run = run_commanded_by(request);
+  if (start) {
+    row.entry.operator_name = operator_of(*start);
+  } else {
+    row.run = run_commanded_by(request);
+  }
   return row;
 }
 

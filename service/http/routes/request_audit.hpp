@@ -17,8 +17,8 @@ struct StartBody;
 
 /// Records requests in the audit log. It is used on the thread that serves and writes on that of the store.
 /// `caller`: who sent the request, by the tokens that counted when it was admitted or refused. `start`, where
-/// it is given: the body of a request that starts a run, which names the operator; for another command that
-/// is the operator of its run. Both are told of who has an operate token only.
+/// it is given: the body of a request that starts a run or approves one, which names the operator; for
+/// another command that is the operator of its run. Both are told of who has an operate token only.
 class RequestAudit {
  public:
   /// `services` must outlive it, and both threads must have ended before it goes.

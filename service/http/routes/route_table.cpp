@@ -19,7 +19,7 @@ namespace {
 std::vector<Route> all_routes() {
   std::vector<Route> all;
   for (const auto topic : {service_routes, status_routes, run_routes, command_routes, plan_routes,
-                           compensation_routes, cell_routes, audit_routes, page_routes}) {
+                           compensation_routes, cell_routes, audit_routes, model_routes, page_routes}) {
     std::ranges::move(topic(), std::back_inserter(all));
   }
   return all;
@@ -120,7 +120,7 @@ std::variant<Admitted, HttpResponse> admit(const HttpRequest& request, const Tok
     if (auto refused = refuse_body(candidate, request)) return *std::move(refused);
     if (auto refused = refuse_key(request)) return *std::move(refused);
     return Admitted{&candidate, decode_segment(*id),
-                    candidate.starts_run ? parse_start(request.body) : nullptr};
+                    candidate.starts_run || candidate.names_operator ? parse_start(request.body) : nullptr};
   }
   if (allowed.empty()) return not_found(fmt::format("there is nothing at {}", request.path));
   HttpResponse response =

@@ -27,6 +27,7 @@ enum class DispatchMode {
   kLongPoll,  // answered at a status other than `after`, or after `wait_s`
   kPlanning,  // answered when the recipe has been planned
   kStored,    // on the reader's thread, since it takes time: it may use only the request and Call::reads
+  kWritten,   // on the store's thread, since it writes: the request, Call::reads and Services::models
   kWorker,    // on the worker's thread, since it takes long: it may use only the request and Call::reads
   kEvents,    // a stream of events follows the header
 };
@@ -96,7 +97,9 @@ struct Route {
   std::string_view body_schema = {};  // empty: the only body is {}
   std::size_t body_bytes_max = kBodyBytesMax;
   DispatchMode dispatch = DispatchMode::kAtOnce;
-  bool starts_run = false;    // its body is parsed with its admission: Admitted::start
+  bool starts_run = false;  // its body is parsed with its admission: Admitted::start
+  /// Its body may name the operator in the same way, for the audit: Admitted::start.
+  bool names_operator = false;
   bool tells_result = false;  // its handler needs a copy of the run under way when it is about that one
 };
 
@@ -118,6 +121,7 @@ std::vector<Route> plan_routes();  // plan, identify
 std::vector<Route> compensation_routes();
 std::vector<Route> cell_routes();  // what is configured
 std::vector<Route> audit_routes();
+std::vector<Route> model_routes();  // what a person approved
 std::vector<Route> page_routes();
 
 /// A stop is executed whatever the request holds, and whatever else fails.
@@ -129,7 +133,7 @@ bool halts_only(const Route& route);
 struct Admitted {
   const Route* route = nullptr;
   std::string id;                               // the segment at {id}, decoded
-  std::shared_ptr<const StartBody> start = {};  // of a route that starts a run
+  std::shared_ptr<const StartBody> start = {};  // of a route that starts a run or names the operator
 };
 
 /// The route of a request, or its refusal: 404, 405, 401, 403, 400, 413, 415. For a request without its body,

@@ -10,6 +10,7 @@
 #include "service/http/routes/status_feed.hpp"
 #include "service/store/answer_store.hpp"
 #include "service/store/audit_log.hpp"
+#include "service/store/model_store.hpp"
 
 namespace cell {
 
@@ -26,8 +27,9 @@ struct Services {
   StatusFeed feed;
   Metrics metrics;
   Reads reads;
-  AnswerStore answers;  // these two on the thread that writes
+  AnswerStore answers;  // these three on the thread that writes
   AuditLog audit;
+  ModelStore models;
   std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // event streams; a stream may outlive this
 };
 

@@ -64,19 +64,10 @@ std::optional<Problem> read_recipe(const json& body, const CellOperation& operat
   return std::nullopt;
 }
 
-/// On one line of a report, a list and the log.
-bool is_name(const std::string& text) {
-  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
-  return !text.empty() && text.size() <= kOperatorBytesMax && std::ranges::none_of(text, is_control);
-}
-
 std::optional<Problem> read_operator(const json& body, StartRequest& start) {
   if (const auto found = body.find("operator"); found != body.end()) {
-    if (!found->is_string() || !is_name(found->get_ref<const std::string&>())) {
-      return wrong("/operator",
-                   fmt::format("a name of at most {} bytes without control characters is required",
-                               kOperatorBytesMax));
-    }
+    if (!found->is_string() || !is_operator_name(found->get_ref<const std::string&>()))
+      return wrong("/operator", operator_name_is());
     start.operator_name = found->get<std::string>();
   }
   return std::nullopt;
@@ -202,6 +193,16 @@ std::shared_ptr<const StartBody> parse_start(const std::string& text) try {
 std::variant<StartRequest, Problem> read_start(const StartBody& body, const CellOperation& operation) {
   if (body.problem) return *body.problem;
   return read_body(body.json, operation);
+}
+
+/// On one line of a report, a list and the log.
+bool is_operator_name(const std::string& text) {
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  return !text.empty() && text.size() <= kOperatorBytesMax && std::ranges::none_of(text, is_control);
+}
+
+std::string operator_name_is() {
+  return fmt::format("a name of at most {} bytes without control characters is required", kOperatorBytesMax);
 }
 
 std::string operator_of(const StartBody& body) {

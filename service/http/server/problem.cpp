@@ -72,10 +72,14 @@ std::string_view problem_kind_name(ProblemKind kind) {
       return "internal";
     case ProblemKind::kMethod:
       return "method";
+    case ProblemKind::kNoModel:
+      return "no-model";
     case ProblemKind::kNoPlan:
       return "no-plan";
     case ProblemKind::kNoResult:
       return "no-result";
+    case ProblemKind::kNotApprovable:
+      return "not-approvable";
     case ProblemKind::kNotFound:
       return "not-found";
     case ProblemKind::kNotIdentifiable:
@@ -86,6 +90,8 @@ std::string_view problem_kind_name(ProblemKind kind) {
       return "not-this-run";
     case ProblemKind::kOrigin:
       return "origin";
+    case ProblemKind::kOtherArm:
+      return "other-arm";
     case ProblemKind::kPlanning:
       return "planning";
     case ProblemKind::kPreconditions:

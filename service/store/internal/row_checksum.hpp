@@ -37,6 +37,7 @@ const CheckedRows& plan_rows();
 const CheckedRows& run_rows();     // without the result
 const CheckedRows& result_rows();  // of the table of the runs
 const CheckedRows& arm_rows();
+const CheckedRows& model_rows();  // from kModelSchema on
 /// Of a file of this schema, kChecksumSchema or later.
 std::span<const CheckedRows* const> all_checked_rows(std::size_t schema);
 

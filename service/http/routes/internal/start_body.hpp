@@ -18,6 +18,10 @@ std::shared_ptr<const StartBody> parse_start(const std::string& text);
 /// precondition.
 std::variant<StartRequest, Problem> read_start(const StartBody& body, const CellOperation& operation);
 
+/// Whether a text can name an operator, and what is required of it, for a refusal.
+bool is_operator_name(const std::string& text);
+std::string operator_name_is();
+
 /// The operator whom the body names; empty where it names nobody or cannot be read.
 std::string operator_of(const StartBody& body);
 

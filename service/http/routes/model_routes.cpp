@@ -1,0 +1,208 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <variant>
+
+#include "config/config_error.hpp"
+#include "config/strict_json.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/documents/model_document.hpp"
+#include "service/http/routes/internal/start_body.hpp"
+#include "service/http/routes/route_table.hpp"
+#include "service/http/routes/services.hpp"
+#include "service/store/model_store.hpp"
+
+namespace cell {
+namespace {
+
+constexpr int kModelsPageDefault = 100;
+constexpr int kModelsPageMax = 500;
+constexpr std::int64_t kModelIdMax = std::int64_t{1} << 53;
+constexpr int kValidDaysMax = 36'500;
+constexpr std::string_view kOperatorKey = "operator";
+constexpr std::string_view kValidDaysKey = "valid_days";
+
+HttpResponse not_approved(ProblemKind kind, std::string detail) {
+  return to_response({.status = 409, .kind = kind, .detail = std::move(detail)});
+}
+
+Problem wrong_approval(std::string_view key, std::string detail) {
+  return {.kind = ProblemKind::kBody, .detail = std::move(detail), .pointer = pointer_step(std::string(key))};
+}
+
+std::variant<ApprovalRequest, Problem> approval_in(const nlohmann::json& body, bool takes_days) {
+  if (!body.is_object())
+    return Problem{.kind = ProblemKind::kBody, .detail = "an object is required", .pointer = ""};
+  ApprovalRequest request;
+  for (const auto& [key, value] : body.items()) {
+    if (key == kOperatorKey) {
+      if (!value.is_string() || !is_operator_name(value.get_ref<const std::string&>()))
+        return wrong_approval(key, operator_name_is());
+      request.operator_name = value.get<std::string>();
+    } else if (takes_days && key == kValidDaysKey) {
+      if (!value.is_number_integer() || value < 1 || value > kValidDaysMax)
+        return wrong_approval(key,
+                              fmt::format("a whole number of days from 1 to {} is required", kValidDaysMax));
+      request.valid_days = value.get<int>();
+    } else {
+      return wrong_approval(
+          key, fmt::format("unknown key; known are {}{}", kOperatorKey, takes_days ? ", valid_days" : ""));
+    }
+  }
+  return request;
+}
+
+/// A body may be left out: it only names who approves, and for how long.
+std::variant<ApprovalRequest, Problem> read_approval(const std::string& body, bool takes_days) {
+  if (body.empty()) return ApprovalRequest{};
+  try {
+    return approval_in(parse_strict_json("request body", body, kBodyBytesMax), takes_days);
+  } catch (const ConfigError& error) {
+    return Problem{.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()};
+  }
+}
+
+/// A model is of one arm; nothing when it is the cell's.
+std::optional<HttpResponse> refuse_other_arm(const Call& call, std::int64_t run_id,
+                                             const std::string& arm_json) {
+  const std::string name = name_of_arm(arm_json);
+  const std::string& now = call.reads.cell().arm.name;
+  if (name == now) return std::nullopt;
+  return not_approved(
+      ProblemKind::kOtherArm,
+      fmt::format("the model of run {} is of the arm '{}', and this cell has the arm '{}' now; "
+                  "calibrate this arm and approve that run",
+                  run_id, name, now));
+}
+
+/// The document of an approval, unless the cell has another arm now.
+HttpResponse tell_model(const Call& call, const ModelStore& models, const Approval& approval) {
+  if (auto refused = refuse_other_arm(call, approval.run_id, models.arm_json(approval.id).value()))
+    return *std::move(refused);
+  return json_response(200, models.document(approval.id).value());
+}
+
+HttpResponse get_models(const Call& call) {
+  const auto limit = static_cast<std::size_t>(call.number("limit").value_or(kModelsPageDefault));
+  const auto history = ModelStore(call.reads.store().database()).history();
+  return json_response(200, document_text(models_page(history, limit, call.number("before"))));
+}
+
+HttpResponse no_model() {
+  return not_approved(ProblemKind::kNoModel,
+                      "no model is approved; touchcal approve RUN makes that of an accepted run the cell's");
+}
+
+HttpResponse get_current_model(const Call& call) {
+  const ModelStore models(call.reads.store().database());
+  const auto standing = standing_approvals(models.history());
+  return standing.empty() ? no_model() : tell_model(call, models, standing.back());
+}
+
+/// Why the result of a run cannot become a model; nothing when it can.
+std::optional<std::string> why_no_model(const StoredRun& run) {
+  constexpr std::string_view kOnly = "only a run that is complete and accepted can be approved";
+  if (run.outcome == RunOutcome::kRunning) return fmt::format("run {} is not over; {}", run.id, kOnly);
+  if (run.outcome == RunOutcome::kComplete && run.verdict == Verdict::kAccepted) return std::nullopt;
+  return fmt::format("the outcome of run {} is '{}' and its verdict '{}'; {}", run.id,
+                     run_outcome_name(run.outcome), verdict_name(run.verdict), kOnly);
+}
+
+HttpResponse approve(const Call& call, const StoredRun& run, const ApprovalRequest& request) {
+  if (const auto why = why_no_model(run)) return not_approved(ProblemKind::kNotApprovable, *why);
+  const RunStore& store = call.reads.store();
+  const auto arm = store.arm_json(run.id), result = store.result_json(run.id);
+  if (!arm || !result)
+    return not_approved(ProblemKind::kNotApprovable,
+                        fmt::format("no calibrated arm was stored when run {} ended, and none is computed "
+                                    "again; calibrate once more and approve that run",
+                                    run.id));
+  if (auto refused = refuse_other_arm(call, run.id, *arm)) return *std::move(refused);
+  const auto now = call.reads.now();
+  ModelDocument model = model_of(run, store.touches(run.id), *arm, *result);
+  model.approved_by = request.operator_name;
+  model.approved_at = format_utc(now);
+  if (request.valid_days) model.valid_until = format_utc(now + std::chrono::days(*request.valid_days));
+  const Approval current = call.services.models.approve({.run_id = run.id,
+                                                         .at = model.approved_at,
+                                                         .operator_name = model.approved_by,
+                                                         .hash = model.hash,
+                                                         .valid_until = model.valid_until,
+                                                         .document = document_text(model),
+                                                         .arm_json = *arm});
+  return tell_model(call, call.services.models, current);
+}
+
+HttpResponse post_approve(const Call& call) {
+  const auto request = read_approval(call.request.body, true);
+  if (const auto* problem = std::get_if<Problem>(&request)) return to_response(*problem);
+  const auto id = call.run_id();
+  const auto run = id ? call.reads.store().run(*id) : std::nullopt;
+  if (!run) return not_found(fmt::format("there is no run '{}'; GET /api/v1/runs lists them", call.id));
+  return approve(call, *run, std::get<ApprovalRequest>(request));
+}
+
+HttpResponse post_rollback(const Call& call) {
+  const auto request = read_approval(call.request.body, false);
+  if (const auto* problem = std::get_if<Problem>(&request)) return to_response(*problem);
+  ModelStore& models = call.services.models;
+  const auto standing = standing_approvals(models.history());
+  if (standing.empty()) return no_model();
+  if (standing.size() == 1)
+    return not_approved(
+        ProblemKind::kNoModel,
+        fmt::format("there is no model before that of run {}; approve another run in its place",
+                    standing.back().run_id));
+  const Approval& before = standing[standing.size() - 2];
+  if (auto refused = refuse_other_arm(call, before.run_id, models.arm_json(before.id).value()))
+    return *std::move(refused);
+  return tell_model(
+      call, models,
+      models.roll_back(format_utc(call.reads.now()), std::get<ApprovalRequest>(request).operator_name));
+}
+
+}  // namespace
+
+std::vector<Route> model_routes() {
+  return {
+      {.method = "GET",
+       .path = "/api/v1/models",
+       .summary = "The approvals of models and the rollbacks, newest first, in pages",
+       .handle = get_models,
+       .answers = {{.schema = "Models"}},
+       .query = {{"limit", 1, kModelsPageMax, "rows on a page"},
+                 {"before", 0, kModelIdMax, "only rows before this id: next_before of the page before"}},
+       .dispatch = DispatchMode::kStored},
+      {.method = "GET",
+       .path = "/api/v1/models/current",
+       .summary =
+           "The model that a person approved for this cell; 409 when there is none, or for another arm",
+       .handle = get_current_model,
+       .answers = {{.schema = "Model"}},
+       .dispatch = DispatchMode::kStored},
+      {.method = "POST",
+       .path = "/api/v1/runs/{id}/approve",
+       .summary = "Makes the model of a run that is complete and accepted the cell's; where it is already, "
+                  "changes nothing",
+       .access = Access::kOperate,
+       .handle = post_approve,
+       .answers = {{.schema = "Model"}},
+       .body_schema = "ApprovalRequest",
+       .dispatch = DispatchMode::kWritten,
+       .names_operator = true},
+      {.method = "POST",
+       .path = "/api/v1/models/rollback",
+       .summary = "Takes the current model back; the one before is the cell's again",
+       .access = Access::kOperate,
+       .handle = post_rollback,
+       .answers = {{.schema = "Model"}},
+       .body_schema = "RollbackRequest",
+       .dispatch = DispatchMode::kWritten,
+       .names_operator = true},
+  };
+}
+
+}  // namespace cell

@@ -1,0 +1,139 @@
+// A person's word makes a run's model the cell's: the three programs as processes, on the simulated demo
+// cell.
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <nlohmann/json.hpp>
+
+#include "service/base/exit_code.hpp"
+#include "service/store/maintenance.hpp"
+#include "service/store/run_store.hpp"
+#include "tests/end_to_end/running_cell.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+class Approval : public ::testing::Test {
+ protected:
+  nlohmann::json model_by(const std::vector<std::string>& command) {
+    const Finished finished = cell_.run(command);
+    EXPECT_EQ(finished.exit_code, cell::kExitDone) << finished.err;
+    return nlohmann::json::parse(finished.out, nullptr, false);
+  }
+  nlohmann::json rows() { return model_by({"models", "--json"}).at("models"); }
+  std::string refused(const std::vector<std::string>& command) {
+    const Finished finished = cell_.run(command);
+    EXPECT_EQ(finished.exit_code, cell::kExitRefused) << finished.out;
+    return finished.err;
+  }
+  void calibrate() {
+    const Finished run = cell_.run({"run", kRecipe, "--operator", "P. Langevin", "--arm-moving", "45"});
+    ASSERT_EQ(run.exit_code, cell::kExitDone) << run.err;
+  }
+  void end_daemon() {
+    cell_.daemon().signal(SIGTERM);
+    EXPECT_EQ(cell_.daemon().wait().exit_code, 0);
+  }
+  Finished verified() {
+    return Process({"touchcald", "--state", cell_.state(), "--verify"}, cell_.folder() / "verify.err").wait();
+  }
+  /// So many accepted runs behind those that are there that only a model keeps one of these.
+  void make_other_runs() {
+    cell::RunStore store(cell_.store_file());
+    for (int i = 0; i < cell::kLastRunsKept; ++i) {
+      const std::int64_t run = store.begin_run({.recipe = kRecipe, .started_at = on_day(i % 3)});
+      store.finish_run(run, {.outcome = cell::RunOutcome::kComplete,
+                             .verdict = cell::Verdict::kAccepted,
+                             .ended_at = on_day(i % 3)});
+    }
+  }
+  /// Far ahead of the clock of any machine that runs this, on one of several days.
+  static std::string on_day(int day) { return "2126-01-0" + std::to_string(1 + day) + "T08:00:00.000Z"; }
+
+  RunningCell cell_{"demo", "max"};
+};
+
+TEST_F(Approval, MakesAnAcceptedRunTheCellsModelUntilItIsRolledBackAlsoAcrossARestart) {
+  EXPECT_THAT(cell_.run({"models"}).out, HasSubstr("no model is approved"));
+  EXPECT_THAT(refused({"rollback"}), HasSubstr("no model is approved"));
+  calibrate();
+  const auto first = model_by({"approve", "1", "--operator", "M. Curie", "--valid-days", "90", "--json"});
+  EXPECT_EQ(first.at("schema"), "touchcal/model/1");
+  EXPECT_EQ(first.at("run_id"), "1");
+  EXPECT_EQ(first.at("approved_by"), "M. Curie");
+  EXPECT_EQ(first.at("arm"), "tx90");
+  EXPECT_EQ(first.at("arm_moving_min"), 45);
+  EXPECT_TRUE(first.at("proof_run_id").is_null());
+  EXPECT_TRUE(first.at("valid_until").is_string());
+  const auto result = nlohmann::json::parse(cell_.run({"show", "1", "--json"}).out);
+  EXPECT_EQ(first.at("parameters"), result.at("parameters"));
+  EXPECT_EQ(first.at("tip_uncertainty"), result.at("tip_uncertainty"));
+  EXPECT_EQ(model_by({"approve", "1", "--json"}), first) << "the same word twice";
+  EXPECT_THAT(refused({"rollback"}), HasSubstr("no model before that of run 1"));
+
+  calibrate();
+  const auto second = model_by({"approve", "2", "--json"});
+  EXPECT_NE(second.at("hash"), first.at("hash"));
+  const Finished shown = cell_.run({"models"});
+  EXPECT_EQ(shown.exit_code, cell::kExitDone) << shown.err;
+  EXPECT_THAT(shown.out, HasSubstr("the model of run 2 is the cell's"));
+  EXPECT_THAT(shown.out, HasSubstr("not proved"));
+  EXPECT_THAT(shown.out, HasSubstr("M. Curie"));
+  EXPECT_EQ(model_by({"rollback", "--operator", "M. Curie", "--json"}), first);
+
+  end_daemon();
+  cell_.start_daemon();
+  ASSERT_EQ(rows().size(), 3U);
+  EXPECT_EQ(rows()[0].at("kind"), "rolled_back");
+  EXPECT_EQ(rows()[2].at("current"), true);
+  EXPECT_EQ(rows()[2].at("hash"), first.at("hash"));
+  EXPECT_EQ(model_by({"approve", "2", "--json"}).at("hash"), second.at("hash")) << "approved anew";
+  EXPECT_EQ(rows().size(), 4U);
+  const auto audit = nlohmann::json::parse(cell_.run({"audit", "--json"}).out).at("rows");
+  EXPECT_EQ(audit[0].at("action"), "POST /api/v1/runs/2/approve");
+}
+
+TEST_F(Approval, OfARunThatWasNotAcceptedIsRefused) {
+  Process run(cell_.call({"run", kRecipe}), cell_.folder() / "run.err");
+  cell_.wait_for_touches(3);
+  EXPECT_EQ(cell_.run({"stop"}).exit_code, cell::kExitDone);
+  EXPECT_EQ(run.wait().exit_code, cell::kExitFailed);
+  EXPECT_THAT(refused({"approve", "1"}), HasSubstr("only a run that is complete and accepted"));
+  EXPECT_EQ(cell_.run({"approve", "2"}).exit_code, cell::kExitUsage) << "no such run";
+  EXPECT_EQ(cell_.run({"approve", "one"}).exit_code, cell::kExitUsage);
+  EXPECT_EQ(cell_.run({"approve", "1", "--valid-days", "0"}).exit_code, cell::kExitUsage);
+  EXPECT_THAT(rows(), IsEmpty());
+}
+
+TEST_F(Approval, KeepsItsRunHoweverOldThatIsAndAChangedByteIsFound) {
+  calibrate();
+  calibrate();
+  model_by({"approve", "1", "--json"});
+  end_daemon();
+  make_other_runs();
+  {
+    const cell::RunStore store(cell_.store_file());
+    EXPECT_EQ(cell::delete_runs_before(store.database(), on_day(0)), 1) << "the second run";
+    EXPECT_TRUE(store.run(1));
+    EXPECT_EQ(store.touches(1).size(), static_cast<std::size_t>(kTouchCount));
+  }
+  EXPECT_EQ(verified().exit_code, cell::kExitDone);
+  SQLite::Database(cell_.store_file().string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE models SET document = replace(document, '\"run_id\":\"1\"', '\"run_id\":\"2\"')");
+  const Finished damaged = verified();
+  EXPECT_EQ(damaged.exit_code, cell::kExitBadInput);
+  EXPECT_THAT(damaged.out + damaged.err, HasSubstr("table models, run 1, number 1"));
+  cell_.start_daemon();
+  const Finished told = cell_.run({"models"});
+  EXPECT_NE(told.exit_code, cell::kExitDone);
+  EXPECT_THAT(told.out, Not(HasSubstr("is the cell's")));
+  EXPECT_THAT(told.err, HasSubstr("restore the last backup"));
+}
+
+}  // namespace
+}  // namespace touchcal::testing
