@@ -8,7 +8,7 @@
 namespace cell {
 namespace {
 
-std::string figure(std::optional<double> value, const char* format) {
+std::string plan_figure(std::optional<double> value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "unknown";
 }
 
@@ -29,13 +29,13 @@ std::string touches_text(const PlanDocument& plan) {
   return lines;
 }
 
-std::string tip_text(const TipDocument& tip) {
+std::string plan_tip_text(const TipDocument& tip) {
   std::string lines =
       fmt::format("\n{:<34}{:>15}{:>17}\n", "predicted tip error, rms", "workspace box", "joint ranges");
   const auto line = [&lines](const std::string& of, const auto& figures) {
-    lines +=
-        fmt::format("{:<34}{:>12} mm{:>14} mm\n", "  " + of, figure(figures.workspace_box_rms_mm, "{:.3f}"),
-                    figure(figures.joint_ranges_rms_mm, "{:.3f}"));
+    lines += fmt::format("{:<34}{:>12} mm{:>14} mm\n", "  " + of,
+                         plan_figure(figures.workspace_box_rms_mm, "{:.3f}"),
+                         plan_figure(figures.joint_ranges_rms_mm, "{:.3f}"));
   };
   line("stylus tip", tip);
   for (const TipDocument::Tool& tool : tip.tools) line(tool.name, tool);
@@ -50,8 +50,9 @@ std::string parameters_text(const std::vector<PlannedParameter>& parameters) {
   for (const PlannedParameter& parameter : parameters) {
     if (!parameter.std_uncertainty) continue;
     const bool length = parameter.unit == "mm";
-    lines += fmt::format("  {:<9}{:>9} {:<5}", parameter.name,
-                         figure(parameter.std_uncertainty, length ? "{:.4f}" : "{:.6f}"), parameter.unit);
+    lines +=
+        fmt::format("  {:<9}{:>9} {:<5}", parameter.name,
+                    plan_figure(parameter.std_uncertainty, length ? "{:.4f}" : "{:.6f}"), parameter.unit);
     if (++count % kInALine == 0) lines += "\n";
   }
   return count % kInALine == 0 ? lines : lines + "\n";
@@ -69,11 +70,11 @@ std::string plan_text(const PlanDocument& plan) {
       fmt::format("plan {} of recipe {} in cell {}: {} touches, {}\n\n", plan.plan_id.value(), plan.recipe,
                   plan.cell, plan.touch_count, duration_text(plan.duration_s.value()));
   lines += touches_text(plan);
-  lines +=
-      fmt::format("\n{} of {} parameters identifiable, condition number {} (columns of unit norm: {})\n",
-                  plan.identifiable_count, plan.parameters.size(), figure(plan.condition_number, "{:.1f}"),
-                  figure(plan.scaled_condition_number, "{:.1f}"));
-  lines += tip_text(plan.tip_uncertainty);
+  lines += fmt::format("\n{} of {} parameters identifiable, condition number {} (columns of unit norm: {})\n",
+                       plan.identifiable_count, plan.parameters.size(),
+                       plan_figure(plan.condition_number, "{:.1f}"),
+                       plan_figure(plan.scaled_condition_number, "{:.1f}"));
+  lines += plan_tip_text(plan.tip_uncertainty);
   lines += parameters_text(plan.parameters);
   lines += "\nwhat limits it\n";
   for (const std::string& words : plan.limits.words) lines += fmt::format("  {}\n", words);
@@ -90,9 +91,10 @@ std::string places_text(const PlacesDocument& places) {
     lines += fmt::format("{:>3}.{:>27}{:>6.1f} deg", ++rank,
                          fmt::format("{:.0f}, {:.0f}, {:.0f}", shift[0], shift[1], shift[2]), place.yaw_deg);
     if (place.feasible) {
-      lines += fmt::format("{:>13} mm{:>12} mm{:>11}{:>12}", figure(place.workspace_box_rms_mm, "{:.3f}"),
-                           figure(place.joint_ranges_rms_mm, "{:.3f}"),
-                           figure(place.condition_number, "{:.1f}"), duration_text(place.duration_s.value()));
+      lines +=
+          fmt::format("{:>13} mm{:>12} mm{:>11}{:>12}", plan_figure(place.workspace_box_rms_mm, "{:.3f}"),
+                      plan_figure(place.joint_ranges_rms_mm, "{:.3f}"),
+                      plan_figure(place.condition_number, "{:.1f}"), duration_text(place.duration_s.value()));
       if (place.fully_planned) lines += "  fully planned";
     } else {
       lines += "  " + place.reason.value_or("");
