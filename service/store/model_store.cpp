@@ -184,7 +184,7 @@ std::vector<std::string> find_model_damage(SQLite::Database& database) {
     const Approval row = approval_in(query);
     const std::string chained = query.getColumn(9).getString();
     const bool follows =
-        row.id == ++expected &&
+        row.id == ++expected && query.getColumn(1).getString() == approval_kind_name(row.kind) &&
         chained == chain_on(before, row, text_if_any(query.getColumn(7)), text_if_any(query.getColumn(8)));
     if (!follows && !is_broken)
       damage.push_back("models, row " + std::to_string(row.id) +
