@@ -27,7 +27,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const std::string kTouches = std::string(TOUCHCAL_SOURCE_DIR) + "/tests/data/table3-exact.touches.json";
+const std::string kExactTouches = std::string(TOUCHCAL_SOURCE_DIR) + "/tests/data/table3-exact.touches.json";
 
 class Programs : public ::testing::Test {
  protected:
@@ -81,14 +81,14 @@ TEST_F(Programs, EndWithTwoWhenTheyAreUsedWrongly) {
 
 TEST_F(Programs, IdentifyThePapersArmFromAFileAndFlagIt) {
   const Finished json =
-      run({"touchcal", "identify", "--cell", cell_file("edf"), "--touches", kTouches, "--json"});
+      run({"touchcal", "identify", "--cell", cell_file("edf"), "--touches", kExactTouches, "--json"});
   EXPECT_EQ(json.exit_code, cell::kExitLimitsMissed) << json.err;
   EXPECT_EQ(json.err, "");
   const auto result = nlohmann::json::parse(json.out);
   EXPECT_EQ(result.at("schema"), "touchcal/result/1");
   EXPECT_EQ(result.at("identifiable_count"), kRank);
   EXPECT_EQ(result.at("verdict").at("reasons"), nlohmann::json::array({result.at("scale").at("warning")}));
-  const Finished text = run({"touchcal", "identify", "--cell", cell_file("edf"), "--touches", kTouches});
+  const Finished text = run({"touchcal", "identify", "--cell", cell_file("edf"), "--touches", kExactTouches});
   EXPECT_EQ(text.exit_code, cell::kExitLimitsMissed);
   EXPECT_THAT(text.out, HasSubstr("alpha1"));
 }

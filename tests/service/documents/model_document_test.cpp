@@ -27,7 +27,7 @@ StoredRun accepted_run() {
           .conditions_json = R"({"arm_moving_min":45})"};
 }
 
-std::vector<StoredTouch> two_touches() {
+std::vector<StoredTouch> touches_of_run() {
   return {{.number = 1,
            .plane = 2,
            .role = calib::TouchRole::kHeldOut,
@@ -55,14 +55,14 @@ TEST(ModelHash, IsThatOfTheCanonicalTextThatSurfacesDescribes) {
       R"("first_microdeg":[6,5,4,3,2,1],"first_source":"latched","joints_microdeg":[0,0,0,0,0,0],)"
       R"("noise_um":61.5,"number":2,"overtravel_dmm":0,"plane":3,"role":"fit","sequence":0,"session":0,)"
       R"("source":"latched"}]})";
-  EXPECT_EQ(model_hash(accepted_run(), two_touches(), kArmJson), sha256_hex(text));
+  EXPECT_EQ(model_hash(accepted_run(), touches_of_run(), kArmJson), sha256_hex(text));
 }
 
 TEST(ModelHash, IsAnotherForAnyOtherRawFigure) {
-  std::set<std::string> hashes{model_hash(accepted_run(), two_touches(), kArmJson)};
+  std::set<std::string> hashes{model_hash(accepted_run(), touches_of_run(), kArmJson)};
   const auto add = [&](const std::function<void(StoredRun&, std::vector<StoredTouch>&)>& change) {
     StoredRun run = accepted_run();
-    auto touches = two_touches();
+    auto touches = touches_of_run();
     change(run, touches);
     hashes.insert(model_hash(run, touches, kArmJson));
   };
@@ -75,15 +75,15 @@ TEST(ModelHash, IsAnotherForAnyOtherRawFigure) {
   add([](auto&, auto& touches) { touches[1].noise_um = 61.6; });
   add([](auto&, auto& touches) { touches[1].plane = 1; });
   add([](auto&, auto& touches) { touches.pop_back(); });
-  hashes.insert(model_hash(accepted_run(), two_touches(), R"({"schema":"touchcal/arm/3","name":"tx60"})"));
+  hashes.insert(model_hash(accepted_run(), touches_of_run(), R"({"schema":"touchcal/arm/3","name":"tx60"})"));
   EXPECT_THAT(hashes, SizeIs(11));
 }
 
 TEST(ModelDocumentTest, HoldsWhatTheRunWasAndPassesOnWhatItsResultSaid) {
-  const ModelDocument model = model_of(accepted_run(), two_touches(), kArmJson, kResultJson);
+  const ModelDocument model = model_of(accepted_run(), touches_of_run(), kArmJson, kResultJson);
   const auto json = nlohmann::json::parse(document_text(model));
   EXPECT_EQ(json.at("schema"), "touchcal/model/1");
-  EXPECT_EQ(json.at("hash"), model_hash(accepted_run(), two_touches(), kArmJson));
+  EXPECT_EQ(json.at("hash"), model_hash(accepted_run(), touches_of_run(), kArmJson));
   EXPECT_EQ(json.at("run_id"), "7");
   EXPECT_EQ(json.at("arm"), "tx90");
   EXPECT_EQ(json.at("arm_moving_min"), 45);
