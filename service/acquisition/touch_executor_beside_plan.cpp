@@ -165,8 +165,7 @@ void TouchExecutor::doubt_reference(std::int64_t run_id, const ReferenceMonitor:
   if (beside_plan_->session == session_.number())
     session_.discard(run_id, beside_plan_->sequence, beside_plan_->result);
   beside_plan_.reset();
-  if (doubt.warning) status_.warn(*doubt.warning);
-  if (!doubt.hold) return;
+  if (doubt.warning) return status_.warn(*doubt.warning);
   held_by_ = HeldBy::kDrift;
   status_.raise(*doubt.hold, Event::kHoldFault);
 }

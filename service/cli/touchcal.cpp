@@ -17,6 +17,7 @@
 #include "service/base/version.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/completion.hpp"
+#include "service/cli/shared_options.hpp"
 #include "service/run/run_conditions.hpp"
 #include "service/run/simulated_calibrations.hpp"
 
@@ -226,8 +227,8 @@ class CommandLine {
     run->add_flag("--guided", run_.guided, "a person makes the touches with the pendant");
     run->add_option("--operator", run_.operator_name,
                     "the person responsible for the run; stored with its result");
-    add_stiffness(*run, run_.stiffness)->excludes("--plan");
-    add_block_temperature(*run, run_.block_temperature);
+    cell::add_stiffness(*run, run_.stiffness)->excludes("--plan");
+    cell::add_block_temperature(*run, run_.block_temperature);
     run->add_option("--arm-moving", run_.arm_moving_min,
                     "minutes that the arm has moved at working speed before: how warm it is")
         ->check(cell::refuse_number)
@@ -239,30 +240,8 @@ class CommandLine {
     given.now = std::chrono::system_clock::now();
     command.add_option("--cell", given.file, "cell file")->required();
     command.add_option("--recipe", given.recipe, recipe_is + "; default: the cell's first");
-    add_stiffness(command, given.stiffness);
-    add_block_temperature(command, given.block_temperature);
-  }
-
-  static CLI::Option* add_stiffness(CLI::App& command, std::string& choice) {
-    return command
-        .add_option("--stiffness", choice,
-                    "whether the compliance of the joints is estimated, in place of the recipe's choice; "
-                    "auto: where the arm's file allows it")
-        ->check(CLI::IsMember({"on", "off", "auto"}));
-  }
-
-  static void add_block_temperature(CLI::App& command, cell::TemperatureArguments& temperature) {
-    auto* celsius = command
-                        .add_option("--block-temperature", temperature.celsius,
-                                    "temperature of the block, degrees C, in place of that of its file")
-                        ->check(cell::refuse_number)
-                        ->check(CLI::Range(cell::kBlockTemperatureMinC, cell::kBlockTemperatureMaxC));
-    auto* deviation =
-        command.add_option("--std-block-temperature", temperature.std_k, "its standard deviation, K")
-            ->check(cell::refuse_number)
-            ->check(CLI::Range(cell::kPositive.min, cell::kBlockTemperatureStdMaxK))
-            ->needs(celsius);
-    celsius->needs(deviation);
+    cell::add_stiffness(command, given.stiffness);
+    cell::add_block_temperature(command, given.block_temperature);
   }
 
   void add_report() {

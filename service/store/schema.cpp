@@ -217,7 +217,7 @@ ALTER TABLE superseded_touches ADD COLUMN again_j6_microdeg INTEGER;
 
 /// The models of the cell, as approvals and rollbacks behind each other: model_store.hpp. `chained` is the
 /// hash of the row before with this one's content.
-constexpr const char* kModels = R"sql(
+constexpr const char* kModelTable = R"sql(
 CREATE TABLE models(
   id INTEGER PRIMARY KEY AUTOINCREMENT,
   kind TEXT NOT NULL,
@@ -235,7 +235,7 @@ CREATE TABLE models(
 
 constexpr std::array kMigrations{kRunsAndTouches,  kPlans,         kDiary,        kTemperatures,
                                  kStiffness,       kChecksums,     kAuditChained, kTouchNoise,
-                                 kAuditTokenNames, kTouchContacts, kModels};
+                                 kAuditTokenNames, kTouchContacts, kModelTable};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

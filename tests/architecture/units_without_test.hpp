@@ -69,6 +69,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/cli/progress", "end_to_end/programs_test reads its lines"},
     {"service/cli/report_command", "end_to_end/programs_test runs the command"},
     {"service/cli/result_text", "end_to_end/offline_commands_test and programs_test read its text"},
+    {"service/cli/shared_options", "end_to_end/command_line_test reads the help of every command"},
     {"service/cli/touchcal", "the program; end_to_end/command_line_test runs it"},
     {"service/cli/validate_command", "end_to_end/offline_commands_test runs the command"},
     {"service/cli/validation_text", "end_to_end/offline_commands_test reads its text"},

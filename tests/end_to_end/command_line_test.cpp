@@ -201,6 +201,7 @@ TEST_F(CommandLine, NumbersAreDecimal) {
       {"touchcal", "run", "--block-temperature", "0x10", "--std-block-temperature", "1"},
       {"touchcal", "run", "--block-temperature", "20", "--std-block-temperature", "0x1"},
       {"touchcal", "identify", "--monte-carlo", "0x1000"},
+      {"touchcal", "approve", "1", "--valid-days", "0x10"},
       {"touchcal", "plan", "--fit", "0x10"},
       {"touchcal", "plan", "--accuracy", "0x1p-2"},
       {"touchcal", "plan", "--workspace-box", "0x10,0,0,1,1,1"},

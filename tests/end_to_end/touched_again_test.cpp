@@ -50,6 +50,11 @@ TEST_F(TouchedAgain, AReferenceThatDriftsHoldsTheRunUntilAPersonLetsItGoOn) {
   const std::int64_t id = loop_.start();
   loop_.run_until_over();
   expect_held_by("reference_drift");
+  EXPECT_EQ(loop_.status().touches_done, 1) << "no two contacts there agree";
+  EXPECT_TRUE(loop_.store().references(id).empty());
+  loop_.command(Command::kResume);
+  loop_.run_until_over();
+  expect_held_by("reference_drift");
   EXPECT_EQ(loop_.status().touches_done, 10);
   loop_.command(Command::kRetry);
   loop_.run_until_over();

@@ -289,9 +289,8 @@ TEST_F(CellOperationTest, WhatIsThrownWhereTheControllerTellsSomethingEndsTheRun
   launch();
   start({.recipe = "few"});
   run_until([this] { return operation_.status().state == State::kExecute; });
-  time_.is_broken = true;
+  time_.throws_once = true;
   EXPECT_NO_THROW(controller_->hooks.on_state(*controller_->state));
-  time_.is_broken = false;
   run_until([this] { return operation_.status().state == State::kAborted; });
   EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kInternalError);
   EXPECT_THAT(operation_.status().fault->detail, ::testing::HasSubstr("the clock is broken"));

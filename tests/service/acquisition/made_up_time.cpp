@@ -1,13 +1,14 @@
 #include "tests/service/acquisition/made_up_time.hpp"
 
 #include <stdexcept>
+#include <utility>
 
 namespace cell {
 
 Clocks MadeUpTime::clocks() {
   return {[this] { return std::chrono::system_clock::time_point{} + since_begin_ + wall_ahead_; },
           [this] {
-            if (is_broken) throw std::runtime_error("the clock is broken");
+            if (std::exchange(throws_once, false)) throw std::runtime_error("the clock is broken");
             return std::chrono::steady_clock::time_point{} + since_begin_;
           }};
 }

@@ -18,8 +18,8 @@ class MadeUpTime {
   /// Somebody sets the machine's clock; nothing passes.
   void set_wall_clock(std::chrono::milliseconds ahead) { wall_ahead_ = ahead; }
   [[nodiscard]] std::chrono::milliseconds since_begin() const { return since_begin_; }
-  /// Its clock of deadlines throws: what nobody foresaw happens in whoever reads it.
-  bool is_broken = false;
+  /// Its clock of deadlines throws, once: what nobody foresaw happens in whoever reads it next.
+  bool throws_once = false;
 
  private:
   std::chrono::milliseconds since_begin_{0};

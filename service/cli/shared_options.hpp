@@ -1,0 +1,15 @@
+#pragma once
+
+#include <CLI/App.hpp>
+#include <string>
+
+#include "service/cli/commands.hpp"
+
+/// Options that more than one command of touchcal has.
+namespace cell {
+
+CLI::Option* add_stiffness(CLI::App& command, std::string& choice);
+/// Both or neither of --block-temperature and --std-block-temperature.
+void add_block_temperature(CLI::App& command, TemperatureArguments& temperature);
+
+}  // namespace cell
