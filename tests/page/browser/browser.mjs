@@ -14,7 +14,7 @@ const axe = readFileSync(packages.resolve('axe-core/axe.min.js'), 'utf8');
 /** The view in three dimensions is drawn by software: a test machine has no graphics card. */
 const kOptions = ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist', '--disable-dev-shm-usage'];
 if (process.getuid?.() === 0) kOptions.push('--no-sandbox');
-const kPatience_ms = 60000;
+const kPatience_ms = 120000; // a bound for what hangs, also where two cores do much else
 
 export async function openBrowser() {
   return chromium.launch({executablePath: process.env.TOUCHCAL_CHROMIUM ?? '/usr/bin/chromium', args: kOptions});
