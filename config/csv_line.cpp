@@ -57,4 +57,19 @@ double CsvLine::joint(std::string_view text, int joint) const {
   return number;
 }
 
+CsvLine take_csv_lines(const std::string& source, std::string_view bytes, std::string_view header,
+                       const std::function<void(const CsvLine& line, std::string_view text)>& take) {
+  if (first_line(bytes) != header)
+    CsvLine(source, 1).fail("the header is missing; begin with " + std::string(header));
+  std::size_t line_number = 1;
+  for (std::size_t line_break = bytes.find('\n'); line_break != std::string_view::npos;) {
+    const std::size_t begin = line_break + 1;
+    line_break = bytes.find('\n', begin);
+    const std::string_view text = trimmed(bytes.substr(begin, line_break - begin));  // npos: to the end
+    ++line_number;
+    if (!text.empty()) take(CsvLine(source, line_number), text);
+  }
+  return {source, line_number};
+}
+
 }  // namespace cell

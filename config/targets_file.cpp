@@ -107,22 +107,15 @@ TargetsFile targets_from_json(const std::string& source, std::string_view bytes,
 }
 
 TargetsFile targets_from_csv(const std::string& source, std::string_view bytes) {
-  if (first_line(bytes) != kTargetsCsvHeader)
-    CsvLine(source, 1).fail("the header is missing; begin with " + std::string(kTargetsCsvHeader));
   TargetsFile file;
   std::set<std::string> taken;
-  std::size_t line_number = 1;
-  for (std::size_t line_break = bytes.find('\n'); line_break != std::string_view::npos;) {
-    const std::size_t begin = line_break + 1;
-    line_break = bytes.find('\n', begin);
-    const std::string_view text = trimmed(bytes.substr(begin, line_break - begin));  // npos: to the end
-    const CsvLine line(source, ++line_number);
-    if (text.empty()) continue;
+  const auto take = [&](const CsvLine& line, std::string_view text) {
     if (file.targets.size() == kTargetCountMax)
       line.fail("more than " + std::to_string(kTargetCountMax) + " targets; split the file");
     file.targets.push_back(target_from_csv(line, text, taken));
-  }
-  if (file.targets.empty()) CsvLine(source, line_number).fail("there is no target; add a line for each");
+  };
+  const CsvLine last = take_csv_lines(source, bytes, kTargetsCsvHeader, take);
+  if (file.targets.empty()) last.fail("there is no target; add a line for each");
   return file;
 }
 

@@ -289,24 +289,15 @@ TouchesFile touches_from_json(const std::string& source, std::string_view bytes,
 }
 
 TouchesFile touches_from_csv(const std::string& source, std::string_view bytes, const Cell& cell) {
-  if (first_line(bytes) != kTouchesCsvHeader) {
-    CsvLine(source, 1).fail("the header is missing; begin with " + std::string(kTouchesCsvHeader));
-  }
   TouchesFile result;
   const int face_count = static_cast<int>(cell.block.faces.size());
   const calib::JointVector units = joint_units(cell.arm.model);
-  std::size_t line_number = 1;
-  for (std::size_t line_break = bytes.find('\n'); line_break != std::string_view::npos;) {
-    const std::size_t begin = line_break + 1;
-    line_break = bytes.find('\n', begin);
-    const std::string_view text = trimmed(bytes.substr(begin, line_break - begin));  // npos: to the end
-    const CsvLine line(source, ++line_number);
-    if (text.empty()) continue;
-    if (result.touches.size() == kTouchCountMax) {
+  const auto take = [&](const CsvLine& line, std::string_view text) {
+    if (result.touches.size() == kTouchCountMax)
       line.fail("more than " + std::to_string(kTouchCountMax) + " touches; split the file");
-    }
     result.touches.push_back(touch_from_csv(line, text, face_count, units));
-  }
+  };
+  take_csv_lines(source, bytes, kTouchesCsvHeader, take);
   warn_of_ranges("touch", result.touches, cell.arm, result.warnings);
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -39,5 +40,10 @@ class CsvLine {
   const std::string& source_;
   std::size_t number_;
 };
+
+/// Gives each line behind the first one to `take`, trimmed; empty ones are left out. ConfigError unless the
+/// first one is `header`. The last line, for what is missing behind it.
+CsvLine take_csv_lines(const std::string& source, std::string_view bytes, std::string_view header,
+                       const std::function<void(const CsvLine& line, std::string_view text)>& take);
 
 }  // namespace cell

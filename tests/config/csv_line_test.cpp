@@ -41,5 +41,21 @@ TEST(CsvLine, NamesItsLineAndWhatItWants) {
               HasSubstr("line 7: joint 6 is -100001; give -100000 to 100000"));
 }
 
+TEST(CsvLines, AreGivenTrimmedWithTheirNumbersAndWithoutTheEmptyOnes) {
+  std::vector<std::string> taken;
+  const auto take = [&taken](const CsvLine& line, std::string_view text) {
+    taken.emplace_back(text);
+    if (text == "wrong") line.fail("no good");
+  };
+  take_csv_lines(kSource, "a,b\r\n 1,2 \r\n\n\t\n3,4", "a,b", take);
+  EXPECT_EQ(taken, (std::vector<std::string>{"1,2", "3,4"}));
+  EXPECT_STREQ(error_of([&] { take_csv_lines(kSource, "a,b\n\nwrong\n", "a,b", take); }).what(),
+               "t.csv: line 3: no good");
+  EXPECT_STREQ(error_of([&] { take_csv_lines(kSource, "a;b\n1,2", "a,b", take); }).what(),
+               "t.csv: line 1: the header is missing; begin with a,b");
+  EXPECT_STREQ(error_of([&] { take_csv_lines(kSource, "a,b\n1,2\n", "a,b", take).fail("more"); }).what(),
+               "t.csv: line 3: more");
+}
+
 }  // namespace
 }  // namespace cell

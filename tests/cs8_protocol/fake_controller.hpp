@@ -70,6 +70,16 @@ class Peer {
 using Script = std::function<asio::awaitable<void>(Peer&)>;
 using Work = std::function<asio::awaitable<void>()>;
 
+/// Expects a `T` in a variant and gives it, or a default one.
+template <class T, class Variant>
+T expect_held(const Variant& variant) {
+  if (const auto* held = std::get_if<T>(&variant)) return *held;
+  std::string instead = "alternative " + std::to_string(variant.index());
+  if (const auto* error = std::get_if<LinkError>(&variant)) instead = error->text;
+  ADD_FAILURE() << "holds " << instead;
+  return T{};
+}
+
 class WithFakeController : public ::testing::Test {
  protected:
   static ClientOptions patient() {
@@ -123,6 +133,11 @@ class WithFakeController : public ::testing::Test {
   }
 
   [[nodiscard]] tcp::endpoint endpoint() const { return acceptor_.local_endpoint(); }
+
+  asio::awaitable<void> connect(Client& client) {
+    const ConnectReply reply = co_await client.connect(endpoint(), expected());
+    expect_held<Welcome>(reply);
+  }
 
   asio::io_context io_;
   tcp::acceptor acceptor_{io_, tcp::endpoint(asio::ip::address_v4::loopback(), 0)};
