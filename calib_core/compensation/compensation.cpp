@@ -5,8 +5,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "calib_core/compensation/arm_sides.hpp"
-
 namespace calib {
 namespace {
 
@@ -162,12 +160,19 @@ CompensatedTarget Compensation::at_pose(const CompensationTool& tool,
   return corrected(tool, world_from_tool, *joints);
 }
 
+Postures Compensation::nominal_postures(const CompensationTool& tool,
+                                        const Eigen::Isometry3d& world_from_tool) const {
+  return inverse_.solve(world_from_tool * tool.nominal_frame6_from_tool.inverse());
+}
+
+ArmSides Compensation::nominal_sides(const JointVector& joints) const {
+  return arm_bend(forward_chain(nominal_, joints)).sides;
+}
+
 std::optional<JointVector> Compensation::nominal_posture(const Eigen::Isometry3d& world_from_frame6,
                                                          const JointVector& near) const {
-  const ArmSides sides = arm_bend(forward_chain(nominal_, near)).sides;
-  const auto is_on_their_side = [&](const JointVector& joints) {
-    return arm_bend(forward_chain(nominal_, joints)).sides == sides;
-  };
+  const ArmSides sides = nominal_sides(near);
+  const auto is_on_their_side = [&](const JointVector& joints) { return nominal_sides(joints) == sides; };
   const auto with_turns_of_near = [&](JointVector joints) {
     for (int joint = 0; joint < kJointCount; ++joint) {
       const double turn = inverse_.turns()[joint];

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <optional>
 
+#include "calib_core/compensation/arm_sides.hpp"
 #include "calib_core/compensation/compensation_status.hpp"
 #include "calib_core/geometry/joint_vector.hpp"
 #include "calib_core/geometry/units.hpp"
@@ -92,6 +93,12 @@ class Compensation {
   [[nodiscard]] CompensatedTarget at_pose(const CompensationTool& tool,
                                           const Eigen::Isometry3d& world_from_tool,
                                           const JointVector& near) const;
+
+  /// All postures in which the nominal arm has the tool there, as InverseKinematics::solve() gives them.
+  [[nodiscard]] Postures nominal_postures(const CompensationTool& tool,
+                                          const Eigen::Isometry3d& world_from_tool) const;
+  /// Which way the nominal arm is folded at these joints.
+  [[nodiscard]] ArmSides nominal_sides(const JointVector& joints) const;
 
   /// The pose of the tool as the controller computes it.
   [[nodiscard]] Eigen::Isometry3d nominal_world_from_tool(const CompensationTool& tool,

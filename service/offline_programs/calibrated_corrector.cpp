@@ -8,21 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include "calib_core/compensation/arm_sides.hpp"
 #include "calib_core/geometry/units.hpp"
-#include "calib_core/kinematics/inverse_kinematics.hpp"
 #include "config/config_error.hpp"
 
 namespace cell {
 namespace {
-
-/// The nominal arm from the controller's world to the wrist's centre, as calib::Compensation has it.
-calib::KinematicModel wrist_in_controllers_world(calib::KinematicModel model) {
-  model.links[0] = {};
-  model.links[1] = {};
-  model.links.back() = {};
-  return model;
-}
 
 bool is_open(const PostureWords& words) {
   const auto open = [](auto word, auto same, auto free) { return word == same || word == free; };
@@ -60,9 +50,7 @@ class CalibratedCorrector {
   explicit CalibratedCorrector(CalibratedArm arm)
       : arm_(std::move(arm)),
         compensation_(arm_.problem),
-        nominal_(calib::prepare(wrist_in_controllers_world(arm_.problem.nominal))),
-        inverse_(nominal_.model),
-        reference_sides_(sides_at(arm_.reference_joints)) {}
+        reference_sides_(compensation_.nominal_sides(arm_.reference_joints)) {}
 
   [[nodiscard]] Correction correct(const OfflineTarget& target) const {
     const auto found = arm_.tools.find(target.tool);
@@ -74,18 +62,13 @@ class CalibratedCorrector {
   }
 
  private:
-  [[nodiscard]] calib::ArmSides sides_at(const calib::JointVector& joints) const {
-    return calib::arm_bend(calib::forward_chain(nominal_, joints)).sides;
-  }
-
   [[nodiscard]] Correction at_pose(const calib::CompensationTool& tool, const OfflinePose& pose) const {
     const calib::ArmSides wanted = sides_of(pose.posture, reference_sides_);
-    const Eigen::Isometry3d world_from_wrist = pose.world_from_tool * tool.nominal_frame6_from_tool.inverse();
     // The refusal of a pose that nobody reaches in that configuration.
     calib::CompensatedTarget chosen{.reason = calib::CompensationReason::kNominalOutOfReach};
     std::vector<calib::CompensatedTarget> others;
-    for (const calib::JointVector& joints : inverse_.solve(world_from_wrist)) {
-      const calib::ArmSides sides = sides_at(joints);
+    for (const calib::JointVector& joints : compensation_.nominal_postures(tool, pose.world_from_tool)) {
+      const calib::ArmSides sides = compensation_.nominal_sides(joints);
       if (sides_of(pose.posture, sides) != sides) continue;  // not what the words ask for
       const calib::CompensatedTarget result = compensation_.at_pose(tool, pose.world_from_tool, joints);
       if (sides == wanted)
@@ -132,8 +115,6 @@ class CalibratedCorrector {
 
   CalibratedArm arm_;
   calib::Compensation compensation_;
-  calib::PreparedModel nominal_;
-  calib::InverseKinematics inverse_;
   calib::ArmSides reference_sides_;
 };
 
