@@ -171,7 +171,7 @@ std::size_t posture_word(const XmlText& xml, pugi::xml_node element, const char*
 }  // namespace
 
 std::string VariableReader::required(pugi::xml_node element, const char* name) const {
-  const std::string text = element.attribute(name).value();
+  std::string text = element.attribute(name).value();
   if (text.empty())
     xml.fail(element,
              std::string(unprefixed(element.name())) + " has no " + name + "; write " + name + "=\"...\"");
