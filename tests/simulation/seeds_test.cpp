@@ -31,9 +31,8 @@ void expect_unbroken(std::uint64_t first, std::uint64_t last) {
   }
 }
 
-TEST(Seeds, OneToHundredBreakNoInvariant) { expect_unbroken(1, 100); }
-TEST(Seeds, FromThereToTwoHundredBreakNoInvariant) { expect_unbroken(101, 200); }
-TEST(Seeds, FromThereToThreeHundredBreakNoInvariant) { expect_unbroken(201, 300); }
+/// A sample for who works on it; touchcal-sim runs thousands (README.md there), also before a change lands.
+TEST(Seeds, OneToFortyBreakNoInvariant) { expect_unbroken(1, 40); }
 
 TEST(World, OfOneSeedIsTheSameToTheByte) {
   for (const std::uint64_t seed : {3U, 7U, 10U, 24U}) {
