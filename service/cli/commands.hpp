@@ -71,20 +71,20 @@ struct PlanArguments {
 /// (at any place).
 ExitCode plan_command(const PlanArguments& arguments, bool json);
 
+struct AppliedArm;  // applied_arm.hpp
+
 struct CompensateArguments {
   std::filesystem::path cell_file;
-  std::filesystem::path arm_file;  // calibrated
   std::filesystem::path targets_file;
   std::string tool;        // of the targets of a CSV, which names none; the stylus when empty
   std::string file;        // where the corrected targets are written, if anywhere: CSV by its name, else JSON
   bool overwrite = false;  // that one
 };
 /// Corrects targets for a calibrated arm; kExitLimitsMissed when a target is refused.
-ExitCode compensate_command(const CompensateArguments& arguments, bool json);
+ExitCode compensate_command(const CompensateArguments& arguments, const AppliedArm& applied, bool json);
 
 struct FilterArguments {
   std::filesystem::path cell_file;
-  std::filesystem::path arm_file;   // calibrated
   std::filesystem::path data_file;  // .dtx, with its programs and its project beside it
   std::filesystem::path list_file;  // which variables are filtered; the filter is marked in it
   std::filesystem::path file;       // the filtered data file
@@ -92,7 +92,7 @@ struct FilterArguments {
 };
 /// Writes a VAL3 data file with its points and joints corrected for a calibrated arm, and tells what its
 /// programs make of them; kExitLimitsMissed when a value is refused.
-ExitCode filter_command(const FilterArguments& arguments);
+ExitCode filter_command(const FilterArguments& arguments, const AppliedArm& applied);
 
 struct RunArguments {
   std::string recipe;         // of the cell; ignored with a plan

@@ -2,9 +2,8 @@
 
 #include <stdexcept>
 
-#include "config/arm_file.hpp"
-#include "config/file_bytes.hpp"
 #include "config/read_config.hpp"
+#include "service/cli/applied_arm.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/compensation_text.hpp"
 #include "service/cli/offline.hpp"
@@ -29,24 +28,22 @@ TargetsFile given_targets(const CompensateArguments& arguments) {
 
 }  // namespace
 
-ExitCode compensate_command(const CompensateArguments& arguments, bool json) {
+ExitCode compensate_command(const CompensateArguments& arguments, const AppliedArm& applied, bool json) {
   if (arguments.file == "-")
     throw std::invalid_argument("--out: standard output has the targets with --json; name a file");
   const Cell cell = read_cell(arguments.cell_file);
   demand_revolute(cell);
-  const std::string arm_source = arguments.arm_file.string();
-  const std::string arm_bytes = read_file_bytes(arguments.arm_file, kConfigFileSizeMax);
-  const Arm arm = read_arm_text(arm_source, arm_bytes);
-  demand_arm_of(cell, arm, arm_source);
+  const Arm& arm = applied.arm;
+  demand_arm_of(cell, arm, applied.source);
   const TargetsFile file = given_targets(arguments);
   const calib::CompensationTool tool =
       file.names_tool ? tool_named(cell, arm, file.tool, arguments.targets_file.string(), "/tool")
                       : tool_named(cell, arm, file.tool, "--tool", "");
-  const CompensationDocument document = compensation_of(
-      cell, file.targets, compensated(cell, arm, tool, file.targets), arm_digest(arm_source, arm_bytes));
+  const CompensationDocument document =
+      compensation_of(cell, file.targets, compensated(cell, arm, tool, file.targets), applied.hash);
   if (is_uncalibrated(cell, arm)) {
-    print_warnings({arm_source + " is as the cell's own arm, no target is changed; give one that was "
-                                 "calibrated and exported"});
+    print_warnings({applied.source + " is as the cell's own arm, no target is changed; give one that was "
+                                     "calibrated and exported"});
   }
   if (!arguments.file.empty()) {
     write_whole_file(arguments.file,

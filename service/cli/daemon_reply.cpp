@@ -11,9 +11,8 @@ void refuse_peer(const ApiReply& reply) {
       fmt::format("the server is not touchcald (status {}); check --daemon", reply.status));
 }
 
-ExitCode print_problem(const ApiReply& reply, bool json_only) {
+std::string problem_line(const ApiReply& reply) {
   const ProblemDocument problem = read_reply(reply, read_problem);
-  if (json_only) fmt::print("{}\n", reply.body);
   std::string line = problem.detail.value_or(reply.body);
   if (reply.status == 401)
     line = "the daemon requires its token: name its state directory with --state DIR, or set TOUCHCAL_TOKEN";
@@ -22,6 +21,12 @@ ExitCode print_problem(const ApiReply& reply, bool json_only) {
     for (const std::string& exit : *problem.exits) exits += (exits.empty() ? "" : ", ") + exit;
     line += fmt::format(" (possible now: {})", exits);
   }
+  return line;
+}
+
+ExitCode print_problem(const ApiReply& reply, bool json_only) {
+  const std::string line = problem_line(reply);
+  if (json_only) fmt::print("{}\n", reply.body);
   fmt::print(stderr, "{}\n", line);
   if (reply.status == 422 || reply.status == 404 || reply.status == 401 || reply.status == 403)
     return kExitUsage;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -23,6 +24,8 @@ Document read_reply(const ApiReply& reply, Document (*read)(std::string_view)) {
   }
 }
 
+/// What the problem document of a reply says, in one line.
+std::string problem_line(const ApiReply& reply);
 /// Prints the problem document of a reply; returns its exit code.
 ExitCode print_problem(const ApiReply& reply, bool json);
 

@@ -2,9 +2,9 @@
 
 #include <stdexcept>
 
-#include "config/arm_file.hpp"
 #include "config/file_bytes.hpp"
 #include "config/read_config.hpp"
+#include "service/cli/applied_arm.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/offline.hpp"
 #include "service/documents/compensation_view.hpp"
@@ -42,17 +42,16 @@ std::vector<std::string> names_of(const CalibratedArm& arm) {
 
 }  // namespace
 
-ExitCode filter_command(const FilterArguments& arguments) {
+ExitCode filter_command(const FilterArguments& arguments, const AppliedArm& applied) {
   const FilteredFiles files{arguments.data_file, arguments.list_file, arguments.file, arguments.overwrite};
   demand_free_output(files);
   const Cell cell = read_cell(arguments.cell_file);
   demand_revolute(cell);
-  const std::string arm_source = arguments.arm_file.string();
-  const Arm arm = read_arm(arguments.arm_file);
-  demand_arm_of(cell, arm, arm_source);
+  const Arm& arm = applied.arm;
+  demand_arm_of(cell, arm, applied.source);
   const std::string list_text = read_file_bytes(arguments.list_file, kFilterListBytesMax);
   const FilterList list = parse_filter_list(arguments.list_file.string(), list_text);
-  const CalibratedArm calibrated = calibrated_arm_of(cell, arm, arm_source);
+  const CalibratedArm calibrated = calibrated_arm_of(cell, arm, applied.source);
   demand_tools(list, names_of(calibrated));
   std::string data = read_file_bytes(arguments.data_file, kVal3FileBytesMax);
   const ProgramFolder folder = read_program_folder(arguments.data_file);
@@ -60,8 +59,8 @@ ExitCode filter_command(const FilterArguments& arguments) {
                                       calibrated_corrector(calibrated), folder.mm_per_unit);
   filtered.notes.insert(filtered.notes.end(), folder.notes.begin(), folder.notes.end());
   if (is_uncalibrated(cell, arm)) {
-    print_warnings({arm_source + " is as the cell's own arm, no point is changed; give one that was "
-                                 "calibrated and exported"});
+    print_warnings({applied.source + " is as the cell's own arm, no point is changed; give one that was "
+                                     "calibrated and exported"});
   }
   write_filtered(files, list_text, filtered);
   fmt::print("{}", filter_text(filtered, program_warnings(folder.programs, filtered, folder.mm_per_unit)));

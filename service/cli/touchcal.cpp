@@ -1,7 +1,6 @@
 // touchcal: the command line, for a daemon or offline.
 #include <CLI/CLI.hpp>
 #include <chrono>
-#include <cstdlib>
 #include <functional>
 #include <iostream>
 #include <map>
@@ -13,10 +12,11 @@
 #include "config/option_text.hpp"
 #include "config/recipe.hpp"
 #include "service/base/freed_memory.hpp"
-#include "service/base/state_directory.hpp"
 #include "service/base/version.hpp"
+#include "service/cli/applied_arm.hpp"
 #include "service/cli/commands.hpp"
 #include "service/cli/completion.hpp"
+#include "service/cli/daemon_choice.hpp"
 #include "service/cli/shared_options.hpp"
 #include "service/run/run_conditions.hpp"
 #include "service/run/simulated_calibrations.hpp"
@@ -38,11 +38,6 @@ const std::map<std::string, std::string> kCellCommands{
     {"take", "record the present contact, made by hand"},
     {"undo", "discard the last touch made by hand"},
 };
-
-std::string environment_or(const char* name, const std::string& otherwise) {
-  const char* value = std::getenv(name);
-  return value && *value ? value : otherwise;
-}
 
 class CommandLine {
  public:
@@ -181,9 +176,13 @@ class CommandLine {
         app_.add_subcommand("compensate", "correct the targets of a program for a calibrated arm (offline)");
     compensate->add_option("--cell", compensate_.cell_file, "cell file, with the nominal arm and the tools")
         ->required();
-    compensate
-        ->add_option("--arm", compensate_.arm_file, "arm file of the calibrated arm, as export writes it")
-        ->required();
+    auto* arm =
+        compensate->add_option("--arm", arm_file_, "arm file of the calibrated arm, as export writes it");
+    auto* model = compensate->add_option(
+        "--model", model_,
+        "approved model of the daemon in its place: current, its id or its hash (touchcal models)");
+    arm->excludes(model);
+    daemon_.add_to(*compensate);
     auto* targets = compensate->add_option("--targets", compensate_.targets_file, "targets, JSON or CSV");
     auto* data = compensate->add_option("--dtx", filter_.data_file,
                                         "VAL3 data file in place of targets, its programs beside it");
@@ -199,22 +198,29 @@ class CommandLine {
                            "the filtered data file");
     compensate->add_flag("--force", compensate_.overwrite, "overwrite it");
     compensate->add_flag("--json", json_, "one JSON document on standard output")->excludes(data);
-    compensate->callback([this] { action_ = [this] { return compensate_or_filter(); }; });
+    compensate->callback(
+        [this, compensate] { action_ = [this, compensate] { return compensate_or_filter(*compensate); }; });
   }
 
-  cell::ExitCode compensate_or_filter() {
+  /// The arm that is applied: a file's, or that of an approved model.
+  cell::AppliedArm applied_arm(const CLI::App& command) const {
+    if (!arm_file_.empty()) return cell::arm_of_file(arm_file_);
+    if (model_.empty()) throw std::invalid_argument("compensate: give --arm FILE, or --model ID");
+    return cell::arm_of_model(daemon_.client(command), model_, std::chrono::system_clock::now());
+  }
+
+  cell::ExitCode compensate_or_filter(const CLI::App& command) {
     if (filter_.data_file.empty()) {
       if (compensate_.targets_file.empty())
         throw std::invalid_argument("compensate: give --targets, or --dtx with --list");
-      return cell::compensate_command(compensate_, json_);
+      return cell::compensate_command(compensate_, applied_arm(command), json_);
     }
     if (compensate_.file.empty() || compensate_.file == "-")
       throw std::invalid_argument("--out: name a file for the filtered data");
     filter_.cell_file = compensate_.cell_file;
-    filter_.arm_file = compensate_.arm_file;
     filter_.file = compensate_.file;
     filter_.overwrite = compensate_.overwrite;
-    return cell::filter_command(filter_);
+    return cell::filter_command(filter_, applied_arm(command));
   }
 
   void add_run() {
@@ -313,32 +319,10 @@ class CommandLine {
   CLI::App* add_for_daemon(const std::string& name, const std::string& description,
                            const std::function<cell::ExitCode(const cell::ApiClient&)>& command) {
     auto* sub = app_.add_subcommand(name, description);
-    sub->add_option("--daemon", daemon_url_, "the daemon's address; also TOUCHCAL_DAEMON")
-        ->check(cell::refuse_empty)
-        ->default_str(daemon_url_);
-    sub->add_option("--state", state_directory_, "the daemon's state directory, where its token is")
-        ->check(cell::refuse_empty)
-        ->default_str(state_directory_);
-    sub->add_option("--ca", ca_file_,
-                    "certificates (PEM) that sign the one of an https daemon; also TOUCHCAL_CA")
-        ->check(cell::refuse_empty)
-        ->default_str(ca_file_);
+    daemon_.add_to(*sub);
     sub->add_flag("--json", json_, "one JSON document on standard output");
-    sub->add_flag("--token-in-clear", token_in_clear_,
-                  "send the token over http to another machine, where everybody on the way can read it");
-    sub->callback([this, sub, command] {
-      // A daemon that was named is that one; else the one of the state directory, first by its socket.
-      const bool is_named = sub->count("--daemon") > 0 || !environment_or("TOUCHCAL_DAEMON", "").empty();
-      action_ = [this, command, is_named] {
-        const std::filesystem::path state(state_directory_);
-        if (!is_named) cell::demand_state_directory(state);
-        const cell::ApiClientOptions options{
-            .ca_file = ca_file_,
-            .socket = is_named ? std::filesystem::path() : state / cell::kSocketFile,
-            .sends_token_in_clear = token_in_clear_};
-        return command(cell::ApiClient(daemon_url_, cell::find_operate_token(state), options));
-      };
-    });
+    sub->callback(
+        [this, sub, command] { action_ = [this, sub, command] { return command(daemon_.client(*sub)); }; });
     return sub;
   }
 
@@ -349,18 +333,15 @@ class CommandLine {
   cell::PlanArguments plan_;
   cell::CompensateArguments compensate_;
   cell::FilterArguments filter_;
+  std::string arm_file_, model_;  // what compensate applies: one of the two
   cell::ExportArguments export_;
   cell::ReportArguments report_;
   cell::AuditArguments audit_;
   cell::ApproveArguments approve_;
-  // Not by CLI11's envname: with it the environment of one subcommand would override the flag of another.
-  std::string daemon_url_ = environment_or("TOUCHCAL_DAEMON", "http://127.0.0.1:8080");
-  std::string state_directory_ = environment_or("TOUCHCAL_STATE", cell::default_state_directory().string());
-  std::string ca_file_ = environment_or("TOUCHCAL_CA", "");
+  cell::DaemonChoice daemon_;
   cell::RunArguments run_{.recipe = "edf-25"};
   std::string shell_;
   std::string run_id_;
-  bool token_in_clear_ = false;
   bool json_ = false;
 };
 
@@ -373,6 +354,9 @@ int main(int argc, char** argv) {
   } catch (const cell::ConfigError& error) {
     std::cerr << error.what() << '\n';
     return cell::kExitBadInput;
+  } catch (const cell::ModelRefused& error) {
+    std::cerr << error.what() << '\n';
+    return cell::kExitRefused;
   } catch (const cell::DaemonUnreachable& error) {
     std::cerr << error.what() << '\n';
     return cell::kExitUnreachable;

@@ -4,12 +4,14 @@
 #include <gmock/gmock.h>
 
 #include <csignal>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "service/base/exit_code.hpp"
 #include "service/store/maintenance.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/end_to_end/running_cell.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
 
 namespace touchcal::testing {
 namespace {
@@ -41,6 +43,13 @@ class Approval : public ::testing::Test {
   }
   Finished verified() {
     return Process({"touchcald", "--state", cell_.state(), "--verify"}, cell_.folder() / "verify.err").wait();
+  }
+  /// One target corrected by an approved model.
+  Finished compensated_by(const std::string& model) {
+    const std::string targets = (cell_.folder() / "targets.csv").string();
+    std::ofstream(targets) << "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\n";
+    return cell_.run(
+        {"compensate", "--cell", cell_file("demo"), "--model", model, "--targets", targets, "--json"});
   }
   /// So many accepted runs behind those that are there that only a model keeps one of these.
   void make_other_runs() {
@@ -85,6 +94,16 @@ TEST_F(Approval, MakesAnAcceptedRunTheCellsModelUntilItIsRolledBackAlsoAcrossARe
   EXPECT_THAT(shown.out, HasSubstr("not proved"));
   EXPECT_THAT(shown.out, HasSubstr("M. Curie"));
   EXPECT_EQ(model_by({"rollback", "--operator", "M. Curie", "--json"}), first);
+
+  const Finished by_current = compensated_by("current");
+  EXPECT_EQ(by_current.exit_code, cell::kExitDone) << by_current.err;
+  EXPECT_EQ(nlohmann::json::parse(by_current.out).at("model"), first.at("hash"));
+  EXPECT_EQ(compensated_by("1").out, by_current.out);
+  const std::string digits = second.at("hash").get<std::string>().substr(0, 12);
+  EXPECT_EQ(nlohmann::json::parse(compensated_by(digits).out).at("model"), second.at("hash"));
+  const Finished unknown = compensated_by(digits.substr(1));
+  EXPECT_EQ(unknown.exit_code, cell::kExitRefused);
+  EXPECT_THAT(unknown.err, HasSubstr("touchcal models lists them"));
 
   end_daemon();
   cell_.start_daemon();

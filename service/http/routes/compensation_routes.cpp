@@ -1,11 +1,15 @@
 #include <spdlog/fmt/fmt.h>
 
+#include <variant>
+
 #include "config/arm_file.hpp"
 #include "config/config_error.hpp"
 #include "config/targets_file.hpp"
+#include "service/base/utc_time.hpp"
 #include "service/documents/compensation_view.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/run/compensated_targets.hpp"
+#include "service/store/model_store.hpp"
 
 namespace cell {
 namespace {
@@ -17,33 +21,67 @@ HttpResponse no_arm(std::string detail) {
   return to_response({.status = 409, .kind = ProblemKind::kNoResult, .detail = std::move(detail)});
 }
 
-/// The run whose arm is applied: the one that the query names, else the newest accepted one.
-std::optional<std::int64_t> run_to_apply(const Call& call) {
-  if (const auto given = call.number("run")) return given;
-  const auto accepted = call.reads.store().last_accepted();
-  return accepted ? std::optional(accepted->id) : std::nullopt;
+/// The calibrated arm that is applied.
+struct ArmToApply {
+  std::string source;
+  std::string json;
+  std::string hash;  // of the model, or of the arm
+};
+using ChosenArm = std::variant<ArmToApply, HttpResponse>;
+
+ChosenArm arm_of_run(const Call& call, std::int64_t run) {
+  if (!call.reads.store().run(run)) {
+    return to_response({.status = 422,
+                        .kind = ProblemKind::kNotFound,
+                        .detail = fmt::format("there is no run {}; GET /api/v1/runs lists them", run),
+                        .parameter = "run"});
+  }
+  auto arm_json = call.reads.store().arm_json(run);
+  if (!arm_json) return no_arm(fmt::format("run {} has no calibrated arm; name another with ?run=ID", run));
+  const std::string source = fmt::format("the arm of run {}", run);
+  std::string hash = arm_digest(source, *arm_json);
+  return ArmToApply{source, *std::move(arm_json), std::move(hash)};
+}
+
+/// `current`: the cell's model.
+ChosenArm arm_of_model(const Call& call, const ModelStore& models, const Approval& current) {
+  // Both are UTC in one form: their order is that of their texts.
+  if (current.valid_until && *current.valid_until <= format_utc(call.reads.now()))
+    return no_arm(
+        fmt::format("the model of run {} was valid until {}; calibrate and approve a newer run, or name "
+                    "a run with ?run=ID",
+                    current.run_id, *current.valid_until));
+  return ArmToApply{fmt::format("the arm of the approved model of run {}", current.run_id),
+                    models.arm_json(current.id).value(), current.hash};
+}
+
+/// That of the run which the query names, else the approved model's, else that of the newest accepted run.
+ChosenArm arm_to_apply(const Call& call) {
+  if (const auto given = call.number("run")) return arm_of_run(call, *given);
+  const ModelStore models(call.reads.store().database());
+  const auto standing = standing_approvals(models.history());
+  if (!standing.empty()) return arm_of_model(call, models, standing.back());
+  if (const auto accepted = call.reads.store().last_accepted()) return arm_of_run(call, accepted->id);
+  return no_arm("no run was accepted yet; name one with ?run=ID, or calibrate");
 }
 
 HttpResponse wrong_body(const ConfigError& error) {
   return to_response({.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()});
 }
 
-HttpResponse compensate_for(const Call& call, const TargetsFile& file, std::int64_t run,
-                            const std::string& arm_json) {
+HttpResponse compensate_for(const Call& call, const TargetsFile& file, const ArmToApply& applied) {
   const Cell& cell = call.reads.cell();
-  const std::string source = fmt::format("the arm of run {}", run);
   Arm arm;
   try {
-    arm = read_arm_text(source, arm_json);
-    demand_arm_of(cell, arm, source);
+    arm = read_arm_text(applied.source, applied.json);
+    demand_arm_of(cell, arm, applied.source);
   } catch (const ConfigError& error) {
     return no_arm(error.what());
   }
   try {
     const calib::CompensationTool tool = tool_named(cell, arm, file.tool, kTargetsBody, "/tool");
-    return {.body =
-                document_text(compensation_of(cell, file.targets, compensated(cell, arm, tool, file.targets),
-                                              arm_digest(source, arm_json)))};
+    return {.body = document_text(compensation_of(cell, file.targets,
+                                                  compensated(cell, arm, tool, file.targets), applied.hash))};
   } catch (const ConfigError& error) {
     return wrong_body(error);
   }
@@ -56,33 +94,26 @@ HttpResponse post_compensate(const Call& call) {
   } catch (const ConfigError& error) {
     return wrong_body(error);
   }
-  const auto run = run_to_apply(call);
-  if (!run) return no_arm("no run was accepted yet; name one with ?run=ID, or calibrate");
-  if (!call.reads.store().run(*run)) {
-    return to_response({.status = 422,
-                        .kind = ProblemKind::kNotFound,
-                        .detail = fmt::format("there is no run {}; GET /api/v1/runs lists them", *run),
-                        .parameter = "run"});
-  }
-  const auto arm_json = call.reads.store().arm_json(*run);
-  if (!arm_json) return no_arm(fmt::format("run {} has no calibrated arm; name another with ?run=ID", *run));
-  return compensate_for(call, file, *run, *arm_json);
+  auto chosen = arm_to_apply(call);
+  if (auto* refused = std::get_if<HttpResponse>(&chosen)) return std::move(*refused);
+  return compensate_for(call, file, std::get<ArmToApply>(chosen));
 }
 
 }  // namespace
 
 std::vector<Route> compensation_routes() {
-  return {
-      {.method = "POST",
-       .path = "/api/v1/compensate",
-       .summary = "Corrects targets for a calibrated arm; changes nothing",
-       .access = Access::kOperate,
-       .handle = post_compensate,
-       .answers = {{.schema = "Compensated"}},
-       .query = {{"run", 1, kArmRunMax, "the run whose arm is applied; the newest accepted one by default"}},
-       .body_schema = "Targets",
-       .body_bytes_max = kTargetsBytesMax,
-       .dispatch = DispatchMode::kWorker}};
+  return {{.method = "POST",
+           .path = "/api/v1/compensate",
+           .summary = "Corrects targets for a calibrated arm; changes nothing",
+           .access = Access::kOperate,
+           .handle = post_compensate,
+           .answers = {{.schema = "Compensated"}},
+           .query = {{"run", 1, kArmRunMax,
+                      "the run whose arm is applied; by default the approved model's, without one the newest "
+                      "accepted"}},
+           .body_schema = "Targets",
+           .body_bytes_max = kTargetsBytesMax,
+           .dispatch = DispatchMode::kWorker}};
 }
 
 }  // namespace cell

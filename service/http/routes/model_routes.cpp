@@ -102,6 +102,14 @@ HttpResponse get_current_model(const Call& call) {
   return standing.empty() ? no_model() : tell_model(call, models, standing.back());
 }
 
+HttpResponse get_model_arm(const Call& call) {
+  const auto id = call.run_id();
+  const auto arm_json = id ? ModelStore(call.reads.store().database()).arm_json(*id) : std::nullopt;
+  if (!arm_json)
+    return not_found(fmt::format("there is no approval '{}'; GET /api/v1/models lists them", call.id));
+  return json_response(200, *arm_json);
+}
+
 /// Why the result of a run cannot become a model; nothing when it can.
 std::optional<std::string> why_no_model(const StoredRun& run) {
   constexpr std::string_view kOnly = "only a run that is complete and accepted can be approved";
@@ -182,6 +190,12 @@ std::vector<Route> model_routes() {
            "The model that a person approved for this cell; 409 when there is none, or for another arm",
        .handle = get_current_model,
        .answers = {{.schema = "Model"}},
+       .dispatch = DispatchMode::kStored},
+      {.method = "GET",
+       .path = "/api/v1/models/{id}/arm",
+       .summary = "The calibrated arm of an approval, as stored when the run ended; 404 for a rollback's row",
+       .handle = get_model_arm,
+       .answers = {{.schema = "Arm"}},
        .dispatch = DispatchMode::kStored},
       {.method = "POST",
        .path = "/api/v1/runs/{id}/approve",

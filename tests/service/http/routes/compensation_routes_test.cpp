@@ -5,6 +5,7 @@
 #include "config/arm_writer.hpp"
 #include "service/documents/compensation_view.hpp"
 #include "service/run/compensated_targets.hpp"
+#include "service/store/model_store.hpp"
 #include "tests/service/http/routes/routes_bench.hpp"
 
 namespace cell {
@@ -73,6 +74,31 @@ TEST_F(CompensationRoutes, TakeTheArmOfTheRunThatIsNamed) {
     return json::parse(compensate(query).body).at("targets").at(0).at("moved_mm").get<double>();
   };
   EXPECT_NEAR(moved_mm("?run=" + std::to_string(first)) / moved_mm(""), 2.0, 0.05);
+}
+
+TEST_F(CompensationRoutes, TakeTheApprovedModelBeforeANewerRunUntilItsEnd) {
+  const auto approve = [this](std::int64_t run, char hash_digit, const std::string& valid_until) {
+    ModelStore(cell_.store().database())
+        .approve({.run_id = run,
+                  .at = "1970-01-01T00:00:00.000Z",
+                  .operator_name = {},
+                  .hash = std::string(64, hash_digit),
+                  .valid_until = valid_until,
+                  .document = "{}",
+                  .arm_json = cell_.store().arm_json(run).value()});
+  };
+  const auto answer = [this](const std::string& query) { return json::parse(compensate(query).body); };
+  const std::int64_t first = run_with(arm_document_with(errors_of(0.001)));
+  const json of_first = answer("").at("targets");
+  approve(first, 'a', "1970-01-01T00:00:00.001Z");  // the clock stands at 1970
+  const std::int64_t second = run_with(arm_document_with(errors_of(0.002)));
+  EXPECT_EQ(answer("").at("model"), std::string(64, 'a'));
+  EXPECT_EQ(answer("").at("targets"), of_first);
+  EXPECT_NE(answer("?run=" + std::to_string(second)).at("targets"), of_first);
+  approve(second, 'b', "1970-01-01T00:00:00.000Z");
+  const json refused = problem(compensate());
+  EXPECT_EQ(refused.at("status"), 409);
+  EXPECT_THAT(refused.at("detail").get<std::string>(), HasSubstr("was valid until 1970-01-01T00:00:00.000Z"));
 }
 
 TEST_F(CompensationRoutes, RefuseWhereThereIsNoArm) {

@@ -3,6 +3,7 @@
 #include <boost/asio/co_spawn.hpp>
 #include <nlohmann/json.hpp>
 
+#include "config/arm_writer.hpp"
 #include "service/documents/model_document.hpp"
 #include "service/http/routes/api.hpp"
 #include "service/store/model_store.hpp"
@@ -73,6 +74,22 @@ TEST_F(ModelRoutesTest, TheArmIsTheOneThatWasStoredAlsoWhenTheRunGetsAnother) {
   const std::string model = approve(run).body;
   cell_.store().set_result_json(run, kResultText);
   EXPECT_EQ(current().body, model);
+}
+
+TEST_F(ModelRoutesTest, TheArmOfAnApprovalIsToldByItsId) {
+  const std::string arm_json = arm_document(edf().arm);
+  const std::int64_t run = stored_run();
+  cell_.store().finish_run(run, {.outcome = RunOutcome::kComplete,
+                                 .verdict = Verdict::kAccepted,
+                                 .ended_at = "end",
+                                 .result_json = kResultText,
+                                 .arm_json = arm_json});
+  approve(ended_run());
+  approve(run);
+  post("/api/v1/models/rollback", "{}");
+  EXPECT_EQ(get("/api/v1/models/2/arm").body, arm_json);
+  for (const char* id : {"3", "4", "current", "-1"})
+    EXPECT_EQ(problem(get(std::string("/api/v1/models/") + id + "/arm")).at("status"), 404) << id;
 }
 
 TEST_F(ModelRoutesTest, ApprovingTheCurrentModelAgainGivesTheSameAnswerAndWritesNothing) {

@@ -1,0 +1,73 @@
+#include "service/cli/applied_arm.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "config/arm_file.hpp"
+#include "config/file_bytes.hpp"
+#include "service/base/utc_time.hpp"
+#include "service/cli/daemon_reply.hpp"
+#include "service/documents/compensation_view.hpp"
+#include "service/documents/model_document.hpp"
+
+namespace cell {
+namespace {
+
+constexpr std::string_view kCurrentModel = "current";
+/// Of a hash, to name its model: as many as touchcal models shows.
+constexpr std::size_t kHashDigitsMin = 12;
+
+bool is_meant(const ApprovalRow& row, const std::string& model) {
+  if (row.kind == "rolled_back") return false;
+  if (model == kCurrentModel) return row.current;
+  return row.id == model || (model.size() >= kHashDigitsMin && row.hash.starts_with(model));
+}
+
+/// The newest approval that is meant, of all that the daemon has.
+ApprovalRow find_approval(const ApiClient& daemon, const std::string& model) {
+  std::optional<std::string> before;
+  do {
+    const ApiReply reply = daemon.get("/api/v1/models" + (before ? "?before=" + *before : ""));
+    if (reply.status != 200) throw ModelRefused(reply);
+    const ModelsDocument page = read_reply(reply, read_models);
+    const auto found =
+        std::ranges::find_if(page.models, [&model](const auto& row) { return is_meant(row, model); });
+    if (found != page.models.end()) return *found;
+    before = page.next_before;
+  } while (before);
+  throw ModelRefused(
+      model == kCurrentModel
+          ? "--model current: no model is approved; touchcal approve RUN makes that of an accepted run the "
+            "cell's"
+          : fmt::format("--model {}: there is no approval with this id or hash; touchcal models lists them",
+                        model));
+}
+
+}  // namespace
+
+ModelRefused::ModelRefused(const ApiReply& reply) : std::runtime_error(problem_line(reply)) {}
+
+AppliedArm arm_of_file(const std::filesystem::path& file) {
+  const std::string source = file.string();
+  const std::string bytes = read_file_bytes(file, kConfigFileSizeMax);
+  return {.source = source, .arm = read_arm_text(source, bytes), .hash = arm_digest(source, bytes)};
+}
+
+AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model,
+                        std::chrono::system_clock::time_point now) {
+  const ApprovalRow approval = find_approval(daemon, model);
+  // Both are UTC in one form: their order is that of their texts.
+  if (approval.valid_until && *approval.valid_until <= format_utc(now))
+    throw ModelRefused(fmt::format(
+        "the model of run {} was valid until {}; calibrate and approve a newer run, or give --arm "
+        "with the arm that touchcal export writes",
+        approval.run_id, *approval.valid_until));
+  const ApiReply reply = daemon.get("/api/v1/models/" + approval.id + "/arm");
+  if (reply.status != 200) throw ModelRefused(reply);
+  const std::string source = fmt::format("the arm of the approved model of run {}", approval.run_id);
+  return {.source = source, .arm = read_arm_text(source, reply.body), .hash = approval.hash};
+}
+
+}  // namespace cell

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "config/cell.hpp"
+#include "service/cli/api_client.hpp"
+
+namespace cell {
+
+/// The calibrated arm that is applied to targets, and where it is from.
+struct AppliedArm {
+  std::string source;  // for messages: the file, or the model and its daemon
+  Arm arm;
+  std::string hash;  // of the model, or of the file: arm_digest()
+};
+
+/// Why no approved model is applied: what the daemon answers, or what is wrong with the model.
+struct ModelRefused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+  explicit ModelRefused(const ApiReply& reply);
+};
+
+/// Throws ConfigError where the file is no arm.
+AppliedArm arm_of_file(const std::filesystem::path& file);
+
+/// The arm of a model that was approved, as the daemon has stored it. `model`: "current", the id of the
+/// approval, or the model's hash or its beginning, 12 digits at least, as touchcal models shows them. Throws
+/// ModelRefused where there is no such model or it is not valid any more at `now`, DaemonUnreachable.
+AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model,
+                        std::chrono::system_clock::time_point now);
+
+}  // namespace cell
