@@ -16,6 +16,10 @@ namespace {
 /// More than this waiting to be written means that the controller stopped reading.
 constexpr std::size_t kOutgoingMax = 16384;  // bytes
 
+/// A VAL3 socket that serves one host has no words for a second one: it is silent, or ends the connection.
+constexpr const char* kMayBeOccupied =
+    "; most likely another host is connected, of which the controller serves one at a time";
+
 std::string milliseconds_text(std::chrono::milliseconds time) { return std::to_string(time.count()) + " ms"; }
 
 std::string degrees_text(std::int32_t microdeg) { return std::to_string(microdeg / 1e6); }
@@ -59,7 +63,10 @@ asio::awaitable<ConnectReply> Link::open(std::shared_ptr<Link> link, tcp::endpoi
   link->connect_alarm_.expires_after(deadline);
   link->connect_alarm_.async_wait([link, deadline](const boost::system::error_code& cancelled) {
     if (cancelled || link->established_) return;
-    link->fail(LinkErrorKind::kHandshakeTimeout, "no handshake within " + milliseconds_text(deadline));
+    boost::system::error_code no_peer;
+    static_cast<void>(link->socket_.remote_endpoint(no_peer));
+    link->fail(LinkErrorKind::kHandshakeTimeout,
+               "no handshake within " + milliseconds_text(deadline) + (no_peer ? "" : kMayBeOccupied));
   });
   try {
     co_await link->socket_.async_connect(endpoint, asio::use_awaitable);
@@ -71,8 +78,9 @@ asio::awaitable<ConnectReply> Link::open(std::shared_ptr<Link> link, tcp::endpoi
     if (!link->error_) link->greet(frame, expected);
   } catch (const boost::system::system_error& failure) {
     link->fail(tcp_connected ? LinkErrorKind::kPeerClosed : LinkErrorKind::kUnreachable,
-               (tcp_connected ? "the connection ended during the handshake: " : "no connection: ") +
-                   failure.code().message());
+               tcp_connected
+                   ? "the connection ended during the handshake: " + failure.code().message() + kMayBeOccupied
+                   : "no connection: " + failure.code().message());
   }
   link->connect_alarm_.cancel();
   if (link->error_) co_return *link->error_;

@@ -319,7 +319,10 @@ void ControllerSession::expect_stop(cs8::Outcome outcome) {
 }
 
 void ControllerSession::meet_anew_after(const cs8::Rejected& rejected) {
-  if (rejected.reason == cs8::RejectReason::kResultUnacknowledged) close();
+  using enum cs8::RejectReason;
+  const bool is_unlike = rejected.reason == kResultUnacknowledged || rejected.reason == kBusy ||
+                         rejected.reason == kStaleSequence;
+  if (is_unlike) close();
 }
 
 /// The controller's state, told after this call and at rest; nothing when the link is lost, another state was

@@ -117,7 +117,9 @@ class ControllerSession {
   boost::asio::awaitable<bool> travel(cs8::Travel command);
   /// Handles a command that ended stopped: by a person's request, or else it is a fault.
   void expect_stop(cs8::Outcome outcome);
-  /// A controller that missed an acknowledgement is met anew: its Welcome names the result that it still has.
+  /// A controller that missed an acknowledgement, that runs a command this side does not know of, or that
+  /// counts otherwise is met anew: the end of the link stops what moves, and its Welcome names the result
+  /// that it still has and its last number.
   void meet_anew_after(const cs8::Rejected& rejected);
 
   // Where the last command left the arm, when that is certain.

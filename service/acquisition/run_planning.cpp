@@ -54,16 +54,16 @@ asio::awaitable<bool> RunPlanning::adopt(ActiveRun& active, std::shared_ptr<cons
     status_.raise(*invalid, Event::kAbortFault);
     co_return false;
   }
-  Run& run = active.run;
-  run.set_plan(plan->touches);
-  const auto write = [id = run.id(), total = run.touches_total(), plan](RunStore& store) {
+  const int total = static_cast<int>(plan->touches.touches.size());
+  const auto write = [id = active.run.id(), total, plan](RunStore& store) {
     store.set_plan(id, total, plan->id, plan->document);
   };
   const auto failure = co_await store_.write(write);
-  if (failure) {
-    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kAbortFault);
+  if (failure) {  // it has no plan: it is planned and stored anew when a person lets it go on
+    status_.raise({FaultCode::kStoreFailed, *failure}, Event::kHoldFault);
     co_return false;
   }
+  active.run.set_plan(plan->touches);
   begin_touches(active);
   status_.publish();
   co_return true;

@@ -26,7 +26,8 @@ class RunPlanning {
   RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, StoreQueue& store, PlanCache& plans,
               TouchPreparation& preparation, PublishedStatus& status, Wake& wake);
 
-  /// False when there is no plan, which raises a fault, or when another state was entered meanwhile.
+  /// False when there is no plan, which raises a fault, or when another state was entered meanwhile. A plan
+  /// that could not be stored holds the run, which has none then.
   boost::asio::awaitable<bool> plan(ActiveRun& active);
   /// Waits for what the plan cache has for this run. False when another state was entered meanwhile: a stop
   /// does not wait for the planner, and the planner gives up what nobody waits for.

@@ -1,5 +1,5 @@
-// The touches of the plan, and how any touch is judged; those beside the plan are in
-// touch_executor_beside_plan.cpp. Each co_await stands alone in its statement, see cs8_controller.cpp.
+// The touches of the plan; those beside it are in touch_executor_beside_plan.cpp, how answers are taken in
+// touch_executor_answers.cpp. Each co_await stands alone in its statement, see cs8_controller.cpp.
 #include "service/acquisition/touch_executor.hpp"
 
 #include <spdlog/fmt/fmt.h>
@@ -20,9 +20,6 @@ namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
 namespace {
-
-/// This many false triggers in a run indicate a fault.
-constexpr int kFalseTriggersMany = 3;
 
 /// For the list of runs; the changes of the plan say the same, so that a failure is only tried again.
 bool store_total(RunStore& store, std::int64_t run_id, int touches_total) {
@@ -70,7 +67,8 @@ TouchExecutor::TouchExecutor(const Cell& cell, RunComputation& computation, Stor
       preparation_(preparation),
       status_(status),
       wake_(wake),
-      clocks_(std::move(clocks)) {}
+      clocks_(std::move(clocks)),
+      refused_(store, session, clocks_) {}
 
 void TouchExecutor::begin_run(const ActiveRun& active) {
   held_by_ = HeldBy::kNothing;
@@ -237,7 +235,8 @@ asio::awaitable<void> TouchExecutor::identify(ActiveRun& active) {
 asio::awaitable<void> TouchExecutor::take_contact(ActiveRun& active, OpenTouch open,
                                                   cs8::TouchResult result) {
   const calib::PlannedTouch& touch = open.planned;
-  if (!accept(active, touch, open.sequence, result, HeldBy::kTouch)) co_return;
+  const bool is_accepted = co_await accept(active, touch, open.sequence, result, HeldBy::kTouch);
+  if (!is_accepted) co_return;
   const calib::JointVector contact = from_wire(result.contact);
   if (const calib::PlannedTouch* of_plan = active.run.next()) reference_.note_fitted(*of_plan, contact);
   const Storing storing = begin_storing(active.run, touch, result, open);
@@ -289,56 +288,6 @@ asio::awaitable<bool> TouchExecutor::aim_ahead(ActiveRun& active, StoredTouch to
   AimBehindContact aimed = co_await computation_.prepared(preparation_, active.run, aim);
   if (aimed.is_surprise) reference_ahead_ = std::move(aimed.to_reference);
   co_return aimed.contradicted;
-}
-
-/// True when the answer is a measurement, which the caller keeps and acknowledges; else the answer is dealt
-/// with.
-bool TouchExecutor::accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
-                           const cs8::TouchResult& result, HeldBy held_by) {
-  TouchJudgement judged = judge_touch(cell_, touch, result, history_);
-  // An arm that must not move touches nothing: this is no measurement of it.
-  if (auto lost = session_.lost_permission(); judged.next == TouchJudgement::Next::kKeep && !lost.empty())
-    judged = {.next = TouchJudgement::Next::kFault,
-              .fault = {FaultCode::kPermissionLost, std::move(lost)},
-              .event = Event::kHoldFault,
-              .warnings = {}};
-  for (const Fault& warning : judged.warnings) status_.warn(warning);
-  if (judged.next == TouchJudgement::Next::kKeep) {
-    history_ = {.attempts = 0, .spread_m = {}, .last_contact = result.contact};
-    return true;
-  }
-  session_.discard(active.run.id(), sequence, result);
-  preparation_.drop_next();
-  if (judged.next == TouchJudgement::Next::kStopped) {
-    if (result.phase == cs8::Phase::kSearch) status_.warn({FaultCode::kStoppedInSearch, {}});
-    session_.expect_stop(result.outcome);
-    return false;
-  }
-  if (judged.fault.code == FaultCode::kFalseTrigger && ++false_trigger_count_ == kFalseTriggersMany)
-    status_.warn({FaultCode::kFalseTriggersMany, fmt::format("{} in this run", false_trigger_count_)});
-  if (judged.next == TouchJudgement::Next::kAgain) {
-    ++history_.attempts;
-    history_.spread_m = contact_spread_m(cell_, result);
-    status_.warn(judged.fault);
-    return false;
-  }
-  take_no_measurement(active, touch, judged, held_by);
-  return false;
-}
-
-/// A touch that is not made again by itself.
-void TouchExecutor::take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
-                                        const TouchJudgement& judged, HeldBy held_by) {
-  const FaultCode code = judged.fault.code;
-  history_.attempts = 0;  // a person's answer resets the count
-  history_.spread_m.reset();
-  preparation_.set_missed(code == FaultCode::kNoContact || code == FaultCode::kEarlyContact);
-  if (code == FaultCode::kCollision) preparation_.forget_made();  // what was known of the arm may be wrong
-  held_by_ = held_by;
-  const bool of_plan = held_by == HeldBy::kTouch;
-  const Fault told = session_.with_permission_told(judged.fault);
-  status_.raise(of_plan && active.place_check ? active.place_check->explain(told, touch.face) : told,
-                judged.event);
 }
 
 asio::awaitable<bool> TouchExecutor::keep(ActiveRun& active, calib::PlannedTouch planned,

@@ -11,6 +11,7 @@
 #include "service/acquisition/controller_session.hpp"
 #include "service/acquisition/outlier_retest.hpp"
 #include "service/acquisition/reference_monitor.hpp"
+#include "service/acquisition/refused_contacts.hpp"
 #include "service/acquisition/run_computation.hpp"
 #include "service/acquisition/store_queue.hpp"
 #include "service/acquisition/touch_judgement.hpp"
@@ -26,12 +27,13 @@ enum class HeldBy { kNothing, kTouch, kReference, kOutlier, kDrift, kStylus };
 ///
 ///   prepare -> command -> answer -> judge -> keep (store, then Run::add) -> acknowledge
 ///
-/// A contact counts when it is stored; only then may the controller forget it. The arm does not wait for
-/// arithmetic: the estimate from the last touch and the path to the next are computed while it moves, and
-/// what a contact changes in them while the disk writes it, both beside the link (RunComputation). Behind the
-/// contact, on the same way to the disk, goes the command that follows, which leaves when both are stored and
-/// nothing has come between. Called by the cell's loop in EXECUTE. Failures are raised at the status and end
-/// the step; a lost link ends the step without a fault, which the controller's hook raises.
+/// A contact counts when it is stored; only then may the controller forget it. One that is refused is stored
+/// apart with the reason (store/refused_result.hpp) before the controller may forget it. The arm does not
+/// wait for arithmetic: the estimate from the last touch and the path to the next are computed while it
+/// moves, and what a contact changes in them while the disk writes it, both beside the link (RunComputation).
+/// Behind the contact, on the same way to the disk, goes the command that follows, which leaves when both are
+/// stored and nothing has come between. Called by the cell's loop in EXECUTE. Failures are raised at the
+/// status and end the step; a lost link ends the step without a fault, which the controller's hook raises.
 class TouchExecutor {
  public:
   /// All must outlive it.
@@ -84,11 +86,9 @@ class TouchExecutor {
   boost::asio::awaitable<bool> keep_open_command(ActiveRun& active, OpenTouch open);
   std::optional<OpenTouch> command_behind(const ActiveRun& active, bool contradicted) const;
   bool take_stored_ahead(const Run& run);
-  void forget_stored_command(std::int64_t run_id);
   boost::asio::awaitable<void> work_ahead(ActiveRun& active);
   void tell_left_out(const Run& run, int dropped);
   boost::asio::awaitable<void> take_contact(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
-  void tell_unstored(const std::string& failure);
   /// A contact on its way to the store.
   struct Storing {
     StoredTouch touch;
@@ -102,14 +102,22 @@ class TouchExecutor {
                                               std::function<void(RunStore&)> behind);
   void tell_kept();
   boost::asio::awaitable<bool> aim_ahead(ActiveRun& active, StoredTouch touch);
-  bool accept(ActiveRun& active, const calib::PlannedTouch& touch, std::uint32_t sequence,
-              const cs8::TouchResult& result, HeldBy held_by);
+  // What is answered (touch_executor_answers.cpp).
+  boost::asio::awaitable<bool> accept(ActiveRun& active, calib::PlannedTouch touch, std::uint32_t sequence,
+                                      cs8::TouchResult result, HeldBy held_by);
+  bool deal_with(const ActiveRun& active, const calib::PlannedTouch& touch, const TouchJudgement& judged,
+                 const cs8::TouchResult& result, HeldBy held_by);
   void take_no_measurement(const ActiveRun& active, const calib::PlannedTouch& touch,
                            const TouchJudgement& judged, HeldBy held_by);
   void tell_end_of_unknown(const cs8::QueryReply& reply);
   void take_rejection(const cs8::Rejected& rejected, HeldBy held_by);
   boost::asio::awaitable<bool> keep_late_touch(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
   void aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact);
+  boost::asio::awaitable<bool> refuse(std::int64_t run_id, std::uint32_t sequence, cs8::TouchResult result,
+                                      std::string reason);
+  void tell_unstored(const std::string& failure);
+  void leave_unstored(const ActiveRun* active);
+  void forget_stored_command(std::int64_t run_id);
 
   // Beside the plan (touch_executor_beside_plan.cpp).
   boost::asio::awaitable<bool> touch_beside_plan(ActiveRun& active, calib::AimedTouch aimed, HeldBy held_by);
@@ -120,7 +128,7 @@ class TouchExecutor {
   boost::asio::awaitable<std::optional<PreparedTouch>> prepare_beside_plan(ActiveRun& active,
                                                                            calib::AimedTouch aimed,
                                                                            HeldBy held_by);
-  void doubt_reference(std::int64_t run_id, const ReferenceMonitor::Doubt& doubt);
+  boost::asio::awaitable<void> doubt_reference(std::int64_t run_id, ReferenceMonitor::Doubt doubt);
   void judge_reference(const ActiveRun& active);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
   boost::asio::awaitable<bool> replace(ActiveRun& active, OutlierRetest::Replaced replaced);
@@ -140,6 +148,7 @@ class TouchExecutor {
   PublishedStatus& status_;
   Wake& wake_;
   Clocks clocks_;
+  RefusedContacts refused_;
   TouchHistory history_;
   ReferenceMonitor reference_;
   OutlierRetest outlier_;

@@ -1,5 +1,5 @@
 // What a TouchExecutor touches beside the plan: the reference place, and a touch that does not fit the
-// others; answers that come late or say no; and a person's word on them. Each co_await stands alone in its
+// others; and a person's word on them. Each co_await stands alone in its
 // statement, see cs8_controller.cpp.
 #include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
@@ -57,7 +57,8 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
   }
   const auto* result = std::get_if<cs8::TouchResult>(&reply.answer);
   if (!result) co_return false;  // a lost link was reported by the controller's hook
-  if (!accept(active, outgoing.touch, reply.sequence, *result, held_by)) co_return false;
+  const bool is_accepted = co_await accept(active, outgoing.touch, reply.sequence, *result, held_by);
+  if (!is_accepted) co_return false;
   beside_plan_ = {session_.number(), reply.sequence, *result};
   preparation_.set_missed(false);
   session_.set_standing(outgoing.touch.clear_joints);
@@ -131,8 +132,10 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
   const auto height_m = [this](const calib::JointVector& joints) {
     return preparation_.height_m(reference_.planned().face, joints);
   };
-  if (const auto doubt = reference_.doubt(contact, reference_drift_max_m(cell_), height_m))
-    co_return doubt_reference(run.id(), *doubt);
+  if (const auto doubt = reference_.doubt(contact, reference_drift_max_m(cell_), height_m)) {
+    co_await doubt_reference(run.id(), *doubt);
+    co_return;
+  }
   ReferenceMonitor with_contact = reference_;
   const ReferenceMonitor::Reading reading = with_contact.add_contact(contact, run.touches_done(), height_m);
   const double drift_mm = calib::mm_from_metres(reading.drift_m);
@@ -160,14 +163,18 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
   judge_reference(active);
 }
 
-/// The contact is no reference, and no measurement: the log alone has it.
-void TouchExecutor::doubt_reference(std::int64_t run_id, const ReferenceMonitor::Doubt& doubt) {
-  if (beside_plan_->session == session_.number())
-    session_.discard(run_id, beside_plan_->sequence, beside_plan_->result);
-  beside_plan_.reset();
-  if (doubt.warning) return status_.warn(*doubt.warning);
-  held_by_ = HeldBy::kDrift;
-  status_.raise(*doubt.hold, Event::kHoldFault);
+/// The contact is no reference, and no measurement.
+asio::awaitable<void> TouchExecutor::doubt_reference(std::int64_t run_id, ReferenceMonitor::Doubt doubt) {
+  const BesidePlan refused = *std::exchange(beside_plan_, std::nullopt);
+  const Fault& why = doubt.warning ? *doubt.warning : *doubt.hold;
+  if (doubt.warning) {
+    status_.warn(why);
+  } else {
+    held_by_ = HeldBy::kDrift;
+    status_.raise(why, Event::kHoldFault);
+  }
+  if (refused.session != session_.number()) co_return;
+  co_await refuse(run_id, refused.sequence, refused.result, why.message());
 }
 
 void TouchExecutor::judge_reference(const ActiveRun& active) {
@@ -248,93 +255,6 @@ asio::awaitable<bool> TouchExecutor::confirm(ActiveRun& active, StoredTouch agai
   }
   active.run.confirm(again.number, again.joints);
   co_return true;
-}
-
-void TouchExecutor::take_rejection(const cs8::Rejected& rejected, HeldBy held_by) {
-  const OutcomeFault refused = fault_of(rejected);
-  held_by_ = held_by;
-  status_.raise(session_.with_permission_told(refused.fault), refused.event());
-  session_.meet_anew_after(rejected);
-}
-
-/// The controller keeps its answer until it is acknowledged: a run on hold stores it when it goes on, one
-/// that has ended with its own fault when the cell is reset.
-void TouchExecutor::tell_unstored(const std::string& failure) {
-  const Fault fault{FaultCode::kStoreFailed, failure};
-  if (has_ended(status_.state())) return status_.warn(fault);
-  status_.raise(fault, status_.state() == State::kExecute ? Event::kHoldFault : Event::kNotReadyFault);
-}
-
-/// It did not leave or was not taken: its sequence number belongs to the command that leaves next.
-void TouchExecutor::forget_stored_command(std::int64_t run_id) {
-  store_.behind([run_id](RunStore& store) { store.forget_open_command(run_id); });
-}
-
-asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std::uint32_t sequence) {
-  const cs8::QueryReply reply = co_await session_.query(sequence);
-  if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
-  const auto* result = std::get_if<cs8::TouchResult>(&reply);
-  const std::optional<OpenTouch> open = session_.open_touch();
-  const bool ours = active && open && open->run_id == active->run.id() &&
-                    open->session == session_.number() && open->sequence == sequence;
-  std::optional<TouchJudgement> judged;
-  if (result && ours) judged = judge_touch(cell_, open->planned, *result, {});
-  if (judged && judged->next == TouchJudgement::Next::kKeep) {
-    spdlog::info("run {}: touch {} had been made when the run was broken off", active->run.id(),
-                 active->run.touches_done() + 1);
-    const bool kept = co_await keep_late_touch(*active, *open, *result);
-    if (!kept) {
-      // It waits there until it can be stored.
-      const bool is_left = has_ended(status_.state()) || status_.state() == State::kClearing;
-      if (!active->open && !is_left) status_.enter(State::kStopped);
-      co_return;
-    }
-  } else if (open) {
-    forget_stored_command(open->run_id);
-  }
-  const bool is_discarded = open && result && !(judged && judged->next == TouchJudgement::Next::kKeep);
-  is_discarded ? session_.discard(open->run_id, sequence, *result) : session_.acknowledge(sequence);
-  if (!judged && active && active->open) tell_end_of_unknown(reply);
-  if (judged && judged->next == TouchJudgement::Next::kFault && judged->event == Event::kAbortFault &&
-      active->open)
-    status_.raise(judged->fault, judged->event);
-}
-
-/// Of a motion or a touch beside the plan that the link did not outlive nothing is known but how it ended:
-/// what ends a run ends it also then.
-void TouchExecutor::tell_end_of_unknown(const cs8::QueryReply& reply) {
-  std::optional<OutcomeFault> fault;
-  if (const auto* touch = std::get_if<cs8::TouchResult>(&reply))
-    fault = fault_of(touch->outcome, touch->phase, touch->error_number);
-  if (const auto* move = std::get_if<cs8::MoveResult>(&reply))
-    fault = fault_of(move->outcome, move->phase, move->error_number);
-  if (fault && !fault->holds) status_.raise(fault->fault, Event::kAbortFault);
-}
-
-/// A contact of a run that is over or on hold: its stored result follows, its verdict does not change.
-asio::awaitable<bool> TouchExecutor::keep_late_touch(ActiveRun& active, OpenTouch open,
-                                                     cs8::TouchResult result) {
-  const calib::PlannedTouch* of_plan = active.run.next();
-  const bool goes_on = active.open && !active.interruption && !active.guided;
-  const calib::JointVector contact = from_wire(result.contact);
-  if (goes_on && of_plan) reference_.note_fitted(*of_plan, contact);
-  const bool kept = co_await keep(active, open.planned, result, open);
-  if (!kept) co_return false;
-  co_await identify(active);
-  if (goes_on) aim_behind_late_touch(active, contact);
-  const Conclusion told = co_await computation_.conclude(active, std::nullopt);
-  if (told.result_json) {
-    store_.behind([id = active.run.id(), json = *told.result_json, arm = told.arm_json](RunStore& store) {
-      store.set_result_json(id, json, arm);
-    });
-  }
-  status_.publish();
-  co_return true;
-}
-
-void TouchExecutor::aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact) {
-  if (preparation_.made() && preparation_.is_surprise(contact)) preparation_.drop_next();
-  suspect_last(active);
 }
 
 void TouchExecutor::settle_hold(ActiveRun& active, Command command) {

@@ -212,12 +212,14 @@ constexpr std::string_view kArm = R"({
 
 constexpr std::string_view kReport = R"({
 "type":"object",
-"required":["schema","touchcal_version","run","raw_data","touches","touched_again","reference_touches","faults","result"],
+"required":["schema","touchcal_version","run","raw_data","touches","touched_again","reference_touches","refused_contacts","faults","result"],
 "properties":{
   "schema":{"const":"touchcal/report/1"},
   "run":{"type":"object","required":["id","recipe","operator","started_at","ended_at","outcome","verdict"]},
   "raw_data":{"type":"object","required":["sha256","of"]},
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","use"]}},
+  "refused_contacts":{"type":"array","description":"what the controller measured and the daemon refused",
+    "items":{"type":"object","required":["sequence","joints_deg","reason","at"]}},
   "result":{"type":["object","null"]}}})";
 
 constexpr std::string_view kTargets = R"({

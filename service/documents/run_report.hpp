@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -122,6 +123,22 @@ struct RunReport {
     }
   };
 
+  /// A contact that counts for nothing.
+  struct Refused {
+    std::int64_t sequence = 0;            // of its command
+    std::vector<std::string> joints_deg;  // as those of a touch
+    std::string reason;
+    std::string at;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("sequence", self.sequence);
+      fields("joints_deg", self.joints_deg);
+      fields("reason", self.reason);
+      fields("at", self.at);
+    }
+  };
+
   std::string schema = "touchcal/report/1";
   std::string touchcal_version;
   OfRun run;
@@ -129,7 +146,8 @@ struct RunReport {
   std::vector<Touch> touches;
   std::vector<Superseded> touched_again;
   std::vector<Reference> reference_touches;
-  std::vector<RaisedFault> faults;  // oldest first
+  std::vector<Refused> refused_contacts;  // oldest first; none in a report of an older daemon
+  std::vector<RaisedFault> faults;        // oldest first
   std::optional<Carried<ResultDocument>> result;
 
   template <class Self, class Fields>
@@ -141,6 +159,7 @@ struct RunReport {
     fields("touches", self.touches);
     fields("touched_again", self.touched_again);
     fields("reference_touches", self.reference_touches);
+    fields("refused_contacts", self.refused_contacts);
     fields("faults", self.faults);
     fields("result", self.result);
   }

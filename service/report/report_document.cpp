@@ -88,6 +88,13 @@ std::string report_document(const RunRecord& record) {
                                         .drift_mm = finite(reference.drift_mm),
                                         .captured_at = reference.captured_at});
   }
+  for (const RefusedResult& refused : record.refused) {
+    RunReport::Refused& told = report.refused_contacts.emplace_back();
+    told.sequence = refused.sequence;
+    for (const auto joint : refused.joints) told.joints_deg.push_back(degrees_text(joint));
+    told.reason = refused.reason;
+    told.at = refused.at;
+  }
   for (auto fault = record.faults.rbegin(); fault != record.faults.rend(); ++fault)
     report.faults.push_back({.at = fault->at, .code = fault->code, .message = fault->message});
   if (record.result_json) report.result.emplace().text = *record.result_json;

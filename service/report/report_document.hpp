@@ -6,6 +6,7 @@
 
 #include "service/documents/run_report.hpp"
 #include "service/store/fault_log.hpp"
+#include "service/store/refused_result.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
@@ -16,6 +17,7 @@ struct RunRecord {
   std::vector<StoredTouch> touches;
   std::vector<SupersededTouch> superseded;
   std::vector<ReferenceTouch> references;
+  std::vector<RefusedResult> refused;
   std::vector<StoredFault> faults;
   std::optional<std::string> result_json;  // touchcal/result/1
 };

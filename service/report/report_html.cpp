@@ -279,6 +279,10 @@ std::string touches_section(const RunReport& report) {
     references.push_back({std::to_string(touch.touches_done),
                           touch.drift_mm ? figure_text(touch.drift_mm, "{:.4f}") : "the first one",
                           text_or_unknown(touch.captured_at)});
+  std::vector<Row> refused;
+  for (const RunReport::Refused& contact : report.refused_contacts)
+    refused.push_back({text_or_unknown(contact.at), fmt::format("{}", fmt::join(contact.joints_deg, ", ")),
+                       text_or_unknown(contact.reason)});
   std::vector<Row> faults;
   for (const RunReport::RaisedFault& fault : report.faults)
     faults.push_back(
@@ -288,6 +292,7 @@ std::string touches_section(const RunReport& report) {
       html::table("Rejected touches", {"touch", "residual mm", "reason"}, rejected) +
           html::table("Touches that were made again", {"touch", "plane", "reason", "first made"}, again) +
           html::table("Reference touches", {"touches done", "drift mm", "made"}, references) +
+          html::table("Refused contacts", {"when", "joints °", "why"}, refused) +
           html::table("Faults during the run", {"when", "code", "what"}, faults));
 }
 

@@ -201,8 +201,7 @@ constexpr std::array kTable{
     FaultEntry{FaultCode::kTouchRejected, "touch_rejected", "the controller refused a command",
                "nothing moved",
                "remove the cause at the cell, then touchcal resume to try this touch again, or touchcal "
-               "stop; a run that "
-               "was aborted is left by touchcal clear and touchcal reset",
+               "stop; in ABORTED touchcal clear, then touchcal reset",
                FaultKind::kHeld},
     FaultEntry{FaultCode::kNoContact, "no_contact", "the search ended without contact",
                "the arm went to the end of the search and retracted; nothing was recorded",
@@ -273,8 +272,9 @@ constexpr std::array kTable{
     FaultEntry{
         FaultCode::kStoreFailed, "store_failed", "the state directory could not be written",
         "the arm finished a touch that was under way, or stands where a stop left it",
-        "free disk space or repair the state directory's rights, then touchcal resume if the run is on "
-        "hold; the end of a run that is over is stored by itself; else touchcal clear and touchcal "
+        "free disk space, repair the state directory's rights or end the program that has its database "
+        "locked, then touchcal resume if the run is on hold; the end of a run that is over is stored by "
+        "itself; else touchcal clear and touchcal "
         "reset",
         FaultKind::kHeld, "P39"},
     FaultEntry{FaultCode::kNotIdentifiable, "not_identifiable", "the touches do not determine the parameters",

@@ -116,6 +116,7 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
     case cs8::RejectReason::kBadField:
     case cs8::RejectReason::kSearchTooLong:
     case cs8::RejectReason::kSearchTooFast:
+    case cs8::RejectReason::kOutOfRange:
       return {{FaultCode::kPlanInvalid, why}};
     case cs8::RejectReason::kNotRemote:
     case cs8::RejectReason::kNotPowered:
@@ -124,16 +125,16 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
     case cs8::RejectReason::kNotCalibrated:
     case cs8::RejectReason::kNotPermitted:
       return {{FaultCode::kPermissionLost, fmt::format("before the motion began: {}", why)}, true};
-    case cs8::RejectReason::kResultUnacknowledged:  // it is asked for on a new connection
-      return {{FaultCode::kTouchRejected, why}, true};
+    case cs8::RejectReason::kResultUnacknowledged:
     case cs8::RejectReason::kBusy:
     case cs8::RejectReason::kStaleSequence:
-    case cs8::RejectReason::kOutOfRange:
     case cs8::RejectReason::kNothingToRetract:
     case cs8::RejectReason::kRetractPending:
       break;
   }
-  return {{FaultCode::kTouchRejected, why}};
+  // The two sides do not agree on what was done, and nothing moved: the run loses nothing by waiting until
+  // they have met anew (ControllerSession::meet_anew_after) or State has told where the arm is.
+  return {{FaultCode::kTouchRejected, why}, true};
 }
 
 namespace {

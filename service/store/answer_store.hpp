@@ -33,7 +33,8 @@ struct KeyInProgress {};
 
 using KeyLookUp = std::variant<KeyIsNew, StoredAnswer, KeyReused, KeyInProgress>;
 
-/// First answers by Idempotency-Key, kept for a day, also across restarts. Throws what the database throws.
+/// First answers by Idempotency-Key, kept for a day, also across restarts. Throws what the database throws,
+/// and DamagedStore for a row that is not as it was written.
 class AnswerStore {
  public:
   static constexpr int kKeptHours = 24;
@@ -48,6 +49,8 @@ class AnswerStore {
   void give_up(const KeyedRequest& request) { in_progress_.erase(request.key); }
 
  private:
+  void forget_before(const std::string& oldest);
+
   SharedDatabase database_;
   std::set<std::string> in_progress_;
 };

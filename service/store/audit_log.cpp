@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "service/store/internal/audit_row.hpp"
+#include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
 
 namespace cell {
@@ -47,7 +48,7 @@ void AuditLog::append(AuditEntry entry, bool at_once) {
   if (!at_once) unsynced.emplace(*database_);
   const AuditChain chain = chain_of(entry);
   const std::int64_t kept = chain == AuditChain::kOfStrangers ? kOfStrangersKept : kKept;
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   auto& count = counts_.at(static_cast<std::size_t>(chain));
   if (!count) {  // what is there from earlier starts
     SQLite::Statement rows(*database_,

@@ -2,7 +2,12 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "service/store/damaged_store.hpp"
+#include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
+#include "service/store/internal/row_checksum.hpp"
+#include "service/store/internal/row_count.hpp"
+#include "service/store/internal/row_text.hpp"
 
 namespace cell {
 
@@ -20,14 +25,17 @@ void FaultLog::insert(const StoredFault& fault) {
   insert.bind(3, fault.code);
   insert.bind(4, fault.message);
   insert.exec();
+  row::seal(*database_, row::fault_rows(), "id", database_->getLastInsertRowid());
 }
 
 /// What waits, all or nothing.
 void FaultLog::store_all() try {
   const RelaxedDurability unsynced(*database_);
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
+  auto came = static_cast<std::int64_t>(waiting_.size());
   for (const StoredFault& fault : waiting_) insert(fault);
   if (lost_ > 0) {
+    ++came;
     insert({.run_id = {},
             .at = waiting_.back().at,
             .code = kLostCode,
@@ -35,7 +43,7 @@ void FaultLog::store_all() try {
   }
   SQLite::Statement drop(*database_, "DELETE FROM faults WHERE id <= ?");
   drop.bind(1, database_->getLastInsertRowid() - kKept);
-  drop.exec();
+  row::change_row_count(*database_, row::CountedTable::kFaults, came - drop.exec());
   transaction.commit();
   waiting_.clear();
   lost_ = 0;
@@ -72,15 +80,19 @@ bool FaultLog::store_waiting() {
 
 std::vector<StoredFault> FaultLog::page(int limit, std::optional<std::int64_t> before_id,
                                         std::optional<std::int64_t> run_id) const {
-  SQLite::Statement query(*database_,
-                          "SELECT id, run_id, at, code, message FROM faults WHERE id < ?1 AND "
-                          "(?2 IS NULL OR run_id = ?2) ORDER BY id DESC LIMIT ?3");
+  SQLite::Statement query(*database_, "SELECT id, run_id, at, code, message, " +
+                                          row::fault_rows().is_whole() +
+                                          " FROM faults WHERE id < ?1 AND "
+                                          "(?2 IS NULL OR run_id = ?2) ORDER BY id DESC LIMIT ?3");
   query.bind(1, before_id.value_or(INT64_MAX));
   if (run_id) query.bind(2, *run_id);
   query.bind(3, limit);
   std::vector<StoredFault> found;
   while (query.executeStep()) {
     const SQLite::Column run = query.getColumn(1);
+    if (query.getColumn(5).getInt() != 1)
+      throw DamagedStore(database_->getFilename(), "table faults, number " + query.getColumn(0).getString(),
+                         row::kOtherChecksum);
     found.push_back({.id = query.getColumn(0).getInt64(),
                      .run_id = run.isNull() ? std::nullopt : std::optional(run.getInt64()),
                      .at = query.getColumn(2).getString(),

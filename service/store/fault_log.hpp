@@ -17,7 +17,8 @@ struct StoredFault {
   std::string message;  // cause, then detail
 };
 
-/// Every fault, of runs and between them; the oldest are deleted. Throws what the database throws.
+/// Every fault, of runs and between them; the oldest are deleted. Throws what the database throws, and
+/// DamagedStore for a row that is not as it was written.
 class FaultLog {
  public:
   static constexpr int kKept = 10'000;

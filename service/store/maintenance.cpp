@@ -18,7 +18,9 @@
 #include "service/base/state_directory.hpp"
 #include "service/store/audit_chain.hpp"
 #include "service/store/damaged_store.hpp"
+#include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/row_checksum.hpp"
+#include "service/store/internal/row_count.hpp"
 #include "service/store/internal/row_text.hpp"
 #include "service/store/log_damage.hpp"
 #include "service/store/model_store.hpp"
@@ -70,11 +72,13 @@ void find_damaged_rows(SQLite::Database& database, std::vector<std::string>& dam
       damage.push_back(std::move(line));
     }
   }
-  SQLite::Statement lost(database, "SELECT id FROM runs WHERE NOT " + row::has_its_rows() +
+  SQLite::Statement lost(database, "SELECT id FROM runs WHERE NOT " + row::has_its_rows(version) +
                                        " OR (plan_id IS NOT NULL AND plan_id NOT IN (SELECT id FROM plans))");
   while (lost.executeStep())
     damage.push_back("run " + lost.getColumn(0).getString() +
                      ": touches or the plan that it had are not there");
+  if (version >= kLogChecksumSchema)
+    std::ranges::move(row::find_row_count_damage(database), std::back_inserter(damage));
   if (version >= kModelSchema) std::ranges::move(find_model_damage(database), std::back_inserter(damage));
 }
 
@@ -277,15 +281,9 @@ std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database) {
 }
 
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest, int days_that_agree) {
-  constexpr std::array kOfRuns{"touches",
-                               "superseded_touches",
-                               "reference_touches",
-                               "open_commands",
-                               "plan_changes",
-                               "resumptions",
-                               "faults",
-                               "arms"};
-  SQLite::Transaction transaction(*database);
+  constexpr std::array kOfRuns{"touches",      "superseded_touches", "reference_touches", "open_commands",
+                               "plan_changes", "resumptions",        "refused_results",   "arms"};
+  row::WriteTransaction transaction(*database);
   SQLite::Statement choose(*database,
                            "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
                            "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ?) AND id "
@@ -301,6 +299,8 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
   choose.exec();
   for (const std::string table : kOfRuns)
     database->exec("DELETE FROM " + table + " WHERE run_id IN (SELECT id FROM old_runs)");
+  const int faults = database->exec("DELETE FROM faults WHERE run_id IN (SELECT id FROM old_runs)");
+  row::change_row_count(*database, row::CountedTable::kFaults, -faults);
   const int deleted = database->exec("DELETE FROM runs WHERE id IN (SELECT id FROM old_runs)");
   database->exec(
       "DELETE FROM plans WHERE id NOT IN (SELECT plan_id FROM runs WHERE plan_id IS NOT NULL); DROP TABLE "

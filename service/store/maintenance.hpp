@@ -33,10 +33,10 @@ class StoreNotChecked : public std::runtime_error {
 };
 
 /// Damage of a database file, one line each; empty if there is none. Checks the log, pages, indices, foreign
-/// keys, the checksum of every row that a run rests on, that no row of an ended run is gone, plane, role and
-/// source of every touch, the approved models, and the chains of the audit. Read-only, also on a disk that
-/// cannot be written; StoreNotChecked where a log lies beside the file there, which only a writer can put
-/// into it, and for a file of a newer version.
+/// keys, the checksum of every row, that no row of an ended run, no fault and no answer is gone, plane, role
+/// and source of every touch, the approved models, and the chains of the audit. Read-only, also on a disk
+/// that cannot be written; StoreNotChecked where a log lies beside the file there, which only a writer can
+/// put into it, and for a file of a newer version.
 std::vector<std::string> find_damage(const std::filesystem::path& database_file);
 
 /// The log beside a database holds what is not in it yet, and cannot be read without leaving a trace.

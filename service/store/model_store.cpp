@@ -7,6 +7,7 @@
 
 #include "service/base/digest.hpp"
 #include "service/store/damaged_store.hpp"
+#include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
 #include "service/store/internal/touch_change.hpp"
@@ -145,7 +146,7 @@ std::optional<std::string> ModelStore::arm_json(std::int64_t id) const {
 }
 
 Approval ModelStore::approve(const NewApproval& model) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   const std::vector<Approval> standing = standing_approvals(history());
   if (!standing.empty() && standing.back().hash == model.hash) return standing.back();
   Approval row{.kind = ApprovalKind::kApproved,
@@ -160,7 +161,7 @@ Approval ModelStore::approve(const NewApproval& model) {
 }
 
 Approval ModelStore::roll_back(const std::string& at, const std::optional<std::string>& operator_name) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   const std::vector<Approval> standing = standing_approvals(history());
   if (standing.size() < 2) throw std::logic_error("there is no model before the current one");
   Approval row{.kind = ApprovalKind::kRolledBack,

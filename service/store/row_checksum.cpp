@@ -6,8 +6,11 @@
 #include <array>
 #include <bit>
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "service/store/internal/row_text.hpp"
+#include "service/store/internal/run_change.hpp"
 
 namespace cell::row {
 namespace {
@@ -58,6 +61,12 @@ CheckedRows rows_of(const std::string& table, std::string columns, std::string n
           .applies = "1"};
 }
 
+CheckedRows rows_of_no_run(const std::string& table, std::string columns, std::string number) {
+  CheckedRows rows = rows_of(table, std::move(columns), std::move(number));
+  rows.run = "NULL";
+  return rows;
+}
+
 CheckedRows touch_rows_of(const std::string& columns) {
   return rows_of("touches", "run_id, " + columns, "number");
 }
@@ -88,6 +97,12 @@ const TouchTables& touch_tables(std::size_t schema) {
 void reseal(SQLite::Database& database, const CheckedRows& before, const CheckedRows& now) {
   database.exec("UPDATE " + now.table + " SET " + now.checksum + " = " + now.computed() + " WHERE " +
                 before.is_whole());
+}
+
+void fill_checksums_of(SQLite::Database& database, const CheckedRows& rows) {
+  const std::string column = rows.checksum.substr(rows.checksum.find('.') + 1);
+  database.exec("UPDATE " + rows.table + " SET " + column + " = " + rows.computed() + " WHERE " +
+                rows.checksum + " IS NULL AND " + rows.applies);
 }
 
 }  // namespace
@@ -175,12 +190,41 @@ const CheckedRows& model_rows() {
   return rows;
 }
 
+const CheckedRows& fault_rows() {
+  static const CheckedRows rows = rows_of("faults", "id, run_id, at, code, message", "id");
+  return rows;
+}
+
+const CheckedRows& resumption_rows() {
+  static const CheckedRows rows = rows_of("resumptions", "id, run_id, at, touches_done", "id");
+  return rows;
+}
+
+const CheckedRows& answer_rows() {
+  static const CheckedRows rows =
+      rows_of_no_run("answers", "key, request, body_digest, status, headers_json, body, at", "key");
+  return rows;
+}
+
+const CheckedRows& refused_rows() {
+  static const CheckedRows rows =
+      rows_of("refused_results", "id, run_id, session, sequence, " + kJointColumns + ", reason, at", "id");
+  return rows;
+}
+
+const CheckedRows& row_count_rows() {
+  static const CheckedRows rows = rows_of_no_run("row_counts", "name, row_count", "name");
+  return rows;
+}
+
 std::span<const CheckedRows* const> all_checked_rows(std::size_t schema) {
-  // Those of models, which came last, stand last.
+  // What came last stands last.
+  constexpr std::size_t kModels = 1, kLogs = 5;
   static const auto with = [](const TouchTables& tables) {
     return std::array{&tables.touches,      &tables.superseded, &reference_rows(), &plan_change_rows(),
                       &open_command_rows(), &plan_rows(),       &run_rows(),       &result_rows(),
-                      &arm_rows(),          &model_rows()};
+                      &arm_rows(),          &model_rows(),      &fault_rows(),     &resumption_rows(),
+                      &answer_rows(),       &refused_rows(),    &row_count_rows()};
   };
   static const std::array without_noise = with(touch_tables(kChecksumSchema));
   static const std::array without_contacts = with(touch_tables(kTouchNoiseSchema));
@@ -188,20 +232,27 @@ std::span<const CheckedRows* const> all_checked_rows(std::size_t schema) {
   const std::span<const CheckedRows* const> rows = schema < kTouchNoiseSchema      ? without_noise
                                                    : schema < kTouchContactsSchema ? without_contacts
                                                                                    : newest;
-  return schema < kModelSchema ? rows.first(rows.size() - 1) : rows;
+  const std::size_t later = schema < kModelSchema ? kModels + kLogs : schema < kLogChecksumSchema ? kLogs : 0;
+  return rows.first(rows.size() - later);
 }
 
-const std::string& rows_of_run() {
-  static const std::string counts = "(" + count_of("touches") + " || '/' || " +
-                                    count_of("superseded_touches") + " || '/' || " +
-                                    count_of("reference_touches") + " || '/' || " + count_of("plan_changes") +
-                                    " || '/' || " + count_of("arms") + ")";
-  return counts;
+const std::string& rows_of_run(std::size_t schema) {
+  static const std::string without_logs = count_of("touches") + " || '/' || " +
+                                          count_of("superseded_touches") + " || '/' || " +
+                                          count_of("reference_touches") + " || '/' || " +
+                                          count_of("plan_changes") + " || '/' || " + count_of("arms");
+  static const std::string before = "(" + without_logs + ")";
+  static const std::string newest = "(" + without_logs + " || '/' || " + count_of("resumptions") +
+                                    " || '/' || " + count_of("refused_results") + ")";
+  return schema < kLogChecksumSchema ? before : newest;
 }
 
-const std::string& has_its_rows() {
-  static const std::string has = "(rows_kept IS NULL OR rows_kept = " + rows_of_run() + ")";
-  return has;
+const std::string& has_its_rows(std::size_t schema) {
+  static const auto has = [](std::size_t of) {
+    return "(rows_kept IS NULL OR rows_kept = " + rows_of_run(of) + ")";
+  };
+  static const std::string before = has(kChecksumSchema), newest = has(kLogChecksumSchema);
+  return schema < kLogChecksumSchema ? before : newest;
 }
 
 void add_checksum_function(SQLite::Database& database) {
@@ -210,19 +261,29 @@ void add_checksum_function(SQLite::Database& database) {
 }
 
 void fill_checksums(SQLite::Database& database, std::size_t schema) {
-  database.exec("UPDATE runs SET rows_kept = " + rows_of_run() +
+  database.exec("UPDATE runs SET rows_kept = " + rows_of_run(schema) +
                 " WHERE outcome <> 'running' AND checksum IS NULL");
-  for (const CheckedRows* rows : all_checked_rows(schema)) {
-    const std::string column = rows->checksum.substr(rows->checksum.find('.') + 1);
-    database.exec("UPDATE " + rows->table + " SET " + column + " = " + rows->computed() + " WHERE " +
-                  rows->checksum + " IS NULL AND " + rows->applies);
-  }
+  for (const CheckedRows* rows : all_checked_rows(schema)) fill_checksums_of(database, *rows);
 }
 
 void reseal_touches(SQLite::Database& database, std::size_t schema) {
   const TouchTables &before = touch_tables(schema - 1), &now = touch_tables(schema);
   reseal(database, before.touches, now.touches);
   reseal(database, before.superseded, now.superseded);
+}
+
+void seal_logs(SQLite::Database& database) {
+  for (const CheckedRows* rows : {&fault_rows(), &resumption_rows(), &answer_rows()})
+    fill_checksums_of(database, *rows);
+  SQLite::Statement query(database, "SELECT id FROM runs WHERE rows_kept IS NOT NULL AND " +
+                                        run_rows().is_whole() + " AND " +
+                                        has_its_rows(kLogChecksumSchema - 1));
+  std::vector<std::int64_t> ended;
+  while (query.executeStep()) ended.push_back(query.getColumn(0).getInt64());
+  for (const std::int64_t run_id : ended) {
+    count_rows_of(database, run_id);
+    seal(database, run_rows(), "id", run_id);
+  }
 }
 
 void seal(SQLite::Database& database, const CheckedRows& rows, const std::string& condition,

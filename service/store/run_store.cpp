@@ -5,6 +5,7 @@
 
 #include <utility>
 
+#include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/opened_file.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
 #include "service/store/internal/row_checksum.hpp"
@@ -97,8 +98,9 @@ bool has_ended(SQLite::Statement& prepared, std::int64_t run_id) {
 struct RunStore::Statements {
   static constexpr int kTouchParameters = 1 + row::kTouchColumnCount;
 
-  explicit Statements(SQLite::Database& database)
-      : append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns + ", checksum)" +
+  Statements(SQLite::Database& database, LockSleep sleep)
+      : lock_wait(database, std::move(sleep)),
+        append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns + ", checksum)" +
                                    row::touch_rows().values(kTouchParameters)),
         set_open_command(database,
                          "INSERT OR REPLACE INTO open_commands(run_id, session, sequence, aimed_with, "
@@ -108,6 +110,7 @@ struct RunStore::Statements {
         has_ended(database, row::kHasEnded),
         opened(row::file_at(database.getFilename())) {}
 
+  row::LockWait lock_wait;
   SQLite::Statement append_touch;
   SQLite::Statement set_open_command;
   SQLite::Statement shift_open_command;
@@ -115,8 +118,9 @@ struct RunStore::Statements {
   row::FileAtPath opened;  // the file of the database
 };
 
-RunStore::RunStore(const std::filesystem::path& file)
-    : database_(open_database(file)), statements_(std::make_unique<Statements>(*database_)) {}
+RunStore::RunStore(const std::filesystem::path& file, LockSleep sleep)
+    : database_(open_database(file)),
+      statements_(std::make_unique<Statements>(*database_, std::move(sleep))) {}
 
 RunStore::RunStore(SharedDatabase to_read) : database_(std::move(to_read)) {}
 
@@ -130,12 +134,13 @@ std::filesystem::path RunStore::file() const { return database_->getFilename(); 
 
 std::int64_t RunStore::begin_run(const NewRun& run) {
   const std::int64_t id = insert_run(run);
+  const row::LockWait::Brief brief(statements_->lock_wait);
   restart_log(*database_);
   return id;
 }
 
 std::int64_t RunStore::insert_run(const NewRun& run) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   SQLite::Statement insert(*database_,
                            "INSERT INTO runs(recipe, touches_total, started_at, idempotency_key, "
                            "operator_name, config_digest, trace_json, block_temperature_c, "
@@ -170,7 +175,7 @@ void RunStore::withdraw_run(std::int64_t run_id) {
 
 void RunStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
                         const std::string& document) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   // One that was damaged is written again.
   SQLite::Statement forget(*database_,
                            "DELETE FROM plans WHERE id = ? AND NOT " + row::plan_rows().is_whole());
@@ -192,7 +197,7 @@ void RunStore::set_plan(std::int64_t run_id, int touches_total, const std::strin
 }
 
 void RunStore::set_touches_total(std::int64_t run_id, int touches_total) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   row::change_run(*database_, run_id, [&] {
     SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ? WHERE id = ?");
     update.bind(1, touches_total);
@@ -204,7 +209,7 @@ void RunStore::set_touches_total(std::int64_t run_id, int touches_total) {
 
 void RunStore::append_plan_change(std::int64_t run_id, const PlanChange& change) {
   const RelaxedDurability unsynced(*database_);
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   insert_plan_change(*database_, run_id, change);
   row::note_rows(*database_, run_id);
   transaction.commit();
@@ -212,7 +217,7 @@ void RunStore::append_plan_change(std::int64_t run_id, const PlanChange& change)
 
 void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& changes,
                          const std::optional<Withdrawal>& withdrawn) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   if (withdrawn) row::supersede(*database_, run_id, withdrawn->number, withdrawn->reason);
   for (const PlanChange& change : changes) insert_plan_change(*database_, run_id, change);
   row::note_rows(*database_, run_id);
@@ -249,7 +254,7 @@ bool RunStore::make_durable(std::int64_t run_id) {
     update->exec();
   };
   try {
-    SQLite::Transaction transaction(*database_);
+    row::WriteTransaction transaction(*database_);
     shift(1);
     shift(-1);
     transaction.commit();
@@ -264,7 +269,7 @@ void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
     insert_touch(run_id, touch);
     return;
   }
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   insert_touch(run_id, touch);
   row::note_rows(*database_, run_id);
   transaction.commit();
@@ -277,14 +282,14 @@ void RunStore::insert_touch(std::int64_t run_id, const StoredTouch& touch) {
 }
 
 void RunStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   row::supersede(*database_, run_id, number, reason);
   row::note_rows(*database_, run_id);
   transaction.commit();
 }
 
 void RunStore::replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   row::supersede(*database_, run_id, again.number, reason);
   insert_touch(run_id, again);
   row::note_rows(*database_, run_id);
@@ -292,13 +297,13 @@ void RunStore::replace_touch(std::int64_t run_id, const StoredTouch& again, cons
 }
 
 void RunStore::confirm_touch(std::int64_t run_id, int number, const cs8::JointsMicrodeg& again) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   row::confirm(*database_, run_id, number, again);
   transaction.commit();
 }
 
 void RunStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   SQLite::Statement insert(*database_, "INSERT INTO reference_touches(run_id, number, touches_done, " +
                                            row::kJointColumns + ", drift_mm, captured_at, checksum)" +
                                            row::reference_rows().values(11));
@@ -315,15 +320,19 @@ void RunStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch
 }
 
 void RunStore::append_resumption(std::int64_t run_id, const std::string& at, int touches_done) {
+  row::WriteTransaction transaction(*database_);
   SQLite::Statement insert(*database_, "INSERT INTO resumptions(run_id, at, touches_done) VALUES(?, ?, ?)");
   insert.bind(1, run_id);
   insert.bind(2, at);
   insert.bind(3, touches_done);
   insert.exec();
+  row::seal(*database_, row::resumption_rows(), "id", database_->getLastInsertRowid());
+  row::note_rows(*database_, run_id);
+  transaction.commit();
 }
 
 void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   write_result(*database_, run_id, end.result_json, end.arm_json);
   row::change_run(*database_, run_id, [&] {
     SQLite::Statement update(*database_,
@@ -343,20 +352,21 @@ void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
 
 void RunStore::set_result_json(std::int64_t run_id, const std::string& result_json,
                                const std::optional<std::string>& arm_json) {
-  SQLite::Transaction transaction(*database_);
+  row::WriteTransaction transaction(*database_);
   write_result(*database_, run_id, result_json, arm_json);
   row::note_rows(*database_, run_id);
   transaction.commit();
 }
 
 int RunStore::finish_interrupted(const std::string& now, std::optional<std::int64_t> but) {
-  SQLite::Transaction transaction(*database_);
   SQLite::Statement query(*database_, "SELECT id FROM runs WHERE outcome = ? AND id IS NOT ?");
   query.bind(1, std::string(run_outcome_name(RunOutcome::kRunning)));
   row::bind_or_null(query, 2, but);
   std::vector<std::int64_t> open;
   while (query.executeStep()) open.push_back(query.getColumn(0).getInt64());
   query.reset();
+  if (open.empty()) return 0;  // nothing is written: a locked file does not keep the daemon from beginning
+  row::WriteTransaction transaction(*database_);
   for (const std::int64_t run_id : open) {
     row::change_run(*database_, run_id, [&] {
       SQLite::Statement update(*database_,

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -131,13 +133,22 @@ struct StoredRun {
   std::optional<std::string> conditions_json;
 };
 
+/// Lets so much time pass while another program has the file locked.
+using LockSleep = std::function<void(std::chrono::milliseconds)>;
+
+/// So long a write waits for another program's lock (a backup, a shell, a copy of the file) before it fails:
+/// less than what a person is told of as a slow disk. Behind a lock that outlasts it nothing waits so long
+/// again until a write has gone through.
+inline constexpr std::chrono::milliseconds kLockPatience{4000};
+
 /// Runs and touches in one SQLite file. What a call writes is durable on return unless stated otherwise.
 /// Every call may throw std::exception if the file cannot be read or written; it has changed nothing then.
 /// Each row that a run rests on has a checksum, written with it and compared when it is read.
 class RunStore {
  public:
-  /// Opens or creates the file. A file of a newer schema is refused.
-  explicit RunStore(const std::filesystem::path& file);
+  /// Opens or creates the file. A file of a newer schema is refused. `sleep`: the machine's, unless a test
+  /// hands in another.
+  explicit RunStore(const std::filesystem::path& file, LockSleep sleep = {});
   /// Only reads, over its own connection, so that another thread may have it: open_database_to_read().
   static std::unique_ptr<const RunStore> reader(const std::filesystem::path& file);
   ~RunStore();

@@ -10,12 +10,14 @@
 #include "service/store/audit_chain.hpp"
 #include "service/store/damaged_store.hpp"
 #include "service/store/internal/row_checksum.hpp"
+#include "service/store/internal/row_count.hpp"
 #include "service/store/log_damage.hpp"
 
 namespace cell {
 namespace {
 
-/// A longer wait for another reader would delay the heartbeat.
+/// For a lock of another program as the file is opened, and for who reads; who writes waits longer
+/// (LockWait).
 constexpr int kBusyMilliseconds = 100;
 
 constexpr const char* kRunsAndTouches = R"sql(
@@ -233,9 +235,31 @@ CREATE TABLE models(
 ) STRICT;
 )sql";
 
+/// Checksums for what else is kept of runs and requests (seal_logs()); how many rows the tables have whose
+/// oldest rows are deleted (row_count.hpp); and where contacts were that count for nothing
+/// (refused_result.hpp).
+constexpr const char* kLogChecksums = R"sql(
+ALTER TABLE faults ADD COLUMN checksum INTEGER;
+ALTER TABLE resumptions ADD COLUMN checksum INTEGER;
+ALTER TABLE answers ADD COLUMN checksum INTEGER;
+CREATE TABLE row_counts(name TEXT PRIMARY KEY, row_count INTEGER NOT NULL, checksum INTEGER) STRICT, WITHOUT ROWID;
+CREATE TABLE refused_results(
+  id INTEGER PRIMARY KEY,
+  run_id INTEGER NOT NULL REFERENCES runs(id),
+  session INTEGER NOT NULL,
+  sequence INTEGER NOT NULL,
+  j1_microdeg INTEGER NOT NULL, j2_microdeg INTEGER NOT NULL, j3_microdeg INTEGER NOT NULL,
+  j4_microdeg INTEGER NOT NULL, j5_microdeg INTEGER NOT NULL, j6_microdeg INTEGER NOT NULL,
+  reason TEXT NOT NULL,
+  at TEXT NOT NULL,
+  checksum INTEGER
+) STRICT;
+CREATE INDEX refused_results_of_run ON refused_results(run_id);
+)sql";
+
 constexpr std::array kMigrations{kRunsAndTouches,  kPlans,         kDiary,        kTemperatures,
                                  kStiffness,       kChecksums,     kAuditChained, kTouchNoise,
-                                 kAuditTokenNames, kTouchContacts, kModelTable};
+                                 kAuditTokenNames, kTouchContacts, kModelTable,   kLogChecksums};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.
@@ -265,6 +289,10 @@ void migrate(SQLite::Database& database, const std::filesystem::path& file) {
     if (migration == kAuditChained) chain_audit_rows(database);
     if (migration == kTouchNoise) row::reseal_touches(database, kTouchNoiseSchema);
     if (migration == kTouchContacts) row::reseal_touches(database, kTouchContactsSchema);
+    if (migration == kLogChecksums) {
+      row::seal_logs(database);
+      row::begin_row_counts(database);
+    }
   }
   database.exec("PRAGMA user_version = " + std::to_string(newest));
   transaction.commit();

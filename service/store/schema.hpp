@@ -30,6 +30,10 @@ inline constexpr std::size_t kTouchContactsSchema = 10;
 /// From this schema on there are models that a person approved.
 inline constexpr std::size_t kModelSchema = 11;
 
+/// From this schema on faults, resumptions and answers have checksums too, refused results are kept, and a
+/// run counts both with its rows.
+inline constexpr std::size_t kLogChecksumSchema = 12;
+
 /// Opens or creates the file (WAL, synchronous FULL: a commit is durable on return) and migrates it to the
 /// newest schema, all or nothing. Throws std::runtime_error that names the file if that fails, also for a
 /// file of a newer schema, which is not changed.

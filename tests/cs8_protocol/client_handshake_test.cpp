@@ -90,6 +90,18 @@ TEST_F(ClientHandshakeTest, AnOccupiedControllerIsAFaultByName) {
   EXPECT_THAT(error.text, HasSubstr("occupied"));
 }
 
+// As a VAL3 socket that serves one client may treat a second one: it has no words for it.
+TEST_F(ClientHandshakeTest, AConnectionThatEndsBeforeTheWelcomeNamesAnotherHostAsTheLikelyCause) {
+  Client client = make_client();
+  controller_does({[&](Peer& peer) -> asio::awaitable<void> { co_await peer.receive<Hello>(); }});
+  run([&]() -> asio::awaitable<void> {
+    const ConnectReply reply = co_await client.connect(endpoint(), expected());
+    const LinkError error = expect_held<LinkError>(reply);
+    EXPECT_EQ(error.kind, LinkErrorKind::kPeerClosed);
+    EXPECT_THAT(error.text, HasSubstr("another host is connected"));
+  });
+}
+
 TEST_F(ClientHandshakeTest, NonsenseInTheHandshakeIsAProtocolError) {
   const std::string text = "HTTP/1.1 400 Bad Request\r\n\r\n";
   EXPECT_EQ(refused_handshake({text.begin(), text.end()}).kind, LinkErrorKind::kProtocol);
@@ -107,7 +119,9 @@ TEST_F(ClientHandshakeTest, SilenceInTheHandshakeEndsAtItsDeadline) {
   run([&]() -> asio::awaitable<void> {
     const auto start = std::chrono::steady_clock::now();
     const ConnectReply reply = co_await client.connect(endpoint(), expected());
-    EXPECT_EQ(expect_held<LinkError>(reply).kind, LinkErrorKind::kHandshakeTimeout);
+    const LinkError error = expect_held<LinkError>(reply);
+    EXPECT_EQ(error.kind, LinkErrorKind::kHandshakeTimeout);
+    EXPECT_THAT(error.text, HasSubstr("another host is connected"));
     EXPECT_GE(std::chrono::steady_clock::now() - start, options.connect_deadline);
   });
 }
@@ -120,7 +134,9 @@ TEST_F(ClientHandshakeTest, NobodyAtTheEndpointIsUnreachable) {
   const tcp::endpoint nobody = bound.local_endpoint();
   run([&]() -> asio::awaitable<void> {
     const ConnectReply reply = co_await client.connect(nobody, expected());
-    EXPECT_EQ(expect_held<LinkError>(reply).kind, LinkErrorKind::kUnreachable);
+    const LinkError error = expect_held<LinkError>(reply);
+    EXPECT_EQ(error.kind, LinkErrorKind::kUnreachable);
+    EXPECT_THAT(error.text, ::testing::Not(HasSubstr("another host")));
   });
 }
 

@@ -19,6 +19,7 @@
 #include "service/http/routes/internal/plan_routes.hpp"
 #include "service/http/routes/internal/token_log.hpp"
 #include "service/http/server/target.hpp"
+#include "service/store/damaged_store.hpp"
 
 namespace cell {
 
@@ -70,6 +71,9 @@ std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedReque
   KeyLookUp found;
   try {
     found = answers.take(keyed, format_utc(now - std::chrono::hours(AnswerStore::kKeptHours)));
+  } catch (const DamagedStore& damage) {
+    spdlog::error("Idempotency-Keys cannot be looked up: {}", damage.what());
+    return to_response({.status = 503, .kind = ProblemKind::kDamaged, .detail = damage.what()});
   } catch (const std::exception& error) {
     spdlog::error("Idempotency-Keys cannot be looked up: {}", error.what());
     return to_response({.status = 503,

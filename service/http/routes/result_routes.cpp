@@ -84,6 +84,7 @@ RunRecord record_of(const Reads& reads, const StoredRun& run) {
                    .touches = store.touches(run.id),
                    .superseded = store.superseded_touches(run.id),
                    .references = store.references(run.id),
+                   .refused = refused_results(store, run.id),
                    .faults = FaultLog(store.database()).page(FaultLog::kKept, {}, run.id),
                    .result_json = {}};
   HttpResponse result = get_result(reads, run.id);

@@ -38,14 +38,19 @@ const CheckedRows& run_rows();     // without the result
 const CheckedRows& result_rows();  // of the table of the runs
 const CheckedRows& arm_rows();
 const CheckedRows& model_rows();  // from kModelSchema on
+const CheckedRows& fault_rows();  // these five from kLogChecksumSchema on
+const CheckedRows& resumption_rows();
+const CheckedRows& answer_rows();
+const CheckedRows& refused_rows();
+const CheckedRows& row_count_rows();
 /// Of a file of this schema, kChecksumSchema or later.
 std::span<const CheckedRows* const> all_checked_rows(std::size_t schema);
 
 /// Of a row of runs: how many rows it has in each table, as kept with a run that ended. A row that is gone
-/// shows in it.
-const std::string& rows_of_run();
+/// shows in it. In a file of this schema.
+const std::string& rows_of_run(std::size_t schema = kLogChecksumSchema);
 /// 1 unless a run that ended has other rows than it had.
-const std::string& has_its_rows();
+const std::string& has_its_rows(std::size_t schema = kLogChecksumSchema);
 
 /// Makes row_checksum(...), which the SQL above calls, known to a connection. The checksum (FNV-1a, 64 bit)
 /// tells types and lengths apart; it finds damage, it does not prevent forgery.
@@ -57,6 +62,10 @@ void fill_checksums(SQLite::Database& database, std::size_t schema);
 /// Brings the checksums of touches to this schema from the one before, which had fewer columns. A row that
 /// was damaged before stays known as such.
 void reseal_touches(SQLite::Database& database, std::size_t schema);
+
+/// Brings a file to kLogChecksumSchema from the one before: checksums for the rows that have none, and what
+/// the runs that ended have of rows. A run that was damaged before stays known as such.
+void seal_logs(SQLite::Database& database);
 
 /// Writes the checksum of the rows where `condition` (SQL) holds for `key`.
 void seal(SQLite::Database& database, const CheckedRows& rows, const std::string& condition,

@@ -143,5 +143,28 @@ TEST_F(CrampedBlock, LeavesTheLastRunAsItWasWhereThePassAroundItIsRefused) {
   EXPECT_TRUE(operation_.run());
 }
 
+class StartUnderALock : public ::testing::Test, protected OperationBench {};
+
+TEST_F(StartUnderALock, IsHeldWithItsFaultAndGoesOnByResumeOnceTheLockIsGone) {
+  launch();
+  ASSERT_TRUE(std::holds_alternative<Started>(start({.recipe = "few"})));
+  SQLite::Database other((folder_.path() / "touchcal.sqlite").string(), SQLite::OPEN_READWRITE);
+  other.exec("BEGIN IMMEDIATE");
+  run_until([&] { return operation_.status().state == State::kHeld; });
+  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kStoreFailed);
+  EXPECT_GE(time_.since_begin(), kLockPatience);
+  EXPECT_THAT(operation_.exits(), ::testing::IsSupersetOf({Command::kResume, Command::kStop}));
+  other.exec("ROLLBACK");
+  controller_->on_touch = [](const cs8::Touch&) {
+    cs8::TouchResult nothing;
+    nothing.outcome = cs8::Outcome::kNoContact;
+    return nothing;
+  };
+  EXPECT_FALSE(operation_.command(Command::kResume));
+  run_until([&] { return operation_.status().state == State::kHeld; });
+  EXPECT_EQ(operation_.status().fault.value().code, FaultCode::kNoContact) << "it has its plan and moves";
+  EXPECT_TRUE(store_.run(operation_.run()->id()).value().plan_id);
+}
+
 }  // namespace
 }  // namespace cell

@@ -2,6 +2,7 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/io_context.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -70,6 +71,8 @@ class OwnersBench {
   PublishedStatus status;
   ControllerSession session;
   Folder folder;
+  /// Called at each look of the store at another program's lock; the wait between takes made-up time.
+  std::function<void()> on_lock_wait;
   RunStore store;
   StoreQueue queue{store, io.get_executor()};
   TipRegions regions;

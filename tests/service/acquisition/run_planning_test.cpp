@@ -1,5 +1,6 @@
 #include "service/acquisition/run_planning.hpp"
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include "tests/service/acquisition/owners_bench.hpp"
@@ -32,6 +33,21 @@ TEST_F(RunPlanningTest, ALocatedBlockIsCheckedInTheRun) {
   place_->cell_from_block.setIdentity();
   EXPECT_TRUE(run(planning_.plan(active_)));
   EXPECT_TRUE(active_.place_check);
+}
+
+TEST_F(RunPlanningTest, APlanThatALockKeepsFromBeingStoredHoldsTheRunUntilItIsGone) {
+  run(plans_.plan("few"));
+  SQLite::Database other((folder.path() / "touchcal.sqlite").string(), SQLite::OPEN_READWRITE);
+  other.exec("BEGIN IMMEDIATE");
+  EXPECT_FALSE(run(planning_.plan(active_)));
+  EXPECT_GE(time.since_begin(), kLockPatience) << "it was waited for";
+  EXPECT_EQ(status.state(), State::kHolding);
+  EXPECT_THAT(faults, ::testing::ElementsAre("store_failed"));
+  EXPECT_FALSE(active_.run.next()) << "it has no plan: it is planned again";
+  other.exec("ROLLBACK");
+  status.enter(State::kUnholding);
+  EXPECT_TRUE(run(planning_.plan(active_)));
+  EXPECT_EQ(store.run(active_.run.id()).value().plan_id, plan_of_owners().id);
 }
 
 TEST_F(RunPlanningTest, AStopDoesNotWaitForThePlanner) {

@@ -345,6 +345,28 @@ TEST_F(TouchExecutorTest, AStopWhileTheDiskIsWrittenKeepsTheCommandFromLeaving) 
   EXPECT_TRUE(faults.empty());
 }
 
+TEST_F(TouchExecutorTest, ALockThatAnotherProgramLetsGoOfDelaysTheRunAndHoldsNothing) {
+  SQLite::Database other((folder.path() / "touchcal.sqlite").string(), SQLite::OPEN_READWRITE);
+  controller.on_touch = [&](const cs8::Touch&) {
+    const auto locked_at = time.since_begin();
+    other.exec("BEGIN IMMEDIATE");
+    on_lock_wait = [this, &other, locked_at] {
+      EXPECT_EQ(acknowledged_count(), 0) << "the controller keeps it";
+      if (time.since_begin() - locked_at < std::chrono::milliseconds(800)) return;
+      other.exec("ROLLBACK");
+      on_lock_wait = nullptr;
+    };
+    return contact();
+  };
+  run(touches_.make_next_touch(active_));
+  EXPECT_FALSE(on_lock_wait) << "it was waited for";
+  EXPECT_EQ(status.state(), State::kExecute);
+  EXPECT_TRUE(faults.empty());
+  EXPECT_EQ(active_.run.touches_done(), 1);
+  expect_run_is_as_stored();
+  EXPECT_EQ(acknowledged_count(), 1);
+}
+
 TEST_F(TouchExecutorTest, ALockOfAnotherProgramHoldsTheRunAndTheContactIsKeptOnceItIsGone) {
   SQLite::Database other((folder.path() / "touchcal.sqlite").string(), SQLite::OPEN_READWRITE);
   controller.on_touch = [&](const cs8::Touch&) {
@@ -352,6 +374,7 @@ TEST_F(TouchExecutorTest, ALockOfAnotherProgramHoldsTheRunAndTheContactIsKeptOnc
     return contact();
   };
   run(touches_.make_next_touch(active_));
+  EXPECT_GE(time.since_begin(), kLockPatience) << "it was waited for";
   EXPECT_EQ(status.state(), State::kHolding);
   EXPECT_THAT(faults, ElementsAre("store_failed"));
   EXPECT_EQ(acknowledged_count(), 0) << "the controller keeps it";

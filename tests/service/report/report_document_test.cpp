@@ -58,6 +58,22 @@ TEST(Report, TheRawDatasDigestIsThatOfTheTablesFirstNineColumns) {
   EXPECT_EQ(report.at("raw_data").at("sha256"), sha256_hex(columns));
 }
 
+TEST(Report, ARefusedContactIsShownWithItsReasonAndCountsForNothing) {
+  RunRecord made = record();
+  const std::string digest = json_of(made).at("raw_data").at("sha256");
+  made.refused.push_back({.session = 1,
+                          .sequence = 4'000'000'000,
+                          .joints = {1'500'000, 0, 0, 0, 0, -1},
+                          .reason = "its tip is <far> beside the search line",
+                          .at = "2026-01-31T08:15:30.250Z"});
+  const Json told = json_of(made).at("refused_contacts").at(0);
+  EXPECT_EQ(told.at("sequence"), 4'000'000'000);
+  EXPECT_EQ(told.at("joints_deg").at(0), "1.500000");
+  EXPECT_EQ(told.at("joints_deg").at(5), "-0.000001");
+  EXPECT_EQ(json_of(made).at("raw_data").at("sha256"), digest);
+  EXPECT_THAT(page_of(made), HasSubstr("its tip is &lt;far&gt; beside the search line"));
+}
+
 TEST(Report, AnAngleIsWrittenToTheLastDigitThatCameOverTheWire) {
   const std::vector<StoredTouch> touches{
       {.number = 1, .plane = 2, .joints = {1, -1, 0, 90'000'000, -179'999'999, -500'000}}};

@@ -146,7 +146,6 @@ TEST(FaultOf, ARefusalHoldsWhatAPersonCanMendAndEndsTheRest) {
     Event event;
   };
   constexpr Refusal kMended{FaultCode::kTouchRejected, Event::kHoldFault};
-  constexpr Refusal kOurs{FaultCode::kTouchRejected, Event::kAbortFault};
   constexpr Refusal kPermission{FaultCode::kPermissionLost, Event::kHoldFault};
   constexpr Refusal kPlan{FaultCode::kPlanInvalid, Event::kAbortFault};
   const std::map<cs8::RejectReason, Refusal> refusals{
@@ -166,11 +165,11 @@ TEST(FaultOf, ARefusalHoldsWhatAPersonCanMendAndEndsTheRest) {
       {kNotCalibrated, kPermission},
       {kNotPermitted, kPermission},
       {kResultUnacknowledged, kMended},
-      {kBusy, kOurs},
-      {kStaleSequence, kOurs},
-      {kOutOfRange, kOurs},
-      {kNothingToRetract, kOurs},
-      {kRetractPending, kOurs}};
+      {kBusy, kMended},
+      {kStaleSequence, kMended},
+      {kOutOfRange, kPlan},
+      {kNothingToRetract, kMended},
+      {kRetractPending, kMended}};
   for (int value = 0; value < 256; ++value) {
     const auto reason = static_cast<cs8::RejectReason>(value);
     if (cs8::name(reason).empty()) continue;
@@ -181,7 +180,15 @@ TEST(FaultOf, ARefusalHoldsWhatAPersonCanMendAndEndsTheRest) {
   }
   EXPECT_EQ(fault_of(cs8::Rejected{kOutOfRange, 6}).fault.detail, "out_of_range (detail 6)");
   EXPECT_EQ(fault_of(cs8::Rejected{kMonitorSpeed, 50}).fault.detail, "to 50 %");
-  EXPECT_EQ(fault_of(cs8::Rejected{static_cast<cs8::RejectReason>(99), 0}).event(), Event::kAbortFault);
+  EXPECT_EQ(fault_of(cs8::Rejected{static_cast<cs8::RejectReason>(99), 0}).event(), Event::kHoldFault);
+}
+
+TEST(FaultOf, WhatTheTableSaysOfATouchThatWasRefusedIsWhatBecomesOfTheRun) {
+  for (int value = 0; value < 256; ++value) {
+    const OutcomeFault fault = fault_of(cs8::Rejected{static_cast<cs8::RejectReason>(value), 0});
+    const FaultKind kind = describe(fault.fault.code).kind;
+    EXPECT_EQ(fault.event() == Event::kAbortFault, kind == FaultKind::kAborted) << value;
+  }
 }
 
 TEST(Implausible, AContactHasAnEdgeHoweverItWasSeen) {

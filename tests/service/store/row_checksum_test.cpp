@@ -9,7 +9,9 @@
 #include <map>
 #include <random>
 
+#include "service/store/answer_store.hpp"
 #include "service/store/damaged_store.hpp"
+#include "service/store/fault_log.hpp"
 #include "service/store/maintenance.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/config/folder.hpp"
@@ -110,6 +112,38 @@ TEST_F(DamagedRows, EachTableIsChecked) {
     EXPECT_NE(refusal(read), "") << sql;
     EXPECT_EQ(find_damage(file_).size(), before + 1) << sql;
   }
+}
+
+TEST_F(DamagedRows, WhatIsKeptOfFaultsResumptionsAndAnswersIsChecked) {
+  FaultLog faults(store_.database());
+  faults.append(2, "t1", "no_contact", "the search ended");
+  faults.append({}, "t2", "link_lost", "nothing was heard");
+  store_.append_resumption(3, "t", 4);
+  AnswerStore answers(store_.database());
+  const KeyedRequest request{"key", "POST /api/v1/runs", ""};
+  answers.take(request, "t0");
+  answers.keep(request, {.status = 201, .body = "told"}, "t1");
+  EXPECT_EQ(faults.page(10).size(), 2u);
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+
+  change("UPDATE faults SET message = 'nothing' WHERE id = 1");
+  EXPECT_THAT(refusal([&] { (void)faults.page(10); }), HasSubstr("table faults, number 1"));
+  EXPECT_EQ(faults.page(10, {}, 3).size(), 0u) << "of other runs it says nothing";
+  change("UPDATE resumptions SET touches_done = 77");
+  change("UPDATE answers SET body = x'7b7d'");
+  EXPECT_THAT(refusal([&] { answers.take(request, "t0"); }), HasSubstr("table answers, number key"));
+  EXPECT_THAT(find_damage(file_),
+              ::testing::UnorderedElementsAre(HasSubstr("table faults, run 2, number 1"),
+                                              HasSubstr("table resumptions, run 3, number 1"),
+                                              HasSubstr("table answers, number key")));
+}
+
+TEST_F(DamagedRows, AResumptionThatIsGoneFromARunThatEndedIsMissed) {
+  store_.append_resumption(3, "t", 4);
+  store_.finish_interrupted("now");
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+  change("DELETE FROM resumptions");
+  EXPECT_THAT(find_damage(file_), ::testing::ElementsAre(HasSubstr("run 3")));
 }
 
 TEST_F(DamagedRows, RowsThatAreGoneFromARunThatEndedAreMissed) {

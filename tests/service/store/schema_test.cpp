@@ -3,7 +3,9 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
+#include "service/store/answer_store.hpp"
 #include "service/store/damaged_store.hpp"
+#include "service/store/fault_log.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/maintenance.hpp"
 #include "service/store/run_store.hpp"
@@ -31,6 +33,12 @@ std::filesystem::path file_of_version(const Folder& folder, int version) {
         "= 'quick'");
   }
   if (version >= 3) database.exec("UPDATE runs SET block_temperature_c = 21.5 WHERE id = 1");
+  if (version >= 3) {
+    database.exec(
+        "INSERT INTO faults(run_id, at, code, message) VALUES(1, 'then', 'no_contact', 'early'), (NULL, "
+        "'then', 'link_lost', 'late'); INSERT INTO resumptions(run_id, at, touches_done) VALUES(1, 'then', "
+        "1); INSERT INTO answers VALUES('key', 'POST /', '', 200, '[]', x'7b7d', 'then')");
+  }
   if (version >= static_cast<int>(kChecksumSchema)) {
     row::add_checksum_function(database);
     row::fill_checksums(database, static_cast<std::size_t>(version));
@@ -104,6 +112,30 @@ TEST_P(ResealedTouches, ATouchThatWasDamagedBeforeItsChecksumCoversMoreStaysKnow
   const RunStore store(file);
   EXPECT_THAT(find_damage(file), damaged);
   EXPECT_THROW(static_cast<void>(store.touches(1)), DamagedStore);
+}
+
+TEST(SealedLogs, ARunThatWasDamagedOrLackedRowsBeforeStaysKnownAsSuch) {
+  for (const char* tampered :
+       {"UPDATE runs SET recipe = 'other' WHERE id = 1", "DELETE FROM touches WHERE number = 2"}) {
+    const Folder folder;
+    const auto file = file_of_version(folder, static_cast<int>(kLogChecksumSchema) - 1);
+    SQLite::Database(file.string(), SQLite::OPEN_READWRITE).exec(tampered);
+    const RunStore store(file);
+    EXPECT_THROW(static_cast<void>(store.run(1)), DamagedStore) << tampered;
+    EXPECT_THAT(find_damage(file), ::testing::Contains(::testing::HasSubstr("run 1"))) << tampered;
+  }
+}
+
+TEST(SealedLogs, FaultsAndAnswersOfAnEarlierVersionAreSealedAndCounted) {
+  const Folder folder;
+  const auto file = file_of_version(folder, static_cast<int>(kLogChecksumSchema) - 1);
+  const RunStore store(file);
+  EXPECT_EQ(FaultLog(store.database()).page(10).size(), 2u);
+  AnswerStore answers(store.database());
+  EXPECT_TRUE(std::holds_alternative<StoredAnswer>(answers.take({"key", "POST /", ""}, "a")));
+  EXPECT_THAT(find_damage(file), ::testing::IsEmpty());
+  store.database()->exec("DELETE FROM faults WHERE id = 1");
+  EXPECT_THAT(find_damage(file), ::testing::ElementsAre(::testing::HasSubstr("table faults")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Schemas, ResealedTouches,

@@ -91,7 +91,7 @@ export const kFaultsFr: Record<string, FaultWords> = {
   not_confirmed: words('personne n’a confirmé à la cellule à temps', kStill,
     'touchcal resume si un essai est en attente, sinon touchcal reset et un nouvel essai ; appuyez sur la touche de confirmation à la cellule dans les 30 s de la demande'),
   touch_rejected: words('la baie a refusé une commande', kStill,
-    'supprimez la cause à la cellule, puis touchcal resume pour reprendre ce palpage, ou touchcal stop ; un essai abandonné se quitte par touchcal clear et touchcal reset'),
+    'supprimez la cause à la cellule, puis touchcal resume pour reprendre ce palpage, ou touchcal stop ; en ABORTED touchcal clear, puis touchcal reset'),
   no_contact: words('la recherche s’est finie sans contact', kRanToEnd, `vérifiez la place du bloc et le câble du palpeur, ${kResumeTouch}`),
   unexpected_contact: words('le palpeur a touché quelque chose hors d’une recherche', 'le bras s’est arrêté aussitôt et se tient là',
     `dégagez-le au boîtier, cherchez l’obstacle, ${kAnew}`),
@@ -116,7 +116,7 @@ export const kFaultsFr: Record<string, FaultWords> = {
   no_safe_way: words('aucun chemin libre d’obstacles ne mène de la posture du bras à la suivante', kStill,
     'dégagez le bras du bloc au boîtier, de préférence jusqu’à sa posture de repos, puis touchcal resume pour continuer, touchcal skip pour laisser ce palpage de côté, ou touchcal stop ; en ABORTED touchcal clear, puis touchcal reset'),
   store_failed: words('le dossier d’état n’a pas pu être écrit', 'le bras a fini un palpage en cours, ou se tient où un arrêt l’a laissé',
-    'libérez de la place sur le disque ou réparez les droits du dossier d’état, ' +
+    'libérez de la place sur le disque, réparez les droits du dossier d’état ou terminez le programme qui verrouille sa base, ' +
       'puis touchcal resume si l’essai est en attente ; la fin d’un essai terminé s’enregistre d’elle-même ; sinon touchcal clear et touchcal reset'),
   not_identifiable: words('les palpages ne déterminent pas les paramètres', 'le bras a fini ses palpages',
     'regardez le message du résultat ; changez la recette et faites un nouvel essai'),

@@ -95,6 +95,15 @@ TEST_F(ApiTest, ARepeatedKeyGetsTheFirstAnswerAndNothingHappensAgain) {
   EXPECT_EQ(state(), "STOPPED") << "the reset was not taken again";
 }
 
+TEST_F(ApiTest, AnAnswerThatIsNotAsItWasStoredIsNotTold) {
+  ASSERT_EQ(send(keyed("/api/v1/cell/reset", "one")).status, 202u);
+  ASSERT_EQ(quiet_.operation().store().database()->exec("UPDATE answers SET body = x'7b7d'"), 1);
+  const HttpResponse refused = send(keyed("/api/v1/cell/reset", "one"));
+  EXPECT_EQ(refused.status, 503u);
+  EXPECT_THAT(refused.body,
+              ::testing::AllOf(HasSubstr("urn:touchcal:problem:damaged"), HasSubstr("table answers")));
+}
+
 TEST_F(ApiTest, AKeyBelongsToOneRequest) {
   ASSERT_EQ(send(keyed("/api/v1/cell/reset", "one")).status, 202u);
   EXPECT_EQ(send(keyed("/api/v1/cell/acknowledge", "one")).status, 422u) << "another path";

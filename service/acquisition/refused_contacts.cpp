@@ -1,0 +1,36 @@
+// Each co_await stands alone in its statement, see cs8_controller.cpp.
+#include "service/acquisition/refused_contacts.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "service/base/utc_time.hpp"
+#include "service/store/refused_result.hpp"
+
+namespace cell {
+
+boost::asio::awaitable<std::optional<std::string>> RefusedContacts::settle(std::int64_t run_id,
+                                                                           std::uint32_t sequence,
+                                                                           cs8::TouchResult result,
+                                                                           std::string reason) {
+  const std::uint32_t session = session_.number();
+  if (result.outcome == cs8::Outcome::kContact) {
+    const RefusedResult refused{.session = session,
+                                .sequence = sequence,
+                                .joints = result.contact,
+                                .reason = std::move(reason),
+                                .at = format_utc(clocks_.system())};
+    const auto write = [run_id, refused](RunStore& store) {
+      if (!keep_refused(store, run_id, refused))
+        spdlog::error("run {}: of its refused results {} are kept, and this one is not", run_id,
+                      kRefusedKept);
+    };
+    const auto failure = co_await store_.write(write);
+    if (failure) co_return failure;
+  }
+  if (session == session_.number()) session_.discard(run_id, sequence, result);
+  co_return std::nullopt;
+}
+
+}  // namespace cell

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "service/acquisition/controller_session.hpp"
+#include "service/acquisition/store_queue.hpp"
+#include "service/base/clocks.hpp"
+
+namespace cell {
+
+/// What the controller measured and the daemon does not take: it is evidence of what went wrong, so that it
+/// is on the disk, with the reason, before the controller forgets it (store/refused_result.hpp).
+class RefusedContacts {
+ public:
+  /// Both must outlive it.
+  RefusedContacts(StoreQueue& store, ControllerSession& session, Clocks clocks)
+      : store_(store), session_(session), clocks_(std::move(clocks)) {}
+
+  /// Stores the contact in an answer of this connection, if it has one, then lets the controller forget the
+  /// answer. `run_id`: with which run it is kept. Why it could not be stored, nothing when it is done: the
+  /// controller has it still.
+  boost::asio::awaitable<std::optional<std::string>> settle(std::int64_t run_id, std::uint32_t sequence,
+                                                            cs8::TouchResult result, std::string reason);
+
+ private:
+  StoreQueue& store_;
+  ControllerSession& session_;
+  Clocks clocks_;
+};
+
+}  // namespace cell

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cs8_protocol/messages.hpp"
+
+namespace cell {
+
+class RunStore;
+
+/// A contact that the controller answered and that counts for nothing: kept before the controller forgets it.
+struct RefusedResult {
+  std::uint32_t session = 0;  // of the controller's application
+  std::uint32_t sequence = 0;
+  cs8::JointsMicrodeg joints{};  // 10^-6 degrees
+  std::string reason;            // in words
+  std::string at;                // RFC 3339, when it was refused
+
+  bool operator==(const RefusedResult&) const = default;
+};
+
+/// At most so many of a run: more than its touches have tries, unless something is broken. What comes behind
+/// them is in the log only.
+inline constexpr int kRefusedKept = 200;
+
+/// Durable on return. False, and nothing is written, where the run has kRefusedKept of them already, or is
+/// not in the store. Throws what the database throws.
+bool keep_refused(RunStore& store, std::int64_t run_id, const RefusedResult& refused);
+
+/// Of a run, oldest first. DamagedStore for a row that is not as it was written, or gone from a run that
+/// ended.
+std::vector<RefusedResult> refused_results(const RunStore& store, std::int64_t run_id);
+
+}  // namespace cell
