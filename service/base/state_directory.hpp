@@ -20,7 +20,14 @@ inline constexpr std::string_view kLockFile = "touchcald.lock";
 std::filesystem::path default_state_directory();
 
 /// The directory itself, or its nearest parent that exists. Throws std::runtime_error, with the remedy, where
-/// that is no directory.
+/// that is no directory, and for a link on the way to what is not there.
 std::filesystem::path demand_state_directory(const std::filesystem::path& directory);
+
+/// Throws std::runtime_error, with the remedy, for a directory that others than its owner may write in: they
+/// could put tokens and a database there. Nothing is demanded of one that is not there yet.
+void demand_closed_directory(const std::filesystem::path& directory);
+
+/// The same for one of another owner than this process; root's is taken as well.
+void demand_own_directory(const std::filesystem::path& directory);
 
 }  // namespace cell

@@ -120,6 +120,9 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
 /// How often the tokens are read again: one that was removed ends so soon.
 constexpr std::chrono::milliseconds kTokensLook{1000};
 
+/// How long the end of a flood of refusals may be missing in the audit.
+constexpr std::chrono::milliseconds kStrangersLook{10'000};
+
 /// How long the end waits for the disk and for a computation.
 constexpr std::chrono::milliseconds kWorkPatience{10'000};
 
@@ -158,6 +161,18 @@ class NothingWaits {
   Api& api_;
 };
 
+/// At its end nothing is served any more: what was left out of the audit since the last look is written.
+class LastRefusals {
+ public:
+  explicit LastRefusals(Api& api) : api_(api) {}
+  ~LastRefusals() { api_.record_left_out(); }
+  LastRefusals(const LastRefusals&) = delete;
+  LastRefusals& operator=(const LastRefusals&) = delete;
+
+ private:
+  Api& api_;
+};
+
 /// The thread that serves, until its end. What nobody foresaw there ends a connection and no run.
 class HttpThread {
  public:
@@ -192,6 +207,8 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   if (std::filesystem::create_directories(options.state_directory)) {
     std::filesystem::permissions(options.state_directory, std::filesystem::perms::owner_all);
   }
+  demand_closed_directory(options.state_directory);
+  demand_own_directory(options.state_directory);
   const KnownDirectory state_directory(options.state_directory);
   EndWatch end_watch;  // to the very end, which closes the store
   const DirectoryLock lock(options.state_directory);
@@ -248,6 +265,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   });
   operation.launch();
   asio::co_spawn(http, api.follow_tokens(state_directory, kTokensLook), asio::detached);
+  asio::co_spawn(http, api.follow_strangers(kStrangersLook), asio::detached);
   listener->launch();
   if (socket) socket->launch();
   spdlog::info("cell {}, state in {}", cell.name, options.state_directory.string());
@@ -258,6 +276,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const NothingWaits nothing_waits(context, http, api);
   const WorkDone done({&disk, &arithmetic, &planner}, end_watch, patience,
                       [&] { return end_without_work(operation.run(), store_queue.waiting_count()); });
+  const LastRefusals last_refusals(api);
   const HttpThread http_thread(http);
   context.run();
 }

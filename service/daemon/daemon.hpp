@@ -6,13 +6,14 @@
 #include <vector>
 
 #include "config/cell.hpp"
+#include "service/http/server/host_name.hpp"
 
 namespace cell {
 
 struct DaemonOptions {
   std::filesystem::path state_directory;
   Endpoint listen{"127.0.0.1", 8080};
-  std::vector<std::string> host_names;    // accepted in Host, besides its address
+  std::vector<HostName> host_names;       // accepted in Host, besides its address
   std::optional<Endpoint> controller;     // absent: the cell's
   std::optional<int> retain_days;         // absent: runs are kept for ever
   std::filesystem::path tls_certificate;  // PEM, followed by its chain; with tls_key: TLS

@@ -25,8 +25,19 @@ namespace fs = std::filesystem;
 
 namespace {
 
+/// Root may look at the directory of a service that runs as another user.
+void check_owner(const fs::path& directory, SelfCheck& check) {
+  try {
+    demand_own_directory(directory);
+  } catch (const std::runtime_error& error) {
+    if (::geteuid() != 0) throw;
+    check.remarks.emplace_back(error.what());
+  }
+}
+
 void check_state(const fs::path& directory) {
   const fs::path existing = demand_state_directory(directory);
+  demand_closed_directory(directory);
   if (::access(existing.c_str(), W_OK | X_OK) != 0) {
     throw std::runtime_error(
         fmt::format("--state {}: {} cannot be written; change its rights or name another", directory.string(),
@@ -99,12 +110,13 @@ SelfCheck check_daemon(const fs::path& cell_file, const DaemonOptions& options) 
   const std::initializer_list<std::function<void()>> parts{
       read_cell_of_daemon,
       [&] { check_state(state); },
+      [&] { check_owner(state, check); },
       bad_file_at<std::runtime_error>([&] { refuse_lost_store(state); }, check),
       [&] { check_store(state / kStoreFile, check); },
       [&] { read_block_pose(state / kBlockPoseFile); },
       [&] { check_locating(state / kLocatingFile, check); },
-      bad_file_at<NoToken>([&] { read_token(state / kOperateTokenFile); }, check),
-      bad_file_at<NoToken>([&] { read_token(state / kViewTokenFile); }, check),
+      bad_file_at<NoToken>([&] { read_made_token(state / kOperateTokenFile); }, check),
+      bad_file_at<NoToken>([&] { read_made_token(state / kViewTokenFile); }, check),
       bad_file_at<std::runtime_error>([&] { read_operator_tokens(state); }, check),
       [&] { check_address(options); },
       [&] { tls_context(options); }};

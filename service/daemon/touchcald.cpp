@@ -4,8 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cctype>
 #include <iostream>
 
 #include "config/config_error.hpp"
@@ -28,12 +26,8 @@ std::string check_endpoint(const std::string& text) {
   return cell::parse_endpoint(text) ? "" : "'" + text + "' is not HOST:PORT, with an IPv6 host in brackets";
 }
 
-/// Letters, digits, hyphens and dots (RFC 1123), without a port.
-bool is_host_name(const std::string& name) {
-  constexpr std::size_t kLengthMax = 253;
-  return !name.empty() && name.size() <= kLengthMax && std::ranges::all_of(name, [](unsigned char c) {
-    return std::isalnum(c) != 0 || c == '-' || c == '.';
-  });
+std::string check_host_name(const std::string& text) {
+  return cell::parse_host_name(text) ? "" : "'" + text + "' is not NAME or NAME:PORT of a host";
 }
 
 void demand_both_of_tls(const std::string& certificate, const std::string& key) {
@@ -97,12 +91,10 @@ int main(int argc, char** argv) {
   const CLI::Validator endpoint(check_endpoint, "");
   app.add_option("--cell", cell_file, "cell file, for example config/cells/demo/cell.json")->check(filled);
   app.add_option("--listen", listen, "HOST:PORT of the API")->check(endpoint)->default_str("127.0.0.1:8080");
-  app.add_option("--host-name", host_names, "a host name that clients may use, besides the address")
-      ->check(CLI::Validator(
-          [](const std::string& name) {
-            return is_host_name(name) ? "" : "'" + name + "' is not a host name";
-          },
-          "NAME"));
+  app.add_option("--host-name", host_names,
+                 "a host name that clients may use, besides the address; with the port of a proxy that "
+                 "listens elsewhere than at 443")
+      ->check(CLI::Validator(check_host_name, "NAME[:PORT]"));
   app.add_option("--controller", controller, "HOST:PORT of the CS8; default: the cell file's")
       ->check(endpoint);
   app.add_option("--state", state, "directory for runs and tokens; default: the user's state home")
@@ -139,7 +131,8 @@ int main(int argc, char** argv) {
       return keep_state(options.state_directory / cell::kStoreFile, backup, verify);
     if (cell_file.empty()) throw CLI::RequiredError("--cell");
     if (retain_days > 0) options.retain_days = retain_days;
-    options.host_names = host_names;
+    for (const std::string& name : host_names)
+      options.host_names.push_back(cell::parse_host_name(name).value());
     options.trusts_loopback = !loopback_needs_token;
     options.tls_certificate = tls_certificate;
     options.tls_key = tls_key;

@@ -19,6 +19,7 @@
 #include "service/store/audit_chain.hpp"
 #include "service/store/damaged_store.hpp"
 #include "service/store/internal/lock_wait.hpp"
+#include "service/store/internal/owner_only.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_count.hpp"
 #include "service/store/internal/row_text.hpp"
@@ -191,6 +192,7 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
     SQLite::Database from = open_to_read(database_file);
     if (from.execAndGet("PRAGMA user_version").getInt() == 0)
       throw DamagedStore(database_file, "no backup was made", kHoldsNothing);
+    make_for_owner_only(copy);
     SQLite::Database to(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
     to.exec("PRAGMA synchronous = FULL");
     SQLite::Backup backup(to, from);

@@ -9,6 +9,7 @@
 
 #include "service/store/audit_chain.hpp"
 #include "service/store/damaged_store.hpp"
+#include "service/store/internal/owner_only.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_count.hpp"
 #include "service/store/log_damage.hpp"
@@ -316,6 +317,8 @@ SharedDatabase open_database(const std::filesystem::path& file) try {
         "last "
         "backup where the disk is not to be trusted",
         *lost);
+  make_for_owner_only(file);
+  keep_for_owner_only(file);
   auto database =
       std::make_shared<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   database->setBusyTimeout(kBusyMilliseconds);

@@ -193,6 +193,45 @@ TEST_F(CommandLine, AStateDirectoryThatIsAFileIsToldWithTheRemedy) {
   }
 }
 
+TEST_F(CommandLine, AStateDirectoryThatIsADeadLinkIsToldWithTheRemedy) {
+  const auto link = folder_ / "link";
+  std::filesystem::create_symlink(folder_ / "gone", link);
+  const Finished refused =
+      run({"touchcald", "--cell", cell_file("demo"), "--state", link.string(), "--listen", "127.0.0.1:0"});
+  EXPECT_EQ(refused.exit_code, cell::kExitFailed);
+  EXPECT_THAT(refused.err, HasSubstr(link.string() + " is a link to " + (folder_ / "gone").string() +
+                                     ", which is not there; make that directory"));
+}
+
+TEST_F(CommandLine, AStateDirectoryThatOthersMayWriteInKeepsTheDaemonFromStarting) {
+  const auto state = folder_ / "state";
+  std::filesystem::create_directory(state);
+  std::filesystem::permissions(state, std::filesystem::perms(0777));
+  for (const char* how : {"--check", "--loopback-needs-token"}) {
+    const Finished refused = run({"touchcald", how, "--cell", cell_file("demo"), "--state", state.string(),
+                                  "--listen", "127.0.0.1:0"});
+    EXPECT_EQ(refused.exit_code, cell::kExitFailed) << how;
+    EXPECT_THAT(refused.err, HasSubstr("chmod 700 " + state.string())) << how;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(state)) << "nothing was made there";
+}
+
+TEST_F(CommandLine, RunsAreKeptForAHundredYearsAtMost) {
+  for (const char* days : {"150000", "36501", "0", "-1", "99999999999999999999"}) {
+    const Finished refused = run({"touchcald", "--cell", cell_file("demo"), "--retain-days", days});
+    EXPECT_EQ(refused.exit_code, cell::kExitUsage) << days;
+    EXPECT_THAT(refused.err, HasSubstr("--retain-days")) << days;
+  }
+}
+
+TEST_F(CommandLine, AHostNameHasAPortOrNone) {
+  for (const char* name : {"robot.example:0", "robot.example:65536", "https://robot.example", "robot:"}) {
+    const Finished refused = run({"touchcald", "--cell", cell_file("demo"), "--host-name", name});
+    EXPECT_EQ(refused.exit_code, cell::kExitUsage) << name;
+    EXPECT_THAT(refused.err, HasSubstr("is not NAME or NAME:PORT of a host")) << name;
+  }
+}
+
 TEST_F(CommandLine, NumbersAreDecimal) {
   const std::vector<std::vector<std::string>> calls{
       {"touchcald", "--retain-days", "0x10"},

@@ -122,7 +122,7 @@ TEST_F(NamedTokens, AStreamOfEventsEndsWithItsToken) {
 TEST_F(NamedTokens, TheTokensWithoutANameAreReadAgainToo) {
   Process served(daemon(), folder_ / "touchcald.err");
   served.wait_for_address();
-  const std::string token(64, '4');
+  const std::string token = "0f1e2d3c4b5a69788796a5b4c3d2e1f00f1e2d3c4b5a69788796a5b4c3d2e1f0";
   EXPECT_NE(run(token, {"acknowledge"}).exit_code, cell::kExitDone);
   std::ofstream(state_ / "new") << token << "\n";
   std::filesystem::permissions(state_ / "new", std::filesystem::perms(0600));
@@ -134,6 +134,37 @@ TEST_F(NamedTokens, TheTokensWithoutANameAreReadAgainToo) {
   while (run(token, {"acknowledge"}).exit_code == cell::kExitDone && calls < kCallsMax) ++calls;
   EXPECT_LT(calls, kCallsMax);
   EXPECT_EQ(run("", {"acknowledge"}).exit_code, cell::kExitDone) << "with the one that was made anew";
+  served.signal(SIGTERM);
+  EXPECT_EQ(served.wait().exit_code, cell::kExitDone);
+}
+
+TEST_F(NamedTokens, EachRefusalOfAFloodIsInTheAuditOrCountedThereOnceTheDaemonHasEnded) {
+  constexpr int kFlood = 300;
+  {
+    Process served(daemon(), folder_ / "touchcald.err");
+    const std::string address = served.wait_for_address();
+    const std::string port = address.substr(address.rfind(':') + 1);
+    cell::RawClient stranger(
+        {boost::asio::ip::address_v4::loopback(), static_cast<boost::asio::ip::port_type>(std::stoi(port))});
+    for (int i = 0; i < kFlood; ++i) {
+      stranger.send("POST /api/v1/cell/reset HTTP/1.1\r\nHost: " + address + "\r\nContent-Length: 0\r\n\r\n");
+      ASSERT_EQ(stranger.receive().status, 401U);
+    }
+    served.signal(SIGTERM);
+    EXPECT_EQ(served.wait().exit_code, cell::kExitDone);
+  }
+  Process served(daemon(), folder_ / "touchcald.err");
+  served.wait_for_address();
+  const Finished audit = run("", {"audit", "--json", "--limit", "500"});
+  int rows = 0, told = 0;
+  const auto document = nlohmann::json::parse(audit.out);
+  for (const auto& row : document.at("rows")) {
+    if (row.at("role") != "none") continue;
+    ++rows;
+    told += 1 + std::atoi(row.at("detail").get<std::string>().c_str());
+  }
+  EXPECT_EQ(told, kFlood) << audit.out;
+  EXPECT_LT(rows, kFlood) << "the rest is counted";
   served.signal(SIGTERM);
   EXPECT_EQ(served.wait().exit_code, cell::kExitDone);
 }

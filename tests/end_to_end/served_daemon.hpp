@@ -43,7 +43,7 @@ class ServedDaemon : public ::testing::Test {
 
   /// The first answer; status 0 when there is none.
   [[nodiscard]] cell::RawAnswer answer_to(const std::string& bytes, bool send_no_more = false) const {
-    cell::RawClient client(endpoint_);
+    cell::RawClient client(endpoint_, from_);
     client.send(bytes);
     if (send_no_more) client.send_no_more();
     return client.receive();
@@ -58,6 +58,7 @@ class ServedDaemon : public ::testing::Test {
     return "Authorization: Bearer " + token + "\r\n";
   }
 
+  std::optional<boost::asio::ip::address_v4> from_;  // where requests come from; the system's choice
   std::string host_;
   std::string operate_;
   std::string view_;

@@ -12,6 +12,7 @@
 #include <boost/asio/write.hpp>
 #include <charconv>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -28,7 +29,11 @@ struct RawAnswer {
 /// kPatience, so that a server that does not answer fails a test and does not hang it.
 class RawClient {
  public:
-  explicit RawClient(const boost::asio::ip::tcp::endpoint& server) {
+  /// `from`: another address of this machine than the system takes, of which all of 127.0.0.0/8 are.
+  explicit RawClient(const boost::asio::ip::tcp::endpoint& server,
+                     const std::optional<boost::asio::ip::address_v4>& from = {}) {
+    socket_.open(server.protocol());
+    if (from) socket_.bind({*from, 0});
     socket_.connect(server);
     // Blocking reads of Asio wait without end: the socket's own limit ends them.
     const timeval patience{.tv_sec = kPatienceSeconds};

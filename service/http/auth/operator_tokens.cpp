@@ -1,6 +1,8 @@
 #include "service/http/auth/operator_tokens.hpp"
 
 #include <spdlog/fmt/fmt.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <optional>
@@ -25,6 +27,13 @@ bool is_token_name(std::string_view name) {
   throw std::runtime_error(fmt::format("{}: {}", place.string(), what));
 }
 
+/// Of another owner than this user, root, or the directory that it stands in.
+bool is_strangers(const std::filesystem::path& directory) {
+  struct stat own = {}, above = {};
+  if (::stat(directory.c_str(), &own) != 0 || own.st_uid == ::geteuid() || own.st_uid == 0) return false;
+  return ::stat(directory.parent_path().c_str(), &above) != 0 || above.st_uid != own.st_uid;
+}
+
 /// By name, however the file system lists them.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& directory) {
   constexpr auto kOthersWrite = std::filesystem::perms::group_write | std::filesystem::perms::others_write;
@@ -37,6 +46,11 @@ std::vector<std::filesystem::path> files_in(const std::filesystem::path& directo
     refuse_place(directory, fmt::format("others than its owner may put tokens into it; look at what is "
                                         "there, then chmod 700 {}",
                                         directory.string()));
+  if (!failure && is_strangers(directory))
+    refuse_place(directory,
+                 fmt::format("belongs to another user than the state directory, who may put tokens "
+                             "into it; look at what is there, then chown -R --reference={} {}",
+                             directory.parent_path().string(), directory.string()));
   std::vector<std::filesystem::path> files;
   std::filesystem::directory_iterator entry(directory, failure);
   for (; !failure && entry != std::filesystem::directory_iterator(); entry.increment(failure)) {
@@ -82,7 +96,7 @@ NamedToken read_or_known(const std::filesystem::path& file, const std::vector<Na
 
 /// Nothing also where it is refused, which who reads it for its own sake tells.
 std::optional<std::string> token_without_name(const std::filesystem::path& file) try {
-  return read_token(file);
+  return read_made_token(file);
 } catch (const std::runtime_error&) {
   return std::nullopt;
 }

@@ -27,6 +27,9 @@ class RecordRate {
     return std::exchange(left_out_, 0);
   }
 
+  /// How many were left out since the last one that was recorded, which they are now.
+  int take_left_out() { return std::exchange(left_out_, 0); }
+
  private:
   int at_once_;
   std::chrono::milliseconds period_;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <set>
 #include <system_error>
 
 namespace cell {
@@ -33,6 +34,7 @@ class OpenedFile {
   [[nodiscard]] bool is_missing() const { return !is_open() && (error_ == ENOENT || error_ == ENOTDIR); }
   [[nodiscard]] bool is_regular() const { return S_ISREG(status_.st_mode); }
   [[nodiscard]] bool is_open_to_others() const { return (status_.st_mode & (S_IRWXG | S_IRWXO)) != 0; }
+  [[nodiscard]] uid_t owner() const { return status_.st_uid; }
   [[nodiscard]] int error() const { return error_; }
   /// Without its end; at most so many characters. Nothing, and error() is why, if it cannot be read.
   [[nodiscard]] std::optional<std::string> first_line(std::size_t characters_max) {
@@ -58,6 +60,17 @@ class OpenedFile {
   throw TokenUnreadable(text);
 }
 
+/// Whose tokens count here: the directory's owner could put another file there anyhow.
+bool is_trusted(uid_t owner, const std::filesystem::path& file) {
+  if (owner == ::geteuid() || owner == 0) return true;
+  struct stat directory = {};
+  return ::stat(file.parent_path().c_str(), &directory) == 0 && directory.st_uid == owner;
+}
+
+bool is_hexadecimal(char c) {
+  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+}
+
 }  // namespace
 
 std::optional<std::string> read_token(const std::filesystem::path& file, std::string_view replacement) {
@@ -72,6 +85,11 @@ std::optional<std::string> read_token(const std::filesystem::path& file, std::st
         fmt::format("{0}: others than its owner have access; {1}, or chmod 600 {0} when nobody has read it",
                     file.string(), replacement));
   }
+  if (!is_trusted(existing.owner(), file)) {
+    throw std::runtime_error(fmt::format(
+        "{0}: belongs to another user than its directory, who knows it; {1}, or chown --reference={2} {0}",
+        file.string(), replacement, file.parent_path().string()));
+  }
   auto line = existing.first_line(kTokenCharactersMax + 1);
   if (!line) tell_unreadable(file, existing.error());
   const std::string& token = *line;
@@ -80,6 +98,17 @@ std::optional<std::string> read_token(const std::filesystem::path& file, std::st
     throw NoToken(fmt::format("{}: does not hold a token; {}", file.string(), replacement));
   }
   return line;
+}
+
+std::optional<std::string> read_made_token(const std::filesystem::path& file) {
+  auto token = read_token(file);
+  if (!token) return token;
+  const std::set<char> different(token->begin(), token->end());
+  if (token->size() == 2 * kTokenBytes && std::ranges::all_of(*token, is_hexadecimal) &&
+      different.size() >= kTokenDigitsMin)
+    return token;
+  throw NoToken(fmt::format("{}: does not hold a token, {} hexadecimal digits by chance; {}", file.string(),
+                            2 * kTokenBytes, kMadeAtStart));
 }
 
 }  // namespace cell

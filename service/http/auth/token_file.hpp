@@ -32,10 +32,18 @@ class NoToken : public std::runtime_error {
 };
 
 /// The token in this file; nothing if there is no such file. Throws TokenUnreadable if it cannot be read,
-/// std::runtime_error if its permissions are too wide and NoToken if it holds none, all of which name the
-/// file: fewer characters than one has, more than kTokenCharactersMax, or others than visible ones of ASCII.
-/// `replacement` is the remedy that the error tells.
+/// std::runtime_error if its permissions are too wide or its owner is neither this user, nor root, nor that
+/// of the directory, and NoToken if it holds none, all of which name the file: fewer characters than one has,
+/// more than kTokenCharactersMax, or others than visible ones of ASCII. `replacement` is the remedy that the
+/// error tells.
 std::optional<std::string> read_token(const std::filesystem::path& file,
                                       std::string_view replacement = kMadeAtStart);
+
+/// Fewer different digits are none that chance has made: less than once in 10^18 tokens.
+inline constexpr std::size_t kTokenDigitsMin = 8;
+
+/// The same of a token that the daemon makes: 2 * kTokenBytes hexadecimal digits, of which at least
+/// kTokenDigitsMin are different; NoToken for another.
+std::optional<std::string> read_made_token(const std::filesystem::path& file);
 
 }  // namespace cell

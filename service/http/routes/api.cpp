@@ -6,7 +6,6 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/this_coro.hpp>
-#include <boost/asio/thread_pool.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <utility>
 
@@ -15,6 +14,7 @@
 #include "service/base/run_on.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/http/auth/access.hpp"
+#include "service/http/routes/internal/desk.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
 #include "service/http/routes/internal/token_log.hpp"
@@ -36,11 +36,8 @@ constexpr int kAtReaderMax = 64;
 constexpr int kAtWorkerMax = 4;
 /// Commands that wait for the store. None of them may be a stop, a pause or an abort.
 constexpr int kAtStoreMax = 16;
-/// After so many wrong tokens from one address, each further answer is delayed.
-constexpr int kWrongTokensFree = 5;
-constexpr std::size_t kWrongAddressesMax = 1024;
-/// After so long without another one they are forgotten.
-constexpr auto kWrongTokensKept = 10min;
+/// How much later a wrong token is answered whose network has guessed too often.
+constexpr auto kWrongTokenDelay = 1s;
 
 constexpr int kRetrySeconds = 2;  // what is waited for behind a full queue takes about so long
 
@@ -98,32 +95,6 @@ std::optional<HttpResponse> answer_to_key(AnswerStore& answers, const KeyedReque
 
 }  // namespace
 
-struct Api::Desk {
-  Desk(asio::any_io_executor given, const CellOperation& operation, int to_have_waiting, const char* to_say)
-      : waiting_max(to_have_waiting), when_full(to_say), reads(operation, operation.store().file()) {
-    if (!given) given = thread.emplace(1).get_executor();
-    executor = std::move(given);
-    reads.end_with(ending.get_token());
-  }
-  ~Desk() { end(); }
-  void end() {
-    if (!thread) return;
-    ending.request_stop();
-    thread->stop();  // nobody waits for an answer any more
-    thread->join();
-  }
-  Desk(const Desk&) = delete;
-  Desk& operator=(const Desk&) = delete;
-
-  int waiting = 0;  // of the thread that serves, as the next two
-  int waiting_max;
-  const char* when_full;
-  std::stop_source ending;
-  Reads reads;                                     // of its own thread
-  std::optional<boost::asio::thread_pool> thread;  // none where it was handed in
-  boost::asio::any_io_executor executor;
-};
-
 Api::Api(asio::any_io_executor executor, ApiThreads threads, CellOperation& operation, Tokens tokens)
     : executor_(executor),
       threads_(std::move(threads)),
@@ -174,7 +145,6 @@ asio::awaitable<HttpResponse> Api::answer(const HttpRequest& request) {
     co_return *refused;
   }
   const Admitted& admitted = std::get<Admitted>(outcome);
-  if (request.authorization && caller.role != Role::kWrongToken) wrong_tokens_.erase(request.remote);
   HttpResponse response;
   if (is_command(request)) {
     response = co_await execute_command(request, caller, admitted);
@@ -189,7 +159,8 @@ std::unique_ptr<EventSource> Api::events(const HttpRequest& request) {
   const auto id = match(kRunEventsPath, request.path);
   const std::optional<std::int64_t> run_id =
       id ? std::optional(std::stoll(decode_segment(*id))) : std::nullopt;
-  return std::make_unique<EventStream>(services_, run_id, request);
+  return std::make_unique<EventStream>(services_, run_id, request,
+                                       [this](std::int64_t of) { return read_run(of); });
 }
 
 HeaderDecision Api::decide(const HttpRequest& header) const {
@@ -218,11 +189,6 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
     co_await asio::co_spawn(threads_.operation, wait_for_plan(request), asio::use_awaitable);
   if (dispatch == DispatchMode::kEvents && EventStream::open_count(services_) >= kEventStreamsMax)
     co_return busy("too many event streams are open; poll GET /api/v1/status", 15);
-  if (dispatch == DispatchMode::kStored || dispatch == DispatchMode::kWorker) {
-    Desk& desk = dispatch == DispatchMode::kStored ? *reader_ : *worker_;
-    HttpResponse response = co_await at_desk(desk, request, admitted);
-    co_return response;
-  }
   if (dispatch == DispatchMode::kWritten) {
     HttpResponse response = co_await run_on(threads_.store, [&] {
       const Asked nothing;
@@ -231,6 +197,17 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
     });
     co_return response;
   }
+  const Asked asked = co_await ask(request, admitted);
+  if (Desk* desk = desk_for(admitted, asked)) {
+    HttpResponse response = co_await at_desk(*desk, request, admitted, asked);
+    co_return response;
+  }
+  services_.reads.update();
+  co_return handle(admitted, request, services_, services_.reads, asked);
+}
+
+/// What the operation says to it, and the start that may follow.
+asio::awaitable<Asked> Api::ask(const HttpRequest& request, const Admitted& admitted) {
   Asked asked;
   if (admitted.route->ask)
     asked = co_await run_on(threads_.operation, [&] { return ask_operation(admitted, request, services_); });
@@ -239,8 +216,17 @@ asio::awaitable<HttpResponse> Api::make_answer(const HttpRequest& request, const
                                     asio::use_awaitable);
   if (asked.is_storing)
     co_await asio::co_spawn(threads_.operation, services_.operation.touch_stored(), asio::use_awaitable);
-  services_.reads.update();
-  co_return handle(admitted, request, services_, services_.reads, asked);
+  co_return asked;
+}
+
+/// Where a request is answered whose answer needs the disk: one that hangs must not hold the thread that
+/// serves, and with it a stop. Null: here.
+Api::Desk* Api::desk_for(const Admitted& admitted, const Asked& asked) {
+  const DispatchMode dispatch = admitted.route->dispatch;
+  if (dispatch == DispatchMode::kWorker) return worker_.get();
+  const bool is_of_one_run = dispatch == DispatchMode::kEvents && !admitted.id.empty();
+  const bool reads_store = dispatch == DispatchMode::kStored || is_of_one_run || asked.needs_store;
+  return reads_store ? reader_.get() : nullptr;
 }
 
 /// A command: recorded before it is executed, its outcome afterwards. One that halts is recorded afterwards
@@ -327,15 +313,19 @@ void Api::take_tokens(Tokens now) {
   services_.feed.wake();  // streams look whether their token still counts
 }
 
+asio::awaitable<void> Api::follow_strangers(std::chrono::milliseconds every) {
+  asio::steady_timer timer(executor_);
+  for (;;) {
+    timer.expires_after(every);
+    co_await timer.async_wait(asio::use_awaitable);
+    audit_.record_left_out();
+  }
+}
+
 asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
   if (!request.authorization) co_return;
-  if (wrong_tokens_.size() >= kWrongAddressesMax) wrong_tokens_.clear();
-  WrongTokens& wrong = wrong_tokens_[request.remote];
-  const auto now = services_.operation.clocks().steady();
-  if (now - wrong.latest > kWrongTokensKept) wrong.count = 0;
-  wrong.latest = now;
-  if (++wrong.count <= kWrongTokensFree) co_return;
-  asio::steady_timer timer(executor_, 1s);
+  if (!wrong_tokens_.is_too_often(request.remote, services_.operation.clocks().steady())) co_return;
+  asio::steady_timer timer(executor_, kWrongTokenDelay);
   co_await timer.async_wait(asio::use_awaitable);
 }
 
@@ -383,16 +373,23 @@ asio::awaitable<std::shared_ptr<const ActiveRun>> Api::live_run(const Admitted& 
   co_return copy;
 }
 
-asio::awaitable<HttpResponse> Api::at_desk(Desk& desk, const HttpRequest& request, const Admitted& admitted) {
-  if (desk.waiting >= desk.waiting_max) co_return busy(desk.when_full);
+/// What has happened already, a start, is told however many wait.
+asio::awaitable<HttpResponse> Api::at_desk(Desk& desk, const HttpRequest& request, const Admitted& admitted,
+                                           const Asked& asked) {
+  if (desk.waiting >= desk.waiting_max && !asked.started) co_return busy(desk.when_full);
   const Waiting waiting(desk.waiting);
   const std::shared_ptr<const ActiveRun> live = co_await live_run(admitted);
   HttpResponse response = co_await run_on(desk.executor, [&] {
-    const Asked nothing;
     desk.reads.update(live);
-    return handle(admitted, request, services_, desk.reads, nothing);
+    return handle(admitted, request, services_, desk.reads, asked);
   });
   co_return response;
+}
+
+/// Not bounded by what waits at the desk: kEventStreamsMax bounds it.
+asio::awaitable<std::optional<StoredRun>> Api::read_run(std::int64_t id) {
+  auto run = co_await run_on(reader_->executor, [&] { return reader_->reads.store().run(id); });
+  co_return run;
 }
 
 }  // namespace cell

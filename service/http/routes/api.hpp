@@ -3,11 +3,13 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <chrono>
-#include <map>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "service/http/auth/tokens.hpp"
+#include "service/http/auth/wrong_tokens.hpp"
 #include "service/http/routes/request_audit.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/services.hpp"
@@ -49,6 +51,11 @@ class Api final : public RequestHandler {
   /// Reads the tokens again and again, on the thread that reads, until the executor ends: one whose file has
   /// gone or is refused ends within this time, and a new one counts.
   boost::asio::awaitable<void> follow_tokens(KnownDirectory state_directory, std::chrono::milliseconds every);
+  /// Records again and again how many refusals of strangers were left out, until the executor ends: the tail
+  /// of a flood is in the audit within this time.
+  boost::asio::awaitable<void> follow_strangers(std::chrono::milliseconds every);
+  /// The same once. On the thread that serves, or when that has ended.
+  void record_left_out() { audit_.record_left_out(); }
   /// Waits for what threads of its own are at, of which nobody hears any more. Call it before the
   /// contexts end whose coroutines wait for them.
   void end_desks();
@@ -56,8 +63,7 @@ class Api final : public RequestHandler {
   void take_tokens(Tokens now);
 
  private:
-  /// A thread that answers requests one after the other, and what it reads.
-  struct Desk;
+  struct Desk;  // internal/desk.hpp
 
   boost::asio::awaitable<HttpResponse> make_answer(const HttpRequest& request, const Admitted& admitted);
   boost::asio::awaitable<HttpResponse> execute_command(const HttpRequest& request, const Caller& caller,
@@ -68,8 +74,11 @@ class Api final : public RequestHandler {
   boost::asio::awaitable<void> delay_wrong_token(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_status(const HttpRequest& request);
   boost::asio::awaitable<void> wait_for_plan(const HttpRequest& request);
+  boost::asio::awaitable<Asked> ask(const HttpRequest& request, const Admitted& admitted);
+  Desk* desk_for(const Admitted& admitted, const Asked& asked);
   boost::asio::awaitable<HttpResponse> at_desk(Desk& desk, const HttpRequest& request,
-                                               const Admitted& admitted);
+                                               const Admitted& admitted, const Asked& asked);
+  boost::asio::awaitable<std::optional<StoredRun>> read_run(std::int64_t id);
   boost::asio::awaitable<std::shared_ptr<const ActiveRun>> live_run(const Admitted& admitted);
 
   boost::asio::any_io_executor executor_;
@@ -80,12 +89,7 @@ class Api final : public RequestHandler {
   std::unique_ptr<Desk> reader_;  // of stored runs
   std::unique_ptr<Desk> worker_;  // identifies
   int at_store_ = 0;              // commands that wait for the store
-  /// Consecutive wrong tokens of an address.
-  struct WrongTokens {
-    int count = 0;
-    std::chrono::steady_clock::time_point latest;
-  };
-  std::map<std::string, WrongTokens> wrong_tokens_;
+  WrongTokens wrong_tokens_;
 };
 
 }  // namespace cell

@@ -11,6 +11,7 @@ namespace {
 Asked give(CellOperation& operation, Command command, std::optional<std::int64_t> run_id) {
   Asked asked{.refusal = operation.command(command, run_id)};
   if (asked.refusal) asked.exits = operation.exits();
+  asked.needs_store = asked.refusal && asked.refusal->kind == CommandRefusal::Kind::kNotThisRun;
   asked.is_storing = !asked.refusal && (command == Command::kTake || command == Command::kUndo);
   return asked;
 }
@@ -35,9 +36,7 @@ HttpResponse answer_command(const Call& call) {
 /// A run that is under way takes its command without the database, which a pause or an abort must not need.
 HttpResponse answer_run_command(const Call& call) {
   const auto id = call.run_id();
-  const auto& refusal = call.asked.refusal;
-  const bool is_other = refusal && refusal->kind == CommandRefusal::Kind::kNotThisRun;
-  if (!id || (is_other && !call.reads.store().run(*id)))
+  if (!id || (call.asked.needs_store && !call.reads.store().run(*id)))
     return not_found(fmt::format("there is no run '{}'", call.id));
   return answer_command(call);
 }

@@ -36,10 +36,12 @@ std::optional<std::uint64_t> sequence_of(std::string_view id, const std::string&
 
 }  // namespace
 
-EventStream::EventStream(Services& services, std::optional<std::int64_t> run_id, HttpRequest request)
+EventStream::EventStream(Services& services, std::optional<std::int64_t> run_id, HttpRequest request,
+                         RunLookUp look_up)
     : services_(services),
       run_id_(run_id),
       request_(std::move(request)),
+      look_up_(std::move(look_up)),
       needs_token_(!request_.from_loopback || shows_token(request_, services.tokens)),
       open_(services.open_streams) {
   const auto& last_event_id = request_.last_event_id;
@@ -87,22 +89,27 @@ std::string EventStream::due() {
     if (!run_id_ || change->run_id == run_id_)
       text += event_text("status", id_of(seen_), change->document(std::nullopt));
   }
-  if (!feed.next(seen_)) text += end_of_run();
-  return text;
+  if (feed.next(seen_) || !run_at_end_) return text;
+  ended_ = true;
+  return text + event_text("run", id_of(seen_) + std::string(kEnd), *run_at_end_);
 }
 
-std::string EventStream::end_of_run() {
-  if (!run_id_) return {};
+/// It is not under way by what is published, and how it ended stands in the store.
+bool EventStream::may_be_over() {
+  if (!run_id_) return false;
   const StatusFeed::Change& newest = services_.feed.newest();
-  if (newest.run_id == run_id_ && newest.is_active) return {};
-  const auto run = services_.reads.store().run(*run_id_);
-  if (!run || !run->ended_at) return {};
-  ended_ = true;
-  return event_text("run", id_of(seen_) + std::string(kEnd), run_document(*run));
+  return newest.run_id != run_id_ || !newest.is_active;
 }
 
 boost::asio::awaitable<void> EventStream::wait() {
-  if (is_withdrawn()) co_return;  // while something was written: nobody wakes it for that again
+  if (may_be_over()) {
+    const auto run = co_await look_up_(*run_id_);
+    if (run && run->ended_at) {
+      run_at_end_ = run_document(*run);
+      co_return;
+    }
+  }
+  if (is_withdrawn()) co_return;  // while something was written or read: nobody wakes it for that again
   co_await services_.feed.wait(seen_, kKeepAlivePeriod);
 }
 

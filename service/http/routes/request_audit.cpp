@@ -42,6 +42,10 @@ std::string operator_of_run(const RunStore& store, std::int64_t id) try {
   return {};
 }
 
+std::string left_out_text(int count) {
+  return count > 0 ? std::to_string(count) + " more before it were not recorded" : "";
+}
+
 }  // namespace
 
 /// What the thread that serves knows of a row.
@@ -54,6 +58,8 @@ struct RequestAudit::Row {
 
 RequestAudit::RequestAudit(asio::any_io_executor store_thread, Services& services)
     : store_thread_(std::move(store_thread)), services_(services) {}
+
+RequestAudit::~RequestAudit() = default;
 
 RequestAudit::Row RequestAudit::row_of(const HttpRequest& request, const Caller& caller,
                                        const StartBody* start, std::string outcome) {
@@ -106,12 +112,29 @@ void RequestAudit::record(const HttpRequest& request, const Caller& caller, cons
   row.durable = durable;
   if (row.is_stranger) {
     const auto left_out = stranger_rate_.admit(services_.operation.clocks().steady());
-    if (!left_out) return;
-    if (*left_out > 0) row.entry.detail = std::to_string(*left_out) + " more before it were not recorded";
+    if (!left_out) {
+      left_out_ = std::make_unique<Row>(std::move(row));
+      return;
+    }
+    left_out_.reset();
+    row.entry.detail = left_out_text(*left_out);
   }
+  write_behind(std::move(row));
+}
+
+void RequestAudit::record_left_out() {
+  const int left_out = stranger_rate_.take_left_out();
+  if (!left_out_) return;
+  Row row = std::move(*left_out_);
+  left_out_.reset();
+  row.entry.detail = left_out_text(left_out - 1);  // this one is recorded now
+  write_behind(std::move(row));
+}
+
+void RequestAudit::write_behind(Row row) {
   const bool is_full = unwritten_ >= kUnwrittenMax;
   if (is_full && !was_full_)
-    spdlog::error("the disk is too slow: {} and what follows is not recorded", request.path);
+    spdlog::error("the disk is too slow: {} and what follows is not recorded", row.entry.action);
   was_full_ = is_full;
   if (is_full) return;
   ++unwritten_;

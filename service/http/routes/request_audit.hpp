@@ -4,6 +4,7 @@
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/awaitable.hpp>
 #include <chrono>
+#include <memory>
 #include <string>
 
 #include "service/http/auth/record_rate.hpp"
@@ -23,6 +24,7 @@ class RequestAudit {
  public:
   /// `services` must outlive it, and both threads must have ended before it goes.
   RequestAudit(boost::asio::any_io_executor store_thread, Services& services);
+  ~RequestAudit();
   RequestAudit(const RequestAudit&) = delete;
   RequestAudit& operator=(const RequestAudit&) = delete;
 
@@ -36,10 +38,15 @@ class RequestAudit {
   void record(const HttpRequest& request, const Caller& caller, const StartBody* start, unsigned status,
               bool durable = false);
 
+  /// Where the rate has left out refusals of strangers since the last one that was recorded: the newest of
+  /// them, with the number of the others. A flood that has ended is so in the audit as a whole.
+  void record_left_out();
+
  private:
   struct Row;
   [[nodiscard]] static Row row_of(const HttpRequest& request, const Caller& caller, const StartBody* start,
                                   std::string outcome);
+  void write_behind(Row row);
   bool write(Row row);
 
   boost::asio::any_io_executor store_thread_;
@@ -47,6 +54,7 @@ class RequestAudit {
   std::atomic<int> unwritten_{0};  // rows that wait for the store's thread
   bool was_full_ = false;
   RecordRate stranger_rate_{50, std::chrono::seconds(1)};
+  std::unique_ptr<Row> left_out_;  // the newest refusal that was, until one is recorded
 };
 
 }  // namespace cell

@@ -165,6 +165,7 @@ boost::asio::awaitable<Asked> answer_start(CellOperation& operation, StartReques
     asked.exits = operation.exits();
   } else {
     asked.started = std::get<Started>(outcome);
+    asked.needs_store = true;  // its document
   }
   co_return asked;
 }

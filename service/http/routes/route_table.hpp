@@ -21,15 +21,17 @@ namespace cell {
 struct Services;
 struct StartBody;
 
-/// How a request is dispatched. Without another word its handler is called on the thread that serves.
+/// How a request is dispatched. Without another word its handler is called on the thread that serves, where
+/// it must not touch the disk, or on the reader's where Asked::needs_store says so.
 enum class DispatchMode {
   kAtOnce,
   kLongPoll,  // answered at a status other than `after`, or after `wait_s`
   kPlanning,  // answered when the recipe has been planned
-  kStored,    // on the reader's thread, since it takes time: it may use only the request and Call::reads
+  kStored,    // on the reader's thread, since a disk takes time: it may use the request, Call::reads,
+              // Call::asked
   kWritten,   // on the store's thread, since it writes: the request, Call::reads and Services::models
   kWorker,    // on the worker's thread, since it takes long: it may use only the request and Call::reads
-  kEvents,    // a stream of events follows the header
+  kEvents,    // a stream of events follows the header; for one run the handler is called as for kStored
 };
 
 /// What the operation answers to a request, by value.
@@ -40,7 +42,8 @@ struct Asked {
   std::vector<Command> exits = {};            // with a refusal: the commands that the state allows
   std::optional<StartRequest> to_start = {};  // answer_start() follows
   std::optional<Started> started = {};
-  bool is_storing = false;  // CellOperation::touch_stored() follows
+  bool is_storing = false;   // CellOperation::touch_stored() follows
+  bool needs_store = false;  // the handler looks something up in Call::reads: on the reader's thread
   std::optional<PlanOutcome> plan = {};
   std::vector<Unmet> unmet = {};
   std::optional<cs8::State> controller_state = {};

@@ -37,12 +37,13 @@ std::optional<Unmet> unmet_by_disk(const RunStore& store) {
 
 /// A cell is ready if it accepts a run now, or executes one.
 Asked ask_readiness(const Call&, CellOperation& operation) {
-  return {.unmet = operation.unmet_before_start()};
+  Asked asked{.unmet = operation.unmet_before_start()};
+  if (auto one = unmet_by_state(operation.status().state)) asked.unmet.push_back(*std::move(one));
+  return asked;
 }
 
 HttpResponse get_readiness(const Call& call) {
   auto unmet = call.asked.unmet;
-  if (auto one = unmet_by_state(call.services.feed.status().state)) unmet.push_back(*std::move(one));
   if (auto one = unmet_by_disk(call.reads.store())) unmet.push_back(*std::move(one));
   if (unmet.empty()) return json_response(200, R"({"status":"ready"})");
   Problem problem{.status = 503, .kind = ProblemKind::kNotReady, .detail = "a run cannot start"};
@@ -82,7 +83,8 @@ std::vector<Route> service_routes() {
        .summary = "A run can start now; else 503 with the unmet preconditions",
        .handle = get_readiness,
        .ask = ask_readiness,
-       .answers = {{.schema = "Health"}}},
+       .answers = {{.schema = "Health"}},
+       .dispatch = DispatchMode::kStored},
       {.method = "GET",
        .path = "/metrics",
        .summary = "Figures for Prometheus",

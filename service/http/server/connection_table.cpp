@@ -26,6 +26,14 @@ std::pair<int, std::uint64_t> closing_order(const Connection& connection) {
   return {};
 }
 
+/// One in so many places is for connections whose first request has not come yet.
+constexpr int kShareOfNew = 8;
+
+/// It may be a stop whose bytes are on their way.
+bool is_new(const Connection& connection) {
+  return !connection.has_requested && connection.token == TokenRank::kNone;
+}
+
 }  // namespace
 
 ConnectionOrigin origin_of(const ip::address& client) {
@@ -45,9 +53,12 @@ int ConnectionTable::count_of(const Test& counts) const {
 /// Closes one that may be closed where as many as may be count already.
 void ConnectionTable::make_room(int most, const Test& counts, const Test& may_close) {
   if (count_of(counts) < most) return;
+  const auto is_new_here = [&](const Connection& one) { return is_new(one) && counts(one); };
+  const auto may_close_known = [&](const Connection& one) { return !is_new(one) && may_close(one); };
+  const bool spares_new = count_of(is_new_here) <= most / kShareOfNew && count_of(may_close_known) > 0;
   auto victim = connections_.end();
   for (auto one = connections_.begin(); one != connections_.end(); ++one) {
-    if (!may_close(**one)) continue;
+    if (!may_close(**one) || (spares_new && is_new(**one))) continue;
     if (victim == connections_.end() || closing_order(**one) < closing_order(**victim)) victim = one;
   }
   if (victim == connections_.end()) throw std::logic_error("a quota of connections leaves no place");

@@ -1,6 +1,7 @@
 #include "service/http/server/ends.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <utility>
 
 #include "service/http/server/session.hpp"
@@ -21,6 +22,8 @@ bool is_one_of(const std::vector<std::string>& names, std::string_view name) {
   return std::ranges::any_of(names, [&](const std::string& own) { return same_name(name, own); });
 }
 
+bool is_port_of_scheme(std::uint16_t port) { return port == 80 || port == 443; }
+
 }  // namespace
 
 Ends::Ends(const tcp::endpoint& client, const tcp::endpoint& own, std::string scheme,
@@ -32,9 +35,10 @@ Ends::Ends(const tcp::endpoint& client, const tcp::endpoint& own, std::string sc
   const std::string address = own.address().to_string();
   hosts_ = {"127.0.0.1" + port, "localhost" + port, "[::1]" + port,
             (own.address().is_v6() ? "[" + address + "]" : address) + port};
-  for (const std::string& name : limits.host_names) {
-    given_names_.push_back(name + port);
-    given_names_.push_back(name);  // at the scheme's own port, where a proxy listens
+  for (const HostName& given : limits.host_names) {
+    given_names_.push_back(given.name + (given.port ? ":" + std::to_string(*given.port) : port));
+    // At the scheme's own port, where a proxy listens, a client names none.
+    if (!given.port || is_port_of_scheme(*given.port)) given_names_.push_back(given.name);
   }
   hosts_.insert(hosts_.end(), given_names_.begin(), given_names_.end());
 }

@@ -33,7 +33,7 @@ class Ends {
   std::string remote_ = "unix";
   std::string scheme_;
   std::vector<std::string> hosts_;        // empty for a Unix socket
-  std::vector<std::string> given_names_;  // with and without the port
+  std::vector<std::string> given_names_;  // as clients write them, with a port or without
 };
 
 }  // namespace cell

@@ -21,7 +21,7 @@ std::optional<Problem> find_host_fault(const RequestHead& head, const Ends& ends
   if (hosts == 1 && !ends.is_our_host(*head.field("Host"))) {
     return Problem{.status = 421,
                    .kind = ProblemKind::kHost,
-                   .detail = "unknown Host; --host-name adds a name of the daemon"};
+                   .detail = "unknown Host; touchcald --host-name NAME[:PORT] adds one"};
   }
   return std::nullopt;
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "service/http/server/connection_table.hpp"
+#include "service/http/server/host_name.hpp"
 #include "service/http/server/http_message.hpp"
 
 namespace boost::asio::ssl {
@@ -31,7 +32,7 @@ struct HttpLimits {
   std::chrono::seconds request_deadline{5};
   std::chrono::seconds idle_deadline{60};
   /// Besides the address and the loopback names: those of the certificate or of a proxy.
-  std::vector<std::string> host_names = {};
+  std::vector<HostName> host_names = {};
   /// Reading over loopback needs no token. Behind a proxy every client comes over loopback.
   bool trusts_loopback = true;
 };

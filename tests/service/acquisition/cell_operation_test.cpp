@@ -218,6 +218,17 @@ TEST_F(ResumedOperationTest, IsConfirmedAgainBehindALongHoldOnly) {
   EXPECT_THAT(controller_->asked, Contains("finish"));
 }
 
+TEST_F(ResumedOperationTest, KeepsTheReasonForItsHoldWhenThatIsAcknowledged) {
+  const auto reason = [this] { return operation_.status().fault.value_or(Fault{}).message(); };
+  const std::string before = reason();
+  ASSERT_TRUE(operation_.status().fault);
+  EXPECT_FALSE(operation_.command(Command::kAcknowledge));
+  EXPECT_EQ(operation_.status().state, State::kHeld);
+  EXPECT_EQ(reason(), before) << "until somebody answers it";
+  EXPECT_FALSE(operation_.command(Command::kResume));
+  EXPECT_NE(reason(), before);
+}
+
 TEST_F(ResumedOperationTest, IsNotResumedByADaemonThatEnds) {
   shut_down();
   EXPECT_TRUE(operation_.command(Command::kResume));

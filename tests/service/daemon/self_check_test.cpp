@@ -2,6 +2,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <map>
@@ -94,6 +95,19 @@ TEST_F(SelfCheckTest, ALogThatCannotBeReadWithoutATraceIsLeftAloneAndSaidSo) {
                                                HasSubstr("touchcald --verify"))));
   EXPECT_THAT(found.bad_files, IsEmpty());
   EXPECT_THAT(found.troubles, IsEmpty()) << "it keeps no daemon from starting";
+}
+
+TEST_F(SelfCheckTest, ADirectoryThatOthersMayWriteInIsRefusedWithTheRemedy) {
+  fs::permissions(state_, fs::perms(0777));
+  EXPECT_THAT(check().troubles, ElementsAre(HasSubstr("chmod 700 " + state_.string())));
+}
+
+TEST_F(SelfCheckTest, RootMayLookAtTheDirectoryOfAServiceAndIsToldWhoseItIs) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root gives directories away";
+  ASSERT_EQ(::chown(state_.c_str(), 65534, 65534), 0);
+  const SelfCheck found = check();
+  EXPECT_THAT(found.troubles, IsEmpty());
+  EXPECT_THAT(found.remarks, ElementsAre(HasSubstr("belongs to the user with the id 65534")));
 }
 
 TEST_F(SelfCheckTest, APlaceOfTheBlockThatIsNoneIsABadFile) {

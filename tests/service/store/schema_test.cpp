@@ -2,6 +2,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "service/store/answer_store.hpp"
 #include "service/store/damaged_store.hpp"
@@ -166,6 +167,31 @@ TEST(StoreSchemaFile, TheNoiseOfATouchIsInItsChecksum) {
   store.append_touch(run, {.number = 1, .plane = 1, .captured_at = "now", .noise_um = 61.1});
   store.database()->exec("UPDATE touches SET noise_um = NULL");
   EXPECT_THROW(static_cast<void>(store.touches(run)), DamagedStore);
+}
+
+TEST(StoreSchemaFile, IsForItsOwnerOnlyWhateverTheMaskWithAllThatIsBesideIt) {
+  using std::filesystem::perms;
+  const Folder folder;
+  const auto file = folder.path() / "store.sqlite";
+  const std::vector<std::string> files{file.string(), file.string() + "-wal", file.string() + "-shm"};
+  const auto expect_closed = [&] {
+    for (const std::string& one : files)
+      EXPECT_EQ(std::filesystem::status(one).permissions(), perms::owner_read | perms::owner_write) << one;
+  };
+  const mode_t before = ::umask(0);
+  {
+    RunStore store(file);
+    store.begin_run({.recipe = "edf-25", .started_at = "start"});
+    expect_closed();
+  }
+  ::umask(before);
+  std::filesystem::permissions(file, perms(0644));  // as an older version left it
+  RunStore store(file);
+  store.begin_run({.recipe = "edf-25", .started_at = "start"});
+  expect_closed();
+  const auto copy = folder.path() / "copy.sqlite";
+  back_up(file, copy);
+  EXPECT_EQ(std::filesystem::status(copy).permissions(), perms::owner_read | perms::owner_write);
 }
 
 TEST(StoreSchemaFile, AMigrationThatFailsLeavesTheFileAsItWas) {

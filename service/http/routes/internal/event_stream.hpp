@@ -2,6 +2,7 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,11 +11,15 @@
 #include "service/http/routes/services.hpp"
 #include "service/http/server/http_message.hpp"
 #include "service/http/server/request_handler.hpp"
+#include "service/store/run_store.hpp"
 
 namespace cell {
 
 inline constexpr int kEventStreamsMax = 32;
 inline constexpr std::string_view kRunEventsPath = "/api/v1/runs/{id}/events";
+
+/// Reads a run where that holds nobody up; nothing if there is none.
+using RunLookUp = std::function<boost::asio::awaitable<std::optional<StoredRun>>(std::int64_t)>;
 
 /// Server-sent events for one client: `status` for each change, in order, once each; `reset` with the whole
 /// status if the client's last event is of another instance or too old; `run` with the document of the run at
@@ -22,8 +27,9 @@ inline constexpr std::string_view kRunEventsPath = "/api/v1/runs/{id}/events";
 /// not count any more.
 class EventStream final : public EventSource {
  public:
-  /// `run_id`: only changes during this run.
-  EventStream(Services& services, std::optional<std::int64_t> run_id, HttpRequest request);
+  /// `run_id`: only changes during this run, whose end `look_up` tells.
+  EventStream(Services& services, std::optional<std::int64_t> run_id, HttpRequest request,
+              RunLookUp look_up = {});
   ~EventStream() override;
 
   [[nodiscard]] static int open_count(const Services& services) { return *services.open_streams; }
@@ -38,15 +44,17 @@ class EventStream final : public EventSource {
   [[nodiscard]] bool is_withdrawn() const;
   [[nodiscard]] std::string id_of(std::uint64_t sequence) const;
   [[nodiscard]] std::string whole_status(const char* event);
-  [[nodiscard]] std::string end_of_run();
+  [[nodiscard]] bool may_be_over();
 
   Services& services_;
   std::optional<std::int64_t> run_id_;
   HttpRequest request_;
+  RunLookUp look_up_;
   bool needs_token_;  // over loopback only what was opened with one
   std::shared_ptr<int> open_;
   std::string first_;  // the first event, if any
   std::uint64_t seen_ = 0;
+  std::optional<std::string> run_at_end_;  // its document, until that is told
   bool ended_ = false;
 };
 

@@ -59,6 +59,17 @@ TEST_F(OperatorTokens, EachIsNamedByItsFile) {
   EXPECT_THAT(all.operate, SizeIs(64)) << "the token without a name is made as before";
 }
 
+TEST_F(OperatorTokens, AreNotAnotherUsers) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root gives files away";
+  write(directory_ / "anna", token_);
+  ASSERT_EQ(::chown((directory_ / "anna").c_str(), 65534, 65534), 0);
+  EXPECT_THAT(refusal(), HasSubstr("anna: belongs to another user"));
+  ASSERT_EQ(::chown(directory_.c_str(), 65534, 65534), 0);
+  EXPECT_THAT(refusal(), HasSubstr("operators: belongs to another user than the state directory"));
+  ASSERT_EQ(::chown(state_.path().c_str(), 65534, 65534), 0);
+  EXPECT_THAT(read_operator_tokens(state_.path()), SizeIs(1)) << "root looks at the directory of a service";
+}
+
 TEST_F(OperatorTokens, ThereNeedNotBeAny) {
   EXPECT_THAT(read_operator_tokens(state_.path()), IsEmpty());
   std::filesystem::remove(directory_);

@@ -18,5 +18,15 @@ TEST(RecordRate, SomeAtOnceThenOneAPeriodThatSaysHowManyWereLeftOut) {
   EXPECT_EQ(rate.admit(start + 1h), 0) << "after a rest several at once again";
 }
 
+TEST(RecordRate, WhatWasLeftOutIsTakenOnce) {
+  RecordRate rate(1, 1000ms);
+  const RecordRate::TimePoint start{1h};
+  EXPECT_EQ(rate.take_left_out(), 0);
+  for (int i = 0; i < 8; ++i) rate.admit(start);
+  EXPECT_EQ(rate.take_left_out(), 7);
+  EXPECT_EQ(rate.take_left_out(), 0);
+  EXPECT_EQ(rate.admit(start + 1s), 0) << "they are told";
+}
+
 }  // namespace
 }  // namespace cell

@@ -82,7 +82,8 @@ TEST(Tokens, AFileThatHoldsNoTokenIsRefusedByName) {
   for (const std::string& bytes :
        {std::string(), std::string("\n"), std::string("secret\n"), std::string(63, 'a') + "\n",
         "\n" + std::string(64, 'a'), std::string(64, '\0') + "\n", std::string(64, ' ') + "\n",
-        std::string(63, 'a') + "\t\n"}) {
+        std::string(63, 'a') + "\t\n", std::string(64, '0') + "\n", std::string(64, 'z') + "\n",
+        random_hex(32) + "0\n", random_hex(31) + "\n", random_hex(31) + "g0\n"}) {
     const Folder state;
     const auto file = state.write(std::string(kOperateTokenFile), bytes);
     std::filesystem::permissions(file, perms::owner_read | perms::owner_write);
@@ -93,6 +94,24 @@ TEST(Tokens, AFileThatHoldsNoTokenIsRefusedByName) {
       EXPECT_THAT(error.what(), HasSubstr(file.string()));
     }
   }
+}
+
+TEST(Tokens, AFileOfAnotherOwnerIsRefusedAlsoByRootUnlessTheDirectoryIsHisToo) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root gives files away";
+  constexpr uid_t kAnother = 65534;
+  const Folder state;
+  load_or_make_tokens(state.path());
+  const auto file = state.path() / kOperateTokenFile;
+  ASSERT_EQ(::chown(file.c_str(), kAnother, kAnother), 0);
+  try {
+    load_or_make_tokens(state.path());
+    ADD_FAILURE() << "took somebody else's token";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr(file.string() + ": belongs to another user than its directory"));
+    EXPECT_THAT(error.what(), HasSubstr("chown --reference=" + state.path().string()));
+  }
+  ASSERT_EQ(::chown(state.path().c_str(), kAnother, kAnother), 0);
+  EXPECT_NO_THROW(load_or_make_tokens(state.path())) << "root looks at the directory of a service";
 }
 
 TEST(Tokens, AFolderThatIsNotThereIsToldWithTheFile) {
@@ -120,10 +139,11 @@ class TokensOfARunningDaemon : public ::testing::Test {
 
 TEST_F(TokensOfARunningDaemon, AreThoseOfTheFilesAsTheyAre) {
   EXPECT_EQ(look().tokens, known_);
-  write(kOperateTokenFile, std::string(64, '1'));
-  write(kViewTokenFile, std::string(64, '2') + "\n");
+  const Tokens others{random_hex(32), random_hex(32)};
+  write(kOperateTokenFile, others.operate);
+  write(kViewTokenFile, others.view + "\n");
   const CurrentTokens now = look();
-  EXPECT_EQ(now.tokens, (Tokens{std::string(64, '1'), std::string(64, '2')}));
+  EXPECT_EQ(now.tokens, others);
   EXPECT_THAT(now.troubles, IsEmpty());
   EXPECT_THAT(now.kept, IsEmpty());
 }

@@ -8,7 +8,9 @@
 #include <boost/asio/co_spawn.hpp>
 #include <functional>
 #include <future>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <thread>
 
 #include "tests/service/http/test_tokens.hpp"
@@ -239,7 +241,7 @@ TEST_F(ApiTest, AFloodOfStrangersDisplacesNoCommandFromTheAudit) {
   EXPECT_EQ(all[all.size() - 2].outcome, "202") << "what came of the command";
 }
 
-TEST_F(ApiTest, ARightTokenEndsTheWrongOnesBeforeIt) {
+TEST_F(ApiTest, ARightTokenIsAnsweredAtOnceAndMakesNoGuesserFaster) {
   HttpRequest wrong = post("/api/v1/cell/reset");
   wrong.authorization = "Bearer " + std::string(64, 'x');
   int answered = 0;
@@ -250,15 +252,82 @@ TEST_F(ApiTest, ARightTokenEndsTheWrongOnesBeforeIt) {
     quiet_.context().poll();
   };
   const HttpRequest right = post("/api/v1/cell/stop");
-  for (int round = 0; round < 3; ++round) {
-    for (int i = 0; i < 5; ++i) ask(wrong);
+  for (int i = 0; i < WrongTokens::kAtOnce; ++i) {
+    ask(wrong);
     ask(right);
-    EXPECT_EQ(answered, 6 * (round + 1)) << "at once";
+    EXPECT_EQ(answered, 2 * (i + 1)) << "at once";
   }
-  for (int i = 0; i < 6; ++i) ask(wrong);
-  EXPECT_EQ(answered, 23) << "the sixth in a row waits";
+  for (int i = 0; i < 3; ++i) {
+    ask(wrong);
+    ask(right);
+    EXPECT_EQ(answered, 2 * WrongTokens::kAtOnce + i + 1) << "a stop from the same address, and no guess";
+  }
   quiet_.context().run();
-  EXPECT_EQ(answered, 24);
+  EXPECT_EQ(answered, 2 * (WrongTokens::kAtOnce + 3));
+}
+
+TEST_F(ApiTest, AStopIsTakenWhileTheDiskThatIsReadHangs) {
+  boost::asio::io_context reader(1);  // it runs when the disk answers again
+  const auto serving = quiet_.context().get_executor();
+  Api api(serving, {.operation = serving, .store = serving, .reader = reader.get_executor()},
+          quiet_.operation(), kTokens);
+  const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then"});
+  quiet_.store().finish_run(run, {.outcome = RunOutcome::kStopped, .ended_at = "end"});
+  const std::string of_run = "/api/v1/runs/" + std::to_string(run);
+  std::map<std::string, unsigned> answered;
+  const auto ask = [&](const HttpRequest& request) {
+    boost::asio::co_spawn(
+        quiet_.context(), api.answer(request),
+        [&answered, path = request.path](const std::exception_ptr&, const HttpResponse& answer) {
+          answered[path] = answer.status;
+        });
+  };
+  HttpRequest events{.method = "GET", .path = of_run + "/events", .from_loopback = true};
+  const HttpRequest ready{.method = "GET", .path = "/readyz", .from_loopback = true};
+  const std::vector<HttpRequest> reading{ready, post(of_run + "/abort"), post("/api/v1/runs/99/pause"),
+                                         events};
+  for (const HttpRequest& request : reading) ask(request);
+  const std::unique_ptr<EventSource> stream = api.events(events);
+  stream->due();
+  bool is_over = false;
+  boost::asio::co_spawn(quiet_.context(), stream->wait(), [&](const std::exception_ptr&) { is_over = true; });
+  quiet_.context().poll();
+  EXPECT_THAT(answered, ::testing::IsEmpty());
+  EXPECT_FALSE(is_over);
+  ask(post("/api/v1/cell/stop"));
+  quiet_.context().poll();
+  EXPECT_EQ(answered["/api/v1/cell/stop"], 202U);
+
+  reader.poll();
+  quiet_.context().poll();
+  EXPECT_EQ(answered["/readyz"], 503U);
+  EXPECT_EQ(answered[of_run + "/abort"], 409U);
+  EXPECT_EQ(answered["/api/v1/runs/99/pause"], 404U);
+  EXPECT_EQ(answered[of_run + "/events"], 200U);
+  EXPECT_TRUE(is_over);
+  EXPECT_THAT(stream->due(), HasSubstr("event: run"));
+}
+
+TEST_F(ApiTest, NoRouteReadsTheStoreOnTheThreadThatServes) {
+  const auto here = std::this_thread::get_id();
+  std::atomic<bool> is_serving = false;
+  std::atomic<int> read_here = 0;
+  const CallAtStatements watch([&] {
+    if (is_serving && std::this_thread::get_id() == here) ++read_here;
+  });
+  Api api(quiet_.context().get_executor(), quiet_.operation(), kTokens);
+  const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then"});
+  is_serving = true;
+  for (const Route& route : routes()) {
+    if (route.dispatch == DispatchMode::kWritten) continue;  // here the store's thread is this one too
+    HttpRequest request =
+        post(std::regex_replace(std::string(route.path), std::regex("\\{id\\}"), std::to_string(run)), "{}");
+    request.method = route.method;
+    const HttpResponse answer = quiet_.run(api.answer(request));
+    EXPECT_NE(answer.status, 500U) << route.path;
+    EXPECT_EQ(read_here, 0) << route.method << ' ' << route.path;
+  }
+  api.end_desks();
 }
 
 TEST_F(ApiTest, APauseWithAKeyIsTakenWhereKeysCannotBeLookedUp) {

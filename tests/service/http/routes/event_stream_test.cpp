@@ -50,6 +50,11 @@ class EventStreams : public ::testing::Test {
   std::uint64_t sequence() { return quiet_.operation().sequence(); }
   std::string id_of(std::uint64_t sequence) { return "instance-" + std::to_string(sequence); }
 
+  RunLookUp look_up() {
+    return [this](std::int64_t run) -> boost::asio::awaitable<std::optional<StoredRun>> {
+      co_return quiet_.store().run(run);
+    };
+  }
   static HttpRequest local(std::optional<std::string> last_event_id = std::nullopt) {
     return {.last_event_id = std::move(last_event_id), .from_loopback = true};
   }
@@ -120,13 +125,16 @@ TEST_F(EventStreams, TellAReaderThatItHasToBeginAgain) {
 
 TEST_F(EventStreams, OfARunEndWithItsDocument) {
   const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
-  EventStream stream(services_, run, local());
+  EventStream stream(services_, run, local(), look_up());
   stream.due();
   change();
   EXPECT_EQ(stream.due(), "") << "what happens outside of the run is not told";
   EXPECT_FALSE(stream.ended());
   quiet_.store().finish_run(
       run, {.outcome = RunOutcome::kStopped, .verdict = Verdict::kIncomplete, .ended_at = "end"});
+  EXPECT_EQ(stream.due(), "") << "that it is over is read elsewhere";
+  boost::asio::co_spawn(quiet_.context(), stream.wait(), boost::asio::detached);
+  quiet_.context().poll();
   const auto events = parsed(stream.due());
   ASSERT_EQ(events.size(), 1u);
   EXPECT_EQ(events[0].name, "run");

@@ -110,6 +110,26 @@ TEST_F(RequestAuditTest, StrangersThatAreLeftOutAreCounted) {
   EXPECT_EQ(newest().who, "wrong token");
 }
 
+TEST_F(RequestAuditTest, TheTailOfAFloodIsRecordedOnceItIsAskedFor) {
+  HttpRequest stranger = post("/api/v1/cell/reset", "", std::string(64, 'x'));
+  const Caller caller = caller_of(stranger, kTokens);
+  for (int i = 0; i < 1000; ++i) audit_.record(stranger, caller, nullptr, 401);
+  stranger.path = "/api/v1/cell/clear";
+  audit_.record(stranger, caller, nullptr, 401);
+  cell_.context().run();
+  const std::size_t at_once = services_.audit.page(1000).size();
+  ASSERT_EQ(newest().detail, "");
+  for (int i = 0; i < 2; ++i) {
+    audit_.record_left_out();
+    cell_.context().restart();
+    cell_.context().run();
+    EXPECT_EQ(services_.audit.page(1000).size(), at_once + 1) << "once";
+  }
+  EXPECT_EQ(newest().action, "POST /api/v1/cell/clear") << "the last of them";
+  EXPECT_EQ(newest().detail, std::to_string(1000 - at_once) + " more before it were not recorded");
+  EXPECT_EQ(newest().who, "wrong token");
+}
+
 TEST_F(RequestAuditTest, AnOutcomeThatFindsNoRoomIsDroppedAndTheNextOnesAreRecorded) {
   const HttpRequest request = post("/api/v1/cell/stop");
   const Caller caller = caller_of(request, kTokens);

@@ -97,6 +97,44 @@ TEST(ConnectionTable, ANewConnectionAlwaysHasAPlaceUntilItsFirstRequestIsThere) 
   }
 }
 
+TEST(ConnectionTable, OneWithoutARequestYetOutlastsAFloodThatShowsTheViewToken) {
+  for (const TokenRank rank : {TokenRank::kView, TokenRank::kNone}) {
+    for (const bool is_answering : {false, true}) {
+      ConnectionTable table({});
+      const auto flood = [&](int count) {
+        for (int i = 0; i < count; ++i) {
+          const auto one = table.take(kLoopback);
+          one->has_requested = true;
+          one->token = rank;
+          one->is_answering = is_answering;
+          one->use();
+        }
+      };
+      flood(600);
+      const auto stop = table.take(kLoopback);
+      flood(600);
+      EXPECT_FALSE(stop->is_closed) << "its bytes may be on their way";
+      EXPECT_EQ(table.count(), 224U) << "the bound stays";
+    }
+  }
+}
+
+TEST(ConnectionTable, OfThoseWithoutARequestYetOneInEightPlacesIsSpared) {
+  ConnectionTable table({.connections_max = 64});
+  NamedConnections connections(table);
+  for (int i = 0; i < 64; ++i) connections.add('v', kViewing);
+  for (const char name : std::string("abcdefgh")) connections.add(name, kSilent);
+  EXPECT_EQ(connections.closed(), "vvvvvvvv");
+  connections.add('i', kSilent);
+  EXPECT_EQ(connections.closed(), "vvvvvvvvv");
+  connections.add('j', kSilent);
+  EXPECT_EQ(connections.closed(), "vvvvvvvvva") << "from here on the oldest of them goes";
+  connections.add('k', kViewing);
+  EXPECT_EQ(connections.closed(), "vvvvvvvvvab");
+  connections.add('l', kViewing);
+  EXPECT_EQ(connections.closed(), "vvvvvvvvvabv");
+}
+
 TEST(ConnectionTable, ThePlaceOfAConnectionThatEndedIsFreeOnce) {
   ConnectionTable table({.connections_max = 1});
   const auto first = table.take(kLoopback);

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <iterator>
+#include <list>
 #include <nlohmann/json.hpp>
 
 #include "tests/service/http/server/served_api.hpp"
@@ -164,6 +166,47 @@ TEST_F(CrowdedListenerTest, WhoFollowsTheEventsStaysLongerThanWhoIsIdle) {
   EXPECT_TRUE(idle.closed());
   expect_served(202, post("/api/v1/cell/reset", "Content-Length: 0\r\n", ""));
   EXPECT_THAT(following.receive_until("\n\n"), HasSubstr("\"state\":\"RESETTING\""));
+}
+
+class FloodedListenerTest : public ServedApi {
+ protected:
+  FloodedListenerTest() : ServedApi({.connections = {.loopback_connections_max = 16}}) {}
+};
+
+TEST_F(FloodedListenerTest, AStopThatComesLateOnItsConnectionGetsThroughAFloodWithTheViewToken) {
+  RawClient stopping = connect();
+  const std::string view = "Authorization: Bearer " + kTokens.view + "\r\n";
+  std::list<RawClient> flood;
+  for (int i = 0; i < 40; ++i) {
+    flood.emplace_back(listener_.address());
+    flood.back().send(get("/healthz", view));
+    EXPECT_EQ(flood.back().receive().status, 200u);
+  }
+  stopping.send(post("/api/v1/cell/stop", "Content-Length: 0\r\n", ""));
+  EXPECT_EQ(stopping.receive().status, 202u);
+}
+
+TEST_F(ListenerTest, EventStreamsAndLongPollsDoNotHoldAStopUp) {
+  const std::uint64_t before = sequence();
+  std::list<RawClient> waiting;
+  const auto add = [&](const std::string& request) {
+    waiting.emplace_back(listener_.address());
+    waiting.back().send(request);
+  };
+  constexpr int kStreams = 32;
+  for (int i = 0; i < kStreams; ++i) {
+    add(get("/api/v1/events"));
+    EXPECT_EQ(waiting.back().receive().status, 200u);
+  }
+  for (int i = 0; i < 128; ++i) add(get("/api/v1/status?wait_s=60&after=" + std::to_string(before)));
+  for (int i = 0; i < 3; ++i) {
+    RawClient stopping = connect();
+    stopping.send(post("/api/v1/cell/stop", "Content-Length: 0\r\n", ""));
+    EXPECT_EQ(stopping.receive().status, 202u);
+  }
+  expect_served(202, post("/api/v1/cell/reset", "Content-Length: 0\r\n", ""));
+  waiting.erase(waiting.begin(), std::next(waiting.begin(), kStreams));
+  for (RawClient& poll : waiting) EXPECT_EQ(poll.receive().status, 200u) << "and they are answered";
 }
 
 class ImpatientListenerTest : public ServedApi {

@@ -14,7 +14,7 @@
 
 namespace cell {
 
-inline const HttpLimits kServedLimits{.host_names = {"cell-3.plant.example"}};
+inline const HttpLimits kServedLimits{.host_names = {{"cell-3.plant.example"}, {"robot.example", 8443}}};
 
 /// A listener on a free port, on a thread of its own; the test is its client.
 class ServedApi : public ::testing::Test {

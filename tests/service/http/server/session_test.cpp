@@ -111,6 +111,17 @@ TEST_F(SessionTest, AStopDoesNotWaitForItsBodyHoweverLargeItIs) {
   expect_served(202, post("/api/v1/cell/stop", "Content-Length: 9\r\n", "no object"));
 }
 
+TEST_F(SessionTest, AStopComesThroughAProxyThatEndsTlsAtAnotherPort) {
+  const auto stop = [&](const std::string& as, const std::string& origin) {
+    return "POST /api/v1/cell/stop HTTP/1.1\r\nHost: " + as + "\r\nOrigin: " + origin +
+           "\r\nAuthorization: Bearer " + kTokens.operate + "\r\nContent-Length: 0\r\n\r\n";
+  };
+  expect_served(202, stop("robot.example:8443", "https://robot.example:8443"));
+  expect_served(202, stop(host(), "https://robot.example:8443"));
+  expect_refused(421, stop("robot.example:8444", "https://robot.example:8443"));
+  expect_refused(403, stop(host(), "https://robot.example:8444"));
+}
+
 class SmallBudgetTest : public ServedApi {
  protected:
   SmallBudgetTest() : ServedApi({.bodies_bytes_max = 1000}) {}
