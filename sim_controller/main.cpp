@@ -20,11 +20,11 @@
 #include "config/truth.hpp"
 #include "sim_controller/control.hpp"
 #include "sim_controller/fault_names.hpp"
+#include "sim_controller/loaded_application.hpp"
 #include "sim_controller/run_command.hpp"
+#include "sim_controller/run_links.hpp"
 #include "sim_controller/server.hpp"
 #include "sim_controller/val3/check_command.hpp"
-#include "sim_controller/val3/files/read_application.hpp"
-#include "sim_controller/val3/language/resolver.hpp"
 #include "sim_controller/val3_server.hpp"
 
 namespace {
@@ -120,30 +120,6 @@ sim::Val3ServerOptions val3_options(const sim::ServerOptions& options) {
   return same;
 }
 
-/// What was found, for people. True when a controller would refuse the application.
-bool tell(const val3::Findings& findings) {
-  bool is_refused = false;
-  for (const val3::Finding& finding : findings) {
-    if (finding.severity != val3::Severity::kError) continue;
-    is_refused = true;
-    std::cerr << finding.at.file << ':' << finding.at.line << ": " << finding.what
-              << (finding.remedy.empty() ? "" : "; " + finding.remedy) << '\n';
-  }
-  return is_refused;
-}
-
-/// The application in a folder; nothing when a controller would refuse it: that is told.
-std::optional<val3::Application> load_val3(const std::string& folder) {
-  val3::ReadApplication read = val3::read_application(folder);
-  if (!tell(read.findings)) {
-    read.findings.clear();
-    val3::resolve(read.application, read.findings);
-    if (!tell(read.findings)) return std::move(read.application);
-  }
-  std::cerr << "cs8sim: a controller would not load " << folder << '\n';
-  return std::nullopt;
-}
-
 std::filesystem::path truth_file_of(const Arguments& arguments) {
   if (!arguments.truth_file.empty()) return arguments.truth_file;
   return std::filesystem::path(arguments.cell_file).parent_path() / "truth.json";
@@ -186,8 +162,9 @@ int serve(const Arguments& arguments) {
 
   std::optional<val3::Application> application;
   if (!arguments.val3.empty()) {
-    application = load_val3(arguments.val3);
+    application = sim::loaded_application(arguments.val3, std::cerr);
     if (!application) return kBadInput;
+    for (const std::string& note : sim::links_of(*application, {}).not_there) std::cerr << note << '\n';
   }
 
   boost::asio::io_context io;
@@ -215,7 +192,7 @@ int serve(const Arguments& arguments) {
       })) {
     return kRefused;
   }
-  if (tell(findings)) return kBadInput;
+  if (sim::tell_errors(findings, std::cerr)) return kBadInput;
   if (!arguments.control.empty()) {
     const cell::Endpoint at = *cell::parse_endpoint(arguments.control);
     const auto answer = [&server](std::string_view line) { return sim::answer_control_line(*server, line); };

@@ -13,30 +13,17 @@
 
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
+#include "sim_controller/loaded_application.hpp"
 #include "sim_controller/run_links.hpp"
 #include "sim_controller/run_script.hpp"
 #include "sim_controller/scripted_run.hpp"
 #include "sim_controller/socket_run.hpp"
-#include "sim_controller/val3/files/read_application.hpp"
-#include "sim_controller/val3/language/resolver.hpp"
 
 namespace sim {
 namespace {
 
 constexpr double kSecondsWithoutScript = 10.0;
 constexpr double kSecondsBehindScript = 1.0;
-
-/// Errors only: what a controller would not load, or this machine not run.
-bool tell_errors(const val3::Findings& findings, std::ostream& error) {
-  bool any = false;
-  for (const val3::Finding& finding : findings) {
-    if (finding.severity != val3::Severity::kError) continue;
-    any = true;
-    error << finding.at.file << ':' << finding.at.line << ": " << finding.what << " [" << finding.rule
-          << "]\n";
-  }
-  return any;
-}
 
 /// Nothing where it is no script: that is told.
 std::optional<std::vector<ScriptStep>> read_script(const std::string& file_name, std::ostream& error) {
@@ -71,13 +58,9 @@ int run_application(const RunCommand& command, std::ostream& out, std::ostream& 
   const cell::Cell cell = cell::read_cell(command.cell_file);
   cell::demand_revolute(cell);
   const Plant plant = make_plant(cell, cell::read_truth(command.truth_file));
-  val3::ReadApplication read = val3::read_application(command.application);
-  val3::resolve(read.application, read.findings);
-  if (tell_errors(read.findings, error)) {
-    error << command.application << ": a controller would not load it; `cs8sim --check` tells more\n";
-    return kCannotRun;
-  }
-  const RunLinks links = links_of(read.application, cards_of(*steps));
+  const std::optional<val3::Application> application = loaded_application(command.application, error);
+  if (!application) return kCannotRun;
+  const RunLinks links = links_of(*application, cards_of(*steps));
   for (const std::string& note : links.not_there) error << note << '\n';
   if (const auto refused = unknown_signal(*steps, links)) {
     error << command.script_file << ':' << refused->line << ": " << refused->what << '\n';
@@ -89,7 +72,7 @@ int run_application(const RunCommand& command, std::ostream& out, std::ostream& 
       wanted.push_back(*run_socket_at(step.act.name, step.act.text));
   }
   const double until_s = end_of(command, *steps, !wanted.empty());
-  ScriptedRun run(plant, read.application, *steps, command.seed, out);
+  ScriptedRun run(plant, *application, *steps, command.seed, out);
   val3::Findings missing;
   if (!run.start(missing)) {
     tell_errors(missing, error);

@@ -13,31 +13,10 @@ class LinkReader {
  public:
   LinkReader(RunLinks& links, const CardNames& cards) : links_(links), cards_(cards) {}
 
-  void read(const val3::Application& application, bool is_io) {
-    for (const val3::Global& global : application.globals) {
-      read(global.declared, global.values);
-      // Its entries are the signals: in the files of s5 and s6 they have no link.
-      if (is_io && global.declared.type.kind == val3::Kind::kDio)
-        links_.digital.insert(signal_name(global.declared.name));
-      if (is_io && global.declared.type.kind == val3::Kind::kAio)
-        links_.analogue.insert(signal_name(global.declared.name));
-    }
-    for (const val3::Library& library : application.libraries) {
-      if (library.alias == "io") add_system_signals();
-      if (library.application) read(*library.application, library.alias == "io");
-    }
-  }
-
-  /// What a CS8C has in its library io.
-  void add_system_signals() {
-    constexpr int kBasicSignals = 16;
-    for (int i = 0; i < kBasicSignals; ++i) {
-      links_.digital.insert(signal_name(fmt::format("bIn{}", i)));
-      links_.digital.insert(signal_name(fmt::format("bOut{}", i)));
-    }
-    for (const char* name : {"fIn0", "fIn1", "fOut0", "usrIn0", "usrIn1", "valve1", "valve2"})
-      links_.digital.insert(signal_name(name));
-    for (const char* name : {"CBT_TEMP", "CPU_TEMP"}) links_.analogue.insert(signal_name(name));
+  void read(const val3::Application& application) {
+    for (const val3::Global& global : application.globals) read(global.declared, global.values);
+    for (const val3::Library& library : application.libraries)
+      if (library.application) read(*library.application);
   }
 
  private:
@@ -62,7 +41,7 @@ class LinkReader {
     }
     links_.not_there.push_back(
         fmt::format("{}:{}: {} is linked to {}, and there is no card {}: it is not linked, its use is error "
-                    "123; mend the link, or let the script begin with '0 card {}'",
+                    "123; mend the link, or let the script of --run begin with '0 card {}'",
                     declared.file, value.line, declared.name, link->second, *card, *card));
   }
 
@@ -86,7 +65,7 @@ RunLinks links_of(const val3::Application& application, const CardNames& cards) 
   RunLinks links;
   for (const auto& [link, signal] : touchcal_links()) links.digital.insert(link);
   LinkReader reader(links, cards);
-  reader.read(application, false);
+  reader.read(application);
   return links;
 }
 

@@ -216,6 +216,7 @@ void ScriptedRun::show_page() {
   std::string lines = system_.page().text();
   lines.erase(lines.find_last_not_of('\n') + 1);
   if (!lines.empty()) out_ << lines << '\n';
+  for (const auto& [name, text] : system_.page().elements()) out_ << name << " = " << text << '\n';
 }
 
 int ScriptedRun::summary() {

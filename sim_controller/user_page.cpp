@@ -89,6 +89,12 @@ void UserPage::put(const std::string& text, bool ends_line) {
   ++changes_;
 }
 
+void UserPage::set_element(const std::string& name, const std::string& text) {
+  if (!elements_.contains(name) && elements_.size() >= kElementsMax) return;
+  elements_[name] = text;
+  ++changes_;
+}
+
 std::string UserPage::line(int row) const {
   const auto& cells = cells_.at(static_cast<std::size_t>(row));
   const auto end = std::find_if(cells.rbegin(), cells.rend(), [](char32_t cell) { return cell != U' '; });

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -26,6 +27,10 @@ class UserPage {
   /// UTF-8. Goes on in the next line at the right edge, and scrolls at the end.
   void put(const std::string& text, bool new_line);
   void set_title(const std::string& text) { title_ = text; }
+  /// What an element of a page of HTML shows (s8), by "page.element.attribute"; kElementsMax of them.
+  void set_element(const std::string& name, const std::string& text);
+  [[nodiscard]] const std::map<std::string, std::string>& elements() const { return elements_; }
+  static constexpr std::size_t kElementsMax = 1'000;
 
   [[nodiscard]] const std::string& title() const { return title_; }
   /// One line, without the blanks at its end.
@@ -47,6 +52,7 @@ class UserPage {
 
   std::array<std::array<char32_t, kColumns>, kRows> cells_{};
   std::string title_;
+  std::map<std::string, std::string> elements_;
   int column_ = 0;
   int row_ = 0;
   bool shown_ = false;

@@ -62,6 +62,7 @@ bool Val3System::in_range(const val3::Joint& joints) const { return arm_.in_rang
 val3::RunError Val3System::store(const val3::MoveOrder& order) {
   Drives& drives = cabinet_.drives;
   if (const val3::RunError error = move_error(); error != val3::kErrorNone) return error;
+  tell_blend(order);
   const calib::JointVector from = end_of_queue(drives);
   const Eigen::Isometry3d tip_from_tool = arm_.tip_from_flange() * pose_from_val3(order.tool);
   const auto in_block = [this](const val3::Trsf& in_world) {
@@ -94,6 +95,15 @@ val3::RunError Val3System::store(const val3::MoveOrder& order) {
     sim::store(drives, impossible_move(from, impossible_move_text(order, why)));
   }
   return val3::kErrorNone;
+}
+
+/// Behind a move that would have gone over into this one.
+void Val3System::tell_blend(const val3::MoveOrder& order) {
+  if (last_move_blends_ && !is_empty() && !told_blend_) {
+    told_blend_ = true;
+    keep("blends are not simulated: every move stops at its end, and takes longer than on a controller");
+  }
+  last_move_blends_ = order.descriptor.blend != val3::Blend::kOff;
 }
 
 bool Val3System::store_is_full() const {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cctype>
 
+#include "sim_controller/val3/program/signal_link.hpp"
+
 namespace sim {
 namespace {
 
@@ -22,15 +24,6 @@ constexpr std::array<std::string_view, 6> kSingleCards{"FastIO", "UserIO",     "
                                                        "RsiIO",  "PtCFaultIO", "ValveIO"};
 /// ... and those that are counted: BasicIO-2, ModbusSrv-0, EncoderIO1.
 constexpr std::array<std::string_view, 3> kCountedCards{"BasicIO-", "ModbusSrv-", "EncoderIO"};
-
-/// "%I0", "%IW0", "fIn0", "usrIn1", a name that ends in In or In and a number.
-bool reads_as_input(std::string_view link) {
-  const std::size_t slash = link.rfind('\\');
-  std::string_view name = slash == std::string_view::npos ? link : link.substr(slash + 1);
-  if (name.starts_with("%I")) return true;
-  while (!name.empty() && is_digit(name.back())) name.remove_suffix(1);
-  return name.ends_with("In");
-}
 
 bool level_of(CellSignal signal, const Cabinet& cabinet) {
   switch (signal) {
@@ -69,6 +62,8 @@ std::optional<int> find_or_make(std::string_view link, const CardNames& cards, S
 }  // namespace
 
 std::string signal_name(std::string_view link) {
+  constexpr std::string_view kLibrary = "io:";
+  if (link.starts_with(kLibrary)) link.remove_prefix(kLibrary.size());
   std::string name(link);
   if (name.find('\\') != std::string::npos) return name;
   if (const auto number = number_behind(name, "bIn")) return "BasicIO-1\\%I" + std::string(*number);
@@ -98,7 +93,7 @@ CellLinks touchcal_links() {
 
 std::optional<int> Val3Signals::find_digital(std::string_view link) {
   return find_or_make(link, cards_, digital_ids_, digitals_, [this](const std::string& name) {
-    Digital made{.link = name, .is_input = reads_as_input(name)};
+    Digital made{.link = name, .is_input = val3::names_input(name)};
     made.has_latch = name == "FastIO\\fIn0" || name == "FastIO\\fIn1";
     if (const auto of_cell = links_.find(name); of_cell != links_.end()) {
       made.of_cell = of_cell->second;
@@ -110,7 +105,7 @@ std::optional<int> Val3Signals::find_digital(std::string_view link) {
 
 std::optional<int> Val3Signals::find_analogue(std::string_view link) {
   return find_or_make(link, cards_, analogue_ids_, analogues_, [](const std::string& name) {
-    return Analogue{.link = name, .is_input = reads_as_input(name)};
+    return Analogue{.link = name, .is_input = val3::names_input(name)};
   });
 }
 

@@ -24,7 +24,8 @@ CellLinks touchcal_links();
 /// Cards beside those that a CS8 or CS8C has by itself (configs/systemios.cfx): of fieldbuses.
 using CardNames = std::set<std::string, std::less<>>;
 
-/// A link as s7 writes it: "fIn0", "bIn3", "usrIn0" of s5 and s6 stand without their card.
+/// A link as s7 writes it: "fIn0", "bIn3", "usrIn0" of s5 and s6 stand without their card, or behind their
+/// library "io:".
 std::string signal_name(std::string_view link);
 /// The card of a link that neither a controller nor `more` has; nothing where it is there, or the link names
 /// no card: then it is a system signal.

@@ -203,6 +203,9 @@ void Val3System::clear_page() { page_.clear(); }
 void Val3System::go_to(int column, int row) { page_.go_to(column, row); }
 void Val3System::put(const std::string& text, bool new_line) { page_.put(text, new_line); }
 void Val3System::title(const std::string& text) { page_.set_title(text); }
+void Val3System::set_page_element(const std::string& name, const std::string& text) {
+  page_.set_element(name, text);
+}
 std::optional<int> Val3System::take_key() { return page_.take_key(); }
 bool Val3System::key_is_pressed(int code) const { return page_.is_pressed(code); }
 void Val3System::pop_up(const std::string& text) { keep(text); }

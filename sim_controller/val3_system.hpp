@@ -98,7 +98,7 @@ class Val3System final : public val3::System {
   [[nodiscard]] val3::Config config_of(const val3::Joint& joints) const override;
   [[nodiscard]] bool in_range(const val3::Joint& joints) const override;
 
-  /// Every move stops at its end: blends are not simulated.
+  /// Every move stops at its end: blends are not simulated, which is told where one would have been made.
   val3::RunError store(const val3::MoveOrder& order) override;
   [[nodiscard]] bool store_is_full() const override;
   [[nodiscard]] val3::RunError move_error() const override;
@@ -135,6 +135,7 @@ class Val3System final : public val3::System {
   void go_to(int column, int row) override;
   void put(const std::string& text, bool new_line) override;
   void title(const std::string& text) override;
+  void set_page_element(const std::string& name, const std::string& text) override;
   std::optional<int> take_key() override;
   [[nodiscard]] bool key_is_pressed(int code) const override;
   void pop_up(const std::string& text) override;
@@ -145,6 +146,7 @@ class Val3System final : public val3::System {
   void power_up();
   void draw_for_search();
   void watch_latch(const CabinetTick& seen);
+  void tell_blend(const val3::MoveOrder& order);
   void keep(const std::string& message);
 
   const Plant& plant_;
@@ -165,6 +167,8 @@ class Val3System final : public val3::System {
     std::optional<calib::JointVector> joints;
   } latch_;
   bool searched_ = false;  // since the last joint move
+  bool last_move_blends_ = false;
+  bool told_blend_ = false;
 };
 
 /// getDate(): %y %Y %m %d %H %I %p %M %S, the rest as it stands.

@@ -32,10 +32,10 @@ inline std::string patient_cell(const Folder& folder, const std::string& name) {
 /// A daemon and a simulated controller on a shipped cell, each on a free port.
 class RunningCell {
  public:
-  RunningCell(const std::string& name, const std::string& speed)
+  /// `more`: options of cs8sim beside cell, address and speed.
+  RunningCell(const std::string& name, const std::string& speed, const std::vector<std::string>& more = {})
       : cell_file_(patient_cell(folder_, name)),
-        controller_({"cs8sim", "--cell", cell_file_, "--listen", "127.0.0.1:0", "--speed", speed},
-                    folder_ / "cs8sim.err"),
+        controller_(controller_call(cell_file_, speed, more), folder_ / "cs8sim.err"),
         controller_address_(controller_.wait_for_address()) {
     start_daemon();
   }
@@ -84,6 +84,13 @@ class RunningCell {
   [[nodiscard]] std::string state() const { return (folder_ / "state").string(); }
 
  private:
+  static std::vector<std::string> controller_call(const std::string& cell_file, const std::string& speed,
+                                                  const std::vector<std::string>& more) {
+    std::vector<std::string> call{"cs8sim", "--cell", cell_file, "--listen", "127.0.0.1:0", "--speed", speed};
+    call.insert(call.end(), more.begin(), more.end());
+    return call;
+  }
+
   Folder folder_;
   std::string cell_file_;
   Process controller_;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/sim_controller/small_run.hpp"
+#include "tests/sim_controller/val3/files/old_project.hpp"
 #include "tests/val3/small_project.hpp"
 
 namespace sim {
@@ -83,6 +84,48 @@ TEST(RunCommand, RefusesWhatAControllerWouldNotLoadAndAScriptThatIsNone) {
   EXPECT_EQ(run_small(right.path().parent_path() / "none.pjx", "").code, kCannotRun);
 }
 
+TEST(RunCommand, KeysEditAVariableUntilReturnAndEscLeavesIt) {
+  val3::SmallProject project;
+  project.number("n", 6).data("s", "string", "<Value key=\"0\" value=\"ab\"/>");
+  project.program("start",
+                  "userPage()\nn[0]=12\nn[1]=get(n[0])\nn[2]=get(n[0])\nn[3]=get(s)\nif s==\"aC\"\nn[4]=1\n"
+                  "endIf\nwait(false)");
+  const SmallRun ran =
+      run_small(project.write().path(),
+                "0.1 key 46\n0.2 key 53\n0.3 key 270\n0.4 expect-number n 12.5\n"
+                "0.4 expect-number n[1] 270\n0.5 key 57\n0.6 key 255\n0.7 expect-number n 12.5\n"
+                "0.7 expect-number n[2] 255\n0.8 key 263\n0.9 key 67\n1 key 273\n"
+                "1.1 expect-number n[3] 273\n1.1 expect-number n[4] 1\n");
+  EXPECT_EQ(ran.code, kRanWell) << ran.out;
+}
+
+TEST(RunCommand, ShowsWhatAnApplicationOfS8PutsOnItsPages) {
+  val3::SmallProject project;
+  project.number("n").program("start",
+                              "n=0.5\nuserPageSet(\"uxMain\",\"lblTime\",\"innerHTML\",n)\n"
+                              "userPageSet(\"uxMain\",\"box\",\"checked\",true)\nuserPageAlert(\"look\")");
+  const SmallRun ran = run_small(project.write().path(), "");
+  EXPECT_EQ(ran.code, kRanWell) << ran.out << ran.error;
+  EXPECT_THAT(ran.out, AllOf(HasSubstr("uxMain.lblTime.innerHTML = 0.5\n"),
+                             HasSubstr("uxMain.box.checked = true\n"), HasSubstr("log: look")));
+}
+
+TEST(RunCommand, RefusesAStartThatRunMemoryDoesNotHoldAndTellsAStackSizeOfNothing) {
+  val3::SmallProject large;
+  large.program("start", "l_n[0]=1", val3::SmallProject::local("l_n", "num", 100'000));
+  const SmallRun refused = run_small(large.write().path(), "");
+  EXPECT_EQ(refused.code, kCannotRun);
+  EXPECT_THAT(refused.error,
+              AllOf(HasSubstr("start() takes 800048 bytes of run memory (estimated), and stackSize is "
+                              "5000; give the project a larger stackSize"),
+                    HasSubstr("[run-memory]")));
+  val3::SmallProject nothing;
+  nothing.stack(0).program("start", "");
+  const SmallRun ran = run_small(nothing.write().path(), "");
+  EXPECT_EQ(ran.code, kRanWell);
+  EXPECT_THAT(ran.out, HasSubstr("stackSize is 0: the usual 5000 bytes are taken"));
+}
+
 TEST(RunCommand, RefusesAScriptThatNamesASignalWhichIsNotThere) {
   val3::SmallProject project;
   project.data("di", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%I7\"/>").program("start", "");
@@ -107,6 +150,40 @@ TEST(RunCommand, TellsAtLoadWhatIsLinkedToACardThatIsNotThereAndItsUseFails) {
   const SmallRun declared = run_small(at, "0 card NoCard\n0.05 expect-number n 0\n");
   EXPECT_EQ(declared.code, kRanWell) << declared.out;
   EXPECT_EQ(declared.error, "");
+}
+
+TEST(RunCommand, RunsAnApplicationOfS6OnTheSignalsAndSocketsOfItsLibraryIo) {
+  val3::ProjectFolder folder;
+  val3::write_old_project(folder, "app",
+                          "<numSection><num name=\"n\" public=\"false\"><valueNum index=\"0\" value=\"0\"/>"
+                          "</num></numSection>\n"
+                          "<dioSection><dio name=\"dOut\" public=\"false\" size=\"1\"/></dioSection>\n"
+                          "<sioSection><sio name=\"si\" public=\"false\" size=\"1\"/></sioSection>\n",
+                          {{"start",
+                            "dioLink(dOut,io:bOut1)\nwait(io:bIn4==true)\nio:bOut0=true\ndOut=io:bOut0\n"
+                            "sioLink(si,io:host)\nn=si\nsi=n+1\nio:bIn4=true"}});
+  const SmallRun ran =
+      run_small(folder.path() / "app" / "app.pjx",
+                "0 expect-output bOut0 off\n0.1 input io:bIn4 on\n0.2 expect-output bOut0 on\n"
+                "0.2 expect-output BasicIO-1\\%Q1 on\n0.3 connect host\n0.3 send host \"A\"\n"
+                "0.4 expect-sent host \"B\"\n0.5 expect-task app~ 122\n");
+  EXPECT_EQ(ran.code, kRanWithFailures) << ran.out << ran.error;
+  EXPECT_EQ(ran.error, "");
+  EXPECT_THAT(ran.out, AllOf(HasSubstr("ends with error 122 at start.pgx:12"), HasSubstr("1 failures")))
+      << "an input is not written";
+}
+
+TEST(RunCommand, SaysOfASignalThatOnlyTheCellCanHaveWhereItIsToBeGiven) {
+  val3::ProjectFolder folder;
+  val3::write_old_project(folder, "app",
+                          "<dioSection><dio name=\"d\" public=\"false\" size=\"1\"/></dioSection>",
+                          {{"start", "io:bVacuum=true\ndioLink(d,io:bLight)"}});
+  const SmallRun ran = run_small(folder.path() / "app" / "app.pjx", "");
+  EXPECT_EQ(ran.code, kCannotRun);
+  EXPECT_THAT(ran.error,
+              HasSubstr("start.pgx:5: 'io:bVacuum' is none of the signals that a controller has by "
+                        "itself: put the cell's project io beside the application"));
+  EXPECT_THAT(ran.error, HasSubstr("start.pgx:6: 'io:bLight' is none of the signals"));
 }
 
 TEST(RunCommand, RunsOurOwnApplication) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim_controller/val3/files/built_in_io.hpp"
+
 namespace sim {
 namespace {
 
@@ -58,11 +60,12 @@ TEST(RunLinks, HaveTheSignalsOfTheLibraryIo) {
   EXPECT_THAT(links_of(application, {}).digital, Not(Contains("UserIO\\usrIn0")));
   val3::Library library;
   library.alias = "io";
+  library.application = val3::built_in_io(application);
   application.libraries.push_back(library);
-  EXPECT_THAT(links_of(application, {}).digital, AllOf(Contains("UserIO\\usrIn0"), Contains("valve2")));
-  application.libraries[0].application = std::make_shared<val3::Application>();
-  application.libraries[0].application->globals = {linked("myOut", val3::Kind::kDio, "link", "")};
-  EXPECT_THAT(links_of(application, {}).digital, Contains("myOut"));
+  const RunLinks links = links_of(application, {});
+  EXPECT_THAT(links.digital,
+              AllOf(Contains("UserIO\\usrIn0"), Contains("valve2"), Contains("BasicIO-1\\%I15")));
+  EXPECT_THAT(links.analogue, ElementsAre("CBT_TEMP", "CPU_TEMP"));
 }
 
 TEST(RunLinks, SayWhatIsLinkedToACardThatIsNotThere) {
@@ -89,6 +92,7 @@ TEST(RunLinks, RefuseANameThatIsNotThereAndListThoseThatAre) {
     return refused ? refused->what : "none";
   };
   EXPECT_EQ(refusal(Kind::kInput, "bIn0"), "none") << "the name of s5";
+  EXPECT_EQ(refusal(Kind::kInput, "io:bIn0"), "none");
   EXPECT_EQ(refusal(Kind::kExpectOutput, "BasicIO-1\\%Q1"), "none");
   EXPECT_THAT(refusal(Kind::kInput, "nix"),
               HasSubstr("'nix' is no digital input or output of the application; there are: BasicIO-1\\%I0, "

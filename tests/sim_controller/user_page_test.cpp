@@ -79,5 +79,16 @@ TEST(UserPage, AKeyIsTakenOnceAndOnlyWhileThePageIsShown) {
   EXPECT_FALSE(page.is_pressed(271));
 }
 
+TEST(UserPage, ElementsOfAPageOfHtmlKeepTheirLastTextUpToALimit) {
+  UserPage page;
+  page.set_element("ux.lbl.innerHTML", "1");
+  page.set_element("ux.lbl.innerHTML", "2");
+  EXPECT_EQ(page.elements().at("ux.lbl.innerHTML"), "2");
+  for (std::size_t i = 0; i < 2 * UserPage::kElementsMax; ++i) page.set_element(std::to_string(i), "x");
+  page.set_element("ux.lbl.innerHTML", "3");
+  EXPECT_EQ(page.elements().size(), UserPage::kElementsMax);
+  EXPECT_EQ(page.elements().at("ux.lbl.innerHTML"), "3") << "one that is there still changes";
+}
+
 }  // namespace
 }  // namespace sim

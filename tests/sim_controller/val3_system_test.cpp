@@ -63,6 +63,30 @@ TEST_F(Val3Cell, ClockGoesOnByTicksInMilliseconds) {
   EXPECT_DOUBLE_EQ(system.clock_s() - before, 1.0);
 }
 
+TEST_F(Val3Cell, ABlendThatIsNotMadeIsToldOnceAndWhereThereIsOneOnly) {
+  MoveOrder blended = joint_move(clear());
+  blended.descriptor.blend = val3::Blend::kJoint;
+  const MoveOrder back = joint_move(search().approach);
+  EXPECT_EQ(system.store(back), val3::kErrorNone);
+  EXPECT_EQ(system.store(blended), val3::kErrorNone);
+  EXPECT_TRUE(system.messages().empty()) << "the last move has none to go over into";
+  EXPECT_EQ(system.store(back), val3::kErrorNone);
+  ASSERT_EQ(system.messages().size(), 1U);
+  EXPECT_NE(system.messages().back().find("blends are not simulated"), std::string::npos);
+  EXPECT_EQ(system.store(blended), val3::kErrorNone);
+  EXPECT_EQ(system.store(back), val3::kErrorNone);
+  EXPECT_EQ(system.messages().size(), 1U);
+}
+
+TEST_F(Val3Cell, ABlendedMoveThatHasEndedIsNone) {
+  MoveOrder blended = joint_move(clear());
+  blended.descriptor.blend = val3::Blend::kJoint;
+  EXPECT_EQ(system.store(blended), val3::kErrorNone);
+  until_empty();
+  EXPECT_EQ(system.store(joint_move(search().approach)), val3::kErrorNone);
+  EXPECT_TRUE(system.messages().empty());
+}
+
 TEST_F(Val3Cell, ALineOfTheProbeIsTheSearchOfTheTwin) {
   ASSERT_EQ(system.store(line_to(above_face())), val3::kErrorNone);
   EXPECT_FALSE(system.is_empty());

@@ -50,10 +50,6 @@ constexpr std::array kKnown{
                     "manual 6, page 155"},
     KnownDifference{"silence behind the", "place", "as in the travel", "manual 6, page 155"},
     KnownDifference{"silence in the retract", "place", "as in the travel", "manual 6, page 155"},
-    KnownDifference{
-        "duplicate at hello", "order",
-        "two Hellos that come at once get one Welcome: what was on its way to the first is dropped",
-        "PROTOCOL.md 2"},
     KnownDifference{"collision", "move_result.outcome", "as in a touch", "PROTOCOL.md 10, collision"},
     KnownDifference{"probe_dead", "touch_result.outcome", "the arm goes on into the block: a collision",
                     "PROTOCOL.md 10, collision"},

@@ -76,6 +76,22 @@ TEST(ApplicationLink, ASecondHelloIsAnsweredLikeTheFirst) {
   EXPECT_EQ(second.heartbeat_timeout_ms, 700u);
 }
 
+TEST(ApplicationLink, EachOfTheHellosThatComeAtOnceHasItsWelcome) {
+  Bench bench;
+  ASSERT_TRUE(bench.connect());
+  for (int i = 0; i < 3; ++i) bench.send(0, Hello{500});
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(bench.expect<Welcome>(0).heartbeat_timeout_ms, 500u) << i;
+  bench.seconds(0.1);
+  EXPECT_TRUE(bench.connected());
+}
+
+TEST(ApplicationLink, WelcomeNamesTheArmAlsoWhereTheControllerDoesNotSay) {
+  Bench::Hardware hardware;
+  hardware.differs = [](Cabinet& cabinet) { cabinet.arm_type = ""; };
+  Bench bench(hardware);
+  EXPECT_EQ(text_of(bench.greet().arm), "tx90");
+}
+
 TEST(ApplicationLink, StateComesEvery20MillisecondsFromWelcomeOn) {
   Bench bench;
   bench.heartbeats = false;

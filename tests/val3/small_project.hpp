@@ -54,6 +54,12 @@ class SmallProject {
            std::to_string(size) + "\"/></Locals>";
   }
 
+  /// The project's stackSize.
+  SmallProject& stack(std::size_t bytes) {
+    stack_bytes_ = bytes;
+    return *this;
+  }
+
   /// Writes the files; `stop` and the program list are added.
   SmallProject& write() {
     if (!programs_.contains("stop")) program("stop", "");
@@ -66,7 +72,9 @@ class SmallProject {
     file(name_ + ".dtx",
          "<Database " + kXsi + " xmlns=\"" + kSpace + "Data/2\">\n<Datas>\n" + data_ + "</Datas></Database>");
     file(name_ + ".pjx", "<Project xmlns=\"" + kSpace +
-                             "Project/3\">\n<Parameters version=\"s7.7.2\" stackSize=\"5000\" "
+                             "Project/3\">\n<Parameters version=\"s7.7.2\" stackSize=\"" +
+                             std::to_string(stack_bytes_) +
+                             "\" "
                              "millimeterUnit=\"true\"/>\n<Programs>" +
                              list + "</Programs><Database><Data file=\"" + name_ +
                              ".dtx\"/></Database><Libraries/></Project>");
@@ -81,6 +89,7 @@ class SmallProject {
   static inline const std::string kXsi = "xmlns:xsi=\"http://www.w3.org/2001/XMLSchema-instance\"";
   static inline const std::string kSpace = "http://www.staubli.com/robotics/VAL3/";
   std::string name_;
+  std::size_t stack_bytes_ = 5000;
   std::filesystem::path folder_;
   std::string data_;
   std::map<std::string, std::string> programs_;

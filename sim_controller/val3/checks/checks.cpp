@@ -29,6 +29,7 @@ void check(const Application& application, const CheckOptions& options, Findings
   check_locals(subject);
   check_globals(subject);
   check_channels(subject);
+  check_constants(subject);
   check_traps(subject);
   check_versions(subject);
   findings.insert(findings.end(), std::make_move_iterator(told.begin()), std::make_move_iterator(told.end()));

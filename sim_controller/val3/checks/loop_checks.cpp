@@ -26,7 +26,7 @@ class LoopChecks {
 
  private:
   void loop(std::size_t open, std::size_t close, const Line& condition) {
-    if (condition.expressions.empty() || waits_itself(condition)) return;
+    if (condition.expressions.empty() || subject_.graph.waits_itself(subject_.application, condition)) return;
     const std::optional<bool> always = constant_truth(condition.expressions[0]);
     if (always && *always != (condition.kind == Line::Kind::kWhile)) return;  // it goes round once at most
     for (std::size_t i = open + 1; i < close; ++i) {

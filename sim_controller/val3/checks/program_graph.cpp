@@ -21,20 +21,28 @@ bool uses_channel(const Line& line) {
   return channels > 0 && static_cast<std::size_t>(channels) < line.expressions.size();
 }
 
-bool waits_itself(const Line& line) {
+bool ProgramGraph::waits_itself(const Application& application, const Line& line) const {
   bool waits = false;
   visit_expressions(line, [&](const Expression& e) {
-    if (e.kind == Expression::Kind::kCall) {
-      const Instruction* const instruction = e.reference.instruction;
-      waits = waits || instruction == nullptr || instruction->may_yield || instruction->may_block;
-    }
+    if (e.kind != Expression::Kind::kCall) return;
+    const Instruction* const instruction = e.reference.instruction;
+    const bool is_quiet = (e.text == "sioGet" || e.text == "sioSet") && !e.parts.empty() &&
+                          quiet_.surely_contains(application, e.parts[0]);
+    const bool may_wait = instruction == nullptr || instruction->may_yield || instruction->may_block;
+    waits = waits || (may_wait && !is_quiet);
   });
-  return waits || uses_channel(line);
+  if (waits || !uses_channel(line)) return waits;
+  return std::ranges::any_of(line.expressions, [&](const Expression& e) {
+    return !e.is_unknown && e.type.kind == Kind::kSio && !quiet_.surely_contains(application, e);
+  });
 }
 
 ProgramGraph::ProgramGraph(const Application& application) {
   std::unordered_set<const Application*> seen;
   add(application, seen);
+  for (const Node& node : nodes_)
+    for (const Line& line : node.program->lines)
+      visit_expressions(line, [&](const Expression& e) { quiet_.add(*node.application, e); });
   for (Node& node : nodes_) fill(node);
   spread_waits();
   for (const Node& node : nodes_) written_.insert(node.writes.begin(), node.writes.end());
@@ -55,7 +63,7 @@ void ProgramGraph::add(const Application& application, std::unordered_set<const 
 
 void ProgramGraph::fill(Node& node) {
   for (const Line& line : node.program->lines) {
-    if (waits_itself(line)) node.waits = true;
+    if (waits_itself(*node.application, line)) node.waits = true;
     if (line.kind == Line::Kind::kCall) {
       if (const Program* const called = called_program(*node.application, line))
         node.calls.push_back(places_.at(called));
@@ -119,7 +127,7 @@ bool ProgramGraph::writes(const Node& from, const Global& global) const {
 }
 
 bool ProgramGraph::waits(const Application& application, const Line& line) const {
-  if (waits_itself(line)) return true;
+  if (waits_itself(application, line)) return true;
   if (line.kind != Line::Kind::kCall) return false;
   const Node* const node = called(application, line);
   return node == nullptr || node->waits;

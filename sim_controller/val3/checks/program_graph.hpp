@@ -6,6 +6,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "sim_controller/val3/checks/quiet_channels.hpp"
 #include "sim_controller/val3/program/application.hpp"
 
 namespace val3 {
@@ -36,6 +37,9 @@ class ProgramGraph {
   [[nodiscard]] bool is_written(const Global& global) const { return written_.contains(&global); }
   /// The task may let others run in this line: it waits, or uses a channel, or calls what does or is unknown.
   [[nodiscard]] bool waits(const Application& application, const Line& line) const;
+  /// The same without what it calls. A channel that was told not to wait lets nobody run.
+  [[nodiscard]] bool waits_itself(const Application& application, const Line& line) const;
+  [[nodiscard]] const QuietChannels& quiet_channels() const { return quiet_; }
 
  private:
   void add(const Application& application, std::unordered_set<const Application*>& seen);
@@ -45,13 +49,12 @@ class ProgramGraph {
   std::vector<Node> nodes_;
   std::unordered_map<const Program*, std::size_t> places_;
   std::unordered_set<const Global*> written_;
+  QuietChannels quiet_;
 };
 
 /// The global that a name stands for; null when it stands for something else.
 const Global* global_of(const Application& application, const Expression& name);
 /// Reads or writes a socket or serial port by `=`.
 bool uses_channel(const Line& line);
-/// An instruction of this line may make the task wait, or it reads or writes a channel.
-bool waits_itself(const Line& line);
 
 }  // namespace val3

@@ -43,6 +43,23 @@ constexpr Rule kRulesOfChecks[] = {
      "(M6 "
      "page 62).",
      "Call clearBuffer when a read fails, and in stop()."},
+    {kConstantIndex, kWarning, "An index or a dimension is outside of the array.",
+     "Run-time error 20 above it, 21 below 0 (M6 pages 21 and 179).", "Correct the index or the size."},
+    {kDivisionByZero, kWarning, "A number is divided by 0.", "Run-time error 10 (M6 page 179).",
+     "Correct the divisor."},
+    {kWriteToInput, kWarning, "An input is written.", "Run-time error 122 (M6 page 179).",
+     "Link the variable to an output, or leave the line out."},
+    {kFixedFrame, kWarning, "The frame world or the tool flange is changed.",
+     "They are fixed: run-time error 161 or 160 at the next geometric calculation (M6 pages 122 and 179).",
+     "Use a frame or tool of the application."},
+    {kEndlessRecursion, kWarning, "A program calls itself without a condition.",
+     "Each call takes run memory until there is none: run-time error 41 (M6 page 18).",
+     "Write a loop, or a condition around the call."},
+    {kRunMemory, kWarning, "Run memory is too small.",
+     "Parameters and locals of the calls of a task stand in it (M6 page 18). start() and stop() that do not "
+     "fit "
+     "are refused at load. The bytes are estimated, and low.",
+     "Give the project a larger stackSize, or the program smaller locals."},
     {kBlend, kNote, "A straight move blends in an application that waits for a contact.",
      "A missing blend is joint in s7 data: the arm does not stop at the point.", "Set the blend to off."},
     {kJointComparison, kNote, "The opposite of a comparison of joints.",

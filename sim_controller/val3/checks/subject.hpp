@@ -32,13 +32,14 @@ struct CheckSubject {
   }
 };
 
-void check_tasks(const CheckSubject& subject);     // synchronous tasks: what waits, their periods
-void check_loops(const CheckSubject& subject);     // loops in which nothing waits
-void check_flow(const CheckSubject& subject);      // lines that are never reached
-void check_locals(const CheckSubject& subject);    // read before they are set, never used
-void check_globals(const CheckSubject& subject);   // never set, never used; programs never called
-void check_channels(const CheckSubject& subject);  // sockets never closed
-void check_traps(const CheckSubject& subject);     // what a manual warns of
-void check_versions(const CheckSubject& subject);  // what another version has not
+void check_tasks(const CheckSubject& subject);      // synchronous tasks: what waits, their periods
+void check_loops(const CheckSubject& subject);      // loops in which nothing waits
+void check_flow(const CheckSubject& subject);       // lines that are never reached
+void check_locals(const CheckSubject& subject);     // read before they are set, never used
+void check_globals(const CheckSubject& subject);    // never set, never used; programs never called
+void check_channels(const CheckSubject& subject);   // sockets never closed
+void check_constants(const CheckSubject& subject);  // mistakes that are written out, run memory
+void check_traps(const CheckSubject& subject);      // what a manual warns of
+void check_versions(const CheckSubject& subject);   // what another version has not
 
 }  // namespace val3

@@ -31,34 +31,9 @@ bool is_move(std::string_view name) {
 /// Tested once a period: the task skips what it has no time for, as was meant.
 bool is_timed_wait(std::string_view name) { return name == "wait" || name == "watch" || name == "delay"; }
 
-/// Which channels were told not to wait.
-class QuietChannels {
- public:
-  explicit QuietChannels(const ProgramGraph& graph) {
-    for (const ProgramGraph::Node& node : graph.nodes())
-      for (const Line& line : node.program->lines)
-        visit_expressions(line, [&](const Expression& e) { add(*node.application, e); });
-  }
-  [[nodiscard]] bool contains(const Application& application, const Expression& channel) const {
-    const Global* const global = global_of(application, root_of(channel));
-    return global == nullptr ? any_ : channels_.contains(global);
-  }
-
- private:
-  void add(const Application& application, const Expression& e) {
-    if (e.kind != Expression::Kind::kCall || e.text != "sioCtrl" || e.parts.size() != 3) return;
-    if (e.parts[1].text != "timeout" || constant_of(e.parts[2]).value_or(0.0) >= 0.0) return;
-    any_ = true;
-    if (const Global* const global = global_of(application, root_of(e.parts[0]))) channels_.insert(global);
-  }
-
-  bool any_ = false;
-  std::unordered_set<const Global*> channels_;
-};
-
 class TaskChecks {
  public:
-  explicit TaskChecks(const CheckSubject& subject) : subject_(subject), quiet_(subject.graph) {}
+  explicit TaskChecks(const CheckSubject& subject) : subject_(subject) {}
 
   void run() {
     for (const Program& program : subject_.application.programs)
@@ -86,7 +61,7 @@ class TaskChecks {
     if (!uses_channel(line)) return;
     const auto channel = std::ranges::find_if(
         line.expressions, [](const Expression& e) { return e.type.kind == Kind::kSio && !e.is_unknown; });
-    if (quiet_.contains(*node.application, *channel)) return;
+    if (subject_.graph.quiet_channels().contains(*node.application, *channel)) return;
     subject_.tell(Severity::kWarning, check_rules::kSyncBlocking, *node.program, line,
                   "a channel is read or written by =, which may wait, in " + who);
   }
@@ -102,7 +77,7 @@ class TaskChecks {
       return;
     }
     const bool is_channel = e.text == "sioGet" || e.text == "sioSet";
-    if (is_channel && quiet_.contains(*node.application, e.parts[0])) return;
+    if (is_channel && subject_.graph.quiet_channels().contains(*node.application, e.parts[0])) return;
     subject_.tell(
         Severity::kWarning, check_rules::kSyncBlocking, *node.program, e, e.text + "() may wait, in " + who,
         is_channel ? "set its time-out to -1 by sioCtrl, or use the channel in an asynchronous task" : "");
@@ -151,7 +126,6 @@ class TaskChecks {
   }
 
   const CheckSubject& subject_;
-  QuietChannels quiet_;
   std::unordered_set<const Line*> told_;
   std::set<double> periods_;
 };

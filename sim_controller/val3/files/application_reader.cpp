@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sim_controller/val3/files/built_in_io.hpp"
 #include "sim_controller/val3/files/data_file.hpp"
 #include "sim_controller/val3/files/declaration_checks.hpp"
 #include "sim_controller/val3/files/declared_names.hpp"
@@ -144,6 +145,22 @@ void ApplicationReader::read_libraries(Application& application, const ProjectFi
           read_library(application.folder, listed, Severity::kWarning, findings, depth).application;
     application.libraries.push_back(std::move(library));
   }
+  if (application.form == 5 && application.name != "io") read_io(application, findings.file());
+}
+
+/// Every application of s5 and s6 has the library io, whether its project says so or not.
+void ApplicationReader::read_io(Application& application, const std::string& project) {
+  int index = application.library_named("io");
+  if (index < 0) {
+    index = static_cast<int>(application.libraries.size());
+    application.libraries.push_back(
+        {.alias = "io", .path = "io", .autoload = true, .at = {project, 0, 0}, .application = nullptr});
+  }
+  Library& io = application.libraries[static_cast<std::size_t>(index)];
+  if (io.application)
+    link_to_signals(*io.application);
+  else if (is_built_in(io.path))
+    io.application = built_in_io(application);
 }
 
 void ApplicationReader::read_loadable(Application& application, int depth) {

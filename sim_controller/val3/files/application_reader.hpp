@@ -89,6 +89,7 @@ class ApplicationReader {
                      FileFindings& findings);
   void read_libraries(Application& application, const ProjectFile& project, FileFindings& findings,
                       int depth);
+  static void read_io(Application& application, const std::string& project);
   /// What alias:libLoad("path") of its programs names.
   void read_loadable(Application& application, int depth);
   void add_loadable(Application& application, const Program& program, const Expression& e, int depth);

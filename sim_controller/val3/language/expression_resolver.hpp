@@ -47,6 +47,7 @@ class ExpressionResolver {
   void resolve_name(Expression& e);
   void resolve_undefined(Expression& e);
   void resolve_library_name(Expression& e);
+  void resolve_unknown_signal(const Application& io, Expression& e);
   void resolve_index(Expression& e);
   void check_index(const Shape& shape, Expression& e);
   void resolve_field(Expression& e);

@@ -41,22 +41,6 @@ bool is_of_scara(Kind kind) {
   return kind == Kind::kJointRs || kind == Kind::kPointRs || kind == Kind::kConfigRs;
 }
 
-/// Digits behind a word: bIn7 of bIn.
-bool is_numbered(std::string_view text, std::string_view word) {
-  if (!text.starts_with(word)) return false;
-  text.remove_prefix(word.size());
-  return !text.empty() && text.size() <= 3 &&
-         std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
-}
-
-/// A signal that a controller of s5 and s6 has by itself (language reference, 1.7).
-Kind system_signal(std::string_view name) {
-  if (name == "CBT_TEMP" || name == "CPU_TEMP") return Kind::kAio;
-  for (const std::string_view word : {"bIn", "bOut", "fIn", "fOut", "usrIn", "valve"})
-    if (is_numbered(name, word)) return Kind::kDio;
-  return name == "SECTEUR_OK" ? Kind::kDio : Kind::kVoid;
-}
-
 }  // namespace
 
 void ExpressionResolver::resolve_name(Expression& e) {
@@ -104,13 +88,7 @@ void ExpressionResolver::resolve_library_name(Expression& e) {
   const int library = scope_.library(e.alias);
   const Scope* const there = library < 0 ? nullptr : scope_.of_library(library);
   if (there == nullptr) {
-    const bool is_system = e.alias == "io" && scope_.application().form == 5;
-    const Kind kind = is_system ? system_signal(e.text) : Kind::kVoid;
-    if (kind != Kind::kVoid) {
-      e.reference.to = Reference::To::kSystemIo;
-      e.type = {kind, -1};
-      e.is_place = true;
-    } else if (library < 0 && !is_system) {
+    if (library < 0) {
       fail(resolver_rules::kUndefinedLibrary, e, "no library has the alias " + e.alias,
            "declare it in the project");
     } else {
@@ -119,6 +97,7 @@ void ExpressionResolver::resolve_library_name(Expression& e) {
     return;
   }
   const int global = there->global(e.text);
+  if (global < 0 && there->application().is_built_in) return resolve_unknown_signal(there->application(), e);
   if (global < 0)
     return fail(resolver_rules::kUndefinedName, e,
                 "nothing is called " + e.text + " in the library " + e.alias,
@@ -133,6 +112,19 @@ void ExpressionResolver::resolve_library_name(Expression& e) {
          "make it public there");
 }
 
+/// The cell may have it, on a board or fieldbus: its project `io` is not here to tell.
+void ExpressionResolver::resolve_unknown_signal(const Application& io, Expression& e) {
+  e.is_unknown = true;
+  e.is_place = true;
+  const auto meant = std::ranges::find_if(
+      io.globals, [&](const Global& signal) { return same_but_for_case(signal.declared.name, e.text); });
+  tell(Severity::kWarning, resolver_rules::kUnknownSignal, e,
+       "no signal is called " + e.text + " in the library io that a controller has by itself",
+       meant == io.globals.end()
+           ? "put the cell's project io beside the application, or correct the name"
+           : "write " + e.alias + ":" + meant->declared.name + ": upper and lower case differ");
+}
+
 void ExpressionResolver::resolve_index(Expression& e) {
   Expression& base = e.parts[0];
   resolve(base);
@@ -140,7 +132,7 @@ void ExpressionResolver::resolve_index(Expression& e) {
   e.type = base.type;
   e.is_place = true;
   e.is_unknown = base.is_unknown;
-  if (e.is_unknown || base.reference.to == Reference::To::kSystemIo) return;
+  if (e.is_unknown) return;
   const Shape counted = shape(base);
   if (!base.is_place || !counted.has_elements())
     return fail(resolver_rules::kIndexNotAllowed, e, "an index behind what has no elements");

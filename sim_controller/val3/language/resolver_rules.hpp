@@ -11,6 +11,7 @@ inline constexpr std::string_view kUndefinedProgram = "undefined-program";
 inline constexpr std::string_view kUndefinedInstruction = "undefined-instruction";
 inline constexpr std::string_view kUndefinedField = "undefined-field";
 inline constexpr std::string_view kUndefinedLibrary = "undefined-library";
+inline constexpr std::string_view kUnknownSignal = "unknown-signal";
 inline constexpr std::string_view kUnknownAddon = "unknown-addon";  // a note
 inline constexpr std::string_view kNotPublic = "not-public";
 inline constexpr std::string_view kProgramWithoutCall = "program-without-call";

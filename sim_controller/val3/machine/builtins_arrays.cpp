@@ -1,8 +1,10 @@
 // Arrays of any type (s7; size() since the first manual).
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "sim_controller/val3/machine/builtins.hpp"
+#include "sim_controller/val3/machine/libraries.hpp"
 
 namespace val3 {
 namespace {
@@ -68,6 +70,55 @@ std::string next_key(Context&, const Ref& place) {
   return at->first;
 }
 
+/// What getData() gives instead of a number of elements (manual 6, page 32).
+enum DataResult : int { kNoData = -1, kNoDataLibrary = -2, kNoDataIndex = -3, kOtherDataType = -4 };
+
+/// "alias:name[i]" or "name[i]", split; the index is 0 where none is written.
+struct DataName {
+  std::string alias;
+  std::string name;
+  std::size_t index = 0;
+  bool is_index = true;  // what stands in the brackets is one
+};
+
+DataName data_name(const std::string& text) {
+  DataName result;
+  std::string_view rest = text;
+  if (const std::size_t colon = rest.find(':'); colon != std::string_view::npos) {
+    result.alias = rest.substr(0, colon);
+    rest.remove_prefix(colon + 1);
+  }
+  const std::size_t open = rest.find('[');
+  result.name = rest.substr(0, open);
+  if (open == std::string_view::npos) return result;
+  rest.remove_prefix(open + 1);
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), result.index);
+  result.is_index = error == std::errc{} && std::string_view(end, rest.data() + rest.size()) == "]";
+  return result;
+}
+
+/// Copies as many elements of the variable with this name as both hold; how many.
+double get_data(Context& context, const std::string& text, const Ref& into) {
+  const DataName wanted = data_name(text);
+  const Instance* owner = context.here->code->instance;
+  if (!wanted.alias.empty()) {
+    const int library = owner->application->library_named(wanted.alias);
+    const LibrarySlot* slot = library < 0 ? nullptr : owner->slots[static_cast<std::size_t>(library)].get();
+    if (slot == nullptr || slot->loaded == nullptr) return kNoDataLibrary;
+    owner = slot->loaded->instance;
+  }
+  const int index = owner->application->global_named(wanted.name);
+  const auto at = static_cast<std::size_t>(index);
+  if (index < 0 || (!wanted.alias.empty() && !owner->application->globals[at].is_public)) return kNoData;
+  const ArrayBase& from = *owner->globals[at];
+  if (from.type().kind == Kind::kUser || from.type() != into.array->type() || into.field >= 0)
+    return kOtherDataType;
+  if (!wanted.is_index || wanted.index >= from.size()) return kNoDataIndex;
+  const std::size_t count = std::min(from.size() - wanted.index, into.size());
+  for (std::size_t i = 0; i < count; ++i) into.array->copy(into.index + i, from, wanted.index + i);
+  return static_cast<double>(count);
+}
+
 }  // namespace
 
 void define_arrays(Builtins& list) {
@@ -81,6 +132,7 @@ void define_arrays(Builtins& list) {
   list.define<Nothing, Ref>("delete", delete_element);
   list.define<std::string, Ref>("first", first_key);
   list.define<std::string, Ref>("next", next_key);
+  list.define<double, std::string, Ref>("getData", get_data);
 }
 
 }  // namespace val3

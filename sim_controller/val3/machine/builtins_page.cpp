@@ -1,8 +1,11 @@
 // The user page, keys and the log (manual 6, pages 67 to 74).
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <cstdio>
 
 #include "sim_controller/val3/machine/builtins.hpp"
+#include "sim_controller/val3/machine/tasks.hpp"
 
 namespace val3 {
 namespace {
@@ -31,6 +34,75 @@ double awaited_key(Context& context) {
   const auto pressed = context.system.take_key();
   if (!pressed) throw Wait{};
   return static_cast<double>(*pressed);
+}
+
+constexpr int kReturnKey = 270;
+constexpr int kEscapeKey = 255;
+constexpr int kBackspaceKey = 263;
+constexpr int kFirstFunctionKey = 271;
+constexpr int kLastFunctionKey = 278;
+constexpr std::size_t kEditedBytesMax = 128;
+
+std::string text_of(double number) {
+  std::array<char, 32> text{};
+  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), number).ptr};
+}
+std::string text_of(const std::string& text) { return text; }
+
+void take_edited(const std::string& text, std::string& into) { into = text; }
+/// What is no number leaves the variable.
+void take_edited(const std::string& text, double& into) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc{} && end == text.data() + text.size() && std::isfinite(number)) into = number;
+}
+
+/// get(x): a person edits the variable, until Return, Esc or an F-key, which is the result; Esc leaves it as
+/// it was (manual 6, page 69). A key a turn.
+template <class T>
+double edit(Context& context, const Out<T>& variable) {
+  std::optional<std::string>& edited = context.task.edited;
+  if (!edited) edited = text_of(variable.value());
+  const auto key = context.system.take_key();
+  if (!key) throw Wait{};
+  const bool is_function = *key >= kFirstFunctionKey && *key <= kLastFunctionKey;
+  if (*key == kReturnKey || *key == kEscapeKey || is_function) {
+    if (*key != kEscapeKey) take_edited(*edited, variable.value());
+    edited.reset();
+    return static_cast<double>(*key);
+  }
+  if (*key == kBackspaceKey && !edited->empty()) edited->pop_back();
+  const bool is_character = *key >= ' ' && *key < 0x7F;
+  if (is_character && edited->size() < kEditedBytesMax) edited->push_back(static_cast<char>(*key));
+  throw Wait{};
+}
+
+template <class T>
+std::string element_text(const T& value) {
+  if constexpr (std::is_same_v<T, bool>) return value ? "true" : "false";
+  if constexpr (std::is_same_v<T, double>) return text_of(value);
+  if constexpr (std::is_same_v<T, std::string>) return value;
+}
+
+/// userPageSet of s8: what an element of a page of HTML shows.
+template <class T>
+Nothing set_element(Context& context, const std::string& page, const std::string& element,
+                    const std::string& attribute, const T& value) {
+  context.system.set_page_element(page + "." + element + "." + attribute, element_text<T>(value));
+  return {};
+}
+
+Nothing pop_up(Context& context, const std::string& text) {
+  context.system.pop_up(text);
+  return {};
+}
+
+/// There is one profile, and nobody but the pendant changes to "staubli".
+double set_profile(Context&, const std::string& user, const std::string&) {
+  constexpr double kUnknownProfile = -1.0;
+  constexpr double kNotAllowed = -3.0;
+  if (user == "staubli") return kNotAllowed;
+  return user == "default" ? 0.0 : kUnknownProfile;
 }
 
 Nothing show(Context& context, bool fixed) {
@@ -101,10 +173,17 @@ void define_page(Builtins& list) {
   list.define<double>("getKey", key);
   list.define<double>("get", awaited_key);
   list.define<bool, double>("isKeyPressed", is_pressed);
-  list.define<Nothing, std::string>("popUpMsg", [](Context& c, const std::string& text) {
-    c.system.pop_up(text);
-    return Nothing{};
-  });
+  list.define<double, Out<std::string>>("get", edit<std::string>);
+  list.define<double, Out<double>>("get", edit<double>);
+  list.define<Nothing, std::string>("popUpMsg", pop_up);
+  list.define<Nothing, std::string>("userPageAlert", pop_up);
+  list.define<Nothing, std::string, std::string, std::string, std::string>("userPageSet",
+                                                                           set_element<std::string>);
+  list.define<Nothing, std::string, std::string, std::string, double>("userPageSet", set_element<double>);
+  list.define<Nothing, std::string, std::string, std::string, bool>("userPageSet", set_element<bool>);
+  // How text looks is nothing that a page of characters shows.
+  list.define<Nothing>("setTextMode", [](Context&) { return Nothing{}; });
+  list.define<Nothing, double>("setTextMode", [](Context&, double) { return Nothing{}; });
   list.define<Nothing, std::string>("logMsg", [](Context& c, const std::string& text) {
     c.system.log(text);
     return Nothing{};
@@ -113,6 +192,7 @@ void define_page(Builtins& list) {
     c.system.log(text);
     return Nothing{};
   });
+  list.define<double, std::string, std::string>("setProfile", set_profile);
   list.define<std::string>("getProfile", [](Context&) { return std::string("default"); });
   list.define<std::string>("getLanguage", [](Context&) { return std::string("english"); });
   list.define<std::string, std::string>(

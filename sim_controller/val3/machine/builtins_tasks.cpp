@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "sim_controller/val3/machine/builtins.hpp"
+#include "sim_controller/val3/machine/run_error.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
 
 namespace val3 {
@@ -87,7 +88,7 @@ void define_tasks(Builtins& list) {
     return std::floor(c.system.clock_s() / kClockStepSeconds + 1e-6) * kClockStepSeconds;
   });
   list.define<std::string, double>("help", [](Context&, double code) {
-    return "error " + std::to_string(static_cast<int>(std::max(-1e6, std::min(1e6, code))));
+    return std::string(run_error_text(static_cast<int>(std::max(-1e6, std::min(1e6, code)))));
   });
 }
 

@@ -55,7 +55,7 @@ class CallCompiler {
     return operation([code, made = hands(*code.declared->program, line, 0)](Context& c) {
       auto called = Tasks::activate(code.get(), c.tasks.fathers);
       for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
-      c.tasks.enter(c, std::move(called));
+      c.tasks.enter(c.task, std::move(called));
       return Flow::kGo;
     });
   }
@@ -85,7 +85,7 @@ class CallCompiler {
       }
       auto called = Tasks::activate(code.get(), c.tasks.fathers);
       for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
-      task->stack.push_back(std::move(called));
+      c.tasks.enter(*task, std::move(called));
       c.tasks.create(std::move(task));
       return Flow::kGo;
     });
@@ -128,7 +128,7 @@ class CallCompiler {
         continue;
       }
       if (!is_simulated(parameter.type.kind))
-        compiler_.refuse(argument, "values of this type are not simulated");
+        compiler_.refuse_type(argument, "values of this type are not simulated");
       made.push_back(with_type_of(parameter.type.kind, [&]<class T>() -> std::unique_ptr<const Hand> {
         return std::make_unique<const HandValue<T>>(compiler_.value<T>(argument));
       }));

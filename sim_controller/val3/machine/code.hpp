@@ -49,6 +49,7 @@ struct Instance;
 struct Code {
   const Program* program = nullptr;
   const Instance* instance = nullptr;  // whose variables it uses
+  std::size_t call_bytes = 0;          // of run memory, that a call of it takes
   std::vector<std::unique_ptr<const Operation>> operations;
   mutable std::vector<std::unique_ptr<Activation>> idle;  // of calls that are over, to be used again
 };

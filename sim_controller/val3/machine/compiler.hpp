@@ -34,6 +34,8 @@ class Compiler {
   [[noreturn]] void refuse(const Expression& e, const std::string& what) const;
   /// An expression of another type than is wanted, or without one: names the instruction that has none here.
   [[noreturn]] void refuse_type(const Expression& e, const std::string& what) const;
+  /// Of a name that stands for nothing here, though a controller may know it.
+  [[nodiscard]] std::string why_unknown(const Expression& name) const;
   [[nodiscard]] const Instance& instance() const { return instance_; }
   [[nodiscard]] const Fathers& fathers() const { return fathers_; }
   [[nodiscard]] const Program& program() const { return program_; }

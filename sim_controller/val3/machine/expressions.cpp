@@ -15,9 +15,16 @@ using EKind = Expression::Kind;
 /// Strings end here, silently (manual 6, page 48).
 constexpr std::size_t kTextBytesMax = 128;
 
+/// No manual says what a number too large for its format is. A program that went on with it would wait, or
+/// move, without end.
+double finite(double value) {
+  if (!std::isfinite(value)) throw RunFailure(kErrorArgument, "a result that is too large for a number");
+  return value;
+}
+
 double divided(double left, double right) {
   if (right == 0.0) throw RunFailure(kErrorDivision, "division by zero");
-  return left / right;
+  return finite(left / right);
 }
 
 double remainder_of(double left, double right) {
@@ -81,6 +88,7 @@ void Compiler::refuse(const Expression& e, const std::string& what) const {
 
 void Compiler::refuse_type(const Expression& e, const std::string& what) const {
   if (e.kind == EKind::kCall && e.type.kind == Kind::kVoid) refuse(e, e.text + "() is not simulated");
+  if (e.kind == EKind::kName && e.is_unknown) refuse(e, why_unknown(e));
   for (const Expression& part : e.parts)
     if (part.type.kind == Kind::kVoid) refuse_type(part, what);
   refuse(e, what);
@@ -90,7 +98,11 @@ template <class T>
 NodePtr<T> Compiler::called(const Expression& e) {
   const bool is_of_library = is_library_instruction(e);
   const Builtins::Make* make = is_of_library ? nullptr : builtins().find(e);
-  if (make == nullptr && !is_of_library) refuse(e, e.text + " with these arguments is not simulated");
+  if (make == nullptr && !is_of_library) {
+    for (const Expression& part : e.parts)
+      if (part.is_unknown && part.type.kind == Kind::kVoid) refuse_type(part, "the value of an argument");
+    refuse(e, e.text + " with these arguments is not simulated");
+  }
   AnyNode made = is_of_library ? library_instruction(*this, e) : (*make)(*this, e);
   const auto* typed = dynamic_cast<const Node<T>*>(made.get());
   if (typed == nullptr) refuse(e, e.text + " does not give this type");
@@ -124,11 +136,11 @@ NodePtr<double> Compiler::number(const Expression& e) {
   NodePtr<double> a = number(e.parts[0]);
   NodePtr<double> b = number(e.parts[1]);
   if (e.text == "+")
-    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return x + y; });
+    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return finite(x + y); });
   if (e.text == "-")
-    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return x - y; });
+    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return finite(x - y); });
   if (e.text == "*")
-    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return x * y; });
+    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return finite(x * y); });
   if (e.text == "/") return of_two<double>(std::move(a), std::move(b), divided);
   if (e.text == "%") return of_two<double>(std::move(a), std::move(b), remainder_of);
   refuse(e, "no operator " + e.text + " for numbers");
@@ -181,7 +193,7 @@ NodePtr<bool> Compiler::comparison(const Expression& e) {
   Kind kind = e.parts[0].kind == EKind::kBraces ? e.parts[1].type.kind : e.parts[0].type.kind;
   if (kind == Kind::kDio) kind = Kind::kBool;  // the states
   if (kind == Kind::kAio) kind = Kind::kNum;
-  if (!is_simulated(kind)) refuse(e, "values of this type are not simulated");
+  if (!is_simulated(kind)) refuse_type(e, "values of this type are not simulated");
   return with_type_of(kind, [&]<class T>() { return compared<T>(e); });
 }
 
@@ -229,6 +241,15 @@ NodePtr<T> Compiler::braces(const Expression& e) {
   } else if constexpr (std::is_same_v<T, Frame>) {
     if (e.parts.size() != 1) refuse(e, "a literal of a trsf is wanted");
     return lambda_node<T>([t = value<Trsf>(e.parts[0])](Context& c) { return Frame{.trsf = t->get(c)}; });
+  } else if constexpr (std::is_same_v<T, Tool>) {
+    if (e.parts.size() != 4) refuse(e, "a literal of trsf, gripper, otime and ctime is wanted");
+    return lambda_node<T>([t = value<Trsf>(e.parts[0]), gripper = value<Dio>(e.parts[1]),
+                           open_s = number(e.parts[2]), close_s = number(e.parts[3])](Context& c) {
+      return Tool{.trsf = t->get(c),
+                  .gripper = gripper->get(c),
+                  .open_s = open_s->get(c),
+                  .close_s = close_s->get(c)};
+    });
   } else if constexpr (std::is_same_v<T, Mdesc>) {
     if (e.parts.size() != 8) refuse(e, "a literal of eight fields is wanted");
     std::vector<NodePtr<double>> p;
@@ -282,7 +303,7 @@ NodePtr<T> Compiler::structure(const Expression& e) {
 
 AnyNode Compiler::any(const Expression& e) {
   if (e.type.kind == Kind::kVoid) return called<Nothing>(e);
-  if (!is_simulated(e.type.kind)) refuse(e, "values of this type are not simulated");
+  if (!is_simulated(e.type.kind)) refuse_type(e, "values of this type are not simulated");
   return with_type_of(e.type.kind, [&]<class T>() -> AnyNode { return value<T>(e); });
 }
 

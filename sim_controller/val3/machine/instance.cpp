@@ -163,12 +163,24 @@ class DataLoader {
       for (const UserType& type : declared)
         for (std::size_t i = 0; i < type.fields.size() && i < target.fields.size(); ++i)
           if (type.fields[i].declared.name == field.declared.name &&
-              target.fields[i]->type() == field.declared.type)
+              target.fields[i]->type() == field.declared.type) {
+            size_as_stored(*target.fields[i], field.declared);
             fill(*target.fields[i], field.values);
+          }
     }
   }
   template <class T>
   static void set(T&, const StoredValue&) {}
+
+  /// A variable's field has the size that its data store, whatever that of its type.
+  static void size_as_stored(ArrayBase& array, const Declaration& stored) {
+    if (array.sizes.size() != stored.sizes.size() || stored.is_collection() || array.sizes == stored.sizes)
+      return;
+    std::size_t count = 1;
+    for (const std::size_t size : stored.sizes) count *= size;
+    array.resize(count);
+    array.sizes = stored.sizes;
+  }
 
   /// "name[i]", or "alias:name[i]".
   void set_father(Father& target, const StoredValue& v) {

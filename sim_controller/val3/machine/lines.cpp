@@ -6,6 +6,7 @@
 #include "sim_controller/val3/machine/channels.hpp"
 #include "sim_controller/val3/machine/signals.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
+#include "sim_controller/val3/program/run_memory.hpp"
 
 namespace val3 {
 namespace {
@@ -233,7 +234,8 @@ class LineCompiler {
             write_analogue(c, signal->get(c), value->get(c));
             return Flow::kGo;
           });
-    if (!is_simulated(first.type.kind)) compiler_.refuse(first, "a variable of this type is not simulated");
+    if (!is_simulated(first.type.kind))
+      compiler_.refuse_type(first, "a variable of this type is not simulated");
     return with_type_of(first.type.kind, [&]<class T>() -> OperationPtr {
       std::vector<PlaceNodePtr<T>> targets;
       for (std::size_t i = 0; i < places; ++i) targets.push_back(compiler_.place<T>(line.expressions[i]));
@@ -268,7 +270,7 @@ class LineCompiler {
         return condition->get(c) ? Flow::kGo : Flow::kWait;
       });
     if (e.type.kind == Kind::kVoid) return evaluation<Nothing>(compiler_.any(e));
-    if (!is_simulated(e.type.kind)) compiler_.refuse(e, "values of this type are not simulated");
+    if (!is_simulated(e.type.kind)) compiler_.refuse_type(e, "values of this type are not simulated");
     return with_type_of(e.type.kind,
                         [&]<class T>() -> OperationPtr { return evaluation<T>(compiler_.any(e)); });
   }
@@ -280,7 +282,9 @@ class LineCompiler {
 }  // namespace
 
 Code compile(const Instance& instance, const Fathers& fathers, const Program& program, Findings& findings) {
-  Code code{.program = &program, .instance = &instance};
+  Code code{.program = &program,
+            .instance = &instance,
+            .call_bytes = bytes_of_call(*instance.application, program)};
   Compiler compiler(instance, fathers, program);
   LineCompiler lines(compiler, program);
   for (std::size_t i = 0; i < program.lines.size(); ++i) {

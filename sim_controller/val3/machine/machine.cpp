@@ -9,6 +9,7 @@
 #include "sim_controller/val3/machine/compiler.hpp"
 #include "sim_controller/val3/machine/libraries.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
+#include "sim_controller/val3/program/run_memory.hpp"
 
 namespace val3 {
 namespace {
@@ -42,7 +43,8 @@ struct Machine::State {
     }
     made->programs.resize(from.programs.size());
     for (std::size_t i = 0; i < from.programs.size(); ++i)
-      made->programs[i] = Code{.program = &from.programs[i], .instance = made};
+      made->programs[i] =
+          Code{.program = &from.programs[i], .instance = made};  // compiled when all are there
     for (const Library& library : from.libraries) add_library(*made, library);
     return made;
   }
@@ -94,6 +96,23 @@ struct Machine::State {
       if (library != nullptr) append(*library, found, all);
   }
 
+  /// A controller loads no application whose run memory does not hold start() and stop() (s6.8's messages).
+  void demand_run_memory(Findings& findings) const {
+    const std::size_t memory = run_memory_of(application);
+    for (const char* name : {"start", "stop"}) {
+      const int index = application.program_named(name);
+      const Code* code = index < 0 ? nullptr : &root->programs[static_cast<std::size_t>(index)];
+      if (code == nullptr || code->call_bytes <= memory) continue;
+      Finding found;
+      found.rule = "run-memory";
+      found.at = {code->program->file, code->program->line, 0};
+      found.what = std::string(name) + "() takes " + std::to_string(code->call_bytes) +
+                   " bytes of run memory (estimated), and stackSize is " + std::to_string(memory);
+      found.remedy = "give the project a larger stackSize, or the program smaller locals";
+      findings.push_back(std::move(found));
+    }
+  }
+
   /// A task that runs a program of the application itself; nothing when there is no such program.
   bool begin(const std::string& name, std::string_view program) {
     const int index = application.program_named(program);
@@ -101,7 +120,7 @@ struct Machine::State {
     auto task = std::make_unique<Task>();
     task->name = name;
     task->owner = root;
-    task->stack.push_back(Tasks::activate(root->programs[static_cast<std::size_t>(index)], tasks.fathers));
+    tasks.enter(*task, Tasks::activate(root->programs[static_cast<std::size_t>(index)], tasks.fathers));
     tasks.create(std::move(task));
     return true;
   }
@@ -130,6 +149,7 @@ Machine::Machine(const Application& application, System& system, Findings& findi
   const std::size_t before = findings.size();
   state_->root = state_->make_instance(application, "");
   state_->compile_all(findings);
+  state_->demand_run_memory(findings);
   for (const auto& instance : state_->instances)
     load_data(*instance, system, state_->tasks.fathers, findings);
   state_->runs = findings.size() == before;
@@ -141,6 +161,9 @@ void Machine::start() {
   if (!state_->runs) return;
   state_->tasks.kill_all();
   state_->tasks.tick();
+  if (state_->application.stack_bytes == 0)
+    state_->system.log("stackSize is 0: the usual " + std::to_string(kUsualStackBytes) +
+                       " bytes are taken as each task's run memory");
   reset_libraries(*state_->root);
   state_->stage =
       state_->begin(state_->application.name.substr(0, 14) + "~", "start") ? Stage::kRunning : Stage::kEnded;

@@ -15,7 +15,8 @@ namespace val3 {
 struct MachineLimits {
   int lines_per_period = 3000;  // of one synchronous task (manual 6, page 81)
   int lines_per_tick = 4000;    // of all asynchronous tasks together
-  std::size_t calls = 256;      // nested; more is error 41
+  // Nested calls of a task, whatever its stackSize: more than any controller's application makes. Error 41.
+  std::size_t calls = 20'000;
 };
 
 /// How a task stands.

@@ -147,6 +147,17 @@ std::size_t slot_of(const Program& program, const Reference& reference) {
 
 }  // namespace
 
+std::string Compiler::why_unknown(const Expression& name) const {
+  if (name.alias.empty()) return "'" + name.text + "' is no variable here";
+  const std::string full = "'" + name.alias + ":" + name.text + "'";
+  const Application& application = *instance_.application;
+  const int library = application.library_named(name.alias);
+  if (library < 0 || !application.libraries[static_cast<std::size_t>(library)].application)
+    return full + " is of a library that is not there: put its folder beside the application";
+  return full + " is none of the signals that a controller has by itself: put the cell's project " +
+         name.alias + " beside the application";
+}
+
 RefNodePtr Compiler::variable(const Expression& e) {
   const Reference& reference = e.reference;
   switch (reference.to) {
@@ -163,7 +174,7 @@ RefNodePtr Compiler::variable(const Expression& e) {
       return lambda_node<Ref>([array](Context&) { return Ref{.array = array}; });
     }
     default:
-      refuse(e, "'" + e.text + "' is no variable here");
+      refuse(e, why_unknown(e));
   }
 }
 

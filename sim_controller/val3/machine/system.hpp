@@ -176,6 +176,8 @@ class System {
   virtual void go_to(int column, int row) = 0;
   virtual void put(const std::string& text, bool new_line) = 0;
   virtual void title(const std::string& text) = 0;
+  /// s8: what an element of a page of HTML shows, "page.element.attribute".
+  virtual void set_page_element(const std::string& /*name*/, const std::string& /*text*/) {}
   /// The last key since the last call.
   virtual std::optional<int> take_key() = 0;
   [[nodiscard]] virtual bool key_is_pressed(int code) const = 0;

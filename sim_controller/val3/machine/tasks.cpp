@@ -5,6 +5,8 @@
 #include <set>
 #include <utility>
 
+#include "sim_controller/val3/program/run_memory.hpp"
+
 namespace val3 {
 namespace {
 
@@ -59,15 +61,25 @@ void Tasks::leave(Task& task) {
   auto left = std::move(task.stack.back());
   task.stack.pop_back();
   const Code& code = *left->code;
+  task.stack_bytes -= code.call_bytes;
   for (std::size_t i = 0; i < code.program->parameters.size(); ++i)
     if (code.program->parameters[i].by_reference) left->slots[i] = {};
   if (code.idle.size() < kIdleMax) code.idle.push_back(std::move(left));
 }
 
-void Tasks::enter(Context& context, std::unique_ptr<Activation> called) const {
-  if (context.task.stack.size() >= limits_.calls)
-    throw RunFailure(kErrorRunMemory, "calls are nested too deeply: run memory is exhausted");
-  context.task.stack.push_back(std::move(called));
+void Tasks::enter(Task& task, std::unique_ptr<Activation> called) const {
+  const std::size_t memory = run_memory_of(*task.owner->application);
+  const std::size_t wanted = task.stack_bytes + called->code->call_bytes;
+  if (wanted > memory)
+    throw RunFailure(kErrorRunMemory, "run memory is exhausted: " + called->code->program->name +
+                                          " would be call " + std::to_string(task.stack.size() + 1) +
+                                          " on the stack, with " + std::to_string(wanted) +
+                                          " bytes (estimated) of stackSize " + std::to_string(memory));
+  if (task.stack.size() >= limits_.calls)
+    throw RunFailure(kErrorRunMemory, "more than " + std::to_string(limits_.calls) +
+                                          " nested calls: this simulator holds no more");
+  task.stack_bytes = wanted;
+  task.stack.push_back(std::move(called));
 }
 
 Task& Tasks::create(std::unique_ptr<Task> task) {
@@ -119,6 +131,7 @@ void Tasks::resume(Task& task, double skip) {
   here.next = static_cast<std::size_t>(to);
   here.branch_open = false;
   task.waits_in = nullptr;
+  task.edited.reset();
   task.error.clear();
   task.status = 1;
 }

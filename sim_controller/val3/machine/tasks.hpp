@@ -23,13 +23,15 @@ struct Task {
   bool drops_cycle = false;         // the next period is left out: the last one was too long
   int overruns = 0;
   std::vector<std::unique_ptr<Activation>> stack;
-  int status = 1;      // as taskStatus
-  std::string error;   // in words
-  bool waits = false;  // its line could not finish: no more lines in this tick
-  int lines = 0;       // since it waited
+  std::size_t stack_bytes = 0;  // of run memory, that the calls on the stack take
+  int status = 1;               // as taskStatus
+  std::string error;            // in words
+  bool waits = false;           // its line could not finish: no more lines in this tick
+  int lines = 0;                // since it waited
   // Of the line that waits.
   const void* waits_in = nullptr;  // the instruction
   double waits_until_s = 0.0;
+  std::optional<std::string> edited;  // what get(x) has of its variable, while a person edits it
 
   [[nodiscard]] Activation& here() { return *stack.back(); }
 };
@@ -61,8 +63,9 @@ class Tasks {
   static std::unique_ptr<Activation> activate(const Code& code, Fathers& fathers);
   /// The innermost call of the task is over.
   static void leave(Task& task);
-  /// A program was called.
-  void enter(Context& context, std::unique_ptr<Activation> called) const;
+  /// A program was called, or the task begins with it. RunFailure 41 where the run memory of the application
+  /// that created the task does not hold it (program/run_memory.hpp).
+  void enter(Task& task, std::unique_ptr<Activation> called) const;
 
   /// True when `seconds` have passed since this instruction of the task was first asked for; then it is asked
   /// anew. 0 or less is over at once.

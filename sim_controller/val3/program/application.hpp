@@ -112,8 +112,9 @@ struct Application {
   Version language;     // of that
   int form = 7;         // 5 (s5 and s6 files) or 7 (s7 and s8)
   std::size_t stack_bytes = 5000;
-  bool is_metric = true;   // lengths in mm, else inch
-  bool has_pages = false;  // a folder `interface`: its user pages may call programs
+  bool is_metric = true;     // lengths in mm, else inch
+  bool is_built_in = false;  // the controller's own library io: the cell may have more names in it
+  bool has_pages = false;    // a folder `interface`: its user pages may call programs
   // What its project lists and could not be read, which is found: names of it are not known.
   bool has_unread_data = false;
   std::vector<std::string> unread_programs;  // file names without their ending, in lower case

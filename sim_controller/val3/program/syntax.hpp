@@ -22,7 +22,6 @@ struct Reference {
     kInstruction,  // instruction, and index of its signature
     kWorld,        // the frame that is always there
     kFlange,       // the tool that is always there
-    kSystemIo,     // io:name of s5 and s6 where no application `io` is: the controller's own signal
   };
   To to = To::kNothing;
   int library = -1;  // index of Application::libraries; -1: the application itself

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "sim_controller/val3/language/resolver.hpp"
-#include "tests/sim_controller/val3/small_application.hpp"
+#include "tests/sim_controller/val3/checks/checked_cell.hpp"
 
 namespace val3 {
 namespace {
@@ -17,56 +17,21 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Not;
 
-/// What the checks find, without what is never used: a small application has much of that.
-std::vector<std::string> found_in(SmallApplication small, const CheckOptions& options = {}) {
-  Findings findings = std::move(small.findings);
-  resolve(small.application, findings);
-  check(small.application, options, findings);
-  std::erase_if(findings, [](const Finding& one) { return one.rule.starts_with("unused-"); });
-  return in_short(findings);
-}
-
-StoredValue stored(std::string name, std::string value) {
-  return {
-      .index = {0}, .key = {}, .attributes = {{std::move(name), std::move(value)}}, .fields = {}, .line = 1};
-}
-
-/// An application that is as it should be.
-SmallApplication cell() {
-  SmallApplication small;
-  for (const auto& [type, name] :
-       std::vector<std::pair<std::string_view, std::string_view>>{{"num", "n"},
-                                                                  {"num", "nOther"},
-                                                                  {"bool", "b"},
-                                                                  {"bool", "bLate"},
-                                                                  {"string", "s"},
-                                                                  {"sio", "si"},
-                                                                  {"dio", "d"},
-                                                                  {"jointRx", "j"},
-                                                                  {"pointRx", "p"},
-                                                                  {"tool", "tl"},
-                                                                  {"mdesc", "m"}}) {
-    small.global(type, name);
-    small.application.globals.back().values.push_back(stored("value", "1"));
-  }
-  small.global("num", "nBytes", {64});
-  small.application.globals.back().values.push_back(stored("value", "1"));
-  for (Global& one : small.application.globals)
-    if (one.declared.name == "si") one.values = {stored("link", "Socket\\host")};
-  small.program("stop", "clearBuffer(si)");
-  return small;
-}
-
-std::vector<std::string> found_in_start(std::string_view code) {
-  return found_in(cell().program("start", code));
-}
-
 TEST(Checks, AnApplicationAsItShouldBeHasNoFindings) {
   SmallApplication small = cell();
   small.program("start", "taskCreateSync \"t\",0.004,bLate,task()\ntaskCreate \"u\",10,other()");
   small.program("task", "n=sioCtrl(si,\"timeout\",-1)\nwhile true\nn=sioGet(si,nBytes)\ndelay(0)\nendWhile");
   small.program("other", "while true\nwait(b)\nendWhile");
   EXPECT_THAT(found_in(std::move(small)), IsEmpty());
+}
+
+TEST(Checks, AChannelThatWasToldNotToWaitIsNoWaitOfALoop) {
+  const std::string loop = "while true\nn=sioGet(si,nBytes)\nendWhile";
+  EXPECT_THAT(found_in_start("n=sioCtrl(si,\"timeout\",-1)\n" + loop), ElementsAre("start.pgx:3 busy-loop"));
+  EXPECT_THAT(found_in_start("n=sioCtrl(si,\"timeout\",2)\n" + loop), IsEmpty());
+  EXPECT_THAT(found_in_start("n=sioCtrl(si,\"timeout\",-1)\nn=sioCtrl(si,\"timeout\",nOther)\n" + loop),
+              IsEmpty());
+  EXPECT_THAT(found_in_start(loop), IsEmpty()) << "the time-out is that of the pendant";
 }
 
 TEST(Checks, WhatWaitsInASynchronousTaskIsFoundAlsoInWhatItCalls) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim_controller/val3/files/built_in_io.hpp"
 #include "tests/sim_controller/val3/small_application.hpp"
 
 namespace val3 {
@@ -337,10 +338,12 @@ TEST(Resolver, ALibraryThatIsNotThereRaisesNoFurtherFinding) {
 TEST(Resolver, OldControllersHaveTheirSignalsInTheLibraryIo) {
   SmallApplication small = everything();
   small.application.form = 5;
+  small.library("io", built_in_io(small.application));
   small.program(
       "start",
       "b=io:bIn3\nio:bOut0=true\nn=io:CPU_TEMP\nif io:fIn0\nendIf\nn=io:mine\nif io:usrIn0==true\nendIf");
-  EXPECT_THAT(refused_in(std::move(small)), ElementsAre("start.pgx:5 dio-condition"));
+  EXPECT_THAT(refused_in(std::move(small)),
+              ElementsAre("start.pgx:5 dio-condition", "start.pgx:7 unknown-signal"));
 }
 
 TEST(Resolver, AnInstructionOfAnAddOnIsANoteAndOfS8AWarning) {

@@ -56,5 +56,18 @@ TEST(Arrays, ACollectionFindsItsElementsByKey) {
   EXPECT_EQ(run.machine().task_status("small~"), kErrorIndex);
 }
 
+TEST(Arrays, AreFoundByTheirNameAndCopiedAsFarAsTheyFit) {
+  const std::string before = "n[4]=7\nn[5]=8\nn[6]=9\n";
+  EXPECT_EQ(evaluated("getData(\"n[4]\",n[10])", before).number, 10) << "ten are left behind n[10]";
+  EXPECT_EQ(evaluated("getData(\"n[4]\",n[17])*100+n[17]*10+n[18]", before).number, 378) << "of three fit";
+  EXPECT_EQ(evaluated("getData(\"n[18]\",n[1])").number, 2) << "two are there";
+  expect_values({{"getData(\"none\",n[1])", -1},
+                 {"getData(\"lib:n\",n[1])", -2},
+                 {"getData(\"n[20]\",n[1])", -3},
+                 {"getData(\"n[x]\",n[1])", -3},
+                 {"getData(\"n[-1]\",n[1])", -3},
+                 {"getData(\"s\",n[1])", -4}});
+}
+
 }  // namespace
 }  // namespace val3

@@ -114,5 +114,20 @@ TEST(Geometry, PosesAreGoneBetweenAndTurnedOntoAxes) {
   EXPECT_EQ(run.machine().task_status("small~"), kErrorParameter) << "a share from -1 to 2";
 }
 
+TEST(Geometry, AToolInBracesHasItsGripperAndTimes) {
+  SmallProject project;
+  with_points(project).data("dq", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%Q0\"/>");
+  project.program(
+      "start",
+      "kTool={{0,0,70,0,0,0},dq,0.5,0.25}\nn[0]=kTool.trsf.z\nn[1]=kTool.otime\nn[2]=kTool.ctime\n"
+      "kTool.gripper=true\nb[0]=dq");
+  Running run(project);
+  run.ticks(2);
+  EXPECT_EQ(run.number("n", 0), 70);
+  EXPECT_EQ(run.number("n", 1), 0.5);
+  EXPECT_EQ(run.number("n", 2), 0.25);
+  EXPECT_TRUE(run.truth("b")) << "the gripper is that output";
+}
+
 }  // namespace
 }  // namespace val3

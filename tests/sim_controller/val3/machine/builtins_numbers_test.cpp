@@ -103,5 +103,13 @@ TEST(Numbers, BytesThatAreNoneEndTheirReading) {
                  {"toBinary(n,1,\"1b\",n)", kErrorParameter}});
 }
 
+TEST(Numbers, ThatAreTooLargeAreAnError) {
+  expect_errors({{"n[1]*n[1]", kErrorArgument},
+                 {"n[1]/0.00000001", kErrorArgument},
+                 {"n[1]+n[1]", kErrorArgument},
+                 {"-n[1]-n[1]", kErrorArgument}},
+                "n[1]=power(10,308)*1.5");
+}
+
 }  // namespace
 }  // namespace val3

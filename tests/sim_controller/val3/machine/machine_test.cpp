@@ -1,6 +1,8 @@
 // Start and end of an application, its libraries and its data.
 #include "sim_controller/val3/machine/machine.hpp"
 
+#include "sim_controller/val3/program/run_memory.hpp"
+#include "tests/sim_controller/val3/files/project_folder.hpp"
 #include "tests/sim_controller/val3/machine/evaluated.hpp"
 
 namespace val3 {
@@ -90,7 +92,57 @@ TEST(MachineOf, RecursionWithoutEndIsRunMemory) {
   Running run(project);
   run.ticks(5);
   EXPECT_EQ(run.machine().task_status("small~"), kErrorRunMemory);
-  EXPECT_GT(run.number("n"), 100);
+  const std::size_t calls = kUsualStackBytes / kCallBytes;
+  EXPECT_EQ(run.number("n"), static_cast<double>(calls - 1)) << "one call is start()";
+  EXPECT_EQ(run.machine().tasks().at(0).error,
+            "run memory is exhausted: deep would be call 157 on the stack, with 5024 bytes (estimated) of "
+            "stackSize 5000");
+}
+
+TEST(MachineOf, RunMemoryIsThatOfTheProject) {
+  SmallProject project;
+  project.stack(400'000).number("n").program("deep", "n=n+1\nif n<2000\ncall deep()\nendIf");
+  project.program("start", "call deep()\nn=n+1");
+  Running run(project);
+  run.ticks(5);
+  EXPECT_EQ(run.number("n"), 2001) << "2,000 calls are held, and all come back";
+}
+
+TEST(MachineOf, LocalsTakeRunMemoryWhileTheirCallLasts) {
+  SmallProject project;
+  project.number("n").program("large", "l_n[0]=1", SmallProject::local("l_n", "num", 600));
+  project.program("start", "for n=1 to 20\ncall large()\nendFor\ncall larger()");
+  project.program("larger", "l_n[0]=1", SmallProject::local("l_n", "num", 100'000));
+  Running run(project);
+  run.ticks(5);
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorRunMemory);
+  EXPECT_EQ(run.number("n"), 21) << "each call gives its memory back";
+}
+
+TEST(MachineOf, AFieldHasTheSizeThatItsVariableStores) {
+  const std::string field =
+      "<Data name=\"nData\" access=\"public\" xsi:type=\"array\" type=\"num\" size=\"2\"/>\n";
+  ProjectFolder folder;
+  folder.project("typ", "<Database><Data file=\"typ.dtx\"/></Database>\n").data("typ/typ.dtx", field);
+  folder.small(
+      "<Data name=\"n\" access=\"private\" xsi:type=\"array\" type=\"num\" size=\"4\"/>\n"
+      "<Data name=\"q\" access=\"private\" xsi:type=\"array\" type=\"typ\" size=\"2\"><Value "
+      "key=\"0\"><Field "
+      "name=\"nData\" xsi:type=\"array\" type=\"num\" size=\"12\"><Value key=\"11\" "
+      "value=\"7\"/></Field></Value>"
+      "</Data>\n",
+      "<Types><Type name=\"typ\" path=\"Disk://typ/typ.pjx\"/></Types>\n");
+  folder.program("app/start.pgx",
+                 "n[0]=size(q.nData)\nn[1]=q.nData[11]\nn[2]=size(q[1].nData)\nq[1].nData[2]=1\nn[3]=1\n");
+  Cabinet cabinet;
+  Controller controller(
+      folder.path() / "app" / "app.pjx", cabinet, [] {}, MachineLimits{});
+  controller.machine().start();
+  controller.tick();
+  EXPECT_EQ(controller.machine().number("n", 0), 12);
+  EXPECT_EQ(controller.machine().number("n", 1), 7);
+  EXPECT_EQ(controller.machine().number("n", 2), 2) << "the type's own where nothing is stored";
+  EXPECT_EQ(controller.machine().task_status("app~"), kErrorIndex);
 }
 
 }  // namespace
