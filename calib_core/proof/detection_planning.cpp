@@ -15,7 +15,6 @@
 #include "calib_core/proof/check.hpp"
 #include "calib_core/proof/check_effects.hpp"
 #include "calib_core/proof/detection_design.hpp"
-#include "calib_core/proof/proof.hpp"
 #include "calib_core/proof/touch_rows.hpp"
 
 namespace calib {
@@ -116,15 +115,14 @@ std::variant<TouchPlan, PlanningFailure> plan(const PlanningProblem& problem, in
 }  // namespace
 
 std::variant<TouchPlan, PlanningFailure> plan_proof(const PlanningProblem& there,
-                                                    const CalibrationRecord& record,
-                                                    const Eigen::Isometry3d& calibrated_from_block,
+                                                    const CalibrationRecord& record, const ProofPlace& place,
                                                     std::span<const ProofAlternative> alternatives) {
   if (alternatives.empty()) throw std::logic_error("a proof is planned against one alternative or more");
   return plan(there, kProofTouchCount, [&](const std::vector<Touch>& touches) {
-    const TouchRows rows = touch_rows(record, arm_at(record.calibrated(), calibrated_from_block), touches);
+    const TouchRows rows =
+        touch_rows(record, arm_at(record.calibrated(), place.calibrated_from_block), touches);
     DetectionProblem problem{.seed = there.seed};
-    problem.covariance = rows.of_unknowns * record.covariance() * rows.of_unknowns.transpose();
-    problem.covariance.diagonal().array() += std::pow(record.noise().std_m, 2);
+    problem.covariance = proof_covariance(record, place, rows, touches);
     DetectionQuestion question{.free = rows.of_place};
     for (const ProofAlternative& alternative : alternatives)
       question.faults.emplace_back(rows.of_unknowns * alternative.displacements);

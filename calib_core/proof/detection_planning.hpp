@@ -1,13 +1,12 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <span>
 #include <variant>
 
 #include "calib_core/planning/planning_problem.hpp"
 #include "calib_core/planning/touch_plan.hpp"
 #include "calib_core/proof/calibration_record.hpp"
-#include "calib_core/proof/proof_alternatives.hpp"
+#include "calib_core/proof/proof.hpp"
 
 /// Touches for a proof or a check: feasible ones as the planner makes them, chosen for what they would show.
 namespace calib {
@@ -19,8 +18,7 @@ inline constexpr int kDetectionCandidates = 500;
 /// block at the place of the proof, its frame being R_-1, its stand among the obstacles; its requests name
 /// the faces that may be touched, candidate_count is how many candidates are tried.
 std::variant<TouchPlan, PlanningFailure> plan_proof(const PlanningProblem& there,
-                                                    const CalibrationRecord& record,
-                                                    const Eigen::Isometry3d& calibrated_from_block,
+                                                    const CalibrationRecord& record, const ProofPlace& place,
                                                     std::span<const ProofAlternative> alternatives);
 
 /// The touches of a check, at the place of the calibration: offsets of joints 2 to 5 are seen beside the

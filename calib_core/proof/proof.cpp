@@ -58,15 +58,17 @@ std::optional<Located> locate(const CalibrationRecord& record, KinematicModel ar
   return std::nullopt;
 }
 
-Eigen::MatrixXd covariance_of(const CalibrationRecord& record, const TouchRows& rows,
-                              std::span<const Touch> touches) {
-  Eigen::MatrixXd covariance = rows.of_unknowns * record.covariance() * rows.of_unknowns.transpose();
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    covariance(row, row) +=
-        std::pow(record.noise().std_m * noise_factor(touches[i], record.problem().touch_noise_m), 2);
+/// Distances without what the place, and the growth where it may differ, make of them.
+Eigen::VectorXd at_best_pose(const CalibrationRecord& record, const ProofPlace& place, const TouchRows& rows,
+                             Eigen::Index& degrees) {
+  Eigen::MatrixXd free = rows.of_place;
+  if (place.std_growth > 0.0) {
+    free.conservativeResize(Eigen::NoChange, free.cols() + 1);
+    free.rightCols<1>() = growth_effect(record, rows);
   }
-  return covariance;
+  const Eigen::MatrixXd basis = column_space(free);
+  degrees = basis.rows() - basis.cols();
+  return rows.distances_m - basis * (basis.transpose() * rows.distances_m);
 }
 
 std::string in_mm(double metres) {
@@ -87,11 +89,10 @@ void judge(const ProofLimits& limits, ProofVerdict& verdict) {
 
 }  // namespace
 
-std::variant<ProofVerdict, ProofRefusal> prove(const CalibrationRecord& record,
-                                               const Eigen::Isometry3d& calibrated_from_block,
+std::variant<ProofVerdict, ProofRefusal> prove(const CalibrationRecord& record, const ProofPlace& place,
                                                std::span<const Touch> touches, const ProofLimits& limits) {
   if (auto refusal = find_bad_touch(record, touches)) return *refusal;
-  const auto located = locate(record, arm_at(record.calibrated(), calibrated_from_block), touches);
+  const auto located = locate(record, arm_at(record.calibrated(), place.calibrated_from_block), touches);
   if (!located || column_space(located->rows.of_place).cols() < kPoseFreedom)
     return ProofRefusal{
         "the touches do not determine where the block stands: touch three faces that are not parallel, three "
@@ -107,25 +108,39 @@ std::variant<ProofVerdict, ProofRefusal> prove(const CalibrationRecord& record,
   if (verdict.calibrated_from_block.translation().norm() < kProofWayMinMetres)
     return ProofRefusal{"the block stands within " + in_mm(kProofWayMinMetres) +
                         " of where the arm was calibrated, which proves nothing: lift it by 300 mm"};
-  const WhitenedRows white(covariance_of(record, located->rows, touches), located->rows.of_place);
-  verdict.distances_m = located->rows.distances_m;
+  const WhitenedRows white(proof_covariance(record, place, located->rows, touches), located->rows.of_place);
+  Eigen::Index degrees = 0;
+  verdict.distances_m = at_best_pose(record, place, located->rows, degrees);
   verdict.degrees_of_freedom = static_cast<double>(white.degrees());
-  verdict.chi_square = white.rest(verdict.distances_m).squaredNorm();
+  verdict.chi_square = white.rest(located->rows.distances_m).squaredNorm();
   verdict.p = std::isfinite(record.noise().degrees_of_freedom)
                   ? f_survival(verdict.chi_square / verdict.degrees_of_freedom, verdict.degrees_of_freedom,
                                record.noise().degrees_of_freedom)
                   : chi_square_survival(verdict.chi_square, verdict.degrees_of_freedom);
-  verdict.rms_m = std::sqrt(verdict.distances_m.squaredNorm() / verdict.degrees_of_freedom);
+  verdict.rms_m = std::sqrt(verdict.distances_m.squaredNorm() / static_cast<double>(degrees));
   judge(limits, verdict);
   return verdict;
 }
 
+Eigen::MatrixXd proof_covariance(const CalibrationRecord& record, const ProofPlace& place,
+                                 const TouchRows& rows, std::span<const Touch> touches) {
+  const Eigen::VectorXd growth = place.std_growth * growth_effect(record, rows);
+  Eigen::MatrixXd covariance =
+      rows.of_unknowns * record.covariance() * rows.of_unknowns.transpose() + growth * growth.transpose();
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    covariance(row, row) +=
+        std::pow(record.noise().std_m * noise_factor(touches[i], record.problem().touch_noise_m), 2);
+  }
+  return covariance;
+}
+
 std::vector<ProofPower> proof_power(const CalibrationRecord& record,
-                                    std::span<const ProofAlternative> alternatives,
-                                    const Eigen::Isometry3d& calibrated_from_block,
+                                    std::span<const ProofAlternative> alternatives, const ProofPlace& place,
                                     std::span<const Touch> touches, const ProofLimits& limits) {
-  const TouchRows rows = touch_rows(record, arm_at(record.calibrated(), calibrated_from_block), touches);
-  const WhitenedRows white(covariance_of(record, rows, touches), rows.of_place);
+  const TouchRows rows =
+      touch_rows(record, arm_at(record.calibrated(), place.calibrated_from_block), touches);
+  const WhitenedRows white(proof_covariance(record, place, rows, touches), rows.of_place);
   std::vector<ProofPower> powers;
   for (const ProofAlternative& alternative : alternatives) {
     ProofPower power{.name = alternative.name};

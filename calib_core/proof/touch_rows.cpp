@@ -45,6 +45,10 @@ TouchRows touch_rows(const CalibrationRecord& record, const KinematicModel& arm,
   return rows;
 }
 
+Eigen::VectorXd growth_effect(const CalibrationRecord& record, const TouchRows& rows) {
+  return rows.of_arm * errors_by_growth(record.calibrated(), 1.0);
+}
+
 KinematicModel arm_at(const KinematicModel& calibrated, const Eigen::Isometry3d& calibrated_from_block) {
   KinematicModel there = calibrated;
   set_block_pose(there, calibrated_from_block.inverse() * block_pose_of(calibrated));

@@ -23,6 +23,9 @@ struct TouchRows {
 TouchRows touch_rows(const CalibrationRecord& record, const KinematicModel& arm,
                      std::span<const Touch> touches);
 
+/// d distance / d growth of the arm's lengths, by errors_by_growth(): metres per share.
+Eigen::VectorXd growth_effect(const CalibrationRecord& record, const TouchRows& rows);
+
 /// The calibrated arm in the frame of a block that was moved. `calibrated_from_block`: the block's frame R_-1
 /// as it stands, in R_-1 of the calibration.
 KinematicModel arm_at(const KinematicModel& calibrated, const Eigen::Isometry3d& calibrated_from_block);
