@@ -39,6 +39,9 @@ const std::map<std::string, std::set<std::string>> kCoreLayerMayInclude{
     {"identification", {"numerics", "estimation", "uncertainty"}},
     {"motion", {"geometry", "kinematics"}},
     {"planning", {"geometry", "numerics", "kinematics", "estimation", "uncertainty", "motion"}},
+    {"proof",
+     {"geometry", "numerics", "kinematics", "estimation", "uncertainty", "identification", "motion",
+      "planning"}},
 };
 
 /// Compiling one of these takes seconds: headers that many include leave them to the .cpp files.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,10 @@ class HiddenCell {
   /// Makes these touches of the nominal arm in their order, while the arm warms up; after every so many the
   /// place of the first fitted one again, at the start and at the end too (0: never), as a run does.
   std::vector<Touch> touch(const std::vector<Touch>& planned, int reference_every = 0);
+
+  /// The stops and the probe scatter from now on as this seed draws them: cells of one seed that differ in
+  /// their place, warmth or a fault share everything else.
+  void restart_scatter(std::uint64_t seed) { stops_.seed(seed); }
 
   /// From now on the block creeps by this in all, evenly over so many touches.
   void creep(const Eigen::Vector3d& by_m, std::size_t touches);

@@ -1,0 +1,151 @@
+#include "calib_core/proof/detection_planning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib_core/motion/motion_time.hpp"
+#include "calib_core/planning/candidate_pool.hpp"
+#include "calib_core/planning/touch_feasibility.hpp"
+#include "calib_core/planning/transfer_planning.hpp"
+#include "calib_core/proof/check.hpp"
+#include "calib_core/proof/check_effects.hpp"
+#include "calib_core/proof/detection_design.hpp"
+#include "calib_core/proof/touch_rows.hpp"
+
+namespace calib {
+namespace {
+
+std::vector<Touch> touches_of(std::span<const TouchCandidate> candidates) {
+  std::vector<Touch> touches;
+  for (const TouchCandidate& candidate : candidates)
+    touches.push_back({.face = candidate.face, .joints = candidate.joints, .role = TouchRole::kProof});
+  return touches;
+}
+
+PlannedTouch whole_touch(const PlanningProblem& problem, const TouchCandidate& candidate) {
+  auto made = make_touch(problem, find_target(problem, candidate.face), candidate.pose, candidate.joints);
+  if (const auto* reason = std::get_if<std::string>(&made))
+    throw std::logic_error("a candidate is infeasible: " + *reason);
+  PlannedTouch& touch = std::get<PlannedTouch>(made);
+  touch.role = TouchRole::kProof;
+  return std::move(touch);
+}
+
+/// From the park posture always to the touch that is reached soonest.
+void order_by_nearest(const PlanningProblem& problem, const PreparedModel& arm,
+                      std::vector<PlannedTouch>& touches) {
+  JointVector here = problem.park_joints;
+  for (auto next = touches.begin(); next != touches.end(); ++next) {
+    const auto seconds = [&](const PlannedTouch& touch) {
+      return move_time_s(arm, problem.motion, here, touch.clear_joints, problem.motion.travel_m_s);
+    };
+    std::iter_swap(next, std::min_element(next, touches.end(), [&](const auto& a, const auto& b) {
+                     return seconds(a) < seconds(b);
+                   }));
+    here = next->clear_joints;
+  }
+}
+
+/// The way between two postures and its time; every touch has one to the park posture.
+std::pair<std::vector<JointVector>, double> way(const PlanningProblem& problem, const PreparedModel& arm,
+                                                const JointVector& from, const JointVector& to) {
+  auto via = find_transfer(problem, from, to);
+  if (!via) {
+    const auto to_park = find_transfer(problem, from, problem.park_joints);
+    const auto from_park = find_transfer(problem, problem.park_joints, to);
+    if (!to_park || !from_park) throw std::logic_error("a touch has no path to the park posture");
+    via = *to_park;
+    via->push_back(problem.park_joints);
+    via->insert(via->end(), from_park->begin(), from_park->end());
+  }
+  std::vector<JointVector> postures{from};
+  postures.insert(postures.end(), via->begin(), via->end());
+  postures.push_back(to);
+  return {std::move(*via), path_time_s(arm, problem.motion, postures)};
+}
+
+TouchPlan with_paths(const PlanningProblem& problem, std::vector<PlannedTouch> touches) {
+  const PreparedModel arm = prepare(problem.nominal);
+  order_by_nearest(problem, arm, touches);
+  TouchPlan plan;
+  JointVector here = problem.park_joints;
+  for (PlannedTouch& touch : touches) {
+    std::tie(touch.via, touch.travel_s) = way(problem, arm, here, touch.clear_joints);
+    touch.touch_s =
+        touch_time_s(arm, problem.motion, {touch.clear_joints, touch.approach_joints, touch.joints});
+    touch.predicted_position_error_m = problem.nominal_position_error_m;
+    here = touch.clear_joints;
+  }
+  std::tie(plan.park_via, plan.park_s) = way(problem, arm, here, problem.park_joints);
+  plan.touches = std::move(touches);
+  return plan;
+}
+
+/// `design` makes the questions of these touches.
+template <class Design>
+std::variant<TouchPlan, PlanningFailure> plan(const PlanningProblem& problem, int count,
+                                              const Design& design) {
+  CandidatePool pool = find_candidates(problem);
+  const auto found = static_cast<int>(pool.candidates.size());
+  if (found < count) {
+    const auto scarcest = std::ranges::min_element(pool.efforts, {}, &FaceEffort::feasible);
+    const bool is_explained = scarcest != pool.efforts.end() && !scarcest->obstructions.empty();
+    return PlanningFailure{
+        .kind = PlanningFailure::Kind::kFace,
+        .face = scarcest == pool.efforts.end() ? 0 : scarcest->face,
+        .found = found,
+        .wanted = count,
+        .reason = is_explained ? scarcest->obstructions.front().reason : "no posture was tried",
+        .efforts = std::move(pool.efforts)};
+  }
+  const DetectionProblem detection = design(touches_of(pool.candidates));
+  std::vector<PlannedTouch> touches;
+  for (const std::size_t index : choose_for_detection(detection, static_cast<std::size_t>(count)))
+    touches.push_back(whole_touch(problem, pool.candidates[index]));
+  TouchPlan made = with_paths(problem, std::move(touches));
+  made.efforts = std::move(pool.efforts);
+  return made;
+}
+
+}  // namespace
+
+std::variant<TouchPlan, PlanningFailure> plan_proof(const PlanningProblem& there,
+                                                    const CalibrationRecord& record, const ProofPlace& place,
+                                                    std::span<const ProofAlternative> alternatives) {
+  if (alternatives.empty()) throw std::logic_error("a proof is planned against one alternative or more");
+  return plan(there, kProofTouchCount, [&](const std::vector<Touch>& touches) {
+    const TouchRows rows =
+        touch_rows(record, arm_at(record.calibrated(), place.calibrated_from_block), touches);
+    DetectionProblem problem{.seed = there.seed};
+    problem.covariance = proof_covariance(record, place, rows, touches);
+    DetectionQuestion question{.free = rows.of_place};
+    for (const ProofAlternative& alternative : alternatives)
+      question.faults.emplace_back(rows.of_unknowns * alternative.displacements);
+    problem.questions.push_back(std::move(question));
+    return problem;
+  });
+}
+
+std::variant<TouchPlan, PlanningFailure> plan_check(const PlanningProblem& here,
+                                                    const CalibrationRecord& record) {
+  return plan(here, kCheckTouchCount, [&](const std::vector<Touch>& touches) {
+    const CheckEffects effects = check_effects(record, touch_rows(record, record.calibrated(), touches));
+    const auto count = std::ssize(touches);
+    DetectionProblem problem{.seed = here.seed};
+    problem.covariance = std::pow(record.noise().std_m, 2) * Eigen::MatrixXd::Identity(count, count);
+    const Eigen::MatrixXd offsets = kCheckOffsetRadians * effects.of_joints;
+    for (const Eigen::MatrixXd& other : {Eigen::MatrixXd(count, 0), effects.of_stylus, effects.of_block}) {
+      DetectionQuestion question{.faults = {offsets}, .free = Eigen::MatrixXd(count, 1 + other.cols())};
+      question.free << effects.of_growth, other;
+      problem.questions.push_back(std::move(question));
+    }
+    return problem;
+  });
+}
+
+}  // namespace calib
