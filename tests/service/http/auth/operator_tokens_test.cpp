@@ -44,7 +44,7 @@ class OperatorTokens : public ::testing::Test {
 
   const Folder state_;
   const std::filesystem::path directory_ = state_.path() / kOperatorsDirectory;
-  const std::string token_ = std::string(64, '1');
+  const std::string token_ = "0f1e2d3c4b5a69788796a5b4c3d2e1f00f1e2d3c4b5a69788796a5b4c3d2e1f0";
 };
 
 TEST_F(OperatorTokens, EachIsNamedByItsFile) {

@@ -294,7 +294,8 @@ TEST_F(ApiTest, AStopIsTakenWhileTheDiskThatIsReadHangs) {
   quiet_.context().poll();
   EXPECT_THAT(answered, ::testing::IsEmpty());
   EXPECT_FALSE(is_over);
-  ask(post("/api/v1/cell/stop"));
+  const HttpRequest stop = post("/api/v1/cell/stop");
+  ask(stop);
   quiet_.context().poll();
   EXPECT_EQ(answered["/api/v1/cell/stop"], 202U);
 
