@@ -8,6 +8,7 @@
 #include "cs8_protocol/names.hpp"
 #include "cs8_protocol/wire_units.hpp"
 #include "sim_controller/admission.hpp"
+#include "sim_controller/jog.hpp"
 #include "sim_controller/link_faults.hpp"
 
 namespace twins {
@@ -75,6 +76,10 @@ class HostScript {
   };
   struct Due {
     Deed deed;
+    int ticks = 0;
+  };
+  struct Late {
+    cs8::Message message;
     int ticks = 0;
   };
 
@@ -151,6 +156,11 @@ class HostScript {
     twin_.plan().add({.what = step.what});
     return true;
   }
+  bool take(const Jog& step) {
+    if (const auto refused = sim::begin_jog(plant(), twin_.cabinet(), step.order))
+      note("no jog: " + *refused);
+    return true;
+  }
   bool take(const At& step) {
     watched_.push_back({step, step.nth});
     return true;
@@ -168,6 +178,7 @@ class HostScript {
   void tick() {
     twin_.tick();
     ++ticks_;
+    give_late();
     look_at_link();
     if (heartbeats_ && is_welcome_ && ticks_ % kHeartbeatTicks == 0) send(0, cs8::Heartbeat{});
     strike();
@@ -207,19 +218,24 @@ class HostScript {
 
   void disconnect() {
     twin_.disconnect();
-    was_connected_ = is_welcome_ = false;
+    was_connected_ = is_welcome_ = is_cut_ = false;
+    late_.clear();
     inbox_.clear();
     heartbeats_ = true;
   }
 
   /// With the faults that apply to what is on its way.
   void send(std::uint32_t sequence, const cs8::Payload& payload) {
-    if (!twin_.is_connected()) return;
+    if (!twin_.is_connected() || is_cut_) return;
     cs8::Message message{sequence, payload};
     int copies = 1;
     for (const sim::LinkFault& fault : twin_.plan().faults_at(cs8::type_of(message))) {
       if (fault.kind == sim::Fault::kCloseSocket) return disconnect();
       if (fault.kind == sim::Fault::kDrop) copies = 0;
+      if (fault.kind == sim::Fault::kDelay) {
+        late_.push_back({message, static_cast<int>(fault.seconds / sim::kTickSeconds)});
+        copies = 0;
+      }
       if (fault.kind == sim::Fault::kDuplicate) copies = 2;
       sim::alter_message(fault.kind, message, std::nullopt);
     }
@@ -227,15 +243,27 @@ class HostScript {
     look_at_link();
   }
 
+  /// Messages that a fault has held up; they go with their connection.
+  void give_late() {
+    for (Late& late : std::exchange(late_, {})) {
+      if (late.ticks-- > 0)
+        late_.push_back(late);
+      else if (twin_.is_connected() && !is_cut_)
+        twin_.give(late.message);
+    }
+  }
+
   void look_at_link() {
     take_messages();
     if (!was_connected_ || twin_.is_connected()) return;
     record_.entries.push_back({now_s(), Closed{}});
-    was_connected_ = is_welcome_ = false;
+    was_connected_ = is_welcome_ = is_cut_ = false;
+    late_.clear();
   }
 
   void take_messages() {
     for (cs8::Message& message : twin_.take()) {
+      if (is_cut_) continue;
       if (const auto* state = std::get_if<cs8::State>(&message.payload)) {
         record_.states.push_back({now_s(), *state});
         continue;
@@ -246,6 +274,7 @@ class HostScript {
       for (const sim::LinkFault& fault : twin_.plan().faults_at(cs8::type_of(message))) {
         if (fault.kind == sim::Fault::kDrop) inbox_.pop_back();
         if (fault.kind == sim::Fault::kCloseSocket) return disconnect();
+        is_cut_ = is_cut_ || fault.kind == sim::Fault::kHalfOpen;
       }
     }
   }
@@ -259,12 +288,14 @@ class HostScript {
   CabinetEyes eyes_;
   std::vector<Watched> watched_;
   std::vector<Due> due_;
+  std::vector<Late> late_;
   std::deque<cs8::Message> inbox_;
   std::int64_t ticks_ = 0;
   std::optional<std::int64_t> begun_at_;
   bool heartbeats_ = true;
   bool was_connected_ = false;
   bool is_welcome_ = false;
+  bool is_cut_ = false;  // as with the cable pulled: nothing passes, and nobody was told
 };
 
 }  // namespace

@@ -85,9 +85,8 @@ constexpr std::string_view kOfFrames = "acts on frames and sockets in the server
 constexpr std::string_view kOfSent =
     "alters what was sent behind the controller's back, by the same function for both";
 constexpr std::array kLeftOut{
-    LeftOut{"half_open", kOfFrames},       LeftOut{"go_silent", kOfFrames},
-    LeftOut{"stop_states", kOfFrames},     LeftOut{"garbage", kOfFrames},
-    LeftOut{"refuse", kOfFrames},          LeftOut{"delay", kOfFrames},
+    LeftOut{"go_silent", kOfFrames},       LeftOut{"stop_states", kOfFrames},
+    LeftOut{"garbage", kOfFrames},         LeftOut{"refuse", kOfFrames},
     LeftOut{"close_mid_frame", kOfFrames}, LeftOut{"byte_by_byte", kOfFrames},
     LeftOut{"merge", kOfFrames},           LeftOut{"wrong_version", kOfFrames},
     LeftOut{"unknown_type", kOfFrames},    LeftOut{"bad_length", kOfFrames},

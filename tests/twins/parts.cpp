@@ -10,18 +10,25 @@ namespace twins {
 namespace {
 
 constexpr double kSearchStandoffMetres = 0.010;
+constexpr double kLongStandoffMetres = 0.025;
+/// Above where the nominal arm believes the face: its true place is some 5 mm off.
+constexpr double kAboveMetres = 0.012;
+
+sim::testing::Aim aim_at(int place) {
+  return {.u_m = 0.006 * (place - 2),
+          .v_m = 0.004 * (place % 3 - 1),
+          .standoff_m = kSearchStandoffMetres,
+          .end_depth_m = kSearchStandoffMetres};
+}
+
+sim::TouchMotion motion_of(const sim::testing::Aim& aim) {
+  return sim::testing::aimed_touch(sim::testing::read_cell("demo"), aim).motion;
+}
 
 const sim::TouchMotion& motion_at(int place) {
   static const auto motions = [] {
     std::array<sim::TouchMotion, kPlaces> made;
-    for (int i = 0; i < kPlaces; ++i) {
-      const sim::testing::Aim aim{.u_m = 0.006 * (i - 2),
-                                  .v_m = 0.004 * (i % 3 - 1),
-                                  .standoff_m = kSearchStandoffMetres,
-                                  .end_depth_m = kSearchStandoffMetres};
-      made.at(static_cast<std::size_t>(i)) =
-          sim::testing::aimed_touch(sim::testing::read_cell("demo"), aim).motion;
-    }
+    for (int i = 0; i < kPlaces; ++i) made.at(static_cast<std::size_t>(i)) = motion_of(aim_at(i));
     return made;
   }();
   return motions.at(static_cast<std::size_t>(place % kPlaces));
@@ -46,6 +53,27 @@ cs8::Touch two_speed_touch_at(int place) {
   touch.second_speed_um_s = 2000;
   touch.second_backoff_dmm = 8000;
   return touch;
+}
+
+cs8::Touch shallow_touch_at(int place) {
+  sim::testing::Aim aim = aim_at(place);
+  aim.standoff_m = kLongStandoffMetres;
+  aim.end_depth_m = -kAboveMetres;
+  return sim::testing::touch_command(motion_of(aim));
+}
+
+cs8::Touch long_touch_at(int place) {
+  sim::testing::Aim aim = aim_at(place);
+  aim.standoff_m = kLongStandoffMetres;
+  return sim::testing::touch_command(motion_of(aim));
+}
+
+cell::JogOrder jog_to_end_of(int place) {
+  return {.joints = motion_at(place).search_end, .speed_m_s = 0.010};
+}
+
+cell::JogOrder jog_to_clear_of(int place) {
+  return {.joints = motion_at(place).waypoints.back(), .speed_m_s = 0.010, .until_touch = false};
 }
 
 cs8::Travel travel_to(int place) { return sim::testing::travel_command(motion_at(place).waypoints.back()); }

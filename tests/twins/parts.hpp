@@ -18,6 +18,12 @@ Steps operator+(Steps steps, const Steps& more);
 inline constexpr int kPlaces = 5;
 cs8::Touch touch_at(int place);
 cs8::Touch two_speed_touch_at(int place);
+/// Whose search ends above the face, and whose is 35 mm long.
+cs8::Touch shallow_touch_at(int place);
+cs8::Touch long_touch_at(int place);
+/// By the pendant, from the clear posture to where the search ends, until the probe trips; and back.
+cell::JogOrder jog_to_end_of(int place);
+cell::JogOrder jog_to_clear_of(int place);
 /// Between two clear postures.
 cs8::Travel travel_to(int place);
 inline constexpr cs8::Retract kWayBack{.approach_speed_um_s = 20'000, .deadline_ms = 60'000};

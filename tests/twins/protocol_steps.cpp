@@ -82,6 +82,16 @@ std::vector<Scenario> sequences() {
                      .faults = {{.what = sim::LinkFault(fault), .on = type, .nth = nth}}});
     }
   }
+  for (const MessageType type : {MessageType::kTouch, MessageType::kBegin, MessageType::kResultAcknowledge})
+    for (const double seconds : {0.15, 0.8})
+      all.push_back(
+          {.name = "delay at " + std::string(cs8::name(type)) + " of " + std::to_string(seconds) + " s",
+           .steps = begun() + touches(1, 2) + Steps{Wait{1.0}} + touches(3, 1) + finished() + recovered(4),
+           .faults = {{.what = sim::LinkFault(sim::Fault::kDelay, seconds), .on = type, .nth = 1}}});
+  for (const MessageType type : {MessageType::kTouchResult, MessageType::kPermit})
+    all.push_back({.name = "half_open at " + std::string(cs8::name(type)),
+                   .steps = begun() + touches(1, 2) + recovered(2),
+                   .faults = {{.what = sim::LinkFault(sim::Fault::kHalfOpen), .on = type, .nth = 2}}});
   return all;
 }
 

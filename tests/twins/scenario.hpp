@@ -5,6 +5,7 @@
 #include <variant>
 #include <vector>
 
+#include "config/fault_file.hpp"
 #include "cs8_protocol/messages.hpp"
 #include "sim_controller/fault_plan.hpp"
 #include "sim_controller/operator.hpp"
@@ -44,6 +45,10 @@ struct SecondClient {};  // another host connects
 struct Strike {
   sim::InjectedEvent what;
 };
+/// A person moves the arm with the pendant.
+struct Jog {
+  cell::JogOrder order;
+};
 
 // ---- what strikes when the cabinet is at a place, so that both twins are struck at the same one ----
 
@@ -64,8 +69,8 @@ struct At {
   Deed deed;
 };
 
-using Step =
-    std::variant<Connect, Disconnect, Send, Await, AwaitResult, Wait, Heartbeats, SecondClient, Strike, At>;
+using Step = std::variant<Connect, Disconnect, Send, Await, AwaitResult, Wait, Heartbeats, SecondClient,
+                          Strike, Jog, At>;
 
 struct Scenario {
   std::string name;

@@ -7,6 +7,7 @@
 namespace twins {
 
 std::vector<Scenario> whole_runs();
+std::vector<Scenario> measurements();
 std::vector<Scenario> interrupted_touches();
 std::vector<Scenario> interrupted_second_touches();
 std::vector<Scenario> interrupted_ways_back();

@@ -17,6 +17,7 @@ namespace {
 
 using Group = std::vector<Scenario> (*)();
 constexpr Group kGroups[] = {whole_runs,
+                             measurements,
                              interrupted_touches,
                              interrupted_second_touches,
                              interrupted_ways_back,
@@ -41,6 +42,7 @@ void expect_alike(const std::vector<Scenario>& scenarios) {
 }
 
 TEST(Twins, WholeRunsAreAlike) { expect_alike(whole_runs()); }
+TEST(Twins, MeasurementsAreAlike) { expect_alike(measurements()); }
 TEST(Twins, InterruptedTouchesAreAlike) { expect_alike(interrupted_touches()); }
 TEST(Twins, InterruptedSecondTouchesAreAlike) { expect_alike(interrupted_second_touches()); }
 TEST(Twins, InterruptedWaysBackAreAlike) { expect_alike(interrupted_ways_back()); }
@@ -48,6 +50,43 @@ TEST(Twins, SequencesAreAlike) { expect_alike(sequences()); }
 TEST(Twins, RefusedFieldsAreAlike) { expect_alike(fields()); }
 TEST(Twins, LinksAreAlike) { expect_alike(links()); }
 TEST(Twins, PermitsAreAlike) { expect_alike(permits()); }
+
+std::vector<cs8::TouchResult> touch_results(const Record& record) {
+  std::vector<cs8::TouchResult> results;
+  for (const Entry& entry : record.entries) {
+    const auto* message = std::get_if<cs8::Message>(&entry.what);
+    if (message == nullptr) continue;
+    if (const auto* result = std::get_if<cs8::TouchResult>(&message->payload)) results.push_back(*result);
+  }
+  return results;
+}
+
+TEST(Twins, MeasurementsDoWhatTheirNamesSay) {
+  for (const Scenario& scenario : measurements()) {
+    SCOPED_TRACE(scenario.name);
+    const Record record = carry_out(scenario, *make_val3_twin(scenario));
+    const std::vector<cs8::TouchResult> results = touch_results(record);
+    EXPECT_TRUE(record.unfired.empty());
+    for (const Entry& entry : record.entries) {
+      const auto* noted = std::get_if<Noted>(&entry.what);
+      EXPECT_FALSE(noted != nullptr && noted->what.starts_with("no jog")) << noted->what;
+    }
+    ASSERT_FALSE(results.empty());
+    const bool meets_nothing = scenario.name.find("meets nothing") != std::string::npos;
+    EXPECT_EQ(results.front().outcome == cs8::Outcome::kNoContact, meets_nothing);
+    if (scenario.name.find("stopped") == std::string::npos) {
+      EXPECT_EQ(results.back().outcome, cs8::Outcome::kContact) << "the last one is made";
+    }
+    const bool is_guided =
+        scenario.name.find("hand") != std::string::npos || scenario.name.find("jogs") != std::string::npos;
+    EXPECT_EQ(std::ranges::any_of(record.states,
+                                  [](const Record::SeenState& seen) {
+                                    return seen.state.mode == cs8::WorkingMode::kManual &&
+                                           (seen.state.flags & cs8::kProbeTouched) != 0;
+                                  }),
+              is_guided);
+  }
+}
 
 TEST(Twins, AreDrivenByEveryFaultOrSomethingSaysWhyNot) {
   std::set<std::string> names;
