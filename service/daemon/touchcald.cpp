@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <iostream>
+#include <new>
 
 #include "config/config_error.hpp"
 #include "config/decimal_text.hpp"
@@ -148,6 +149,10 @@ int main(int argc, char** argv) {
   } catch (const cell::ConfigError& error) {
     std::cerr << error.what() << '\n';
     return cell::kExitBadInput;
+  } catch (const std::bad_alloc&) {
+    std::cerr << "touchcald: there is not enough memory; free some, or give the service more, and start it "
+                 "again: what was stored is kept\n";
+    return cell::kExitFailed;
   } catch (const std::exception& error) {
     std::cerr << "touchcald: " << error.what() << '\n';
     return cell::kExitFailed;

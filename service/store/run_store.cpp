@@ -2,6 +2,7 @@
 #include "service/store/run_store.hpp"
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <sqlite3.h>
 
 #include <utility>
 
@@ -91,6 +92,18 @@ bool has_ended(SQLite::Statement& prepared, std::int64_t run_id) {
   OneUse query(prepared);
   query->bind(1, run_id);
   return query->executeStep();
+}
+
+/// Whether the touch of this number is the answer to the same command. A touch by hand answers none.
+bool has_answer(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch) {
+  if (touch.sequence == 0) return false;
+  SQLite::Statement query(
+      database, "SELECT 1 FROM touches WHERE run_id = ? AND number = ? AND session = ? AND sequence = ?");
+  query.bind(1, run_id);
+  query.bind(2, touch.number);
+  query.bind(3, touch.session);
+  query.bind(4, touch.sequence);
+  return query.executeStep();
 }
 
 }  // namespace
@@ -278,7 +291,11 @@ void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
 void RunStore::insert_touch(std::int64_t run_id, const StoredTouch& touch) {
   OneUse insert(statements_->append_touch);
   bind_touch(*insert, run_id, touch);
-  insert->exec();
+  try {
+    insert->exec();
+  } catch (const SQLite::Exception& failure) {
+    if (failure.getErrorCode() != SQLITE_CONSTRAINT || !has_answer(*database_, run_id, touch)) throw;
+  }
 }
 
 void RunStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {

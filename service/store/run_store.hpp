@@ -181,6 +181,8 @@ class RunStore {
   bool make_durable(std::int64_t run_id);
   /// The command has not left after all. Durable with the next touch.
   void forget_open_command(std::int64_t run_id);
+  /// One that is there as the answer to the same command stays as it is: who was broken off between the disk
+  /// and the acknowledgement asks the controller for the answer again, and stores it again.
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
   /// `again` replaces the touch of its number, which is kept as superseded.
   void replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason);

@@ -1,6 +1,8 @@
 #include "tests/benchmark/measured_cell.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -49,6 +51,17 @@ std::string copied_cell(const std::filesystem::path& folder, const MeasuredCellO
     std::ofstream(here / "truth.json") << truth;
   }
   return (here / "cell.json").string();
+}
+
+/// A new file that is shared with the daemon.
+touchcal::testing::FailingCallsBlock* shared_calls(const std::filesystem::path& file) {
+  using Block = touchcal::testing::FailingCallsBlock;
+  std::ofstream(file) << std::string(sizeof(Block), '\0');
+  const int descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+  void* const place = ::mmap(nullptr, sizeof(Block), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0);
+  ::close(descriptor);
+  if (place == MAP_FAILED) throw std::runtime_error(file.string() + ": cannot be shared with the daemon");
+  return static_cast<Block*>(place);
 }
 
 }  // namespace
@@ -118,21 +131,34 @@ MeasuredCell::MeasuredCell(MeasuredCellOptions options)
   constexpr std::string_view kBefore = "control on 127.0.0.1:";
   control_port_ = port_of(said.substr(0, said.find('\n', said.find(kBefore))));
   wire_ = std::make_unique<Wire>(port);
+  if (options_.calls_can_fail) calls_ = shared_calls(folder_ / "calls");
   start_daemon();
 }
 
 void MeasuredCell::start_daemon() {
+  if (!try_to_start_daemon()) throw std::runtime_error("the daemon does not start:\n" + log());
+}
+
+bool MeasuredCell::try_to_start_daemon() {
   std::optional<Environment> preload, file;
   if (options_.can_stall) {
     preload.emplace("LD_PRELOAD", TOUCHCAL_STALLED_DISK);
     file.emplace("TOUCHCAL_STALL_FILE", (folder_ / "stall").string());
   }
+  if (options_.calls_can_fail) {
+    preload.emplace("LD_PRELOAD", TOUCHCAL_FAILING_CALLS);
+    file.emplace("TOUCHCAL_FAILING_CALLS", (folder_ / "calls").string());
+  }
   daemon_.reset();
   daemon_.emplace(
       std::vector<std::string>{"touchcald", "--cell", cell_file_, "--listen", "127.0.0.1:0", "--controller",
                                "127.0.0.1:" + std::to_string(wire_->port()), "--state", state().string()},
-      folder_ / "touchcald.err");
-  address_ = port_of(daemon_->wait_for_address());
+      folder_ / "touchcald.err", kDaemonPatience);
+  const std::string said = daemon_->first_line();
+  constexpr std::string_view kBefore = "listening on ";
+  if (!said.starts_with(kBefore)) return false;
+  address_ = port_of(said);
+  return true;
 }
 
 void MeasuredCell::kill_daemon() {

@@ -14,6 +14,7 @@
 
 #include "cs8_protocol/messages.hpp"
 #include "tests/benchmark/plain_http.hpp"
+#include "tests/end_to_end/failing_calls.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
 #include "tests/end_to_end/relay.hpp"
@@ -70,13 +71,17 @@ class Wire {
   std::thread thread_;
 };
 
+/// A daemon that says nothing for so long, or does not end, hangs; the end itself may wait 10 s for the disk.
+inline constexpr std::chrono::seconds kDaemonPatience{60};
+
 struct MeasuredCellOptions {
   std::string cell = "edf";
   int heartbeat_timeout_ms = 500;
   std::string speed = "max";
-  bool noise = true;       // of the probe
-  bool can_stall = false;  // the daemon's disk, by stall_disk()
-  nlohmann::json recipes;  // written beside the cell's own, an array of recipe documents
+  bool noise = true;            // of the probe
+  bool can_stall = false;       // the daemon's disk, by stall_disk()
+  bool calls_can_fail = false;  // the daemon's, by calls(); not with `can_stall`
+  nlohmann::json recipes;       // written beside the cell's own, an array of recipe documents
 };
 
 /// cs8sim and touchcald as processes on a copy of a shipped cell, with a Wire in between, and a folder for
@@ -86,6 +91,12 @@ class MeasuredCell {
   explicit MeasuredCell(MeasuredCellOptions options);
 
   void start_daemon();
+  /// False where it ended, or said something else, before it listened.
+  bool try_to_start_daemon();
+  [[nodiscard]] bool daemon_is_running() const { return daemon_ && daemon_->is_running(); }
+  void signal_daemon(int number) const { daemon_->signal(number); }
+  /// Waits for its end; std::runtime_error when there is none within `kDaemonPatience`.
+  touchcal::testing::Finished wait_for_daemons_end() { return daemon_->wait(); }
   /// SIGKILL; returns when it is gone.
   void kill_daemon();
   /// SIGTERM; returns when it has ended.
@@ -104,6 +115,8 @@ class MeasuredCell {
   void inject(const std::string& line) const;
   /// The next fsync or fdatasync of the daemon takes a second. `can_stall` only.
   void stall_disk() const;
+  /// Which call of the daemon fails. `calls_can_fail` only.
+  [[nodiscard]] touchcal::testing::FailingCallsBlock& calls() const { return *calls_; }
   /// A stall was set off and no fsync came yet.
   [[nodiscard]] bool awaits_stall() const;
 
@@ -120,6 +133,7 @@ class MeasuredCell {
   std::string cell_file_;
   std::optional<touchcal::testing::Process> controller_;
   std::uint16_t control_port_ = 0;
+  touchcal::testing::FailingCallsBlock* calls_ = nullptr;  // mapped as long as the program lives
   std::unique_ptr<Wire> wire_;
   std::optional<touchcal::testing::Process> daemon_;
   DaemonAddress address_;

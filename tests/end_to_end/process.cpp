@@ -17,15 +17,9 @@
 extern char** environ;
 
 namespace touchcal::testing {
-namespace {
-
-/// No test waits longer for a word of a program.
-constexpr int kPatienceMilliseconds = 300'000;
-
-}  // namespace
-
-Process::Process(const std::vector<std::string>& arguments, std::filesystem::path error_file)
-    : error_file_(std::move(error_file)) {
+Process::Process(const std::vector<std::string>& arguments, std::filesystem::path error_file,
+                 std::chrono::milliseconds patience)
+    : error_file_(std::move(error_file)), patience_(patience) {
   const std::string program = std::filesystem::path(TOUCHCAL_PROGRAMS_DIR) / arguments.front();
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
@@ -62,10 +56,16 @@ void Process::signal(int number) const {
   if (pid_ > 0) ::kill(pid_, number);
 }
 
+bool Process::is_running() const {
+  siginfo_t about{};
+  return pid_ > 0 && ::waitid(P_PID, static_cast<id_t>(pid_), &about, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         about.si_pid == 0;
+}
+
 /// False when its output has ended.
 bool Process::read_more() {
   pollfd readable{output_, POLLIN, 0};
-  if (::poll(&readable, 1, kPatienceMilliseconds) <= 0)
+  if (::poll(&readable, 1, static_cast<int>(patience_.count())) <= 0)
     throw std::runtime_error("it says no more after: " + out_);
   std::array<char, 4096> bytes{};
   const ssize_t count = ::read(output_, bytes.data(), bytes.size());
@@ -73,12 +73,18 @@ bool Process::read_more() {
   return count > 0;
 }
 
+std::string Process::first_line() {
+  while (out_.find('\n') == std::string::npos) {
+    if (!read_more()) return {};
+  }
+  return out_.substr(0, out_.find('\n'));
+}
+
 std::string Process::wait_for_address() {
   constexpr std::string_view kBefore = "listening on ";
-  while (out_.find('\n') == std::string::npos && read_more()) {
-  }
-  if (!out_.starts_with(kBefore)) throw std::runtime_error("it does not listen: " + out_);
-  return out_.substr(kBefore.size(), out_.find('\n') - kBefore.size());
+  const std::string line = first_line();
+  if (!line.starts_with(kBefore)) throw std::runtime_error("it does not listen: " + out_);
+  return line.substr(kBefore.size());
 }
 
 std::string Process::wait_for(std::string_view text) {

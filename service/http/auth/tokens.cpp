@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <iterator>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <system_error>
@@ -70,6 +71,8 @@ std::optional<std::string> why_not_there(const KnownDirectory& state_directory) 
 
 std::string random_hex(std::size_t bytes) {
   std::vector<unsigned char> random(bytes);
+  // The library's own context is made at its first use. Without memory for it RAND_bytes() crashes.
+  if (OSSL_LIB_CTX_get0_global_default() == nullptr) throw std::bad_alloc();
   if (RAND_bytes(random.data(), static_cast<int>(bytes)) != 1)
     throw std::runtime_error("no random numbers are available");
   std::string text;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "service/store/maintenance.hpp"
 #include "tests/config/folder.hpp"
 
 namespace cell {
@@ -82,6 +83,26 @@ TEST_F(RunStoreTest, TouchesComeBackExactlyAndInTheirOrder) {
   store_->append_touch(run, touch(1));
   EXPECT_THAT(store_->touches(run), ElementsAre(touch(1), extreme));
   EXPECT_THAT(store_->touches(run + 1), IsEmpty());
+}
+
+/// Who had no memory left between the disk and the acknowledgement could never store the answer that the
+/// controller still had, and no reset led out of that.
+TEST_F(RunStoreTest, AnAnswerThatIsStoredAlreadyIsThereOnce) {
+  for (const bool has_ended : {false, true}) {
+    const std::int64_t run = begin();
+    StoredTouch answer = touch(1);
+    answer.session = 7;
+    answer.sequence = 3;
+    store_->append_touch(run, answer);
+    if (has_ended) store_->finish_run(run, {.outcome = RunOutcome::kAborted, .ended_at = "t"});
+    StoredTouch late = answer;
+    late.captured_at = "2026-01-31T08:15:31.250Z";
+    EXPECT_NO_THROW(store_->append_touch(run, late));
+    EXPECT_THAT(store_->touches(run), ElementsAre(answer)) << "as it was first";
+    late.sequence = 4;
+    EXPECT_THROW(store_->append_touch(run, late), std::exception) << "the answer to another command";
+  }
+  EXPECT_THAT(find_damage(file_), IsEmpty());
 }
 
 TEST_F(RunStoreTest, ATouchKeepsItsNoiseWhenAnotherTakesItsPlace) {
