@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <set>
 #include <system_error>
 
 namespace cell {
@@ -103,11 +102,8 @@ std::optional<std::string> read_token(const std::filesystem::path& file, std::st
 std::optional<std::string> read_made_token(const std::filesystem::path& file) {
   auto token = read_token(file);
   if (!token) return token;
-  const std::set<char> different(token->begin(), token->end());
-  if (token->size() == 2 * kTokenBytes && std::ranges::all_of(*token, is_hexadecimal) &&
-      different.size() >= kTokenDigitsMin)
-    return token;
-  throw NoToken(fmt::format("{}: does not hold a token, {} hexadecimal digits by chance; {}", file.string(),
+  if (token->size() == 2 * kTokenBytes && std::ranges::all_of(*token, is_hexadecimal)) return token;
+  throw NoToken(fmt::format("{}: does not hold a token of {} hexadecimal digits; {}", file.string(),
                             2 * kTokenBytes, kMadeAtStart));
 }
 

@@ -39,11 +39,7 @@ class NoToken : public std::runtime_error {
 std::optional<std::string> read_token(const std::filesystem::path& file,
                                       std::string_view replacement = kMadeAtStart);
 
-/// Fewer different digits are none that chance has made: less than once in 10^18 tokens.
-inline constexpr std::size_t kTokenDigitsMin = 8;
-
-/// The same of a token that the daemon makes: 2 * kTokenBytes hexadecimal digits, of which at least
-/// kTokenDigitsMin are different; NoToken for another.
+/// The same of a token that the daemon makes: 2 * kTokenBytes hexadecimal digits; NoToken for another.
 std::optional<std::string> read_made_token(const std::filesystem::path& file);
 
 }  // namespace cell
