@@ -32,6 +32,8 @@ CalibrationRecord::CalibrationRecord(const IdentificationProblem& problem,
   if (result.status != IdentificationStatus::kConverged || !result.uncertainty)
     throw std::logic_error("only a calibration that has converged can be proved or checked");
   noise_ = {result.uncertainty->noise_m, result.uncertainty->degrees_of_freedom};
+  if (const auto& expected = result.lack_of_fit; expected && expected->noise_m < noise_.std_m)
+    noise_ = {expected->noise_m, expected->noise_degrees};
   if (result.weight_noise_m > 0.0) assume_noise(problem_, result.weight_noise_m);
   LeastSquares fit(problem_, options_, estimated_columns(problem_, options_, result.identifiable),
                    fitted_touches(problem, result));

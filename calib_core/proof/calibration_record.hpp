@@ -27,7 +27,9 @@ class CalibrationRecord {
   [[nodiscard]] const IdentificationOptions& options() const { return options_; }
   [[nodiscard]] const KinematicModel& calibrated() const { return calibrated_; }
   [[nodiscard]] const Eigen::VectorXd& artefact_errors() const { return artefact_errors_; }
-  /// Of a touch, measured by the residuals.
+  /// Of a touch: measured by the residuals or expected by repeats and the maker's figures of the gears, the
+  /// smaller one. Residuals are larger where the model lacks something, and a test against them would be
+  /// blind to what it lacks.
   [[nodiscard]] const TouchNoise& noise() const { return noise_; }
   [[nodiscard]] Eigen::Index unknown_count() const { return covariance_.rows(); }
 

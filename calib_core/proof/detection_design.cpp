@@ -12,14 +12,13 @@
 namespace calib {
 namespace {
 
-constexpr int kStarts = 3;
-constexpr int kRoundsMax = 10;
+constexpr int kDetectionStarts = 3;
+constexpr int kDetectionRoundsMax = 10;
 /// A smaller improvement of the doubt, as a share of it, is none.
 constexpr double kDoubtImprovementMin = 1e-4;
 
-/// trace((I + H^T H)^-1).
-double open_share(const Eigen::MatrixXd& rest) {
-  if (rest.cols() == 1) return 1.0 / (1.0 + rest.squaredNorm());
+double open_share(const Eigen::MatrixXd& rest, FaultDirections directions) {
+  if (directions == FaultDirections::kAny || rest.cols() == 1) return 1.0 / (1.0 + rest.squaredNorm());
   Eigen::MatrixXd information = rest.transpose() * rest;
   information.diagonal().array() += 1.0;
   return ScaledCholesky(information).inverse().trace();
@@ -63,8 +62,12 @@ double doubt_left(const DetectionProblem& problem, const std::vector<std::size_t
   double doubt = 0.0;
   for (const DetectionQuestion& question : problem.questions) {
     const WhitenedRows white(covariance, question.free(chosen, Eigen::all));
+    if (covariance.rows() - white.degrees() < question.free_rank_min) {
+      for (const Eigen::MatrixXd& fault : question.faults) doubt += static_cast<double>(fault.cols());
+      continue;
+    }
     for (const Eigen::MatrixXd& fault : question.faults)
-      doubt += open_share(white.rest(fault(chosen, Eigen::all)));
+      doubt += open_share(white.rest(fault(chosen, Eigen::all)), question.directions);
   }
   return doubt;
 }
@@ -75,10 +78,10 @@ std::vector<std::size_t> choose_for_detection(const DetectionProblem& problem, s
   UniformChance chance(problem.seed);
   std::vector<std::size_t> best;
   double least = std::numeric_limits<double>::infinity();
-  for (int start = 0; start < kStarts; ++start) {
+  for (int start = 0; start < kDetectionStarts; ++start) {
     std::vector<std::size_t> chosen = random_start(candidates, count, chance);
     double doubt = doubt_left(problem, chosen);
-    for (int round = 0; round < kRoundsMax; ++round) {
+    for (int round = 0; round < kDetectionRoundsMax; ++round) {
       const double before = doubt;
       doubt = exchange_round(problem, chosen, doubt);
       if (doubt > (1.0 - kDoubtImprovementMin) * before) break;

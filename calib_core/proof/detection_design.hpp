@@ -7,12 +7,20 @@
 
 namespace calib {
 
+/// How the directions of a fault count. kAny: it is in some mixture of them, and is to be seen. kEach: each
+/// has a size of its own, and is to be told from the others.
+enum class FaultDirections { kAny, kEach };
+
 /// Something that touches are to show although other things are of unknown size.
 struct DetectionQuestion {
   /// A matrix for each fault: a row per candidate, metres, and a column per direction in which the fault may
   /// be, each as large as it is to be seen.
   std::vector<Eigen::MatrixXd> faults;
+  FaultDirections directions = FaultDirections::kEach;
   Eigen::MatrixXd free;  // a column for each quantity of unknown size
+  /// So many directions of `free` have to be determined: a choice that leaves one of them out sees the faults
+  /// better, but nobody knows then where the block is. A choice that does not leaves everything open.
+  Eigen::Index free_rank_min = 0;
 };
 
 struct DetectionProblem {
@@ -21,8 +29,8 @@ struct DetectionProblem {
   std::uint64_t seed = 1;  // of the starts; the same problem gives the same choice
 };
 
-/// How much of each fault these candidates leave open, summed: a fault in one direction counts 1 / (1 +
-/// noncentrality) of the chi-square test that sees it, in several directions the trace of the posterior
+/// How much of each fault these candidates leave open, summed: 1 / (1 + noncentrality) of the chi-square test
+/// that sees it, that of kAny being summed over its directions; of kEach the trace of the posterior
 /// covariance of their sizes for a prior of one each.
 double doubt_left(const DetectionProblem& problem, const std::vector<std::size_t>& chosen);
 

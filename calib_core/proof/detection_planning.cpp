@@ -15,6 +15,7 @@
 #include "calib_core/proof/check.hpp"
 #include "calib_core/proof/check_effects.hpp"
 #include "calib_core/proof/detection_design.hpp"
+#include "calib_core/proof/internal/column_space.hpp"
 #include "calib_core/proof/touch_rows.hpp"
 
 namespace calib {
@@ -123,7 +124,9 @@ std::variant<TouchPlan, PlanningFailure> plan_proof(const PlanningProblem& there
         touch_rows(record, arm_at(record.calibrated(), place.calibrated_from_block), touches);
     DetectionProblem problem{.seed = there.seed};
     problem.covariance = proof_covariance(record, place, rows, touches);
-    DetectionQuestion question{.free = rows.of_place};
+    DetectionQuestion question{.directions = FaultDirections::kAny,
+                               .free = rows.of_place,
+                               .free_rank_min = column_space(rows.of_place).cols()};
     for (const ProofAlternative& alternative : alternatives)
       question.faults.emplace_back(rows.of_unknowns * alternative.displacements);
     problem.questions.push_back(std::move(question));

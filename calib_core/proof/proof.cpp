@@ -14,8 +14,8 @@
 namespace calib {
 namespace {
 
-constexpr int kStepsMax = 30;
-constexpr double kStepSmall = 1e-9;  // metres and radians
+constexpr int kPlaceStepsMax = 30;
+constexpr double kPlaceStepSmall = 1e-9;  // metres and radians
 constexpr int kPoseFreedom = 6;
 
 std::optional<ProofRefusal> find_bad_touch(const CalibrationRecord& record, std::span<const Touch> touches) {
@@ -46,11 +46,11 @@ std::optional<Located> locate(const CalibrationRecord& record, KinematicModel ar
   for (int i = 0; i < kErrorParameterCount; ++i) {
     if (is_place_error(i)) place.push_back(i);
   }
-  for (int step = 0; step < kStepsMax; ++step) {
+  for (int step = 0; step < kPlaceStepsMax; ++step) {
     TouchRows rows = touch_rows(record, arm, touches);
     const Eigen::VectorXd move = least_squares_solution(rows.of_place, -rows.distances_m);
     if (!move.allFinite()) return std::nullopt;
-    if (move.norm() < kStepSmall) return Located{std::move(arm), std::move(rows)};
+    if (move.norm() < kPlaceStepSmall) return Located{std::move(arm), std::move(rows)};
     ErrorVector errors = ErrorVector::Zero();
     errors(place) = move;
     arm = apply(arm, errors);

@@ -36,7 +36,7 @@ struct ProofPlace {
 
 struct ProofLimits {
   double rms_max_m = 30e-6;  // "proof_rms_max_mm" of a cell's limits
-  double p_min = 0.005;      // of the chi-square test
+  double p_min = 0.01;       // of the chi-square test
 };
 
 struct ProofVerdict {

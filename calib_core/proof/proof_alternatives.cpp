@@ -32,8 +32,14 @@ std::vector<ProofAlternative> proof_alternatives(const CalibrationRecord& record
       const int column = nongeometric_index(position);
       const auto& deviation = std[static_cast<std::size_t>(position)];
       if (!is_of_kind(position) || !deviation || record.is_estimated(column)) continue;
+      const Eigen::VectorXd displacement = *deviation * record.displacement_by(column);
+      // Joints give way in the direction of the load, all of them: one effect, which has no other sign.
+      if (is_of_kind == is_arm_droop && found.displacements.cols() > 0) {
+        found.displacements.col(0) += displacement;
+        continue;
+      }
       found.displacements.conservativeResize(Eigen::NoChange, found.displacements.cols() + 1);
-      found.displacements.rightCols<1>() = *deviation * record.displacement_by(column);
+      found.displacements.rightCols<1>() = displacement;
     }
     const double rms_m = found.displacements.cols() > 0 ? tip_rms_m(found.displacements, region) : 0.0;
     if (rms_m == 0.0) continue;

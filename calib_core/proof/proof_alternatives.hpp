@@ -21,9 +21,9 @@ struct ProofAlternative {
 inline constexpr double kProofWorthMetres = 0.1e-3;
 
 /// The alternatives that the arm's file gives deviations for and that were not estimated: a droop of joints
-/// 1 to 3, eccentric gears (first harmonics), oval ones (second harmonics). Each is as large as makes the
-/// calibrated tip wrong by `worth_m`, root mean square over `region`: the part that the calibration absorbs
-/// does not count.
+/// 1 to 3 together, eccentric gears (first harmonics), oval ones (second harmonics). Each is as large as
+/// makes the calibrated tip wrong by `worth_m`, root mean square over `region`: the part that the calibration
+/// absorbs does not count.
 std::vector<ProofAlternative> proof_alternatives(const CalibrationRecord& record, const TipRegion& region,
                                                  double worth_m = kProofWorthMetres);
 

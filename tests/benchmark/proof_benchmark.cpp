@@ -23,7 +23,7 @@ constexpr double kCheckFalseMax = 0.03, kOffsetNamedMin = 0.99;
 constexpr double kSmallOffsetRad = 0.05e-3, kLargeOffsetRad = 0.3e-3, kFaultMetres = 0.1e-3;
 
 double share(int part, int whole) {
-  return whole == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(whole);
+  return whole == 0 ? std::nan("") : static_cast<double>(part) / static_cast<double>(whole);
 }
 
 const char* met(bool is_met) { return is_met ? "met" : "MISSED"; }
@@ -37,12 +37,18 @@ void tell_plan(const char* what, const ProofStudy& study) {
 }
 
 void tell_proofs(const char* what, const ProofTally& tally) {
+  if (tally.proofs == 0) {
+    std::printf("  %s: no proof, %d not calibrated, %d refused: %s\n", what, tally.not_calibrated,
+                tally.refused, tally.refusal.c_str());
+    return;
+  }
   std::printf(
       "  %-32s %5d proofs: %5.1f %% failed (%.1f by chi-square, %.1f by mm); rms %.4f mm median, noise %.1f "
-      "um; %d not calibrated, %d refused",
+      "um; %d not calibrated, %d refused %s",
       what, tally.proofs, 100.0 * share(tally.seen, tally.proofs),
       100.0 * share(tally.by_chance, tally.proofs), 100.0 * share(tally.by_rms, tally.proofs),
-      1e3 * median(tally.rms_m), 1e6 * median(tally.noise_m), tally.not_calibrated, tally.refused);
+      1e3 * median(tally.rms_m), 1e6 * median(tally.noise_m), tally.not_calibrated, tally.refused,
+      tally.refusal.c_str());
 }
 
 bool at_most(double value, double limit) {

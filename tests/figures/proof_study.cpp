@@ -164,6 +164,7 @@ ProofTally ProofStudy::tally(const HiddenArm& given, LeftOut left_out, int seeds
     const auto outcome = prove(*record, place_, there.touch(touches_));
     const auto* verdict = std::get_if<ProofVerdict>(&outcome);
     if (!verdict) {
+      tally.refusal = std::get<ProofRefusal>(outcome).message;
       ++tally.refused;
       continue;
     }

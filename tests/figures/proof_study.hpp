@@ -29,6 +29,7 @@ struct ProofTally {
   int proofs = 0, seen = 0;             // seen: did not pass
   int by_chance = 0, by_rms = 0;        // of them: by the chi-square test, by the limit in mm
   int not_calibrated = 0, refused = 0;  // no proof
+  std::string refusal;                  // the last one
   std::vector<double> rms_m, noise_m;
 };
 

@@ -21,7 +21,7 @@ TEST(CalibrationRecord, OfARigidArmHasTheCovarianceOfItsBudget) {
 }
 
 TEST(CalibrationRecord, SaysHowAnEffectThatWasLeftOutBendsTheEstimate) {
-  proved::Cell cell(5, 1e-9);
+  proved::Cell cell;
   // Small: what it bends beyond first order must not show.
   constexpr double kHarmonicRad = 5e-6;
   KinematicModel uneven = cell.true_arm();
@@ -29,6 +29,7 @@ TEST(CalibrationRecord, SaysHowAnEffectThatWasLeftOutBendsTheEstimate) {
   IdentificationProblem problem = cell.problem();
   const int column = nongeometric_index(harmonic_position(1));
   problem.nongeometric_std[static_cast<std::size_t>(harmonic_position(1))] = kHarmonicRad;
+  problem.touches = cell.again(problem.touches, cell.true_arm(), 0.0);
   const IdentificationResult even = identify(problem, cell.options());
   const CalibrationRecord record(problem, cell.options(), even);
   problem.touches = cell.again(problem.touches, uneven, 0.0);
@@ -39,6 +40,19 @@ TEST(CalibrationRecord, SaysHowAnEffectThatWasLeftOutBendsTheEstimate) {
   const ArmVector moved = even.errors - bent.errors;  // true minus estimated
   const Eigen::VectorXd of_candidates = predicted.head<kErrorParameterCount>();
   EXPECT_LT((moved.head<kErrorParameterCount>() - of_candidates).norm(), 0.02 * of_candidates.norm());
+}
+
+TEST(CalibrationRecord, TakesNoResidualsForNoiseThatAreLargerThanRepeatsAndGearsExplain) {
+  constexpr double kExpectedMetres = 4e-6, kDegrees = 30.0;
+  const proved::Cell cell;
+  IdentificationResult result = cell.result();
+  result.lack_of_fit = LackOfFit{.noise_degrees = kDegrees, .noise_m = kExpectedMetres};
+  const CalibrationRecord record(cell.problem(), cell.options(), result);
+  EXPECT_EQ(record.noise().std_m, kExpectedMetres);
+  EXPECT_EQ(record.noise().degrees_of_freedom, kDegrees);
+  result.lack_of_fit->noise_m = 2.0 * proved::kNoiseMetres;
+  EXPECT_EQ(CalibrationRecord(cell.problem(), cell.options(), result).noise().std_m,
+            result.uncertainty->noise_m);
 }
 
 TEST(CalibrationRecord, IsRefusedACalibrationWithoutAResult) {

@@ -27,6 +27,16 @@ TEST(DetectionDesign, ADoubtIsWhatTheTestOfTheFaultLeavesOpen) {
   EXPECT_NEAR(doubt_left(problem, {0, 1, 2}), 1.0, 1e-12);
 }
 
+TEST(DetectionDesign, AFaultInAnyOfItsDirectionsIsSeenByTheirSum) {
+  DetectionProblem problem = small_problem(3);
+  DetectionQuestion& question = problem.questions[0];
+  question.faults[0].resize(3, 2);
+  question.faults[0] << 1.0, 1.0, 0.0, 0.0, -1.0, -1.0;
+  EXPECT_NEAR(doubt_left(problem, {0, 2}), 1.0 + 1.0 / 5.0, 1e-12);  // alike: only their sum is told
+  question.directions = FaultDirections::kAny;
+  EXPECT_NEAR(doubt_left(problem, {0, 2}), 1.0 / 5.0, 1e-12);
+}
+
 TEST(DetectionDesign, FindsTheBestChoiceWhereAllCanBeTried) {
   const DetectionProblem problem = small_problem(9);
   double least = 1.0;
@@ -45,6 +55,17 @@ TEST(DetectionDesign, LeavesNoPairOfFaultsThatLookAlikeWhereTouchesTellThem) {
   faults << 3, 3, 3, 3, -3, -3, -3, -3, 3, -3, -3, 3;
   const auto chosen = choose_for_detection(problem, 3);
   EXPECT_TRUE(std::ranges::find(chosen, 4U) != chosen.end() || std::ranges::find(chosen, 5U) != chosen.end());
+}
+
+TEST(DetectionDesign, DeterminesWhatItHasToAlthoughFaultsWouldBeSeenBetterWithout) {
+  DetectionProblem problem = small_problem(6);
+  DetectionQuestion& question = problem.questions[0];
+  question.faults[0] << 3, -3, 3, -3, 0.1, -0.1;
+  question.free.resize(6, 2);
+  question.free << 1, 0, 1, 0, 1, 0, 1, 0, 1, 1, 1, 1;
+  EXPECT_LT(choose_for_detection(problem, 3).back(), 4U);
+  question.free_rank_min = 2;
+  EXPECT_GE(choose_for_detection(problem, 3).back(), 4U);
 }
 
 TEST(DetectionDesign, IsRefusedMoreTouchesThanCandidates) {

@@ -17,11 +17,11 @@ inline constexpr double kNoiseMetres = 10e-6;
 
 class Cell {
  public:
-  explicit Cell(std::size_t face_count = 5, double noise_m = kNoiseMetres) : chance_(kSeed) {
-    problem_ = drawn::problem(drawn::uncertain_artefact(face_count), noise_m);
+  Cell() : chance_(kSeed) {
+    problem_ = drawn::problem(drawn::uncertain_artefact(5), kNoiseMetres);
     truth_ = drawn::draw_truth(problem_, chance_);
-    problem_.touches = drawn::touches(truth_, {.count = 100, .noise_m = noise_m}, chance_);
-    options_.stiffness = false;
+    problem_.touches = drawn::touches(truth_, {.count = 100, .noise_m = kNoiseMetres}, chance_);
+    options_.measure_noise = false;  // it is the declared one
     result_ = identify(problem_, options_);
     record_.emplace(problem_, options_, result_);
   }
