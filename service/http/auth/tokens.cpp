@@ -42,7 +42,7 @@ void write_for_owner_only(const std::filesystem::path& file, const std::string& 
 }
 
 std::string load_or_make(const std::filesystem::path& file) {
-  if (auto token = read_made_token(file)) return *std::move(token);
+  if (auto token = read_token(file)) return *std::move(token);
   std::string token = random_hex(kTokenBytes);
   try {
     write_for_owner_only(file, token);

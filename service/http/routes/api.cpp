@@ -243,11 +243,12 @@ asio::awaitable<HttpResponse> Api::execute_command(const HttpRequest& request, c
     bool is_recorded = halts;
     if (!is_recorded) is_recorded = co_await audit_.record_asked(request, caller, admitted.start.get());
     if (!is_recorded) {
-      response = to_response(
-          {.status = 503,
-           .kind = ProblemKind::kAudit,
-           .detail = "the command was refused because it cannot be recorded; free space on "
-                     "the disk of the state directory. Stop, abort and pause are still executed"});
+      response =
+          to_response({.status = 503,
+                       .kind = ProblemKind::kAudit,
+                       .detail = "the command was refused because it cannot be recorded; free space on "
+                                 "the disk of the state directory, or end the program that has the database "
+                                 "locked. Stop, abort and pause are still executed"});
       co_return response;
     }
     response = co_await execute_command_once(request, admitted);

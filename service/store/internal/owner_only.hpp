@@ -19,13 +19,14 @@ inline void make_for_owner_only(const std::filesystem::path& file) {
 }
 
 /// Takes the rights of others from the files of a database, which an older version gave them. Throws
-/// std::runtime_error, with the remedy, where that cannot be done.
+/// std::runtime_error, with the remedy, where that cannot be done; not on a file system without rights of its
+/// own (EPERM for the owner), where those of the mount count.
 inline void keep_for_owner_only(const std::filesystem::path& file) {
   for (const char* behind : {"", "-wal", "-shm"}) {
     const std::string one = file.string() + behind;
     struct stat found = {};
     if (::stat(one.c_str(), &found) != 0 || (found.st_mode & (S_IRWXG | S_IRWXO)) == 0) continue;
-    if (::chmod(one.c_str(), S_IRUSR | S_IWUSR) != 0)
+    if (::chmod(one.c_str(), S_IRUSR | S_IWUSR) != 0 && found.st_uid != ::geteuid())
       throw std::runtime_error(one +
                                ": others have access, and this user cannot change that; chown it to the "
                                "user that touchcald runs as, then chmod 600");

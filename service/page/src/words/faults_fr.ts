@@ -90,7 +90,7 @@ export const kFaultsFr: Record<string, FaultWords> = {
   cell_open: words('la cellule est ouverte', kStill, `touchez le stylet à la main, quittez et fermez la cellule, ${kResumeOrAnew}`),
   not_confirmed: words('personne n’a confirmé à la cellule à temps', kStill,
     'touchcal resume si un essai est en attente, sinon touchcal reset et un nouvel essai ; appuyez sur la touche de confirmation à la cellule dans les 30 s de la demande'),
-  touch_rejected: words('la baie a refusé une commande', kStill,
+  touch_rejected: words('la baie a refusé une commande', 'ce qui a été refusé n’a rien bougé ; une commande déjà en cours a été arrêtée',
     'supprimez la cause à la cellule, puis touchcal resume pour reprendre ce palpage, ou touchcal stop ; en ABORTED touchcal clear, puis touchcal reset'),
   no_contact: words('la recherche s’est finie sans contact', kRanToEnd, `vérifiez la place du bloc et le câble du palpeur, ${kResumeTouch}`),
   unexpected_contact: words('le palpeur a touché quelque chose hors d’une recherche', 'le bras s’est arrêté aussitôt et se tient là',
