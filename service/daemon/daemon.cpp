@@ -213,10 +213,10 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   EndWatch end_watch;  // to the very end, which closes the store
   const DirectoryLock lock(options.state_directory);
   refuse_lost_store(options.state_directory);
-  RunStore store(options.state_directory / kStoreFile);
+  const Clocks clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now};
+  RunStore store(options.state_directory / kStoreFile, {.sleep = {}, .now = clocks.steady});
   mark_begun(options.state_directory);
   const Tokens tokens = load_or_make_tokens(options.state_directory);
-  const Clocks clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now};
 
   // Requests on their way to the operation wait in its context, with sockets of the other: it goes first.
   Context http(1);

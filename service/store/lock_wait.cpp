@@ -15,8 +15,8 @@ void sleep_as_sqlite(std::chrono::milliseconds time) { sqlite3_sleep(static_cast
 
 }  // namespace
 
-LockWait::LockWait(SQLite::Database& database, LockSleep sleep)
-    : database_(database), sleep_(sleep ? std::move(sleep) : LockSleep(sleep_as_sqlite)) {
+LockWait::LockWait(SQLite::Database& database, LockTime time) : database_(database), time_(std::move(time)) {
+  if (!time_.sleep) time_.sleep = sleep_as_sqlite;
   sqlite3_busy_handler(database_.getHandle(), &LockWait::on_locked, this);
 }
 
@@ -26,15 +26,19 @@ int LockWait::on_locked(void* self, int tries) {
   return static_cast<LockWait*>(self)->waits_on(tries) ? 1 : 0;
 }
 
+std::chrono::steady_clock::time_point LockWait::now() const {
+  return time_.now ? time_.now() : std::chrono::steady_clock::time_point();
+}
+
 bool LockWait::waits_on(int tries) {
   if (tries == 0) waited_ = std::chrono::milliseconds(0);
   const std::int64_t changes = database_.getTotalChanges();
-  const bool is_known_in_vain = in_vain_at_ == changes;
+  const bool is_known_in_vain = in_vain_ && in_vain_->changes == changes && now() - in_vain_->at < kLockLapse;
   if (waited_ >= (is_brief_ || is_known_in_vain ? kLockLook : kLockPatience)) {
-    if (!is_brief_) in_vain_at_ = changes;
+    if (!is_brief_ && !is_known_in_vain) in_vain_ = InVain{changes, now()};
     return false;
   }
-  sleep_(kLockStep);
+  time_.sleep(kLockStep);
   waited_ += kLockStep;
   return true;
 }

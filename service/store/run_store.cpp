@@ -111,8 +111,8 @@ bool has_answer(SQLite::Database& database, std::int64_t run_id, const StoredTou
 struct RunStore::Statements {
   static constexpr int kTouchParameters = 1 + row::kTouchColumnCount;
 
-  Statements(SQLite::Database& database, LockSleep sleep)
-      : lock_wait(database, std::move(sleep)),
+  Statements(SQLite::Database& database, LockTime time)
+      : lock_wait(database, std::move(time)),
         append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns + ", checksum)" +
                                    row::touch_rows().values(kTouchParameters)),
         set_open_command(database,
@@ -131,9 +131,9 @@ struct RunStore::Statements {
   row::FileAtPath opened;  // the file of the database
 };
 
-RunStore::RunStore(const std::filesystem::path& file, LockSleep sleep)
+RunStore::RunStore(const std::filesystem::path& file, LockTime time)
     : database_(open_database(file)),
-      statements_(std::make_unique<Statements>(*database_, std::move(sleep))) {}
+      statements_(std::make_unique<Statements>(*database_, std::move(time))) {}
 
 RunStore::RunStore(SharedDatabase to_read) : database_(std::move(to_read)) {}
 

@@ -133,22 +133,26 @@ struct StoredRun {
   std::optional<std::string> conditions_json;
 };
 
-/// Lets so much time pass while another program has the file locked.
-using LockSleep = std::function<void(std::chrono::milliseconds)>;
+/// The time that passes while another program has the file locked.
+struct LockTime {
+  std::function<void(std::chrono::milliseconds)> sleep;             // the machine's where there is none
+  std::function<std::chrono::steady_clock::time_point()> now = {};  // none: it stands still
+};
 
 /// So long a write waits for another program's lock (a backup, a shell, a copy of the file) before it fails:
 /// less than what a person is told of as a slow disk. Behind a lock that outlasts it nothing waits so long
-/// again until a write has gone through.
+/// again until a write has gone through, or for kLockLapse.
 inline constexpr std::chrono::milliseconds kLockPatience{4000};
+inline constexpr std::chrono::milliseconds kLockLapse{5000};
 
 /// Runs and touches in one SQLite file. What a call writes is durable on return unless stated otherwise.
 /// Every call may throw std::exception if the file cannot be read or written; it has changed nothing then.
 /// Each row that a run rests on has a checksum, written with it and compared when it is read.
 class RunStore {
  public:
-  /// Opens or creates the file. A file of a newer schema is refused. `sleep`: the machine's, unless a test
-  /// hands in another.
-  explicit RunStore(const std::filesystem::path& file, LockSleep sleep = {});
+  /// Opens or creates the file. A file of a newer schema is refused. `time`: what passes at
+  /// the locks of other programs.
+  explicit RunStore(const std::filesystem::path& file, LockTime time = {});
   /// Only reads, over its own connection, so that another thread may have it: open_database_to_read().
   static std::unique_ptr<const RunStore> reader(const std::filesystem::path& file);
   ~RunStore();

@@ -31,6 +31,9 @@ inline std::string patient_cell(const Folder& folder, const std::string& name) {
 
 /// A daemon and a simulated controller on a shipped cell, each on a free port.
 class RunningCell {
+  /// A whole run fits into it on a machine that is busy with other tests.
+  static constexpr std::chrono::seconds kPatience{240};
+
  public:
   /// `more`: options of cs8sim beside cell, address and speed.
   RunningCell(const std::string& name, const std::string& speed, const std::vector<std::string>& more = {})
@@ -63,18 +66,14 @@ class RunningCell {
   /// Polls as a supervisor does, until the run with this id has made so many touches. Before it starts, the
   /// status still has the touches of the previous run.
   void wait_for_touches(int count, const std::string& run_id = "1") const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
     for (auto now = status(); now.at("run_id") != run_id || now.at("touches_done") < count; now = status()) {
       if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(now.dump());
     }
   }
 
-  void wait_for_state(const std::string& state) const {
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    for (auto now = status(); now.at("state") != state; now = status()) {
-      if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(now.dump());
-    }
-  }
+  void wait_for_state(const std::string& state) const { wait_for("state", state); }
+  void wait_for_link() const { wait_for("controller_connected", true); }
 
   [[nodiscard]] const Folder& folder() const { return folder_; }
   Process& controller() { return controller_; }
@@ -84,6 +83,14 @@ class RunningCell {
   [[nodiscard]] std::string state() const { return (folder_ / "state").string(); }
 
  private:
+  /// Polls until a field of the status has this value.
+  void wait_for(const char* field, const nlohmann::json& value) const {
+    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    for (auto now = status(); now.at(field) != value; now = status()) {
+      if (std::chrono::steady_clock::now() > deadline) throw std::runtime_error(now.dump());
+    }
+  }
+
   static std::vector<std::string> controller_call(const std::string& cell_file, const std::string& speed,
                                                   const std::vector<std::string>& more) {
     std::vector<std::string> call{"cs8sim", "--cell", cell_file, "--listen", "127.0.0.1:0", "--speed", speed};

@@ -88,6 +88,7 @@ TEST_F(Val3Daemon, HoldsItsRunWhenTheLinkIsLostAndGoesOnBehindANewConfirmation) 
   EXPECT_EQ(held.at("state"), "HELD");
   // The link is silent, or the answer is late: on a busy machine either is seen first.
   EXPECT_THAT(held.at("fault_code"), AnyOf("link_lost", "answer_missing"));
+  cell.wait_for_link();
   cell.wait_for_touches(3);  // the one whose acknowledgement was lost is settled on the new link
   EXPECT_EQ(cell.run({"resume"}).exit_code, cell::kExitDone);
   cell.wait_for_state("COMPLETE");

@@ -21,14 +21,15 @@ class WriteTransaction : public SQLite::Transaction {
 
 /// Who writes over this connection waits for a lock of another program, on the thread that writes: up to
 /// kLockPatience for each lock. Once that was in vain, what follows waits kLockLook only, until a write of
-/// the connection has gone through: work that has queued up under a lasting lock is not held up by each of it
-/// again.
+/// the connection has gone through or kLockLapse is over: work that has queued up under a lasting lock is not
+/// held up by each of it again.
 class LockWait {
  public:
   static constexpr std::chrono::milliseconds kLockLook{100};
 
-  /// `database` must outlive it; its own wait is set to kLockLook with the end. Without `sleep`: SQLite's.
-  LockWait(SQLite::Database& database, LockSleep sleep);
+  /// `database` must outlive it; its own wait is set to kLockLook with the end. Without LockTime::sleep:
+  /// SQLite's.
+  LockWait(SQLite::Database& database, LockTime time);
   ~LockWait();
   LockWait(const LockWait&) = delete;
   LockWait& operator=(const LockWait&) = delete;
@@ -48,11 +49,16 @@ class LockWait {
  private:
   static int on_locked(void* self, int tries);
   bool waits_on(int tries);
+  [[nodiscard]] std::chrono::steady_clock::time_point now() const;
 
   SQLite::Database& database_;
-  LockSleep sleep_;
-  std::chrono::milliseconds waited_{0};     // for the lock that is met now
-  std::optional<std::int64_t> in_vain_at_;  // changes of the connection, when waiting was in vain last
+  LockTime time_;
+  std::chrono::milliseconds waited_{0};  // for the lock that is met now
+  struct InVain {
+    std::int64_t changes;  // of the connection
+    std::chrono::steady_clock::time_point at;
+  };
+  std::optional<InVain> in_vain_;  // when waiting was in vain last
   bool is_brief_ = false;
 };
 

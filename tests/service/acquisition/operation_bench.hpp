@@ -72,7 +72,7 @@ class OperationBench {
   const Cell cell_;
   Folder folder_;
   RunStore store_{folder_.path() / "touchcal.sqlite",
-                  [this](std::chrono::milliseconds waited) { time_.pass(waited); }};
+                  {.sleep = [this](std::chrono::milliseconds waited) { time_.pass(waited); }}};
   boost::asio::io_context io_{1};
   std::unique_ptr<boost::asio::io_context> arithmetic_;
   boost::asio::thread_pool planner_{1};

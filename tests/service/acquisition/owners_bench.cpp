@@ -41,11 +41,11 @@ OwnersBench::OwnersBench()
            .on_entered = [this](State state) { entered.push_back(state); },
            .store_fault = [this](const std::string& name, const std::string&) { faults.push_back(name); }}),
       session(cell_of_owners(), controller, status, wake, time.clocks()),
-      store(folder.path() / "touchcal.sqlite",
-            [this](std::chrono::milliseconds waited) {
-              time.pass(waited);
-              if (on_lock_wait) on_lock_wait();
-            }),
+      store(folder.path() / "touchcal.sqlite", {.sleep =
+                                                    [this](std::chrono::milliseconds waited) {
+                                                      time.pass(waited);
+                                                      if (on_lock_wait) on_lock_wait();
+                                                    }}),
       regions(cell_of_owners()) {
   spdlog::set_level(spdlog::level::off);
   controller.state->joints = to_wire(cell_of_owners().park_joints);

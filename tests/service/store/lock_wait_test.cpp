@@ -37,7 +37,10 @@ class LockWaitTest : public ::testing::Test {
   std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
   std::chrono::milliseconds waited_{0};
   std::chrono::milliseconds unlock_at_ = 1h;
-  RunStore store_{file_, [this](std::chrono::milliseconds time) { sleep(time); }};
+  std::chrono::steady_clock::time_point now_;
+  RunStore store_{
+      file_,
+      {.sleep = [this](std::chrono::milliseconds time) { sleep(time); }, .now = [this] { return now_; }}};
   SQLite::Database other_{file_.string(), SQLite::OPEN_READWRITE};
   std::int64_t run_ = 0;
   int total_ = 0;
@@ -61,6 +64,16 @@ TEST_F(LockWaitTest, BehindALockThatLastsOnlyTheFirstWriteWaitsLong) {
   EXPECT_TRUE(stored_);
   other_.exec("BEGIN IMMEDIATE");
   EXPECT_EQ(wait_of_a_write(), kLockPatience) << "it is another lock";
+}
+
+TEST_F(LockWaitTest, ALockThatIsMetLaterIsWaitedForAlsoWhereNothingWasWrittenBetween) {
+  EXPECT_EQ(wait_of_a_write(), kLockPatience);
+  now_ += kLockLapse - 1ms;
+  EXPECT_EQ(wait_of_a_write(), row::LockWait::kLockLook);
+  now_ += 1ms;
+  unlock_at_ = 800ms;
+  EXPECT_EQ(wait_of_a_write(), unlock_at_);
+  EXPECT_TRUE(stored_);
 }
 
 TEST_F(LockWaitTest, ABeginDoesNotWaitLongForAReaderBeforeItRestartsTheLog) {
