@@ -115,8 +115,8 @@ SelfCheck check_daemon(const fs::path& cell_file, const DaemonOptions& options) 
       [&] { check_store(state / kStoreFile, check); },
       [&] { read_block_pose(state / kBlockPoseFile); },
       [&] { check_locating(state / kLocatingFile, check); },
-      bad_file_at<NoToken>([&] { read_made_token(state / kOperateTokenFile); }, check),
-      bad_file_at<NoToken>([&] { read_made_token(state / kViewTokenFile); }, check),
+      bad_file_at<NoToken>([&] { read_token(state / kOperateTokenFile); }, check),
+      bad_file_at<NoToken>([&] { read_token(state / kViewTokenFile); }, check),
       bad_file_at<std::runtime_error>([&] { read_operator_tokens(state); }, check),
       [&] { check_address(options); },
       [&] { tls_context(options); }};
