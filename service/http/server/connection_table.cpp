@@ -54,7 +54,9 @@ int ConnectionTable::count_of(const Test& counts) const {
 void ConnectionTable::make_room(int most, const Test& counts, const Test& may_close) {
   if (count_of(counts) < most) return;
   const auto is_new_here = [&](const Connection& one) { return is_new(one) && counts(one); };
-  const auto may_close_known = [&](const Connection& one) { return !is_new(one) && may_close(one); };
+  const auto may_close_known = [&](const Connection& one) {
+    return !is_new(one) && one.token != TokenRank::kOperate && may_close(one);
+  };
   const bool spares_new = count_of(is_new_here) <= most / kShareOfNew && count_of(may_close_known) > 0;
   auto victim = connections_.end();
   for (auto one = connections_.begin(); one != connections_.end(); ++one) {

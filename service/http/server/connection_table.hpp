@@ -52,7 +52,8 @@ struct Connection {
 
 /// The connections of a listener. When there are too many, one is closed for a new one, so that a stop always
 /// gets through: the first request of the new one decides how long that stays. Until it has come a connection
-/// is spared as long as there are not more of its kind than an eighth of the places. First goes the oldest
+/// is spared as long as there are not more of its kind than an eighth of the places and another one without
+/// an operate token can go. First goes the oldest
 /// that has not shown a token (of those that have not sent a request, then that wait for nothing, then any),
 /// then the one that has been idle longest of those with the view token, then of those with an operate token.
 /// A request that is being answered, long polls and streams of events among them, keeps a connection with a

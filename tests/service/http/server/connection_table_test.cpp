@@ -135,6 +135,14 @@ TEST(ConnectionTable, OfThoseWithoutARequestYetOneInEightPlacesIsSpared) {
   EXPECT_EQ(connections.closed(), "vvvvvvvvvabv");
 }
 
+TEST(ConnectionTable, StrangersCloseNobodyWithAnOperateTokenWhileThereAreOthersOfThem) {
+  ConnectionTable table({.connections_max = 16});
+  NamedConnections connections(table);
+  for (int i = 0; i < 15; ++i) connections.add('o', kOperating);
+  for (const char name : std::string("abc")) connections.add(name, kSilent);
+  EXPECT_EQ(connections.closed(), "ab");
+}
+
 TEST(ConnectionTable, ThePlaceOfAConnectionThatEndedIsFreeOnce) {
   ConnectionTable table({.connections_max = 1});
   const auto first = table.take(kLoopback);
