@@ -26,14 +26,14 @@ class OpenCommandTest : public ::testing::Test {
   }
   void reopen() {
     store_.reset();
-    store_.emplace(file_, sleep_no_time);
+    store_.emplace(file_, LockTime{.sleep = sleep_no_time});
   }
 
   static void sleep_no_time(std::chrono::milliseconds) {}
 
   Folder folder_;
   std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
-  std::optional<RunStore> store_{std::in_place, file_, sleep_no_time};
+  std::optional<RunStore> store_{std::in_place, file_, LockTime{.sleep = sleep_no_time}};
 };
 
 TEST_F(OpenCommandTest, NoCommandIsKeptInAFileThatWasMovedOrReplaced) {
