@@ -273,12 +273,14 @@ void ControllerSession::acknowledge(std::uint32_t sequence) {
   open_touch_.reset();
 }
 
-void ControllerSession::discard(std::int64_t run_id, std::uint32_t sequence, const cs8::TouchResult& result) {
+void ControllerSession::discard(std::optional<std::int64_t> run_id, std::uint32_t sequence,
+                                const cs8::TouchResult& result) {
   if (result.outcome == cs8::Outcome::kContact) {
     spdlog::warn(
-        "run {}: the contact of command {} is no measurement: joints {} microdegrees, overtravel {} dmm, {} "
+        "{}: the contact of command {} is no measurement: joints {} microdegrees, overtravel {} dmm, {} "
         "edges",
-        run_id, sequence, fmt::join(result.contact, " "), result.overtravel_dmm, result.edges);
+        run_id ? fmt::format("run {}", *run_id) : "no run is stored", sequence,
+        fmt::join(result.contact, " "), result.overtravel_dmm, result.edges);
   }
   acknowledge(sequence);
 }

@@ -107,7 +107,10 @@ class ControllerSession {
   /// Lets the controller forget a touch. Only when its answer is stored, or holds nothing to store.
   void acknowledge(std::uint32_t sequence);
   /// The same of an answer that is no measurement of a run: where its contact was stays in the log.
-  void discard(std::int64_t run_id, std::uint32_t sequence, const cs8::TouchResult& result);
+  /// `run_id`: nothing where the store has no run.
+  void discard(std::optional<std::int64_t> run_id, std::uint32_t sequence, const cs8::TouchResult& result);
+  /// An answer that came and is not stored yet, of a command that is no open touch: until acknowledge().
+  void note_unsettled(std::uint32_t sequence) { unsettled_sequence_ = sequence; }
 
   [[nodiscard]] std::uint32_t next_sequence() const { return controller_.next_sequence(); }
   /// The command is sent before this returns; await the reply at once. Where the permit has ended nothing is
@@ -163,7 +166,7 @@ class ControllerSession {
   std::optional<std::string> application_;
   std::optional<std::uint32_t> overruns_;  // of the controller's tasks, as reported
   std::optional<Readiness> readiness_;     // as reported last
-  std::uint32_t unsettled_sequence_ = 0;   // an open command that Welcome named, until it is settled
+  std::uint32_t unsettled_sequence_ = 0;   // that Welcome named, or note_unsettled(), until it is settled
   std::optional<OpenTouch> open_touch_;
   std::optional<calib::JointVector> standing_;
   std::optional<std::chrono::steady_clock::time_point> state_at_;  // when the newest state was received

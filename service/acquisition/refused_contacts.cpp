@@ -10,7 +10,7 @@
 
 namespace cell {
 
-boost::asio::awaitable<std::optional<std::string>> RefusedContacts::settle(std::int64_t run_id,
+boost::asio::awaitable<std::optional<std::string>> RefusedContacts::settle(std::optional<std::int64_t> run_id,
                                                                            std::uint32_t sequence,
                                                                            cs8::TouchResult result,
                                                                            std::string reason) {
@@ -21,10 +21,11 @@ boost::asio::awaitable<std::optional<std::string>> RefusedContacts::settle(std::
                                 .joints = result.contact,
                                 .reason = std::move(reason),
                                 .at = format_utc(clocks_.system())};
-    const auto write = [run_id, refused](RunStore& store) {
-      if (!keep_refused(store, run_id, refused))
-        spdlog::error("run {}: a refused result is not kept: {} of it are, or it is not in the store", run_id,
-                      kRefusedKept);
+    const auto write = [&run_id, refused](RunStore& store) {
+      if (!run_id) run_id = run_of_answer(store, refused.session, refused.sequence);
+      if (run_id && !keep_refused(store, *run_id, refused))
+        spdlog::error("run {}: a refused result is not kept: {} of it are, or it is not in the store",
+                      *run_id, kRefusedKept);
     };
     const auto failure = co_await store_.write(write);
     if (failure) co_return failure;

@@ -20,10 +20,12 @@ class RefusedContacts {
       : store_(store), session_(session), clocks_(std::move(clocks)) {}
 
   /// Stores the contact in an answer of this connection, if it has one, then lets the controller forget the
-  /// answer. `run_id`: with which run it is kept. Why it could not be stored, nothing when it is done: the
-  /// controller has it still.
-  boost::asio::awaitable<std::optional<std::string>> settle(std::int64_t run_id, std::uint32_t sequence,
-                                                            cs8::TouchResult result, std::string reason);
+  /// answer. `run_id`: with which run it is kept; nothing where this daemon has none, then the store says
+  /// (run_of_answer()), and with an empty store the log alone has it. Why it could not be stored, nothing
+  /// when it is done: the controller has it still.
+  boost::asio::awaitable<std::optional<std::string>> settle(std::optional<std::int64_t> run_id,
+                                                            std::uint32_t sequence, cs8::TouchResult result,
+                                                            std::string reason);
 
  private:
   StoreQueue& store_;

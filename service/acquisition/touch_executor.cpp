@@ -74,7 +74,7 @@ void TouchExecutor::begin_run(const ActiveRun& active) {
   held_by_ = HeldBy::kNothing;
   history_ = {};
   outlier_.begin_run();
-  if (beside_plan_) settle_beside_plan();  // of a run that was stopped before it could be stored
+  beside_plan_.reset();  // of a run that ended before it could be stored: the controller has it until it is
   stored_ahead_.reset();
   reference_ahead_.reset();
   total_is_due_ = false;

@@ -66,8 +66,8 @@ class TouchExecutor {
                                     std::optional<OpenTouch> answered,
                                     std::optional<double> noise_um = std::nullopt);
   /// Settles a result that the controller still has, of a run that has ended or is on hold: a contact in it
-  /// is stored with that run, then the controller may forget it. One that tells of a collision or the like
-  /// ends a run on hold. `active`: null without a run.
+  /// is stored with that run, then the controller may forget it; also where an earlier daemon ended the run.
+  /// One that tells of a collision or the like ends a run on hold. `active`: null without a run.
   boost::asio::awaitable<void> settle_open_command(ActiveRun* active, std::uint32_t sequence);
 
   [[nodiscard]] HeldBy held_by() const { return held_by_; }
@@ -113,8 +113,8 @@ class TouchExecutor {
   void take_rejection(const cs8::Rejected& rejected, HeldBy held_by);
   boost::asio::awaitable<bool> keep_late_touch(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
   void aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact);
-  boost::asio::awaitable<bool> refuse(std::int64_t run_id, std::uint32_t sequence, cs8::TouchResult result,
-                                      std::string reason);
+  boost::asio::awaitable<bool> refuse(std::optional<std::int64_t> run_id, std::uint32_t sequence,
+                                      cs8::TouchResult result, std::string reason);
   void tell_unstored(const std::string& failure);
   void leave_unstored(const ActiveRun* active);
   void forget_stored_command(std::int64_t run_id);
@@ -157,7 +157,11 @@ class TouchExecutor {
     std::uint32_t session = 0;
     std::uint32_t sequence = 0;
     cs8::TouchResult result;
+    std::string captured_at;
   };
+  [[nodiscard]] bool is_beside_plan(std::uint32_t sequence) const {
+    return beside_plan_ && beside_plan_->session == session_.number() && beside_plan_->sequence == sequence;
+  }
   std::optional<BesidePlan> beside_plan_;
   /// A touch that is stored, for the log: it is written behind the command that follows.
   struct KeptLine {

@@ -17,8 +17,9 @@ namespace {
 /// This many false triggers in a run indicate a fault.
 constexpr int kFalseTriggersMany = 3;
 
-/// The run with which an answer is kept that is no measurement; nothing where there is none.
-std::optional<std::int64_t> run_of_answer(const ActiveRun* active, const std::optional<OpenTouch>& open) {
+/// The run with which an answer is kept that is no measurement; nothing where this daemon has none: a run
+/// that the one before ended has left its answer with the controller.
+std::optional<std::int64_t> asker_of_answer(const ActiveRun* active, const std::optional<OpenTouch>& open) {
   if (open) return open->run_id;
   return active ? std::optional(active->run.id()) : std::nullopt;
 }
@@ -88,7 +89,7 @@ void TouchExecutor::take_no_measurement(const ActiveRun& active, const calib::Pl
 /// A contact that is no measurement is stored with the reason before the controller may forget it. False when
 /// that could not be: the controller keeps it, and it is settled when the run goes on or, after its end, at
 /// the reset. What holds or ends the run stays to be read.
-asio::awaitable<bool> TouchExecutor::refuse(std::int64_t run_id, std::uint32_t sequence,
+asio::awaitable<bool> TouchExecutor::refuse(std::optional<std::int64_t> run_id, std::uint32_t sequence,
                                             cs8::TouchResult result, std::string reason) {
   const auto failure = co_await refused_.settle(run_id, sequence, result, std::move(reason));
   if (!failure) co_return true;
@@ -127,6 +128,8 @@ void TouchExecutor::leave_unstored(const ActiveRun* active) {
 }
 
 asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std::uint32_t sequence) {
+  // The run has it and stores it when it goes on; before that the controller forgets nothing.
+  if (is_beside_plan(sequence) && active && active->open) co_return;
   const cs8::QueryReply reply = co_await session_.query(sequence);
   if (std::holds_alternative<cs8::LinkError>(reply)) co_return;
   const auto* result = std::get_if<cs8::TouchResult>(&reply);
@@ -147,10 +150,11 @@ asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std:
     forget_stored_command(open->run_id);
   }
   const bool is_kept = judged && judged->next == TouchJudgement::Next::kKeep;
-  if (const auto run_id = run_of_answer(active, open); result && run_id && !is_kept) {
+  if (result && !is_kept) {
+    const std::optional<std::int64_t> run_id = asker_of_answer(active, open);
     const std::string reason =
         judged ? judged->fault.message() : "it answers no touch of the run's plan that waits for one";
-    const bool refused = co_await refuse(*run_id, sequence, *result, reason);
+    const bool refused = co_await refuse(run_id, sequence, *result, reason);
     if (!refused) {
       leave_unstored(active);
       co_return;

@@ -59,7 +59,8 @@ asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib:
   if (!result) co_return false;  // a lost link was reported by the controller's hook
   const bool is_accepted = co_await accept(active, outgoing.touch, reply.sequence, *result, held_by);
   if (!is_accepted) co_return false;
-  beside_plan_ = {session_.number(), reply.sequence, *result};
+  beside_plan_ = {session_.number(), reply.sequence, *result, format_utc(clocks_.system())};
+  session_.note_unsettled(reply.sequence);
   preparation_.set_missed(false);
   session_.set_standing(outgoing.touch.clear_joints);
   co_return true;
@@ -143,7 +144,7 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
                             .touches_done = run.touches_done(),
                             .joints = beside_plan_->result.contact,
                             .drift_mm = reading.told_m ? std::optional(drift_mm) : std::nullopt,
-                            .captured_at = format_utc(clocks_.system())};
+                            .captured_at = beside_plan_->captured_at};
   std::vector<ReferenceTouch> there;
   const auto write = [id = run.id(), made, &there](RunStore& store) {
     store.append_reference(id, made);
@@ -200,8 +201,8 @@ asio::awaitable<void> TouchExecutor::retest_outlier(ActiveRun& active) {
   again.joints = result.contact;
   again.source = result.source;
   again.overtravel_dmm = result.overtravel_dmm;
-  again.captured_at = format_utc(clocks_.system());
-  again.sequence = 0;  // no command of the plan
+  again.captured_at = beside_plan_->captured_at;  // once more where it could not be stored: it is the same
+  again.sequence = 0;                             // no command of the plan
   again.first = first_contact_in(result);
   again.again.reset();
   const double apart_m = std::abs(preparation_.height_m(face, from_wire(again.joints)) -

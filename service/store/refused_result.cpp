@@ -13,10 +13,14 @@
 namespace cell {
 namespace {
 
-/// The controller tells an answer again that it was not thanked for.
+/// The controller tells an answer again that it was not thanked for: one that was refused, or a touch that
+/// counts.
 bool is_kept(SQLite::Database& database, std::int64_t run_id, const RefusedResult& refused) {
-  SQLite::Statement query(database,
-                          "SELECT 1 FROM refused_results WHERE run_id = ? AND session = ? AND sequence = ?");
+  if (refused.sequence == 0) return false;
+  const std::string same = " WHERE run_id = ?1 AND session = ?2 AND sequence = ?3";
+  SQLite::Statement query(database, "SELECT 1 FROM refused_results" + same +
+                                        " UNION ALL SELECT 1 FROM touches" + same +
+                                        " UNION ALL SELECT 1 FROM superseded_touches" + same);
   query.bind(1, run_id);
   query.bind(2, refused.session);
   query.bind(3, refused.sequence);
@@ -54,6 +58,17 @@ bool keep_refused(RunStore& store, std::int64_t run_id, const RefusedResult& ref
   row::note_rows(database, run_id);
   transaction.commit();
   return true;
+}
+
+std::optional<std::int64_t> run_of_answer(const RunStore& store, std::uint32_t session,
+                                          std::uint32_t sequence) {
+  SQLite::Statement query(*store.database(),
+                          "SELECT coalesce((SELECT max(run_id) FROM open_commands WHERE session = ? AND "
+                          "sequence = ?), (SELECT max(id) FROM runs))");
+  query.bind(1, session);
+  query.bind(2, sequence);
+  if (!query.executeStep() || query.getColumn(0).isNull()) return std::nullopt;
+  return query.getColumn(0).getInt64();
 }
 
 std::vector<RefusedResult> refused_results(const RunStore& store, std::int64_t run_id) {

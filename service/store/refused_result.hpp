@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,10 +26,16 @@ struct RefusedResult {
 /// them is in the log only.
 inline constexpr int kRefusedKept = 200;
 
-/// Durable on return; where the answer to this command is kept already, nothing is written. False, and
+/// Durable on return; where the answer to this command is kept already, as refused or as a touch, nothing is
+/// written. False, and
 /// nothing is written, where the run has kRefusedKept of them already, or is not in the store. Throws what
 /// the database throws.
 bool keep_refused(RunStore& store, std::int64_t run_id, const RefusedResult& refused);
+
+/// The run that an answer is kept with which no run of this daemon asked for: the one whose last touch
+/// command it answers, else the newest; nothing where there is no run.
+std::optional<std::int64_t> run_of_answer(const RunStore& store, std::uint32_t session,
+                                          std::uint32_t sequence);
 
 /// Of a run, oldest first. DamagedStore for a row that is not as it was written, or gone from a run that
 /// ended.

@@ -307,6 +307,7 @@ void RunStore::withdraw_touch(std::int64_t run_id, int number, const std::string
 
 void RunStore::replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason) {
   row::WriteTransaction transaction(*database_);
+  if (row::is_there(*database_, run_id, again)) return;
   row::supersede(*database_, run_id, again.number, reason);
   insert_touch(run_id, again);
   row::note_rows(*database_, run_id);

@@ -188,7 +188,8 @@ class RunStore {
   /// One that is there as the answer to the same command stays as it is: who was broken off between the disk
   /// and the acknowledgement asks the controller for the answer again, and stores it again.
   void append_touch(std::int64_t run_id, const StoredTouch& touch);
-  /// `again` replaces the touch of its number, which is kept as superseded.
+  /// `again` replaces the touch of its number, which is kept as superseded. Where it has done so already
+  /// nothing is written: who was told of a failure, or of nothing, tries it once more.
   void replace_touch(std::int64_t run_id, const StoredTouch& again, const std::string& reason);
   /// Keeps the contact of a repetition with the touch that it agrees with, which stays. It goes with the
   /// touch where that is replaced or withdrawn later.

@@ -29,6 +29,23 @@ void bind_joints(SQLite::Statement& statement, int& index, const cs8::JointsMicr
   }
 }
 
+bool is_there(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch) {
+  SQLite::Statement query(database,
+                          "SELECT 1 FROM touches WHERE run_id = ? AND number = ? AND session = ? AND "
+                          "sequence = ? AND captured_at = ? AND noise_um IS ? AND again_j1_microdeg IS NULL "
+                          "AND (" +
+                              kJointColumns + ") = (?, ?, ?, ?, ?, ?)");
+  int index = 0;
+  query.bind(++index, run_id);
+  query.bind(++index, touch.number);
+  query.bind(++index, touch.session);
+  query.bind(++index, touch.sequence);
+  query.bind(++index, touch.captured_at);
+  bind_or_null(query, ++index, touch.noise_um);
+  bind_joints(query, index, &touch.joints);
+  return query.executeStep();
+}
+
 void supersede(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason) {
   demand_whole_touch(database, run_id, number);
   SQLite::Statement keep(database, "INSERT INTO superseded_touches(run_id, " + kTouchColumns +

@@ -5,6 +5,8 @@
 // said why, and the next daemon is ready in a second.
 //   failing_runs steps [EACH [SEED]]    so many places of each kind of call in each step, evenly; all: 0
 //   failing_runs drawn [COUNT [SEED]]   so many by lot over whole runs; 1,000
+//   failing_runs one STEP CALL AT [COUNT]   the same place again and again, each in a run of its own; once.
+//     STEP: first_start, start, touch, end; CALL: allocation, write, short_write, sync, kill
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -13,6 +15,9 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "service/base/exit_code.hpp"
 #include "tests/benchmark/watched_runs.hpp"
@@ -140,8 +145,8 @@ class FailingRuns {
 
  private:
   [[nodiscard]] std::string end_of_log() const {
-    constexpr std::size_t kShown = 6'000;
-    const std::string log = cell_.log();
+    constexpr std::size_t kShown = 60'000;
+    const std::string log = runs_.log_of_run();
     return log.size() <= kShown ? log : "...\n" + log.substr(log.size() - kShown);
   }
   void arm(const Failure& failure) {
@@ -159,8 +164,10 @@ class FailingRuns {
     if (answer.status != 200) return std::nullopt;
     return json::parse(answer.body);
   }
+  /// RESETTING is on its way to IDLE: a daemon that started behind a run that had ended.
   static bool is_over(const std::string& state) {
-    return state == "COMPLETE" || state == "ABORTED" || state == "STOPPED" || state == "IDLE";
+    return state == "COMPLETE" || state == "ABORTED" || state == "STOPPED" || state == "RESETTING" ||
+           state == "IDLE";
   }
 
   void be_in_a_run() {
@@ -305,17 +312,40 @@ bool fail_by_lot(int count, std::uint64_t seed) {
   return runs.print("by lot");
 }
 
+/// Throws what std::stoll throws, and std::invalid_argument for a name that is none.
+template <class Names>
+std::size_t place_in(const Names& names, const std::string& name) {
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) throw std::invalid_argument("there is no '" + name + "'");
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+bool fail_one(const std::vector<std::string>& words) {
+  constexpr std::array<std::string_view, kSteps.size()> kStepWords{"first_start", "start", "touch", "end"};
+  constexpr std::array<std::string_view, kCalls.size()> kCallWords{"allocation", "write", "short_write",
+                                                                   "sync", "kill"};
+  if (words.size() < 3) throw std::invalid_argument("give STEP CALL AT [COUNT]");
+  const Failure failure{kSteps.at(place_in(kStepWords, words[0])), kCalls.at(place_in(kCallWords, words[1])),
+                        std::stoll(words[2])};
+  const int count = words.size() > 3 ? std::stoi(words[3]) : 1;
+  FailingRuns runs(1);
+  for (int i = 0; i < count; ++i) runs.make(failure);
+  runs.settle();
+  return runs.print("one");
+}
+
 }  // namespace
 }  // namespace bench
 
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // what came before is seen where it ends by a hang
   const std::string what = argc > 1 ? argv[1] : "drawn";
-  const std::uint64_t seed = argc > 3 ? std::stoull(argv[3]) : 1;
+  const std::uint64_t seed = what != "one" && argc > 3 ? std::stoull(argv[3]) : 1;
   try {
     if (what == "steps") return bench::fail_in_steps(argc > 2 ? std::stoll(argv[2]) : 0) ? 0 : 1;
     if (what == "drawn") return bench::fail_by_lot(argc > 2 ? std::stoi(argv[2]) : 1'000, seed) ? 0 : 1;
-    std::fprintf(stderr, "failing_runs: there is no '%s'; give steps or drawn\n", what.c_str());
+    if (what == "one") return bench::fail_one({argv + 2, argv + argc}) ? 0 : 1;
+    std::fprintf(stderr, "failing_runs: there is no '%s'; give steps, drawn or one\n", what.c_str());
   } catch (const std::exception& error) {
     std::fprintf(stderr, "failing_runs: seed %llu: %s\n", static_cast<unsigned long long>(seed),
                  error.what());

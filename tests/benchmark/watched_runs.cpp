@@ -1,11 +1,10 @@
 #include "tests/benchmark/watched_runs.hpp"
 
-#include <spdlog/fmt/fmt.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 
+#include "service/store/refused_result.hpp"
 #include "service/store/run_store.hpp"
 
 namespace bench {
@@ -191,13 +190,15 @@ void WatchedRuns::judge(Tally& tally) {
     answered = answered_;
     acknowledged = acknowledged_;
   }
-  const std::string logs = logs_ + cell_.log();
   const cell::RunStore store(cell_.state() / "touchcal.sqlite");
   const std::int64_t id = std::stoll(run_);
   const bool is_complete = store.run(id)->outcome == cell::RunOutcome::kComplete;
   std::set<std::pair<std::uint32_t, std::uint32_t>> stored;
   std::set<int> numbers;
+  // Reference touches and repetitions are stored without the command that they answer.
+  std::vector<cs8::JointsMicrodeg> without_command;
   const auto note_stored = [&](const cell::StoredTouch& touch) {
+    if (touch.sequence == 0) return without_command.push_back(touch.joints);
     if (!stored.insert({touch.session, touch.sequence}).second) ++tally.doubled;
   };
   for (const cell::StoredTouch& touch : store.touches(id)) {
@@ -205,14 +206,24 @@ void WatchedRuns::judge(Tally& tally) {
     if (!numbers.insert(touch.number).second) ++tally.doubled;
   }
   for (const cell::SupersededTouch& old : store.superseded_touches(id)) note_stored(old.touch);
-  // Reference touches and repetitions are stored without the command that they answer.
-  std::vector<cs8::JointsMicrodeg> without_command;
+  // What was refused is kept apart with its reason: no measurement, and not lost.
+  std::set<std::pair<std::uint32_t, std::uint32_t>> refused;
+  for (const cell::RefusedResult& one : cell::refused_results(store, id)) {
+    if (stored.contains({one.session, one.sequence}) || !refused.insert({one.session, one.sequence}).second)
+      ++tally.doubled;
+  }
   for (const cell::ReferenceTouch& touch : store.references(id)) without_command.push_back(touch.joints);
   for (const cell::StoredTouch& touch : store.touches(id))
     if (touch.again) without_command.push_back(*touch.again);
   for (const auto& [command, joints] : answered) {
     if (stored.contains(command)) continue;
     const auto same = std::ranges::find(without_command, joints);
+    if (refused.contains(command)) {
+      // A reference touch is, too, where the daemon ended between the disk and the acknowledgement.
+      if (same != without_command.end()) without_command.erase(same);
+      ++tally.discarded;
+      continue;
+    }
     if (same != without_command.end()) {
       without_command.erase(same);
     } else if (const auto references = store.references(id); std::ranges::any_of(
@@ -220,9 +231,6 @@ void WatchedRuns::judge(Tally& tally) {
       ++tally.references_again;
     } else if (!is_complete && !acknowledged.contains(command)) {
       ++tally.unacknowledged;  // it stays at the controller, and no one was told that it is there
-    } else if (logs.find(fmt::format("run {}: the contact of command {} is no measurement", run_,
-                                     command.second)) != std::string::npos) {
-      ++tally.discarded;  // as where the permit had been lost: the log has its joints
     } else {
       ++tally.lost;
       std::printf("run %s%s: the answer to command %u of session %u%s is not in the store\n", run_.c_str(),

@@ -21,8 +21,8 @@ inline constexpr double kReadyMaxMs = 1'000.0;
 struct Tally {
   int broken = 0, runs = 0, ended_alike = 0, given_up = 0;
   int lost = 0, doubled = 0;
-  int unacknowledged = 0;    // answers of a run that was given up that are not stored and were never taken
-  int discarded = 0;         // contacts that the daemon took for no measurement, and said so in its log
+  int unacknowledged = 0;  // answers of a run that was given up that are not stored and were never taken
+  int discarded = 0;       // contacts that the daemon took for no measurement: stored apart, with the reason
   int references_again = 0;  // reference touches whose answer was not stored: no part of the fit, made again
   std::vector<double> answers_ms, ready_ms;
 };
@@ -54,6 +54,8 @@ class WatchedRuns {
   void start();
   /// What the present daemon has logged in the run; before another one is started.
   void keep_log();
+  /// What the daemons of the run have logged, one after the other.
+  [[nodiscard]] std::string log_of_run() const { return logs_ + cell_.log(); }
   /// The next daemon, until it tells what became of the run, and until it has its link as well.
   void restart(Tally& tally);
   /// A person takes the cause away and says that it goes on, until the run is over; then it is judged.

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "service/run/touch_command.hpp"
+#include "service/store/refused_result.hpp"
 #include "tests/service/acquisition/cell_operation_bench.hpp"
 
 namespace cell {
@@ -100,6 +101,32 @@ TEST_F(EndedRunTest, ARunOnHoldTakesItTooAndTheTimeThatIsLeftIsThatOfItsWork) {
   tell_state();
   ASSERT_EQ(operation_.status().controller.powered, false) << "the status is made anew";
   EXPECT_EQ(operation_.status().eta_s, left_s);
+}
+
+/// The daemon before ended its run while a touch was under way, and ended itself.
+class AnswerLeftBehindTest : public CellOperationTest {};
+
+TEST_F(AnswerLeftBehindTest, IsOnTheDiskBeforeTheControllerForgetsIt) {
+  const std::int64_t id = store_.begin_run({.recipe = "few", .started_at = "start"});
+  store_.set_open_command(id, {.session = 0, .sequence = 1, .touch_json = "{}"});
+  store_.finish_run(id,
+                    {.outcome = RunOutcome::kAborted, .verdict = Verdict::kIncomplete, .ended_at = "end"});
+  const cs8::TouchResult left = contact_of(0);
+  controller_->is_connected = false;
+  controller_->on_query = [&](std::uint32_t) { return left; };
+  controller_->on_connect = [] {
+    cs8::Welcome welcome;
+    welcome.open_sequence = 1;
+    return welcome;
+  };
+  operation_.launch();
+  run_until([&] { return operation_.status().state == State::kIdle; });
+  controller_->on_connect = ScriptedController::lost;
+  EXPECT_THAT(controller_->asked, Contains("acknowledge 1"));
+  const std::vector<RefusedResult> kept = refused_results(store_, id);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].joints, left.contact);
+  EXPECT_EQ(store_.run(id).value().outcome, RunOutcome::kAborted);
 }
 
 class UnstoredEndTest : public CellOperationTest {};

@@ -53,5 +53,19 @@ TEST_F(RefusedContactsTest, AnAnswerWithoutAContactLeavesNothingToKeep) {
   EXPECT_THAT(controller.asked, ElementsAre("acknowledge 5"));
 }
 
+TEST_F(RefusedContactsTest, AContactOfNoRunOfThisDaemonIsKeptWithTheNewestInTheStore) {
+  const cs8::TouchResult result = contact_at(cell_of_owners().park_joints);
+  EXPECT_FALSE(run(refused_.settle(std::nullopt, 5, result, "nobody asked")));
+  ASSERT_EQ(refused_results(store, run_id_).size(), 1u);
+  EXPECT_EQ(refused_results(store, run_id_)[0].joints, result.contact);
+  EXPECT_THAT(controller.asked, ElementsAre("acknowledge 5"));
+}
+
+TEST_F(RefusedContactsTest, WhereTheStoreHasNoRunTheLogAloneHasItAndTheControllerIsFreeOfIt) {
+  store.withdraw_run(run_id_);
+  EXPECT_FALSE(run(refused_.settle(std::nullopt, 5, contact_at(cell_of_owners().park_joints), "no run")));
+  EXPECT_THAT(controller.asked, ElementsAre("acknowledge 5"));
+}
+
 }  // namespace
 }  // namespace cell

@@ -104,6 +104,26 @@ TEST_F(TouchExecutorAnswers, ALateContactOfAnotherRunIsKeptWithThatRun) {
   EXPECT_THAT(refused_results(store, next.run.id()), IsEmpty());
 }
 
+TEST_F(TouchExecutorAnswers, AContactThatTheDaemonBeforeLeftBehindIsKeptWithItsEndedRun) {
+  controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
+  run(touches_.make_next_touch(active_));
+  session.drop_open_touch();  // the next daemon knows of no command, and has no run
+  const cs8::TouchResult late = contact();
+  controller.on_query = [&](std::uint32_t) { return late; };
+  status.enter(State::kResetting);
+  break_store();
+  run(touches_.settle_open_command(nullptr, 1));
+  mend_store();
+  EXPECT_EQ(acknowledged_count(), 0) << "the controller keeps what is not on the disk";
+  EXPECT_EQ(status.state(), State::kStopped);
+  status.enter(State::kResetting);
+  run(touches_.settle_open_command(nullptr, 1));
+  ASSERT_EQ(refused().size(), 1u);
+  EXPECT_EQ(refused()[0].sequence, 1u);
+  EXPECT_EQ(refused()[0].joints, late.contact);
+  EXPECT_EQ(acknowledged_count(), 1);
+}
+
 TEST_F(TouchExecutorAnswers, AControllerThatCountsOtherwiseOrIsBusyHoldsTheRunAndIsMetAnew) {
   for (const auto reason : {cs8::RejectReason::kBusy, cs8::RejectReason::kStaleSequence}) {
     controller.on_touch = [reason](const cs8::Touch&) { return cs8::Rejected{reason, 0}; };

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "service/acquisition/touch_executor.hpp"
+#include "service/store/refused_result.hpp"
 #include "tests/service/acquisition/executor_bench.hpp"
 
 namespace cell {
@@ -142,6 +143,45 @@ TEST_F(TouchesBesidePlan, AContactAtTheReferencePlaceIsAcknowledgedOnceItIsStore
   EXPECT_EQ(acknowledged_count(), before + 1);
   ASSERT_EQ(store.references(active.run.id()).size(), 1u);
   EXPECT_EQ(store.references(active.run.id())[0].number, 1);
+}
+
+TEST_F(TouchesBesidePlan, AContactThatItsRunCouldNotStoreIsNotForgottenWithTheRun) {
+  ActiveRun active = begun_run("edf-25");
+  active.run.set_plan(plan_of_owners().touches);
+  touches_.begin_run(active);
+  while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
+  const long before = acknowledged_count();
+  break_store();
+  run(touches_.make_next_touch(active));
+  mend_store();
+  const cs8::TouchResult made = contact();
+  controller.on_query = [&](std::uint32_t) { return made; };
+  const std::uint32_t sequence = session.sequence_to_settle();
+  ASSERT_NE(sequence, 0u);
+  run(touches_.settle_open_command(&active, sequence));
+  EXPECT_EQ(acknowledged_count(), before) << "the run has it, and stores it when it goes on";
+  EXPECT_THAT(refused_results(store, active.run.id()), ::testing::IsEmpty());
+  active.open = false;
+  status.enter(State::kResetting);
+  run(touches_.settle_open_command(&active, sequence));
+  ASSERT_EQ(refused_results(store, active.run.id()).size(), 1u);
+  EXPECT_EQ(refused_results(store, active.run.id())[0].joints, made.contact);
+  EXPECT_EQ(acknowledged_count(), before + 1);
+  EXPECT_EQ(session.sequence_to_settle(), 0u);
+}
+
+TEST_F(TouchesBesidePlan, ARunThatBeginsForgetsNoContactOfTheOneBefore) {
+  ActiveRun active = begun_run("edf-25");
+  active.run.set_plan(plan_of_owners().touches);
+  touches_.begin_run(active);
+  while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
+  const long before = acknowledged_count();
+  break_store();
+  run(touches_.make_next_touch(active));
+  mend_store();
+  touches_.begin_run(active_);
+  EXPECT_EQ(acknowledged_count(), before) << "it is not on the disk";
+  EXPECT_NE(session.sequence_to_settle(), 0u);
 }
 
 TEST_F(TouchesBesidePlan, TheReferencePlaceIsTouchedBesideThePlan) {

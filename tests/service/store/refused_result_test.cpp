@@ -46,8 +46,9 @@ TEST_F(RefusedResultTest, WhatIsKeptComesBackWithItsRunOldestFirst) {
 }
 
 TEST_F(RefusedResultTest, ARunHasABoundedNumberOfThem) {
-  for (int i = 0; i < kRefusedKept; ++i) EXPECT_TRUE(keep_refused(store_, run_, refused(1)));
-  EXPECT_FALSE(keep_refused(store_, run_, refused(2)));
+  std::uint32_t sequence = 0;
+  for (int i = 0; i < kRefusedKept; ++i) EXPECT_TRUE(keep_refused(store_, run_, refused(++sequence)));
+  EXPECT_FALSE(keep_refused(store_, run_, refused(++sequence)));
   EXPECT_EQ(refused_results(store_, run_).size(), static_cast<std::size_t>(kRefusedKept));
 }
 
@@ -68,6 +69,25 @@ TEST_F(RefusedResultTest, ARowThatWasChangedOrTakenOutIsNotTold) {
   store_.database()->exec("DELETE FROM refused_results WHERE sequence = 2");
   EXPECT_THROW(static_cast<void>(refused_results(store_, run_)), DamagedStore);
   EXPECT_THAT(find_damage(file_), ElementsAre(HasSubstr("run 1")));
+}
+
+TEST_F(RefusedResultTest, ATouchThatCountsIsNotRefusedWhereTheControllerTellsItAgain) {
+  store_.append_touch(run_, {.number = 1, .captured_at = "t", .session = 7, .sequence = 1});
+  store_.append_touch(run_, {.number = 2, .captured_at = "t", .session = 7, .sequence = 2});
+  store_.withdraw_touch(run_, 2, "outlier");
+  EXPECT_TRUE(keep_refused(store_, run_, refused(1)));
+  EXPECT_TRUE(keep_refused(store_, run_, refused(2)));
+  EXPECT_THAT(refused_results(store_, run_), IsEmpty());
+}
+
+TEST_F(RefusedResultTest, AnAnswerThatNobodyAskedForBelongsToTheRunWhoseCommandItAnswersElseToTheNewest) {
+  store_.set_open_command(run_, {.session = 7, .sequence = 9, .touch_json = "{}"});
+  end();
+  const std::int64_t newest = store_.begin_run({.recipe = "edf-25", .started_at = "later"});
+  EXPECT_EQ(run_of_answer(store_, 7, 9), run_);
+  EXPECT_EQ(run_of_answer(store_, 8, 9), newest) << "another session of the controller";
+  EXPECT_EQ(run_of_answer(store_, 7, 10), newest);
+  EXPECT_FALSE(run_of_answer(RunStore(folder_.path() / "empty.sqlite"), 7, 9));
 }
 
 }  // namespace

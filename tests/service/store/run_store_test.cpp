@@ -321,6 +321,21 @@ TEST_F(RunStoreTest, ATouchMadeAgainTakesThePlaceOfTheFirstWhichIsKept) {
   EXPECT_THAT(store_->touches(run), ElementsAre(again, touch(2)));
 }
 
+TEST_F(RunStoreTest, ATouchIsReplacedOnceByTheSameRepetition) {
+  const std::int64_t run = begin();
+  store_->append_touch(run, touch(1));
+  StoredTouch again = touch(1);
+  again.joints[0] = 99;
+  again.sequence = 0;  // a repetition answers no command of the plan
+  store_->replace_touch(run, again, "does not fit");
+  store_->replace_touch(run, again, "does not fit");
+  EXPECT_THAT(store_->touches(run), ElementsAre(again));
+  EXPECT_EQ(store_->superseded_touches(run).size(), 1u);
+  again.captured_at = "2026-01-31T09:00:00.000Z";
+  store_->replace_touch(run, again, "another repetition");
+  EXPECT_EQ(store_->superseded_touches(run).size(), 2u);
+}
+
 TEST_F(RunStoreTest, ReferencesAndPlanChangesComeBackInTheirOrder) {
   const std::int64_t run = begin();
   store_->append_reference(run, {.number = 1, .joints = {1, 2, 3, 4, 5, 6}, .captured_at = "t"});
