@@ -1,10 +1,8 @@
 // A program's lines as operations.
 #include <cmath>
 
-#include "sim_controller/val3/machine/builtins.hpp"
+#include "sim_controller/val3/machine/assignments.hpp"
 #include "sim_controller/val3/machine/calls.hpp"
-#include "sim_controller/val3/machine/channels.hpp"
-#include "sim_controller/val3/machine/signals.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
 #include "sim_controller/val3/program/run_memory.hpp"
 
@@ -17,23 +15,6 @@ Flow go_to(const Context& context, std::size_t line) {
   context.here->next = line;
   return Flow::kGo;
 }
-
-/// Writes one value to all places of an assignment, the last one first.
-template <class T>
-class AssignOperation final : public Operation {
- public:
-  AssignOperation(std::vector<PlaceNodePtr<T>> places, NodePtr<T> value)
-      : places_(std::move(places)), value_(std::move(value)) {}
-  Flow run(Context& context) const override {
-    const T value = value_->get(context);
-    for (auto place = places_.rbegin(); place != places_.rend(); ++place) (*place)->at(context) = value;
-    return Flow::kGo;
-  }
-
- private:
-  std::vector<PlaceNodePtr<T>> places_;
-  NodePtr<T> value_;
-};
 
 template <class T>
 class SwitchOperation final : public Operation {
@@ -88,7 +69,7 @@ class LineCompiler {
     const Line& line = program_.lines[index];
     switch (line.kind) {
       case LKind::kAssign:
-        return assignment(line);
+        return assignment_operation(compiler_, line);
       case LKind::kInstruction:
         return instruction(line.expressions.at(0));
       case LKind::kCall:
@@ -210,49 +191,6 @@ class LineCompiler {
       } else {
         compiler_.refuse(selector, "a switch over this type is not simulated");
       }
-    });
-  }
-
-  OperationPtr assignment(const Line& line) {
-    const Expression& value = line.expressions.back();
-    const Expression& first = line.expressions.at(0);
-    const std::size_t places = line.expressions.size() - 1;
-    if (first.type.kind == Kind::kSio) return channel_write(first, value);
-    if (first.type.kind == Kind::kDio) {
-      std::vector<NodePtr<Dio>> signals;
-      for (std::size_t i = 0; i < places; ++i) signals.push_back(compiler_.value<Dio>(line.expressions[i]));
-      return operation([signals = std::move(signals), value = compiler_.value<bool>(value)](Context& c) {
-        const bool on = value->get(c);
-        for (auto signal = signals.rbegin(); signal != signals.rend(); ++signal)
-          write_signal(c, (*signal)->get(c), on);
-        return Flow::kGo;
-      });
-    }
-    if (first.type.kind == Kind::kAio)
-      return operation(
-          [signal = compiler_.value<Aio>(first), value = compiler_.value<double>(value)](Context& c) {
-            write_analogue(c, signal->get(c), value->get(c));
-            return Flow::kGo;
-          });
-    if (!is_simulated(first.type.kind))
-      compiler_.refuse_type(first, "a variable of this type is not simulated");
-    return with_type_of(first.type.kind, [&]<class T>() -> OperationPtr {
-      std::vector<PlaceNodePtr<T>> targets;
-      for (std::size_t i = 0; i < places; ++i) targets.push_back(compiler_.place<T>(line.expressions[i]));
-      return std::make_unique<const AssignOperation<T>>(std::move(targets), compiler_.value<T>(value));
-    });
-  }
-
-  OperationPtr channel_write(const Expression& channel, const Expression& value) {
-    if (value.type.kind == Kind::kString)
-      return operation(
-          [to = compiler_.value<Sio>(channel), what = compiler_.value<std::string>(value)](Context& c) {
-            write_text(c, to->get(c), what->get(c));
-            return Flow::kGo;
-          });
-    return operation([to = compiler_.value<Sio>(channel), what = compiler_.value<double>(value)](Context& c) {
-      write_byte(c, to->get(c), what->get(c));
-      return Flow::kGo;
     });
   }
 
