@@ -40,6 +40,26 @@ TEST(ConstantChecks, AnIndexOutsideOfItsArrayIsFound) {
 }
 
 TEST(ConstantChecks, ALocalOutsideOfItsSizeIsFound) {
+TEST(ConstantChecks, AnArrayThatIsPassedByReferenceMayGrow) {
+  for (const char* grows : {"resize(x_nA,1,9)", "append(x_nA)"}) {
+    SmallApplication small = wired_cell();
+    small.program("grow", grows, {small.reference("num", "x_nA", 1)});
+    small.program("start", "call grow(nA)\nn=nA[3]\nl_n=1\ncall grow(l_n)\nl_n[1]=2\nl_nKept=1\nl_nKept[1]=n",
+                  {}, {{"num", "l_n"}, {"num", "l_nKept"}});
+    EXPECT_THAT(found_in(std::move(small)), ElementsAre("start.pgx:8 constant-index")) << grows;
+  }
+}
+
+TEST(ConstantChecks, DataOfALibraryMayBeOfAnotherSizeWhenItIsLoadedAnew) {
+  SmallApplication there;
+  there.global("num", "nParts", {3}, true);
+  there.application.globals.back().values.push_back(stored("value", "1"));
+  SmallApplication small = wired_cell();
+  small.library("lib", std::make_shared<Application>(std::move(there.application)));
+  small.program("start", "n=lib:nParts[5]\nn=lib:nParts[-1]");
+  EXPECT_THAT(found_in(std::move(small)), ElementsAre("start.pgx:3 constant-index"));
+}
+
   SmallApplication small = wired_cell();
   small.program("start", "l_n=1\nl_n[1]=2", {}, {{"num", "l_n"}});
   EXPECT_THAT(found_in(std::move(small)), ElementsAre("start.pgx:3 constant-index"));
