@@ -192,16 +192,17 @@ class ConstantChecks {
                     "start() calls itself, which begins nothing anew: the first call goes on behind it");
   }
 
+  /// A library's programs run in the memory of whoever creates the task.
   void run_memory(const Program& program) {
+    if (subject_.application.program_named("start") < 0) return;
     const std::size_t memory = run_memory_of(subject_.application);
     const std::size_t wanted = bytes_of_call(subject_.application, program);
-    const bool is_start = program.name == "start" || program.name == "stop";
     if (program.name == "start" && subject_.application.stack_bytes == 0)
-      subject_.tell(Severity::kWarning, check_rules::kRunMemory, subject_.application.project, 0, 0,
-                    "stackSize is 0: no task has run memory", "write 5000, which is usual");
+      subject_.tell(Severity::kNote, check_rules::kRunMemory, subject_.application.project, 0, 0,
+                    "stackSize is 0: it is taken as " + std::to_string(memory) + " here",
+                    "write 5000, which is usual");
     if (wanted > memory)
-      subject_.tell(is_start ? Severity::kError : Severity::kWarning, check_rules::kRunMemory, program.file,
-                    program.line, 0,
+      subject_.tell(Severity::kWarning, check_rules::kRunMemory, program.file, program.line, 0,
                     program.name + " takes at least " + std::to_string(wanted) +
                         " bytes of run memory by itself, and stackSize is " + std::to_string(memory));
   }

@@ -10,6 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::UnorderedElementsAre;
 
 /// The cell with an input, an output and arrays.
 SmallApplication wired_cell() {
@@ -39,7 +40,6 @@ TEST(ConstantChecks, AnIndexOutsideOfItsArrayIsFound) {
   EXPECT_THAT(found_by("append(nA)\nn=nA[-2]"), ElementsAre("start.pgx:3 constant-index"));
 }
 
-TEST(ConstantChecks, ALocalOutsideOfItsSizeIsFound) {
 TEST(ConstantChecks, AnArrayThatIsPassedByReferenceMayGrow) {
   for (const char* grows : {"resize(x_nA,1,9)", "append(x_nA)"}) {
     SmallApplication small = wired_cell();
@@ -60,6 +60,7 @@ TEST(ConstantChecks, DataOfALibraryMayBeOfAnotherSizeWhenItIsLoadedAnew) {
   EXPECT_THAT(found_in(std::move(small)), ElementsAre("start.pgx:3 constant-index"));
 }
 
+TEST(ConstantChecks, ALocalOutsideOfItsSizeIsFound) {
   SmallApplication small = wired_cell();
   small.program("start", "l_n=1\nl_n[1]=2", {}, {{"num", "l_n"}});
   EXPECT_THAT(found_in(std::move(small)), ElementsAre("start.pgx:3 constant-index"));
@@ -129,6 +130,36 @@ TEST(ConstantChecks, LocalsThatRunMemoryDoesNotHoldAreFound) {
   small.application.stack_bytes = 0;
   small.application.project = "small.pjx";
   EXPECT_THAT(found_in(std::move(small)), ElementsAre("large.pgx:1 run-memory", "small.pjx:0 run-memory"));
+}
+
+/// "warning large.pgx:1", of run memory.
+std::vector<std::string> run_memory_in(SmallApplication small) {
+  Findings findings = std::move(small.findings);
+  resolve(small.application, findings);
+  check(small.application, {}, findings);
+  std::vector<std::string> all;
+  for (const Finding& one : findings)
+    if (one.rule == "run-memory")
+      all.push_back((one.severity == Severity::kNote      ? "note "
+                     : one.severity == Severity::kWarning ? "warning "
+                                                          : "error ") +
+                    one.at.file + ": " + one.what);
+  return all;
+}
+
+TEST(ConstantChecks, RunMemoryIsThatOfAnApplicationThatStarts) {
+  SmallApplication small = wired_cell();
+  small.application.stack_bytes = 0;
+  small.application.project = "small.pjx";
+  small.program("large", "l_n=1\nn=l_n", {}, {{"num", "l_n"}});
+  small.application.programs.back().locals[0].sizes = {100'000};
+  EXPECT_THAT(run_memory_in(small), IsEmpty()) << "a library's programs run in its user's memory";
+  small.application.programs.back().name = "start";
+  EXPECT_THAT(run_memory_in(std::move(small)),
+              UnorderedElementsAre(
+                  "note small.pjx: stackSize is 0: it is taken as 5000 here",
+                  "warning large.pgx: start takes at least 800048 bytes of run memory by itself, and "
+                  "stackSize is 5000"));
 }
 
 }  // namespace
