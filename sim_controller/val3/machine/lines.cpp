@@ -81,7 +81,7 @@ class LineCompiler {
       case LKind::kEnd:
         return operation([](Context& c) {
           Task& task = c.task;
-          Tasks::leave(task);
+          c.tasks.leave(task);
           return task.stack.empty() ? Flow::kEnded : Flow::kGo;
         });
       case LKind::kBreak:
