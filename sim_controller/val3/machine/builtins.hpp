@@ -30,7 +30,7 @@ struct Slice {
   }
 };
 
-/// A frame as a variable, which points can be given in; world has no place.
+/// A frame as a variable, which points can be given in.
 struct FrameRef {
   Father father;
 };

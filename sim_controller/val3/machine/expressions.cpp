@@ -272,12 +272,6 @@ NodePtr<T> Compiler::structure(const Expression& e) {
     if (e.reference.to == Reference::To::kWord)
       return lambda_node<T>([word = word_of<T>(e.reference.index)](Context&) { return word; });
   }
-  if constexpr (std::is_same_v<T, Frame>) {
-    if (e.reference.to == Reference::To::kWorld) return lambda_node<T>([](Context&) { return Frame{}; });
-  }
-  if constexpr (std::is_same_v<T, Tool>) {
-    if (e.reference.to == Reference::To::kFlange) return lambda_node<T>([](Context&) { return Tool{}; });
-  }
   if (e.is_place || e.kind == EKind::kName) return place<T>(e);
   if constexpr (std::is_same_v<T, Joint>) {
     if (e.kind == EKind::kUnary)

@@ -173,6 +173,10 @@ RefNodePtr Compiler::variable(const Expression& e) {
       ArrayBase* array = &instance_.global(reference);
       return lambda_node<Ref>([array](Context&) { return Ref{.array = array}; });
     }
+    case Reference::To::kWorld:
+      return lambda_node<Ref>([world = &fathers_.world()](Context&) { return Ref{.array = world}; });
+    case Reference::To::kFlange:
+      return lambda_node<Ref>([flange = &fathers_.flange()](Context&) { return Ref{.array = flange}; });
     default:
       refuse(e, why_unknown(e));
   }
