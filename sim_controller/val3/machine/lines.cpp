@@ -3,6 +3,7 @@
 
 #include "sim_controller/val3/machine/assignments.hpp"
 #include "sim_controller/val3/machine/calls.hpp"
+#include "sim_controller/val3/machine/finite.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
 #include "sim_controller/val3/program/run_memory.hpp"
 
@@ -154,7 +155,7 @@ class LineCompiler {
       return operation(
           [counter = std::move(counter), end = std::move(end), inside = line.open + 1](Context& c) {
             const double step = end.step_of(c);
-            const double next = counter->at(c) + step;
+            const double next = demand_finite(counter->at(c) + step);
             const bool goes_on = end.is_inside(c, next, step);
             counter->at(c) = next;
             return goes_on ? go_to(c, inside) : Flow::kGo;
@@ -199,7 +200,9 @@ class LineCompiler {
       return operation([seconds = compiler_.value<double>(e.parts.at(0)), who = &e](Context& c) {
         // 0 or less passes the turn
         if (c.task.waits_in == who) return c.tasks.is_over(c.task, who, 0.0) ? Flow::kGo : Flow::kWait;
-        (void)c.tasks.is_over(c.task, who, std::max(0.0, seconds->get(c)));
+        const double time_s = seconds->get(c);
+        if (!std::isfinite(time_s)) throw RunFailure(kErrorParameter, "a delay of no number");
+        (void)c.tasks.is_over(c.task, who, std::max(0.0, time_s));
         c.task.waits_in = who;
         return Flow::kWait;
       });

@@ -259,12 +259,12 @@ RefNodePtr Compiler::ref(const Expression& e) {
 
 template <class T>
 PlaceNodePtr<T> Compiler::place(const Expression& e) {
+  // Behind a place of one type no element of another is ever read: nothing at run time would see it.
+  if (e.type.kind != Kind::kVoid && e.type.kind != kind_of<T>()) refuse(e, "a variable of another type");
   if (e.kind == Expression::Kind::kName) {
     if (is_fixed_global(instance_, e.reference))
       return std::make_unique<GlobalPlace<T>>(instance_.global(e.reference));
     if (e.reference.to == Reference::To::kLocal || e.reference.to == Reference::To::kParameter)
-  // Behind a place of one type no element of another is ever read: nothing at run time would see it.
-  if (e.type.kind != Kind::kVoid && e.type.kind != kind_of<T>()) refuse(e, "a variable of another type");
       return std::make_unique<SlotPlace<T>>(slot_of(program_, e.reference));
   }
   const bool one_number = e.kind == Expression::Kind::kIndex && e.parts.size() == 2 &&

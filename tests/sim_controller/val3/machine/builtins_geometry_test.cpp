@@ -148,6 +148,20 @@ TEST(Geometry, WorldAndFlangeThatAreChangedFailAtTheNextCalculation) {
   }
 }
 
+TEST(Geometry, AResultThatIsTooLargeForANumberIsAnError) {
+  const std::string large = "n[1]=power(10,308)*1.5\n";
+  for (const std::string line : {"j[1]=j[0]+j[0]", "j[1]=j[1]-j[0]-j[0]", "t[1]=t[0]*t[0]",
+                                 "n[0]=distance(t[0],t[1])", "t[1]=interpolateL(t[0],t[1],1.5)"}) {
+    SmallProject project;
+    with_variables(project).program("start",
+                                    large + "j[0].j1=n[1]\nt[0].x=n[1]\nt[1].x=-n[1]\n" + line + "\nn[2]=1");
+    Running run(project);
+    run.ticks(3);
+    EXPECT_EQ(run.machine().task_status("small~"), kErrorArgument) << line << run.log();
+    EXPECT_EQ(run.number("n", 2), 0) << line;
+  }
+}
+
 TEST(Geometry, AToolInBracesHasItsGripperAndTimes) {
   SmallProject project;
   with_points(project).data("dq", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%Q0\"/>");
