@@ -80,6 +80,24 @@ TEST(ApplicationCommissioning, StartsOnItsArmOnly) {
   EXPECT_NE(bench.log().find("arm tx90-S1, serial F09_9EF3A1_A_01"), std::string::npos) << bench.log();
 }
 
+TEST(ApplicationCommissioning, StartsOnAnArmWhoseNameHasAHyphen) {
+  const std::map<std::string, bool> cases{
+      {"tx2-90", true}, {"tx2-90-S1", true}, {"tx2-90l-S1", false}, {"tx2-60", false}, {"tx2", false}};
+  for (const auto& [type, fits] : cases) {
+    Bench bench;
+    bench.controller.machine().stop();
+    bench.seconds(0.2);
+    bench.cabinet.arm_type = type;
+    bench.controller.machine().set_text("kArm", "tx2-90");
+    bench.controller.machine().start();
+    bench.seconds(0.1);
+    EXPECT_EQ(bench.controller.machine().task_status("receive") == 1, fits) << type << '\n' << bench.log();
+    if (fits) {
+      EXPECT_EQ(bench.controller.machine().text("sArm"), "tx2-90") << type;
+    }
+  }
+}
+
 TEST(ApplicationCommissioning, SetsItsSocketAndDoesNotStartWithoutThat) {
   Bench bench;
   EXPECT_EQ(bench.socket().timeout_s, -1);

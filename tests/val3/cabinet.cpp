@@ -48,6 +48,19 @@ RunError Cabinet::set_digital(int id, bool on) {
   return kErrorNone;
 }
 
+std::optional<int> Cabinet::find_analogue(std::string_view link) {
+  if (!analogues.contains(link)) return std::nullopt;
+  signals_.emplace_back(link);
+  return static_cast<int>(signals_.size()) - 1;
+}
+
+double Cabinet::analogue(int id) const { return analogues.at(signals_.at(static_cast<std::size_t>(id))); }
+
+RunError Cabinet::set_analogue(int id, double value) {
+  analogues.at(signals_.at(static_cast<std::size_t>(id))) = value;
+  return kErrorNone;
+}
+
 std::optional<int> Cabinet::find_channel(std::string_view link) {
   sockets[std::string(link)];
   channels_.emplace_back(link);

@@ -52,6 +52,7 @@ class Cabinet final : public System {
   double now_s = 0;                                           // set before the start, it counts on from there
   std::map<std::string, bool, std::less<>> inputs;            // by link
   std::map<std::string, bool, std::less<>> outputs;           // by link
+  std::map<std::string, double, std::less<>> analogues;       // outputs, by link
   std::set<std::string, std::less<>> latch_inputs;            // those with latch hardware
   bool latch_blind = false;                                   // takes the command and never captures
   std::map<std::string, Socket, std::less<>> sockets;
@@ -74,11 +75,11 @@ class Cabinet final : public System {
 
   [[nodiscard]] double clock_s() const override { return now_s; }
   std::optional<int> find_digital(std::string_view link) override;
-  std::optional<int> find_analogue(std::string_view) override { return std::nullopt; }
+  std::optional<int> find_analogue(std::string_view link) override;
   [[nodiscard]] bool digital(int id) const override;
   RunError set_digital(int id, bool on) override;
-  [[nodiscard]] double analogue(int) const override { return 0; }
-  RunError set_analogue(int, double) override { return kErrorNotLinked; }
+  [[nodiscard]] double analogue(int id) const override;
+  RunError set_analogue(int id, double value) override;
   std::optional<int> find_channel(std::string_view link) override;
   bool connect(int channel) override;
   [[nodiscard]] bool peer_is_gone(int channel) const override {

@@ -9,7 +9,7 @@
 
 namespace val3 {
 
-/// A small project that runs in a cabinet of its own, with an input that has a latch, an output and a socket.
+/// A small project that runs in a cabinet of its own, with an input that has a latch, outputs and a socket.
 class Running {
  public:
   explicit Running(SmallProject& project, MachineLimits limits = {})
@@ -43,6 +43,7 @@ class Running {
     cabinet.inputs["BasicIO-1\\%I0"] = false;
     cabinet.latch_inputs.insert("FastIO\\fIn0");
     cabinet.outputs["BasicIO-1\\%Q0"] = false;
+    cabinet.analogues["BasicIO-1\\%QW0"] = 0.0;
   }
 };
 

@@ -29,7 +29,7 @@ class ConstantChecks {
 
   void run() {
     for (const ProgramGraph::Node& node : subject_.graph.nodes())
-      for (const Line& line : node.program->lines) collect_changes(*node.application, line);
+      for (const Line& line : node.program->lines) collect_changes(node, line);
     for (const Program& program : subject_.application.programs) {
       for (const Line& line : program.lines) {
         visit_expressions(line, [&](const Expression& e) { expression(program, e); });
@@ -43,20 +43,23 @@ class ConstantChecks {
  private:
   // ---- what may change while the application runs ----
 
-  void collect_changes(const Application& application, const Line& line) {
+  void collect_changes(const ProgramGraph::Node& node, const Line& line) {
+    const Application& application = *node.application;
     visit_expressions(line, [&](const Expression& e) {
       if (e.kind != ConstantPart::kCall || e.parts.empty()) return;
       const bool resizes = e.text == "resize" || e.text == "append" || e.text == "insert" ||
                            e.text == "delete" || e.text == "libList";
       const bool links = e.text == "dioLink" || e.text == "aioLink";
       for (const Expression& part : e.parts) {
-        const Global* const global = global_of(application, root_of(part));
-        if (resizes || e.text.starts_with('$')) resized_.insert(global);
-        if (links) linked_.insert(global);
+        if (resizes || e.text.starts_with('$'))
+          resized_.insert(declared_of(application, *node.program, root_of(part)));
+        if (links) linked_.insert(global_of(application, root_of(part)));
       }
     });
     visit_uses(application, line, [&](const Expression& name, Use use) {
-      if (use == Use::kPasses) linked_.insert(global_of(application, name));
+      if (use != Use::kPasses) return;
+      linked_.insert(global_of(application, name));
+      resized_.insert(declared_of(application, *node.program, name));
     });
   }
 
@@ -73,10 +76,10 @@ class ConstantChecks {
   }
 
   void index(const Program& program, const Expression& e) {
-    const Declaration* const declared = declared_of(program, e.parts[0]);
-    const bool keeps_size = declared != nullptr &&
-                            !resized_.contains(global_of(subject_.application, e.parts[0])) &&
-                            declared->sizes.size() == e.parts.size() - 1;
+    const Declaration* const declared = declared_of(subject_.application, program, e.parts[0]);
+    // What stands behind a library's alias may be another project by then, with data of other sizes.
+    const bool keeps_size = declared != nullptr && !resized_.contains(declared) &&
+                            e.parts[0].reference.library < 0 && declared->sizes.size() == e.parts.size() - 1;
     for (std::size_t i = 1; i < e.parts.size(); ++i) {
       const auto given = constant_of(e.parts[i]);
       if (!given) continue;
@@ -92,7 +95,7 @@ class ConstantChecks {
   }
 
   void dimension(const Program& program, const Expression& e) {
-    const Declaration* const declared = declared_of(program, e.parts[0]);
+    const Declaration* const declared = declared_of(subject_.application, program, e.parts[0]);
     const auto given = constant_of(e.parts[1]);
     if (declared == nullptr || declared->is_collection() || !given) return;
     if (*given >= 1.0 && *given < static_cast<double>(declared->sizes.size()) + 1.0) return;
@@ -102,11 +105,12 @@ class ConstantChecks {
   }
 
   /// Of a local or a global; null where the sizes are not known: those of a field are its variable's own.
-  [[nodiscard]] const Declaration* declared_of(const Program& program, const Expression& e) const {
+  [[nodiscard]] static const Declaration* declared_of(const Application& application, const Program& program,
+                                                      const Expression& e) {
     if (e.is_unknown) return nullptr;
     if (e.reference.to == Reference::To::kLocal)
       return &program.locals[static_cast<std::size_t>(e.reference.index)];
-    const Global* const global = global_of(subject_.application, e);
+    const Global* const global = global_of(application, e);
     return global == nullptr ? nullptr : &global->declared;
   }
 
@@ -188,22 +192,23 @@ class ConstantChecks {
                     "start() calls itself, which begins nothing anew: the first call goes on behind it");
   }
 
+  /// A library's programs run in the memory of whoever creates the task.
   void run_memory(const Program& program) {
+    if (subject_.application.program_named("start") < 0) return;
     const std::size_t memory = run_memory_of(subject_.application);
     const std::size_t wanted = bytes_of_call(subject_.application, program);
-    const bool is_start = program.name == "start" || program.name == "stop";
     if (program.name == "start" && subject_.application.stack_bytes == 0)
-      subject_.tell(Severity::kWarning, check_rules::kRunMemory, subject_.application.project, 0, 0,
-                    "stackSize is 0: no task has run memory", "write 5000, which is usual");
+      subject_.tell(Severity::kNote, check_rules::kRunMemory, subject_.application.project, 0, 0,
+                    "stackSize is 0: it is taken as " + std::to_string(memory) + " here",
+                    "write 5000, which is usual");
     if (wanted > memory)
-      subject_.tell(is_start ? Severity::kError : Severity::kWarning, check_rules::kRunMemory, program.file,
-                    program.line, 0,
+      subject_.tell(Severity::kWarning, check_rules::kRunMemory, program.file, program.line, 0,
                     program.name + " takes at least " + std::to_string(wanted) +
                         " bytes of run memory by itself, and stackSize is " + std::to_string(memory));
   }
 
   const CheckSubject& subject_;
-  std::unordered_set<const Global*> resized_;
+  std::unordered_set<const Declaration*> resized_;
   std::unordered_set<const Global*> linked_;
 };
 

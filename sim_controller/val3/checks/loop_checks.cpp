@@ -4,6 +4,7 @@
 #include "sim_controller/val3/checks/check_rules.hpp"
 #include "sim_controller/val3/checks/subject.hpp"
 #include "sim_controller/val3/checks/uses.hpp"
+#include "sim_controller/val3/language/instructions.hpp"
 
 namespace val3 {
 namespace {
@@ -12,7 +13,10 @@ using Lines = std::vector<Line>;
 
 class LoopChecks {
  public:
-  LoopChecks(const CheckSubject& subject, const Program& program) : subject_(subject), program_(program) {}
+  LoopChecks(const CheckSubject& subject, const Program& program) : subject_(subject), program_(program) {
+    const ProgramGraph::Node* const node = subject.graph.node_of(program);
+    if (node != nullptr && node->is_of_synchronous) quiet_ = QuietChannel::kIsNone;
+  }
 
   void run() {
     const Lines& lines = program_.lines;
@@ -26,16 +30,21 @@ class LoopChecks {
 
  private:
   void loop(std::size_t open, std::size_t close, const Line& condition) {
-    if (condition.expressions.empty() || subject_.graph.waits_itself(subject_.application, condition)) return;
+    if (condition.expressions.empty() || subject_.graph.waits_itself(subject_.application, condition, quiet_))
+      return;
     const std::optional<bool> always = constant_truth(condition.expressions[0]);
     if (always && *always != (condition.kind == Line::Kind::kWhile)) return;  // it goes round once at most
     for (std::size_t i = open + 1; i < close; ++i) {
       const Line& line = program_.lines[i];
-      if (line.kind == Line::Kind::kReturn || subject_.graph.waits(subject_.application, line)) return;
+      if (line.kind == Line::Kind::kReturn || subject_.graph.waits(subject_.application, line, quiet_))
+        return;
     }
     bool depends_on_body = false;
     visit_expressions(condition, [&](const Expression& e) {
-      depends_on_body = depends_on_body || e.is_unknown || changes(open, close, e);
+      // What a channel gives is another thing each time.
+      const bool asks = e.kind == Expression::Kind::kCall && e.reference.instruction != nullptr &&
+                        e.reference.instruction->may_yield;
+      depends_on_body = depends_on_body || asks || e.is_unknown || changes(open, close, e);
     });
     if (depends_on_body) return;
     subject_.tell(Severity::kWarning, check_rules::kBusyLoop, program_, program_.lines[open],
@@ -67,6 +76,7 @@ class LoopChecks {
 
   const CheckSubject& subject_;
   const Program& program_;
+  QuietChannel quiet_ = QuietChannel::kIsAWait;
 };
 
 }  // namespace

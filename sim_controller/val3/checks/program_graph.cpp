@@ -21,19 +21,22 @@ bool uses_channel(const Line& line) {
   return channels > 0 && static_cast<std::size_t>(channels) < line.expressions.size();
 }
 
-bool ProgramGraph::waits_itself(const Application& application, const Line& line) const {
+bool ProgramGraph::waits_itself(const Application& application, const Line& line, QuietChannel quiet) const {
+  const auto is_no_wait = [&](const Expression& channel) {
+    return quiet == QuietChannel::kIsNone && quiet_.surely_contains(application, channel);
+  };
   bool waits = false;
   visit_expressions(line, [&](const Expression& e) {
     if (e.kind != Expression::Kind::kCall) return;
     const Instruction* const instruction = e.reference.instruction;
-    const bool is_quiet = (e.text == "sioGet" || e.text == "sioSet") && !e.parts.empty() &&
-                          quiet_.surely_contains(application, e.parts[0]);
+    const bool is_quiet =
+        (e.text == "sioGet" || e.text == "sioSet") && !e.parts.empty() && is_no_wait(e.parts[0]);
     const bool may_wait = instruction == nullptr || instruction->may_yield || instruction->may_block;
     waits = waits || (may_wait && !is_quiet);
   });
   if (waits || !uses_channel(line)) return waits;
   return std::ranges::any_of(line.expressions, [&](const Expression& e) {
-    return !e.is_unknown && e.type.kind == Kind::kSio && !quiet_.surely_contains(application, e);
+    return !e.is_unknown && e.type.kind == Kind::kSio && !is_no_wait(e);
   });
 }
 
@@ -44,7 +47,9 @@ ProgramGraph::ProgramGraph(const Application& application) {
     for (const Line& line : node.program->lines)
       visit_expressions(line, [&](const Expression& e) { quiet_.add(*node.application, e); });
   for (Node& node : nodes_) fill(node);
-  spread_waits();
+  spread(&Node::waits);
+  spread(&Node::waits_or_asks);
+  find_synchronous();
   for (const Node& node : nodes_) written_.insert(node.writes.begin(), node.writes.end());
 }
 
@@ -63,7 +68,8 @@ void ProgramGraph::add(const Application& application, std::unordered_set<const 
 
 void ProgramGraph::fill(Node& node) {
   for (const Line& line : node.program->lines) {
-    if (waits_itself(*node.application, line)) node.waits = true;
+    if (waits_itself(*node.application, line, QuietChannel::kIsNone)) node.waits = true;
+    if (waits_itself(*node.application, line, QuietChannel::kIsAWait)) node.waits_or_asks = true;
     if (line.kind == Line::Kind::kCall) {
       if (const Program* const called = called_program(*node.application, line))
         node.calls.push_back(places_.at(called));
@@ -75,28 +81,40 @@ void ProgramGraph::fill(Node& node) {
       if (const Global* const global = global_of(*node.application, name)) node.writes.insert(global);
     });
   }
-  if (node.calls_unknown) node.waits = true;
+  if (node.calls_unknown) node.waits = node.waits_or_asks = true;
   std::ranges::sort(node.calls);
   node.calls.erase(std::ranges::unique(node.calls).begin(), node.calls.end());
 }
 
 /// From those that wait to all that call them.
-void ProgramGraph::spread_waits() {
+void ProgramGraph::spread(bool Node::*waits) {
   std::vector<std::vector<std::size_t>> callers(nodes_.size());
   std::vector<std::size_t> waiting;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     for (const std::size_t called : nodes_[i].calls) callers[called].push_back(i);
-    if (nodes_[i].waits) waiting.push_back(i);
+    if (nodes_[i].*waits) waiting.push_back(i);
   }
   while (!waiting.empty()) {
     const std::size_t one = waiting.back();
     waiting.pop_back();
     for (const std::size_t caller : callers[one]) {
-      if (nodes_[caller].waits) continue;
-      nodes_[caller].waits = true;
+      if (nodes_[caller].*waits) continue;
+      nodes_[caller].*waits = true;
       waiting.push_back(caller);
     }
   }
+}
+
+void ProgramGraph::find_synchronous() {
+  std::unordered_set<const Program*> synchronous;
+  for (const Node& node : nodes_)
+    for (const Line& line : node.program->lines) {
+      if (line.kind != Line::Kind::kTaskCreateSync) continue;
+      const Node* const first = called(*node.application, line);
+      if (first == nullptr) continue;
+      for (const Node* const one : reached(*first)) synchronous.insert(one->program);
+    }
+  for (Node& node : nodes_) node.is_of_synchronous = synchronous.contains(node.program);
 }
 
 const ProgramGraph::Node* ProgramGraph::node_of(const Program& program) const {
@@ -126,11 +144,11 @@ bool ProgramGraph::writes(const Node& from, const Global& global) const {
   return std::ranges::any_of(reached(from), [&](const Node* node) { return node->writes.contains(&global); });
 }
 
-bool ProgramGraph::waits(const Application& application, const Line& line) const {
-  if (waits_itself(application, line)) return true;
+bool ProgramGraph::waits(const Application& application, const Line& line, QuietChannel quiet) const {
+  if (waits_itself(application, line, quiet)) return true;
   if (line.kind != Line::Kind::kCall) return false;
   const Node* const node = called(application, line);
-  return node == nullptr || node->waits;
+  return node == nullptr || (quiet == QuietChannel::kIsNone ? node->waits : node->waits_or_asks);
 }
 
 }  // namespace val3

@@ -57,8 +57,7 @@ constexpr Rule kRulesOfChecks[] = {
      "Write a loop, or a condition around the call."},
     {kRunMemory, kWarning, "Run memory is too small.",
      "Parameters and locals of the calls of a task stand in it (M6 page 18). start() and stop() that do not "
-     "fit "
-     "are refused at load. The bytes are estimated, and low.",
+     "fit are refused by --run. The bytes are estimated, and low.",
      "Give the project a larger stackSize, or the program smaller locals."},
     {kBlend, kNote, "A straight move blends in an application that waits for a contact.",
      "A missing blend is joint in s7 data: the arm does not stop at the point.", "Set the blend to off."},

@@ -18,7 +18,7 @@ constexpr Rule kRulesOfNames[] = {
     {kUndefinedField, kError, "A type has no such field.", kNotCompiled, "Correct the field's name."},
     {kUndefinedLibrary, kError, "There is no library of this alias.", kNotCompiled,
      "Declare it in the project."},
-    {kUnknownSignal, kWarning, "The controller's own library io has no signal of this name.",
+    {kUnknownSignal, kNote, "The controller's own library io has no signal of this name.",
      "Only a board, a fieldbus or a socket of the cell can give it (M6 page 57); what it is is not checked.",
      "Put the cell's project io beside the application, or correct the name."},
     {kUnknownAddon, kNote, "An instruction of an add-on that is not known here.",

@@ -12,7 +12,6 @@ constexpr std::string_view kOldProjectSpace = "ProjectNameSpace";
 constexpr std::string_view kNewProjectSpace = "http://www.staubli.com/robotics/VAL3/Project/";
 
 void read_parameters(Elements& in, pugi::xml_node parent, std::string_view name, ProjectFile& project) {
-  constexpr std::size_t kStackBytesMax = 1U << 30U;
   const pugi::xml_node node = Elements::child(parent, name);
   if (!node) {
     in.findings().error(file_rules::kMissingAttribute, in.line_of(parent),
@@ -31,8 +30,9 @@ void read_parameters(Elements& in, pugi::xml_node parent, std::string_view name,
   if (const auto bytes = whole_number(stack, kStackBytesMax))
     project.stack_bytes = *bytes;
   else
-    in.findings().error(file_rules::kBadValue, in.line_of(node), "stackSize is " + shown_word(stack),
-                        "write a number of bytes; 5000 is usual");
+    in.findings().error(
+        file_rules::kBadValue, in.line_of(node), "stackSize is " + shown_word(stack),
+        "write a number of bytes up to " + std::to_string(kStackBytesMax) + "; 5000 is usual");
   project.is_metric = in.truth(node, "millimeterUnit", true);
 }
 

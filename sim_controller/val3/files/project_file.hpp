@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,10 @@
 #include "sim_controller/val3/program/application.hpp"
 
 namespace val3 {
+
+/// A larger stackSize is refused: no controller has so much for a task, and it would take this machine's
+/// memory.
+inline constexpr std::size_t kStackBytesMax = 16U << 20U;
 
 /// What a project file (.pjx) lists. Language reference, 1.2.
 struct ProjectFile {

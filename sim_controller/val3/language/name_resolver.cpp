@@ -112,13 +112,14 @@ void ExpressionResolver::resolve_library_name(Expression& e) {
          "make it public there");
 }
 
-/// The cell may have it, on a board or fieldbus: its project `io` is not here to tell.
+/// The cell may have it, on a board or fieldbus: its project `io` is not here to tell. Only a name that
+/// differs from a signal's by letter case is hardly another one's.
 void ExpressionResolver::resolve_unknown_signal(const Application& io, Expression& e) {
   e.is_unknown = true;
   e.is_place = true;
   const auto meant = std::ranges::find_if(
       io.globals, [&](const Global& signal) { return same_but_for_case(signal.declared.name, e.text); });
-  tell(Severity::kWarning, resolver_rules::kUnknownSignal, e,
+  tell(meant == io.globals.end() ? Severity::kNote : Severity::kWarning, resolver_rules::kUnknownSignal, e,
        "no signal is called " + e.text + " in the library io that a controller has by itself",
        meant == io.globals.end()
            ? "put the cell's project io beside the application, or correct the name"

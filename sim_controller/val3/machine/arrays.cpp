@@ -1,6 +1,7 @@
 #include "sim_controller/val3/machine/arrays.hpp"
 
 #include <cmath>
+#include <cstdio>
 
 namespace val3 {
 
@@ -24,12 +25,16 @@ std::size_t flat_index(const ArrayBase& array, std::size_t offset, const double*
   std::size_t flat = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double whole = std::trunc(indices[i]);  // the integer part is taken (manual 6, page 21)
+    if (std::isnan(whole)) throw RunFailure(kErrorArgument, "an index that is no number");
     if (whole < 0) throw RunFailure(kErrorIndexNegative, "a negative index");
     const bool is_one = count == 1 || array.sizes.size() != count;
     const std::size_t size = is_one ? array.size() - std::min(offset, array.size()) : array.sizes[i];
-    if (!(whole < static_cast<double>(size)))
-      throw RunFailure(kErrorIndex, "index " + std::to_string(static_cast<long long>(whole)) + " of " +
-                                        std::to_string(size) + " elements");
+    if (whole >= static_cast<double>(size)) {
+      char index[32];  // it may be larger than any whole number of the machine
+      std::snprintf(index, sizeof index, "%.12g", whole);
+      throw RunFailure(kErrorIndex,
+                       "index " + std::string(index) + " of " + std::to_string(size) + " elements");
+    }
     flat = flat * size + static_cast<std::size_t>(whole);
   }
   return offset + flat;

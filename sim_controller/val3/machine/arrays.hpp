@@ -197,7 +197,7 @@ struct Ref {
   }
 };
 
-/// The index of an element by its indices: RunFailure 20, 21.
+/// The index of an element by its indices: RunFailure 11 for what is no number, 20, 21.
 std::size_t flat_index(const ArrayBase& array, std::size_t offset, const double* indices, std::size_t count);
 
 }  // namespace val3

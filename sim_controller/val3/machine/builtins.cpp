@@ -3,8 +3,6 @@
 namespace val3 {
 
 NodePtr<Father> Argument<FrameRef>::make(Compiler& compiler, const Expression& e) {
-  if (e.reference.to == Reference::To::kWorld)
-    return lambda_node<Father>([](Context&) { return Father{kWorldArray, 0}; });
   return lambda_node<Father>([frame = compiler.ref(e), fathers = &compiler.fathers()](Context& c) {
     return fathers->father_of(frame->get(c));
   });

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim_controller/val3/machine/compiler.hpp"
+#include "sim_controller/val3/machine/finite.hpp"
 
 /// The instructions that the machine carries out.
 namespace val3 {
@@ -30,7 +31,7 @@ struct Slice {
   }
 };
 
-/// A frame as a variable, which points can be given in; world has no place.
+/// A frame as a variable, which points can be given in.
 struct FrameRef {
   Father father;
 };
@@ -90,7 +91,7 @@ class CallNode final : public Node<R> {
   template <std::size_t... I>
   R get_in_order(Context& context, std::index_sequence<I...>) const {
     std::tuple<A...> values{Argument<A>::get(std::get<I>(made_), context)...};
-    return f_(context, std::get<I>(values)...);
+    return demand_finite<R>(f_(context, std::get<I>(values)...));
   }
   F f_;
   std::tuple<typename Argument<A>::Made...> made_;

@@ -54,7 +54,8 @@ double set_frame(Context& context, const Point& origin, const Point& on_x, const
   world.linear().col(1) = world.linear().col(2).cross(world.linear().col(0));
   world.translation() = o;
   Frame& made = frame.value();
-  made.trsf = composed(inverse(context.tasks.fathers.frame_in_world(made.father)), trsf_of(world));
+  made.trsf =
+      demand_finite(composed(inverse(context.tasks.fathers.frame_in_world(made.father)), trsf_of(world)));
   return 0.0;
 }
 

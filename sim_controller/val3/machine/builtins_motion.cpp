@@ -43,6 +43,9 @@ double store(Context& context, MoveOrder order, const Tool& tool, const Mdesc& d
   order.descriptor = descriptor;
   for (double Mdesc::*length : {&Mdesc::tvel, &Mdesc::leave, &Mdesc::reach})
     order.descriptor.*length *= unit_mm;
+  if (!is_finite(order.to) || !is_finite(order.to_pose) || !is_finite(order.via_pose) ||
+      !is_finite(order.tool) || !is_finite(order.descriptor))
+    throw RunFailure(kErrorInvalidMove, "a move to what is no number");
   order.origin = origin_of(context);
   if (const RunError error = context.system.store(order); error != kErrorNone)
     throw RunFailure(error, "a move that cannot be stored");

@@ -124,6 +124,9 @@ class CallCompiler {
       const Parameter& parameter = called.parameters[i];
       const Expression& argument = line.expressions.at(first + i);
       if (parameter.by_reference) {
+        const Kind given = argument.type.kind;
+        if (given != Kind::kVoid && given != parameter.type.kind)
+          compiler_.refuse(argument, "a reference to a variable of another type");
         made.push_back(std::make_unique<const HandPlace>(compiler_.ref(argument)));
         continue;
       }

@@ -109,6 +109,13 @@ std::string read_text(Context& context, const Sio& sio) {
   }
 }
 
+void demand_writable(Context& context, const Sio& sio) {
+  const int channel = linked(sio);
+  // What else the line waits for keeps its time.
+  if (context.system.connect(channel)) return;
+  demand_ready(context, channel, [&] { return context.system.connect(channel); });
+}
+
 void write_byte(Context& context, const Sio& sio, double value) {
   const int channel = linked(sio);
   demand_ready(context, channel, [&] { return context.system.connect(channel); });

@@ -13,6 +13,8 @@ namespace val3 {
 double read_byte(Context& context, const Sio& channel);
 /// `string = sio`: up to the end-of-string byte, which is not kept, or 128 bytes.
 std::string read_text(Context& context, const Sio& channel);
+/// Wait, or RunFailure 60 or 125, until a byte or a string can be written.
+void demand_writable(Context& context, const Sio& channel);
 void write_byte(Context& context, const Sio& channel, double value);
 /// With the end-of-string byte behind it.
 void write_text(Context& context, const Sio& channel, const std::string& text);

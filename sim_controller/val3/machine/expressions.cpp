@@ -3,6 +3,7 @@
 
 #include "sim_controller/val3/machine/builtins.hpp"
 #include "sim_controller/val3/machine/channels.hpp"
+#include "sim_controller/val3/machine/finite.hpp"
 #include "sim_controller/val3/machine/geometry.hpp"
 #include "sim_controller/val3/machine/libraries.hpp"
 #include "sim_controller/val3/machine/signals.hpp"
@@ -15,16 +16,9 @@ using EKind = Expression::Kind;
 /// Strings end here, silently (manual 6, page 48).
 constexpr std::size_t kTextBytesMax = 128;
 
-/// No manual says what a number too large for its format is. A program that went on with it would wait, or
-/// move, without end.
-double finite(double value) {
-  if (!std::isfinite(value)) throw RunFailure(kErrorArgument, "a result that is too large for a number");
-  return value;
-}
-
 double divided(double left, double right) {
   if (right == 0.0) throw RunFailure(kErrorDivision, "division by zero");
-  return finite(left / right);
+  return demand_finite(left / right);
 }
 
 double remainder_of(double left, double right) {
@@ -45,7 +39,7 @@ template <class F>
 Joint by_axis(const Joint& left, const Joint& right, F f) {
   Joint result{};
   for (std::size_t i = 0; i < result.size(); ++i) result[i] = f(left[i], right[i]);
-  return result;
+  return demand_finite(result);
 }
 
 /// > and < of joints: true when every axis satisfies it (manual 6, page 109).
@@ -136,11 +130,14 @@ NodePtr<double> Compiler::number(const Expression& e) {
   NodePtr<double> a = number(e.parts[0]);
   NodePtr<double> b = number(e.parts[1]);
   if (e.text == "+")
-    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return finite(x + y); });
+    return of_two<double>(std::move(a), std::move(b),
+                          [](double x, double y) { return demand_finite(x + y); });
   if (e.text == "-")
-    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return finite(x - y); });
+    return of_two<double>(std::move(a), std::move(b),
+                          [](double x, double y) { return demand_finite(x - y); });
   if (e.text == "*")
-    return of_two<double>(std::move(a), std::move(b), [](double x, double y) { return finite(x * y); });
+    return of_two<double>(std::move(a), std::move(b),
+                          [](double x, double y) { return demand_finite(x * y); });
   if (e.text == "/") return of_two<double>(std::move(a), std::move(b), divided);
   if (e.text == "%") return of_two<double>(std::move(a), std::move(b), remainder_of);
   refuse(e, "no operator " + e.text + " for numbers");
@@ -272,12 +269,6 @@ NodePtr<T> Compiler::structure(const Expression& e) {
     if (e.reference.to == Reference::To::kWord)
       return lambda_node<T>([word = word_of<T>(e.reference.index)](Context&) { return word; });
   }
-  if constexpr (std::is_same_v<T, Frame>) {
-    if (e.reference.to == Reference::To::kWorld) return lambda_node<T>([](Context&) { return Frame{}; });
-  }
-  if constexpr (std::is_same_v<T, Tool>) {
-    if (e.reference.to == Reference::To::kFlange) return lambda_node<T>([](Context&) { return Tool{}; });
-  }
   if (e.is_place || e.kind == EKind::kName) return place<T>(e);
   if constexpr (std::is_same_v<T, Joint>) {
     if (e.kind == EKind::kUnary)
@@ -294,9 +285,11 @@ NodePtr<T> Compiler::structure(const Expression& e) {
   }
   if constexpr (std::is_same_v<T, Trsf>) {
     if (e.kind == EKind::kUnary)
-      return lambda_node<T>([part = structure<T>(e.parts[0])](Context& c) { return inverse(part->get(c)); });
+      return lambda_node<T>(
+          [part = structure<T>(e.parts[0])](Context& c) { return demand_finite(inverse(part->get(c))); });
     if (e.kind == EKind::kBinary && e.text == "*")
-      return of_two<T>(structure<T>(e.parts[0]), structure<T>(e.parts[1]), composed);
+      return of_two<T>(structure<T>(e.parts[0]), structure<T>(e.parts[1]),
+                       [](const Trsf& x, const Trsf& y) { return demand_finite(composed(x, y)); });
   }
   refuse(e, "an expression of this type is not simulated");
 }

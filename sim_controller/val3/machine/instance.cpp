@@ -215,7 +215,10 @@ class DataLoader {
   Fathers& fathers_;
 };
 
-Fathers::Fathers() = default;
+Fathers::Fathers()
+    : world_(std::make_unique<Array<Frame>>(Type{Kind::kFrame, -1}, 1)),
+      flange_(std::make_unique<Array<Tool>>(Type{Kind::kTool, -1}, 1)),
+      arrays_{{kWorldArray, world_.get()}, {kFlangeArray, flange_.get()}} {}
 
 int Fathers::add(ArrayBase& array) {
   arrays_.emplace(next_, &array);
@@ -228,6 +231,8 @@ const ArrayBase* Fathers::find(const Father& father) const {
 }
 
 Trsf Fathers::frame_in_world(const Father& father) const {
+  if (world_->size() != 1 || !(world_->elements[0] == Frame{}))
+    throw RunFailure(kErrorWorldChanged, "the frame world was changed");
   Trsf result;
   Father at = father;
   for (int depth = 0; at.array != kWorldArray; ++depth) {
@@ -243,6 +248,8 @@ Trsf Fathers::frame_in_world(const Father& father) const {
 }
 
 Trsf Fathers::flange_from(const Tool& tool) const {
+  if (flange_->size() != 1 || !(flange_->elements[0] == Tool{}))
+    throw RunFailure(kErrorFlangeChanged, "the tool flange was changed");
   Trsf result = tool.trsf;
   Father at = tool.father;
   for (int depth = 0; at.array != kFlangeArray; ++depth) {

@@ -1,10 +1,9 @@
 // A program's lines as operations.
 #include <cmath>
 
-#include "sim_controller/val3/machine/builtins.hpp"
+#include "sim_controller/val3/machine/assignments.hpp"
 #include "sim_controller/val3/machine/calls.hpp"
-#include "sim_controller/val3/machine/channels.hpp"
-#include "sim_controller/val3/machine/signals.hpp"
+#include "sim_controller/val3/machine/finite.hpp"
 #include "sim_controller/val3/machine/tasks.hpp"
 #include "sim_controller/val3/program/run_memory.hpp"
 
@@ -17,23 +16,6 @@ Flow go_to(const Context& context, std::size_t line) {
   context.here->next = line;
   return Flow::kGo;
 }
-
-/// Writes one value to all places of an assignment, the last one first.
-template <class T>
-class AssignOperation final : public Operation {
- public:
-  AssignOperation(std::vector<PlaceNodePtr<T>> places, NodePtr<T> value)
-      : places_(std::move(places)), value_(std::move(value)) {}
-  Flow run(Context& context) const override {
-    const T value = value_->get(context);
-    for (auto place = places_.rbegin(); place != places_.rend(); ++place) (*place)->at(context) = value;
-    return Flow::kGo;
-  }
-
- private:
-  std::vector<PlaceNodePtr<T>> places_;
-  NodePtr<T> value_;
-};
 
 template <class T>
 class SwitchOperation final : public Operation {
@@ -88,7 +70,7 @@ class LineCompiler {
     const Line& line = program_.lines[index];
     switch (line.kind) {
       case LKind::kAssign:
-        return assignment(line);
+        return assignment_operation(compiler_, line);
       case LKind::kInstruction:
         return instruction(line.expressions.at(0));
       case LKind::kCall:
@@ -100,7 +82,7 @@ class LineCompiler {
       case LKind::kEnd:
         return operation([](Context& c) {
           Task& task = c.task;
-          Tasks::leave(task);
+          c.tasks.leave(task);
           return task.stack.empty() ? Flow::kEnded : Flow::kGo;
         });
       case LKind::kBreak:
@@ -173,7 +155,7 @@ class LineCompiler {
       return operation(
           [counter = std::move(counter), end = std::move(end), inside = line.open + 1](Context& c) {
             const double step = end.step_of(c);
-            const double next = counter->at(c) + step;
+            const double next = demand_finite(counter->at(c) + step);
             const bool goes_on = end.is_inside(c, next, step);
             counter->at(c) = next;
             return goes_on ? go_to(c, inside) : Flow::kGo;
@@ -213,55 +195,14 @@ class LineCompiler {
     });
   }
 
-  OperationPtr assignment(const Line& line) {
-    const Expression& value = line.expressions.back();
-    const Expression& first = line.expressions.at(0);
-    const std::size_t places = line.expressions.size() - 1;
-    if (first.type.kind == Kind::kSio) return channel_write(first, value);
-    if (first.type.kind == Kind::kDio) {
-      std::vector<NodePtr<Dio>> signals;
-      for (std::size_t i = 0; i < places; ++i) signals.push_back(compiler_.value<Dio>(line.expressions[i]));
-      return operation([signals = std::move(signals), value = compiler_.value<bool>(value)](Context& c) {
-        const bool on = value->get(c);
-        for (auto signal = signals.rbegin(); signal != signals.rend(); ++signal)
-          write_signal(c, (*signal)->get(c), on);
-        return Flow::kGo;
-      });
-    }
-    if (first.type.kind == Kind::kAio)
-      return operation(
-          [signal = compiler_.value<Aio>(first), value = compiler_.value<double>(value)](Context& c) {
-            write_analogue(c, signal->get(c), value->get(c));
-            return Flow::kGo;
-          });
-    if (!is_simulated(first.type.kind))
-      compiler_.refuse_type(first, "a variable of this type is not simulated");
-    return with_type_of(first.type.kind, [&]<class T>() -> OperationPtr {
-      std::vector<PlaceNodePtr<T>> targets;
-      for (std::size_t i = 0; i < places; ++i) targets.push_back(compiler_.place<T>(line.expressions[i]));
-      return std::make_unique<const AssignOperation<T>>(std::move(targets), compiler_.value<T>(value));
-    });
-  }
-
-  OperationPtr channel_write(const Expression& channel, const Expression& value) {
-    if (value.type.kind == Kind::kString)
-      return operation(
-          [to = compiler_.value<Sio>(channel), what = compiler_.value<std::string>(value)](Context& c) {
-            write_text(c, to->get(c), what->get(c));
-            return Flow::kGo;
-          });
-    return operation([to = compiler_.value<Sio>(channel), what = compiler_.value<double>(value)](Context& c) {
-      write_byte(c, to->get(c), what->get(c));
-      return Flow::kGo;
-    });
-  }
-
   OperationPtr instruction(const Expression& e) {
     if (e.kind == Expression::Kind::kCall && e.text == "delay")
       return operation([seconds = compiler_.value<double>(e.parts.at(0)), who = &e](Context& c) {
         // 0 or less passes the turn
         if (c.task.waits_in == who) return c.tasks.is_over(c.task, who, 0.0) ? Flow::kGo : Flow::kWait;
-        (void)c.tasks.is_over(c.task, who, std::max(0.0, seconds->get(c)));
+        const double time_s = seconds->get(c);
+        if (!std::isfinite(time_s)) throw RunFailure(kErrorParameter, "a delay of no number");
+        (void)c.tasks.is_over(c.task, who, std::max(0.0, time_s));
         c.task.waits_in = who;
         return Flow::kWait;
       });

@@ -17,6 +17,9 @@ struct MachineLimits {
   int lines_per_tick = 4000;    // of all asynchronous tasks together
   // Nested calls of a task, whatever its stackSize: more than any controller's application makes. Error 41.
   std::size_t calls = 20'000;
+  // Run memory of all tasks together, estimated, whatever their stackSize: what is estimated at 16 bytes, a
+  // string, takes up to 200 of this computer. Error 41.
+  std::size_t run_memory_bytes = 64U << 20U;
 };
 
 /// How a task stands.

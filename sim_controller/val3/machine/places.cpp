@@ -173,6 +173,10 @@ RefNodePtr Compiler::variable(const Expression& e) {
       ArrayBase* array = &instance_.global(reference);
       return lambda_node<Ref>([array](Context&) { return Ref{.array = array}; });
     }
+    case Reference::To::kWorld:
+      return lambda_node<Ref>([world = &fathers_.world()](Context&) { return Ref{.array = world}; });
+    case Reference::To::kFlange:
+      return lambda_node<Ref>([flange = &fathers_.flange()](Context&) { return Ref{.array = flange}; });
     default:
       refuse(e, why_unknown(e));
   }
@@ -255,6 +259,8 @@ RefNodePtr Compiler::ref(const Expression& e) {
 
 template <class T>
 PlaceNodePtr<T> Compiler::place(const Expression& e) {
+  // Behind a place of one type no element of another is ever read: nothing at run time would see it.
+  if (e.type.kind != Kind::kVoid && e.type.kind != kind_of<T>()) refuse(e, "a variable of another type");
   if (e.kind == Expression::Kind::kName) {
     if (is_fixed_global(instance_, e.reference))
       return std::make_unique<GlobalPlace<T>>(instance_.global(e.reference));

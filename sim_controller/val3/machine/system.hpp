@@ -42,6 +42,8 @@ enum RunError : int {
   kErrorInputOutput = 125,
   kErrorImpossibleMove = 150,
   kErrorInvalidMove = 154,
+  kErrorFlangeChanged = 160,
+  kErrorWorldChanged = 161,
   kErrorPointWithoutFrame = 162,
   kErrorFrameWithoutFather = 163,
   kErrorToolWithoutFather = 164,

@@ -14,6 +14,8 @@ constexpr std::size_t kTaskNameBytesMax = 15;
 constexpr std::size_t kSynchronousPeriodsMax = 2;
 /// Activations of one program that are kept for its next calls.
 constexpr std::size_t kIdleMax = 64;
+/// Larger ones are not kept: their memory is that of the calls that run.
+constexpr std::size_t kIdleBytesMax = 16'384;
 /// Clocks of two sources agree by this.
 constexpr double kInstantSeconds = 1e-9;
 
@@ -62,12 +64,13 @@ void Tasks::leave(Task& task) {
   task.stack.pop_back();
   const Code& code = *left->code;
   task.stack_bytes -= code.call_bytes;
+  stack_bytes_ -= code.call_bytes;
   for (std::size_t i = 0; i < code.program->parameters.size(); ++i)
     if (code.program->parameters[i].by_reference) left->slots[i] = {};
-  if (code.idle.size() < kIdleMax) code.idle.push_back(std::move(left));
+  if (code.idle.size() < kIdleMax && code.call_bytes <= kIdleBytesMax) code.idle.push_back(std::move(left));
 }
 
-void Tasks::enter(Task& task, std::unique_ptr<Activation> called) const {
+void Tasks::enter(Task& task, std::unique_ptr<Activation> called) {
   const std::size_t memory = run_memory_of(*task.owner->application);
   const std::size_t wanted = task.stack_bytes + called->code->call_bytes;
   if (wanted > memory)
@@ -78,21 +81,35 @@ void Tasks::enter(Task& task, std::unique_ptr<Activation> called) const {
   if (task.stack.size() >= limits_.calls)
     throw RunFailure(kErrorRunMemory, "more than " + std::to_string(limits_.calls) +
                                           " nested calls: this simulator holds no more");
+  const std::size_t all = stack_bytes_ + called->code->call_bytes + (tasks_.size() + 1) * kTaskBytes;
+  if (all > limits_.run_memory_bytes)
+    throw RunFailure(kErrorRunMemory, "all tasks together would take " + std::to_string(all) +
+                                          " bytes of run memory (estimated): this simulator gives them " +
+                                          std::to_string(limits_.run_memory_bytes));
   task.stack_bytes = wanted;
+  stack_bytes_ += called->code->call_bytes;
   task.stack.push_back(std::move(called));
 }
 
-Task& Tasks::create(std::unique_ptr<Task> task) {
-  if (!is_task_name(task->name))
-    throw RunFailure(kErrorTaskName, "'" + task->name + "' is no name of a task");
-  if (find(*task->owner, task->name) != nullptr)
-    throw RunFailure(kErrorTaskExists, "there is a task " + task->name + " already");
+void Tasks::demand_creatable(const Task& task) {
+  if (!is_task_name(task.name)) throw RunFailure(kErrorTaskName, "'" + task.name + "' is no name of a task");
+  if (find(*task.owner, task.name) != nullptr)
+    throw RunFailure(kErrorTaskExists, "there is a task " + task.name + " already");
   std::set<int> periods;
   for (const auto& other : tasks_)
     if (other->period_ticks != 0) periods.insert(other->period_ticks);
-  if (task->period_ticks != 0) periods.insert(task->period_ticks);
+  if (task.period_ticks != 0) periods.insert(task.period_ticks);
   if (periods.size() > kSynchronousPeriodsMax)
     throw RunFailure(kErrorPeriods, "more than two synchronous periods");
+}
+
+Task& Tasks::create(std::unique_ptr<Task> task) {
+  try {
+    demand_creatable(*task);
+  } catch (const RunFailure&) {
+    while (!task->stack.empty()) leave(*task);
+    throw;
+  }
   tasks_.push_back(std::move(task));
   return *tasks_.back();
 }

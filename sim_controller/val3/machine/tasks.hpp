@@ -62,10 +62,10 @@ class Tasks {
   /// A call begins; the arguments' places and copies are the caller's to fill.
   static std::unique_ptr<Activation> activate(const Code& code, Fathers& fathers);
   /// The innermost call of the task is over.
-  static void leave(Task& task);
+  void leave(Task& task);
   /// A program was called, or the task begins with it. RunFailure 41 where the run memory of the application
-  /// that created the task does not hold it (program/run_memory.hpp).
-  void enter(Task& task, std::unique_ptr<Activation> called) const;
+  /// that created the task does not hold it (program/run_memory.hpp), or this computer's share for all tasks.
+  void enter(Task& task, std::unique_ptr<Activation> called);
 
   /// True when `seconds` have passed since this instruction of the task was first asked for; then it is asked
   /// anew. 0 or less is over at once.
@@ -85,6 +85,7 @@ class Tasks {
   std::map<int, std::string> half_read;  // by channel: of a string whose end has not come
 
  private:
+  void demand_creatable(const Task& task);
   void run(Task& task, int lines);
   Flow carry_out(Task& task);
   void run_synchronous();
@@ -96,7 +97,8 @@ class Tasks {
   std::map<std::string, int, std::less<>> most_lines_;
   std::uint64_t lines_ = 0;
   long ticks_ = 0;
-  const Task* turn_ = nullptr;  // whose turn the asynchronous lines of the next tick begin with
+  std::size_t stack_bytes_ = 0;  // of the calls of all tasks
+  const Task* turn_ = nullptr;   // whose turn the asynchronous lines of the next tick begin with
 };
 
 }  // namespace val3

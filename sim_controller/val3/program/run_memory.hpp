@@ -16,6 +16,8 @@ namespace val3 {
 inline constexpr std::size_t kCallBytes = 32;
 inline constexpr std::size_t kReferenceBytes = 8;
 inline constexpr std::size_t kVariableBytes = 16;
+/// What a task takes beside its calls: of the memory of all tasks together, not of its stackSize.
+inline constexpr std::size_t kTaskBytes = 1024;
 
 /// What SRS gives a new project, and what a stackSize of 0 is taken for.
 inline constexpr std::size_t kUsualStackBytes = 5000;

@@ -26,12 +26,38 @@ TEST(Checks, AnApplicationAsItShouldBeHasNoFindings) {
 }
 
 TEST(Checks, AChannelThatWasToldNotToWaitIsNoWaitOfALoop) {
-  const std::string loop = "while true\nn=sioGet(si,nBytes)\nendWhile";
-  EXPECT_THAT(found_in_start("n=sioCtrl(si,\"timeout\",-1)\n" + loop), ElementsAre("start.pgx:3 busy-loop"));
-  EXPECT_THAT(found_in_start("n=sioCtrl(si,\"timeout\",2)\n" + loop), IsEmpty());
-  EXPECT_THAT(found_in_start("n=sioCtrl(si,\"timeout\",-1)\nn=sioCtrl(si,\"timeout\",nOther)\n" + loop),
-              IsEmpty());
-  EXPECT_THAT(found_in_start(loop), IsEmpty()) << "the time-out is that of the pendant";
+  const std::string create = "\ntaskCreateSync \"t\",0.004,bLate,task()";
+  const auto found_with = [&](const std::string& time_out) {
+    SmallApplication small = cell();
+    small.program("start", time_out + create).program("task", "call inner()");
+    small.program("inner", "while true\nn=sioGet(si,nBytes)\nendWhile");
+    return found_in(std::move(small));
+  };
+  EXPECT_THAT(found_with("n=sioCtrl(si,\"timeout\",-1)"), ElementsAre("inner.pgx:2 busy-loop"));
+  EXPECT_THAT(found_with("n=sioCtrl(si,\"timeout\",2)"), ElementsAre("inner.pgx:3 sync-blocking"));
+  EXPECT_THAT(found_with("n=sioCtrl(si,\"timeout\",-1)\nn=sioCtrl(si,\"timeout\",nOther)"), IsEmpty());
+}
+
+TEST(Checks, AnAsynchronousTaskMayAskAChannelInALoop) {
+  for (const std::string loop : {"while true\nn=sioGet(si,nBytes)\nendWhile",
+                                 "while b\nn=sioGet(si,nBytes)\nif n<0\nclearBuffer(si)\nendIf\nendWhile",
+                                 "while b\ncall ask()\nendWhile"}) {
+    SmallApplication small = cell();
+    small.program("ask", "n=sioGet(si,nBytes)");
+    small.program("start", "n=sioCtrl(si,\"timeout\",-1)\n" + loop);
+    EXPECT_THAT(found_in(std::move(small)), IsEmpty()) << loop;
+  }
+}
+
+TEST(Checks, ALoopWhoseConditionAsksAChannelIsEndedByIt) {
+  for (const std::string loop : {"while sioGet(si,nBytes)<0\nendWhile", "do\nuntil sioGet(si,nBytes)>0",
+                                 "while sioSet(si,nBytes)!=8\nendWhile"}) {
+    const std::string quiet = "n=sioCtrl(si,\"timeout\",-1)\n";
+    EXPECT_THAT(found_in_start(quiet + loop), IsEmpty()) << loop;
+    SmallApplication small = cell();
+    small.program("start", quiet + "taskCreateSync \"t\",0.004,bLate,task()").program("task", loop);
+    EXPECT_THAT(found_in(std::move(small)), IsEmpty()) << loop;
+  }
 }
 
 TEST(Checks, WhatWaitsInASynchronousTaskIsFoundAlsoInWhatItCalls) {

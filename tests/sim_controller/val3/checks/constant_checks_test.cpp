@@ -10,6 +10,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::UnorderedElementsAre;
 
 /// The cell with an input, an output and arrays.
 SmallApplication wired_cell() {
@@ -37,6 +38,26 @@ TEST(ConstantChecks, AnIndexOutsideOfItsArrayIsFound) {
   EXPECT_THAT(found_by("n=nA[2.9]+nA[0]+nTable[1,3]+nA[n]"), IsEmpty()) << "the integer part counts";
   EXPECT_THAT(found_by("resize(nA,1,9)\nn=nA[7]"), IsEmpty()) << "its size changes";
   EXPECT_THAT(found_by("append(nA)\nn=nA[-2]"), ElementsAre("start.pgx:3 constant-index"));
+}
+
+TEST(ConstantChecks, AnArrayThatIsPassedByReferenceMayGrow) {
+  for (const char* grows : {"resize(x_nA,1,9)", "append(x_nA)"}) {
+    SmallApplication small = wired_cell();
+    small.program("grow", grows, {small.reference("num", "x_nA", 1)});
+    small.program("start", "call grow(nA)\nn=nA[3]\nl_n=1\ncall grow(l_n)\nl_n[1]=2\nl_nKept=1\nl_nKept[1]=n",
+                  {}, {{"num", "l_n"}, {"num", "l_nKept"}});
+    EXPECT_THAT(found_in(std::move(small)), ElementsAre("start.pgx:8 constant-index")) << grows;
+  }
+}
+
+TEST(ConstantChecks, DataOfALibraryMayBeOfAnotherSizeWhenItIsLoadedAnew) {
+  SmallApplication there;
+  there.global("num", "nParts", {3}, true);
+  there.application.globals.back().values.push_back(stored("value", "1"));
+  SmallApplication small = wired_cell();
+  small.library("lib", std::make_shared<Application>(std::move(there.application)));
+  small.program("start", "n=lib:nParts[5]\nn=lib:nParts[-1]");
+  EXPECT_THAT(found_in(std::move(small)), ElementsAre("start.pgx:3 constant-index"));
 }
 
 TEST(ConstantChecks, ALocalOutsideOfItsSizeIsFound) {
@@ -109,6 +130,36 @@ TEST(ConstantChecks, LocalsThatRunMemoryDoesNotHoldAreFound) {
   small.application.stack_bytes = 0;
   small.application.project = "small.pjx";
   EXPECT_THAT(found_in(std::move(small)), ElementsAre("large.pgx:1 run-memory", "small.pjx:0 run-memory"));
+}
+
+/// "warning large.pgx:1", of run memory.
+std::vector<std::string> run_memory_in(SmallApplication small) {
+  Findings findings = std::move(small.findings);
+  resolve(small.application, findings);
+  check(small.application, {}, findings);
+  std::vector<std::string> all;
+  for (const Finding& one : findings)
+    if (one.rule == "run-memory")
+      all.push_back((one.severity == Severity::kNote      ? "note "
+                     : one.severity == Severity::kWarning ? "warning "
+                                                          : "error ") +
+                    one.at.file + ": " + one.what);
+  return all;
+}
+
+TEST(ConstantChecks, RunMemoryIsThatOfAnApplicationThatStarts) {
+  SmallApplication small = wired_cell();
+  small.application.stack_bytes = 0;
+  small.application.project = "small.pjx";
+  small.program("large", "l_n=1\nn=l_n", {}, {{"num", "l_n"}});
+  small.application.programs.back().locals[0].sizes = {100'000};
+  EXPECT_THAT(run_memory_in(small), IsEmpty()) << "a library's programs run in its user's memory";
+  small.application.programs.back().name = "start";
+  EXPECT_THAT(run_memory_in(std::move(small)),
+              UnorderedElementsAre(
+                  "note small.pjx: stackSize is 0: it is taken as 5000 here",
+                  "warning large.pgx: start takes at least 800048 bytes of run memory by itself, and "
+                  "stackSize is 5000"));
 }
 
 }  // namespace

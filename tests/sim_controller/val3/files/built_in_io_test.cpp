@@ -41,6 +41,31 @@ TEST(BuiltInIo, HasTheSignalsOfAControllerAndTheSocketsThatAProgramNames) {
   }
 }
 
+TEST(BuiltInIo, HasTheSignalsOfBoardsThatAProgramNames) {
+  SmallApplication small;
+  small.program("start",
+                "io:bOut16=true\nif io:bIn999==true\nn=1\nendIf\nio:bIn1000=io:bIn020\nio:fIn7=false");
+  const auto io = built_in_io(small.application);
+  for (const char* name : {"bOut16", "bIn999"}) EXPECT_EQ(link_of(*io, name), name);
+  for (const char* name : {"bIn16", "bIn1000", "bIn020", "fIn7"}) EXPECT_EQ(link_of(*io, name), "none");
+}
+
+TEST(BuiltInIo, HasTheSocketsThatAreSetToAStringOrThatAStringIsSetTo) {
+  SmallApplication small;
+  small.global("string", "s", {4}).global("num", "n");
+  small.program(
+      "start",
+      "s[1]=io:first\nio:second=\"abc\"\nio:third=toString(\"\",n)+l_s\nl_s=io:fourth\nn=io:number\n"
+      "io:bOut3=true\nio:flag=true\nif s[0]==\"a\"\nio:fifth=\"a\"+s[2]\nendIf",
+      {}, {{"string", "l_s"}});
+  const auto io = built_in_io(small.application);
+  for (const char* name : {"first", "second", "third", "fourth", "fifth"}) {
+    ASSERT_EQ(link_of(*io, name), name);
+    EXPECT_EQ(io->globals[static_cast<std::size_t>(io->global_named(name))].declared.type.kind, Kind::kSio);
+  }
+  for (const char* name : {"number", "flag"}) EXPECT_EQ(link_of(*io, name), "none");
+}
+
 TEST(BuiltInIo, IsThereInAnApplicationOfS6AndTellsANameThatItHasNot) {
   ProjectFolder folder;
   write_old_project(
@@ -50,7 +75,8 @@ TEST(BuiltInIo, IsThereInAnApplicationOfS6AndTellsANameThatItHasNot) {
   ASSERT_THAT(told(read.findings), IsEmpty());
   resolve(read.application, read.findings);
   EXPECT_THAT(told(read.findings), ElementsAre("start.pgx:8 unknown-signal", "start.pgx:9 unknown-signal"));
-  EXPECT_EQ(read.findings[0].severity, Severity::kWarning) << "a board of the cell may have it";
+  EXPECT_EQ(read.findings[0].severity, Severity::kNote) << "a board of the cell may have it";
+  EXPECT_EQ(read.findings[1].severity, Severity::kWarning);
   EXPECT_EQ(read.findings[1].remedy, "write io:bIn3: upper and lower case differ");
 }
 

@@ -275,5 +275,25 @@ TEST(Files, VersionsAreReadInAllWritings) {
   EXPECT_EQ(version_in(""), std::nullopt);
 }
 
+TEST(ReadApplication, AStackSizeThatNoControllerHasIsRefused) {
+  for (const auto& [bytes, is_taken] :
+       {std::pair(kStackBytesMax, true), std::pair(kStackBytesMax + 1, false)}) {
+    ProjectFolder folder;
+    folder.small("");
+    std::ifstream file(folder.path() / "app/app.pjx");
+    std::string project{std::istreambuf_iterator<char>(file), {}};
+    project.replace(project.find("5000"), 4, std::to_string(bytes));
+    folder.write("app/app.pjx", project);
+    const ReadApplication read = folder.read();
+    if (is_taken) {
+      EXPECT_THAT(told(read.findings), IsEmpty());
+      EXPECT_EQ(read.application.stack_bytes, bytes);
+      continue;
+    }
+    ASSERT_THAT(told(read.findings), ElementsAre("app.pjx:3 bad-value"));
+    EXPECT_EQ(read.findings[0].remedy, "write a number of bytes up to 16777216; 5000 is usual");
+  }
+}
+
 }  // namespace
 }  // namespace val3

@@ -114,6 +114,54 @@ TEST(Geometry, PosesAreGoneBetweenAndTurnedOntoAxes) {
   EXPECT_EQ(run.machine().task_status("small~"), kErrorParameter) << "a share from -1 to 2";
 }
 
+TEST(Geometry, WorldAndFlangeAreVariablesOfOneElement) {
+  SmallProject project;
+  with_points(project)
+      .data("m", "mdesc", "")
+      .program(
+          "go",
+          "n[1]=x_tool.trsf.z+x_frame.trsf.x\nt=position(p,x_frame)\nn[2]=t.x\nmovej(j,x_tool,m)\nn[3]=1",
+          SmallProject::parameters(
+              SmallProject::parameter("x_tool", "tool", "xsi:type=\"element\" use=\"reference\"") +
+              SmallProject::parameter("x_frame", "frame", "xsi:type=\"element\" use=\"reference\"")));
+  project.program("start", "n[0]=flange.trsf.z+world.trsf.x+1\ncall go(flange,world)");
+  Running run(project);
+  run.ticks(3);
+  EXPECT_EQ(run.number("n", 0), 1) << run.log();
+  EXPECT_EQ(run.number("n", 1), 0);
+  EXPECT_NEAR(run.number("n", 2), 98, 1e-9) << "as position(p,world)";
+  EXPECT_EQ(run.number("n", 3), 1);
+}
+
+TEST(Geometry, WorldAndFlangeThatAreChangedFailAtTheNextCalculation) {
+  const std::vector<std::pair<std::string, int>> cases{
+      {"world.trsf.x=5\nn[1]=1\nt=position(p,world)", kErrorWorldChanged},
+      {"resize(world,1,0)\nn[1]=1\nt=position(p,f)", kErrorWorldChanged},
+      {"flange=kTool\nn[1]=1\nt=position(kTool,flange)", kErrorFlangeChanged}};
+  for (const auto& [lines, error] : cases) {
+    SmallProject project;
+    with_points(project).program("start", lines + "\nn[1]=2");
+    Running run(project);
+    run.ticks(3);
+    EXPECT_EQ(run.machine().task_status("small~"), error) << lines << run.log();
+    EXPECT_EQ(run.number("n", 1), 1) << lines;
+  }
+}
+
+TEST(Geometry, AResultThatIsTooLargeForANumberIsAnError) {
+  const std::string large = "n[1]=power(10,308)*1.5\n";
+  for (const std::string line : {"j[1]=j[0]+j[0]", "j[1]=j[1]-j[0]-j[0]", "t[1]=t[0]*t[0]",
+                                 "n[0]=distance(t[0],t[1])", "t[1]=interpolateL(t[0],t[1],1.5)"}) {
+    SmallProject project;
+    with_variables(project).program("start",
+                                    large + "j[0].j1=n[1]\nt[0].x=n[1]\nt[1].x=-n[1]\n" + line + "\nn[2]=1");
+    Running run(project);
+    run.ticks(3);
+    EXPECT_EQ(run.machine().task_status("small~"), kErrorArgument) << line << run.log();
+    EXPECT_EQ(run.number("n", 2), 0) << line;
+  }
+}
+
 TEST(Geometry, AToolInBracesHasItsGripperAndTimes) {
   SmallProject project;
   with_points(project).data("dq", "dio", "<Value key=\"0\" link=\"BasicIO-1\\%Q0\"/>");

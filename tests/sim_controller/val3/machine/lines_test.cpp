@@ -1,6 +1,8 @@
 // What the machine makes of the language, on programs of a few lines.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/val3/running.hpp"
 
 namespace val3 {
@@ -116,6 +118,27 @@ TEST(Language, ALoopThatNeverWaitsLeavesTheOthersTheirTurns) {
   run.ticks(50);
   EXPECT_GT(run.number("n", 0), 1000);
   EXPECT_GT(run.number("n", 1), 40);
+}
+
+TEST(Language, WhatIsNoNumberIsAnErrorWhereItIsUsed) {
+  const std::map<std::string, int> statements{
+      {"n[1]=n[n]", kErrorArgument}, {"n[1]=nTable[0,n]", kErrorArgument},
+      {"delay(n)", kErrorParameter}, {"movej(j,flange,m)", kErrorInvalidMove},
+      {"n=n+1", kErrorArgument},     {"j=j+j", kErrorArgument}};
+  for (const auto& [statement, error] : statements) {
+    SmallProject project;
+    project.number("n", 2).flag("b").data("m", "mdesc", "").data("j", "jointRx", "");
+    project.file_data(
+        "<Data name=\"nTable\" access=\"private\" xsi:type=\"array\" type=\"num\" size=\"2 3\"/>");
+    project.program("start", "wait(b)\n" + statement);
+    Running run(project);
+    run.ticks(2);
+    run.machine().set_number("n", std::numeric_limits<double>::quiet_NaN());
+    run.machine().set_joint("j", {std::numeric_limits<double>::infinity(), 0, 0, 0, 0, 0});
+    run.machine().set_truth("b", true);
+    run.ticks(5);
+    EXPECT_EQ(run.machine().task_status("small~"), error) << statement << '\n' << run.log();
+  }
 }
 
 TEST(Language, RunTimeErrorsEndTheTaskWithTheirNumber) {

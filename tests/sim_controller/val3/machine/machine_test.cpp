@@ -119,6 +119,46 @@ TEST(MachineOf, LocalsTakeRunMemoryWhileTheirCallLasts) {
   EXPECT_EQ(run.number("n"), 21) << "each call gives its memory back";
 }
 
+/// A program that takes some 80,000 bytes and stays.
+SmallProject& with_large(SmallProject& project) {
+  return project.stack(400'000).number("n").program("large", "l_n[0]=1\nwait(false)",
+                                                    SmallProject::local("l_n", "num", 10'000));
+}
+
+TEST(MachineOf, AllTasksTogetherHaveABoundOfRunMemory) {
+  SmallProject project;
+  with_large(project).program("start",
+                              "for n=1 to 100\ntaskCreate \"t\"+toString(\"\",n),10,large()\nendFor");
+  constexpr std::size_t kMost = 1'000'000;
+  Running run(project, {.run_memory_bytes = kMost});
+  run.ticks(5);
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorRunMemory);
+  constexpr std::size_t kLarge = kCallBytes + kVariableBytes + 80'000 + kTaskBytes;
+  EXPECT_EQ(run.number("n"), std::floor((kMost - kCallBytes - kTaskBytes) / static_cast<double>(kLarge)) + 1);
+  EXPECT_NE(run.log().find("all tasks together would take"), std::string::npos) << run.log();
+}
+
+TEST(MachineOf, ATaskThatGoesGivesItsRunMemoryBack) {
+  SmallProject project;
+  with_large(project).program(
+      "start", "for n=1 to 100\ntaskCreate \"t\",10,large()\ntaskKill(\"t\")\ndelay(0.005)\nendFor\nn=1000");
+  Running run(project, {.run_memory_bytes = 200'000});
+  run.ticks(500);
+  EXPECT_EQ(run.number("n"), 1000) << run.log();
+}
+
+TEST(MachineOf, ATaskThatIsNotMadeGivesItsRunMemoryBack) {
+  SmallProject project;
+  with_large(project).flag("b").program("again", "taskCreate \"t\",10,large()\nb=true");
+  project.program("start",
+                  "taskCreate \"t\",10,large()\nfor n=1 to 20\ntaskCreate \"a\",10,again()\ndelay(0.01)\n"
+                  "taskKill(\"a\")\ndelay(0.01)\nendFor\ntaskCreate \"u\",10,large()\nn=1000");
+  Running run(project, {.run_memory_bytes = 300'000});
+  run.ticks(300);
+  EXPECT_EQ(run.number("n"), 1000) << run.log();
+  EXPECT_FALSE(run.truth("b")) << "there is a task of that name";
+}
+
 TEST(MachineOf, AFieldHasTheSizeThatItsVariableStores) {
   const std::string field =
       "<Data name=\"nData\" access=\"public\" xsi:type=\"array\" type=\"num\" size=\"2\"/>\n";
