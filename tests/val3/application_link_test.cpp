@@ -85,6 +85,20 @@ TEST(ApplicationLink, EachOfTheHellosThatComeAtOnceHasItsWelcome) {
   EXPECT_TRUE(bench.connected());
 }
 
+TEST(ApplicationLink, AnswersBetweenHellosThatComeAtOnceGoAndTheirWelcomesStay) {
+  Bench bench;
+  bench.greet();
+  bench.send(0, ResultQuery{6});
+  for (int i = 0; i < 3; ++i) {
+    bench.send(0, Hello{500});
+    bench.send(0, ResultQuery{7});
+  }
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(bench.expect<Welcome>(0).heartbeat_timeout_ms, 500u) << i;
+  bench.expect<ResultUnknown>(7);
+  bench.expect_silence(0.1);
+  EXPECT_TRUE(bench.connected());
+}
+
 TEST(ApplicationLink, WelcomeNamesTheArmAlsoWhereTheControllerDoesNotSay) {
   Bench::Hardware hardware;
   hardware.differs = [](Cabinet& cabinet) { cabinet.arm_type = ""; };
