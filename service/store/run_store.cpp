@@ -94,18 +94,6 @@ bool has_ended(SQLite::Statement& prepared, std::int64_t run_id) {
   return query->executeStep();
 }
 
-/// Whether the touch of this number is the answer to the same command. A touch by hand answers none.
-bool has_answer(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch) {
-  if (touch.sequence == 0) return false;
-  SQLite::Statement query(
-      database, "SELECT 1 FROM touches WHERE run_id = ? AND number = ? AND session = ? AND sequence = ?");
-  query.bind(1, run_id);
-  query.bind(2, touch.number);
-  query.bind(3, touch.session);
-  query.bind(4, touch.sequence);
-  return query.executeStep();
-}
-
 }  // namespace
 
 struct RunStore::Statements {
@@ -294,7 +282,7 @@ void RunStore::insert_touch(std::int64_t run_id, const StoredTouch& touch) {
   try {
     insert->exec();
   } catch (const SQLite::Exception& failure) {
-    if (failure.getErrorCode() != SQLITE_CONSTRAINT || !has_answer(*database_, run_id, touch)) throw;
+    if (failure.getErrorCode() != SQLITE_CONSTRAINT || !row::has_answer(*database_, run_id, touch)) throw;
   }
 }
 

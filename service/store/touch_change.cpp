@@ -46,6 +46,17 @@ bool is_there(SQLite::Database& database, std::int64_t run_id, const StoredTouch
   return query.executeStep();
 }
 
+bool has_answer(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch) {
+  if (touch.sequence == 0) return false;
+  SQLite::Statement query(
+      database, "SELECT 1 FROM touches WHERE run_id = ? AND number = ? AND session = ? AND sequence = ?");
+  query.bind(1, run_id);
+  query.bind(2, touch.number);
+  query.bind(3, touch.session);
+  query.bind(4, touch.sequence);
+  return query.executeStep();
+}
+
 void supersede(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason) {
   demand_whole_touch(database, run_id, number);
   SQLite::Statement keep(database, "INSERT INTO superseded_touches(run_id, " + kTouchColumns +

@@ -27,6 +27,9 @@ void bind_joints(SQLite::Statement& statement, int& index, const cs8::JointsMicr
 /// Whether the touch of its number is this one, of the same command and moment, without a repetition.
 bool is_there(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch);
 
+/// Whether the touch of this number is the answer to the same command. A touch by hand answers none.
+bool has_answer(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch);
+
 /// Moves a touch to superseded_touches. DamagedStore for one that is not as it was written.
 void supersede(SQLite::Database& database, std::int64_t run_id, int number, const std::string& reason);
 
