@@ -114,12 +114,22 @@ bool has_repetition(const StoreRecord& store, const cs8::JointsMicrodeg& contact
   });
 }
 
+/// Kept as a contact that counts for nothing.
+bool is_refused(const StoreRecord& store, const CommandNumber& command) {
+  return std::ranges::any_of(store.runs, [&command](const RunRecord& run) {
+    return std::ranges::any_of(run.refused, [&command](const cell::RefusedResult& refused) {
+      return CommandNumber{refused.session, refused.sequence} == command;
+    });
+  });
+}
+
 std::optional<std::string> answers_lost(const Record& record) {
   for (const StoreRecord& store : record.stores) {
     const auto stored = stored_commands(store);
     for (std::size_t i = 0; i < store.acknowledged_count && i < record.acknowledged.size(); ++i) {
       const Acknowledged& answer = record.acknowledged[i];
       if (!answer.excuse.empty() || stored.contains(answer.command)) continue;
+      if (is_refused(store, answer.command)) continue;
       if (has_repetition(store, answer.result.contact)) continue;
       return fmt::format(
           "at {:.3f} s the contact of command {} (session {}) was acknowledged, and at {:.3f} s ({}) no "

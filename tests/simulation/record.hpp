@@ -9,6 +9,7 @@
 #include "cs8_protocol/messages.hpp"
 #include "service/run/fault_table.hpp"
 #include "service/run/packml_state.hpp"
+#include "service/store/refused_result.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/simulation/virtual_clock.hpp"
 
@@ -51,6 +52,7 @@ struct RunRecord {
   /// The document that the same touches give in one piece, when nothing ever failed.
   std::optional<std::string> undisturbed_json;
   std::vector<std::string> reasons;  // of a complete run that is not accepted
+  std::vector<cell::RefusedResult> refused = {};
 };
 
 /// What the store had at some time, and how many answers had been acknowledged by then.

@@ -43,7 +43,8 @@ std::vector<RunRecord> read_runs(const cell::RunStore& store, const cell::TipReg
                      .superseded = store.superseded_touches(run.id),
                      .result_json = store.result_json(run.id),
                      .undisturbed_json = std::nullopt,
-                     .reasons = {}};
+                     .reasons = {},
+                     .refused = cell::refused_results(store, run.id)};
     if (regions != nullptr && run.outcome == cell::RunOutcome::kComplete)
       add_undisturbed_result(*regions, record);
     records.push_back(std::move(record));
