@@ -47,8 +47,8 @@ TEST(Val3Application, ListsEveryProgramUnderTheNameOfItsFile) {
 
 TEST(Val3Application, StartSetsEveryVariable) {
   std::string code;
-  for (const char* program :
-       {"start", "readVersion", "setTasks", "setLink", "setCommand", "setMotion", "setCapture", "setProbe"}) {
+  for (const char* program : {"start", "armAgrees", "readVersion", "setTasks", "setLink", "setCommand",
+                              "setMotion", "setCapture", "setProbe"}) {
     code += code_of(program);
     EXPECT_TRUE(std::string(program) == "start" ||
                 code.find("call " + std::string(program) + "(") != code.npos)
