@@ -140,14 +140,6 @@ class FailingStore : public ::testing::Test {
     EXPECT_NE(loop_.status().fault->message().find("disk is full"), std::string::npos);
   }
 
-  void leave_and_run_anew() {
-    loop_.leave_aborted();
-    const std::int64_t next = loop_.start();
-    loop_.run_until_over();
-    EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
-    expect_touches_once(loop_, next, kShortTouchCount);
-  }
-
   LoopbackCell loop_{"demo"};  // the cell `edf` is never accepted
   FullDisk disk_{loop_};
 };
@@ -205,14 +197,17 @@ TEST_F(FailingStore, ARunThatCannotBeWrittenDoesNotBegin) {
   EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
 }
 
-TEST_F(FailingStore, APlanThatCannotBeWrittenEndsTheRunAndTheDaemonStays) {
+TEST_F(FailingStore, APlanThatCannotBeWrittenHoldsTheRunWhichGoesOnOnceThereIsRoom) {
   disk_.refuse_changes_of_runs();
   const std::int64_t id = loop_.start();
   loop_.run_until_over();
-  expect_fault(State::kAborted);
+  expect_fault(State::kHeld);
   expect_touches_once(loop_, id, 0);
   disk_.relieve();
-  leave_and_run_anew();
+  loop_.command(Command::kResume);
+  loop_.run_until_over();
+  EXPECT_EQ(loop_.status().state, State::kComplete) << loop_.fault_name();
+  expect_touches_once(loop_, id, kShortTouchCount);
 }
 
 TEST_F(FailingStore, AnEndThatCannotBeWrittenIsToldAndNotAcceptedUntilItCan) {

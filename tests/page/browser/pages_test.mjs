@@ -6,7 +6,7 @@ import {Cell} from './cell.mjs';
 
 let cell, browser;
 before(async () => {
-  cell = await Cell.start({speed: 120});
+  cell = await Cell.start({speed: 50});
   browser = await openBrowser();
 });
 after(async () => {
