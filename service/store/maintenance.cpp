@@ -192,8 +192,8 @@ void back_up(const std::filesystem::path& database_file, const std::filesystem::
     SQLite::Database from = open_to_read(database_file);
     if (from.execAndGet("PRAGMA user_version").getInt() == 0)
       throw DamagedStore(database_file, "no backup was made", kHoldsNothing);
-    make_for_owner_only(copy);
     SQLite::Database to(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+    keep_for_owner_only(copy);
     to.exec("PRAGMA synchronous = FULL");
     SQLite::Backup backup(to, from);
     backup.executeStep();  // all pages at once: a consistent snapshot

@@ -317,10 +317,9 @@ SharedDatabase open_database(const std::filesystem::path& file) try {
         "last "
         "backup where the disk is not to be trusted",
         *lost);
-  make_for_owner_only(file);
-  keep_for_owner_only(file);
   auto database =
       std::make_shared<SQLite::Database>(file.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  keep_for_owner_only(file);
   database->setBusyTimeout(kBusyMilliseconds);
   database->exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON;");
   // RunStore::begin_run() restarts the log before it grows beyond what a run writes.

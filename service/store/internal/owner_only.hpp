@@ -1,6 +1,5 @@
 #pragma once
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,17 +9,11 @@
 
 namespace cell {
 
-/// Makes the file of a database, where there is none, for its owner only whatever the mask is: it tells names
-/// and addresses. SQLite gives the files that it makes beside it the same rights. One that cannot be made is
-/// told by who opens it. A file that is there is not opened: closing it would end SQLite's locks on it.
-inline void make_for_owner_only(const std::filesystem::path& file) {
-  const int made = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, S_IRUSR | S_IWUSR);
-  if (made >= 0) ::close(made);
-}
-
-/// Takes the rights of others from the files of a database, which an older version gave them. Throws
-/// std::runtime_error, with the remedy, where that cannot be done; not on a file system without rights of its
-/// own (EPERM for the owner), where those of the mount count.
+/// Takes the rights of others from the files of a database, which tell names and addresses: from one that was
+/// just made with those of the mask, and from those of an older version. SQLite gives the files that it makes
+/// beside it the rights of the database. By its path, as to open and close it would end SQLite's locks.
+/// Throws std::runtime_error, with the remedy, where that cannot be done; not on a file system without rights
+/// of its own (EPERM for the owner), where those of the mount count.
 inline void keep_for_owner_only(const std::filesystem::path& file) {
   for (const char* behind : {"", "-wal", "-shm"}) {
     const std::string one = file.string() + behind;
