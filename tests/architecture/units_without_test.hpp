@@ -213,7 +213,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"sim_controller/val3/language/unify_types", "a type of two folders: val3/language/resolver_test"},
     {"sim_controller/val3/program/application", "looked up by name in val3/files/read_application_test"},
     {"sim_controller/val3_motion", "the arm of a VAL3 system: val3_system_test"},
-    {"sim_controller/val3_signals", "links of the cell and on demand: val3_system_test"},
     {"sim_controller/val3_stream", "every end of a connection: val3_socket_test"},
     {"sim_controller/val3_units", "poses and back: controller_arm_test"},
 };

@@ -12,7 +12,20 @@ namespace {
 
 using ::testing::ElementsAre;
 
-using TouchesBesidePlan = ExecutorBench;
+class TouchesBesidePlan : public ExecutorBench {
+ protected:
+  /// Begins a run whose next touch is that of the reference place.
+  void touch_until_the_reference_is_due(ActiveRun& active) {
+    active.run.set_plan(plan_of_owners().touches);
+    touches_.begin_run(active);
+    while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
+  }
+  void touch_at_a_broken_store(ActiveRun& active) {
+    break_store();
+    run(touches_.make_next_touch(active));
+    mend_store();
+  }
+};
 
 TEST_F(TouchesBesidePlan, AnAnswerThatWasLostIsAskedForAndItsTouchCountsOnce) {
   controller.on_touch = [](const cs8::Touch&) { return ScriptedController::lost(); };
@@ -121,18 +134,14 @@ TEST_F(TouchesBesidePlan, TheWayFromTheReferencePlaceKnowsAContactThatWasKeptLat
 
 TEST_F(TouchesBesidePlan, AContactAtTheReferencePlaceIsAcknowledgedOnceItIsStored) {
   ActiveRun active = begun_run("edf-25");
-  active.run.set_plan(plan_of_owners().touches);
-  touches_.begin_run(active);
-  while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
+  touch_until_the_reference_is_due(active);
   const long before = acknowledged_count();
   const auto touches_sent = [this] {
     return std::ranges::count_if(controller.asked,
                                  [](const std::string& one) { return one.starts_with("touch"); });
   };
   const long sent = touches_sent();
-  break_store();
-  run(touches_.make_next_touch(active));
-  mend_store();
+  touch_at_a_broken_store(active);
   EXPECT_EQ(status.state(), State::kHolding);
   EXPECT_EQ(touches_sent(), sent + 1);
   EXPECT_EQ(acknowledged_count(), before);
@@ -147,13 +156,9 @@ TEST_F(TouchesBesidePlan, AContactAtTheReferencePlaceIsAcknowledgedOnceItIsStore
 
 TEST_F(TouchesBesidePlan, AContactThatItsRunCouldNotStoreIsNotForgottenWithTheRun) {
   ActiveRun active = begun_run("edf-25");
-  active.run.set_plan(plan_of_owners().touches);
-  touches_.begin_run(active);
-  while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
+  touch_until_the_reference_is_due(active);
   const long before = acknowledged_count();
-  break_store();
-  run(touches_.make_next_touch(active));
-  mend_store();
+  touch_at_a_broken_store(active);
   const cs8::TouchResult made = contact();
   controller.on_query = [&](std::uint32_t) { return made; };
   const std::uint32_t sequence = session.sequence_to_settle();
@@ -172,13 +177,9 @@ TEST_F(TouchesBesidePlan, AContactThatItsRunCouldNotStoreIsNotForgottenWithTheRu
 
 TEST_F(TouchesBesidePlan, ARunThatBeginsForgetsNoContactOfTheOneBefore) {
   ActiveRun active = begun_run("edf-25");
-  active.run.set_plan(plan_of_owners().touches);
-  touches_.begin_run(active);
-  while (active.run.touches_done() == 0) run(touches_.make_next_touch(active));
+  touch_until_the_reference_is_due(active);
   const long before = acknowledged_count();
-  break_store();
-  run(touches_.make_next_touch(active));
-  mend_store();
+  touch_at_a_broken_store(active);
   touches_.begin_run(active_);
   EXPECT_EQ(acknowledged_count(), before) << "it is not on the disk";
   EXPECT_NE(session.sequence_to_settle(), 0u);
