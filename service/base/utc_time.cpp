@@ -16,4 +16,8 @@ std::string format_utc(std::chrono::system_clock::time_point time) {
                      (milliseconds - seconds).count());
 }
 
+bool has_come(const std::optional<std::string>& time, std::chrono::system_clock::time_point now) {
+  return time && *time <= format_utc(now);
+}
+
 }  // namespace cell

@@ -58,8 +58,7 @@ AppliedArm arm_of_file(const std::filesystem::path& file) {
 AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model,
                         std::chrono::system_clock::time_point now) {
   const ApprovalRow approval = find_approval(daemon, model);
-  // Both are UTC in one form: their order is that of their texts.
-  if (approval.valid_until && *approval.valid_until <= format_utc(now))
+  if (has_come(approval.valid_until, now))
     throw ModelRefused(fmt::format(
         "the model of run {} was valid until {}; calibrate and approve a newer run, or give --arm "
         "with the arm that touchcal export writes",

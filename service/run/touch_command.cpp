@@ -132,8 +132,8 @@ OutcomeFault fault_of(const cs8::Rejected& rejected) {
     case cs8::RejectReason::kRetractPending:
       break;
   }
-  // The two sides do not agree on what was done, and nothing moved: the run loses nothing by waiting until
-  // they have met anew (ControllerSession::meet_anew_after) or State has told where the arm is.
+  // The two sides do not agree on what was done, and what was refused moved nothing: the run loses nothing by
+  // waiting until they have met anew (ControllerSession::meet_anew_after) or State has told where the arm is.
   return {{FaultCode::kTouchRejected, why}, true};
 }
 

@@ -45,8 +45,7 @@ ChosenArm arm_of_run(const Call& call, std::int64_t run) {
 
 /// `current`: the cell's model.
 ChosenArm arm_of_model(const Call& call, const ModelStore& models, const Approval& current) {
-  // Both are UTC in one form: their order is that of their texts.
-  if (current.valid_until && *current.valid_until <= format_utc(call.reads.now()))
+  if (has_come(current.valid_until, call.reads.now()))
     return no_arm(
         fmt::format("the model of run {} was valid until {}; calibrate and approve a newer run, or name "
                     "a run with ?run=ID",

@@ -23,5 +23,13 @@ TEST(UtcTime, LessThanAMillisecondIsCutNeverRoundedIntoTheFuture) {
   EXPECT_EQ(format_utc(sys_days{1970y / 1 / 1} - 1us), "1969-12-31T23:59:59.999Z");
 }
 
+TEST(UtcTime, HasComeAtItsOwnMillisecondAndNeverWhereNoneWasSet) {
+  const auto at = sys_days{2026y / 12 / 31} + 23h;
+  EXPECT_FALSE(has_come(format_utc(at), at - 1ms));
+  EXPECT_TRUE(has_come(format_utc(at), at));
+  EXPECT_TRUE(has_come(format_utc(at), at + 2h)) << "in the next year";
+  EXPECT_FALSE(has_come(std::nullopt, at));
+}
+
 }  // namespace
 }  // namespace cell
