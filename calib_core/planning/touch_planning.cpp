@@ -7,9 +7,9 @@
 #include "calib_core/planning/aimed_touch.hpp"
 #include "calib_core/planning/candidate_pool.hpp"
 #include "calib_core/planning/internal/optimal_design.hpp"
-#include "calib_core/planning/internal/touch_order.hpp"
 #include "calib_core/planning/online_estimate.hpp"
 #include "calib_core/planning/touch_feasibility.hpp"
+#include "calib_core/planning/touch_order.hpp"
 
 namespace calib {
 namespace {

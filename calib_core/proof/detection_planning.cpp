@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "calib_core/motion/motion_time.hpp"
 #include "calib_core/planning/candidate_pool.hpp"
 #include "calib_core/planning/touch_feasibility.hpp"
-#include "calib_core/planning/transfer_planning.hpp"
+#include "calib_core/planning/touch_order.hpp"
 #include "calib_core/proof/check.hpp"
 #include "calib_core/proof/check_effects.hpp"
 #include "calib_core/proof/detection_design.hpp"
@@ -34,57 +32,8 @@ PlannedTouch whole_touch(const PlanningProblem& problem, const TouchCandidate& c
     throw std::logic_error("a candidate is infeasible: " + *reason);
   PlannedTouch& touch = std::get<PlannedTouch>(made);
   touch.role = TouchRole::kProof;
+  touch.predicted_position_error_m = problem.nominal_position_error_m;
   return std::move(touch);
-}
-
-/// From the park posture always to the touch that is reached soonest.
-void order_by_nearest(const PlanningProblem& problem, const PreparedModel& arm,
-                      std::vector<PlannedTouch>& touches) {
-  JointVector here = problem.park_joints;
-  for (auto next = touches.begin(); next != touches.end(); ++next) {
-    const auto seconds = [&](const PlannedTouch& touch) {
-      return move_time_s(arm, problem.motion, here, touch.clear_joints, problem.motion.travel_m_s);
-    };
-    std::iter_swap(next, std::min_element(next, touches.end(), [&](const auto& a, const auto& b) {
-                     return seconds(a) < seconds(b);
-                   }));
-    here = next->clear_joints;
-  }
-}
-
-/// The way between two postures and its time; every touch has one to the park posture.
-std::pair<std::vector<JointVector>, double> way(const PlanningProblem& problem, const PreparedModel& arm,
-                                                const JointVector& from, const JointVector& to) {
-  auto via = find_transfer(problem, from, to);
-  if (!via) {
-    const auto to_park = find_transfer(problem, from, problem.park_joints);
-    const auto from_park = find_transfer(problem, problem.park_joints, to);
-    if (!to_park || !from_park) throw std::logic_error("a touch has no path to the park posture");
-    via = *to_park;
-    via->push_back(problem.park_joints);
-    via->insert(via->end(), from_park->begin(), from_park->end());
-  }
-  std::vector<JointVector> postures{from};
-  postures.insert(postures.end(), via->begin(), via->end());
-  postures.push_back(to);
-  return {std::move(*via), path_time_s(arm, problem.motion, postures)};
-}
-
-TouchPlan with_paths(const PlanningProblem& problem, std::vector<PlannedTouch> touches) {
-  const PreparedModel arm = prepare(problem.nominal);
-  order_by_nearest(problem, arm, touches);
-  TouchPlan plan;
-  JointVector here = problem.park_joints;
-  for (PlannedTouch& touch : touches) {
-    std::tie(touch.via, touch.travel_s) = way(problem, arm, here, touch.clear_joints);
-    touch.touch_s =
-        touch_time_s(arm, problem.motion, {touch.clear_joints, touch.approach_joints, touch.joints});
-    touch.predicted_position_error_m = problem.nominal_position_error_m;
-    here = touch.clear_joints;
-  }
-  std::tie(plan.park_via, plan.park_s) = way(problem, arm, here, problem.park_joints);
-  plan.touches = std::move(touches);
-  return plan;
 }
 
 /// `design` makes the questions of these touches.
@@ -108,9 +57,10 @@ std::variant<TouchPlan, PlanningFailure> plan(const PlanningProblem& problem, in
   std::vector<PlannedTouch> touches;
   for (const std::size_t index : choose_for_detection(detection, static_cast<std::size_t>(count)))
     touches.push_back(whole_touch(problem, pool.candidates[index]));
-  TouchPlan made = with_paths(problem, std::move(touches));
-  made.efforts = std::move(pool.efforts);
-  return made;
+  auto made = find_paths(problem, order_touches(problem, std::move(touches)));
+  if (!made) throw std::logic_error("a touch that reaches the park posture has no path to the next one");
+  made->efforts = std::move(pool.efforts);
+  return std::move(*made);
 }
 
 }  // namespace

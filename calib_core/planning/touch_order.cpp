@@ -1,4 +1,4 @@
-#include "calib_core/planning/internal/touch_order.hpp"
+#include "calib_core/planning/touch_order.hpp"
 
 #include <algorithm>
 #include <array>
@@ -122,7 +122,7 @@ class Ordering {
   Ordering(const PlanningProblem& problem, std::span<const PlannedTouch> touches)
       : problem_(problem), touches_(touches), stops_(problem, touches), order_{stops_.park()} {
     append_fit();
-    append_held_out();
+    append_unfitted();
     order_.push_back(stops_.park());
   }
 
@@ -177,7 +177,7 @@ class Ordering {
   }
 
   void append_fit() {
-    std::vector<std::size_t> due = with_role(TouchRole::kFit);
+    std::vector<std::size_t> due = touches_that(true);
     fit_end_ = 1 + due.size();
     if (due.empty()) return;
     FaceInterleaving faces(faces_of(due));
@@ -194,8 +194,8 @@ class Ordering {
     append_nearest(faces, due);
   }
 
-  void append_held_out() {
-    std::vector<std::size_t> due = with_role(TouchRole::kHeldOut);
+  void append_unfitted() {
+    std::vector<std::size_t> due = touches_that(false);
     if (due.empty()) return;
     FaceInterleaving faces(faces_of(due), stops_.faces()[order_.back()]);
     append_nearest(faces, due);
@@ -206,10 +206,10 @@ class Ordering {
     improve_route(stops_.problem(), order_, fit_end_, fit_end_, order_.size() - 1);
   }
 
-  [[nodiscard]] std::vector<std::size_t> with_role(TouchRole role) const {
+  [[nodiscard]] std::vector<std::size_t> touches_that(bool are_fitted) const {
     std::vector<std::size_t> found;
     for (std::size_t i = 0; i < touches_.size(); ++i) {
-      if (touches_[i].role == role) found.push_back(i);
+      if ((touches_[i].role == TouchRole::kFit) == are_fitted) found.push_back(i);
     }
     return found;
   }

@@ -8,7 +8,7 @@
 
 namespace calib {
 
-/// The touches in execution order. Fitted touches come before held-out ones. No face is repeated while
+/// The touches in execution order. Fitted touches come before all others. No face is repeated while
 /// another has touches left, and the completed share of each face stays about proportional. The first
 /// touches, a few more than identifiable parameters, are those with the most information for the travel time;
 /// the order of the others minimises the travel time from the park posture and back.
