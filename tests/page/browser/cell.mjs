@@ -12,34 +12,34 @@ const source = process.env.TOUCHCAL_SOURCE_DIR ?? fileURLToPath(new URL('../../.
 const kStart_ms = 20000;
 const kHeartbeat_ms = 10000;
 
-/** Starts a program; resolves with the address of its line "listening on HOST:PORT". */
+/** Starts a program; resolves with the address of its line "listening on HOST:PORT", and of "control on HOST:PORT" where there is one. */
 function launch(program, options) {
   const child = spawn(join(programs, program), options, {stdio: ['ignore', 'pipe', 'pipe']});
-  let told = '';
-  child.stderr.on('data', (text) => (told += text));
+  const hasControl = options.includes('--control');
+  let told = '', address;
   return new Promise((resolve, reject) => {
     const clock = setTimeout(() => reject(new Error(`${program} did not start: ${told}`)), kStart_ms);
     child.on('exit', (code) => reject(new Error(`${program} ended with ${code}: ${told}`)));
-    createInterface({input: child.stdout}).on('line', (line) => {
-      const address = line.match(/^listening on (\S+)/)?.[1];
-      if (!address) return;
+    const look = () => {
+      const control = told.match(/^control on (\S+)$/m)?.[1];
+      if (!address || (hasControl && !control)) return;
       clearTimeout(clock);
-      resolve({child, address, told: () => told});
+      resolve({child, address, control, told: () => told});
+    };
+    child.stderr.on('data', (text) => {
+      told += text;
+      if (hasControl) look();
+    });
+    createInterface({input: child.stdout}).on('line', (line) => {
+      address ??= line.match(/^listening on (\S+)/)?.[1];
+      look();
     });
   });
 }
+
+const portOf = (address) => Number(address.split(':').pop());
 
 const ended = (child) => new Promise((done) => (child.exitCode !== null || child.signalCode ? done() : child.once('exit', done)));
-
-async function freePort() {
-  const {createServer} = await import('node:net');
-  return new Promise((done) => {
-    const server = createServer().listen(0, '127.0.0.1', () => {
-      const {port} = server.address();
-      server.close(() => done(port));
-    });
-  });
-}
 
 /** A copy of the configuration whose link outlasts a machine that is busy with a browser. */
 function patientCell(cell, directory) {
@@ -57,9 +57,8 @@ export class Cell {
     const made = new Cell();
     made.state = mkdtempSync(join(tmpdir(), 'touchcal-page-'));
     made.file = patientCell(cell, made.state);
-    made.controlPort = await freePort();
     made.simulator = await launch('cs8sim', [
-      '--cell', made.file, '--listen', '127.0.0.1:0', '--control', `127.0.0.1:${made.controlPort}`, '--speed', String(speed), ...options,
+      '--cell', made.file, '--listen', '127.0.0.1:0', '--control', '127.0.0.1:0', '--speed', String(speed), ...options,
     ]);
     await made.startDaemon(0);
     return made;
@@ -76,7 +75,7 @@ export class Cell {
 
   /** As if the power went. */
   async killDaemon() {
-    this.port = Number(this.daemon.address.split(':').pop());
+    this.port = portOf(this.daemon.address);
     this.daemon.child.kill('SIGKILL');
     await ended(this.daemon.child);
   }
@@ -115,7 +114,7 @@ export class Cell {
   /** A line to cs8sim's control port: a fault, or what the operator does. */
   control(line) {
     return new Promise((done, fail) => {
-      const socket = createConnection(this.controlPort, '127.0.0.1', () => socket.write(`${JSON.stringify(line)}\n`));
+      const socket = createConnection(portOf(this.simulator.control), '127.0.0.1', () => socket.write(`${JSON.stringify(line)}\n`));
       createInterface({input: socket}).once('line', (text) => {
         socket.end();
         const answer = JSON.parse(text);
