@@ -1,0 +1,16 @@
+# Read by ctest, behind PROGRAM, LABEL and COST: one test for each suite of a program, so that what a suite makes once is made once, and
+# a program is not started for each of its tests. A program that is not there or does not list its tests is a test that fails.
+set(listed "")
+if(EXISTS "${PROGRAM}")
+  execute_process(COMMAND "${PROGRAM}" --gtest_list_tests OUTPUT_VARIABLE listed)
+endif()
+string(REGEX MATCHALL "(^|\n)[A-Za-z0-9_/]+\\.[ \n]" suites "${listed}")
+foreach(suite IN LISTS suites)
+  string(REGEX REPLACE "[. \n]" "" suite "${suite}")
+  add_test("${LABEL}.${suite}" "${PROGRAM}" "--gtest_filter=${suite}.*")
+  set_tests_properties("${LABEL}.${suite}" PROPERTIES LABELS "${LABEL}" COST "${COST}" TIMEOUT 900)
+endforeach()
+if(NOT suites)
+  add_test("${LABEL}.ListsItsTests" false)
+  set_tests_properties("${LABEL}.ListsItsTests" PROPERTIES LABELS "${LABEL}")
+endif()
