@@ -61,8 +61,7 @@ class VersionChecks {
   }
 
   void line_of(const Program& program, const Line& line) {
-    if (line.is_shorthand && subject_.language < kS8)
-      form(program.file, line.line, line.column, "? to print a value", kS8);
+    if (line.is_shorthand) shorthand(program, line);
     if (subject_.language < kS64) {
       if (line.kind == Line::Kind::kElseIf) form(program.file, line.line, line.column, "elseIf", kS64);
       if (line.kind == Line::Kind::kCase && line.expressions.size() > 1)
@@ -75,6 +74,17 @@ class VersionChecks {
       if (e.kind == Expression::Kind::kCall && e.reference.instruction != nullptr)
         instruction(program, line, e);
     });
+  }
+
+  /// The manuals to s7 do not have it, and a public application of s7.2 uses it.
+  void shorthand(const Program& program, const Line& line) {
+    constexpr const char* kWhat = "? to print a value";
+    if (subject_.language < kS7) {
+      form(program.file, line.line, line.column, kWhat, kS7);
+    } else if (subject_.language < kS8) {
+      subject_.tell(Severity::kNote, check_rules::kNewerForm, program.file, line.line, line.column,
+                    std::string(kWhat) + " is in no manual of s7, where programs use it all the same");
+    }
   }
 
   void instruction(const Program& program, const Line& line, const Expression& e) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <random>
 
+#include "sim_controller/val3/checks/check_rules.hpp"
 #include "sim_controller/val3/language/resolver.hpp"
 #include "tests/sim_controller/val3/checks/checked_cell.hpp"
 
@@ -114,6 +115,23 @@ TEST(Checks, ConditionsOfConstantsAreFollowed) {
   EXPECT_THAT(found_in_start("while 1==1\ndelay(0)\nendWhile\nn=1"), ElementsAre("start.pgx:5 unreachable"));
   EXPECT_THAT(found_in_start("do\nreturn\nuntil b\nn=1"), ElementsAre("start.pgx:5 unreachable"));
   EXPECT_THAT(found_in_start("do\nn=1\nuntil true\nn=1"), IsEmpty());
+}
+
+TEST(Checks, APrintByAQuestionMarkIsOnlyNotedFromS7OnWhereProgramsHaveIt) {
+  const auto severities = [](Version version) {
+    SmallApplication small = cell();
+    small.program("start", "?\"text\"");
+    Findings findings;
+    resolve(small.application, findings);
+    check(small.application, {version}, findings);
+    std::vector<Severity> all;
+    for (const Finding& one : findings)
+      if (one.rule == check_rules::kNewerForm) all.push_back(one.severity);
+    return all;
+  };
+  EXPECT_THAT(severities({6, 8, 0}), ElementsAre(Severity::kError));
+  EXPECT_THAT(severities({7, 2, 0}), ElementsAre(Severity::kNote));
+  EXPECT_THAT(severities({8, 0, 0}), IsEmpty());
 }
 
 TEST(Checks, FormsOfALaterVersionAreFound) {
