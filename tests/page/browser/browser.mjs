@@ -41,7 +41,8 @@ export async function openWith(browser, cell, changes) {
   const page = await openPage(browser, 'about:blank');
   for (const [path, change] of Object.entries(changes)) {
     await page.route(`${cell.url}${path}`, async (route) => {
-      const answer = await route.fetch();
+      // A connection of its own: one that was kept may be closed by the daemon in the moment it is used again.
+      const answer = await route.fetch({headers: {...route.request().headers(), connection: 'close'}});
       await route.fulfill(answer.status() === 200 ? {response: answer, json: change(await answer.json())} : {response: answer});
     });
   }
