@@ -75,10 +75,6 @@ Runs run(const cell::Cell& shipped, const cell::Recipe& recipe, HiddenArm arm) {
   make_healthy(recipe, cell, arm);
   const std::vector<Touch> planned = all_planned_touches(shipped, recipe);
   const TipPostures box = postures_of_box(cell);
-  const auto is_accepted = [&](const IdentificationResult& result) {
-    const auto criteria = cell::criteria(result, recipe, shipped, tip_to_judge(box, result), true);
-    return cell::judge(criteria, shipped.acceptance).accepted;
-  };
   const cell::AcceptanceLimits& limits = shipped.acceptance;
   IdentificationProblem problem = cell::identification_problem(shipped, recipe);
   Runs runs;
@@ -87,6 +83,11 @@ Runs run(const cell::Cell& shipped, const cell::Recipe& recipe, HiddenArm arm) {
     HiddenCell hidden(cell, arm, chance);
     make_run(hidden, planned, recipe, problem);
     const IdentificationResult result = identify(problem, recipe.identification);
+    const auto tip = tip_to_judge(box, result);
+    const auto is_accepted = [&](const IdentificationResult& of_touches) {
+      const auto criteria = cell::criteria(of_touches, recipe, shipped, tip, true);
+      return cell::judge(criteria, shipped.acceptance).accepted;
+    };
     ++runs.count;
     runs.accepted += is_accepted(result) ? 1 : 0;
     runs.mean_rejected += is_accepted(with_mean(result, 2.0 * limits.held_out_mean_max_m)) ? 0 : 1;
