@@ -84,6 +84,14 @@ TEST(RunCommand, RefusesWhatAControllerWouldNotLoadAndAScriptThatIsNone) {
   EXPECT_EQ(run_small(right.path().parent_path() / "none.pjx", "").code, kCannotRun);
 }
 
+TEST(RunCommand, RefusesAScriptWithoutAnEnd) {
+  val3::SmallProject project;
+  project.program("start", "").write();
+  const SmallRun ran = run_small(project.path(), std::string((16U << 20U) + 1, '\n'));
+  EXPECT_EQ(ran.code, kCannotRun);
+  EXPECT_THAT(ran.error, HasSubstr("script.txt: has more than the 16777216 bytes that a script may have"));
+}
+
 TEST(RunCommand, KeysEditAVariableUntilReturnAndEscLeavesIt) {
   val3::SmallProject project;
   project.number("n", 6).data("s", "string", "<Value key=\"0\" value=\"ab\"/>");
