@@ -39,6 +39,10 @@ std::optional<std::vector<ScriptStep>> read_script(const std::string& file_name,
   std::string text(kScriptBytesMax + 1, '\0');
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
+  if (file.bad()) {
+    error << file_name << ": cannot be read; give the path of a script with --script\n";
+    return std::nullopt;
+  }
   if (text.size() > kScriptBytesMax) {
     error << file_name << ": has more than the " << kScriptBytesMax
           << " bytes that a script may have; divide it, or give another file with --script\n";

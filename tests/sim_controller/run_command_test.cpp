@@ -84,12 +84,16 @@ TEST(RunCommand, RefusesWhatAControllerWouldNotLoadAndAScriptThatIsNone) {
   EXPECT_EQ(run_small(right.path().parent_path() / "none.pjx", "").code, kCannotRun);
 }
 
-TEST(RunCommand, RefusesAScriptWithoutAnEnd) {
+TEST(RunCommand, RefusesAScriptWithoutAnEndAndAFolder) {
   val3::SmallProject project;
   project.program("start", "").write();
   const SmallRun ran = run_small(project.path(), std::string((16U << 20U) + 1, '\n'));
   EXPECT_EQ(ran.code, kCannotRun);
   EXPECT_THAT(ran.error, HasSubstr("script.txt: has more than the 16777216 bytes that a script may have"));
+  std::filesystem::path script = project.path().parent_path() / "script.txt";
+  std::filesystem::remove(script);
+  std::filesystem::create_directory(script);
+  EXPECT_THAT(run_small(project.path(), "0 end\n").error, HasSubstr("script.txt: cannot be read"));
 }
 
 TEST(RunCommand, KeysEditAVariableUntilReturnAndEscLeavesIt) {
