@@ -266,6 +266,8 @@ int main(int argc, char** argv) {
                  "takes faults while it runs, a line of JSON each; port 0 takes a free one")
       ->type_name("HOST:PORT")
       ->check(check_listen);
+  for (const char* of_a_server : {"--faults", "--listen", "--control", "--val3"})
+    run->excludes(app.get_option(of_a_server));
   app.add_option("--seed", arguments.seed, "of the touch noise")
       ->type_name("N")
       ->check(cell::refuse_count64)

@@ -25,8 +25,6 @@ namespace {
 
 constexpr double kSecondsWithoutScript = 10.0;
 constexpr double kSecondsBehindScript = 1.0;
-/// A script of a long day has some 100,000 lines. A device would have no end.
-constexpr std::size_t kScriptBytesMax = 16U << 20U;
 
 /// Nothing where it is no script: that is told.
 std::optional<std::vector<ScriptStep>> read_script(const std::string& file_name, std::ostream& error) {
@@ -36,21 +34,17 @@ std::optional<std::vector<ScriptStep>> read_script(const std::string& file_name,
     error << file_name << ": cannot be read; give the path of a script with --script\n";
     return std::nullopt;
   }
-  std::string text(kScriptBytesMax + 1, '\0');
+  std::string text(kScriptBytesMax + 1, '\0');  // a device would have no end
   file.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(file.gcount()));
   if (file.bad()) {
     error << file_name << ": cannot be read; give the path of a script with --script\n";
     return std::nullopt;
   }
-  if (text.size() > kScriptBytesMax) {
-    error << file_name << ": has more than the " << kScriptBytesMax
-          << " bytes that a script may have; divide it, or give another file with --script\n";
-    return std::nullopt;
-  }
   auto parsed = parse_script(text);
   if (const auto* refused = std::get_if<ScriptError>(&parsed)) {
-    error << file_name << ':' << refused->line << ": " << refused->what << '\n';
+    const std::string line = refused->line > 0 ? ':' + std::to_string(refused->line) : "";
+    error << file_name << line << ": " << refused->what << '\n';
     return std::nullopt;
   }
   return std::get<std::vector<ScriptStep>>(std::move(parsed));

@@ -126,9 +126,12 @@ bool read_switch(std::string_view word, ScriptAct& act) {
 }
 
 bool read_number(std::string_view word, ScriptAct& act) {
+  constexpr double kSpeedMax = 100.0, kKeyMax = 65'535.0;
   const auto number = number_in(word);
   act.number = number.value_or(0.0);
-  return number.has_value();
+  if (!number || *number < 0.0) return false;
+  return act.kind == Kind::kSpeed ? *number <= kSpeedMax
+                                  : *number <= kKeyMax && *number == std::floor(*number);
 }
 
 bool read_word_of(std::string_view word, ScriptAct& act) {
@@ -205,6 +208,8 @@ std::variant<ScriptStep, ScriptError> parse_step(std::string_view text, int line
 
 std::variant<std::vector<ScriptStep>, ScriptError> parse_script(std::string_view text) {
   if (text.size() > kScriptBytesMax) return ScriptError{0, "a script of more than 1 MiB; make it shorter"};
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::vector<ScriptStep> steps;
   for (int line = 1; !text.empty(); ++line) {
     const std::size_t end = std::min(text.find('\n'), text.size());

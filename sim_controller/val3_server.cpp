@@ -28,6 +28,8 @@ using asio::ip::tcp;
 
 /// Ticks between two looks at the sockets.
 constexpr int kTicksInARowMax = 25;
+/// And no longer than this: lines may be slow, as those that move a hundred thousand elements.
+constexpr std::chrono::milliseconds kInARowMax{20};
 /// Between two looks at a program that does not read, and two tries to listen again.
 constexpr std::chrono::milliseconds kUnreadRetry{4};
 constexpr std::chrono::milliseconds kReopenRetry{100};
@@ -112,7 +114,8 @@ class Val3Server::Core : public std::enable_shared_from_this<Val3Server::Core> {
 
   /// Ticks that are due. True when more may be due at once, behind a look at the sockets.
   bool advance() {
-    for (int i = 0; i < kTicksInARowMax; ++i) {
+    const auto end = clock_() + kInARowMax;
+    for (int i = 0; i < kTicksInARowMax && clock_() < end; ++i) {
       if (!pace_.tick(controller_.is_busy(), controller_.clock_s(), clock_())) return false;
       tick();
       if (sent_) break;

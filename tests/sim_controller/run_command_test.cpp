@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sim_controller/run_script.hpp"
 #include "tests/sim_controller/small_run.hpp"
 #include "tests/sim_controller/val3/files/old_project.hpp"
 #include "tests/val3/small_project.hpp"
@@ -87,9 +88,9 @@ TEST(RunCommand, RefusesWhatAControllerWouldNotLoadAndAScriptThatIsNone) {
 TEST(RunCommand, RefusesAScriptWithoutAnEndAndAFolder) {
   val3::SmallProject project;
   project.program("start", "").write();
-  const SmallRun ran = run_small(project.path(), std::string((16U << 20U) + 1, '\n'));
+  const SmallRun ran = run_small(project.path(), std::string(kScriptBytesMax + 1, '\n'));
   EXPECT_EQ(ran.code, kCannotRun);
-  EXPECT_THAT(ran.error, HasSubstr("script.txt: has more than the 16777216 bytes that a script may have"));
+  EXPECT_THAT(ran.error, HasSubstr("script.txt: a script of more than 1 MiB"));
   std::filesystem::path script = project.path().parent_path() / "script.txt";
   std::filesystem::remove(script);
   std::filesystem::create_directory(script);
@@ -183,6 +184,20 @@ TEST(RunCommand, RunsAnApplicationOfS6OnTheSignalsAndSocketsOfItsLibraryIo) {
   EXPECT_EQ(ran.error, "");
   EXPECT_THAT(ran.out, AllOf(HasSubstr("ends with error 122 at start.pgx:12"), HasSubstr("1 failures")))
       << "an input is not written";
+}
+
+TEST(RunCommand, ASwitchOfS5RoundsAndTakesTheLastOfEqualCases) {
+  const std::string code =
+      "switch 2.4\ncase 2\nn=n+1\nbreak\ncase 2\nn=n+10\nbreak\ndefault\nn=n+100\nendSwitch";
+  const std::string data =
+      "<numSection><num name=\"n\" public=\"false\"><valueNum index=\"0\" value=\"0\"/></num></numSection>\n";
+  for (const auto& [version, taken] :
+       std::vector<std::pair<std::string, std::string>>{{"s5.3", "10"}, {"s6.8", "100"}}) {
+    val3::ProjectFolder folder;
+    val3::write_old_project(folder, "app", data, {{"start", code}}, version);
+    const SmallRun ran = run_small(folder.path() / "app" / "app.pjx", "0.1 expect-number n " + taken + "\n");
+    EXPECT_EQ(ran.code, kRan) << version << ran.out << ran.error;
+  }
 }
 
 TEST(RunCommand, SaysOfASignalThatOnlyTheCellCanHaveWhereItIsToBeGiven) {

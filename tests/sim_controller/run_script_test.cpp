@@ -51,6 +51,13 @@ TEST(RunScript, DeclaresCardsFromTheStart) {
   EXPECT_EQ(steps[0].act.name, "J206-1");
 }
 
+TEST(RunScript, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(steps_of("\xEF\xBB\xBF"
+                     "0 end")
+                .size(),
+            1u);
+}
+
 TEST(RunScript, RefusesWhatItDoesNotKnowWithLineAndRemedy) {
   const std::vector<std::tuple<std::string, int, std::string>> mistakes{
       {"input x on", 1, "'input' is no time"},
@@ -63,6 +70,10 @@ TEST(RunScript, RefusesWhatItDoesNotKnowWithLineAndRemedy) {
       {"0 input", 1, "write 'input LINK on|off'"},
       {"0 mode press", 1, "write 'mode manual|test|local|remote'"},
       {"0 key x", 1, "write 'key CODE'"},
+      {"0 key 70000", 1, "write 'key CODE'"},
+      {"0 key 1.5", 1, "write 'key CODE'"},
+      {"0 speed -5", 1, "write 'speed PERCENT'"},
+      {"0 speed 101", 1, "write 'speed PERCENT'"},
       {"0 end now", 1, "write 'end'"},
       {"0.5 card J206-1", 1, "a card is there from the start; begin its line with 0"},
       {"0 card", 1, "write 'card NAME'"},

@@ -40,6 +40,7 @@ class ArrayBase {
   virtual void assign(const ArrayBase& from) = 0;
   [[nodiscard]] virtual std::shared_ptr<ArrayBase> clone() const = 0;
 
+  bool is_global = false;                                // of an application or a library, by name
   std::vector<std::size_t> sizes{1};                     // one to three dimensions; of a collection none
   std::map<std::string, std::size_t, std::less<>> keys;  // of a collection
 

@@ -2,10 +2,22 @@
 
 namespace val3 {
 
-NodePtr<Father> Argument<FrameRef>::make(Compiler& compiler, const Expression& e) {
-  return lambda_node<Father>([frame = compiler.ref(e), fathers = &compiler.fathers()](Context& c) {
-    return fathers->father_of(frame->get(c));
+namespace {
+
+NodePtr<Father> father_node(Compiler& compiler, const Expression& e) {
+  return lambda_node<Father>([place = compiler.ref(e), fathers = &compiler.fathers()](Context& c) {
+    return fathers->father_of(place->get(c));
   });
+}
+
+}  // namespace
+
+NodePtr<Father> Argument<FrameRef>::make(Compiler& compiler, const Expression& e) {
+  return father_node(compiler, e);
+}
+
+NodePtr<Father> Argument<ToolRef>::make(Compiler& compiler, const Expression& e) {
+  return father_node(compiler, e);
 }
 
 const Builtins::Make* Builtins::find(const Expression& call) const {

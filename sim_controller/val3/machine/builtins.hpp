@@ -36,6 +36,11 @@ struct FrameRef {
   Father father;
 };
 
+/// A tool as a variable, which tools can be given on.
+struct ToolRef {
+  Father father;
+};
+
 /// How an argument of an instruction is compiled and handed over.
 template <class T>
 struct Argument {
@@ -70,6 +75,13 @@ struct Argument<FrameRef> {
   static bool fits(const Expression& e) { return e.type.kind == Kind::kFrame; }
   static Made make(Compiler& compiler, const Expression& e);
   static FrameRef get(const Made& made, Context& context) { return {made->get(context)}; }
+};
+template <>
+struct Argument<ToolRef> {
+  using Made = NodePtr<Father>;
+  static bool fits(const Expression& e) { return e.type.kind == Kind::kTool && e.is_place; }
+  static Made make(Compiler& compiler, const Expression& e);
+  static ToolRef get(const Made& made, Context& context) { return {made->get(context)}; }
 };
 /// An array of any type.
 template <>

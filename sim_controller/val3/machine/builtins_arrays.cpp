@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
 
 #include "sim_controller/val3/machine/builtins.hpp"
 #include "sim_controller/val3/machine/libraries.hpp"
@@ -28,9 +29,48 @@ double size_of(const Ref& place, double dimension) {
   return static_cast<double>(sizes[static_cast<std::size_t>(dimension) - 1]);
 }
 
+/// Where the element at `index` of an array of sizes `from` is in one of sizes `to`; nothing beyond it.
+std::optional<std::size_t> moved(std::size_t index, const std::vector<std::size_t>& from,
+                                 const std::vector<std::size_t>& to) {
+  std::size_t result = 0, stride = 1;
+  for (std::size_t k = from.size(); k-- > 0;) {
+    const std::size_t along = index % from[k];
+    if (along >= to[k]) return std::nullopt;
+    result += along * stride;
+    stride *= to[k];
+    index /= from[k];
+  }
+  return result;
+}
+
+/// One dimension of several: every element keeps its indices.
+void change_dimension(ArrayBase& array, std::size_t dimension, std::size_t size) {
+  const std::vector<std::size_t> before = array.sizes;
+  std::vector<std::size_t> now = before;
+  now[dimension] = size;
+  double count = 1.0;
+  for (const std::size_t one : now) count *= static_cast<double>(one);
+  if (count > static_cast<double>(kElementsMax))
+    throw RunFailure(kErrorRunMemory, "an array of more than a million elements");
+  const auto old = array.clone();
+  array.resize(0);
+  array.resize(static_cast<std::size_t>(count));
+  array.sizes = now;
+  for (std::size_t i = 0; i < old->size(); ++i)
+    if (const auto to = moved(i, before, now)) array.copy(*to, *old, i);
+}
+
 Nothing resize(Context&, const Ref& place, double dimension, double size) {
-  if (dimension != 1.0 || !(size >= 0.0)) throw RunFailure(kErrorParameter, "a dimension or a size");
-  change_size(place, static_cast<std::size_t>(std::min(size, 1e9)));
+  const std::size_t dimensions = place.field >= 0 ? 1 : std::max<std::size_t>(1, place.array->sizes.size());
+  if (!(dimension >= 1.0 && dimension <= static_cast<double>(dimensions)) ||
+      dimension != std::floor(dimension) || !(size >= 0.0))
+    throw RunFailure(kErrorParameter, "a dimension or a size");
+  const auto elements = static_cast<std::size_t>(std::min(std::floor(size), 1e9));
+  if (dimensions == 1) {
+    change_size(place, elements);
+  } else {
+    change_dimension(*place.array, static_cast<std::size_t>(dimension) - 1, elements);
+  }
   return {};
 }
 

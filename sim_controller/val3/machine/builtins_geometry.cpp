@@ -86,12 +86,10 @@ Trsf aligned(Context&, const Trsf& trsf, const Trsf& reference) {
   return trsf_of(turned);
 }
 
-Nothing link_point(Context&, const Out<Point>& point, const FrameRef& father) {
-  point.value().father = father.father;
-  return {};
-}
-Nothing link_frame(Context&, const Out<Frame>& frame, const FrameRef& father) {
-  frame.value().father = father.father;
+template <class Linked, class FatherRef>
+Nothing link_to(Context& context, const Out<Linked>& linked, const FatherRef& to) {
+  context.tasks.fathers.demand_link(linked.ref, to.father);
+  linked.value().father = to.father;
   return {};
 }
 
@@ -112,8 +110,9 @@ void define_frames(Builtins& list) {
   });
   list.define<Trsf, FrameRef, FrameRef>("position", position_of_frame);
   list.define<Trsf, Tool, Tool>("position", position_of_tool);
-  list.define<Nothing, Out<Point>, FrameRef>("link", link_point);
-  list.define<Nothing, Out<Frame>, FrameRef>("link", link_frame);
+  list.define<Nothing, Out<Point>, FrameRef>("link", link_to<Point, FrameRef>);
+  list.define<Nothing, Out<Frame>, FrameRef>("link", link_to<Frame, FrameRef>);
+  list.define<Nothing, Out<Tool>, ToolRef>("link", link_to<Tool, ToolRef>);
   list.define<Trsf, Trsf, Trsf, double>("interpolateL", between_poses);
   list.define<Trsf, Trsf, Trsf>("align", aligned);
 }

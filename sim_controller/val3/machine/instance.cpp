@@ -8,9 +8,6 @@
 namespace val3 {
 namespace {
 
-/// Frames deeper than this are taken for a ring of fathers.
-constexpr int kFathersMax = 64;
-
 using Attributes = std::map<std::string, std::string>;
 
 const std::string* find_attribute(const Attributes& attributes, const char* name) {
@@ -214,60 +211,6 @@ class DataLoader {
   System& system_;
   Fathers& fathers_;
 };
-
-Fathers::Fathers()
-    : world_(std::make_unique<Array<Frame>>(Type{Kind::kFrame, -1}, 1)),
-      flange_(std::make_unique<Array<Tool>>(Type{Kind::kTool, -1}, 1)),
-      arrays_{{kWorldArray, world_.get()}, {kFlangeArray, flange_.get()}} {}
-
-int Fathers::add(ArrayBase& array) {
-  arrays_.emplace(next_, &array);
-  return next_++;
-}
-
-const ArrayBase* Fathers::find(const Father& father) const {
-  const auto found = arrays_.find(father.array);
-  return found == arrays_.end() || father.element >= found->second->size() ? nullptr : found->second;
-}
-
-Trsf Fathers::frame_in_world(const Father& father) const {
-  if (world_->size() != 1 || !(world_->elements[0] == Frame{}))
-    throw RunFailure(kErrorWorldChanged, "the frame world was changed");
-  Trsf result;
-  Father at = father;
-  for (int depth = 0; at.array != kWorldArray; ++depth) {
-    const ArrayBase* array = find(at);
-    if (array == nullptr || array->type().kind != Kind::kFrame || depth > kFathersMax)
-      throw RunFailure(depth == 0 ? kErrorPointWithoutFrame : kErrorFrameWithoutFather,
-                       "a frame without its father");
-    const Frame& frame = static_cast<const Array<Frame>*>(array)->elements[at.element];
-    result = depth == 0 ? frame.trsf : composed(frame.trsf, result);
-    at = frame.father;
-  }
-  return result;
-}
-
-Trsf Fathers::flange_from(const Tool& tool) const {
-  if (flange_->size() != 1 || !(flange_->elements[0] == Tool{}))
-    throw RunFailure(kErrorFlangeChanged, "the tool flange was changed");
-  Trsf result = tool.trsf;
-  Father at = tool.father;
-  for (int depth = 0; at.array != kFlangeArray; ++depth) {
-    const ArrayBase* array = find(at);
-    if (array == nullptr || array->type().kind != Kind::kTool || depth > kFathersMax)
-      throw RunFailure(kErrorToolWithoutFather, "a tool without its father");
-    const Tool& father = static_cast<const Array<Tool>*>(array)->elements[at.element];
-    result = composed(father.trsf, result);
-    at = father.father;
-  }
-  return result;
-}
-
-Father Fathers::father_of(const Ref& place) const {
-  for (const auto& [id, array] : arrays_)
-    if (array == place.array) return {id, place.index};
-  return {};
-}
 
 Instance::Instance() = default;
 Instance::~Instance() = default;

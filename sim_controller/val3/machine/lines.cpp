@@ -1,6 +1,8 @@
 // A program's lines as operations.
+#include <algorithm>
 #include <cmath>
 
+#include "sim_controller/val3/language/instruction_table.hpp"
 #include "sim_controller/val3/machine/assignments.hpp"
 #include "sim_controller/val3/machine/calls.hpp"
 #include "sim_controller/val3/machine/finite.hpp"
@@ -169,6 +171,23 @@ class LineCompiler {
     });
   }
 
+  /// In s5 a switch has whole numbers, and of equal cases the last one counts (manual 5, page 26).
+  bool is_old_switch() const {
+    const Version& language = compiler_.instance().application->language;
+    return language != Version{} && language < kS6;
+  }
+
+  template <class T>
+  NodePtr<T> selected(const Expression& e) {
+    NodePtr<T> value = compiler_.value<T>(e);
+    if constexpr (std::is_same_v<T, double>) {
+      if (is_old_switch())
+        return lambda_node<double>(
+            [value = std::move(value)](Context& c) { return std::round(value->get(c)); });
+    }
+    return value;
+  }
+
   OperationPtr selection(const Line& line, std::size_t index) {
     const Expression& selector = line.expressions.at(0);
     if (!is_simulated(selector.type.kind))
@@ -184,11 +203,11 @@ class LineCompiler {
             continue;
           }
           typename SwitchOperation<T>::Case made{{}, at + 1};
-          for (const Expression& value : one.expressions) made.values.push_back(compiler_.value<T>(value));
+          for (const Expression& value : one.expressions) made.values.push_back(selected<T>(value));
           cases.push_back(std::move(made));
         }
-        return std::make_unique<const SwitchOperation<T>>(compiler_.value<T>(selector), std::move(cases),
-                                                          otherwise);
+        if (is_old_switch()) std::ranges::reverse(cases);
+        return std::make_unique<const SwitchOperation<T>>(selected<T>(selector), std::move(cases), otherwise);
       } else {
         compiler_.refuse(selector, "a switch over this type is not simulated");
       }

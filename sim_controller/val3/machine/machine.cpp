@@ -34,6 +34,7 @@ struct Machine::State {
       std::shared_ptr<ArrayBase> array;
       if (is_simulated(global.declared.type.kind)) {
         array = make_variable(from, global.declared);
+        array->is_global = true;
         const Kind kind = global.declared.type.kind;
         if (kind == Kind::kFrame || kind == Kind::kTool) tasks.fathers.add(*array);
       } else {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim_controller/val3/machine/arrays.hpp"
+#include "sim_controller/val3/machine/fathers.hpp"
 
 /// Expressions ready to run: each is of one type and finds its variables without a name.
 namespace val3 {
@@ -22,6 +23,7 @@ struct Activation {
   bool branch_open = false;                       // a condition was false: an elseIf or else may be taken
   std::vector<Ref> slots;                         // parameters, then locals
   std::vector<std::shared_ptr<ArrayBase>> owned;  // what is behind the slots that are not by reference
+  CallFathers fathers;                            // those of `owned`, while it runs
 };
 
 /// What an expression needs while it is evaluated.

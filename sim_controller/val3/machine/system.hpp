@@ -47,6 +47,7 @@ enum RunError : int {
   kErrorPointWithoutFrame = 162,
   kErrorFrameWithoutFather = 163,
   kErrorToolWithoutFather = 164,
+  kErrorLinkedToLocal = 165,
 };
 
 /// The line that stores a motion, for the log.

@@ -25,7 +25,11 @@ bool is_task_name(std::string_view name) {
   });
 }
 
-bool has_father_number(Kind kind) { return kind == Kind::kFrame || kind == Kind::kTool; }
+void number_fathers(Activation& call, Fathers& fathers) {
+  for (const auto& array : call.owned)
+    if (array->type().kind == Kind::kFrame || array->type().kind == Kind::kTool)
+      call.fathers.add(fathers, *array);
+}
 
 }  // namespace
 
@@ -37,6 +41,7 @@ std::unique_ptr<Activation> Tasks::activate(const Code& code, Fathers& fathers) 
     again->branch_open = false;
     const std::size_t parameters = code.program->parameters.size();
     for (std::size_t i = 0; i < code.program->locals.size(); ++i) again->slots[parameters + i].array->clear();
+    number_fathers(*again, fathers);
     return again;
   }
   auto made = std::make_unique<Activation>();
@@ -44,7 +49,6 @@ std::unique_ptr<Activation> Tasks::activate(const Code& code, Fathers& fathers) 
   const Application& application = *code.instance->application;
   const auto own = [&](const Declaration& declared) {
     auto array = make_variable(application, declared);
-    if (has_father_number(declared.type.kind)) fathers.add(*array);
     made->slots.push_back({.array = array.get()});
     made->owned.push_back(std::move(array));
   };
@@ -56,12 +60,14 @@ std::unique_ptr<Activation> Tasks::activate(const Code& code, Fathers& fathers) 
     }
   }
   for (const Declaration& local : code.program->locals) own(local);
+  number_fathers(*made, fathers);
   return made;
 }
 
 void Tasks::leave(Task& task) {
   auto left = std::move(task.stack.back());
   task.stack.pop_back();
+  left->fathers.give_back();
   const Code& code = *left->code;
   task.stack_bytes -= code.call_bytes;
   stack_bytes_ -= code.call_bytes;

@@ -7,11 +7,12 @@
 
 namespace val3 {
 
-/// Writes an application of s6 into the folder `name`: `data` are sections of its data file, `programs` the
-/// code of each, to which an empty stop() is added. A code's first line is line 4 of its file, behind
-/// `begin`.
+/// Writes an application of s6, or of an earlier version, into the folder `name`: `data` are sections of its
+/// data file, `programs` the code of each, to which an empty stop() is added. A code's first line is line 4
+/// of its file, behind `begin`.
 inline void write_old_project(ProjectFolder& into, const std::string& name, const std::string& data,
-                              std::map<std::string, std::string> programs) {
+                              std::map<std::string, std::string> programs,
+                              const std::string& version = "s6.8") {
   const std::string xml = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
   programs.emplace("stop", "");
   std::string list;
@@ -25,8 +26,8 @@ inline void write_old_project(ProjectFolder& into, const std::string& name, cons
   }
   into.write(name + "/" + name + ".dtx", xml + "<dataList xmlns=\"DataNameSpace\">\n" + data + "</dataList>");
   into.write(name + "/" + name + ".pjx",
-             xml +
-                 "<project xmlns=\"ProjectNameSpace\"><parameters version=\"s6.8\" stackSize=\"5000\" "
+             xml + "<project xmlns=\"ProjectNameSpace\"><parameters version=\"" + version +
+                 "\" stackSize=\"5000\" "
                  "millimeterUnit=\"true\"/>\n<programSection>" +
                  list + "</programSection><dataSection><data file=\"" + name +
                  ".dtx\"/></dataSection><aliasSection>" +

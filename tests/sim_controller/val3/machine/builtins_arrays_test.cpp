@@ -39,6 +39,20 @@ TEST(Arrays, OfTwoDimensionsAreRowsAfterRows) {
   EXPECT_EQ(run.machine().task_status("small~"), kErrorIndex);
 }
 
+TEST(Arrays, OfTwoDimensionsKeepTheirIndicesWhenOneOfThemChanges) {
+  SmallProject project;
+  project.file_data("<Data name=\"m\" access=\"private\" xsi:type=\"array\" type=\"num\" size=\"2 3\"/>");
+  project.number("n", 8).program("start",
+                                 "m[0,2]=2\nm[1,0]=3\nm[1,2]=5\nresize(m,2,4)\nn[0]=m[1,2]\nn[1]=m[0,3]\n"
+                                 "n[2]=size(m,2)\nresize(m,1,3)\nn[3]=m[1,0]\nn[4]=m[2,0]\nresize(m,2,1)\n"
+                                 "n[5]=m[1,0]\nn[6]=size(m,1)\nresize(m,3,1)");
+  Running run(project);
+  run.ticks(2);
+  const std::vector<double> expected{5, 0, 4, 3, 0, 3, 3};
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(run.number("n", i), expected[i]) << i;
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorParameter) << "it has two dimensions";
+}
+
 TEST(Arrays, ACollectionFindsItsElementsByKey) {
   SmallProject project;
   project.file_data(

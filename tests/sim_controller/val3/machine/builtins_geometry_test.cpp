@@ -69,6 +69,18 @@ TEST(Geometry, ComposeTurnsAboutTheFramesOriginAndApproOnThePointsAxes) {
   EXPECT_NEAR(run.number("n", 2), 100, 1e-9) << "the same numbers in another frame";
 }
 
+TEST(Geometry, AToolIsLinkedToAnother) {
+  SmallProject project;
+  with_points(project).data("kTip", "tool", "<Value key=\"0\" z=\"5\" fatherId=\"flange[0]\"/>");
+  project.program("start",
+                  "link(kTip,kTool)\nt[0]=position(kTip,flange)\nn[0]=t[0].z\nlink(kTip,flange)\n"
+                  "t[0]=position(kTip,flange)\nn[1]=t[0].z");
+  Running run(project);
+  run.ticks(2);
+  EXPECT_NEAR(run.number("n", 0), 55, 1e-9) << run.log();
+  EXPECT_NEAR(run.number("n", 1), 5, 1e-9);
+}
+
 TEST(Geometry, AFrameIsMadeOfThreePoints) {
   SmallProject project;
   with_points(project);
