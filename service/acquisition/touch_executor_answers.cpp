@@ -59,16 +59,18 @@ bool TouchExecutor::deal_with(const ActiveRun& active, const calib::PlannedTouch
     session_.expect_stop(result.outcome);
     return false;
   }
-  if (judged.fault.code == FaultCode::kFalseTrigger && ++false_trigger_count_ == kFalseTriggersMany)
-    status_.warn({FaultCode::kFalseTriggersMany, fmt::format("{} in this run", false_trigger_count_)});
-  if (judged.next == TouchJudgement::Next::kAgain) {
+  const bool is_again = judged.next == TouchJudgement::Next::kAgain;
+  if (is_again) {
     ++history_.attempts;
     history_.spread_m = contact_spread_m(cell_, result);
     status_.warn(judged.fault);
-    return true;
+  } else {
+    take_no_measurement(active, touch, judged, held_by);
   }
-  take_no_measurement(active, touch, judged, held_by);
-  return false;
+  // Behind the warning of this one: the newest is what a person sees.
+  if (judged.fault.code == FaultCode::kFalseTrigger && ++false_trigger_count_ == kFalseTriggersMany)
+    status_.warn({FaultCode::kFalseTriggersMany, fmt::format("{} in this run", false_trigger_count_)});
+  return is_again;
 }
 
 /// A touch that is not made again by itself.

@@ -99,10 +99,7 @@ bool can_locate(State state) {
          state == State::kComplete;
 }
 
-State after_abort(State state) {
-  return state == State::kAborted || state == State::kAborting || !is_active(state) ? state
-                                                                                    : State::kAborting;
-}
+State after_abort(State state) { return is_active(state) ? State::kAborting : state; }
 
 /// Has touches to lose, and no end is under way.
 bool can_be_held(State state) {

@@ -310,6 +310,7 @@ void RunStore::confirm_touch(std::int64_t run_id, int number, const cs8::JointsM
 
 void RunStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch) {
   row::WriteTransaction transaction(*database_);
+  if (row::is_there(*database_, run_id, touch)) return;
   SQLite::Statement insert(*database_, "INSERT INTO reference_touches(run_id, number, touches_done, " +
                                            row::kJointColumns + ", drift_mm, captured_at, checksum)" +
                                            row::reference_rows().values(11));

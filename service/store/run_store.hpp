@@ -200,6 +200,7 @@ class RunStore {
   /// none.
   void leave_out(std::int64_t run_id, const std::vector<PlanChange>& changes,
                  const std::optional<Withdrawal>& withdrawn = {});
+  /// The same one once more is not written: who was told of a failure behind the disk tries it again.
   void append_reference(std::int64_t run_id, const ReferenceTouch& touch);
   void append_resumption(std::int64_t run_id, const std::string& at, int touches_done);
   void finish_run(std::int64_t run_id, const RunEnd& end);

@@ -46,6 +46,20 @@ bool is_there(SQLite::Database& database, std::int64_t run_id, const StoredTouch
   return query.executeStep();
 }
 
+bool is_there(SQLite::Database& database, std::int64_t run_id, const ReferenceTouch& touch) {
+  SQLite::Statement query(
+      database,
+      "SELECT 1 FROM reference_touches WHERE run_id = ? AND number = ? AND captured_at = ? "
+      "AND (" +
+          kJointColumns + ") = (?, ?, ?, ?, ?, ?)");
+  int index = 0;
+  query.bind(++index, run_id);
+  query.bind(++index, touch.number);
+  query.bind(++index, touch.captured_at);
+  bind_joints(query, index, &touch.joints);
+  return query.executeStep();
+}
+
 bool has_answer(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch) {
   if (touch.sequence == 0) return false;
   SQLite::Statement query(

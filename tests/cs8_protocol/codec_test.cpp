@@ -279,6 +279,7 @@ TEST(Codec, AnUnknownTypeIsRefused) {
   Bytes frame = encode({0, Hello{500}});
   frame[3] = 99;
   EXPECT_EQ(expect_refused(frame), (DecodeError{DecodeErrorKind::kUnknownType, {}, 99}));
+  EXPECT_EQ(fault_for(expect_refused(frame)).code, FaultCode::kUnknownType);
   EXPECT_EQ(fault_for(expect_refused(frame)).detail, 99);
 }
 

@@ -10,6 +10,9 @@ OPERATOR = re.compile(r"(?<= )(" + "|".join(map(re.escape, sorted(SWAPS, key=len
 NOT = re.compile(r"(?<![\w)])!(?=[\w(*:])")
 NUMBER = re.compile(r"(?<![\w.'\"])(?:\d+\.\d*(?:e-?\d+)?|\d+e-?\d+|\d+)[uUlL]*(?![\w.'])")
 TRUTH = re.compile(r"(?<=return )(true|false)(?=;)")
+NAME = re.compile(r"(?<=return )\"{3,}(?=;)")  # masked: a text that is an answer by itself
+# A label of a switch is none: the same twice does not compile, and one that is left out is mostly what stands behind.
+ENUMERATOR = re.compile(r"(?<![\w:])(?<!case )((?:\w+::)+)(k[A-Z]\w*)(?![\w(])")
 STATEMENT = re.compile(r"(?:(?<=[{})])\s+|(?<=;)\s*\n\s*)((?:(?:\+\+|\()?[\w:][^;{}=\n]*\([^;{}]*\)|[\w:.>\[\]-]+ = [^;{}]+|\+\+[^;{}]+);)")
 NO_STATEMENT = re.compile(r"(return|co_return|throw|static_assert|using|case|const|constexpr|else|if|for|while|switch|template|[\w:<>]+ [\w:]+\()")
 SKIPPED_LINE = re.compile(r"\s*(#|static_assert|assert|template <|requires |using |namespace )")
@@ -40,7 +43,7 @@ def _masked(text):
     return "\n".join(" " * len(line) if SKIPPED_LINE.match(line) else line for line in lines)
 
 
-def _places(masked):
+def _places(masked, text):
     for found in OPERATOR.finditer(masked):
         yield found.start(1), found.end(1), SWAPS[found.group(1)]
     for found in NOT.finditer(masked):
@@ -49,14 +52,27 @@ def _places(masked):
         yield found.start(), found.end(), f"({found.group()} + 1)"
     for found in TRUTH.finditer(masked):
         yield found.start(), found.end(), "false" if found.group() == "true" else "true"
+    for found in NAME.finditer(masked):
+        if " " in text[found.start():found.end()]:
+            continue  # words for a person, which no test repeats
+        yield found.start(), found.end(), text[found.start():found.end() - 1] + "~\""
+    for found in ENUMERATOR.finditer(masked):
+        if other := _another(masked, found.group(1), found.group(2)):
+            yield found.start(), found.end(), found.group(1) + other
     for found in STATEMENT.finditer(masked):
         if not NO_STATEMENT.match(found.group(1)):
             yield found.start(1), found.end(1), ";"
 
 
+def _another(masked, enumeration, value):
+    """The value of the same enumeration that the source names next; the first one behind the last."""
+    named = list(dict.fromkeys(re.findall(r"(?<![\w:])" + re.escape(enumeration) + r"(k[A-Z]\w*)", masked)))
+    return named[(named.index(value) + 1) % len(named)] if len(named) > 1 else None
+
+
 def mutants_of(text):
     seen, mutants = {}, []
-    for begin, end, after in sorted(_places(_masked(text))):
+    for begin, end, after in sorted(_places(_masked(text), text)):
         line = text.count("\n", 0, begin) + 1
         key = (line, text[begin:end], after)
         seen[key] = seen.get(key, 0) + 1

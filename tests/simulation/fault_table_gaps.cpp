@@ -15,9 +15,11 @@ const std::map<std::string, std::string>& codes_without_cell() {
       {"emergency_stop",
        "refuses a start in a cell that is not ready, which nobody gives here: "
        "`tests/service/acquisition/preconditions_test`"},
-      {"face_bias", "takes more touches of a face than a run here has: tested nowhere yet"},
+      {"face_bias",
+       "takes more touches of a face than a run here has: `tests/service/acquisition/touch_judgement_test`"},
       {"false_triggers_many",
-       "takes three false triggers in one run, and a cell has one mode: tested nowhere yet"},
+       "takes three false triggers in one run, and a cell has one mode: "
+       "`tests/service/acquisition/touch_executor_test`"},
       {"fault_unacknowledged",
        "refuses a start below a fault; the person here does first what it asks for: "
        "`tests/service/acquisition/preconditions_test`"},
@@ -33,7 +35,8 @@ const std::map<std::string, std::string>& codes_without_cell() {
       {"no_contact",
        "a probe that never trips ends in a collision here, as the block is there: "
        "`tests/end_to_end/cell_faults_test`"},
-      {"no_safe_way", "the arm never stands here where no way leads on: tested nowhere yet"},
+      {"no_safe_way",
+       "the arm never stands here where no way leads on: `tests/service/acquisition/touch_executor_test`"},
       {"not_calibrated",
        "refuses a start in a cell that is not ready, which nobody gives here: "
        "`tests/service/acquisition/preconditions_test`"},
@@ -52,7 +55,8 @@ const std::map<std::string, std::string>& codes_without_cell() {
       {"plan_invalid",
        "plans are handed in here, and none is without length: "
        "`tests/service/acquisition/touch_judgement_test`"},
-      {"probe_not_calibrated", "of the probe's file, which no cell here changes: tested nowhere yet"},
+      {"probe_not_calibrated",
+       "of the probe's file, which no cell here changes: `tests/service/acquisition/preconditions_test`"},
       {"probe_touched",
        "refuses a start in a cell that is not ready, which nobody gives here: "
        "`tests/service/acquisition/preconditions_test`"},
@@ -77,7 +81,8 @@ const std::map<std::string, std::string>& codes_without_cell() {
       {"touch_test_missing",
        "told when nobody tests the stylus for ten minutes; a cell counts as at rest before, and shows what "
        "it asks for"},
-      {"wrong_stylus", "the stylus here is that of its file: tested nowhere yet"}};
+      {"wrong_stylus",
+       "the stylus here is that of its file: `tests/service/acquisition/touch_judgement_test`"}};
   return reasons;
 }
 
@@ -87,8 +92,11 @@ const std::map<std::string, std::string>& modes_without_row() {
        "`tests/service/acquisition/touch_judgement_test`: plans are handed in here, and none is without "
        "length"},
       {"P05", "`tests/service/acquisition/preconditions_test`: a plan that cannot be made starts no run"},
-      {"P06", "nowhere yet: it is of the probe's file, which no cell here changes"},
-      {"P07", "nowhere yet: the stylus of every cell here is that of its file"},
+      {"P06",
+       "`tests/service/acquisition/preconditions_test`: it is of the probe's file, which no cell here "
+       "changes"},
+      {"P07",
+       "`tests/service/acquisition/touch_judgement_test`: the stylus of every cell here is that of its file"},
       {"P09", "`tests/service/acquisition/preconditions_test`, `tests/page/browser/faults_test`"},
       {"P17", "`tests/sim_controller/motion_task_test`, `tests/service/acquisition/touch_judgement_test`"},
       {"P27", "`tests/service/acquisition/touch_judgement_test`"},
@@ -98,8 +106,12 @@ const std::map<std::string, std::string>& modes_without_row() {
        "`tests/service/acquisition/outlier_retest_test`, "
        "`tests/service/acquisition/touch_executor_at_end_test`"},
       {"P32", "`tests/service/acquisition/reference_monitor_test`: runs here touch no reference place"},
-      {"P33", "nowhere yet: it takes more touches of a face than a run here has"},
-      {"P34", "nowhere yet: it takes three false triggers in one run, and a cell here has one mode"},
+      {"P33",
+       "`tests/service/acquisition/touch_judgement_test`: it takes more touches of a face than a run here "
+       "has"},
+      {"P34",
+       "`tests/service/acquisition/touch_executor_test`: it takes three false triggers in one run, and a "
+       "cell here has one mode"},
       {"P42", "`tests/page/browser/faults_test`: what stays on the page"}};
   return places;
 }

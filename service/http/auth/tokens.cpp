@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <iterator>
 #include <new>
 #include <optional>
@@ -27,16 +28,22 @@ namespace {
       fmt::format("{}: {}: {}", file.string(), what, std::generic_category().message(errno)));
 }
 
+/// Beside the file, and then in its place: a part of a token, which who is killed in the middle would leave,
+/// prevents the next start.
 void write_for_owner_only(const std::filesystem::path& file, const std::string& token) {
-  const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  std::filesystem::path beside = file;
+  beside += ".new";
+  ::unlink(beside.c_str());  // of such a one; its rights may be anybody's
+  const int descriptor = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (descriptor < 0) fail(file, "the token cannot be created");
   const std::string line = token + "\n";
   const bool written = ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
   const bool durable = written && ::fsync(descriptor) == 0;
+  const bool in_place = durable && ::rename(beside.c_str(), file.c_str()) == 0;
   const int reason = errno;
   ::close(descriptor);
-  if (durable) return;
-  ::unlink(file.c_str());  // a partial token would prevent the next start
+  if (in_place) return;
+  ::unlink(beside.c_str());
   errno = reason;
   fail(file, "the token cannot be written");
 }

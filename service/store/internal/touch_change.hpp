@@ -26,6 +26,8 @@ void bind_joints(SQLite::Statement& statement, int& index, const cs8::JointsMicr
 
 /// Whether the touch of its number is this one, of the same command and moment, without a repetition.
 bool is_there(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch);
+/// Whether the reference touch of its number is this one, of the same moment.
+bool is_there(SQLite::Database& database, std::int64_t run_id, const ReferenceTouch& touch);
 
 /// Whether the touch of this number is the answer to the same command. A touch by hand answers none.
 bool has_answer(SQLite::Database& database, std::int64_t run_id, const StoredTouch& touch);

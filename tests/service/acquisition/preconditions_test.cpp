@@ -52,6 +52,17 @@ TEST(Preconditions, AFaultIsToBeReadFirstButForOneOfTheLink) {
   EXPECT_EQ(with(FaultCode::kCollision).size(), without.size() + 1);
 }
 
+TEST(Preconditions, AProbeThatWasCalibratedAtAnotherSpeedIsOneOfThem) {
+  Cell with_ball = edf();
+  with_ball.probe.tip_is_contact_point = false;
+  with_ball.probe.calibration_speed_m_s = with_ball.speeds.contact_m_s();
+  EXPECT_THAT(codes(unmet_for_run({}, with_ball, {}, {}, nullptr)), IsEmpty());
+  with_ball.probe.calibration_speed_m_s = 2 * with_ball.speeds.contact_m_s();
+  const auto unmet = unmet_for_run({}, with_ball, {}, {}, nullptr);
+  EXPECT_THAT(codes(unmet), ElementsAre("probe_not_calibrated"));
+  EXPECT_THAT(unmet_without_motion(unmet), IsEmpty()) << "touches by hand have no speed";
+}
+
 TEST(Preconditions, ARecipeWithoutAPlanSaysWhy) {
   const PlanRefusal refusal{.message = "no room", .efforts = {}};
   const auto unmet = unmet_for_run({}, edf(), {}, {}, &refusal);

@@ -355,6 +355,19 @@ TEST_F(RunStoreTest, ReferencesAndPlanChangesComeBackInTheirOrder) {
   EXPECT_TRUE(changes[1].kind == Kind::kDropFitTouches && changes[2].kind == Kind::kSkip);
 }
 
+TEST_F(RunStoreTest, AReferenceThatIsStoredAlreadyIsThereOnce) {
+  const std::int64_t run = begin();
+  ReferenceTouch made{.number = 1, .joints = {1, 2, 3, 4, 5, 6}, .captured_at = "t"};
+  store_->append_reference(run, made);
+  EXPECT_NO_THROW(store_->append_reference(run, made));
+  EXPECT_EQ(store_->references(run).size(), 1u);
+  made.joints[5] = 7;
+  EXPECT_THROW(store_->append_reference(run, made), std::exception) << "another contact";
+  made = {.number = 1, .joints = {1, 2, 3, 4, 5, 6}, .captured_at = "u"};
+  EXPECT_THROW(store_->append_reference(run, made), std::exception) << "the same joints at another time";
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+}
+
 TEST_F(RunStoreTest, TheRunningOneIsTheNewestThatHasNotEndedAndMayBeKept) {
   EXPECT_FALSE(store_->running());
   const std::int64_t older = begin(), newer = begin();

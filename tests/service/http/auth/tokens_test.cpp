@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <csignal>
+
 #include "service/base/state_directory.hpp"
 #include "tests/config/folder.hpp"
 
@@ -61,6 +63,20 @@ TEST(Tokens, TheNextStartReadsTheSame) {
   EXPECT_EQ(first.operate, second.operate);
   EXPECT_EQ(first.view, second.view);
   EXPECT_EQ(bytes_of(state.path() / kOperateTokenFile), first.operate + "\n");
+}
+
+TEST(Tokens, WhoIsKilledAtTheWriteOfOneLeavesNoPartOfItToTheNextStart) {
+  const Folder state;
+  const auto be_killed = [&] {
+    const rlimit nothing{.rlim_cur = 0, .rlim_max = 0};
+    ::setrlimit(RLIMIT_FSIZE, &nothing);  // the first write to a file ends the process
+    load_or_make_tokens(state.path());
+  };
+  EXPECT_EXIT(be_killed(), ::testing::KilledBySignal(SIGXFSZ), "");
+  const Tokens made = load_or_make_tokens(state.path());
+  EXPECT_EQ(load_or_make_tokens(state.path()).operate, made.operate);
+  for (const auto& entry : std::filesystem::directory_iterator(state.path()))
+    EXPECT_NE(entry.path().extension(), ".new") << "what was left is gone";
 }
 
 TEST(Tokens, AFileThatOthersMayReadIsRefusedWithTheRemedy) {

@@ -2,10 +2,16 @@
 
 #include <gmock/gmock.h>
 
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
 #include <iterator>
 #include <list>
+#include <new>
 #include <nlohmann/json.hpp>
 
+#include "service/http/server/internal/accepting.hpp"
 #include "tests/service/http/server/served_api.hpp"
 
 namespace cell {
@@ -230,6 +236,24 @@ TEST_F(ImpatientListenerTest, HalfARequestEndsAtTheDeadline) {
 TEST_F(ImpatientListenerTest, AConnectionThatSaysNothingEndsAtTheDeadlineOfItsFirstRequest) {
   RawClient silent = connect();
   EXPECT_TRUE(silent.closed());
+}
+
+TEST(AcceptConnections, OneWithoutMemoryIsNotTheLast) {
+  namespace asio = boost::asio;
+  using asio::ip::tcp;
+  asio::io_context context;
+  tcp::acceptor acceptor(context, {asio::ip::address_v4::loopback(), 0});
+  int seen = 0;
+  const auto serve = [&](const tcp::socket&) {
+    if (++seen == 1) throw std::bad_alloc();
+    acceptor.close();
+  };
+  asio::co_spawn(context, accept_connections<tcp>(acceptor, serve), asio::detached);
+  tcp::socket first(context), second(context);
+  first.connect(acceptor.local_endpoint());
+  second.connect(acceptor.local_endpoint());
+  context.run();
+  EXPECT_EQ(seen, 2);
 }
 
 }  // namespace
