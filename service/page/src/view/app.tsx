@@ -5,9 +5,9 @@ import {dataAge_ms, kViews, type PageState, type View} from '../model/page_state
 import {mayPause} from '../model/states.ts';
 import type {Conditions} from '../model/start_body.ts';
 import {useStore} from '../model/store.ts';
-import {sayIn, type WordKey} from '../words/words.ts';
+import {isLanguage, kLanguageNames, kLanguages, loadLanguage, sayIn, type WordKey} from '../words/words.ts';
 import {CellView} from './cell_view.tsx';
-import {FaultPanel, WaitPanel} from './fault_panel.tsx';
+import {FaultPanel} from './fault_panel.tsx';
 import {HandPanel} from './hand_panel.tsx';
 import {Header} from './header.tsx';
 import {HistoryView} from './history_view.tsx';
@@ -17,6 +17,7 @@ import {RunControls} from './run_controls.tsx';
 import {firstLanguage, firstTheme, keepLanguage, keepOperator, keepTheme, keptOperator, type Theme} from './settings.ts';
 import {Symbol} from './symbol.tsx';
 import {LanguageContext} from './texts.tsx';
+import {HoldPanel, WaitPanel} from './wait_panel.tsx';
 
 const kViewWords: Record<View, WordKey> = {cell: 'viewCell', live: 'viewLive', result: 'viewResult', history: 'viewHistory'};
 const kTick_ms = 500;
@@ -68,6 +69,8 @@ export function App({desk}: {desk: Desk}) {
     setConditions(({temperature: _, movingMin: __, ...others}) => others);  // they were of this run
     document.querySelector<HTMLElement>('header h1')?.focus();
   };
+  /** Words that do not come, as of a daemon that is gone, leave the page in the language that it has. */
+  const speak = (name: string): Promise<void> => (isLanguage(name) ? loadLanguage(name).then(() => setLanguage(name), () => {}) : Promise.resolve());
   const place = useRef<HTMLElement>(null);
   useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun, state.isStopLost]);
   const say = sayIn(language);
@@ -87,9 +90,9 @@ export function App({desk}: {desk: Desk}) {
           </button>
         ))}
         <span class="spring" />
-        <button type="button" lang={language === 'en' ? 'fr' : 'en'} onClick={() => setLanguage(language === 'en' ? 'fr' : 'en')}>
-          {say('language')}
-        </button>
+        <select aria-label={say('language')} value={language} onChange={(event) => void speak(event.currentTarget.value)}>
+          {kLanguages.map((name) => <option key={name} value={name} lang={name}>{kLanguageNames[name]}</option>)}
+        </select>
         <button type="button" aria-pressed={theme === 'dark'} onClick={() => setTheme(theme === 'dark' ? 'light' : 'dark')}>
           {say(theme === 'dark' ? 'themeLight' : 'themeDark')}
         </button>
@@ -97,7 +100,8 @@ export function App({desk}: {desk: Desk}) {
       <main class={isOld ? 'old' : ''} ref={place}>
         <StopLost state={state} desk={desk} language={language} />
         <Banner state={state} now_ms={now_ms} language={language} />
-        <WaitPanel state={state} />
+        <WaitPanel state={state} now_ms={now_ms} />
+        <HoldPanel state={state} />
         <HandPanel state={state} desk={desk} />
         <FaultPanel state={state} desk={desk} />
         <Shown state={state} desk={desk} conditions={conditions} onConditions={takeConditions} />
