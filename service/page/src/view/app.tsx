@@ -4,6 +4,7 @@ import {age, fill, type Language} from '../model/format.ts';
 import {dataAge_ms, kViews, type PageState, type View} from '../model/page_state.ts';
 import {mayPause} from '../model/states.ts';
 import type {Conditions} from '../model/start_body.ts';
+import {isAtWork} from '../model/sticky_faults.ts';
 import {useStore} from '../model/store.ts';
 import {isLanguage, kLanguageNames, kLanguages, loadLanguage, sayIn, type WordKey} from '../words/words.ts';
 import {CellView} from './cell_view.tsx';
@@ -75,6 +76,8 @@ export function App({desk}: {desk: Desk}) {
   useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun, state.isStopLost]);
   const say = sayIn(language);
   const isOld = state.link === 'lost' || state.link === 'refused';
+  // What is over, and a warning, do not stand before a result.
+  const isResultFirst = state.view === 'result' && !state.faults.some(isAtWork) && !state.notice;
   const takeConditions = (given: Conditions): void => {
     setConditions(given);
     keepOperator(given);
@@ -103,8 +106,9 @@ export function App({desk}: {desk: Desk}) {
         <WaitPanel state={state} now_ms={now_ms} />
         <HoldPanel state={state} />
         <HandPanel state={state} desk={desk} />
-        <FaultPanel state={state} desk={desk} />
+        {isResultFirst ? null : <FaultPanel state={state} desk={desk} />}
         <Shown state={state} desk={desk} conditions={conditions} onConditions={takeConditions} />
+        {isResultFirst ? <FaultPanel state={state} desk={desk} /> : null}
         {state.view === 'cell' ? <p class="keys">{say('keysHelp')}</p> : null}
       </main>
       <RunControls state={state} desk={desk} conditions={conditions} onStart={() => void startRun()} />

@@ -42,8 +42,8 @@ export const de: Words = {
   pausedNext: 'FORTSETZEN gedrückt halten, um weiterzumachen. STOPP beendet den Lauf.',
   pausingNext: 'Der Arm beendet die laufende Antastung.',
   suspendedBy: 'Wartet auf die Zelle: {fault}. Der Lauf geht von selbst weiter.',
-  whoOperate: 'dem Zugangscode des Bedieners von {from}',
-  whoNamed: '{name} von {from}',
+  whoOperate: 'dem Zugangscode des Bedieners ({from})',
+  whoNamed: '{name} ({from})',
 
   linkConnecting: 'Verbindet',
   linkLive: 'Verbunden',
@@ -117,7 +117,7 @@ export const de: Words = {
   recipe: 'Rezept',
   recipeTouches: '{fit} Antastungen zum Anpassen, {held} zur Prüfung',
   duration: 'Dauer',
-  accuracy: 'Erwarteter Fehler der Spitze',
+  accuracy: 'Fehler der Spitze',
   conditionNumber: 'Konditionszahl',
   rank: 'Rang',
   planning: 'wird geplant…',
@@ -180,7 +180,7 @@ export const de: Words = {
   sceneReset: 'Ansicht zurücksetzen',
   touchesShown: '{done} angetastet, {open} stehen aus',
   curveCondition: 'Konditionszahl über den Antastungen',
-  curveAccuracy: 'Erwarteter Fehler der Spitze über den Antastungen, mm',
+  curveAccuracy: 'Fehler der Spitze über den Antastungen, mm',
   residuals: 'Abstände, quadratisches Mittel in mm (Grenzen: Mittel {mean}, quadratisch {rms})',
   residualsFit: 'angepasst',
   residualsHeld: 'geprüft',
@@ -353,11 +353,11 @@ export const de: Words = {
   take: 'Diese Antastung nehmen',
   undo: 'Die letzte zurücknehmen',
 
-  'recipe_best': '100 Antastungen über alle Flächen der Zelle, gewählt für den Fehler der Spitze im Arbeitsraum; je Fläche 10 zur Prüfung',
+  'recipe_best': '100 Antastungen über alle Flächen der Zelle, für den Fehler der Spitze im Arbeitsraum; je 10 zur Prüfung',
   'recipe_edf-23': 'edf-25 ohne alpha4 und alpha5: der Satz aus Tabelle III des Artikels',
   'recipe_edf-25': '25 Antastungen auf jeder der Flächen 1 bis 4, dazu 10 zur Prüfung',
   'recipe_edf-37': '37 Antastungen auf jeder der Flächen 1 bis 4, der erste Versuch des Artikels, dazu 10 zur Prüfung',
-  'recipe_quick': '40 Antastungen über alle Flächen der Zelle, gewählt für den Fehler der Spitze im Arbeitsraum; je Fläche 10 zur Prüfung',
+  'recipe_quick': '40 Antastungen über alle Flächen der Zelle, für den Fehler der Spitze im Arbeitsraum; je 10 zur Prüfung',
 };
 
 const kStill = 'nichts hat sich bewegt';

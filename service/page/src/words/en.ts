@@ -40,8 +40,8 @@ export const en = {
   pausedNext: 'Hold RESUME to go on. STOP ends the run.',
   pausingNext: 'The arm ends the touch that is under way.',
   suspendedBy: 'Waiting for the cell: {fault}. The run goes on by itself.',
-  whoOperate: 'the operator’s access code from {from}',
-  whoNamed: '{name} from {from}',
+  whoOperate: 'the operator’s access code ({from})',
+  whoNamed: '{name} ({from})',
 
   linkConnecting: 'Connecting',
   linkLive: 'Live',

@@ -44,8 +44,8 @@ export const fr: Words = {
   pausedNext: 'Maintenez REPRENDRE pour continuer. ARRÊT finit le cycle.',
   pausingNext: 'Le bras finit le palpage en cours.',
   suspendedBy: 'Attend la cellule : {fault}. Le cycle reprend de lui-même.',
-  whoOperate: 'le code d’accès de l’opérateur depuis {from}',
-  whoNamed: '{name} depuis {from}',
+  whoOperate: 'le code d’accès de l’opérateur ({from})',
+  whoNamed: '{name} ({from})',
 
   linkConnecting: 'Connexion',
   linkLive: 'En direct',
