@@ -13,14 +13,21 @@ namespace {
 using CriterionFigures = DecisionRuleDocument::CriterionFigures;
 
 constexpr int kMillimetreDecimals = 3;
+constexpr int kLeastDecimals = 2;  // of a share or a probability
+constexpr double kNotSmall = 0.1;  // then it needs no more of them
 
 bool is_whole(double value) { return value == std::floor(value); }
 
-int decimals_of(const CriterionFigures& criterion) {
+/// Two digits of the limit count, and of a figure that is not small two; the limit has no zero at its end.
+int decimals_of(const CriterionFigures& criterion, double shown) {
   if (criterion.unit == "mm") return kMillimetreDecimals;
   const double limit = criterion.limit.value_or(0.0);
-  if (limit > 0.0 && limit < 1.0) return 1 - static_cast<int>(std::floor(std::log10(limit)));
-  return is_whole(limit) && is_whole(criterion.value.value_or(0.0)) ? 0 : 1;
+  if (limit <= 0.0 || limit >= 1.0) return is_whole(limit) && is_whole(criterion.value.value_or(0.0)) ? 0 : 1;
+  if (std::abs(shown) >= kNotSmall) return kLeastDecimals;
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(limit)));
+  const double in_tens = limit * std::pow(10.0, decimals - 1);
+  const bool is_round = shown == limit && std::abs(in_tens - std::round(in_tens)) < 1e-9;
+  return std::max(kLeastDecimals, is_round ? decimals - 1 : decimals);
 }
 
 /// What is so or not is 1 or 0.
@@ -53,7 +60,7 @@ bool fails(const CriterionFigures& criterion, const std::string& rule) {
 
 std::string figure_beside_limit(const CriterionFigures& criterion, std::optional<double> figure) {
   if (!figure) return "unknown";
-  const int decimals = decimals_of(criterion);
+  const int decimals = decimals_of(criterion, *figure);
   const double last_digit = std::pow(10.0, -decimals);
   const bool is_small = criterion.unit == "1" && *figure > 0.0 && *figure < 0.5 * last_digit;
   const double shown =

@@ -10,8 +10,9 @@
 namespace cell {
 
 /// A figure of a criterion as it is read beside its limit: millimetres with three decimals, a share or a
-/// probability with two digits that count of the limit ("< 0.001" where it is less than half of the last
-/// one), a count with none; with its unit. "unknown" where it is absent.
+/// probability with two, and where it is small with those at which two digits of the limit count ("< 0.001"
+/// where it is less than half of the last one), a count with none; with its unit. "unknown" where it is
+/// absent.
 std::string figure_beside_limit(const DecisionRuleDocument::CriterionFigures& criterion,
                                 std::optional<double> figure);
 

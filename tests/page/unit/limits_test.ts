@@ -39,9 +39,13 @@ test('ReasonsAreInThePagesLanguage', () => {
 
 test('AFigureIsReadBesideItsLimit', () => {
   const fit = criterion({name: 'lack_of_fit', unit: '1', side: 'lower', limit: 0.03, value: 0.0007557, expanded_uncertainty: null});
-  assert.equal(shownFigure(fit, fit.limit, 'en'), '0.030');
+  assert.equal(shownFigure(fit, fit.limit, 'en'), '0.03');
   assert.equal(shownFigure(fit, fit.value, 'en'), '0.001');
   assert.equal(shownFigure(fit, 1e-14, 'en'), '< 0.001');
+  const ofPlane = {...fit, limit: 0.001 / 5, value: 0.73046};
+  assert.deepEqual([ofPlane.limit, ofPlane.value, 0.00015].map((p) => shownFigure(ofPlane, p, 'en')), ['0.0002', '0.73', '0.00015']);
+  const share = criterion({name: 'rejected_touches', unit: '1', limit: 0.1, value: 0.0222});
+  assert.deepEqual([share.limit, share.value, 0].map((part) => shownFigure(share, part, 'en')), ['0.10', '0.02', '0.00']);
   const mean = criterion({});
   assert.equal(shownFigure(mean, mean.expanded_uncertainty, 'en'), '0.010 mm', 'an uncertainty has its unit');
   assert.equal(shownFigure(mean, -0, 'en'), '0.000 mm');

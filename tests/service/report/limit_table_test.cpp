@@ -41,13 +41,24 @@ DecisionRuleDocument rule_of(const char* rule) {
 }
 
 TEST(LimitTable, AFigureIsReadBesideItsLimit) {
-  EXPECT_EQ(figure_beside_limit(fit(), 0.03), "0.030");
+  EXPECT_EQ(figure_beside_limit(fit(), 0.03), "0.03");
   EXPECT_EQ(figure_beside_limit(fit(), 0.0007557), "0.001");
   EXPECT_EQ(figure_beside_limit(fit(), 1e-14), "< 0.001");
   EXPECT_EQ(figure_beside_limit(mean(), 0.01), "0.010 mm");
   EXPECT_EQ(figure_beside_limit(mean(), -0.0), "0.000 mm");
   EXPECT_EQ(figure_beside_limit(mean(), -0.0001), "0.000 mm");
   EXPECT_EQ(figure_beside_limit(mean(), {}), "unknown");
+}
+
+TEST(LimitTable, OnlyASmallFigureHasTheDecimalsOfASmallLimit) {
+  DecisionRuleDocument::CriterionFigures of_plane = fit();
+  of_plane.limit = 0.001 / 5;
+  EXPECT_EQ(figure_beside_limit(of_plane, of_plane.limit), "0.0002");
+  EXPECT_EQ(figure_beside_limit(of_plane, 0.73046), "0.73");
+  EXPECT_EQ(figure_beside_limit(of_plane, 0.00015), "0.00015");
+  of_plane.limit = 0.1;
+  EXPECT_EQ(figure_beside_limit(of_plane, of_plane.limit), "0.10");
+  EXPECT_EQ(figure_beside_limit(of_plane, 0.0222), "0.02");
 }
 
 TEST(LimitTable, ACountHasNoDecimals) {
@@ -62,7 +73,7 @@ TEST(LimitTable, ACountHasNoDecimals) {
 
 TEST(LimitTable, WhatRejectsFailsAndComesFirst) {
   EXPECT_THAT(limit_rows(rule_of("simple")),
-              ElementsAre(html::Row{"lack of fit", "FAIL", "0.001", "at least 0.030", ""},
+              ElementsAre(html::Row{"lack of fit", "FAIL", "0.001", "at least 0.03", ""},
                           html::Row{"held out mean, plane 3", "pass", "0.045 mm", "0.050 mm", "0.010 mm"}));
 }
 

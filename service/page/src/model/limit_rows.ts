@@ -46,19 +46,28 @@ export function limitRows({criteria, rule}: DecisionRule): LimitRow[] {
   return [...rows.filter(isFailed), ...rows.filter((row) => !isFailed(row))];
 }
 
-/** Digits behind the point: millimetres have three, a share or a probability two that count of its limit, a count none. */
-function digitsOf({unit, limit, value}: Criterion): number {
+/** Digits behind the point at which two of the limit count: 0.03 has three, 0.0002 five. */
+const countingDigits = (limit: number): number => 1 - Math.floor(Math.log10(limit));
+
+/**
+ * Digits behind the point of a figure of the row: millimetres have three, a count none. A share or a probability has two, and where it is
+ * as small as its limit may be, those at which two of the limit count; the limit itself has no zero at its end.
+ */
+function digitsOf({unit, limit, value}: Criterion, shown: number): number {
   if (unit === 'mm') return 3;
-  if (limit > 0 && limit < 1) return 1 - Math.floor(Math.log10(limit));
-  return Number.isInteger(limit) && (value === null || Number.isInteger(value)) ? 0 : 1;
+  if (!(limit > 0 && limit < 1)) return Number.isInteger(limit) && (value === null || Number.isInteger(value)) ? 0 : 1;
+  if (Math.abs(shown) >= 0.1) return 2;
+  const digits = countingDigits(limit);
+  const isRound = shown === limit && Math.abs(limit - Number(limit.toFixed(digits - 1))) < 1e-12;
+  return Math.max(2, isRound ? digits - 1 : digits);
 }
 
 /** A figure of the row, with its unit. */
 export function shownFigure(criterion: Criterion, value: number | null, language: Language): string {
   const {unit} = criterion;
-  const digits = digitsOf(criterion);
-  if (unit === '1') return figure(value, digits, language);
-  return value === null ? number(value, digits, language) : `${number(value, digits, language)} ${unit}`;
+  if (value === null) return number(null, 0, language);
+  const digits = digitsOf(criterion, value);
+  return unit === '1' ? figure(value, digits, language) : `${number(value, digits, language)} ${unit}`;
 }
 
 const kNextSteps: Readonly<Record<string, WordKey>> = {
