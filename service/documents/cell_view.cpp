@@ -119,7 +119,8 @@ std::string cell_document(const Cell& cell, const std::optional<BlockPose>& plac
        {"touch_noise_mm", mm_from_metres(cell.touch_noise_m)},
        {"acceptance", limits_json(cell.acceptance)},
        {"scene", scene_json(cell)},
-       {"controller", endpoint_text(cell.controller)}});
+       {"controller", endpoint_text(cell.controller)},
+       {"confirm_s", static_cast<double>(cell.deadlines.confirm.count()) / 1000.0}});
 }
 
 std::string faults_document() {

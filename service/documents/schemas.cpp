@@ -154,7 +154,7 @@ constexpr std::string_view kRecipes = R"({
 constexpr std::string_view kCell = R"({
 "type":"object",
 "required":["name","arm","block","place","probe","default_recipe","workspace_box","keep_out_boxes","nominal_miss_mm",
-  "touch_noise_mm","acceptance","scene","controller"],
+  "touch_noise_mm","acceptance","scene","controller","confirm_s"],
 "properties":{
   "name":{"type":"string"},
   "arm":{"type":"string"},
@@ -195,7 +195,8 @@ constexpr std::string_view kCell = R"({
       "additionalProperties":{"type":"number"}}}},
   "scene":{"type":"object","description":"what the cell looks like, in R_-1; bodies in the frame that they move with; a solid has holes (center_mm, axis, radius_mm), which go through it",
     "required":["frames","gains","arm_bodies","probe_bodies","solids","park_joints_deg"]},
-  "controller":{"type":"string"}}})";
+  "controller":{"type":"string"},
+  "confirm_s":{"type":"number","description":"for how long the confirmation at the cell is awaited"}}})";
 
 constexpr std::string_view kJoints = R"({
 "type":"object",

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "service/report/internal/html.hpp"
+#include "service/report/internal/limit_table.hpp"
 #include "service/report/internal/report_parts.hpp"
 
 namespace cell {
@@ -62,27 +63,13 @@ std::string words_of(const std::string& name) {
   return words;
 }
 
-std::string yes_no(std::optional<bool> value) {
-  if (!value) return "unknown";
-  return *value ? "yes" : "no";
-}
-
 std::string decision_rule(const std::optional<DecisionRuleDocument>& rule) {
   if (!rule)
     return html::paragraph("Decision rule: a figure within its limit is accepted (simple acceptance).");
-  std::vector<Row> rows;
-  for (const DecisionRuleDocument::CriterionFigures& criterion : rule->criteria) {
-    rows.push_back({words_of(criterion.name) + figure_if_known(criterion.plane, ", plane {:.0f}") +
-                        (criterion.tool ? ", " + *criterion.tool : ""),
-                    text_or_unknown(criterion.unit), figure_text(criterion.value, "{:.4g}"),
-                    (criterion.side == "lower" ? "at least " : "") + figure_text(criterion.limit, "{:.4g}"),
-                    figure_if_known(criterion.expanded_uncertainty, "{:.2g}"), yes_no(criterion.within_limit),
-                    criterion.proved ? yes_no(criterion.proved) : ""});
-  }
   return html::paragraph(fmt::format("Decision rule ({}, {}): {}.", text_or_unknown(rule->standard),
                                      text_or_unknown(rule->rule), text_or_unknown(rule->text))) +
          html::table("Figures and their limits",
-                     {"figure", "unit", "value", "limit", "expanded uncertainty", "within", "proved"}, rows);
+                     {"figure", "decision", "value", "limit", "expanded uncertainty"}, limit_rows(*rule));
 }
 
 std::string verdict_box(const RunReport& report) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "service/report/internal/html.hpp"
 #include "service/report/internal/report_parts.hpp"
@@ -14,9 +15,13 @@ using html::Row;
 constexpr std::array kKinds{"alpha", "d", "theta", "r", "beta"};
 const Row kKindHeading{"j", "Δα rad", "Δd mm", "Δθ rad", "Δr mm", "Δβ rad"};
 
+/// Less than this, in mm or rad, is what the arithmetic leaves of nothing.
+constexpr double kRoundingMax = 1e-9;
+
 /// An entry of a table of errors by frame: the number, or the mark of its absence.
 std::string entry(std::optional<double> figure, std::optional<calib::ParameterStatus> status,
                   const char* format) {
+  if (figure && std::abs(*figure) < kRoundingMax) return "0";
   if (figure) return figure_text(figure, format);
   if (!status) return "–";
   switch (*status) {

@@ -98,7 +98,7 @@ async function memory(page) {
   let touches = 0, warm = 0;
   while (touches < 2 * kTouches) {
     await start(page);
-    await waitForState(page, ['Starting', 'Touching']);
+    await waitForState(page, ['Starting…', 'Running']);
     await cell.status(({state}) => state === 'COMPLETE', 120000);
     await waitForState(page, 'Complete');
     touches += (await cell.get('/api/v1/status')).touches_done;

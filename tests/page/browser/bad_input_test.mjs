@@ -42,7 +42,7 @@ test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
   assert.ok(width < 1024, 'a long text does not push the buttons away');
   await page.locator('header .count', {hasText: 'time left unknown'}).waitFor();
   await page.locator('.run-controls .run.main[disabled]', {hasText: 'no link to the controller'}).waitFor();
-  assert.equal(await page.getByRole('button', {name: /Touch again|Leave it out/}).count(), 0, 'no touch holds the run');
+  assert.equal(await page.getByRole('button', {name: /Touch again|Skip this touch/}).count(), 0, 'no touch holds the run');
   const header = await page.locator('header').boundingBox();
   assert.ok(header.y + header.height < 100, `the header is ${header.height} px high`);
   const area = await page.locator('.run-controls').boundingBox();
@@ -61,7 +61,7 @@ test('MarkupOfTheRobotIsTextAndALongTextIsCutWithAWayToSeeAll', async () => {
 
 test('AStaleTokenIsSaidInWordsAndThePageWatches', async () => {
   const page = await openPage(browser, `${cell.url}/#token=${'0'.repeat(64)}`);
-  await page.getByText('This token is no longer taken').waitFor();
+  await page.getByText('This access code is no longer taken').waitFor();
   await waitForState(page, 'Ready');
   assert.ok(await startButton(page).isDisabled());
   assert.ok(await stopButton(page).isDisabled());

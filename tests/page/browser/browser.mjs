@@ -71,7 +71,7 @@ export async function hold(page, locator) {
     let isHeld = false;
     window.heldToTheEnd = false;
     const watch = new MutationObserver(() => {
-      const holding = button.isConnected && /keep holding|maintenez/.test(button.textContent);
+      const holding = button.isConnected && /keep holding|maintenez|weiter halten/.test(button.textContent);
       window.heldToTheEnd = isHeld && !holding;
       isHeld = holding;
       if (window.heldToTheEnd) watch.disconnect();
@@ -82,6 +82,12 @@ export async function hold(page, locator) {
   await page.mouse.down();
   await page.waitForFunction(() => window.heldToTheEnd);
   await page.mouse.up();
+}
+
+/** Chooses a language by its name in itself; its words are there when the page says which it is. */
+export async function speak(page, language) {
+  await page.locator('nav select').selectOption(language);
+  await page.locator(`html[lang=${language}]`).waitFor({state: 'attached'});
 }
 
 export const startButton = (page) => page.locator('.run-controls .run.main');

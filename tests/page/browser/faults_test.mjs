@@ -18,6 +18,7 @@ after(async () => {
 });
 
 const fault = (words) => page.locator('.card.fault', {hasText: words});
+const past = (words) => page.locator('.past-faults li', {hasText: words});
 const untilTouch = (count) => cell.status((status) => status.state === 'EXECUTE' && status.touches_done >= count);
 
 step('AWarningStaysWhileTheRunGoesOn', async () => {
@@ -29,13 +30,13 @@ step('AWarningStaysWhileTheRunGoesOn', async () => {
   await expectAccessible(page, 'warning');
   await cell.control({fault: 'probe_mended'});
   await untilTouch((await cell.get('/api/v1/status')).touches_done + 2);
-  await warning.getByRole('button', {name: 'Noted'}).click();
+  await warning.getByRole('button', {name: 'Acknowledge'}).click();
   await warning.waitFor({state: 'detached'});
 });
 
 step('ATouchThatFailsHoldsTheRunAndIsMadeAgain', async () => {
   await cell.control({fault: 'probe_stuck'});
-  await waitForState(page, 'On hold');
+  await waitForState(page, 'Paused');
   const card = fault('probe stuck');
   await card.waitFor();
   for (const part of ['What happened', 'What the robot did', 'What to do now']) assert.ok((await card.textContent()).includes(part), part);
@@ -45,23 +46,24 @@ step('ATouchThatFailsHoldsTheRunAndIsMadeAgain', async () => {
   await hold(page, card.getByRole('button', {name: /Touch again/}));
   await untilTouch(touches_done + 1);
   // What held the run is over, and still there to be read.
-  await fault('over, not yet noted').getByRole('button', {name: 'Noted'}).click();
   await fault('probe stuck').waitFor({state: 'detached'});
+  await past('probe stuck').getByRole('button', {name: 'Acknowledge'}).click();
+  await past('probe stuck').waitFor({state: 'detached'});
 });
 
 step('ASuspendedRunGoesOnByItselfOnceTheCauseIsGone', async () => {
   await cell.control({fault: 'monitor_speed', percent: 50});
-  await waitForState(page, 'Waiting');
+  await waitForState(page, 'Waiting for cell');
   await fault('monitor speed changed').waitFor();
   await expectAccessible(page, 'suspended');
   await cell.control({fault: 'monitor_speed', percent: 100});
   await cell.status(({state}) => state === 'EXECUTE');
-  await fault('over, not yet noted').getByRole('button', {name: 'Noted'}).click();
+  await past('monitor speed changed').getByRole('button', {name: 'Acknowledge'}).click();
 });
 
 step('PauseAndResumeAreWhereTheyAlwaysAre', async () => {
   await page.getByRole('button', {name: 'PAUSE'}).click();
-  await waitForState(page, 'On hold');
+  await waitForState(page, 'Paused');
   await expectAccessible(page, 'paused');
   await hold(page, page.getByRole('button', {name: /RESUME/}));
   await cell.status(({state}) => state === 'EXECUTE');
@@ -94,8 +96,8 @@ step('ACellThatIsNotReadySaysWhyAndCannotBeStarted', async () => {
   await cell.control({fault: 'emergency_stop'});
   await page.getByRole('button', {name: /^Cell/}).click();
   const estop = page.locator('.readiness li', {hasText: 'Emergency stop released'});
-  await estop.filter({hasText: 'missing'}).waitFor();
-  await waitForState(page, 'Not ready');
+  await estop.filter({hasText: 'Not OK'}).waitFor();
+  await waitForState(page, 'Motion disabled');
   await estop.filter({hasText: /release and acknowledge/}).waitFor();
   assert.ok(await startButton(page).isDisabled());
   await expectAccessible(page, 'not ready');

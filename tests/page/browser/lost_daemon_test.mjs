@@ -20,7 +20,7 @@ step('ALostDaemonIsSaidInWordsAndOnlyStopCanBeTried', async () => {
   await start(page);
   await cell.status(({state, touches_done}) => state === 'EXECUTE' && touches_done >= 3);
   await cell.killDaemon();
-  await waitForState(page, 'Daemon lost');
+  await waitForState(page, 'Connection lost');
   await page.getByText('No answer from the daemon').waitFor();
   assert.match(await page.locator('header .count').textContent(), /Touch \d+ of 90/, 'the last data stay, greyed');
   await page.locator('header .link .abnormal', {hasText: 'old data'}).waitFor();
@@ -41,14 +41,14 @@ step('TheAgeOfTheDataGrowsWhileNobodyAnswers', async () => {
 
 step('ThePageComesBackByItselfAndOffersToGoOn', async () => {
   await cell.restartDaemon();
-  await waitForState(page, 'On hold');
+  await waitForState(page, 'Paused');
   await page.locator('.card.fault', {hasText: 'daemon restarted'}).waitFor();
-  await page.locator('.card.stop-lost').getByRole('button', {name: 'Noted'}).click();
+  await page.locator('.card.stop-lost').getByRole('button', {name: 'Acknowledge'}).click();
   await expectAccessible(page, 'restarted');
-  assert.equal(await page.getByRole('button', {name: /Touch again|Leave it out/}).count(), 0, 'no touch holds the run');
+  assert.equal(await page.getByRole('button', {name: /Touch again|Skip this touch/}).count(), 0, 'no touch holds the run');
   await page.locator('.run-controls .run.main:not([disabled])', {hasText: 'RESUME'}).waitFor();
   await hold(page, page.getByRole('button', {name: /RESUME/}));
-  await waitForState(page, ['Going on', 'Touching']);
+  await waitForState(page, ['Resuming…', 'Running']);
   await waitForState(page, 'Complete');
   const run = (await cell.get('/api/v1/runs')).runs[0];
   assert.equal(run.touches_done, 90);

@@ -1,7 +1,7 @@
 // Several pages of one cell, and hands that hold no mouse.
 import assert from 'node:assert/strict';
 import {after, before} from 'node:test';
-import {expectAccessible, openBrowser, openPage, pauseButton, start, startButton, step, stopButton, waitForState} from './browser.mjs';
+import {expectAccessible, openBrowser, openPage, pauseButton, speak, start, startButton, step, stopButton, waitForState} from './browser.mjs';
 import {Cell} from './cell.mjs';
 
 let cell, browser;
@@ -27,8 +27,8 @@ step('APageWithoutATokenWatchesOnly', async () => {
 step('TheButtonsAreLargeAndFarApartAndTheMainViewNeedsNoScrolling', async () => {
   const page = await openPage(browser, cell.link);
   await waitForState(page, 'Ready');
-  for (const language of ['English', 'Français']) {
-    if (language === 'Français') await page.getByRole('button', {name: language}).click();
+  for (const language of ['en', 'fr', 'de']) {
+    await speak(page, language);
     const boxes = [];
     for (const button of [startButton(page), pauseButton(page), stopButton(page)]) boxes.push(await button.boundingBox());
     for (const {width, height} of boxes) assert.ok(width >= 72 && height >= 72, `${width} x ${height}`);
@@ -60,12 +60,12 @@ step('TwoPagesShowTheSameAndBothMayAct', async () => {
   const moving = one.getByLabel('Arm moving, min');
   await moving.fill('45');
   await start(one);
-  await waitForState(other, ['Starting', 'Touching']);
-  await waitForState(other, 'Touching');
+  await waitForState(other, ['Starting…', 'Running']);
+  await waitForState(other, 'Running');
   await pauseButton(other).click();
-  await waitForState(one, 'On hold');
+  await waitForState(one, 'Paused');
   const total = async (page) => (await page.locator('header .count').textContent()).split(' · ')[0];
-  await waitForState(other, 'On hold');
+  await waitForState(other, 'Paused');
   assert.equal(await total(one), await total(other));
   const {conditions} = await cell.get(`/api/v1/runs/${(await cell.get('/api/v1/status')).run_id}`);
   assert.deepEqual([conditions.block_temperature_c, conditions.std_temperature_k, conditions.block_temperature_source], [25.5, 1, 'run']);
@@ -114,16 +114,16 @@ step('EverythingIsDoneByKeyboardAlone', async () => {
   await page.locator('.run-controls .run.main:not([disabled])', {hasText: 'START'}).waitFor();
   await tabTo(/^START/);
   await page.keyboard.down('Space');
-  await waitForState(page, ['Starting', 'Touching']);
+  await waitForState(page, ['Starting…', 'Running']);
   await page.keyboard.up('Space');
-  await waitForState(page, 'Touching');
+  await waitForState(page, 'Running');
   await page.keyboard.press('Alt+KeyP');
-  await waitForState(page, 'On hold');
+  await waitForState(page, 'Paused');
   await tabTo(/^RESUME/);
   await page.keyboard.down('Enter');
-  await waitForState(page, ['Going on', 'Touching']);
+  await waitForState(page, ['Resuming…', 'Running']);
   await page.keyboard.up('Enter');
-  await waitForState(page, 'Touching');
+  await waitForState(page, 'Running');
   await page.keyboard.press('Alt+KeyS');
   await waitForState(page, 'Stopped');
 });

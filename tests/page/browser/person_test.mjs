@@ -1,7 +1,7 @@
 // What a person at the cell or at the pendant is told to do.
 import assert from 'node:assert/strict';
 import {after, before} from 'node:test';
-import {closeQuietly, expectAccessible, expectQuiet, hold, openBrowser, openPage, openWith, start, step, waitForState} from './browser.mjs';
+import {closeQuietly, expectAccessible, expectQuiet, hold, openBrowser, openPage, openWith, speak, start, step, waitForState} from './browser.mjs';
 import {Cell} from './cell.mjs';
 
 let cell, browser;
@@ -23,9 +23,9 @@ step('TheRunWaitsForTheConfirmationAndSaysWhere', async () => {
   await expectAccessible(page, 'awaiting the confirmation');
   await cell.control({fault: 'press_confirm'});
   await page.locator('.card.wait').waitFor({state: 'detached'});
-  await waitForState(page, 'Touching');
+  await waitForState(page, 'Running');
   await cell.control({fault: 'release_confirm'});
-  await page.getByRole('button', {name: /STOP MOTION/}).click();
+  await page.getByRole('button', {name: /^STOP/}).click();
   await waitForState(page, 'Stopped');
   expectQuiet(page, cell);
 });
@@ -59,7 +59,7 @@ step('APersonWithThePendantIsToldEachTouchAndTakesOrUndoesIt', async () => {
     await card.getByRole('button', {name}).click();
     assert.equal((await given).method(), 'POST');
   }
-  await page.getByRole('button', {name: 'Français'}).click();
+  await speak(page, 'fr');
   await card.getByText('Palpez le plan 3 :').waitFor();
   await closeQuietly(page);
 });

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {after, before} from 'node:test';
-import {expectAccessible, expectQuiet, openBrowser, openPage, start, startButton, step, waitForState} from './browser.mjs';
+import {expectAccessible, expectQuiet, openBrowser, openPage, speak, start, startButton, step, waitForState} from './browser.mjs';
 import {Cell} from './cell.mjs';
 
 /** As if the page's tab were in front, or behind another. */
@@ -59,7 +59,7 @@ step('AButtonThatIsLetGoTooEarlyStartsNothing', async () => {
 
 step('TheRunIsWatchedToItsEnd', async () => {
   await start(page);
-  await waitForState(page, ['Starting', 'Touching']);
+  await waitForState(page, ['Starting…', 'Running']);
   await page.locator('.live-view canvas').waitFor();
   await page.waitForFunction(() => /Touch \d+ of 90/.test(document.querySelector('header .count')?.textContent ?? ''));
   await page.locator('.curve canvas').first().waitFor();
@@ -125,7 +125,7 @@ step('TwoRunsAreComparedAndDrawnAsATrend', async () => {
   await waitForState(asleep, 'Complete');
   await show(asleep, false);
   await start(page);
-  await waitForState(page, ['Starting', 'Touching']);
+  await waitForState(page, ['Starting…', 'Running']);
   // The state comes by the event stream, the focus moves with the answer to the start: either may be first.
   await page.waitForFunction(() => document.activeElement?.tagName === 'H1');
   await waitForState(page, 'Complete');
@@ -145,15 +145,15 @@ step('TwoRunsAreComparedAndDrawnAsATrend', async () => {
   await page.getByLabel('Compare 1').check();
   await page.getByLabel('Compare 2').check();
   const compared = page.getByRole('table', {name: 'Comparison of runs 1 and 2'});
-  for (const row of ['Verdict', 'Held-out distances of plane 3, rms']) await compared.getByRole('row', {name: row}).waitFor();
+  for (const row of ['Verdict', 'Check touches of plane 3, rms']) await compared.getByRole('row', {name: row}).waitFor();
   await page.locator('.history-view .curve canvas').waitFor();
   await page.getByLabel('Trend of').selectOption('plane 3');
-  await page.getByRole('img', {name: /Held-out distances of plane 3, rms, mm/}).waitFor();
+  await page.getByRole('img', {name: /Check touches of plane 3, rms, mm/}).waitFor();
   await expectAccessible(page, 'history');
 });
 
 step('FrenchAndDarkAreOneTouchEachAndStay', async () => {
-  await page.getByRole('button', {name: 'Français'}).click();
+  await speak(page, 'fr');
   await page.getByRole('button', {name: 'Sombre'}).click();
   await page.reload();
   await waitForState(page, 'Terminé');

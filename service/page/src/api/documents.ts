@@ -66,6 +66,7 @@ export interface Capsule { name: string; frame: number; from_mm: Vector; to_mm: 
 export interface Frame { alpha_rad: number; d_mm: number; theta_rad: number; r_mm: number; beta_rad: number }
 export interface Face {
   plane: number;
+  name?: string | null;  // of the block's file; a daemon whose file has none does not tell it
   outward: Vector;
   offset_mm: number;
   center_mm: Vector;
@@ -81,6 +82,7 @@ export interface Cell {
   arm: string;
   // A daemon that takes no temperature with a run does not tell the deviation.
   block: {name: string; temperature_c: number | null; std_temperature_k?: number | null; faces: Face[]};
+  confirm_s?: number;  // for how long the confirmation is awaited; an older daemon does not tell it
   place?: Place | null;  // a daemon that cannot locate the block does not tell it
   probe: {name: string; stylus_radius_mm: number};
   default_recipe: string;
@@ -237,5 +239,9 @@ export interface Problem {
   errors?: Unmet[];
   exits?: string[];
 }
+
+/** A row of the audit log, as far as the page reads it. */
+export interface AuditRow { at: string; token: string | null; remote: string; action: string; outcome: string }
+export interface Audit { rows: AuditRow[] }
 
 export type Role = 'operate' | 'view' | 'none' | 'wrong token';

@@ -1,9 +1,9 @@
 import {get, post, type Reply} from '../api/client.ts';
-import type {Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet} from '../api/documents.ts';
+import type {Audit, Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet} from '../api/documents.ts';
 import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
 import {kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
-import {commandPath, isActive, isTakenBack, type Command} from './states.ts';
+import {commandPath, isActive, isPaused, isTakenBack, type Command} from './states.ts';
 import {slimResult} from './slim_result.ts';
 import {startBody, type Conditions} from './start_body.ts';
 import {toldFault} from './sticky_faults.ts';
@@ -80,6 +80,7 @@ export class Desk {
     }
     if (before && before.instance_id !== status.instance_id) void this.loadAll();
     if (before?.by_hand && !status.by_hand) void this.loadCell();  // the block may have been found
+    if (isPaused(status) && (!before || before.state !== status.state)) void this.askWhoPaused();
     void this.followRun();
   }
 
@@ -133,6 +134,8 @@ export class Desk {
   private async askRole(): Promise<void> {
     const reply = await this.ask<{role: Role}>('/api/v1/access');
     if (reply.kind === 'ok') this.patch({role: reply.value.role});
+    const {status, pausedBy} = this.store.state;
+    if (status && isPaused(status) && !pausedBy) void this.askWhoPaused();
     if (reply.kind === 'refused') this.patch({role: this.token ? 'wrong token' : 'none'});
   }
 
@@ -142,6 +145,16 @@ export class Desk {
     if (reply.kind === 'ok') this.patch({unmet: []});
     if (reply.kind === 'refused') this.patch({unmet: (reply.problem.errors as Unmet[] | undefined) ?? null});
     if (reply.kind === 'lost') this.patch({unmet: null});
+  }
+
+  /** The audit log tells it, to whom may operate. It is written behind the pause: asked again once the arm stands. */
+  private async askWhoPaused(): Promise<void> {
+    const run_id = this.store.state.status?.run_id;
+    if (!run_id || this.store.state.role !== 'operate') return;
+    await this.load<Audit>('/api/v1/audit?limit=50', ({rows}) => {
+      const row = rows.find(({action, outcome}) => action === `POST /api/v1/runs/${run_id}/pause` && outcome.startsWith('2'));
+      if (row) this.patch({pausedBy: {run_id, name: row.token, from: row.remote, at: row.at}});
+    });
   }
 
   async loadRuns(before: string | null = null): Promise<void> {

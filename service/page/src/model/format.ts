@@ -1,4 +1,5 @@
-export type Language = 'en' | 'fr';
+/** A language is a file in words/, and its row in words/words.ts. */
+export type Language = 'en' | 'fr' | 'de';
 
 /** Written for what is not known. */
 export const kUnknown = '–';
@@ -7,6 +8,21 @@ export function number(value: number | null | undefined, digits: number, languag
   if (value === null || value === undefined || !Number.isFinite(value)) return kUnknown;
   const text = value.toLocaleString(language, {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false});
   return /[1-9]/.test(text) ? text : text.replace(/^-/, '');  // what is rounded to zero has no sign
+}
+
+/** As number(), but what is not nothing is not written as nothing: "< 0.001". */
+export function figure(value: number | null | undefined, digits: number, language: Language): string {
+  const smallest = 10 ** -digits;
+  if (typeof value === 'number' && value > 0 && value < smallest / 2) return `< ${number(smallest, digits, language)}`;
+  return number(value, digits, language);
+}
+
+/** A bound that holds: two digits that count, the last one rounded up. 0.0571 is "0.058". */
+export function roundedUp(value: number, language: Language): string {
+  if (!(value > 0) || !Number.isFinite(value)) return number(value, 2, language);
+  const digits = Math.max(0, 1 - Math.floor(Math.log10(value)));
+  const scale = 10 ** digits;
+  return number(Math.ceil(value * scale - 1e-9) / scale, digits, language);
 }
 
 /** 4000 s is "1 h 07 min", 75 s "1 min 15 s", 9 s "9 s". */

@@ -1,7 +1,7 @@
 import type {Cell, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
 import {addToSeries, kNoSeries, type Series} from './series.ts';
-import {isActive, type Command} from './states.ts';
+import {isActive, isPaused, type Command} from './states.ts';
 import {dropAcknowledged, dropFault, lastingWarning, noteFaults, type StickyFault} from './sticky_faults.ts';
 
 export type View = 'cell' | 'live' | 'result' | 'history';
@@ -16,6 +16,9 @@ export type PlanState = {kind: 'planning'} | {kind: 'made'; plan: Plan} | {kind:
 /** A command that was not taken, in words, until noted. */
 export interface Notice { command: Command | 'start'; problem: Problem | null }
 
+/** Who paused a run, by the daemon's audit log. */
+export interface PausedBy { run_id: string; name: string | null; from: string; at: string }
+
 /** All that the page shows. */
 export interface PageState {
   link: Link;
@@ -28,6 +31,8 @@ export interface PageState {
   unmet: Unmet[] | null;  // what stands in the way of a start; null: not known
   role: Role | null;
   hasToken: boolean;
+  waitingSince_ms: number | null;       // when the page heard that the present wait began; null: it did not hear it begin
+  pausedBy: PausedBy | null;            // who asked for the pause that holds the run
   view: View;
   cell: Cell | null;
   recipes: Recipes | null;
@@ -50,7 +55,7 @@ export interface PageState {
 
 export const kFirstState: PageState = {
   link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], lastingWarning: null, unmet: null,
-  role: null, hasToken: false,
+  role: null, hasToken: false, waitingSince_ms: null, pausedBy: null,
   view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], damagedRuns: [], nextBefore: null,
   shownRun: null, compared: [], results: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
   busy: null,
@@ -77,7 +82,7 @@ export function reduce(state: PageState, action: Action): PageState {
     case 'link':
       return state.link === action.link ? state : {...state, link: action.link};
     case 'statuses':
-      return {...action.statuses.reduce(takeStatus, state), statusKnown_ms: action.heard_ms};
+      return {...action.statuses.reduce((so_far, status) => takeStatus(so_far, status, action.heard_ms), state), statusKnown_ms: action.heard_ms};
     case 'joints':
       return takePulse(state, {joints: action.joints, heard_ms: action.heard_ms});
     case 'patch':
@@ -103,7 +108,7 @@ export function reduce(state: PageState, action: Action): PageState {
   }
 }
 
-function takeStatus(state: PageState, status: Status): PageState {
+function takeStatus(state: PageState, status: Status, heard_ms: number): PageState {
   const before = state.status;
   const series = addToSeries(state.series, status);
   if (before && before.instance_id === status.instance_id && status.sequence <= before.sequence) {
@@ -116,9 +121,17 @@ function takeStatus(state: PageState, status: Status): PageState {
     series,
     faults: noteFaults(state.faults, before, status, state.lastingWarning),
     lastingWarning: lastingWarning(state.lastingWarning, status),
+    waitingSince_ms: waitingSince(state, status, heard_ms),
+    pausedBy: state.pausedBy?.run_id === status.run_id && isPaused(status) ? state.pausedBy : null,
     view: nextView(state.view, before, status),
     shownRun: status.run_id !== null && before?.run_id !== status.run_id ? null : state.shownRun,  // a new run is looked at
   };
+}
+
+/** A wait that another page load began has no beginning here: what is left of it is not guessed. */
+function waitingSince({status: before, waitingSince_ms}: PageState, status: Status, heard_ms: number): number | null {
+  if (status.waiting_for === null || before === null || before.instance_id !== status.instance_id) return null;
+  return before.waiting_for === status.waiting_for ? waitingSince_ms : heard_ms;
 }
 
 /** The pulse tells the newest status' number as well: one that is not behind it is as new as the pulse. */

@@ -46,15 +46,23 @@ export function touchActions({state, fault_code}: Status): Command[] {
   return kTouchFaults.has(fault_code) ? ['retry', 'skip'] : [];
 }
 
+/** A person holds the run, or is about to: no fault does. */
+export const isPaused = ({state, fault_code}: Status): boolean => (state === 'HELD' || state === 'HOLDING') && fault_code === null;
+
 /** The arm is about to be told what to do by another: a run would end the dialogue. */
 export const isLocating = (status: Status): boolean => status.by_hand === 'locate';
 
 /** The arm is on its way back from a face, for which alone there is a permit. */
 export const isTakenBack = (status: Status): boolean => status.state === 'RESETTING' && status.controller_permit === 'granted';
 
+/** The emergency stop is pressed, and nothing of the run or its end is under way that would be told in its place. */
+export const isMotionDisabled = ({state, controller_estop, controller_connected}: Status): boolean =>
+    controller_connected && controller_estop === true && (state === 'IDLE' || state === 'COMPLETE' || state === 'HELD' || state === 'STOPPED');
+
 /** How the state looks: at rest, at work, waiting for a person, or wrong. */
 export type Mood = 'rest' | 'work' | 'wait' | 'wrong';
 export function mood(status: Status): Mood {
+  if (isMotionDisabled(status)) return 'wrong';
   if (status.state === 'ABORTED' || status.state === 'ABORTING') return 'wrong';
   if (status.fault_code && (status.state === 'HELD' || status.state === 'STOPPED')) return 'wrong';
   if (status.waiting_for || isLocating(status) || status.state === 'HELD' || status.state === 'SUSPENDED') return 'wait';

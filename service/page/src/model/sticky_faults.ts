@@ -1,4 +1,5 @@
 import type {Status} from '../api/documents.ts';
+import {causeOf, isTold, type Cause} from './fault_cause.ts';
 
 /** A fault or warning as it was told: it stays until a person has noted it, whatever the cell does meanwhile. */
 export interface StickyFault {
@@ -9,9 +10,14 @@ export interface StickyFault {
   next_step: string | null;
   run_id: string | null;
   isWarning: boolean;
-  isOver: boolean;  // the daemon no longer tells it
-  at: string;       // by the daemon's clock, of the state in which it was told
+  isOver: boolean;       // the daemon no longer tells it
+  cause: Cause | null;   // what the controller told it of
+  isCauseTold: boolean;  // the controller has told that cause ever since
+  at: string;            // by the daemon's clock, of the state in which it was told
 }
+
+/** The fault is at work: the daemon tells it, or the controller its cause. */
+export const isAtWork = ({isWarning, isOver, isCauseTold}: StickyFault): boolean => !isWarning && (!isOver || isCauseTold);
 
 /** Warnings that end by themselves, as their texts say. */
 const kPassing = ['computation_slow', 'store_slow'];
@@ -28,6 +34,7 @@ export function noteFaults(known: StickyFault[], before: Status | null, status: 
     faults = faults.map((fault) => (fault.isWarning || fault.isOver ? fault : {...fault, isOver: true}));
     if (status.fault_code) faults = [toFault(status), ...faults.filter((fault) => !isSameFault(fault, status))];
   }
+  faults = followCauses(faults, status);
   const passed = before?.warning_code;
   const isOver = passed !== undefined && passed !== null && kPassing.includes(passed) && status.warning_code !== passed;
   if (isOver) faults = faults.filter(({code}) => code !== passed);
@@ -35,6 +42,17 @@ export function noteFaults(known: StickyFault[], before: Status | null, status: 
   const isUncovered = isOver && warning === lasting;  // it was told before the one that has passed
   if (warning !== null && warning !== (before && warningId(before)) && !isUncovered) faults = withWarning(faults, status);
   return faults;
+}
+
+/** A cause that was not told with its fault may be told by the next State; one that is gone once does not come back as this fault's. */
+function followCauses(faults: StickyFault[], status: Status): StickyFault[] {
+  if (faults.every(({isWarning}) => isWarning)) return faults;
+  return faults.map((fault) => {
+    if (fault.isWarning) return fault;
+    const cause = fault.cause ?? (fault.isOver ? null : causeOf(fault.code, fault.message, status));
+    const isCauseTold = isTold(cause, status) && (fault.isCauseTold || !fault.isOver);
+    return cause === fault.cause && isCauseTold === fault.isCauseTold ? fault : {...fault, cause, isCauseTold};
+  });
 }
 
 /** The warning that stays until a newer one comes, by what tells it from others: a passing one covers it for a while. */
@@ -60,6 +78,8 @@ function toFault(status: Status): StickyFault {
     run_id: status.run_id,
     isWarning: false,
     isOver: false,
+    cause: null,
+    isCauseTold: false,
     at: status.since,
   };
 }
@@ -74,6 +94,8 @@ function withWarning(faults: StickyFault[], status: Status): StickyFault[] {
     run_id: status.run_id,
     isWarning: true,
     isOver: false,
+    cause: null,
+    isCauseTold: false,
     at: status.since,
   };
   const others = faults.filter((fault) => !(fault.isWarning && fault.code === warning.code && fault.run_id === warning.run_id));
@@ -82,14 +104,19 @@ function withWarning(faults: StickyFault[], status: Status): StickyFault[] {
   return [...(told ? [told] : []), warning, ...others.filter((fault) => fault !== told && (!fault.isWarning || kept.includes(fault)))];
 }
 
-/** A person has read it. One that the daemon still tells stays until the daemon has taken note as well. */
+/** A person has read it. One that is at work stays. */
 export function dropFault(known: StickyFault[], key: string): StickyFault[] {
-  return known.filter((fault) => fault.key !== key || !(fault.isWarning || fault.isOver));
+  return known.filter((fault) => fault.key !== key || isAtWork(fault));
 }
 
-/** The daemon took note of the fault of `key`: it is read. Others are not. */
+/** The daemon took note of the fault of `key`: it is read. Others are not, and one whose cause is still told stays. */
 export function dropAcknowledged(known: StickyFault[], key: string | null): StickyFault[] {
-  return known.filter((fault) => fault.key !== key);
+  return known.filter((fault) => fault.key !== key || fault.isCauseTold).map((fault) => (fault.key === key ? {...fault, isOver: true} : fault));
+}
+
+/** What has to be released before a fault that is at work can be cleared; null: nothing that is known. */
+export function causeToRelease(known: StickyFault[]): Cause | null {
+  return known.find(({isWarning, isCauseTold}) => !isWarning && isCauseTold)?.cause ?? null;
 }
 
 /** The fault that the daemon tells now. */

@@ -23,3 +23,8 @@ export function tipRows({tip_uncertainty: {expanded, arm_frame}, monte_carlo}: R
   }
   return rows;
 }
+
+/** How far the tip may be off in the workspace box at 95 %, in mm: by simulated calibrations where there are any. Null: not known. */
+export function tipWithin_mm({tip_uncertainty: {expanded}, monte_carlo}: Pick<Result, 'tip_uncertainty' | 'monte_carlo'>): number | null {
+  return monte_carlo?.box_p95_mm ?? expanded?.box_p95_mm ?? null;
+}

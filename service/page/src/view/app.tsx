@@ -4,10 +4,11 @@ import {age, fill, type Language} from '../model/format.ts';
 import {dataAge_ms, kViews, type PageState, type View} from '../model/page_state.ts';
 import {mayPause} from '../model/states.ts';
 import type {Conditions} from '../model/start_body.ts';
+import {isAtWork} from '../model/sticky_faults.ts';
 import {useStore} from '../model/store.ts';
-import {sayIn, type WordKey} from '../words/words.ts';
+import {isLanguage, kLanguageNames, kLanguages, loadLanguage, sayIn, type WordKey} from '../words/words.ts';
 import {CellView} from './cell_view.tsx';
-import {FaultPanel, WaitPanel} from './fault_panel.tsx';
+import {FaultPanel} from './fault_panel.tsx';
 import {HandPanel} from './hand_panel.tsx';
 import {Header} from './header.tsx';
 import {HistoryView} from './history_view.tsx';
@@ -17,6 +18,7 @@ import {RunControls} from './run_controls.tsx';
 import {firstLanguage, firstTheme, keepLanguage, keepOperator, keepTheme, keptOperator, type Theme} from './settings.ts';
 import {Symbol} from './symbol.tsx';
 import {LanguageContext} from './texts.tsx';
+import {HoldPanel, WaitPanel} from './wait_panel.tsx';
 
 const kViewWords: Record<View, WordKey> = {cell: 'viewCell', live: 'viewLive', result: 'viewResult', history: 'viewHistory'};
 const kTick_ms = 500;
@@ -68,10 +70,14 @@ export function App({desk}: {desk: Desk}) {
     setConditions(({temperature: _, movingMin: __, ...others}) => others);  // they were of this run
     document.querySelector<HTMLElement>('header h1')?.focus();
   };
+  /** Words that do not come, as of a daemon that is gone, leave the page in the language that it has. */
+  const speak = (name: string): Promise<void> => (isLanguage(name) ? loadLanguage(name).then(() => setLanguage(name), () => {}) : Promise.resolve());
   const place = useRef<HTMLElement>(null);
   useEffect(() => place.current?.scrollTo(0, 0), [state.view, state.shownRun, state.isStopLost]);
   const say = sayIn(language);
   const isOld = state.link === 'lost' || state.link === 'refused';
+  // What is over, and a warning, do not stand before a result.
+  const isResultFirst = state.view === 'result' && !state.faults.some(isAtWork) && !state.notice;
   const takeConditions = (given: Conditions): void => {
     setConditions(given);
     keepOperator(given);
@@ -87,9 +93,9 @@ export function App({desk}: {desk: Desk}) {
           </button>
         ))}
         <span class="spring" />
-        <button type="button" lang={language === 'en' ? 'fr' : 'en'} onClick={() => setLanguage(language === 'en' ? 'fr' : 'en')}>
-          {say('language')}
-        </button>
+        <select aria-label={say('language')} value={language} onChange={(event) => void speak(event.currentTarget.value)}>
+          {kLanguages.map((name) => <option key={name} value={name} lang={name}>{kLanguageNames[name]}</option>)}
+        </select>
         <button type="button" aria-pressed={theme === 'dark'} onClick={() => setTheme(theme === 'dark' ? 'light' : 'dark')}>
           {say(theme === 'dark' ? 'themeLight' : 'themeDark')}
         </button>
@@ -97,10 +103,12 @@ export function App({desk}: {desk: Desk}) {
       <main class={isOld ? 'old' : ''} ref={place}>
         <StopLost state={state} desk={desk} language={language} />
         <Banner state={state} now_ms={now_ms} language={language} />
-        <WaitPanel state={state} />
+        <WaitPanel state={state} now_ms={now_ms} />
+        <HoldPanel state={state} />
         <HandPanel state={state} desk={desk} />
-        <FaultPanel state={state} desk={desk} />
+        {isResultFirst ? null : <FaultPanel state={state} desk={desk} />}
         <Shown state={state} desk={desk} conditions={conditions} onConditions={takeConditions} />
+        {isResultFirst ? <FaultPanel state={state} desk={desk} /> : null}
         {state.view === 'cell' ? <p class="keys">{say('keysHelp')}</p> : null}
       </main>
       <RunControls state={state} desk={desk} conditions={conditions} onStart={() => void startRun()} />

@@ -7,6 +7,7 @@ import {conditions, type Condition} from '../model/readiness.ts';
 import {shownTemperature, type Conditions, type WrittenTemperature} from '../model/start_body.ts';
 import {isActive, isLocating, mayStart} from '../model/states.ts';
 import {faultWords, withButtons} from '../words/fault_words.ts';
+import {sayName} from '../words/words.ts';
 import {Symbol, type Shape} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 
@@ -102,7 +103,7 @@ function RecipeFigures({recipe, plan, state, desk}: {recipe: Recipe; plan: PlanS
   const refused = plan?.kind === 'refused' ? plan.problem.detail : plan?.kind === 'lost' ? say('noAnswer') : null;
   return (
     <div class="figures">
-      <p><OuterText text={recipe.description} isEnglish /></p>
+      <RecipeDescription recipe={recipe} />
       <p>{say('recipeTouches', {fit: recipe.fit_max, held: recipe.held_out})}</p>
       <dl>
         <div><dt>{say('duration')}</dt><dd>{isPlanning ? say('planning') : duration(made?.duration_s)}</dd></div>
@@ -116,6 +117,13 @@ function RecipeFigures({recipe, plan, state, desk}: {recipe: Recipe; plan: PlanS
       {refused && <p class="abnormal"><OuterText text={say('planRefused', {why: refused})} /></p>}
     </div>
   );
+}
+
+/** What a recipe's file says of it: of a shipped one in the page's language, of another as it was written. */
+function RecipeDescription({recipe: {name, description}}: {recipe: Recipe}) {
+  const language = useLanguage();
+  const isShipped = sayName('en', 'recipe_', name) === description;
+  return <p>{isShipped ? sayName(language, 'recipe_', name) : <OuterText text={description} isEnglish />}</p>;
 }
 
 /** Who answers for the run, and whose hand makes its touches: kept with the result, needed by no start. */

@@ -1,5 +1,6 @@
 import {useEffect, useRef} from 'preact/hooks';
 import uPlot from 'uplot';
+import {useShownTheme} from './theme.ts';
 
 export interface Line { name: string; values: (number | null)[] }
 
@@ -24,6 +25,7 @@ const kWhole = {incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000], values: (_: u
 export function Curve({title, x, lines, height, isLog, isCounted, write}: Props) {
   const place = useRef<HTMLDivElement>(null);
   const plot = useRef<uPlot | null>(null);
+  const theme = useShownTheme();  // the colours are read when the curve is made
   const shape = `${lines.map(({name}) => name).join('\n')}\n${isLog}\n${height}\n${title}`;
 
   useEffect(() => {
@@ -56,7 +58,7 @@ export function Curve({title, x, lines, height, isLog, isCounted, write}: Props)
       plot.current?.destroy();
       plot.current = null;
     };
-  }, [shape]);
+  }, [shape, theme]);
 
   useEffect(() => {
     plot.current?.setData([x, ...lines.map(({values}) => values)] as uPlot.AlignedData);

@@ -1,27 +1,59 @@
 import {useEffect, useRef} from 'preact/hooks';
 import type {Desk} from '../model/desk.ts';
+import {time} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
 import {touchActions} from '../model/states.ts';
-import {toldFault, type StickyFault} from '../model/sticky_faults.ts';
-import {commandWords, faultTitle, hasTitle, faultWords, withButtons} from '../words/fault_words.ts';
-import {sayName} from '../words/words.ts';
+import {isAtWork, toldFault, type StickyFault} from '../model/sticky_faults.ts';
+import {commandWords, hasTitle, faultWords, withButtons} from '../words/fault_words.ts';
+import {stickyTitle} from '../words/sticky_title.ts';
 import {HoldButton} from './hold_button.tsx';
 import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 
-/** Faults and warnings, until a person has noted each of them. */
+/** Faults and warnings, until a person has noted each of them; what is over is a line each. */
 export function FaultPanel({state, desk}: {state: PageState; desk: Desk}) {
+  const say = useSay();
   const reached = state.link === 'live' || state.link === 'polling';
   const place = useRef<HTMLDivElement>(null);
   const told = toldFault(state.faults)?.key ?? null;
   useEffect(() => {
-    if (told !== null) place.current?.scrollIntoView({block: 'start'});  // whatever was read when it came
+    if (told !== null) showInMain(place.current);  // whatever was read when it came
   }, [told]);
+  const past = state.faults.filter((fault) => !fault.isWarning && !isAtWork(fault));
   return (
-    <div class="faults" role="alert" ref={place}>
-      {state.faults.map((fault) => <FaultCard key={fault.key} fault={fault} state={state} desk={desk} reached={reached} />)}
-      <Refusal state={state} desk={desk} />
-    </div>
+    <>
+      <div class="faults" role="alert" ref={place}>
+        {state.faults.filter((fault) => fault.isWarning || isAtWork(fault))
+            .map((fault) => <FaultCard key={fault.key} fault={fault} state={state} desk={desk} reached={reached} />)}
+        <Refusal state={state} desk={desk} />
+      </div>
+      {past.length > 0
+        ? <ul class="past-faults" aria-label={say('pastFaults')}>{past.map((fault) => <PastFault key={fault.key} fault={fault} desk={desk} />)}</ul>
+        : null}
+    </>
+  );
+}
+
+/** Only `main` scrolls: scrollIntoView() would take the header with it where the document can be moved. */
+function showInMain(element: HTMLElement | null): void {
+  const main = element?.closest('main');
+  if (element && main) main.scrollTop += element.getBoundingClientRect().top - main.getBoundingClientRect().top;
+}
+
+function Title({fault}: {fault: StickyFault}) {
+  const language = useLanguage();
+  const isOwn = hasTitle(language, fault.code) || fault.code === 'permission_lost';
+  return <OuterText text={stickyTitle(fault, language)} isEnglish={!isOwn} />;
+}
+
+/** A fault that is over, until somebody has read it: grey, it asks for nothing any more. */
+function PastFault({fault, desk}: {fault: StickyFault; desk: Desk}) {
+  const say = useSay();
+  return (
+    <li>
+      <span class="what"><Title fault={fault} /> ({say('faultOver')}, {time(fault.at)})</span>
+      <button type="button" class="small" onClick={() => desk.note(fault.key)}>{say('note')}</button>
+    </li>
   );
 }
 
@@ -41,10 +73,9 @@ function FaultCard({fault, state, desk, reached}: {fault: StickyFault; state: Pa
     <article class={fault.isWarning ? 'card warning' : 'card fault'}>
       <h2>
         <Symbol shape={fault.isWarning ? 'warning' : 'fault'} />
-        {say(fault.isWarning ? 'warningTitle' : 'faultTitle')}{' '}
-        <OuterText text={faultTitle(language, fault.code)} isEnglish={!hasTitle(language, fault.code)} />
-        {fault.isOver ? <small> ({say('faultOver')})</small> : null}
+        {say(fault.isWarning ? 'warningTitle' : 'faultTitle')} <Title fault={fault} />
       </h2>
+      {fault.isCauseTold && fault.cause ? <p class="big">{say('stillTold', {what: say(`release_${fault.cause}`)})}</p> : null}
       <dl>
         <div><dt>{say('cause')}</dt><dd><OuterText text={cause} /></dd></div>
         {robot_action && <div><dt>{say('robotDid')}</dt><dd><OuterText text={robot_action} /></dd></div>}
@@ -58,10 +89,10 @@ function FaultCard({fault, state, desk, reached}: {fault: StickyFault; state: Pa
           </HoldButton>
         ))}
         {isShown && !holds
-          ? <button type="button" disabled={state.role !== 'operate' || !reached}
+          ? <button type="button" disabled={state.role !== 'operate' || !reached || fault.isCauseTold}
                     onClick={() => void desk.command('acknowledge')}>{say('acknowledge')}</button>
           : null}
-        {isShown ? null : <button type="button" onClick={() => desk.note(fault.key)}>{say('note')}</button>}
+        {fault.isWarning ? <button type="button" onClick={() => desk.note(fault.key)}>{say('note')}</button> : null}
       </div>
     </article>
   );
@@ -87,19 +118,5 @@ function Refusal({state, desk}: {state: PageState; desk: Desk}) {
       <ul>{notice.problem?.errors?.map(({code, detail}) => <li key={code}><OuterText text={detail} isEnglish /></li>)}</ul>
       <div class="actions"><button type="button" onClick={() => desk.dropNotice()}>{say('note')}</button></div>
     </article>
-  );
-}
-
-/** What a person at the cell is waited for. */
-export function WaitPanel({state}: {state: PageState}) {
-  const say = useSay();
-  const language = useLanguage();
-  const waiting = state.status?.waiting_for;
-  if (!waiting) return null;
-  return (
-    <section class="card wait" role="alert">
-      <h2><Symbol shape="wait" />{say('waitTitle')}</h2>
-      <p class="big"><OuterText text={sayName(language, 'wait_', waiting)} /></p>
-    </section>
   );
 }

@@ -1,7 +1,7 @@
 import type {Desk} from '../model/desk.ts';
 import {number} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
-import {handWords} from '../words/hand_words.ts';
+import {handButtons, handWords} from '../words/hand_words.ts';
 import {HoldButton} from './hold_button.tsx';
 import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
@@ -22,9 +22,9 @@ export function HandPanel({state, desk}: {state: PageState; desk: Desk}) {
         {status.by_hand === 'locate' ? say('locate') : say('handTitle')}
         {index && total ? <small>{say('handCount', {done: index, total})}</small> : null}
       </h2>
-      <p class="big"><OuterText text={handWords(status, language)} /></p>
+      <p class="big"><OuterText text={handWords(status, language, state.cell)} /></p>
       {status.by_hand_problem
-        ? <p class="abnormal"><Symbol shape="warning" /><OuterText text={status.by_hand_problem} isEnglish /></p>
+        ? <p class="abnormal"><Symbol shape="warning" /><OuterText text={handButtons(status.by_hand_problem, status, say)} isEnglish /></p>
         : null}
       {status.by_hand_joints_deg
         ? <p>{say('handPosture')}: {status.by_hand_joints_deg.map((joint) => number(joint, 0, language)).join(' / ')}</p>

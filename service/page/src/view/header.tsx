@@ -1,33 +1,36 @@
-import type {Status} from '../api/documents.ts';
+import type {Cell, Status} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
+import {faceWords} from '../model/faces.ts';
 import {age, cut, duration} from '../model/format.ts';
 import {dataAge_ms, type PageState} from '../model/page_state.ts';
-import {isActive, isLocating, mood, type Mood} from '../model/states.ts';
+import {isActive, isLocating, isMotionDisabled, mood} from '../model/states.ts';
 import type {Say, WordKey} from '../words/words.ts';
-import {Symbol, type Shape} from './symbol.tsx';
+import {Symbol} from './symbol.tsx';
 import {useSay} from './texts.tsx';
+import {kVerdictShapes} from './verdict_shapes.ts';
 
-const kMoodShapes: Record<Mood, Shape> = {rest: 'rest', work: 'work', wait: 'wait', wrong: 'fault'};
 const kLinkWords: Record<Link, WordKey> = {
   connecting: 'linkConnecting', live: 'linkLive', polling: 'linkPolling', lost: 'linkLost', refused: 'linkRefused',
 };
 /** Older data say nothing of the arm any more. */
 const kStale_ms = 2000;
 
-/** The state, readable from two metres; what the run does; how old all of this is. */
+/** The state and the verdict, readable from three metres; what the run does; how old all of this is. */
 export function Header({state, now_ms}: {state: PageState; now_ms: number}) {
   const say = useSay();
   const {status, link, cell} = state;
   const isLost = link === 'lost' || link === 'refused' || link === 'connecting';
   const age_ms = dataAge_ms(state, now_ms);
   const isOld = age_ms === null || age_ms > kStale_ms;
+  const shown = status && !isLost ? shownState(status, state) : null;
   return (
     <header>
       <div class={`state ${isLost || !status ? 'unknown' : mood(status)}`} role="status">
-        <Symbol shape={isLost || !status ? 'unknown' : kMoodShapes[mood(status)]} />
-        <h1 tabIndex={-1}>{isLost ? say(kLinkWords[link]) : status ? stateWords(status, state, say) : say('loading')}</h1>
+        <Symbol shape={shown ?? (link === 'lost' ? 'lost' : 'unknown')} />
+        <h1 tabIndex={-1}>{isLost ? say(kLinkWords[link]) : say(shown ?? 'loading')}</h1>
       </div>
-      <div class="progress">{status && <Progress status={status} isLost={isLost} />}</div>
+      {status && !isLost ? <ShownVerdict status={status} /> : null}
+      <div class="progress">{status && <Progress status={status} isLost={isLost} cell={cell} />}</div>
       <dl class="link">
         <div class={isLost ? 'abnormal' : ''}>
           <dt>{cell ? <ShortText text={cell.name} /> : say('title')}</dt>
@@ -48,10 +51,27 @@ function ShortText({text}: {text: string}) {
   return <span class="one-line" title={start ?? text}>{start === null ? text : `${start}…`}</span>;
 }
 
-function stateWords(status: Status, {unmet}: PageState, say: Say): string {
-  if (isLocating(status)) return say('locating');
-  if (status.state === 'IDLE' && unmet !== null && unmet.length > 0) return say('notReady');
-  return say(status.state);
+type ShownState = Status['state'] | 'locating' | 'notReady' | 'motionDisabled';
+
+/** What is said of the cell in one word: the state, and where a person is waited for, that. */
+function shownState(status: Status, {unmet}: PageState): ShownState {
+  if (isMotionDisabled(status)) return 'motionDisabled';
+  if (isLocating(status)) return 'locating';
+  if (status.state === 'IDLE' && unmet !== null && unmet.length > 0) return 'notReady';
+  const isAsking = status.waiting_for !== null && (status.state === 'STARTING' || status.state === 'UNHOLDING' || status.state === 'RESETTING');
+  return isAsking ? 'SUSPENDED' : status.state;
+}
+
+/** Of the run that has ended: while one goes on there is none. */
+function ShownVerdict({status: {verdict, state}}: {status: Status}) {
+  const say = useSay();
+  if (verdict === 'none' || isActive(state)) return null;
+  return (
+    <p class={`header-verdict ${verdict}`} role="status">
+      <Symbol shape={kVerdictShapes[verdict]} />
+      <span class="word">{say(`verdict_${verdict}`)}</span>
+    </p>
+  );
 }
 
 /** No time is known before the first touch has told how long one takes. */
@@ -61,16 +81,17 @@ function timeLeft({eta_s, touches_done, touches_total}: Status, say: Say): strin
   return ` · ${isKnown ? say('timeLeft', {time: duration(eta_s)}) : say('timeLeftUnknown')}`;
 }
 
-function Progress({status, isLost}: {status: Status; isLost: boolean}) {
+function Progress({status, isLost, cell}: {status: Status; isLost: boolean; cell: Cell | null}) {
   const say = useSay();
   if (!status.run_id) return <p>{say('noRun')}</p>;
   const total = status.touches_total;
   const active = isActive(status.state);
+  const count = total ? say('touchOf', {done: status.touches_done, total}) : say('touchesDone', {done: status.touches_done});
   return (
     <div class={isLost ? 'old' : ''}>
       <p class="count">
-        {total ? say('touchOf', {done: status.touches_done, total}) : say('touchesDone', {done: status.touches_done})}
-        {active && status.plane ? ` · ${say('plane', {plane: status.plane})}` : ''}
+        {count}
+        {active && status.plane ? ` · ${faceWords(cell, status.plane, say)}` : ''}
         {active ? timeLeft(status, say) : ''}
       </p>
       <progress max={total ?? 1} value={total ? status.touches_done : 0} aria-label={say('touches')} />

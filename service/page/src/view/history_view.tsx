@@ -5,6 +5,7 @@ import {number, time} from '../model/format.ts';
 import {compareHeldOut, compareRuns, trend, trendChoices, type TrendOf} from '../model/history.ts';
 import type {PageState} from '../model/page_state.ts';
 import {verdictOf} from '../model/verdict.ts';
+import {faultTitle, hasTitle} from '../words/fault_words.ts';
 import {sayName} from '../words/words.ts';
 import {Curve} from './curve.tsx';
 import {inUnit, shownUnit} from './result_view.tsx';
@@ -67,7 +68,7 @@ function RunRow({run, state, desk}: {run: Run; state: PageState; desk: Desk}) {
       <td class={isBad ? 'abnormal' : ''}>
         {isBad ? <Symbol shape="warning" /> : null}
         {sayName(language, 'outcome_', run.outcome)}{run.verdict === 'none' ? '' : `, ${say(`verdict_${run.verdict}`)}`}
-        {run.fault_message ? <> · <OuterText text={run.fault_message} isEnglish /></> : null}
+        {run.fault_code ? <> · <RunFault run={run} /></> : null}
       </td>
       <td><button type="button" disabled={run.touches_done < 1} onClick={() => desk.showRun(run.id)}>{say('show')} {run.id}</button></td>
       <td>
@@ -79,6 +80,13 @@ function RunRow({run, state, desk}: {run: Run; state: PageState; desk: Desk}) {
       </td>
     </tr>
   );
+}
+
+/** Why a run ended: by its title where the page's language has one, else in the daemon's words. */
+function RunFault({run: {fault_code, fault_message}}: {run: Run}) {
+  const language = useLanguage();
+  if (fault_code && hasTitle(language, fault_code)) return <>{faultTitle(language, fault_code)}</>;
+  return <OuterText text={fault_message ?? fault_code ?? ''} isEnglish />;
 }
 
 function Comparison({state}: {state: PageState}) {

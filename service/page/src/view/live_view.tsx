@@ -1,7 +1,7 @@
 import {useMemo} from 'preact/hooks';
 import type {Status} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
-import {number} from '../model/format.ts';
+import {number, type Language} from '../model/format.ts';
 import type {PageState} from '../model/page_state.ts';
 import {sayName, type Say} from '../words/words.ts';
 import {Curve, type Line} from './curve.tsx';
@@ -41,16 +41,17 @@ function Figures({status}: {status: Status}) {
       </div>
       {status.retract_due ? <div class="wide abnormal"><dt>{say('arm')}</dt><dd>{say('armAtFace')}</dd></div> : null}
       {status.more_would_bring
-        ? <div class="wide"><dt>{say('moreWouldBring')}</dt><dd><OuterText text={moreText(status.more_would_bring, say)} /></dd></div>
+        ? <div class="wide"><dt>{say('moreWouldBring')}</dt><dd><OuterText text={moreText(status.more_would_bring, say, language)} /></dd></div>
         : null}
     </dl>
   );
 }
 
 /** The daemon's sentence in the page's language; as it is when it has another form. */
-function moreText(sentence: string, say: Say): string {
+function moreText(sentence: string, say: Say, language: Language): string {
   const [, count, plane, from, to] = sentence.match(/^(\d+) more on plane (\d+): ([\d.]+) to ([\d.]+) mm$/) ?? [];
-  return count && plane && from && to ? say('moreTouches', {count, plane, from, to}) : sentence;
+  const mm = (text: string): string => number(Number(text), text.split('.')[1]?.length ?? 0, language);
+  return count && plane && from && to ? say('moreTouches', {count, plane, from: mm(from), to: mm(to)}) : sentence;
 }
 
 function Curves({state}: {state: PageState}) {

@@ -1,4 +1,5 @@
 import type {Cell, Result} from '../api/documents.ts';
+import {faceName} from '../model/faces.ts';
 import {number} from '../model/format.ts';
 import {residualsOf, type Residual} from '../model/live_figures.ts';
 import {Symbol} from './symbol.tsx';
@@ -26,7 +27,7 @@ export function Residuals({result, cell}: {result: Result; cell: Cell}) {
       <tbody>
         {residualsOf(result, cell).map(({plane, fit, held_out}) => (
           <tr key={plane}>
-            <th scope="row">{plane}</th>
+            <th scope="row">{faceName(cell, plane) ?? plane}</th>
             <Cells residual={fit} limit={rms_max} />
             <Cells residual={held_out} limit={rms_max} />
           </tr>

@@ -1,6 +1,7 @@
 import {useState} from 'preact/hooks';
-import type {Parameter, PlaneDistances, Result, VerdictName} from '../api/documents.ts';
+import type {Cell, Parameter, PlaneDistances, Result} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
+import {faceWords} from '../model/faces.ts';
 import {number, type Language} from '../model/format.ts';
 import {newestRun, type PageState} from '../model/page_state.ts';
 import {tipRows} from '../model/tip_rows.ts';
@@ -8,9 +9,10 @@ import {verdictOf} from '../model/verdict.ts';
 import {sayName, type Say, type WordKey} from '../words/words.ts';
 import {LimitsTable} from './limits_table.tsx';
 import {Scroll} from './scroll.tsx';
-import {Symbol, type Shape} from './symbol.tsx';
+import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 import {UncertaintyMapView} from './uncertainty_map.tsx';
+import {Verdict} from './verdict_panel.tsx';
 
 /** What a run found, in plain words first. */
 export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
@@ -27,12 +29,13 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
   return (
     <div class="result-view">
       {which}
-      <Verdict result={result} verdict={verdict} />
+      <Verdict result={result} verdict={verdict} run_id={run_id} cell={state.cell} />
+      {result.verdict.decision_rule ? <LimitsTable rule={result.verdict.decision_rule} cell={state.cell} /> : null}
       <Downloads run_id={run_id} desk={desk} />
-      {result.verdict.decision_rule ? <LimitsTable rule={result.verdict.decision_rule} /> : null}
+      <h2>{say('detail')}</h2>
       <TipExpanded result={result} />
       <TipErrors result={result} />
-      <Distances result={result} />
+      <Distances result={result} cell={state.cell} />
       <Errors result={result} />
       {result.tip_uncertainty.map && <UncertaintyMapView map={result.tip_uncertainty.map} />}
       <Remarks result={result} />
@@ -45,32 +48,12 @@ function Which({run_id, recipe, isEarlier, desk}: {run_id: string; recipe: strin
   const say = useSay();
   return (
     <div class={isEarlier ? 'which card warning' : 'which'}>
-      <h2 class="big">
+      <h2>
         {isEarlier ? <Symbol shape="warning" /> : null}
         <OuterText text={say(isEarlier ? 'runEarlier' : 'runOf', {run: run_id, recipe})} />
       </h2>
       {isEarlier ? <button type="button" onClick={() => desk.showRun(null)}>{say('showNewest')}</button> : null}
     </div>
-  );
-}
-
-const kVerdictWords: Record<VerdictName, WordKey> =
-    {accepted: 'acceptedWords', rejected: 'rejectedWords', incomplete: 'incompleteWords', none: 'liveWords'};
-const kVerdictShapes: Record<VerdictName, Shape> = {accepted: 'ok', rejected: 'fault', incomplete: 'warning', none: 'work'};
-
-function Verdict({result, verdict}: {result: Result; verdict: VerdictName}) {
-  const say = useSay();
-  const isLive = verdict === 'none';
-  // Of a result that is one touch behind its run, the reasons are not the run's.
-  const reasons = result.complete || verdict === 'incomplete' ? result.verdict.reasons : [];
-  return (
-    <section class={`verdict ${verdict}`} aria-label={say(`verdict_${verdict}`)}>
-      <p class="big"><Symbol shape={kVerdictShapes[verdict]} />{isLive ? say('EXECUTE') : say(`verdict_${verdict}`)}</p>
-      <p>{say(kVerdictWords[verdict])}</p>
-      {!isLive && reasons.length > 0
-        ? <ul>{reasons.map((reason) => <li key={reason}><OuterText text={reason} isEnglish /></li>)}</ul>
-        : null}
-    </section>
   );
 }
 
@@ -170,7 +153,7 @@ function TipErrors({result}: {result: Result}) {
   );
 }
 
-function Distances({result}: {result: Result}) {
+function Distances({result, cell}: {result: Result; cell: Cell | null}) {
   const say = useSay();
   const language = useLanguage();
   const isAnyFound = [...result.planes, ...result.planes_held_out].some(({estimated_offset_mm}) => estimated_offset_mm != null);
@@ -178,7 +161,7 @@ function Distances({result}: {result: Result}) {
                               'rmsAfter', 'removed'];
   const row = (kind: WordKey) => (distances: PlaneDistances) => (
     <tr key={`${kind}${distances.plane}`}>
-      <th scope="row">{say('plane', {plane: distances.plane})}</th>
+      <th scope="row">{faceWords(cell, distances.plane, say)}</th>
       <td>{say(kind)} ({distances.touch_count})</td>
       <td class="figure">{number(distances.reference_mm, 3, language)}</td>
       {isAnyFound

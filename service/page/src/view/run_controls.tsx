@@ -1,10 +1,11 @@
 import type {Desk} from '../model/desk.ts';
+import {mainButton} from '../model/main_button.ts';
 import type {PageState} from '../model/page_state.ts';
-import {isReadyFor} from '../model/readiness.ts';
 import {startBody, type Conditions} from '../model/start_body.ts';
-import {isLocating, mainAction, mayPause} from '../model/states.ts';
+import {mayPause} from '../model/states.ts';
+import {reasonWords} from '../words/reason_words.ts';
 import {HoldButton} from './hold_button.tsx';
-import {useSay} from './texts.tsx';
+import {useLanguage, useSay} from './texts.tsx';
 
 interface Props { state: PageState; desk: Desk; conditions: Conditions; onStart: () => void }
 
@@ -16,7 +17,7 @@ export function RunControls({state, desk, conditions, onStart}: Props) {
   const operates = role === 'operate';
   return (
     <aside class="run-controls" aria-label={say('runControls')}>
-      <MainButton state={state} desk={desk} conditions={conditions} onStart={onStart} usable={reached && operates} />
+      <MainButton state={state} desk={desk} conditions={conditions} onStart={onStart} />
       <button
         type="button"
         class="run pause"
@@ -40,42 +41,27 @@ export function RunControls({state, desk, conditions, onStart}: Props) {
   );
 }
 
-function MainButton({state, desk, conditions, onStart, usable}: Props & {usable: boolean}) {
+/** What leads on from here, or why nothing does. */
+function MainButton({state, desk, conditions, onStart}: Props) {
   const say = useSay();
-  const {status, busy, recipe} = state;
-  const action = status ? mainAction(status.state, status.retract_due === true) : null;
-  const disabled = !usable || busy === 'start' || action === null;
-  const isLinked = status?.controller_connected ?? false;
-  if (action === 'resume') {
-    return (
-      <HoldButton class="main" note={say(isLinked ? 'startHold' : 'noController')} disabled={disabled || !isLinked}
-                  onHeld={() => void desk.command('resume')}>
-        {say('resume')}
-      </HoldButton>
-    );
-  }
-  if (action === 'clear') {
-    return (
-      <HoldButton class="main" note={say('startHold')} disabled={disabled} onHeld={() => void desk.command('clear')}>
-        {say('clear')}
-      </HoldButton>
-    );
-  }
-  if (action === 'reset') {
-    return (
-      <button type="button" class="run main" disabled={disabled} onClick={() => void desk.command('reset')}>
-        <span class="label">{say('reset')}</span>
-        <span class="note">{say(status?.retract_due ? 'resetBackWords' : 'resetWords')}</span>
-      </button>
-    );
-  }
-  const locating = status !== null && isLocating(status);
+  const language = useLanguage();
+  const {status, recipe} = state;
   const body = startBody(recipe ?? '', conditions, state.cell?.block ?? null);
-  const isReady = isReadyFor(state.unmet, body.block_temperature_c !== undefined);
+  const {action, why} = mainButton(state, body.block_temperature_c !== undefined);
+  const disabled = why !== null;
+  const note = why ? reasonWords(why, say, language) : say(action === 'reset' ? (status?.retract_due ? 'resetBackWords' : 'resetWords') : 'startHold');
   return (
-    <HoldButton class="main" note={say(locating ? 'locatingFirst' : action ? 'startHold' : 'wait')}
-                disabled={disabled || locating || !isReady || !recipe} onHeld={onStart}>
-      {say('start')}
-    </HoldButton>
+    <div role="group" aria-label={say('nextStep')}>
+      {action === 'reset' ? (
+        <button type="button" class="run main" disabled={disabled} onClick={() => void desk.command('reset')}>
+          <span class="label">{say('reset')}</span>
+          <span class="note">{note}</span>
+        </button>
+      ) : (
+        <HoldButton class="main" note={note} disabled={disabled} onHeld={action === 'start' ? onStart : () => void desk.command(action)}>
+          {say(action)}
+        </HoldButton>
+      )}
+    </div>
   );
 }

@@ -1,6 +1,7 @@
 // What a person chose on this browser. A browser that keeps nothing begins anew each time.
 import type {Language} from '../model/format.ts';
 import type {Conditions} from '../model/start_body.ts';
+import {isLanguage} from '../words/words.ts';
 
 export type Theme = 'light' | 'dark';
 
@@ -22,8 +23,9 @@ function write(key: string, value: string): void {
 
 export function firstLanguage(): Language {
   const kept = read('language');
-  if (kept === 'en' || kept === 'fr') return kept;
-  return navigator.language.toLowerCase().startsWith('fr') ? 'fr' : 'en';
+  if (isLanguage(kept)) return kept;
+  const asked = navigator.language.toLowerCase().slice(0, 2);
+  return isLanguage(asked) ? asked : 'en';
 }
 
 export function firstTheme(): Theme {

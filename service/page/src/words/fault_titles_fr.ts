@@ -11,7 +11,7 @@ export const kFaultTitlesFr: Readonly<Record<string, string>> = {
   task_error: 'tâche de la baie finie',
   monitor_speed: 'vitesse moniteur réduite',
   probe_not_calibrated: 'palpeur non étalonné',
-  run_active: 'essai en cours',
+  run_active: 'cycle en cours',
   fault_unacknowledged: 'défaut non acquitté',
   not_in_this_state: 'commande impossible dans cet état',
   answer_missing: 'réponse de la baie manquante',
@@ -66,5 +66,5 @@ export const kFaultTitlesFr: Readonly<Record<string, string>> = {
   internal_error: 'erreur interne',
   computation_slow: 'calcul long',
   store_slow: 'disque lent',
-  run_resumed: 'essai repris',
+  run_resumed: 'cycle repris',
 };

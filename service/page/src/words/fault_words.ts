@@ -1,24 +1,17 @@
 import type {FaultEntry} from '../api/documents.ts';
 import type {Language} from '../model/format.ts';
-import {kFaultTitlesFr} from './fault_titles_fr.ts';
-import {kFaultsFr} from './faults_fr.ts';
-import type {Say, WordKey} from './words.ts';
-
-/** What a person reads of a fault. */
-export interface FaultWords { cause: string; robot_action: string; next_step: string }
+import {packOf, type FaultWords, type Say, type WordKey} from './words.ts';
 
 /** A fault of the daemon's table in the page's language; the daemon's own words where there are no others. */
 export function faultWords(language: Language, code: string, table: Record<string, FaultEntry>): FaultWords | null {
-  const entry = table[code] ?? null;
-  const french = language === 'fr' ? kFaultsFr[code] : undefined;
-  return french ?? entry;
+  return packOf(language).faults[code] ?? table[code] ?? null;
 }
 
-export const hasTitle = (language: Language, code: string): boolean => language === 'fr' && code in kFaultTitlesFr;
+export const hasTitle = (language: Language, code: string): boolean => code in packOf(language).titles;
 
 /** "link_lost" as a title. */
 export function faultTitle(language: Language, code: string): string {
-  return (language === 'fr' ? kFaultTitlesFr[code] : undefined) ?? code.replace(/_/g, ' ');
+  return packOf(language).titles[code] ?? code.replace(/_/g, ' ');
 }
 
 const kButtons: Record<string, WordKey> = {

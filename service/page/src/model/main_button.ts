@@ -1,0 +1,43 @@
+import type {StateName} from '../api/documents.ts';
+import type {WordKey} from '../words/words.ts';
+import type {Cause} from './fault_cause.ts';
+import type {PageState} from './page_state.ts';
+import {isReadyFor, standsInTheWay} from './readiness.ts';
+import {isLocating, isMotionDisabled, mainAction, type MainAction} from './states.ts';
+import {causeToRelease} from './sticky_faults.ts';
+
+/** Why a button does nothing now; what it names is a cause, a condition by the code of the fault table, or a state. */
+export interface Reason { key: WordKey; cause?: Cause; code?: string; state?: StateName }
+
+/** What leads on from here: one action at a time. */
+export interface MainButton { action: NonNullable<MainAction>; why: Reason | null }
+
+/** `bringsTemperature`: the start would bring the block's temperature. */
+export function mainButton(state: PageState, bringsTemperature: boolean): MainButton {
+  const {status} = state;
+  const action = status ? mainAction(status.state, status.retract_due === true) : null;
+  return {action: action ?? 'start', why: reason(state, action, bringsTemperature)};
+}
+
+function reason(state: PageState, action: MainAction, bringsTemperature: boolean): Reason | null {
+  const {status, link, role, busy} = state;
+  if (link === 'connecting') return {key: 'whyUnknown'};
+  if (link !== 'live' && link !== 'polling') return {key: 'whyNoLink'};
+  if (role === null || !status) return {key: 'whyUnknown'};
+  if (role !== 'operate') return {key: 'whyWatching'};
+  if (isLocating(status) && (action === null || action === 'start')) return {key: 'locatingFirst'};
+  if (busy !== null && busy === action) return {key: 'whySent'};
+  if (action === null) return status.state === 'EXECUTE' ? {key: 'whyRunning'} : {key: 'whyChanging', state: status.state};
+  if (action === 'resume') return status.controller_connected ? null : {key: 'noController'};
+  const cause = causeToRelease(state.faults);
+  if (action === 'clear') return cause === null ? null : {key: 'whyNotReady', cause};
+  if (action !== 'start') return null;
+  if (isMotionDisabled(status)) return {key: 'whyNotReady', cause: 'estop'};  // sooner than the list of conditions is asked for
+  return reasonOfStart(state, bringsTemperature);
+}
+
+function reasonOfStart({recipe, unmet}: PageState, bringsTemperature: boolean): Reason | null {
+  if (unmet === null) return {key: 'whyUnknown'};
+  if (!isReadyFor(unmet, bringsTemperature)) return {key: 'whyNotReady', ...standsInTheWay(unmet, bringsTemperature)};
+  return recipe ? null : {key: 'whyNoRecipe'};
+}

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/documents/result_document.hpp"
+#include "service/report/internal/html.hpp"
+
+namespace cell {
+
+/// A figure of a criterion as it is read beside its limit: millimetres with three decimals, a share or a
+/// probability with two, and where it is small with those at which two digits of the limit count ("< 0.001"
+/// where it is less than half of the last one), a count with none; with its unit. "unknown" where it is
+/// absent.
+std::string figure_beside_limit(const DecisionRuleDocument::CriterionFigures& criterion,
+                                std::optional<double> figure);
+
+/// What became of a criterion: "pass", "pass (proven)", "FAIL", and with a guarded rule "FAIL (not proven)"
+/// for what is within its limit and not proven; "unknown" where the document does not say.
+std::string decision_text(const DecisionRuleDocument::CriterionFigures& criterion, const std::string& rule);
+
+/// A row a criterion: its name, the decision, the value, the limit, the expanded uncertainty. What rejects
+/// comes first.
+std::vector<html::Row> limit_rows(const DecisionRuleDocument& rule);
+
+}  // namespace cell
