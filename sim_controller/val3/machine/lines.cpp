@@ -174,7 +174,7 @@ class LineCompiler {
   /// In s5 a switch has whole numbers, and of equal cases the last one counts (manual 5, page 26).
   bool is_old_switch() const {
     const Version& language = compiler_.instance().application->language;
-    return language != Version{} && language < kS6;
+    return language != Version{} && language < instruction_table::kS6;
   }
 
   template <class T>
