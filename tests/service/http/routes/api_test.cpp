@@ -156,6 +156,23 @@ TEST_F(ApiTest, AStopIsTakenWhileTheDiskThatIsReadHangs) {
   EXPECT_THAT(stream->due(), HasSubstr("event: run"));
 }
 
+TEST_F(ApiTest, AStartThatIsStoredIsAnsweredWhileTheDiskThatIsReadHangs) {
+  boost::asio::io_context reader(1);  // it never answers
+  const auto serving = quiet_.context().get_executor();
+  Api api(serving, {.operation = serving, .store = serving, .reader = reader.get_executor()},
+          quiet_.operation(), kTokens);
+  const std::int64_t run =
+      quiet_.store().begin_run({.recipe = "edf-25", .started_at = "then", .idempotency_key = "one"});
+  HttpResponse answer{.status = 0};
+  const HttpRequest request = keyed("/api/v1/runs", "one", R"({"recipe":"edf-25"})");
+  boost::asio::co_spawn(quiet_.context(), api.answer(request),
+                        [&](const std::exception_ptr&, HttpResponse told) { answer = std::move(told); });
+  quiet_.context().poll();
+  EXPECT_EQ(answer.status, 201U);
+  EXPECT_EQ(json::parse(answer.body).at("id"), std::to_string(run));
+  EXPECT_EQ(answer.headers.at(0).second, "/api/v1/runs/" + std::to_string(run));
+}
+
 TEST_F(ApiTest, NoRouteReadsTheStoreOnTheThreadThatServes) {
   const auto here = std::this_thread::get_id();
   std::atomic<bool> is_serving = false;
