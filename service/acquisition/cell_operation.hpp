@@ -34,7 +34,7 @@
 namespace cell {
 
 struct Started {
-  std::int64_t run_id = 0;
+  StoredRun run;          // as it was stored
   bool repeated = false;  // the same Idempotency-Key started it before
 };
 

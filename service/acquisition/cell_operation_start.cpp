@@ -29,7 +29,7 @@ std::optional<std::variant<Started, CommandRefusal>> CellOperation::repeated_sta
     const StartRequest& request, const Earlier& earlier) {
   const auto& same = earlier.with_key;
   if (!same) return std::nullopt;
-  if (same->recipe == request.recipe) return Started{same->id, true};
+  if (same->recipe == request.recipe) return Started{*same, true};
   return CommandRefusal{
       .kind = CommandRefusal::Kind::kOtherKey,
       .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'", same->id,
@@ -107,8 +107,12 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
   // An ended run that cannot be read forbids no other: nothing of it is needed any more.
   for (const DamagedRun& run : earlier.last.damaged) spdlog::error("beside a damaged run: {}", run.what);
   const NewRun begun = new_run(request);
-  const auto write = [begun](RunStore& store) { return store.begin_run(begun); };
-  const std::int64_t id = co_await store_.run(write);
+  const auto write = [begun](RunStore& store) {
+    const std::int64_t id = store.begin_run(begun);
+    return store.run(id).value();
+  };
+  StoredRun stored = co_await store_.run(write);
+  const std::int64_t id = stored.id;
   // Meanwhile a person may have stopped the cell, or its link may have gone.
   if (auto refusal = refuse_start(request)) {
     co_await give_up(id);
@@ -125,7 +129,7 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
   manual_.begin_run();
   status_.begin_run(id);
   status_.enter(State::kStarting);
-  co_return Started{id, false};
+  co_return Started{std::move(stored), false};
 }
 
 NewRun CellOperation::new_run(const StartRequest& request) const {

@@ -11,13 +11,12 @@
 namespace cell {
 
 boost::asio::awaitable<std::optional<std::string>> RefusedContacts::settle(std::optional<std::int64_t> run_id,
-                                                                           std::uint32_t sequence,
+                                                                           AnsweredCommand command,
                                                                            cs8::TouchResult result,
                                                                            std::string reason) {
-  const std::uint32_t session = session_.number();
   if (result.outcome == cs8::Outcome::kContact) {
-    const RefusedResult refused{.session = session,
-                                .sequence = sequence,
+    const RefusedResult refused{.session = command.session,
+                                .sequence = command.sequence,
                                 .joints = result.contact,
                                 .reason = std::move(reason),
                                 .at = format_utc(clocks_.system())};
@@ -30,7 +29,7 @@ boost::asio::awaitable<std::optional<std::string>> RefusedContacts::settle(std::
     const auto failure = co_await store_.write(write);
     if (failure) co_return failure;
   }
-  if (session == session_.number()) session_.discard(run_id, sequence, result);
+  if (command.session == session_.number()) session_.discard(run_id, command.sequence, result);
   co_return std::nullopt;
 }
 

@@ -113,7 +113,7 @@ class TouchExecutor {
   void take_rejection(const cs8::Rejected& rejected, HeldBy held_by);
   boost::asio::awaitable<bool> keep_late_touch(ActiveRun& active, OpenTouch open, cs8::TouchResult result);
   void aim_behind_late_touch(const ActiveRun& active, const calib::JointVector& contact);
-  boost::asio::awaitable<bool> refuse(std::optional<std::int64_t> run_id, std::uint32_t sequence,
+  boost::asio::awaitable<bool> refuse(std::optional<std::int64_t> run_id, AnsweredCommand command,
                                       cs8::TouchResult result, std::string reason);
   void tell_unstored(const std::string& failure);
   void leave_unstored(const ActiveRun* active);
@@ -129,6 +129,7 @@ class TouchExecutor {
                                                                            calib::AimedTouch aimed,
                                                                            HeldBy held_by);
   boost::asio::awaitable<void> doubt_reference(std::int64_t run_id, ReferenceMonitor::Doubt doubt);
+  boost::asio::awaitable<bool> refuse_beside_plan(std::int64_t run_id);
   void judge_reference(const ActiveRun& active);
   boost::asio::awaitable<void> retest_outlier(ActiveRun& active);
   boost::asio::awaitable<bool> replace(ActiveRun& active, OutlierRetest::Replaced replaced);
@@ -158,6 +159,7 @@ class TouchExecutor {
     std::uint32_t sequence = 0;
     cs8::TouchResult result;
     std::string captured_at;
+    std::optional<std::string> refused = {};  // why it is no measurement, which is not stored yet
   };
   [[nodiscard]] bool is_beside_plan(std::uint32_t sequence) const {
     return beside_plan_ && beside_plan_->session == session_.number() && beside_plan_->sequence == sequence;

@@ -45,7 +45,7 @@ asio::awaitable<bool> TouchExecutor::accept(ActiveRun& active, calib::PlannedTou
   const bool is_again = deal_with(active, touch, judged, result, held_by);
   const std::string reason =
       judged.next == TouchJudgement::Next::kStopped ? "the arm was stopped" : judged.fault.message();
-  const bool refused = co_await refuse(active.run.id(), sequence, result, reason);
+  const bool refused = co_await refuse(active.run.id(), {session_.number(), sequence}, result, reason);
   if (!refused && is_again) held_by_ = held_by;
   co_return false;
 }
@@ -91,9 +91,9 @@ void TouchExecutor::take_no_measurement(const ActiveRun& active, const calib::Pl
 /// A contact that is no measurement is stored with the reason before the controller may forget it. False when
 /// that could not be: the controller keeps it, and it is settled when the run goes on or, after its end, at
 /// the reset. What holds or ends the run stays to be read.
-asio::awaitable<bool> TouchExecutor::refuse(std::optional<std::int64_t> run_id, std::uint32_t sequence,
+asio::awaitable<bool> TouchExecutor::refuse(std::optional<std::int64_t> run_id, AnsweredCommand command,
                                             cs8::TouchResult result, std::string reason) {
-  const auto failure = co_await refused_.settle(run_id, sequence, result, std::move(reason));
+  const auto failure = co_await refused_.settle(run_id, command, result, std::move(reason));
   if (!failure) co_return true;
   if (status_.fault() && status_.state() != State::kExecute) {
     status_.warn({FaultCode::kStoreFailed, *failure});
@@ -156,7 +156,7 @@ asio::awaitable<void> TouchExecutor::settle_open_command(ActiveRun* active, std:
     const std::optional<std::int64_t> run_id = asker_of_answer(active, open);
     const std::string reason =
         judged ? judged->fault.message() : "it answers no touch of the run's plan that waits for one";
-    const bool refused = co_await refuse(run_id, sequence, *result, reason);
+    const bool refused = co_await refuse(run_id, {session_.number(), sequence}, *result, reason);
     if (!refused) {
       leave_unstored(active);
       co_return;

@@ -40,6 +40,10 @@ asio::awaitable<void> TouchExecutor::restore_reference(ActiveRun& active) {
 /// is no measurement. The controller keeps the contact until settle_beside_plan().
 asio::awaitable<bool> TouchExecutor::touch_beside_plan(ActiveRun& active, calib::AimedTouch aimed,
                                                        HeldBy held_by) {
+  if (beside_plan_ && beside_plan_->refused) {
+    const bool stored = co_await refuse_beside_plan(active.run.id());
+    if (!stored) co_return false;
+  }
   if (beside_plan_) co_return true;
   std::optional<PreparedTouch> ready = co_await prepare_beside_plan(active, std::move(aimed), held_by);
   if (!ready) co_return false;
@@ -166,7 +170,6 @@ asio::awaitable<void> TouchExecutor::touch_reference(ActiveRun& active) {
 
 /// The contact is no reference, and no measurement.
 asio::awaitable<void> TouchExecutor::doubt_reference(std::int64_t run_id, ReferenceMonitor::Doubt doubt) {
-  const BesidePlan refused = *std::exchange(beside_plan_, std::nullopt);
   const Fault& why = doubt.warning ? *doubt.warning : *doubt.hold;
   if (doubt.warning) {
     status_.warn(why);
@@ -174,8 +177,18 @@ asio::awaitable<void> TouchExecutor::doubt_reference(std::int64_t run_id, Refere
     held_by_ = HeldBy::kDrift;
     status_.raise(why, Event::kHoldFault);
   }
-  if (refused.session != session_.number()) co_return;
-  co_await refuse(run_id, refused.sequence, refused.result, why.message());
+  beside_plan_->refused = why.message();
+  co_await refuse_beside_plan(run_id);
+}
+
+/// Until it is stored the run has it, whatever becomes of the controller. False when it could not be, which
+/// holds the run.
+asio::awaitable<bool> TouchExecutor::refuse_beside_plan(std::int64_t run_id) {
+  const BesidePlan contact = *beside_plan_;
+  const bool stored =
+      co_await refuse(run_id, {contact.session, contact.sequence}, contact.result, *contact.refused);
+  if (stored) beside_plan_.reset();
+  co_return stored;
 }
 
 void TouchExecutor::judge_reference(const ActiveRun& active) {

@@ -42,8 +42,11 @@ void demand_closed_directory(const std::filesystem::path& directory) {
   if (!found || (found->st_mode & (S_IWGRP | S_IWOTH)) == 0) return;
   throw std::runtime_error(
       "--state " + directory.string() +
-      ": others than its owner may write into it; look at what is there, then chmod 700 " +
-      directory.string());
+      ": others than its owner may write into it, and could put a token there; look at what is there, then "
+      "chmod 700 " +
+      directory.string() +
+      "; where its mount decides the rights, mount it for this user alone (dir_mode=0700, no fsGroup), or "
+      "name another");
 }
 
 void demand_own_directory(const std::filesystem::path& directory) {

@@ -252,11 +252,12 @@ constexpr std::array kTable{
         "the block, then touchcal resume to go on, or touchcal stop; in ABORTED touchcal clear, then "
         "touchcal reset",
         FaultKind::kHeld},
-    FaultEntry{FaultCode::kTouchDeadline, "touch_deadline", "a touch took longer than its deadline",
-               "the arm was stopped and stands where it was",
-               "check hold and monitor speed, then touchcal clear, "
-               "touchcal reset and start a new run",
-               FaultKind::kAborted, "P18"},
+    FaultEntry{
+        FaultCode::kTouchDeadline, "touch_deadline", "a touch took longer than its deadline",
+        "the arm was stopped and stands where it was",
+        "check hold and monitor speed, then touchcal resume to make this touch again, touchcal skip to "
+        "leave it out, or touchcal stop; in ABORTED touchcal clear, then touchcal reset",
+        FaultKind::kHeld, "P18"},
     FaultEntry{FaultCode::kImplausibleTouch, "implausible_touch",
                "the reported contact cannot belong to the touch that was asked for",
                "the arm stands where it ended the touch or was held in it; nothing was recorded",

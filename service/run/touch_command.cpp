@@ -84,7 +84,7 @@ std::optional<OutcomeFault> fault_of(cs8::Outcome outcome, cs8::Phase phase, std
     case cs8::Outcome::kCollision:
       return OutcomeFault{{FaultCode::kCollision, where}};
     case cs8::Outcome::kDeadline:
-      return OutcomeFault{{FaultCode::kTouchDeadline, where}};
+      return OutcomeFault{{FaultCode::kTouchDeadline, where}, true};
     case cs8::Outcome::kOvertravel:
       return OutcomeFault{{FaultCode::kOvertravel, {}}};
     case cs8::Outcome::kProbeFault:

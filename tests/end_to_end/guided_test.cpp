@@ -24,7 +24,7 @@ class GuidedRun : public ::testing::Test {
     if (const auto* refusal = std::get_if<cell::CommandRefusal>(&answer))
       throw std::runtime_error(refusal->detail);
     loop_.run_until([](const cell::Status& status) { return status.by_hand.has_value(); });
-    return std::get<cell::Started>(answer).run_id;
+    return std::get<cell::Started>(answer).run.id;
   }
   /// The touch that is asked for; the problem it was refused for.
   std::optional<std::string> touch_as_told() {

@@ -122,7 +122,7 @@ std::int64_t LoopbackCell::start(const std::string& recipe) {
     for (const cell::Unmet& unmet : refusal->unmet) why += "; " + unmet.code;
     throw std::runtime_error(why);
   }
-  return std::get<cell::Started>(answer).run_id;
+  return std::get<cell::Started>(answer).run.id;
 }
 
 std::variant<cell::Started, cell::CommandRefusal> LoopbackCell::ask_to_start(

@@ -137,7 +137,7 @@ TEST(Conditions, AreKeptWithTheRunWhenItStarts) {
   loop.run_until(State::kIdle);
   const auto started = std::get<cell::Started>(
       loop.ask_to_start({.recipe = kShortRecipe, .idempotency_key = {}, .operator_name = "A. Turing"}));
-  const cell::StoredRun stored = loop.store().run(started.run_id).value();
+  const cell::StoredRun stored = loop.store().run(started.run.id).value();
   const auto kept = nlohmann::json::parse(stored.conditions_json.value());
   EXPECT_EQ(kept.at("operator"), "A. Turing");
   EXPECT_EQ(kept.at("config_digest"), stored.config_digest.value());
@@ -165,7 +165,7 @@ TEST(Conditions, ATemperatureThatComesWithTheRunIsUsedInAllOfItAndForNoOther) {
   const auto warm = loop.operation().run()->problem().artefact.contact_planes;
   const std::int64_t next = loop.start();  // at once: the link ages while this thread computes
 
-  const auto result = nlohmann::json::parse(loop.store().result_json(started.run_id).value());
+  const auto result = nlohmann::json::parse(loop.store().result_json(started.run.id).value());
   EXPECT_EQ(result.at("conditions").at("block_temperature_c"), 25.0);
   EXPECT_EQ(result.at("conditions").at("std_temperature_k"), 0.5);
   EXPECT_EQ(result.at("conditions").at("block_temperature_source"), "run");
@@ -177,7 +177,7 @@ TEST(Conditions, ATemperatureThatComesWithTheRunIsUsedInAllOfItAndForNoOther) {
   for (std::size_t i = 0; i < warm.size(); ++i)
     EXPECT_NEAR(warm[i].offset_m - ball_m, (cool[i].offset_m - ball_m) * (1.0 + 5.0 * 2.36e-5), 1e-9) << i;
 
-  const cell::StoredRun stored = loop.store().run(started.run_id).value();
+  const cell::StoredRun stored = loop.store().run(started.run.id).value();
   EXPECT_EQ(stored.block_temperature.value().celsius, 25.0);
   EXPECT_EQ(stored.block_temperature->std_k, 0.5);
   EXPECT_EQ(stored.block_temperature->source, "run");

@@ -5,7 +5,9 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <chrono>
 #include <exception>
+#include <functional>
 #include <optional>
 #include <utility>
 
@@ -19,7 +21,10 @@ namespace cell {
 /// Not launched: it stays in the state that the commands of a test lead to.
 class QuietCell {
  public:
-  explicit QuietCell(Cell cell = edf()) : shipped_(std::move(cell)) {}
+  /// `steady`: the clock of deadlines.
+  explicit QuietCell(Cell cell = edf(), std::function<std::chrono::steady_clock::time_point()> steady =
+                                            std::chrono::steady_clock::now)
+      : shipped_(std::move(cell)), steady_(std::move(steady)) {}
   boost::asio::io_context& context() { return context_; }
   RunStore& store() { return store_; }
   CellOperation& operation() { return operation_; }
@@ -48,18 +53,18 @@ class QuietCell {
   }
 
   Cell shipped_;
+  std::function<std::chrono::steady_clock::time_point()> steady_;
   Folder folder_;
   RunStore store_{folder_.path() / "touchcal.sqlite"};
   boost::asio::io_context context_{1};
   boost::asio::ip::tcp::socket held_port_{context_};
   boost::asio::thread_pool planner_{1};
-  CellOperation operation_{
-      {context_.get_executor(), context_.get_executor(), planner_.get_executor()},
-      shipped_,
-      StoreQueue(store_, context_.get_executor()),
-      nobody(),
-      "instance",
-      Clocks{[] { return std::chrono::system_clock::time_point{}; }, std::chrono::steady_clock::now}};
+  CellOperation operation_{{context_.get_executor(), context_.get_executor(), planner_.get_executor()},
+                           shipped_,
+                           StoreQueue(store_, context_.get_executor()),
+                           nobody(),
+                           "instance",
+                           Clocks{[] { return std::chrono::system_clock::time_point{}; }, steady_}};
 };
 
 }  // namespace cell

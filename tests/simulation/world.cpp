@@ -147,7 +147,7 @@ void World::start_run() {
                                const std::variant<cell::Started, cell::CommandRefusal>& answer) {
                           if (failure) std::rethrow_exception(failure);
                           if (const auto* started = std::get_if<cell::Started>(&answer)) {
-                            journal_.note("person", fmt::format("has started run {}", started->run_id));
+                            journal_.note("person", fmt::format("has started run {}", started->run.id));
                             person_.on_started();
                           } else {
                             const auto& refusal = std::get<cell::CommandRefusal>(answer);

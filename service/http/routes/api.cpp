@@ -374,10 +374,9 @@ asio::awaitable<std::shared_ptr<const ActiveRun>> Api::live_run(const Admitted& 
   co_return copy;
 }
 
-/// What has happened already, a start, is told however many wait.
 asio::awaitable<HttpResponse> Api::at_desk(Desk& desk, const HttpRequest& request, const Admitted& admitted,
                                            const Asked& asked) {
-  if (desk.waiting >= desk.waiting_max && !asked.started) co_return busy(desk.when_full);
+  if (desk.waiting >= desk.waiting_max) co_return busy(desk.when_full);
   const Waiting waiting(desk.waiting);
   const std::shared_ptr<const ActiveRun> live = co_await live_run(admitted);
   HttpResponse response = co_await run_on(desk.executor, [&] {

@@ -2,21 +2,28 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/experimental/awaitable_operators.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <charconv>
+#include <exception>
 #include <utility>
 
+#include "service/acquisition/cell_operation.hpp"
 #include "service/documents/json_view.hpp"
 #include "service/http/auth/access.hpp"
 
 namespace cell {
 
-using namespace std::chrono_literals;
+namespace asio = boost::asio;
 
 namespace {
 
 constexpr std::string_view kEnd = "-end";
-/// Longest silence: a comment then shows both ends that the connection lives.
-constexpr std::chrono::seconds kKeepAlivePeriod{15};
 /// Largest amount written at once.
 constexpr std::size_t kDueBytesMax = 64 * 1024;
 
@@ -34,18 +41,47 @@ std::optional<std::uint64_t> sequence_of(std::string_view id, const std::string&
   return sequence;
 }
 
+/// One more that is open, until its last copy has gone.
+std::shared_ptr<void> counted(std::shared_ptr<int> open) {
+  ++*open;
+  return {nullptr, [open = std::move(open)](std::nullptr_t) { --*open; }};
+}
+
 }  // namespace
 
+/// A look-up, and what it has found once it is done.
+struct EventStream::LookedUp {
+  explicit LookedUp(const asio::any_io_executor& executor)
+      : until(executor, asio::steady_timer::time_point::max()) {}
+
+  void take(std::exception_ptr thrown, std::optional<StoredRun> found) {
+    is_done = true;
+    failure = std::move(thrown);
+    run = std::move(found);
+    until.cancel();
+  }
+  static asio::awaitable<void> until_done(std::shared_ptr<LookedUp> looked_up) {
+    boost::system::error_code ignored;
+    if (!looked_up->is_done)
+      co_await looked_up->until.async_wait(asio::redirect_error(asio::use_awaitable, ignored));
+  }
+
+  bool is_done = false;
+  std::exception_ptr failure;
+  std::optional<StoredRun> run;
+  asio::steady_timer until;  // rings by take()
+};
+
 EventStream::EventStream(Services& services, std::optional<std::int64_t> run_id, HttpRequest request,
-                         RunLookUp look_up)
+                         RunLookUp look_up, std::chrono::milliseconds keep_alive)
     : services_(services),
       run_id_(run_id),
       request_(std::move(request)),
       look_up_(std::move(look_up)),
       needs_token_(!request_.from_loopback || shows_token(request_, services.tokens)),
-      open_(services.open_streams) {
+      keep_alive_(keep_alive),
+      open_(counted(services.open_streams)) {
   const auto& last_event_id = request_.last_event_id;
-  ++*open_;
   first_ = "retry: 2000\n\n";
   const auto known = last_event_id ? sequence_of(*last_event_id, services_.feed.instance_id()) : std::nullopt;
   services_.feed.newest();
@@ -56,7 +92,7 @@ EventStream::EventStream(Services& services, std::optional<std::int64_t> run_id,
   }
 }
 
-EventStream::~EventStream() { --*open_; }
+EventStream::~EventStream() = default;
 
 bool EventStream::is_over(const std::optional<std::string>& last_event_id) {
   return last_event_id && last_event_id->ends_with(kEnd);
@@ -101,16 +137,38 @@ bool EventStream::may_be_over() {
   return newest.run_id != run_id_ || !newest.is_active;
 }
 
-boost::asio::awaitable<void> EventStream::wait() {
-  if (may_be_over()) {
-    const auto run = co_await look_up_(*run_id_);
-    if (run && run->ended_at) {
-      run_at_end_ = run_document(*run);
-      co_return;
-    }
-  }
+/// Beside the stream, which is told in between that it lives: a disk may take long.
+void EventStream::begin_look_up(const asio::any_io_executor& executor) {
+  looked_up_ = std::make_shared<LookedUp>(executor);
+  asio::co_spawn(executor, look_up_(*run_id_),
+                 [open = open_, found = std::weak_ptr(looked_up_)](std::exception_ptr failure,
+                                                                   std::optional<StoredRun> run) {
+                   if (const auto looked_up = found.lock())  // else the client has gone
+                     looked_up->take(std::move(failure), std::move(run));
+                 });
+}
+
+/// Returns when the run is known, when there is something to tell, or after the longest wait.
+asio::awaitable<void> EventStream::wait_for_run() {
+  using asio::experimental::awaitable_operators::operator||;  // whichever is first
+  auto told = services_.feed.wait(seen_, keep_alive_);
+  auto first = std::move(told) || LookedUp::until_done(looked_up_);
+  co_await std::move(first);
+  if (!looked_up_->is_done) co_return;
+  const auto found = std::exchange(looked_up_, nullptr);
+  if (found->failure) std::rethrow_exception(found->failure);
+  if (found->run && found->run->ended_at) run_at_end_ = run_document(*found->run);
+}
+
+asio::awaitable<void> EventStream::wait() {
   if (is_withdrawn()) co_return;  // while something was written or read: nobody wakes it for that again
-  co_await services_.feed.wait(seen_, kKeepAlivePeriod);
+  const auto& now = services_.operation.clocks().steady;
+  const auto at_latest = now() + keep_alive_;
+  if (!looked_up_ && may_be_over()) begin_look_up(co_await asio::this_coro::executor);
+  if (looked_up_) co_await wait_for_run();
+  if (looked_up_ || run_at_end_ || is_withdrawn()) co_return;
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(at_latest - now());
+  co_await services_.feed.wait(seen_, left);
 }
 
 }  // namespace cell

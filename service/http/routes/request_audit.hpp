@@ -22,6 +22,9 @@ struct StartBody;
 /// another command that is the operator of its run. Both are told of who has an operate token only.
 class RequestAudit {
  public:
+  /// Refusals of strangers that are recorded at once; after these one a second.
+  static constexpr int kStrangersAtOnce = 50;
+
   /// `services` must outlive it, and both threads must have ended before it goes.
   RequestAudit(boost::asio::any_io_executor store_thread, Services& services);
   ~RequestAudit();
@@ -53,7 +56,7 @@ class RequestAudit {
   Services& services_;
   std::atomic<int> unwritten_{0};  // rows that wait for the store's thread
   bool was_full_ = false;
-  RecordRate stranger_rate_{50, std::chrono::seconds(1)};
+  RecordRate stranger_rate_{kStrangersAtOnce, std::chrono::seconds(1)};
   std::unique_ptr<Row> left_out_;  // the newest refusal that was, until one is recorded
 };
 

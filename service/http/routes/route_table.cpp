@@ -164,8 +164,7 @@ boost::asio::awaitable<Asked> answer_start(CellOperation& operation, StartReques
     asked.refusal = std::move(*refusal);
     asked.exits = operation.exits();
   } else {
-    asked.started = std::get<Started>(outcome);
-    asked.needs_store = true;  // its document
+    asked.started = std::get<Started>(std::move(outcome));
   }
   co_return asked;
 }

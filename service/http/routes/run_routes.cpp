@@ -65,9 +65,9 @@ Asked ask_to_start(const Call& call, CellOperation& operation) {
 HttpResponse post_runs(const Call& call) {
   if (call.asked.problem) return to_response(*call.asked.problem);
   if (call.asked.refusal) return refusal_response(*call.asked.refusal, call.asked.exits);
-  const std::int64_t id = call.asked.started.value().run_id;
-  HttpResponse response = json_response(201, run_document(call.reads.store().run(id).value()));
-  response.headers = {{"Location", fmt::format("/api/v1/runs/{}", id)}};
+  const StoredRun& run = call.asked.started.value().run;
+  HttpResponse response = json_response(201, run_document(run));
+  response.headers = {{"Location", fmt::format("/api/v1/runs/{}", run.id)}};
   return response;
 }
 

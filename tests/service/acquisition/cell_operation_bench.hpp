@@ -18,7 +18,7 @@ class CellOperationTest : public ::testing::Test, protected OperationBench {
       tell_state();
     }
   }
-  std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run_id; }
+  std::int64_t start_few() { return std::get<Started>(start({.recipe = "few"})).run.id; }
   /// The contact of an arm without errors at a touch of the plan.
   static cs8::TouchResult contact_of(std::size_t touch) {
     return contact_at(plan_of_owners().touches.touches.at(touch).joints);

@@ -129,7 +129,7 @@ class CrampedBlock : public ::testing::Test, protected OperationBench {
 
 TEST_F(CrampedBlock, LeavesTheLastRunAsItWasWhereThePassAroundItIsRefused) {
   launch();
-  const std::int64_t id = std::get<Started>(start({.recipe = "few"})).run_id;
+  const std::int64_t id = std::get<Started>(start({.recipe = "few"})).run.id;
   ASSERT_FALSE(operation_.command(Command::kStop));
   run_until([this] { return operation_.status().state == State::kStopped; });
   ASSERT_FALSE(operation_.command(Command::kLocate));

@@ -50,7 +50,7 @@ TEST_F(CellOperationTest, ARunIsStartedOnceForOneKeyAndNoOtherBesideIt) {
   launch();
   const auto first = start({.recipe = "few", .idempotency_key = "key"});
   const auto again = start({.recipe = "few", .idempotency_key = "key"});
-  EXPECT_EQ(std::get<Started>(first).run_id, std::get<Started>(again).run_id);
+  EXPECT_EQ(std::get<Started>(first).run.id, std::get<Started>(again).run.id);
   EXPECT_TRUE(std::get<Started>(again).repeated);
   EXPECT_EQ(std::get<CommandRefusal>(start({.recipe = "few"})).code, FaultCode::kRunActive);
   EXPECT_EQ(operation_.status().state, State::kStarting);

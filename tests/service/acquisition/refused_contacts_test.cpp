@@ -16,8 +16,9 @@ using ::testing::IsEmpty;
 class RefusedContactsTest : public ::testing::Test, public OwnersBench {
  protected:
   std::optional<std::string> settle(const cs8::TouchResult& result) {
-    return run(refused_.settle(run_id_, 5, result, "it is too deep"));
+    return run(refused_.settle(run_id_, here(5), result, "it is too deep"));
   }
+  [[nodiscard]] AnsweredCommand here(std::uint32_t sequence) const { return {session.number(), sequence}; }
 
   std::int64_t run_id_ = store.begin_run({.recipe = "few", .started_at = "start"});
   RefusedContacts refused_{queue, session, time.clocks()};
@@ -53,9 +54,18 @@ TEST_F(RefusedContactsTest, AnAnswerWithoutAContactLeavesNothingToKeep) {
   EXPECT_THAT(controller.asked, ElementsAre("acknowledge 5"));
 }
 
+TEST_F(RefusedContactsTest, AContactOfAnEarlierSessionIsKeptAndNothingOfThisOneIsForgotten) {
+  const cs8::TouchResult result = contact_at(cell_of_owners().park_joints);
+  const AnsweredCommand earlier{.session = session.number() + 1, .sequence = 5};
+  EXPECT_FALSE(run(refused_.settle(run_id_, earlier, result, "it is too deep")));
+  ASSERT_EQ(refused_results(store, run_id_).size(), 1u);
+  EXPECT_EQ(refused_results(store, run_id_)[0].session, earlier.session);
+  EXPECT_THAT(controller.asked, IsEmpty());
+}
+
 TEST_F(RefusedContactsTest, AContactOfNoRunOfThisDaemonIsKeptWithTheNewestInTheStore) {
   const cs8::TouchResult result = contact_at(cell_of_owners().park_joints);
-  EXPECT_FALSE(run(refused_.settle(std::nullopt, 5, result, "nobody asked")));
+  EXPECT_FALSE(run(refused_.settle(std::nullopt, here(5), result, "nobody asked")));
   ASSERT_EQ(refused_results(store, run_id_).size(), 1u);
   EXPECT_EQ(refused_results(store, run_id_)[0].joints, result.contact);
   EXPECT_THAT(controller.asked, ElementsAre("acknowledge 5"));
@@ -63,7 +73,8 @@ TEST_F(RefusedContactsTest, AContactOfNoRunOfThisDaemonIsKeptWithTheNewestInTheS
 
 TEST_F(RefusedContactsTest, WhereTheStoreHasNoRunTheLogAloneHasItAndTheControllerIsFreeOfIt) {
   store.withdraw_run(run_id_);
-  EXPECT_FALSE(run(refused_.settle(std::nullopt, 5, contact_at(cell_of_owners().park_joints), "no run")));
+  EXPECT_FALSE(
+      run(refused_.settle(std::nullopt, here(5), contact_at(cell_of_owners().park_joints), "no run")));
   EXPECT_THAT(controller.asked, ElementsAre("acknowledge 5"));
 }
 

@@ -124,6 +124,33 @@ TEST_F(TouchExecutorAnswers, AContactThatTheDaemonBeforeLeftBehindIsKeptWithItsE
   EXPECT_EQ(acknowledged_count(), 1);
 }
 
+TEST_F(TouchExecutorAnswers, ATouchThatTakesTooLongHoldsTheRunAndIsMadeAgainOrLeftOut) {
+  const auto too_slow = [](const cs8::Touch&) {
+    cs8::TouchResult result;
+    result.outcome = cs8::Outcome::kDeadline;
+    result.phase = cs8::Phase::kApproach;
+    return result;
+  };
+  run(touches_.make_next_touch(active_));
+  const std::size_t place = active_.run.touches_made();
+  for (const Command word : {Command::kRetry, Command::kResume, Command::kSkip}) {
+    controller.on_touch = too_slow;
+    run(touches_.make_next_touch(active_));
+    EXPECT_EQ(status.state(), State::kHolding);
+    EXPECT_EQ(status.fault().value().code, FaultCode::kTouchDeadline);
+    EXPECT_EQ(touches_.held_by(), HeldBy::kTouch);
+    EXPECT_EQ(active_.run.touches_done(), 1) << "those before stay";
+    touches_.settle_hold(active_, word);
+    EXPECT_TRUE(run(touches_.store_answer(active_)));
+    EXPECT_EQ(active_.run.skipped_count(), word == Command::kSkip ? 1 : 0);
+    EXPECT_EQ(active_.run.touches_made(), place);
+    status.enter(State::kExecute);
+  }
+  controller.on_touch = [this](const cs8::Touch&) { return contact(); };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(active_.run.touches_done(), 2);
+}
+
 TEST_F(TouchExecutorAnswers, AControllerThatCountsOtherwiseOrIsBusyHoldsTheRunAndIsMetAnew) {
   for (const auto reason : {cs8::RejectReason::kBusy, cs8::RejectReason::kStaleSequence}) {
     controller.on_touch = [reason](const cs8::Touch&) { return cs8::Rejected{reason, 0}; };

@@ -25,6 +25,25 @@ class TouchesBesidePlan : public ExecutorBench {
     run(touches_.make_next_touch(active));
     mend_store();
   }
+  /// A contact on the line of the search, further from that of the plan's own touch than drift explains.
+  [[nodiscard]] cs8::TouchResult biased_contact(const cs8::Touch& command) const {
+    cs8::TouchResult biased = contact();
+    for (std::size_t i = 0; i < biased.contact.size(); ++i)
+      biased.contact[i] += (command.approach[i] - biased.contact[i]) / 20;
+    biased.first_contact = biased.contact;
+    return biased;
+  }
+  /// The controller's application is started anew: what it had not been thanked for it has forgotten.
+  void start_controller_anew(const ActiveRun& active) {
+    controller.on_connect = [number = session.number() + 1] {
+      cs8::Welcome welcome;
+      welcome.session = number;
+      return welcome;
+    };
+    run(session.connect(false));
+    confirm(static_cast<std::uint32_t>(active.run.id()));
+    status.enter(State::kExecute);
+  }
 };
 
 TEST_F(TouchesBesidePlan, AnAnswerThatWasLostIsAskedForAndItsTouchCountsOnce) {
@@ -173,6 +192,28 @@ TEST_F(TouchesBesidePlan, AContactThatItsRunCouldNotStoreIsNotForgottenWithTheRu
   EXPECT_EQ(refused_results(store, active.run.id())[0].joints, made.contact);
   EXPECT_EQ(acknowledged_count(), before + 1);
   EXPECT_EQ(session.sequence_to_settle(), 0u);
+}
+
+TEST_F(TouchesBesidePlan, AContactThatIsNoReferenceIsKeptThoughTheControllerForgetsIt) {
+  ActiveRun active = begun_run("edf-25");
+  touch_until_the_reference_is_due(active);
+  cs8::TouchResult made;
+  controller.on_touch = [&](const cs8::Touch& command) { return made = biased_contact(command); };
+  const std::uint32_t before = session.number();
+  touch_at_a_broken_store(active);
+  ASSERT_EQ(status.latest().warning.value().code, FaultCode::kFirstTouchBiased);
+  EXPECT_EQ(status.state(), State::kHolding) << "it is not on the disk";
+  EXPECT_THAT(refused_results(store, active.run.id()), ::testing::IsEmpty());
+
+  start_controller_anew(active);
+  controller.on_touch = [this](const cs8::Touch&) { return contact(); };
+  run(touches_.make_next_touch(active));
+  const auto kept = refused_results(store, active.run.id());
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].session, before);
+  EXPECT_EQ(kept[0].joints, made.contact);
+  EXPECT_THAT(kept[0].reason, ::testing::HasSubstr(describe(FaultCode::kFirstTouchBiased).cause));
+  EXPECT_EQ(store.references(active.run.id()).size(), 1U) << "the place is touched again";
 }
 
 TEST_F(TouchesBesidePlan, ARunThatBeginsForgetsNoContactOfTheOneBefore) {

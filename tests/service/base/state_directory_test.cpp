@@ -73,8 +73,11 @@ TEST(StateDirectory, IsNotOneThatOthersMayWriteIn) {
     std::filesystem::permissions(folder.path(), others);
     EXPECT_EQ(refusal(demand_closed_directory, folder.path()),
               "--state " + folder.path().string() +
-                  ": others than its owner may write into it; look at what is there, then chmod 700 " +
-                  folder.path().string());
+                  ": others than its owner may write into it, and could put a token there; look at what is "
+                  "there, then chmod 700 " +
+                  folder.path().string() +
+                  "; where its mount decides the rights, mount it for this user alone (dir_mode=0700, no "
+                  "fsGroup), or name another");
   }
 }
 

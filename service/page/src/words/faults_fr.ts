@@ -110,7 +110,7 @@ export const kFaultsFr: Record<string, FaultWords> = {
   task_failed: words('une tâche de l’application de la baie s’est terminée', kStopped,
     `notez le numéro d’erreur, arrêtez et relancez l’application au boîtier et dégagez le bras du bloc, ${kResumeBroken}`),
   touch_deadline: words('un palpage a duré plus que son délai', 'le bras a été arrêté et se tient où il était',
-    `vérifiez la pause et la vitesse moniteur, ${kAnew}`),
+    'vérifiez la pause et la vitesse moniteur, puis touchcal resume pour refaire ce palpage, touchcal skip pour le laisser de côté, ou touchcal stop ; en ABORTED touchcal clear, puis touchcal reset'),
   implausible_touch: words('le contact rapporté ne peut être celui du palpage demandé', 'le bras se tient où il a fini le palpage ou y a été retenu ; rien n’a été enregistré',
     `vérifiez que le fichier du bras de la cellule est celui de ce bras, ${kAnew}`),
   no_safe_way: words('aucun chemin libre d’obstacles ne mène de la posture du bras à la suivante', kStill,

@@ -4,6 +4,9 @@
 
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <nlohmann/json.hpp>
 
 #include "tests/service/http/test_tokens.hpp"
@@ -54,6 +57,21 @@ class EventStreams : public ::testing::Test {
     return [this](std::int64_t run) -> boost::asio::awaitable<std::optional<StoredRun>> {
       co_return quiet_.store().run(run);
     };
+  }
+  /// A disk that answers when the timer is cancelled.
+  static boost::asio::awaitable<std::optional<StoredRun>> read_late(RunStore& store, std::int64_t run,
+                                                                    boost::asio::steady_timer& disk) {
+    boost::system::error_code cancelled;
+    co_await disk.async_wait(boost::asio::redirect_error(boost::asio::use_awaitable, cancelled));
+    co_return store.run(run);
+  }
+  /// Until the stream has something to tell, or has waited as long as it may.
+  void wait_for(EventStream& stream) {
+    bool is_over = false;
+    boost::asio::co_spawn(quiet_.context(), stream.wait(),
+                          [&](const std::exception_ptr&) { is_over = true; });
+    quiet_.context().restart();
+    while (!is_over) quiet_.context().run_one();
   }
   static HttpRequest local(std::optional<std::string> last_event_id = std::nullopt) {
     return {.last_event_id = std::move(last_event_id), .from_loopback = true};
@@ -142,6 +160,45 @@ TEST_F(EventStreams, OfARunEndWithItsDocument) {
   EXPECT_TRUE(stream.ended());
   EXPECT_TRUE(EventStream::is_over(events[0].id));
   EXPECT_FALSE(EventStream::is_over(id_of(1)));
+}
+
+TEST_F(EventStreams, OfARunShowThatTheyLiveWhileItsEndIsReadFromASlowDisk) {
+  boost::asio::steady_timer disk(quiet_.context(), boost::asio::steady_timer::time_point::max());
+  const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+  int look_ups = 0;
+  const RunLookUp slow = [&](std::int64_t of) {
+    ++look_ups;
+    return read_late(quiet_.store(), of, disk);
+  };
+  EventStream stream(services_, run, local(), slow, std::chrono::milliseconds(1));
+  EXPECT_NE(stream.due(), "");
+  for (int i = 0; i < 3; ++i) {
+    wait_for(stream);
+    EXPECT_EQ(stream.due(), "") << "which is told as a comment";
+    EXPECT_FALSE(stream.ended());
+  }
+  EXPECT_EQ(look_ups, 1) << "the disk is asked once";
+  quiet_.store().finish_run(
+      run, {.outcome = RunOutcome::kStopped, .verdict = Verdict::kIncomplete, .ended_at = "end"});
+  disk.cancel();
+  wait_for(stream);
+  ASSERT_EQ(parsed(stream.due()).size(), 1u);
+  EXPECT_TRUE(stream.ended());
+}
+
+TEST_F(EventStreams, WhoseClientHasGoneCountAsOpenUntilTheDiskAnswers) {
+  boost::asio::steady_timer disk(quiet_.context(), boost::asio::steady_timer::time_point::max());
+  const std::int64_t run = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+  const RunLookUp slow = [&](std::int64_t of) { return read_late(quiet_.store(), of, disk); };
+  {
+    EventStream stream(services_, run, local(), slow, std::chrono::milliseconds(1));
+    wait_for(stream);
+  }
+  EXPECT_EQ(EventStream::open_count(services_), 1) << "else a disk that hangs had one look-up more for each";
+  disk.cancel();
+  quiet_.context().restart();
+  quiet_.context().poll();
+  EXPECT_EQ(EventStream::open_count(services_), 0);
 }
 
 TEST_F(EventStreams, EndWithTheirTokenAndOthersGoOn) {
