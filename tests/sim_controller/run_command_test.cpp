@@ -196,7 +196,7 @@ TEST(RunCommand, ASwitchOfS5RoundsAndTakesTheLastOfEqualCases) {
     val3::ProjectFolder folder;
     val3::write_old_project(folder, "app", data, {{"start", code}}, version);
     const SmallRun ran = run_small(folder.path() / "app" / "app.pjx", "0.1 expect-number n " + taken + "\n");
-    EXPECT_EQ(ran.code, kRan) << version << ran.out << ran.error;
+    EXPECT_EQ(ran.code, kRanWell) << version << ran.out << ran.error;
   }
 }
 

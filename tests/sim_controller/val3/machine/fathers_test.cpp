@@ -38,7 +38,7 @@ TEST(Fathers, APointOfACallIsInAFrameOfThatCall) {
 }
 
 TEST(Fathers, AGlobalIsNotLinkedToALocal) {
-  for (const std::string link : {"link(pG,x_f)", "link(pG,l_f)", "link(fG,l_f)"}) {
+  for (const std::string& link : std::vector<std::string>{"link(pG,x_f)", "link(pG,l_f)", "link(fG,l_f)"}) {
     SmallProject project;
     with_call(project, link).program("start", "call call(fG)\nwait(false)");
     EXPECT_EQ(status_of(project), kLinkedToLocal) << link;
@@ -47,7 +47,7 @@ TEST(Fathers, AGlobalIsNotLinkedToALocal) {
 
 TEST(Fathers, APointThatHasAFrameOfACallThatIsOverHasNone) {
   // Small calls are kept for the next, large ones and those of a deep recursion are not.
-  for (const std::string more : {std::string(), SmallProject::local("l_n", "num", 3000)}) {
+  for (const std::string& more : {std::string(), SmallProject::local("l_n", "num", 3000)}) {
     SmallProject project;
     with_call(project, "link(l_p,l_f)\npG=l_p", more);
     project.program("start", "call call(fG)\nn[0]=distance(pG,pG[1])\nwait(false)").stack(1'000'000);
