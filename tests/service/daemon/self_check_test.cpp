@@ -30,7 +30,7 @@ std::map<std::string, std::pair<std::string, fs::file_time_type>> contents_of(co
 
 class SelfCheckTest : public ::testing::Test {
  protected:
-  SelfCheckTest() { fs::create_directory(state_); }
+  SelfCheckTest() { make_directory_of_owner(state_); }
 
   /// Looks at the state directory, which stays as it is.
   SelfCheck check() const {
@@ -52,7 +52,7 @@ class SelfCheckTest : public ::testing::Test {
   /// What a daemon leaves that is killed: its log and the index of that.
   void leave_as_killed() const {
     const fs::path served = folder_.path() / "served";
-    fs::create_directory(served);
+    make_directory_of_owner(served);
     RunStore store(served / kStoreFile);
     store.begin_run({.recipe = "edf-25", .started_at = "start"});
     fs::copy(served, state_);
