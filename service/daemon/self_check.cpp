@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <functional>
 #include <stdexcept>
 #include <system_error>
@@ -45,17 +46,38 @@ void check_state(const fs::path& directory) {
   }
 }
 
+/// Rows of a database that are damaged and told one by one; the rest is counted.
+constexpr std::size_t kDamageToldMax = 10;
+
+void remark_damage(const fs::path& file, const std::vector<std::string>& damage, SelfCheck& check) {
+  if (damage.empty()) return;
+  for (std::size_t i = 0; i < std::min(damage.size(), kDamageToldMax); ++i)
+    check.remarks.push_back(fmt::format("{}: {}", file.string(), damage[i]));
+  const std::size_t untold = damage.size() - std::min(damage.size(), kDamageToldMax);
+  check.remarks.push_back(
+      fmt::format("{}: damaged{}: a daemon starts and does not tell what is damaged; restore the last backup "
+                  "(touchcald --verify lists all damage)",
+                  file.string(), untold > 0 ? fmt::format(", also in {} more places", untold) : ""));
+}
+
 /// One that is missing or empty is new, or lost: refuse_lost_store() tells which.
 void check_store(const fs::path& file, SelfCheck& check) {
   std::error_code missing;
   const auto bytes = fs::file_size(file, missing);
   if (missing || bytes == 0) return;
   try {
-    if (const auto damage = find_damage_without_trace(file))
-      check.bad_files.push_back(fmt::format(
-          "{}: {}; restore the last backup (touchcald --verify lists all damage)", file.string(), *damage));
+    const StoreLook look = look_without_trace(file);
+    if (look.unusable)
+      check.bad_files.push_back(
+          fmt::format("{}: {}; restore the last backup (touchcald --verify lists all damage)", file.string(),
+                      *look.unusable));
+    remark_damage(file, look.damage, check);
+    if (!look.is_whole)
+      check.not_looked_at =
+          fmt::format("the rows of {} ({} MB), which touchcald --verify checks", file.string(), bytes >> 20);
   } catch (const StoreLogNotRead& unread) {
     check.remarks.emplace_back(unread.what());
+    check.not_looked_at = fmt::format("{}, which touchcald --verify checks", file.string());
   }
 }
 

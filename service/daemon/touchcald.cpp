@@ -61,14 +61,16 @@ int keep_state(const std::filesystem::path& database, const std::string& backup,
   return cell::kExitDone;
 }
 
-/// Reports everything that prevents a start.
+/// Reports everything that prevents a start. The last line says what was not looked at.
 cell::ExitCode tell_check(const std::string& cell_file, const cell::SelfCheck& check) {
   for (const std::string& line : check.bad_files) std::cerr << line << '\n';
   for (const std::string& line : check.troubles) std::cerr << line << '\n';
   for (const std::string& line : check.remarks) std::cout << line << '\n';
   if (!check.bad_files.empty()) return cell::kExitBadInput;
   if (!check.troubles.empty()) return cell::kExitFailed;
-  std::cout << cell_file << ": cell " << check.cell_name << " is in order\n";
+  std::cout << cell_file << ": cell " << check.cell_name << " is in order";
+  if (!check.not_looked_at.empty()) std::cout << "; not looked at: " << check.not_looked_at;
+  std::cout << '\n';
   return cell::kExitDone;
 }
 

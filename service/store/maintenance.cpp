@@ -162,11 +162,51 @@ void demand_known_schema(SQLite::Database& database, const std::filesystem::path
                         "); verify it with that version");
 }
 
-std::optional<std::string> damage_by_a_look(const std::filesystem::path& file) try {
+/// The damage of a database that is open, one line each.
+void find_damage_in(SQLite::Database& database, const std::filesystem::path& file,
+                    std::vector<std::string>& damage) {
+  if (auto lost = find_log_damage(file)) damage.push_back(*std::move(lost));
+  SQLite::Statement integrity(database, "PRAGMA integrity_check");
+  while (integrity.executeStep()) {
+    if (const std::string line = integrity.getColumn(0).getString(); line != "ok") damage.push_back(line);
+  }
+  SQLite::Statement orphans(database, "PRAGMA foreign_key_check");
+  while (orphans.executeStep()) {
+    damage.push_back("table " + orphans.getColumn(0).getString() + ": a row belongs to no " +
+                     orphans.getColumn(2).getString());
+  }
+  find_damaged_rows(database, damage);
+  SQLite::Statement touches(database, impossible_touches());
+  while (touches.executeStep()) {
+    damage.push_back("run " + touches.getColumn(0).getString() + ", touch " +
+                     touches.getColumn(1).getString() + ": not a touch");
+  }
+  std::ranges::move(find_audit_damage(database), std::back_inserter(damage));
+}
+
+std::uintmax_t bytes_with_log(const std::filesystem::path& file) {
+  std::uintmax_t sum = 0;
+  for (const char* behind : {"", "-wal"}) {
+    std::error_code missing;
+    const auto bytes = std::filesystem::file_size(file.string() + behind, missing);
+    if (!missing) sum += bytes;
+  }
+  return sum;
+}
+
+/// In one transaction: a daemon may write meanwhile.
+StoreLook looked_at(const std::filesystem::path& file, std::uintmax_t whole_up_to) try {
   SQLite::Database database = open_without_trace(file);
   demand_known_schema(database, file);
+  const SQLite::Transaction as_of_now(database);
+  StoreLook look{.unusable = {}, .damage = {}, .is_whole = bytes_with_log(file) <= whole_up_to};
   const std::string found = database.execAndGet("PRAGMA quick_check(1)").getString();
-  return found == "ok" ? std::nullopt : std::optional(found);
+  if (found != "ok") {
+    look.unusable = found;
+  } else if (look.is_whole) {
+    find_damage_in(database, file, look.damage);
+  }
+  return look;
 } catch (const StoreNotChecked&) {
   throw;
 } catch (const SQLite::Exception& error) {
@@ -174,9 +214,9 @@ std::optional<std::string> damage_by_a_look(const std::filesystem::path& file) t
   if (code == SQLITE_CANTOPEN)
     throw StoreNotChecked(file.string() + ": cannot be read by this user; make it this user's own");
   if (!is_damage(error)) throw not_looked_at(file, error.what());
-  return error.what();
+  return {.unusable = error.what(), .damage = {}};
 } catch (const std::exception& error) {
-  return error.what();
+  return {.unusable = error.what(), .damage = {}};
 }
 
 }  // namespace
@@ -241,23 +281,7 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
   try {
     SQLite::Database database = open_to_check(database_file);
     demand_known_schema(database, database_file);
-    if (auto lost = find_log_damage(database_file)) damage.push_back(*std::move(lost));
-    SQLite::Statement integrity(database, "PRAGMA integrity_check");
-    while (integrity.executeStep()) {
-      if (const std::string line = integrity.getColumn(0).getString(); line != "ok") damage.push_back(line);
-    }
-    SQLite::Statement orphans(database, "PRAGMA foreign_key_check");
-    while (orphans.executeStep()) {
-      damage.push_back("table " + orphans.getColumn(0).getString() + ": a row belongs to no " +
-                       orphans.getColumn(2).getString());
-    }
-    find_damaged_rows(database, damage);
-    SQLite::Statement touches(database, impossible_touches());
-    while (touches.executeStep()) {
-      damage.push_back("run " + touches.getColumn(0).getString() + ", touch " +
-                       touches.getColumn(1).getString() + ": not a touch");
-    }
-    std::ranges::move(find_audit_damage(database), std::back_inserter(damage));
+    find_damage_in(database, database_file, damage);
   } catch (const StoreNotChecked&) {
     throw;
   } catch (const std::exception& error) {
@@ -266,13 +290,13 @@ std::vector<std::string> find_damage(const std::filesystem::path& database_file)
   return damage;
 }
 
-std::optional<std::string> find_damage_without_trace(const std::filesystem::path& database_file) {
+StoreLook look_without_trace(const std::filesystem::path& database_file, std::uintmax_t whole_up_to) {
   const bool had_log = has_log(database_file);
-  auto damage = damage_by_a_look(database_file);
+  StoreLook look = looked_at(database_file, whole_up_to);
   // Without a log it is read as if nobody wrote, and a daemon may have begun to.
-  if (damage && !had_log && has_log(database_file))
+  if ((look.unusable || !look.damage.empty()) && !had_log && has_log(database_file))
     throw not_looked_at(database_file, "it was written to meanwhile");
-  return damage;
+  return look;
 }
 
 std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database) {

@@ -45,11 +45,21 @@ class StoreLogNotRead : public StoreNotChecked {
   using StoreNotChecked::StoreNotChecked;
 };
 
-/// What would keep a daemon from opening the file, one line; nothing where it can. A part of what
-/// find_damage() sees, that of every start: whether it is a database, and its pages. Changes no file and
-/// makes none, also beside a running daemon; StoreLogNotRead where that cannot be done, StoreNotChecked for a
-/// file of a newer version.
-std::optional<std::string> find_damage_without_trace(const std::filesystem::path& database_file);
+/// Of a larger database, with its log, look_without_trace() looks at the pages only: it stands in the way of
+/// every start of the service. The rows of so much take a processor about a second.
+inline constexpr std::uintmax_t kLookedAtBytesMax = 64ULL * 1024 * 1024;
+
+/// What is wrong with a database, as far as it was looked at.
+struct StoreLook {
+  std::optional<std::string> unusable;  // why a daemon cannot open it: it is no database, or its pages
+  std::vector<std::string> damage;      // the rest of what find_damage() sees; a daemon starts all the same
+  bool is_whole = true;                 // false: for more than `unusable` it is too large
+};
+
+/// Changes no file and makes none, also beside a running daemon; StoreLogNotRead where that cannot be done,
+/// StoreNotChecked for a file of a newer version. `whole_up_to`: bytes.
+StoreLook look_without_trace(const std::filesystem::path& database_file,
+                             std::uintmax_t whole_up_to = kLookedAtBytesMax);
 
 /// Free bytes on the disk of the database; nothing where its directory is no longer there.
 std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database);

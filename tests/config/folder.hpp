@@ -41,6 +41,12 @@ class Folder {
   std::filesystem::path path_;
 };
 
+/// A directory that only its owner may enter, as a daemon makes it, whatever the mask of the test is.
+inline void make_directory_of_owner(const std::filesystem::path& directory) {
+  std::filesystem::create_directories(directory);
+  std::filesystem::permissions(directory, std::filesystem::perms::owner_all);
+}
+
 /// The ConfigError that `action` ends in; the test fails when it ends in none.
 inline ConfigError error_of(const std::function<void()>& action) {
   try {

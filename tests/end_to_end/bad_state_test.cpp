@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 class BadState : public ::testing::Test {
  protected:
   BadState() {
-    fs::create_directories(state_ / cell::kOperatorsDirectory);
+    folder_.directory("state/" + std::string(cell::kOperatorsDirectory));
     {
       cell::RunStore store(state_ / cell::kStoreFile);
       for (int run = 0; run < 3; ++run) {

@@ -132,7 +132,7 @@ TEST_F(CommandLine, CheckTellsAllThatIsWrongAtOnceAndChangesNothing) {
   EXPECT_THAT(good.out, HasSubstr("demo is in order"));
   EXPECT_FALSE(std::filesystem::exists(state));
 
-  std::filesystem::create_directory(state);
+  folder_.directory("state");
   std::ofstream(state / "operate.token") << "for all to read\n";
   std::filesystem::permissions(state / "operate.token", std::filesystem::perms(0644));
   const Finished open = run({"touchcald", "--check", "--cell", cell_file("demo"), "--state", state.string(),
@@ -163,8 +163,7 @@ TEST_F(CommandLine, CheckLooksAtWhatADaemonHasAlsoWhileItRuns) {
 }
 
 TEST_F(CommandLine, AnEmptyDatabaseOfAStateDirectoryThatWasInUseIsNoNewOne) {
-  const auto state = folder_ / "state";
-  std::filesystem::create_directory(state);
+  const auto state = folder_.directory("state");
   std::ofstream(state / "touchcal.sqlite").close();
   std::ofstream(state / "touchcal.begun") << "by an earlier daemon";
   for (const auto& [how, exit_code] : {std::pair("--check", cell::kExitBadInput),  // it is damage
@@ -204,8 +203,7 @@ TEST_F(CommandLine, AStateDirectoryThatIsADeadLinkIsToldWithTheRemedy) {
 }
 
 TEST_F(CommandLine, AStateDirectoryThatOthersMayWriteInKeepsTheDaemonFromStarting) {
-  const auto state = folder_ / "state";
-  std::filesystem::create_directory(state);
+  const auto state = folder_.directory("state");
   std::filesystem::permissions(state, std::filesystem::perms(0777));
   for (const char* how : {"--check", "--loopback-needs-token"}) {
     const Finished refused = run({"touchcald", how, "--cell", cell_file("demo"), "--state", state.string(),

@@ -25,6 +25,17 @@ class Folder {
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  /// One in it that only its owner may enter, with all on the way to it, as a daemon makes its own, whatever
+  /// the mask of the test is.
+  std::filesystem::path directory(const std::string& name) const {
+    std::filesystem::path made = path_;
+    for (const std::filesystem::path& step : std::filesystem::path(name)) {
+      made /= step;
+      std::filesystem::create_directory(made);
+      std::filesystem::permissions(made, std::filesystem::perms::owner_all);
+    }
+    return made;
+  }
 
  private:
   std::filesystem::path path_;

@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 class NamedTokens : public ::testing::Test {
  protected:
   NamedTokens() {
-    std::filesystem::create_directories(state_ / "operators");
+    folder_.directory("state/operators");
     write("anna", std::string(64, '1'));
     write("bert", std::string(64, '2'));
   }

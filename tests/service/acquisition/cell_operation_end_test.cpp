@@ -90,6 +90,35 @@ TEST_F(EndedRunTest, AnAnswerThatCannotBeStoredIsKeptByTheControllerUntilItCan) 
   EXPECT_EQ(store_.touches(id).size(), 1u);
 }
 
+TEST_F(EndedRunTest, AGuidedStartBesideItsAnswerTakesItForNoTouchOfItsOwn) {
+  on_ended_ = [this] {
+    store_.database()->exec(
+        "CREATE TRIGGER broken BEFORE INSERT ON touches BEGIN SELECT RAISE(ABORT, 'scripted'); END");
+  };
+  const std::int64_t id = start_few();
+  run_until_asked("query 1");
+  EXPECT_FALSE(operation_.command(Command::kClear));
+  run_until([&] { return operation_.status().state == State::kStopped; });
+  store_.database()->exec("DROP TRIGGER broken");
+  EXPECT_FALSE(operation_.command(Command::kAcknowledge));
+  std::optional<std::variant<Started, CommandRefusal>> answer;
+  controller_->on_query = [&](std::uint32_t) {
+    boost::asio::co_spawn(io_, operation_.start({.recipe = "few", .guided = true}),
+                          [&](const std::exception_ptr&, const std::variant<Started, CommandRefusal>& given) {
+                            answer = given;
+                          });
+    return contact_of(0);
+  };
+  EXPECT_FALSE(operation_.command(Command::kReset));
+  run_until([&] { return answer.has_value(); });
+  const CommandRefusal refusal = std::get<CommandRefusal>(*answer);
+  EXPECT_EQ(refusal.unmet.empty() ? "" : refusal.unmet.front().code, "");
+  EXPECT_THAT(refusal.detail, ::testing::HasSubstr("still to be stored"));
+  run_until_asked("acknowledge 1");
+  EXPECT_EQ(store_.touches(id).size(), 1u) << "it is of the run that asked for it";
+  EXPECT_EQ(store_.runs(10).size(), 1u);
+}
+
 TEST_F(EndedRunTest, ARunOnHoldTakesItTooAndTheTimeThatIsLeftIsThatOfItsWork) {
   ends_by_ = Command::kPause;
   start_few();

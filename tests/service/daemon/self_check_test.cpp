@@ -30,7 +30,7 @@ std::map<std::string, std::pair<std::string, fs::file_time_type>> contents_of(co
 
 class SelfCheckTest : public ::testing::Test {
  protected:
-  SelfCheckTest() { fs::create_directory(state_); }
+  SelfCheckTest() { make_directory_of_owner(state_); }
 
   /// Looks at the state directory, which stays as it is.
   SelfCheck check() const {
@@ -45,6 +45,7 @@ class SelfCheckTest : public ::testing::Test {
     EXPECT_THAT(found.bad_files, IsEmpty());
     EXPECT_THAT(found.troubles, IsEmpty());
     EXPECT_THAT(found.remarks, IsEmpty());
+    EXPECT_EQ(found.not_looked_at, "");
     EXPECT_EQ(found.cell_name, "edf");
   }
   /// A database with a run, closed as at the end of a daemon.
@@ -52,7 +53,7 @@ class SelfCheckTest : public ::testing::Test {
   /// What a daemon leaves that is killed: its log and the index of that.
   void leave_as_killed() const {
     const fs::path served = folder_.path() / "served";
-    fs::create_directory(served);
+    make_directory_of_owner(served);
     RunStore store(served / kStoreFile);
     store.begin_run({.recipe = "edf-25", .started_at = "start"});
     fs::copy(served, state_);
@@ -95,6 +96,22 @@ TEST_F(SelfCheckTest, ALogThatCannotBeReadWithoutATraceIsLeftAloneAndSaidSo) {
                                                HasSubstr("touchcald --verify"))));
   EXPECT_THAT(found.bad_files, IsEmpty());
   EXPECT_THAT(found.troubles, IsEmpty()) << "it keeps no daemon from starting";
+  EXPECT_THAT(found.not_looked_at, HasSubstr(file_.string()));
+}
+
+TEST_F(SelfCheckTest, ADamagedRowIsToldAndKeepsNoDaemonFromStarting) {
+  {
+    RunStore store(file_);
+    const std::int64_t run = store.begin_run({.recipe = "edf-25", .started_at = "start"});
+    for (int touch = 1; touch <= 30; ++touch) store.append_touch(run, {.number = touch, .plane = 1});
+    store.database()->exec("UPDATE touches SET plane = 2 WHERE number >= 3");
+  }
+  const SelfCheck found = check();
+  EXPECT_THAT(found.bad_files, IsEmpty());
+  EXPECT_THAT(found.troubles, IsEmpty());
+  ASSERT_EQ(found.remarks.size(), 11u) << "ten places, and one line with the remedy";
+  EXPECT_THAT(found.remarks.front(), HasSubstr(file_.string() + ": table touches, run 1, number 3"));
+  EXPECT_THAT(found.remarks.back(), AllOf(HasSubstr("18 more places"), HasSubstr("restore the last backup")));
 }
 
 TEST_F(SelfCheckTest, ADirectoryThatOthersMayWriteInIsRefusedWithTheRemedy) {

@@ -192,6 +192,20 @@ TEST_F(StoreMaintenance, ADatabaseWithWrittenOverPagesIsTold) {
   EXPECT_FALSE(find_damage(folder_.path() / "gone.sqlite").empty());
 }
 
+TEST_F(StoreMaintenance, ALookSeesDamagedRowsUpToASizeAndSaysWhereItDidNotLook) {
+  add_run("start", Verdict::kAccepted);
+  EXPECT_THAT(look_without_trace(file_).damage, IsEmpty());
+  store_.database()->exec("UPDATE touches SET plane = 2");
+  const StoreLook look = look_without_trace(file_);
+  EXPECT_FALSE(look.unusable);
+  EXPECT_TRUE(look.is_whole);
+  EXPECT_EQ(look.damage, find_damage(file_));
+  EXPECT_THAT(look.damage, ElementsAre(HasSubstr("table touches, run 1, number 1")));
+  const StoreLook brief = look_without_trace(file_, std::filesystem::file_size(file_));
+  EXPECT_FALSE(brief.is_whole) << "its log counts";
+  EXPECT_THAT(brief.damage, IsEmpty());
+}
+
 TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRunningOneStay) {
   const std::int64_t old = add_run("2026-01-01", Verdict::kAccepted);
   const std::int64_t accepted = add_run("2026-01-02", Verdict::kAccepted);
