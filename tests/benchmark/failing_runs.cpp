@@ -3,10 +3,13 @@
 // A start with an empty state directory, a start behind a kill, a touch, the end at SIGTERM. What the
 // controller answered is held against the store, results against that of an undisturbed run; whoever ends has
 // said why, and the next daemon is ready in a second.
-//   failing_runs steps [EACH [SEED]]    so many places of each kind of call in each step, evenly; all: 0
+//   failing_runs steps [EACH [CALL [PART PARTS]]]   of each kind of call in each step the first so many, the
+//     last so many, and as many between; all: 0. Of one kind of call, or `all`. PART of PARTS, from 1: for
+//     several programs side by side
 //   failing_runs drawn [COUNT [SEED]]   so many by lot over whole runs; 1,000
 //   failing_runs one STEP CALL AT [COUNT]   the same place again and again, each in a run of its own; once.
-//     STEP: first_start, start, touch, end; CALL: allocation, write, short_write, sync, kill
+//     STEP: first_start, start, touch, end; CALL: allocation, write, short_write, sync, kill; an AT below 0
+//     counts from the last call that an undisturbed step makes, which is -1
 #include <algorithm>
 #include <array>
 #include <csignal>
@@ -14,6 +17,7 @@
 #include <filesystem>
 #include <optional>
 #include <random>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -35,7 +39,13 @@ constexpr std::array kStepNames{"first start", "start", "touch", "end"};
 constexpr std::array kCalls{FailingCall::kAllocation, FailingCall::kWrite, FailingCall::kShortWrite,
                             FailingCall::kSync, FailingCall::kKill};
 constexpr std::array kCallNames{"nothing", "allocation", "write", "short write", "sync", "kill in a write"};
-constexpr int kFailuresInARun = 5;                 // of those by lot
+constexpr std::array<std::string_view, kSteps.size()> kStepWords{"first_start", "start", "touch", "end"};
+constexpr std::array<std::string_view, kCalls.size()> kCallWords{"allocation", "write", "short_write", "sync",
+                                                                 "kill"};
+constexpr int kFailuresInARun = 5;  // of those by lot
+/// A run that goes on behind a restart is planned again, which takes longer than all the rest: in `steps`
+/// only one of so many starts and ends is in a touch, and finds the run on hold else.
+constexpr int kRestartsForAPlan = 8;
 constexpr int kTouchesAtOnce = 4;                  // a lot of a touch falls into these
 constexpr std::chrono::seconds kStepPatience{40};  // of a run that neither goes on nor stands
 constexpr int kPauseMs = 2;
@@ -61,13 +71,14 @@ struct Counts {
 
 class FailingRuns {
  public:
-  /// `in_a_run`: a run is gone on with to its end after so many failures.
-  explicit FailingRuns(int in_a_run) : in_a_run_(in_a_run) {
-    for (const Step step : kSteps) {
+  /// `in_a_run`: a run is gone on with to its end after so many failures. `restarts_for_a_plan`: of so many
+  /// starts and ends one is in a touch.
+  explicit FailingRuns(int in_a_run, int restarts_for_a_plan = 1)
+      : in_a_run_(in_a_run), restarts_for_a_plan_(restarts_for_a_plan) {
+    // In this order the fewest daemons have to plan: it is the first start that leaves no run.
+    for (const Step step : {Step::kTouch, Step::kEnd, Step::kStart, Step::kFirstStart}) {
       make({step, FailingCall::kNone, 0});
-      const auto& calls = cell_.calls();
-      Counts& counts = counts_[static_cast<std::size_t>(step)];
-      counts = {calls.allocations, calls.writes, calls.syncs};
+      const Counts& counts = counts_[static_cast<std::size_t>(step)] = made_;
       std::printf("%-11s makes %lld allocations, %lld writes, %lld syncs\n",
                   kStepNames[static_cast<std::size_t>(step)], static_cast<long long>(counts.allocations),
                   static_cast<long long>(counts.writes), static_cast<long long>(counts.syncs));
@@ -156,7 +167,11 @@ class FailingRuns {
     calls.at = failure.at;
     calls.call = failure.call;
   }
-  void disarm() { cell_.calls().call = FailingCall::kNone; }
+  void disarm() {
+    auto& calls = cell_.calls();
+    calls.call = FailingCall::kNone;
+    made_ = {calls.allocations, calls.writes, calls.syncs};  // what the next daemon makes is no part of it
+  }
 
   /// A request whose memory failed has no answer.
   std::optional<json> status() const {
@@ -177,6 +192,9 @@ class FailingRuns {
     has_run_ = true;
   }
 
+  /// Whether this start or end finds the run in a touch.
+  bool is_in_a_touch() { return restarts_++ % restarts_for_a_plan_ == 0; }
+
   /// Sets `act` off with the next touch command; a run on hold is resumed until there is one. False where the
   /// run is over before.
   bool at_next_touch(const std::function<void()>& act) {
@@ -188,7 +206,8 @@ class FailingRuns {
     const auto deadline = Clock::now() + kStepPatience;
     while (!came) {
       if (Clock::now() > deadline) throw std::runtime_error("no touch comes: " + cell_.status().dump());
-      const std::string state = cell_.status().at("state");
+      const auto told = status();  // `act` may have come meanwhile, and what it arms fails for this request
+      const std::string state = told ? told->at("state").get<std::string>() : "";
       if (is_over(state) && !came) break;
       if (state == "HELD") (void)cell_.post("/api/v1/runs/" + runs_.run() + "/resume");
       pause_ms(kPauseMs);
@@ -199,7 +218,7 @@ class FailingRuns {
 
   /// The daemon that is killed in a touch, or has no state, starts.
   void start(const Failure& failure) {
-    if (failure.step == Step::kStart) at_next_touch([] {});
+    if (failure.step == Step::kStart && is_in_a_touch()) at_next_touch([] {});
     cell_.kill_daemon();
     if (failure.step == Step::kFirstStart) std::filesystem::remove_all(cell_.state());
     arm(failure);
@@ -243,7 +262,7 @@ class FailingRuns {
       arm(failure);
       cell_.signal_daemon(SIGTERM);
     };
-    if (!at_next_touch(act)) act();
+    if (!is_in_a_touch() || !at_next_touch(act)) act();
     judge_end(true);
   }
 
@@ -268,49 +287,17 @@ class FailingRuns {
     runs_.restart(tally_);
   }
 
-  const int in_a_run_;
+  const int in_a_run_, restarts_for_a_plan_;
   WatchedRuns runs_{true};
   MeasuredCell& cell_ = runs_.cell();
   Tally tally_;
   std::array<Counts, kSteps.size()> counts_;
+  Counts made_;  // since it was armed last
   std::string now_;
   std::vector<std::string> told_;  // of the run
   bool has_run_ = false;
-  int failed_ = 0, ended_ = 0, untold_ = 0;
+  int failed_ = 0, ended_ = 0, untold_ = 0, restarts_ = 0;
 };
-
-bool fail_in_steps(std::int64_t each) {
-  FailingRuns runs(kWatchedTouches);
-  for (const Step step : kSteps) {
-    for (const FailingCall call : kCalls) {
-      const std::int64_t count = runs.counts(step).of(call);
-      const std::int64_t made = each == 0 ? count : std::min(each, count);
-      for (std::int64_t i = 0; i < made; ++i) runs.make({step, call, 1 + i * count / made});
-      std::printf("%-11s %s: %lld of %lld\n", kStepNames[static_cast<std::size_t>(step)],
-                  kCallNames[static_cast<std::size_t>(call)], static_cast<long long>(made),
-                  static_cast<long long>(count));
-      std::fflush(stdout);
-    }
-  }
-  runs.settle();
-  return runs.print("steps");
-}
-
-bool fail_by_lot(int count, std::uint64_t seed) {
-  std::mt19937_64 chance(seed);
-  FailingRuns runs(kFailuresInARun);
-  for (int i = 0; i < count; ++i) {
-    // Every other one in a touch or those behind it.
-    const std::size_t drawn = std::uniform_int_distribution<std::size_t>(0, 2 * kSteps.size() - 1)(chance);
-    const Step step = drawn < kSteps.size() ? kSteps[drawn] : Step::kTouch;
-    const FailingCall call = kCalls[std::uniform_int_distribution<std::size_t>(0, kCalls.size() - 1)(chance)];
-    const std::int64_t last = std::max<std::int64_t>(1, runs.counts(step).of(call)) *
-                              (step == Step::kTouch ? kTouchesAtOnce - 1 : 1);
-    runs.make({step, call, std::uniform_int_distribution<std::int64_t>(1, last)(chance)});
-  }
-  runs.settle();
-  return runs.print("by lot");
-}
 
 /// Throws what std::stoll throws, and std::invalid_argument for a name that is none.
 template <class Names>
@@ -320,15 +307,79 @@ std::size_t place_in(const Names& names, const std::string& name) {
   return static_cast<std::size_t>(found - names.begin());
 }
 
+struct Part {
+  std::int64_t number = 1, of = 1;
+};
+
+/// Of 1 to `count` the first and the last `each`, and as many between, evenly; all of them: 0.
+std::vector<std::int64_t> places_of(std::int64_t count, std::int64_t each) {
+  std::set<std::int64_t> places;
+  for (std::int64_t i = 1; i <= (each == 0 ? count : std::min(each, count)); ++i) {
+    places.insert(i);
+    places.insert(count + 1 - i);
+    if (each > 0) places.insert(1 + (i - 1) * count / each);
+  }
+  return {places.begin(), places.end()};
+}
+
+bool fail_in_steps(std::int64_t each, const std::optional<FailingCall>& only, const Part& part) {
+  FailingRuns runs(kWatchedTouches, kRestartsForAPlan);
+  for (const Step step : kSteps) {
+    for (const FailingCall call : kCalls) {
+      if (only && call != *only) continue;
+      const std::int64_t count = runs.counts(step).of(call);
+      const std::vector<std::int64_t> places = places_of(count, each);
+      std::size_t made = 0;
+      for (auto i = static_cast<std::size_t>(part.number - 1); i < places.size();
+           i += static_cast<std::size_t>(part.of), ++made)
+        runs.make({step, call, places[i]});
+      std::printf("%-11s %s: %zu of %lld\n", kStepNames[static_cast<std::size_t>(step)],
+                  kCallNames[static_cast<std::size_t>(call)], made, static_cast<long long>(count));
+      std::fflush(stdout);
+    }
+  }
+  runs.settle();
+  return runs.print("steps");
+}
+
+bool fail_in_steps(const std::vector<std::string>& words) {
+  const std::int64_t each = words.empty() ? 0 : std::stoll(words[0]);
+  std::optional<FailingCall> only;
+  if (words.size() > 1 && words[1] != "all") only = kCalls.at(place_in(kCallWords, words[1]));
+  Part part;
+  if (words.size() > 3) part = {std::stoll(words[2]), std::stoll(words[3])};
+  if (each < 0 || part.number < 1 || part.number > part.of)
+    throw std::invalid_argument("give EACH from 0, PART from 1 to PARTS");
+  return fail_in_steps(each, only, part);
+}
+
+bool fail_by_lot(int count, std::uint64_t seed) {
+  std::mt19937_64 chance(seed);
+  FailingRuns runs(kFailuresInARun);
+  std::vector<Failure> failures;
+  for (int i = 0; i < count; ++i) {
+    // Every other one in a touch or those behind it.
+    const std::size_t drawn = std::uniform_int_distribution<std::size_t>(0, 2 * kSteps.size() - 1)(chance);
+    const Step step = drawn < kSteps.size() ? kSteps[drawn] : Step::kTouch;
+    const FailingCall call = kCalls[std::uniform_int_distribution<std::size_t>(0, kCalls.size() - 1)(chance)];
+    const std::int64_t last = std::max<std::int64_t>(1, runs.counts(step).of(call)) *
+                              (step == Step::kTouch ? kTouchesAtOnce - 1 : 1);
+    failures.push_back({step, call, std::uniform_int_distribution<std::int64_t>(1, last)(chance)});
+  }
+  // A state directory that is new has no plan, and the planner takes longer than a run: those come together.
+  std::ranges::stable_partition(failures, [](const Failure& one) { return one.step == Step::kFirstStart; });
+  for (const Failure& failure : failures) runs.make(failure);
+  runs.settle();
+  return runs.print("by lot");
+}
+
 bool fail_one(const std::vector<std::string>& words) {
-  constexpr std::array<std::string_view, kSteps.size()> kStepWords{"first_start", "start", "touch", "end"};
-  constexpr std::array<std::string_view, kCalls.size()> kCallWords{"allocation", "write", "short_write",
-                                                                   "sync", "kill"};
   if (words.size() < 3) throw std::invalid_argument("give STEP CALL AT [COUNT]");
-  const Failure failure{kSteps.at(place_in(kStepWords, words[0])), kCalls.at(place_in(kCallWords, words[1])),
-                        std::stoll(words[2])};
+  Failure failure{kSteps.at(place_in(kStepWords, words[0])), kCalls.at(place_in(kCallWords, words[1])),
+                  std::stoll(words[2])};
   const int count = words.size() > 3 ? std::stoi(words[3]) : 1;
   FailingRuns runs(1);
+  if (failure.at < 0) failure.at += runs.counts(failure.step).of(failure.call) + 1;
   for (int i = 0; i < count; ++i) runs.make(failure);
   runs.settle();
   return runs.print("one");
@@ -340,9 +391,9 @@ bool fail_one(const std::vector<std::string>& words) {
 int main(int argc, char** argv) {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // what came before is seen where it ends by a hang
   const std::string what = argc > 1 ? argv[1] : "drawn";
-  const std::uint64_t seed = what != "one" && argc > 3 ? std::stoull(argv[3]) : 1;
+  const std::uint64_t seed = what == "drawn" && argc > 3 ? std::stoull(argv[3]) : 1;
   try {
-    if (what == "steps") return bench::fail_in_steps(argc > 2 ? std::stoll(argv[2]) : 0) ? 0 : 1;
+    if (what == "steps") return bench::fail_in_steps({argv + 2, argv + argc}) ? 0 : 1;
     if (what == "drawn") return bench::fail_by_lot(argc > 2 ? std::stoi(argv[2]) : 1'000, seed) ? 0 : 1;
     if (what == "one") return bench::fail_one({argv + 2, argv + argc}) ? 0 : 1;
     std::fprintf(stderr, "failing_runs: there is no '%s'; give steps, drawn or one\n", what.c_str());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "tests/service/planned_touch.hpp"
 
@@ -52,6 +53,22 @@ TEST(TouchJudgement, AProbeOfUnknownOvertravelIsNotJudgedByIt) {
     result.overtravel_dmm = cs8::dmm_from_metres(0.001);
     EXPECT_EQ(judge_touch(cell, planned_touch(), result, {}).next, bend_m > 0.0 ? Next::kFault : Next::kKeep);
   }
+}
+
+TEST(TouchJudgement, WhatTheStylusBendsIsAllowedAndMoreEndsTheRun) {
+  Cell cell = edf();
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.overtravel_dmm = 50;
+  cell.probe.overtravel_m = cs8::metres_from_dmm(result.overtravel_dmm);
+  EXPECT_EQ(judge_touch(cell, planned_touch(), result, {}).next, Next::kKeep) << "the limit itself";
+  ++result.overtravel_dmm;
+  EXPECT_EQ(judge_touch(cell, planned_touch(), result, {}).event, Event::kAbortFault);
+}
+
+TEST(TouchJudgement, AnAnswerThatCannotBeTrueEndsTheRun) {
+  cs8::TouchResult result = contact({0, 0, 0});
+  result.edges = 0;
+  EXPECT_EQ(judge_touch(edf(), planned_touch(), result, {}).event, Event::kAbortFault);
 }
 
 TEST(ContactSpread, LiesBetweenTwoContactsWhereBothWereMade) {
@@ -176,6 +193,7 @@ TEST(PlanFault, ATouchWithoutLengthOrNumberIsNamed) {
   EXPECT_FALSE(plan_fault(touches));
   touches[1].search_end_joints = touches[1].approach_joints;
   EXPECT_EQ(plan_fault(touches).value().detail, "touch 2");
+  EXPECT_EQ(plan_fault(touches).value().code, FaultCode::kPlanInvalid);
   touches[0].clear_joints[3] = std::nan("");
   EXPECT_EQ(plan_fault(touches).value().detail, "touch 1");
   for (const auto joints : {&calib::PlannedTouch::clear_joints, &calib::PlannedTouch::approach_joints,
@@ -203,6 +221,10 @@ TEST(StylusFault, ARadiusFarFromThatOfTheFileIsAnotherStylus) {
   EXPECT_TRUE(fault(0.0, 5.1e-4, 1e-4));
   EXPECT_FALSE(fault(1.0, 0.0, std::nullopt)) << "the pre-travel is no radius";
   EXPECT_FALSE(stylus_fault(problem, {})) << "nothing is known unless converged";
+  std::swap(problem.artefact.parameters[0], problem.artefact.parameters[1]);
+  calib::IdentificationResult first;
+  first.artefact_errors = Eigen::Vector2d(1.0, 0.0);
+  EXPECT_TRUE(stylus_fault(problem, first)) << "wherever it stands";
 }
 
 TEST(FaceWarning, NamesTheFacesThatFitWorseThanChanceAllows) {
