@@ -87,6 +87,8 @@ step('TheStateIsLegibleFromThreeMetresAndTheActionIsFoundByItsRole', async () =>
 step('APauseSaysWhoAskedForItAndARunningRunWhyNothingCanBeStarted', async () => {
   await page.keyboard.press('Alt+Digit1');
   await page.getByText('quick', {exact: true}).click();
+  // Planned before it is started: on a busy machine a plan takes longer than a state is waited for.
+  await page.waitForFunction(() => /\d min/.test(document.querySelector('.recipe dl')?.textContent ?? ''));
   await start(page);
   await waitForState(page, 'Running');
   await startButton(page).filter({hasText: 'a run is under way'}).waitFor();
