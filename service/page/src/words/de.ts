@@ -120,7 +120,7 @@ export const de: Words = {
   accuracy: 'Fehler der Spitze',
   conditionNumber: 'Konditionszahl',
   rank: 'Rang',
-  planning: 'wird geplant…',
+  planning: 'plant…',
   plan: 'Planen',
   planRefused: 'Kein Plan: {why}',
   operator: 'Bediener',
@@ -332,7 +332,7 @@ export const de: Words = {
   noRuns: 'Es wurde noch kein Lauf gemacht.',
 
   locate: 'Wo steht der Block?',
-  locateWords: 'Wurde der Block bewegt? Sechs Antastungen mit dem Handgerät finden ihn.',
+  locateWords: 'Block bewegt? Sechs Antastungen von Hand finden ihn.',
   locateStart: 'Suchen',
   located: 'Gefunden {at}: um {shift} mm verschoben, um {turn} ° gedreht. Wieder bewegt? Sechs Antastungen mit dem Handgerät finden ihn.',
   handTitle: 'Von Hand antasten',
