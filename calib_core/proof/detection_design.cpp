@@ -1,5 +1,6 @@
 #include "calib_core/proof/detection_design.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -16,6 +17,16 @@ constexpr int kDetectionStarts = 3;
 constexpr int kDetectionRoundsMax = 10;
 /// A smaller improvement of the doubt, as a share of it, is none.
 constexpr double kDoubtImprovementMin = 1e-4;
+
+/// Of what an average choice says of the free quantities, the share in the direction that it says least of.
+/// Of orthonormal columns the Gram matrix of an average choice is the identity times its share of the rows.
+double least_free_share(const Eigen::MatrixXd& free, const std::vector<std::size_t>& chosen) {
+  const Eigen::MatrixXd rows = free(chosen, Eigen::all);
+  const Eigen::MatrixXd gram = rows.transpose() * rows;
+  const double average = static_cast<double>(rows.rows()) / static_cast<double>(free.rows());
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(gram, Eigen::EigenvaluesOnly).eigenvalues()[0] /
+         average;
+}
 
 double open_share(const Eigen::MatrixXd& rest, FaultDirections directions) {
   if (directions == FaultDirections::kAny || rest.cols() == 1) return 1.0 / (1.0 + rest.squaredNorm());
@@ -61,11 +72,14 @@ double doubt_left(const DetectionProblem& problem, const std::vector<std::size_t
   const Eigen::MatrixXd covariance = problem.covariance(chosen, chosen);
   double doubt = 0.0;
   for (const DetectionQuestion& question : problem.questions) {
-    const WhitenedRows white(covariance, question.free(chosen, Eigen::all));
-    if (covariance.rows() - white.degrees() < question.free_rank_min) {
+    const double share = question.free_share_min > 0.0 ? least_free_share(question.free, chosen) : 0.0;
+    if (share < question.free_share_min) {
+      // All are open, and more so the farther the choice is from one that counts: exchanges lead there.
       for (const Eigen::MatrixXd& fault : question.faults) doubt += static_cast<double>(fault.cols());
+      doubt += 1.0 - share / question.free_share_min;
       continue;
     }
+    const WhitenedRows white(covariance, question.free(chosen, Eigen::all));
     for (const Eigen::MatrixXd& fault : question.faults)
       doubt += open_share(white.rest(fault(chosen, Eigen::all)), question.directions);
   }

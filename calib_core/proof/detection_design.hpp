@@ -18,9 +18,11 @@ struct DetectionQuestion {
   std::vector<Eigen::MatrixXd> faults;
   FaultDirections directions = FaultDirections::kEach;
   Eigen::MatrixXd free;  // a column for each quantity of unknown size
-  /// So many directions of `free` have to be determined: a choice that leaves one of them out sees the faults
-  /// better, but nobody knows then where the block is. A choice that does not leaves everything open.
-  Eigen::Index free_rank_min = 0;
+  /// Beside the faults the choice determines the free quantities, in each direction by at least this share of
+  /// what an average choice of as many candidates does. A choice that leaves one of them almost open sees the
+  /// faults better, but nobody knows then where the block is. One that does not leaves every fault open.
+  /// Where it is over 0, the columns of `free` are orthonormal over all candidates.
+  double free_share_min = 0.0;
 };
 
 struct DetectionProblem {

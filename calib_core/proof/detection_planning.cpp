@@ -19,6 +19,11 @@
 namespace calib {
 namespace {
 
+/// The touches of a proof tell of the block's pose, in the direction that they tell least of, this share of
+/// what an average choice tells: less, and what noise makes of the pose is more than a touch is taken for one
+/// of this block (kProofFarMetres).
+constexpr double kPoseShareMin = 0.1;
+
 std::vector<Touch> touches_of(std::span<const TouchCandidate> candidates) {
   std::vector<Touch> touches;
   for (const TouchCandidate& candidate : candidates)
@@ -75,8 +80,8 @@ std::variant<TouchPlan, PlanningFailure> plan_proof(const PlanningProblem& there
     DetectionProblem problem{.seed = there.seed};
     problem.covariance = proof_covariance(record, place, rows, touches);
     DetectionQuestion question{.directions = FaultDirections::kAny,
-                               .free = rows.of_place,
-                               .free_rank_min = column_space(rows.of_place).cols()};
+                               .free = column_space(rows.of_place),
+                               .free_share_min = kPoseShareMin};
     for (const ProofAlternative& alternative : alternatives)
       question.faults.emplace_back(rows.of_unknowns * alternative.displacements);
     problem.questions.push_back(std::move(question));

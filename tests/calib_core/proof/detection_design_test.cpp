@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "calib_core/numerics/uniform_chance.hpp"
@@ -62,10 +63,27 @@ TEST(DetectionDesign, DeterminesWhatItHasToAlthoughFaultsWouldBeSeenBetterWithou
   DetectionQuestion& question = problem.questions[0];
   question.faults[0] << 3, -3, 3, -3, 0.1, -0.1;
   question.free.resize(6, 2);
-  question.free << 1, 0, 1, 0, 1, 0, 1, 0, 1, 1, 1, 1;
-  EXPECT_LT(choose_for_detection(problem, 3).back(), 4U);
-  question.free_rank_min = 2;
-  EXPECT_GE(choose_for_detection(problem, 3).back(), 4U);
+  const double share = 1.0 / std::sqrt(6.0);
+  // The second column tells candidates apart that show the fault well by a hundredth of what the last two do.
+  question.free << share, 0.005, share, 0.005, share, -0.005, share, -0.005, share, std::sqrt(0.49995), share,
+      -std::sqrt(0.49995);
+  ASSERT_TRUE((question.free.transpose() * question.free).isIdentity(1e-3));
+  EXPECT_LT(choose_for_detection(problem, 4).back(), 4U);
+  question.free_share_min = 0.1;
+  const auto chosen = choose_for_detection(problem, 4);
+  EXPECT_GE(chosen.back(), 4U);
+  EXPECT_LT(chosen.front(), 4U);  // the fault is seen all the same
+}
+
+TEST(DetectionDesign, AChoiceThatLeavesThePoseOpenLeavesMoreThanAllFaultsOpen) {
+  DetectionProblem problem = small_problem(4);
+  DetectionQuestion& question = problem.questions[0];
+  question.faults[0] << 5, -5, 5, -5;
+  question.free.resize(4, 1);
+  question.free << 1, 0, 0, 0;
+  question.free_share_min = 0.1;
+  EXPECT_NEAR(doubt_left(problem, {1, 2}), 2.0, 1e-12);
+  EXPECT_LT(doubt_left(problem, {0, 1}), 1.0);
 }
 
 TEST(DetectionDesign, IsRefusedMoreTouchesThanCandidates) {
