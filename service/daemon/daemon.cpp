@@ -20,9 +20,11 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "service/acquisition/cell_operation.hpp"
 #include "service/base/context.hpp"
@@ -173,10 +175,12 @@ class LastRefusals {
   Api& api_;
 };
 
-/// The thread that serves, until its end. What nobody foresaw there ends a connection and no run.
+/// The thread that serves, until its end. What nobody foresaw there ends a connection and no run; memory that
+/// runs out between an event and who waits for it may have lost who accepts: `accept_again` then.
 class HttpThread {
  public:
-  explicit HttpThread(asio::io_context& context) : context_(context), thread_([this] { serve(); }) {}
+  HttpThread(asio::io_context& context, std::function<void()> accept_again)
+      : context_(context), accept_again_(std::move(accept_again)), thread_([this] { serve(); }) {}
   ~HttpThread() {
     context_.stop();
     thread_.join();
@@ -188,14 +192,18 @@ class HttpThread {
   void serve() {
     while (!context_.stopped()) {
       try {
+        if (std::exchange(has_failed_, false)) accept_again_();
         context_.run();
       } catch (const std::exception& error) {
+        has_failed_ = true;
         spdlog::error("while serving: {}", error.what());
       }
     }
   }
 
   asio::io_context& context_;
+  std::function<void()> accept_again_;
+  bool has_failed_ = false;  // of the thread
   std::thread thread_;
 };
 
@@ -277,7 +285,10 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const WorkDone done({&disk, &arithmetic, &planner}, end_watch, patience,
                       [&] { return end_without_work(operation.run(), store_queue.waiting_count()); });
   const LastRefusals last_refusals(api);
-  const HttpThread http_thread(http);
+  const HttpThread http_thread(http, [&] {
+    listener->launch();
+    if (socket) socket->launch();
+  });
   context.run();
 }
 

@@ -24,6 +24,8 @@ HttpListener::HttpListener(asio::any_io_executor executor, const tcp::endpoint& 
       connections_(limits.connections) {}
 
 void HttpListener::launch() {
+  boost::system::error_code ignored;
+  acceptor_.cancel(ignored);  // one that still waits from before ends
   asio::co_spawn(executor_,
                  accept_connections<tcp>(acceptor_, [this](tcp::socket socket) { serve(std::move(socket)); }),
                  asio::detached);

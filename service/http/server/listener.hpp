@@ -21,6 +21,7 @@ class HttpListener {
                RequestHandler& handler, HttpLimits limits = {},
                std::shared_ptr<boost::asio::ssl::context> tls = nullptr);
 
+  /// Accepts from now on; once more where what ran out of memory may have lost who waits for the next one.
   void launch();
   void close();
   [[nodiscard]] boost::asio::ip::tcp::endpoint address() const { return address_; }

@@ -49,6 +49,8 @@ LocalListener::LocalListener(asio::any_io_executor executor, std::filesystem::pa
 }
 
 void LocalListener::launch() {
+  boost::system::error_code ignored;
+  acceptor_.cancel(ignored);  // as in HttpListener
   asio::co_spawn(
       executor_,
       accept_connections<local>(acceptor_, [this](local::socket socket) { serve(std::move(socket)); }),

@@ -109,6 +109,7 @@ TEST_F(OutlierAtEnd, SuspectsAreThoseOfTheResultTheWorstFirstAndThenThoseOfTheEs
                      {7, -0.003, calib::RejectionReason::kOutlier}};
   const std::vector<int> suspects = suspects_of(result, retest_.suspect().without);
   EXPECT_EQ(suspects, (std::vector<int>{8, 5, 1}));
+  EXPECT_EQ(retest_.warning_of(suspects).code, FaultCode::kTouchOutlier);
   EXPECT_EQ(retest_.warning_of(suspects).detail,
             "touch 8 (not made again), touch 5 (not made again), touch 1");
 }
