@@ -491,7 +491,8 @@ const kFaults: Readonly<Record<string, [string, FaultWords]>> = {
   task_failed: told('Task der Steuerung abgebrochen', 'ein Task der Anwendung auf der Steuerung ist zu Ende', kStopped,
     `die Fehlernummer notieren, die Anwendung am Handgerät stoppen und starten und den Arm vom Block wegfahren, ${kResumeBroken}`),
   touch_deadline: told('Antastung zu lang', 'eine Antastung dauerte länger als ihre Frist', 'der Arm wurde gestoppt und steht, wo er war',
-    `Halt und Monitorgeschwindigkeit prüfen, ${kAnew}`),
+    'Halt und Monitorgeschwindigkeit prüfen, dann touchcal resume, um diese Antastung zu wiederholen, touchcal skip, um sie auszulassen, ' +
+      'oder touchcal stop; in ABORTED touchcal clear, dann touchcal reset'),
   implausible_touch: told('Kontakt nicht glaubhaft', 'der gemeldete Kontakt kann nicht der der verlangten Antastung sein',
     'der Arm steht, wo er die Antastung beendet hat oder in ihr gehalten wurde; nichts wurde aufgezeichnet',
     `prüfen, ob die Datei des Arms zu diesem Arm gehört, ${kAnew}`),
