@@ -129,9 +129,10 @@ bool read_number(std::string_view word, ScriptAct& act) {
   constexpr double kSpeedMax = 100.0, kKeyMax = 65'535.0;
   const auto number = number_in(word);
   act.number = number.value_or(0.0);
-  if (!number || *number < 0.0) return false;
-  return act.kind == Kind::kSpeed ? *number <= kSpeedMax
-                                  : *number <= kKeyMax && *number == std::floor(*number);
+  if (!number) return false;
+  if (act.kind == Kind::kSpeed) return *number >= 0.0 && *number <= kSpeedMax;
+  if (act.kind == Kind::kKey) return *number >= 0.0 && *number <= kKeyMax && *number == std::floor(*number);
+  return true;
 }
 
 bool read_word_of(std::string_view word, ScriptAct& act) {

@@ -188,7 +188,7 @@ TEST(RunCommand, RunsAnApplicationOfS6OnTheSignalsAndSocketsOfItsLibraryIo) {
 
 TEST(RunCommand, ASwitchOfS5RoundsAndTakesTheLastOfEqualCases) {
   const std::string code =
-      "switch 2.4\ncase 2\nn=n+1\nbreak\ncase 2\nn=n+10\nbreak\ndefault\nn=n+100\nendSwitch";
+      "switch 2.4\ncase 2\nn=n+1\nbreak\ncase 2\nn=n+10\nbreak\ndefault\nn=n+100\nbreak\nendSwitch";
   const std::string data =
       "<numSection><num name=\"n\" public=\"false\"><valueNum index=\"0\" value=\"0\"/></num></numSection>\n";
   for (const auto& [version, taken] :

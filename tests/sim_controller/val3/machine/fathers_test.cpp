@@ -8,13 +8,13 @@ namespace {
 
 constexpr int kLinkedToLocal = 165;
 
-/// An application with points and a frame of its own and a program call(), which has a frame of its own.
+/// An application with points and a frame of its own and a program inner(), which has a frame of its own.
 SmallProject& with_call(SmallProject& project, const std::string& code, const std::string& more_locals = "") {
   with_variables(project);
   project.data("fG", "frame", "<Value key=\"0\" x=\"100\" fatherId=\"world[0]\"/>");
   project.data("pG", "pointRx", "<Value key=\"0\" x=\"1\" fatherId=\"world[0]\"/>", 2);
   return project.program(
-      "call", code,
+      "inner", code,
       SmallProject::parameters(SmallProject::parameter("x_f", "frame", "xsi:type=\"element\"")) +
           SmallProject::local("l_f", "frame") + SmallProject::local("l_p", "pointRx") + more_locals);
 }
@@ -29,7 +29,7 @@ int status_of(SmallProject& project) {
 TEST(Fathers, APointOfACallIsInAFrameOfThatCall) {
   SmallProject project;
   with_call(project, "link(l_p,x_f)\nn[0]=distance(l_p,pG)\nlink(x_f,fG)\nn[1]=distance(l_p,pG)");
-  project.program("start", "call call(fG)\nwait(false)");
+  project.program("start", "call inner(fG)\nwait(false)");
   Running run(project);
   run.ticks(3);
   EXPECT_EQ(run.machine().task_status("small~"), 1);
@@ -40,7 +40,7 @@ TEST(Fathers, APointOfACallIsInAFrameOfThatCall) {
 TEST(Fathers, AGlobalIsNotLinkedToALocal) {
   for (const std::string& link : std::vector<std::string>{"link(pG,x_f)", "link(pG,l_f)", "link(fG,l_f)"}) {
     SmallProject project;
-    with_call(project, link).program("start", "call call(fG)\nwait(false)");
+    with_call(project, link).program("start", "call inner(fG)\nwait(false)");
     EXPECT_EQ(status_of(project), kLinkedToLocal) << link;
   }
 }
@@ -50,12 +50,12 @@ TEST(Fathers, APointThatHasAFrameOfACallThatIsOverHasNone) {
   for (const std::string& more : {std::string(), SmallProject::local("l_n", "num", 3000)}) {
     SmallProject project;
     with_call(project, "link(l_p,l_f)\npG=l_p", more);
-    project.program("start", "call call(fG)\nn[0]=distance(pG,pG[1])\nwait(false)").stack(1'000'000);
+    project.program("start", "call inner(fG)\nn[0]=distance(pG,pG[1])\nwait(false)").stack(1'000'000);
     EXPECT_EQ(status_of(project), kLinkedToLocal);
   }
   SmallProject deep;
-  with_call(deep, "n[0]=n[0]+1\nif n[0]<80\ncall call(fG)\nendIf\nlink(l_p,l_f)\npG=l_p").stack(1'000'000);
-  deep.program("start", "call call(fG)\nn[1]=distance(pG,pG[1])\nwait(false)");
+  with_call(deep, "n[0]=n[0]+1\nif n[0]<80\ncall inner(fG)\nendIf\nlink(l_p,l_f)\npG=l_p").stack(1'000'000);
+  deep.program("start", "call inner(fG)\nn[1]=distance(pG,pG[1])\nwait(false)");
   EXPECT_EQ(status_of(deep), kLinkedToLocal);
 }
 
