@@ -50,9 +50,13 @@ class SmallProject {
     return "<Parameters xmlns=\"http://www.staubli.com/robotics/VAL3/Param/1\">" + list + "</Parameters>";
   }
   static std::string local(const std::string& variable, const std::string& type, int size = 1) {
-    return "<Locals><Local name=\"" + variable + "\" type=\"" + type + "\" xsi:type=\"array\" size=\"" +
-           std::to_string(size) + "\"/></Locals>";
+    return locals(local_variable(variable, type, size));
   }
+  static std::string local_variable(const std::string& variable, const std::string& type, int size = 1) {
+    return "<Local name=\"" + variable + "\" type=\"" + type + "\" xsi:type=\"array\" size=\"" +
+           std::to_string(size) + "\"/>";
+  }
+  static std::string locals(const std::string& list) { return "<Locals>" + list + "</Locals>"; }
 
   /// The project's stackSize.
   SmallProject& stack(std::size_t bytes) {

@@ -36,7 +36,7 @@ export function mainAction(state: StateName, isAtFace: boolean): MainAction {
 /** Faults of a single touch, that making it again or leaving it out leads out of. */
 export const kTouchFaults: ReadonlySet<string> = new Set([
   'probe_triggered', 'early_contact', 'false_trigger', 'touch_spread', 'retries_worse', 'repeated_touch', 'touch_does_not_fit',
-  'touch_rejected', 'no_contact', 'probe_stuck', 'probe_fault', 'no_safe_way',
+  'touch_rejected', 'touch_deadline', 'no_contact', 'probe_stuck', 'probe_fault', 'no_safe_way',
 ]);
 
 /** What can be done with the touch that holds the run; of the reference touch none can be left out. */

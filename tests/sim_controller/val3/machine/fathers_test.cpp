@@ -16,7 +16,8 @@ SmallProject& with_call(SmallProject& project, const std::string& code, const st
   return project.program(
       "inner", code,
       SmallProject::parameters(SmallProject::parameter("x_f", "frame", "xsi:type=\"element\"")) +
-          SmallProject::local("l_f", "frame") + SmallProject::local("l_p", "pointRx") + more_locals);
+          SmallProject::locals(SmallProject::local_variable("l_f", "frame") +
+                               SmallProject::local_variable("l_p", "pointRx") + more_locals));
 }
 
 /// With which error start() ends; 1: it runs.
@@ -47,7 +48,7 @@ TEST(Fathers, AGlobalIsNotLinkedToALocal) {
 
 TEST(Fathers, APointThatHasAFrameOfACallThatIsOverHasNone) {
   // Small calls are kept for the next, large ones and those of a deep recursion are not.
-  for (const std::string& more : {std::string(), SmallProject::local("l_n", "num", 3000)}) {
+  for (const std::string& more : {std::string(), SmallProject::local_variable("l_n", "num", 3000)}) {
     SmallProject project;
     with_call(project, "link(l_p,l_f)\npG=l_p", more);
     project.program("start", "call inner(fG)\nn[0]=distance(pG,pG[1])\nwait(false)").stack(1'000'000);
