@@ -12,7 +12,8 @@ constexpr int kLinkedToLocal = 165;
 SmallProject& with_call(SmallProject& project, const std::string& code, const std::string& more_locals = "") {
   with_variables(project);
   project.data("fG", "frame", "<Value key=\"0\" x=\"100\" fatherId=\"world[0]\"/>");
-  project.data("pG", "pointRx", "<Value key=\"0\" x=\"1\" fatherId=\"world[0]\"/>", 2);
+  project.data("pG", "pointRx",
+               "<Value key=\"0\" x=\"1\" fatherId=\"world[0]\"/><Value key=\"1\" fatherId=\"world[0]\"/>", 2);
   return project.program(
       "inner", code,
       SmallProject::parameters(SmallProject::parameter("x_f", "frame", "xsi:type=\"element\"")) +
