@@ -12,7 +12,7 @@ const kViews = ['Alt+Digit1', 'Alt+Digit2', 'Alt+Digit3', 'Alt+Digit4'];
 
 let cell, browser, page;
 before(async () => {
-  cell = await Cell.start({speed: 250});
+  cell = await Cell.start({speed: 50}); // slow enough to be paused on a busy machine
   browser = await openBrowser();
   page = await openPage(browser, cell.link, {viewport: {width: 1280, height: 800}});
 });
