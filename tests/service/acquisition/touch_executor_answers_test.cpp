@@ -167,5 +167,30 @@ TEST_F(TouchExecutorAnswers, AControllerThatCountsOtherwiseOrIsBusyHoldsTheRunAn
   }
 }
 
+TEST_F(TouchExecutorAnswers, ThreeFalseTriggersInARunAreToldOnceAsMany) {
+  controller.on_touch = [](const cs8::Touch&) {
+    cs8::TouchResult noise;
+    noise.outcome = cs8::Outcome::kNoContact;
+    noise.edges = 1;
+    return noise;
+  };
+  const auto is_told = [this] {
+    const auto& warning = status.latest().warning;
+    return warning && warning->code == FaultCode::kFalseTriggersMany;
+  };
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(status.state(), State::kExecute) << "the first is made again";
+  run(touches_.make_next_touch(active_));
+  EXPECT_EQ(status.state(), State::kHolding) << "the second asks for a person";
+  EXPECT_FALSE(is_told());
+  status.enter(State::kExecute);
+  run(touches_.make_next_touch(active_));
+  EXPECT_TRUE(is_told());
+  status.end_warning(FaultCode::kFalseTriggersMany);
+  status.enter(State::kExecute);
+  run(touches_.make_next_touch(active_));
+  EXPECT_FALSE(is_told()) << "once in a run";
+}
+
 }  // namespace
 }  // namespace cell

@@ -280,31 +280,6 @@ TEST_F(TouchExecutorTest, ATouchThatMeetsNothingHoldsTheRunAndIsForgottenByTheCo
   EXPECT_EQ(touches_.held_by(), HeldBy::kNothing);
 }
 
-TEST_F(TouchExecutorTest, ThreeFalseTriggersInARunAreToldOnceAsMany) {
-  controller.on_touch = [](const cs8::Touch&) {
-    cs8::TouchResult noise;
-    noise.outcome = cs8::Outcome::kNoContact;
-    noise.edges = 1;
-    return noise;
-  };
-  const auto is_told = [this] {
-    const auto& warning = status.latest().warning;
-    return warning && warning->code == FaultCode::kFalseTriggersMany;
-  };
-  run(touches_.make_next_touch(active_));
-  EXPECT_EQ(status.state(), State::kExecute) << "the first is made again";
-  run(touches_.make_next_touch(active_));
-  EXPECT_EQ(status.state(), State::kHolding) << "the second asks for a person";
-  EXPECT_FALSE(is_told());
-  status.enter(State::kExecute);
-  run(touches_.make_next_touch(active_));
-  EXPECT_TRUE(is_told());
-  status.end_warning(FaultCode::kFalseTriggersMany);
-  status.enter(State::kExecute);
-  run(touches_.make_next_touch(active_));
-  EXPECT_FALSE(is_told()) << "once in a run";
-}
-
 TEST_F(TouchExecutorTest, ARejectionHoldsOrEndsTheRunByItsReason) {
   controller.on_touch = [](const cs8::Touch&) {
     return cs8::Rejected{cs8::RejectReason::kProbeTriggered, 0};
