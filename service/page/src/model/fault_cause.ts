@@ -31,14 +31,18 @@ const kPermission: [Cause, RegExp][] = [
 const kByCode: Readonly<Record<string, Cause>> = {
   emergency_stop: 'estop', cell_open: 'cell', not_remote: 'mode', not_powered: 'power', hold: 'hold', probe_fault: 'probe', probe_stuck: 'probe',
   probe_triggered: 'probe', probe_touched: 'probe', link_lost: 'link', controller_unreachable: 'link', controller_not_connected: 'link',
+  controller_state_unknown: 'link',
 };
+
+/** What a fault or an unmet condition of this code always comes of; null: it has no cause that lasts, or one that is not told apart. */
+export const causeOfCode = (code: string): Cause | null => kByCode[code] ?? null;
 
 /**
  * The one cause of a fault, where it can be told: of a permission that was lost by what the daemon's message adds behind
  * "the controller tells", else by the status. Null: not known (yet), or a fault without a cause that lasts.
  */
 export function causeOf(code: string, message: string, status: Status): Cause | null {
-  if (code !== 'permission_lost') return kByCode[code] ?? null;
+  if (code !== 'permission_lost') return causeOfCode(code);
   const [, told] = message.match(/the controller tells (.*)/s) ?? [];
   const named = told === undefined ? undefined : kPermission.find(([, words]) => words.test(told));
   return (named ?? kPermission.find(([cause]) => tells(cause, status) === true))?.[0] ?? null;

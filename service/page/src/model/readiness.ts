@@ -1,6 +1,6 @@
 import type {Status, Unmet} from '../api/documents.ts';
 import type {WordKey} from '../words/words.ts';
-import type {Cause} from './fault_cause.ts';
+import {causeOfCode, type Cause} from './fault_cause.ts';
 
 /** One condition of a start. Unknown is not fine. */
 export interface Condition {
@@ -47,16 +47,11 @@ export function isReadyFor(unmet: Unmet[] | null, bringsTemperature: boolean): b
   return unmet !== null && unmet.every(({code}) => bringsTemperature && kOfTemperature.includes(code));
 }
 
-const kCauses: Readonly<Record<string, Cause>> = {
-  controller_not_connected: 'link', controller_state_unknown: 'link', emergency_stop: 'estop', cell_open: 'cell', not_remote: 'mode',
-  not_powered: 'power', hold: 'hold', probe_touched: 'probe', probe_fault: 'probe',
-};
-
 /** The first condition that keeps a start back: as what has to be released, or by its code. */
 export function standsInTheWay(unmet: Unmet[], bringsTemperature: boolean): {cause?: Cause; code?: string} {
   const first = unmet.find((one) => !isReadyFor([one], bringsTemperature));
   if (!first) return {};
-  const cause = kCauses[first.code];
+  const cause = causeOfCode(first.code);
   return cause ? {cause} : {code: first.code};
 }
 
