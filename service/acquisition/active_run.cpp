@@ -5,6 +5,19 @@
 #include "service/run/verdict.hpp"
 
 namespace cell {
+namespace {
+
+bool has_result(const ActiveRun& active) {
+  return active.run.latest().status == calib::IdentificationStatus::kConverged;
+}
+
+ResultDocument document_of(const ActiveRun& active, bool complete, const TipRegions& regions) {
+  const Run& run = active.run;
+  return result_of(regions, run.recipe(), run.problem(), run.latest(),
+                   {.complete = complete, .warnings = {}, .conditions = active.conditions});
+}
+
+}  // namespace
 
 std::vector<PlanChange> ActiveRun::changes_to_store() const {
   const std::vector<PlanChange>& changes = run.plan_changes();
@@ -12,28 +25,27 @@ std::vector<PlanChange> ActiveRun::changes_to_store() const {
 }
 
 std::optional<std::string> result_json(const ActiveRun& active, const TipRegions& regions) {
-  const Run& run = active.run;
-  if (run.latest().status != calib::IdentificationStatus::kConverged) return std::nullopt;
-  return result_document(regions, run.recipe(), run.problem(), run.latest(),
-                         {.complete = active.finished, .warnings = {}, .conditions = active.conditions});
+  if (!has_result(active)) return std::nullopt;
+  return document_text(document_of(active, active.finished, regions));
 }
 
 std::optional<std::string> arm_json(const ActiveRun& active, const Cell& cell) {
-  const calib::IdentificationResult& latest = active.run.latest();
-  if (latest.status != calib::IdentificationStatus::kConverged) return std::nullopt;
-  return calibrated_arm_document(cell, latest);
+  if (!has_result(active)) return std::nullopt;
+  return calibrated_arm_document(cell, active.run.latest());
 }
 
-Verdict conclude(ActiveRun& active, RunOutcome outcome, const TipRegions& regions) {
-  const Run& run = active.run;
-  active.finished = outcome == RunOutcome::kComplete && run.skipped_count() == 0 &&
-                    run.latest().status == calib::IdentificationStatus::kConverged;
-  if (!active.finished) return Verdict::kIncomplete;
-  const TipPrediction tip = predict_tip(regions, run.problem(), run.latest());
-  const std::vector<Criterion> judged =
-      criteria(run.latest(), run.recipe(), regions.cell(), judged_tip(tip), true);
-  const Judgement judgement = judge(judged, regions.cell().acceptance);
-  return judgement.accepted ? Verdict::kAccepted : Verdict::kRejected;
+Conclusion conclude(const ActiveRun& active, std::optional<RunOutcome> outcome, const TipRegions& regions) {
+  Conclusion concluded{.finished = active.finished};
+  if (outcome)
+    concluded.finished =
+        outcome == RunOutcome::kComplete && active.run.skipped_count() == 0 && has_result(active);
+  if (!has_result(active)) return concluded;
+  const ResultDocument document = document_of(active, concluded.finished, regions);
+  if (outcome && concluded.finished)
+    concluded.verdict = document.verdict.accepted ? Verdict::kAccepted : Verdict::kRejected;
+  concluded.result_json = document_text(document);
+  concluded.arm_json = arm_json(active, regions.cell());
+  return concluded;
 }
 
 }  // namespace cell

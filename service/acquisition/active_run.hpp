@@ -56,8 +56,9 @@ struct Conclusion {
   std::optional<std::string> arm_json;
 };
 
-/// What a run that ends by `outcome` is worth: complete with every touch made and a result, it is judged by
-/// the rule of the regions' cell; else it is incomplete. Sets `finished`.
-Verdict conclude(ActiveRun& active, RunOutcome outcome, const TipRegions& regions);
+/// What a run that ends by `outcome` is worth: complete with every touch made and a result, its verdict is
+/// that of its result document; else it is incomplete. Without an outcome it goes on as it is: only its
+/// documents are made.
+Conclusion conclude(const ActiveRun& active, std::optional<RunOutcome> outcome, const TipRegions& regions);
 
 }  // namespace cell

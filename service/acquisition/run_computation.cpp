@@ -23,11 +23,8 @@ asio::awaitable<Run> RunComputation::identified(Run run) {
 asio::awaitable<Conclusion> RunComputation::conclude(ActiveRun active, std::optional<RunOutcome> outcome) {
   std::string what = fmt::format("the documents at the end of run {}", active.run.id());
   // The cell is a copy: that of the operation may be another one as soon as its block is found elsewhere.
-  const auto compute = [copy = std::move(active), outcome, cell = regions_.cell(),
-                        made = regions_.shared()]() mutable {
-    const TipRegions regions(cell, made);
-    const Verdict verdict = outcome ? cell::conclude(copy, *outcome, regions) : Verdict::kIncomplete;
-    return Conclusion{verdict, copy.finished, result_json(copy, regions), arm_json(copy, cell)};
+  const auto compute = [copy = std::move(active), outcome, cell = regions_.cell(), made = regions_.shared()] {
+    return cell::conclude(copy, outcome, TipRegions(cell, made));
   };
   auto computed = late_.told_when_late(std::move(what), run_on(executor_, compute));
   Conclusion concluded = co_await std::move(computed);

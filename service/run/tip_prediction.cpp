@@ -32,10 +32,19 @@ calib::TipRegion over_fitted_touches(const calib::IdentificationProblem& problem
   return calib::region_over_postures(problem.nominal, postures);
 }
 
+/// predicted_rms_m() with the covariance of `uncertainty`, which is a sum of large matrices.
+std::optional<double> rms_where_known_m(const calib::TipRegion& region,
+                                        const calib::UncertaintyBudget& uncertainty,
+                                        const calib::ArmMatrix& covariance) {
+  if (!unknown_errors_in(region, uncertainty).empty()) return std::nullopt;
+  return region.rms_m(covariance);
+}
+
 calib::UncertaintyMap predicted_map(const calib::TipMap& map, const calib::UncertaintyBudget& uncertainty) {
+  const calib::ArmMatrix covariance = uncertainty.covariance();
   calib::UncertaintyMap predicted{.grid = map.grid, .rms_m = {}};
   for (const calib::TipRegion& region : map.cells)
-    predicted.rms_m.push_back(predicted_rms_m(region, uncertainty));
+    predicted.rms_m.push_back(rms_where_known_m(region, uncertainty, covariance));
   return predicted;
 }
 
@@ -82,8 +91,7 @@ std::vector<int> unknown_errors_in(const calib::TipRegion& region,
 
 std::optional<double> predicted_rms_m(const calib::TipRegion& region,
                                       const calib::UncertaintyBudget& uncertainty) {
-  if (!unknown_errors_in(region, uncertainty).empty()) return std::nullopt;
-  return region.rms_m(uncertainty.covariance());
+  return rms_where_known_m(region, uncertainty, uncertainty.covariance());
 }
 
 TipRegions::TipRegions(const Cell& cell) : TipRegions(cell, std::make_shared<Made>()) {}

@@ -1,11 +1,11 @@
 #include "tests/simulation/store_reading.hpp"
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
 #include "service/acquisition/active_run.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/run_recipe.hpp"
-#include "service/run/verdict.hpp"
 
 namespace simulation {
 namespace {
@@ -22,13 +22,11 @@ void add_undisturbed_result(const cell::TipRegions& regions, RunRecord& record) 
   again.run.restore(record.touches, stored.touches_total);
   again.run.identify();
   const bool is_whole = static_cast<int>(record.touches.size()) == stored.touches_total;
-  cell::conclude(again, is_whole ? cell::RunOutcome::kComplete : cell::RunOutcome::kAborted, regions);
-  record.undisturbed_json = cell::result_json(again, regions);
-  const calib::IdentificationResult& latest = again.run.latest();
-  const cell::TipPrediction tip = cell::predict_tip(regions, again.run.problem(), latest);
-  const auto criteria =
-      cell::criteria(latest, again.run.recipe(), regions.cell(), cell::judged_tip(tip), is_whole);
-  record.reasons = cell::judge(criteria, regions.cell().acceptance).reasons;
+  record.undisturbed_json =
+      cell::conclude(again, is_whole ? cell::RunOutcome::kComplete : cell::RunOutcome::kAborted, regions)
+          .result_json;
+  if (record.undisturbed_json)
+    record.reasons = nlohmann::json::parse(*record.undisturbed_json).at("verdict").at("reasons");
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/acquisition/owners_bench.hpp"
@@ -33,11 +35,26 @@ TEST_F(ActiveRunTest, OutcomesHaveTheWordsOfTheStore) {
 TEST_F(ActiveRunTest, OnlyACompleteRunIsJudged) {
   ActiveRun active = touched_run();
   for (const RunOutcome outcome : {RunOutcome::kStopped, RunOutcome::kAborted, RunOutcome::kInterrupted}) {
-    EXPECT_EQ(conclude(active, outcome, regions), Verdict::kIncomplete);
-    EXPECT_FALSE(active.finished);
+    const Conclusion broken_off = conclude(active, outcome, regions);
+    EXPECT_EQ(broken_off.verdict, Verdict::kIncomplete);
+    EXPECT_FALSE(broken_off.finished);
   }
-  EXPECT_NE(conclude(active, RunOutcome::kComplete, regions), Verdict::kIncomplete);
-  EXPECT_TRUE(active.finished);
+  const Conclusion complete = conclude(active, RunOutcome::kComplete, regions);
+  EXPECT_TRUE(complete.finished);
+  const bool accepted = nlohmann::json::parse(complete.result_json.value()).at("verdict").at("accepted");
+  EXPECT_EQ(complete.verdict, accepted ? Verdict::kAccepted : Verdict::kRejected);
+}
+
+TEST_F(ActiveRunTest, WithoutAnOutcomeItsDocumentsAreThoseOfARunThatGoesOn) {
+  ActiveRun active = touched_run();
+  for (const bool finished : {false, true}) {
+    active.finished = finished;
+    const Conclusion as_it_is = conclude(active, std::nullopt, regions);
+    EXPECT_EQ(as_it_is.verdict, Verdict::kIncomplete);
+    EXPECT_EQ(as_it_is.finished, finished);
+    EXPECT_EQ(as_it_is.result_json, result_json(active, regions));
+    EXPECT_EQ(as_it_is.arm_json, arm_json(active, cell_of_owners()));
+  }
 }
 
 TEST_F(ActiveRunTest, TheArmOfARunIsThatOfItsLatestResult) {
@@ -48,14 +65,14 @@ TEST_F(ActiveRunTest, TheArmOfARunIsThatOfItsLatestResult) {
 }
 
 TEST_F(ActiveRunTest, ARunWithATouchLeftOutOrWithoutAResultIsIncomplete) {
-  ActiveRun untouched = planned_run();
-  EXPECT_EQ(conclude(untouched, RunOutcome::kComplete, regions), Verdict::kIncomplete);
+  const ActiveRun untouched = planned_run();
+  EXPECT_EQ(conclude(untouched, RunOutcome::kComplete, regions).verdict, Verdict::kIncomplete);
   EXPECT_FALSE(result_json(untouched, regions));
   ActiveRun active = touched_run();
   active.run.set_plan(plan_of_owners().touches);
   active.run.skip_next();
   EXPECT_TRUE(active.run.skipped_count() == 0 ||
-              conclude(active, RunOutcome::kComplete, regions) == Verdict::kIncomplete);
+              conclude(active, RunOutcome::kComplete, regions).verdict == Verdict::kIncomplete);
   EXPECT_TRUE(result_json(active, regions)) << "what was identified is there to be read";
 }
 
