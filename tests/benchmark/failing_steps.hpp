@@ -231,7 +231,8 @@ class FailingRuns {
       pause_ms(kPauseMs);
     }
     disarm();
-    if (!is_up || !cell_.daemon_is_running()) judge_end(false);
+    if (!is_up) judge_end(false);
+    (void)state_of_who_goes_on();
     if (failure.step == Step::kFirstStart && failure.call != FailingCall::kNone) settle();
   }
 
