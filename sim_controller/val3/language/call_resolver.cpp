@@ -20,7 +20,7 @@ std::string counts_of(const Instruction& instruction, std::size_t& least, std::s
 }
 
 std::string kinds_of(const InstructionParameter& parameter) {
-  if (parameter.any_kind) return "a variable";
+  if (parameter.any_kind) return "variable";
   std::string text;
   for (std::size_t i = 0; i < parameter.kinds.size(); ++i) {
     if (i > 0) text += i + 1 == parameter.kinds.size() ? " or " : ", ";
@@ -111,7 +111,7 @@ void ExpressionResolver::resolve_call(Expression& e) {
   // What has no type fits several signatures: the result may be another's.
   e.is_unknown = signature.any_result || (instruction->signatures.size() > 1 &&
                                           std::ranges::any_of(e.parts, &Expression::is_unknown));
-  type_arguments(signature, e);
+  if (!signature.any_arguments) type_arguments(signature, e);
 }
 
 void ExpressionResolver::tell_misfit(const Instruction& instruction, Expression& e) {
@@ -124,6 +124,7 @@ void ExpressionResolver::tell_misfit(const Instruction& instruction, Expression&
                 e.text + "() takes " + counts + " arguments, and " + std::to_string(given) + " are given");
   const std::size_t wrong = first_misfit(*nearest, e.parts);
   Expression& argument = e.parts[wrong];
+  if (!has_result(argument)) return;
   const std::string wanted = kinds_of(nearest->parameters[wrong]);
   const bool is_braces = argument.kind == Expression::Kind::kBraces;
   fail(is_braces ? resolver_rules::kBraces : resolver_rules::kWrongType, argument,

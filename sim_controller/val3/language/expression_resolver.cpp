@@ -81,12 +81,21 @@ void ExpressionResolver::expect(Expression& e, const Type& wanted, std::string_v
     type_braces(e, wanted);
     return;
   }
-  if (can_be_put(wanted, e.type)) return;
-  if (e.type.kind == Kind::kVoid)
-    return fail(resolver_rules::kWrongType, e, full_name(e) + "() has no result",
-                "call it on a line of its own");
+  if (can_be_put(wanted, e.type) || !has_result(e)) return;
   fail(resolver_rules::kWrongType, e,
        std::string(where) + " is a " + type_name(wanted) + ", and this is a " + type_name(e));
+}
+
+/// An instruction without a result is told where a value is wanted.
+bool ExpressionResolver::has_result(Expression& e) {
+  if (e.is_unknown || e.kind != Expression::Kind::kCall || e.type.kind != Kind::kVoid) return true;
+  fail(resolver_rules::kWrongType, e, full_name(e) + "() has no result", "call it on a line of its own");
+  return false;
+}
+
+void ExpressionResolver::fail_without_type(Expression& e) {
+  fail(resolver_rules::kBraces, e, "no type says what the values in braces are",
+       "put them into a variable of the type that is meant");
 }
 
 bool ExpressionResolver::type_braces(Expression& e, const Type& wanted) {
@@ -108,7 +117,7 @@ bool ExpressionResolver::type_braces(Expression& e, const Type& wanted) {
 
 /// Makes it a condition: what is put together by `or`, `and`, `xor`, or asked by itself.
 bool ExpressionResolver::be_bool(Expression& e) {
-  if (e.is_unknown || has_kind(e, Kind::kBool)) return true;
+  if (!has_result(e) || e.is_unknown || has_kind(e, Kind::kBool)) return true;
   if (has_kind(e, Kind::kDio)) {
     fail(resolver_rules::kDioCondition, e, "an input or output stands as a condition by itself",
          "compare it, as in d==true, or assign it to a bool first");
@@ -141,7 +150,8 @@ bool ExpressionResolver::resolve_place(Expression& e) {
 void ExpressionResolver::resolve_unary(Expression& e) {
   Expression& value = e.parts[0];
   resolve(value);
-  e.is_unknown = value.is_unknown;
+  if (is_braces(value)) return fail_without_type(e);
+  e.is_unknown = !has_result(value) || value.is_unknown;
   if (e.is_unknown) return;
   e.type = value.type;
   if (e.text == "!") {
@@ -162,12 +172,13 @@ void ExpressionResolver::resolve_binary(Expression& e) {
   Expression& right = e.parts[1];
   resolve(left);
   resolve(right);
+  const bool have_results = has_result(left) && has_result(right);
+  if (have_results && is_braces(left) && is_braces(right)) return fail_without_type(e);
   if (e.text == "==" || e.text == "!=") {
     e.type = kBoolType;
     if (!comparable(left, right))
       tell(Severity::kError, resolver_rules::kOperatorType, e,
-           is_braces(left) ? "no type says what the values in braces are"
-                           : "a " + type_name(left) + " is not compared with a " + type_name(right));
+           "a " + type_name(left) + " is not compared with a " + type_name(right));
     return;
   }
   resolve_arithmetic(e);

@@ -61,6 +61,8 @@ class ExpressionResolver {
   void resolve_logical(Expression& e);
   void resolve_arithmetic(Expression& e);
   bool be_bool(Expression& e);
+  bool has_result(Expression& e);
+  void fail_without_type(Expression& e);
   bool type_braces(Expression& e, const Type& wanted);
 
   Scope& scope_;

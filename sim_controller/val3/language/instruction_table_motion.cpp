@@ -50,7 +50,7 @@ std::vector<Row> of_motion() {
       {"getJointForce", {"any(num&[])"}, 0, 162, kPlain, kS64},
       {"getMoveId", {"num()"}, 0, 0, kPlain, kS7},
       {"setMoveId", {"any(num)"}, 0, 0, kPlain, kS7},
-      {"setPayload", {"any(any, any?, any?)"}, 0, 0, kPlain, kS7},
+      {"setPayload", {"any(...)"}, 0, 0, kPlain, kS7},
       // options
       {"movejf", {"num(joint|point|jointRs|pointRs, tool, mdesc, num)"}, 142, 166, kBlocks, kS5, kCompliance},
       {"movelf", {"num(point|pointRs, tool, mdesc, num)"}, 143, 167, kBlocks, kS5, kCompliance},
@@ -63,7 +63,7 @@ std::vector<Row> of_motion() {
       {"alterEnd", {"num()"}, 149, 173, kPlain, kS5, kAlter},
       {"alterStopTime", {"num()"}, 150, 174, kPlain, kS5, kAlter},
       // add-ons
-      {"$movejSync", {"any(any, any?, any?)"}, 0, 0, kBlocks, kS53, "synchronised motion"},
+      {"$movejSync", {"any(...)"}, 0, 0, kBlocks, kS53, "synchronised motion"},
       {"$getJntFbk", {"joint()"}, 0, 0, kPlain, kS53, kServo},
   };
 }

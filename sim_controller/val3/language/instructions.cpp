@@ -59,6 +59,8 @@ Signature signature_from(std::string_view text) {
   signature.any_result = result == "any";
   signature.result = kind_named(result);
   text.remove_suffix(1);
+  signature.any_arguments = text.substr(open + 1) == "...";
+  if (signature.any_arguments) return signature;
   for (const std::string_view one : words_of(text.substr(open + 1), ','))
     signature.parameters.push_back(parameter_from(one));
   return signature;
@@ -107,6 +109,7 @@ bool fits_kind(Kind wanted, const Expression& argument) {
 }
 
 bool fits_signature(const Signature& signature, std::span<const Expression> arguments) {
+  if (signature.any_arguments) return true;
   if (arguments.size() < least_arguments(signature) || arguments.size() > signature.parameters.size())
     return false;
   for (std::size_t i = 0; i < arguments.size(); ++i)

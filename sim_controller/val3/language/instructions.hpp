@@ -21,7 +21,8 @@ struct InstructionParameter {
 
 struct Signature {
   Kind result = Kind::kVoid;
-  bool any_result = false;  // no manual says of what type
+  bool any_result = false;     // no manual says of what type
+  bool any_arguments = false;  // nor what it takes: its arguments are not checked
   std::vector<InstructionParameter> parameters;
   Version since{5, 0};  // where it is newer than the instruction itself
 };

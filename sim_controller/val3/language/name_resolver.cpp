@@ -129,7 +129,10 @@ void ExpressionResolver::resolve_unknown_signal(const Application& io, Expressio
 void ExpressionResolver::resolve_index(Expression& e) {
   Expression& base = e.parts[0];
   resolve(base);
-  for (std::size_t i = 1; i < e.parts.size(); ++i) resolve(e.parts[i]);
+  for (std::size_t i = 1; i < e.parts.size(); ++i) {
+    resolve(e.parts[i]);
+    (void)has_result(e.parts[i]);
+  }
   e.type = base.type;
   e.is_place = true;
   e.is_unknown = base.is_unknown;
@@ -171,8 +174,7 @@ void ExpressionResolver::resolve_field(Expression& e) {
   e.is_place = base.is_place;
   e.is_unknown = base.is_unknown;
   if (e.is_unknown) return;
-  if (base.kind == Expression::Kind::kBraces)
-    return fail(resolver_rules::kBraces, e, "no type says what the values in braces are");
+  if (base.kind == Expression::Kind::kBraces) return fail_without_type(e);
   e.type = field_type(scope_.application(), base.type, e.text);
   if (is_known(scope_.application(), e.type)) return;
   // A field whose type the reader did not know is told there.

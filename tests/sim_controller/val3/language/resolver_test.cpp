@@ -153,7 +153,17 @@ TEST(Resolver, WhatAControllerRefusesIsFoundOnce) {
       {"b=si==si", "operator-type"},
       {"b=s==n", "operator-type"},
       {"n=-s", "operator-type"},
-      {"b={1,2}=={1,2}", "operator-type"},
+      {"b={1,2}=={1,2}", "braces"},
+      {"t={0,0,1,0,0,0}*{0,0,1,0,0,0}", "braces"},
+      {"j={1,2,3,4,5,6}-{1,2,3,4,5,6}", "braces"},
+      {"t=!{0,0,1,0,0,0}", "braces"},
+      {"j=-{1,2,3,4,5,6}", "braces"},
+      {"n=cls()+1", "wrong-type"},
+      {"n=-cls()", "wrong-type"},
+      {"b=1==cls()", "wrong-type"},
+      {"b=cls() or b", "wrong-type"},
+      {"n=nArray[cls()]", "wrong-type"},
+      {"n=sin(cls())", "wrong-type"},
       {"if n\nendIf", "condition-type"},
       {"b=n and b", "condition-type"},
       {"b=!n", "condition-type"},
@@ -344,6 +354,23 @@ TEST(Resolver, OldControllersHaveTheirSignalsInTheLibraryIo) {
       "b=io:bIn3\nio:bOut0=true\nn=io:CPU_TEMP\nif io:fIn0\nendIf\nn=io:mine\nif io:usrIn0==true\nendIf");
   EXPECT_THAT(refused_in(std::move(small)),
               ElementsAre("start.pgx:5 dio-condition", "start.pgx:7 unknown-signal"));
+}
+
+TEST(Resolver, ArgumentsThatNoSourceTellsAreNotChecked) {
+  for (const std::string line :
+       {"$movejSync({0,0,0,0,0,0},tl,m,n,s)", "n=$movejSync()", "setPayload(1,t,s,b)"})
+    EXPECT_THAT(refused_in(line), IsEmpty()) << line;
+  EXPECT_THAT(refused_in("$movejSync({1,2}*{1,2},tl,m)"), ElementsAre("braces"));
+  EXPECT_THAT(refused_in("setPayload(x)"), ElementsAre("undefined-name"));
+}
+
+TEST(Resolver, AVariableThatIsWantedAndNotThereIsNamedSo) {
+  SmallApplication small = everything();
+  small.program("start", "userPageAlert(s,{1,2})");
+  Findings findings;
+  resolve(small.application, findings);
+  ASSERT_EQ(findings.size(), 1U);
+  EXPECT_EQ(findings[0].what, "argument 2 of userPageAlert() is a variable, and this is 2 values in braces");
 }
 
 TEST(Resolver, AnInstructionOfAnAddOnIsANoteAndOfS8AWarning) {
