@@ -69,7 +69,9 @@ constexpr Rule kRulesOfChecks[] = {
     {kTimeoutZero, kNote, "A channel waits without end.", "A time-out of 0 is none (M6 page 64).",
      "Give it a time."},
     {kNewerInstruction, kError, "A version has not this instruction.",
-     "A controller of that version does not compile the program.", "Use one that it has."},
+     "A controller of that version does not compile the program. What came between s6.4 and s7 no source "
+     "says: there it is a warning.",
+     "Use one that it has."},
     {kNewerForm, kError, "A version has not this form.",
      "A controller of that version does not compile the program.", "Write it in another way."},
     {kNewerName, kError, "A name is too long for a version.",

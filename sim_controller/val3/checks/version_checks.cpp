@@ -95,11 +95,15 @@ class VersionChecks {
       since = std::max(since, known.signatures[signature].since);
     if (subject_.language < since && known.addon.empty()) {
       const bool is_form = since != known.since;
+      const std::string what = e.text + "()" + (is_form ? " with these arguments" : "");
       // The manual of s6.4 lists all that there was until then. Between it and s7 nobody has said.
-      const bool is_attested = known.page5 != 0 || known.page6 != 0 || subject_.language <= kLastOfManual;
-      subject_.tell(
-          is_attested ? Severity::kError : Severity::kWarning, check_rules::kNewerInstruction, program, e,
-          e.text + "()" + (is_form ? " with these arguments" : "") + " came with " + text_of(since));
+      if (since <= kLastOfManual || subject_.language <= kLastOfManual)
+        subject_.tell(Severity::kError, check_rules::kNewerInstruction, program, e,
+                      what + " came with " + text_of(since));
+      else
+        subject_.tell(Severity::kWarning, check_rules::kNewerInstruction, program, e,
+                      what + " came with " + text_of(since) + ", or behind s6.4: no manual to s6.4 has it",
+                      "see whether the controller has it, or write what s6.4 has");
     }
     if (e.text == "sioCtrl" && subject_.language < kS7) channel_option(program, e);
     if (known.page6 == 0 && known.page5 != 0 && subject_.language >= kS6 && older_.insert(&known).second)

@@ -280,6 +280,25 @@ TEST(Checks, AnOlderVersionLacksWhatCameLater) {
   EXPECT_THAT(found("n=size(nBytes,1)\nn=movej(j,tl,m)\nif b\nelseIf b\nendIf", {7, 7, 2}), IsEmpty());
 }
 
+TEST(Checks, WhatCameBetweenTheLastManualAndS7IsAWarning) {
+  const auto severities = [](const Version& version) {
+    SmallApplication small = cell();
+    small.program(
+        "start",
+        "append(nBytes)\nresize(nBytes,1,9)\ninsert(nBytes[1])\ndelete(nBytes[1])\nn=size(nBytes,1)");
+    Findings findings;
+    resolve(small.application, findings);
+    check(small.application, {version}, findings);
+    std::vector<Severity> told;
+    for (const Finding& one : findings)
+      if (one.rule == check_rules::kNewerInstruction) told.push_back(one.severity);
+    return told;
+  };
+  EXPECT_EQ(severities({6, 4, 99}), std::vector(5, Severity::kError));
+  EXPECT_EQ(severities({6, 8, 0}), std::vector(5, Severity::kWarning));
+  EXPECT_THAT(severities({7, 0, 0}), IsEmpty());
+}
+
 TEST(Checks, AnOlderVersionLacksCollectionsAndLongNames) {
   SmallApplication small = cell();
   small.global("num", "nMap", {}).global("num", "nTable", {2, 3}).global("num", "nOfMoreThan15Letters");
