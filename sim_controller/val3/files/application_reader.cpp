@@ -81,7 +81,12 @@ void ApplicationReader::read_data(Application& application, const ProjectFile& p
     application.has_unread_data = application.has_unread_data || !xml;
     if (!xml) continue;
     std::vector<Global> globals;
+    const std::size_t before = findings_.size();
     read_data_file(*xml, context, of_data, globals);
+    application.has_unread_data =
+        application.has_unread_data ||
+        std::any_of(findings_.begin() + static_cast<std::ptrdiff_t>(before), findings_.end(),
+                    [](const Finding& one) { return one.rule == file_rules::kUnknownType; });
     for (Global& global : globals)
       if (names.add(global.declared.name, "variable", global.declared.line, of_data))
         application.globals.push_back(std::move(global));

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim_controller/val3/files/project_file.hpp"
+#include "sim_controller/val3/language/resolver.hpp"
 #include "tests/sim_controller/val3/files/project_folder.hpp"
 
 namespace val3 {
@@ -217,6 +218,15 @@ TEST(Files, ProgramsThatAControllerRefusesAreRefused) {
   EXPECT_THAT(declaring("<Locals><Local name=\"a\" type=\"num\" size=\"999999\"/></Locals>\n"),
               ElementsAre("stop.pgx:4 bad-size"));
   EXPECT_THAT(declaring("<Remark/>\n"), ElementsAre("stop.pgx:4 unknown-element"));
+}
+
+TEST(Files, AVariableOfAnUnknownTypeIsToldOnce) {
+  ProjectFolder folder;
+  folder.small("<Data name=\"a\" type=\"unheard\"/>\n<Data name=\"b\" type=\"num\"/>\n");
+  folder.program("app/start.pgx", "b=a.nField+a[1]\na=b\n");
+  ReadApplication read = folder.read();
+  resolve(read.application, read.findings);
+  EXPECT_THAT(told(read.findings), ElementsAre("app.dtx:4 unknown-type"));
 }
 
 TEST(Files, WhatALaterVersionMayHaveAddedIsAWarning) {
