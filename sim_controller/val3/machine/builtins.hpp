@@ -150,6 +150,8 @@ class Builtins {
 
 /// All of them; made once.
 const Builtins& builtins();
+/// Why a call of an instruction is refused whose value, or which itself, the machine does not have.
+std::string why_refused(const Expression& call);
 
 void define_numbers(Builtins& list);
 void define_texts(Builtins& list);

@@ -81,7 +81,7 @@ void Compiler::refuse(const Expression& e, const std::string& what) const {
 }
 
 void Compiler::refuse_type(const Expression& e, const std::string& what) const {
-  if (e.kind == EKind::kCall && e.type.kind == Kind::kVoid) refuse(e, e.text + "() is not simulated");
+  if (e.kind == EKind::kCall && e.type.kind == Kind::kVoid) refuse(e, why_refused(e));
   if (e.kind == EKind::kName && e.is_unknown) refuse(e, why_unknown(e));
   for (const Expression& part : e.parts)
     if (part.type.kind == Kind::kVoid) refuse_type(part, what);
@@ -93,6 +93,7 @@ NodePtr<T> Compiler::called(const Expression& e) {
   const bool is_of_library = is_library_instruction(e);
   const Builtins::Make* make = is_of_library ? nullptr : builtins().find(e);
   if (make == nullptr && !is_of_library) {
+    if (!builtins().knows(e.text)) refuse(e, why_refused(e));
     for (const Expression& part : e.parts)
       if (part.is_unknown && part.type.kind == Kind::kVoid) refuse_type(part, "the value of an argument");
     refuse(e, e.text + " with these arguments is not simulated");

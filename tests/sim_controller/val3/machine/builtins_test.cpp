@@ -1,5 +1,6 @@
 #include "sim_controller/val3/machine/builtins.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -9,7 +10,11 @@
 #include <string>
 
 #include "sim_controller/val3/language/instructions.hpp"
+#include "sim_controller/val3/language/resolver.hpp"
 #include "sim_controller/val3/machine/libraries.hpp"
+#include "sim_controller/val3/machine/machine.hpp"
+#include "tests/sim_controller/val3/small_application.hpp"
+#include "tests/val3/cabinet.hpp"
 
 namespace val3 {
 namespace {
@@ -39,6 +44,48 @@ TEST(Builtins, TheReadmeNamesEveryInstructionThatIsRefusedAndNoOther) {
   }
   refused.insert("libDelete");  // its form is known, and no file is ever removed
   EXPECT_EQ(refused_by_readme(), refused);
+}
+
+/// Why the machine refuses a line.
+std::string refusal_of(const std::string& line) {
+  SmallApplication small;
+  small.application.form = 5;
+  small.global("num", "n").global("string", "s").global("trsf", "t").global("mdesc", "m");
+  small.global("jointRx", "j").library("gone", nullptr).program("start", line).program("stop", "");
+  Findings findings = std::move(small.findings);
+  resolve(small.application, findings);
+  std::erase_if(findings, [](const Finding& one) { return one.severity != Severity::kError; });
+  EXPECT_TRUE(findings.empty()) << line << ": " << (findings.empty() ? "" : findings[0].what);
+  Cabinet cabinet;
+  findings.clear();
+  const Machine machine(small.application, cabinet, findings);
+  return findings.size() == 1 ? findings[0].what : std::to_string(findings.size()) + " findings";
+}
+
+TEST(Builtins, ARefusalNamesTheInstructionThatIsNotThereAndWhy) {
+  const std::string addon = "() is of an add-on, and add-ons are not simulated";
+  for (const auto& [line, why] : std::vector<std::pair<std::string, std::string>>{
+           {"$unheard(gone:x,{1,2},s)", "$unheard" + addon},
+           {"n=$unheard(gone:x)+1", "$unheard" + addon},
+           {"s=\"a\"+$unheard()", "$unheard" + addon},
+           {"put($unheard({1,2}))", "$unheard" + addon},
+           {"n=$fileOpen(gone:x,\"r\")", "$fileOpen" + addon},
+           {"$movejSync({0,0,0,0,0,0},flange,m)", "$movejSync" + addon},
+           {"n=alter(gone:t)", "alter() is of the option alter, and options are not simulated"},
+           {"movejf({0,0,0,0,0,0},flange,m,9)",
+            "movejf() is of the option compliance, and options are not simulated"},
+           {"n=getLicence(\"a\",\"b\")", "getLicence() is not simulated: there are no licences here"},
+           {"setLanguage(\"french\")",
+            "setLanguage() is not simulated: the controller here has one language"},
+           {"setPayload(1,t)", "setPayload() is not simulated: a payload has no effect here"},
+           {"if libList(\"Disk://\",s)\nendIf",
+            "libList() is not simulated: there is no disk here whose folders it would list"},
+           {"t=interpolateC(t,t,t,0.5)", "interpolateC() is not simulated"},
+           {"if isDefined(n)\nendIf", "isDefined() is not simulated"},
+           {"n=append(n)", "what append() gives is not simulated"},
+           {"put(gone:x)",
+            "'gone:x' is of a library that is not there: put its folder beside the application"}})
+    EXPECT_EQ(refusal_of(line), why) << line;
 }
 
 }  // namespace
