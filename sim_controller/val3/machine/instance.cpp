@@ -42,7 +42,7 @@ class DataLoader {
     const Application& application = *instance_.application;
     for (std::size_t i = 0; i < application.globals.size(); ++i) {
       ArrayBase& array = *instance_.globals[i];
-      array.clear();
+      restore(array, application.globals[i].declared);
       fill(array, application.globals[i].values);
     }
   }
@@ -237,6 +237,16 @@ std::shared_ptr<ArrayBase> make_variable(const Application& application, const D
   });
   made->sizes = declared.sizes;
   return made;
+}
+
+void restore(ArrayBase& array, const Declaration& declared) {
+  if (array.sizes != declared.sizes) {
+    std::size_t count = 1;
+    for (const std::size_t size : declared.sizes) count *= size;
+    array.resize(count);
+    array.sizes = declared.sizes;
+  }
+  array.clear();
 }
 
 void load_data(Instance& instance, System& system, Fathers& fathers, Findings&) {

@@ -35,6 +35,8 @@ struct Instance {
 
 /// A variable with its type's defaults.
 std::shared_ptr<ArrayBase> make_variable(const Application& application, const Declaration& declared);
+/// As it was made: its elements get their defaults, and are as many as at first.
+void restore(ArrayBase& array, const Declaration& declared);
 /// Every global of the instance gets what its data file stores. A link that the system does not have is
 /// unlinked (error 123 on use).
 void load_data(Instance& instance, System& system, Fathers& fathers, Findings& findings);

@@ -40,7 +40,8 @@ std::unique_ptr<Activation> Tasks::activate(const Code& code, Fathers& fathers) 
     again->next = 0;
     again->branch_open = false;
     const std::size_t parameters = code.program->parameters.size();
-    for (std::size_t i = 0; i < code.program->locals.size(); ++i) again->slots[parameters + i].array->clear();
+    for (std::size_t i = 0; i < code.program->locals.size(); ++i)
+      restore(*again->slots[parameters + i].array, code.program->locals[i]);
     number_fathers(*again, fathers);
     return again;
   }

@@ -126,6 +126,15 @@ TEST_F(LibrariesOf, OneThatIsNotThereOrHasAnotherInterfaceSaysSo) {
   EXPECT_EQ(status(), kErrorNoLibrary);
 }
 
+TEST_F(LibrariesOf, OneThatIsLoadedAgainHasTheSizesOfItsFiles) {
+  run("append(lib:nPub)\nappend(lib:nPub)\nn[0]=size(lib:nPub)\nn[1]=lib:libLoad(\"one\")\nn[2]=size(lib:"
+      "nPub)\n",
+      true);
+  EXPECT_EQ(number(0), 3);
+  EXPECT_EQ(number(1), 0);
+  EXPECT_EQ(number(2), 1);
+}
+
 TEST_F(LibrariesOf, OneInWhichATaskIsIsNotReplaced) {
   library("one", "1", "wait(nPub>5)\n");
   run("taskCreate \"t\",10,lib:add()\ndelay(0)\nn[0]=lib:libLoad(\"two\")\nlib:nPub=9\ndelay(0)\ndelay(0)\n"

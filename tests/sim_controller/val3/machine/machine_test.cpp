@@ -108,6 +108,17 @@ TEST(MachineOf, RunMemoryIsThatOfTheProject) {
   EXPECT_EQ(run.number("n"), 2001) << "2,000 calls are held, and all come back";
 }
 
+TEST(MachineOf, LocalsThatGrewHaveTheirSizeAgainInTheNextCall) {
+  SmallProject project;
+  project.number("n", 3).program("grow", "append(l_a)\nl_a[2]=7\nn[1]=size(l_a)\nn[2]=l_a[0]",
+                                 SmallProject::local("l_a", "num", 2));
+  project.program("start", "for n[0]=1 to 3\ncall grow()\nendFor\nwait(false)");
+  Running run(project);
+  run.ticks(2);
+  EXPECT_EQ(run.machine().task_status("small~"), 1) << run.log();
+  EXPECT_EQ(run.number("n", 1), 3);
+}
+
 TEST(MachineOf, LocalsTakeRunMemoryWhileTheirCallLasts) {
   SmallProject project;
   project.number("n").program("large", "l_n[0]=1", SmallProject::local("l_n", "num", 600));
