@@ -1,4 +1,5 @@
 // The user page, keys and the log (manual 6, pages 67 to 74).
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -34,6 +35,12 @@ double awaited_key(Context& context) {
   const auto pressed = context.system.take_key();
   if (!pressed) throw Wait{};
   return static_cast<double>(*pressed);
+}
+
+/// Columns of the page: a character takes one, whatever its bytes.
+double columns_of(Context&, const std::string& text) {
+  return static_cast<double>(std::ranges::count_if(
+      text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
 }
 
 constexpr int kReturnKey = 270;
@@ -146,6 +153,13 @@ void define_screens(Builtins& list) {
       "putln", [](Context& c, const Screen&, double number) { return put_number<true>(c, number); });
   list.define<Nothing, Screen, std::string>(
       "title", [](Context& c, const Screen&, const std::string& text) { return set_title(c, text); });
+  list.define<double, Screen, std::string>(
+      "getDisplayLen",
+      [](Context& c, const Screen&, const std::string& text) { return columns_of(c, text); });
+  list.define<Nothing, Screen, bool>("userPage",
+                                     [](Context& c, const Screen&, bool fixed) { return show(c, fixed); });
+  list.define<Nothing, Screen, double>("setTextMode",
+                                       [](Context&, const Screen&, double) { return Nothing{}; });
   list.define<double, Screen>("getKey", [](Context& c, const Screen&) { return key(c); });
   list.define<double, Screen>("get", [](Context& c, const Screen&) { return awaited_key(c); });
   list.define<bool, Screen, double>(
@@ -167,8 +181,7 @@ void define_page(Builtins& list) {
   list.define<Nothing, std::string>("putln", put_text<true>);
   list.define<Nothing, double>("putln", put_number<true>);
   list.define<Nothing, std::string>("title", set_title);
-  list.define<double, std::string>(
-      "getDisplayLen", [](Context&, const std::string& text) { return static_cast<double>(text.size()); });
+  list.define<double, std::string>("getDisplayLen", columns_of);
   define_screens(list);
   list.define<double>("getKey", key);
   list.define<double>("get", awaited_key);

@@ -75,5 +75,24 @@ TEST(Texts, ANumberIsReadFromTheFrontAndTheNextOneIsLeft) {
   }
 }
 
+TEST(Texts, TakeAColumnOfThePageForEachCharacter) {
+  expect_values({{"getDisplayLen(\"abc\")", 3},
+                 {"getDisplayLen(\"D\xC3\xA9"
+                  "but \xE2\x82\xAC\")",
+                  7},
+                 {"getDisplayLen(\"\")", 0}});
+}
+
+TEST(Texts, GoToAScreenAsToThePage) {
+  SmallProject project;
+  project.data("scr", "screen", "").number("n", 2);
+  project.program(
+      "start",
+      "userPage(scr,true)\ncls(scr)\nsetTextMode(scr,1)\nput(scr,\"a\")\nn=getDisplayLen(scr,\"abc\")");
+  Running run(project);
+  run.ticks(2);
+  EXPECT_EQ(run.number("n"), 3) << run.log();
+}
+
 }  // namespace
 }  // namespace val3
