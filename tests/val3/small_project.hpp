@@ -58,6 +58,13 @@ class SmallProject {
   }
   static std::string locals(const std::string& list) { return "<Locals>" + list + "</Locals>"; }
 
+  /// A type of the application, of its project's name; that is written and outlives this.
+  SmallProject& type(const SmallProject& of) {
+    types_ += "<Type name=\"" + of.name_ + "\" path=\"../../" + of.folder_.filename().string() + "/" +
+              of.name_ + "/" + of.name_ + ".pjx\"/>";
+    return *this;
+  }
+
   /// The project's stackSize.
   SmallProject& stack(std::size_t bytes) {
     stack_bytes_ = bytes;
@@ -81,7 +88,7 @@ class SmallProject {
                              "\" "
                              "millimeterUnit=\"true\"/>\n<Programs>" +
                              list + "</Programs><Database><Data file=\"" + name_ +
-                             ".dtx\"/></Database><Libraries/></Project>");
+                             ".dtx\"/></Database><Libraries/><Types>" + types_ + "</Types></Project>");
     return *this;
   }
   void file(const std::string& name, const std::string& xml) const {
@@ -96,6 +103,7 @@ class SmallProject {
   std::size_t stack_bytes_ = 5000;
   std::filesystem::path folder_;
   std::string data_;
+  std::string types_;
   std::map<std::string, std::string> programs_;
 };
 

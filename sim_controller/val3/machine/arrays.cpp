@@ -17,6 +17,12 @@ Record& Record::operator=(const Record& other) {
   return *this;
 }
 
+std::size_t Record::values() const {
+  std::size_t all = 1;
+  for (const auto& field : fields) all += field->values();
+  return all;
+}
+
 bool is_simulated(Kind kind) {
   return kind != Kind::kVoid && kind != Kind::kPointRs && kind != Kind::kConfigRs;
 }

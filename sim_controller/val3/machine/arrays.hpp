@@ -29,6 +29,10 @@ class ArrayBase {
 
   [[nodiscard]] const Type& type() const { return type_; }
   [[nodiscard]] virtual std::size_t size() const = 0;
+  /// Values in all of its elements: those of a user's type have those of their fields.
+  [[nodiscard]] virtual std::size_t values() const = 0;
+  /// Values of an element that is added.
+  [[nodiscard]] virtual std::size_t values_of_new() const = 0;
   /// Of an element inside; it holds until the array is resized.
   [[nodiscard]] virtual void* address(std::size_t index) = 0;
   virtual void resize(std::size_t size) = 0;
@@ -36,6 +40,7 @@ class ArrayBase {
   virtual void copy(std::size_t index, const ArrayBase& from, std::size_t from_index) = 0;
   /// Every element gets its default again.
   virtual void clear() = 0;
+  virtual void clear(std::size_t index) = 0;
   /// All elements, sizes and keys become those of another array of this type.
   virtual void assign(const ArrayBase& from) = 0;
   [[nodiscard]] virtual std::shared_ptr<ArrayBase> clone() const = 0;
@@ -56,6 +61,9 @@ struct Record {
   Record& operator=(const Record& other);  // of the same type
   Record& operator=(Record&&) = default;
   ~Record() = default;
+
+  /// In all of its fields.
+  [[nodiscard]] std::size_t values() const;
 
   std::vector<std::shared_ptr<ArrayBase>> fields;
 };
@@ -150,12 +158,26 @@ class Array final : public ArrayBase {
   }
 
   [[nodiscard]] std::size_t size() const override { return elements.size(); }
+  [[nodiscard]] std::size_t values() const override {
+    if constexpr (std::is_same_v<T, Record>) {
+      std::size_t all = 0;
+      for (const Record& element : elements) all += element.values();
+      return all;
+    } else {
+      return elements.size();
+    }
+  }
+  [[nodiscard]] std::size_t values_of_new() const override {
+    if constexpr (std::is_same_v<T, Record>) return initial_.values();
+    return 1;
+  }
   [[nodiscard]] void* address(std::size_t index) override { return &elements[index]; }
   void resize(std::size_t size) override { elements.resize(size, initial_); }
   void copy(std::size_t index, const ArrayBase& from, std::size_t from_index) override {
     elements[index] = static_cast<const Array&>(from).elements[from_index];
   }
   void clear() override { elements.assign(elements.size(), initial_); }
+  void clear(std::size_t index) override { elements[index] = initial_; }
   void assign(const ArrayBase& from) override {
     elements = static_cast<const Array&>(from).elements;
     sizes = from.sizes;

@@ -5,6 +5,7 @@
 
 #include "sim_controller/val3/machine/channels.hpp"
 #include "sim_controller/val3/machine/signals.hpp"
+#include "sim_controller/val3/machine/tasks.hpp"
 
 namespace val3 {
 namespace {
@@ -17,6 +18,7 @@ class SetOperation final : public Operation {
       : places_(std::move(places)), value_(std::move(value)) {}
   Flow run(Context& context) const override {
     const T value = value_->get(context);
+    if constexpr (std::is_same_v<T, Record>) context.tasks.charge((places_.size() + 1) * value.values());
     for (auto place = places_.rbegin(); place != places_.rend(); ++place) (*place)->at(context) = value;
     return Flow::kGo;
   }

@@ -6,19 +6,34 @@
 
 #include "sim_controller/val3/machine/builtins.hpp"
 #include "sim_controller/val3/machine/libraries.hpp"
+#include "sim_controller/val3/machine/tasks.hpp"
 
 namespace val3 {
 namespace {
 
-/// An array may not grow beyond this many elements.
+/// An array may not grow beyond this many elements, those of a user's type with the values of their fields.
 constexpr std::size_t kElementsMax = 1'000'000;
 
-void change_size(const Ref& place, std::size_t size) {
+void demand_room(const ArrayBase& array, double elements) {
+  if (elements > static_cast<double>(array.size()) &&
+      elements * static_cast<double>(array.values_of_new()) > static_cast<double>(kElementsMax))
+    throw RunFailure(kErrorRunMemory,
+                     "an array of more than a million elements, or values of the fields of its elements");
+}
+
+void demand_one_dimension(const Ref& place) {
   if (place.field >= 0 || place.array->sizes.size() > 1)
     throw RunFailure(kErrorParameter, "only an array of one dimension changes its size");
-  if (size > kElementsMax) throw RunFailure(kErrorRunMemory, "an array of more than a million elements");
-  place.array->resize(size);
-  place.array->sizes = {size};
+}
+
+void change_size(Context& context, const Ref& place, std::size_t size) {
+  demand_one_dimension(place);
+  ArrayBase& array = *place.array;
+  demand_room(array, static_cast<double>(size));
+  const std::size_t before = array.size();
+  context.tasks.charge((std::max(size, before) - std::min(size, before)) * array.values_of_new());
+  array.resize(size);
+  array.sizes = {size};
 }
 
 double size_of(const Ref& place, double dimension) {
@@ -44,14 +59,14 @@ std::optional<std::size_t> moved(std::size_t index, const std::vector<std::size_
 }
 
 /// One dimension of several: every element keeps its indices.
-void change_dimension(ArrayBase& array, std::size_t dimension, std::size_t size) {
+void change_dimension(Context& context, ArrayBase& array, std::size_t dimension, std::size_t size) {
   const std::vector<std::size_t> before = array.sizes;
   std::vector<std::size_t> now = before;
   now[dimension] = size;
   double count = 1.0;
   for (const std::size_t one : now) count *= static_cast<double>(one);
-  if (count > static_cast<double>(kElementsMax))
-    throw RunFailure(kErrorRunMemory, "an array of more than a million elements");
+  demand_room(array, count);
+  context.tasks.charge(array.values() + static_cast<std::size_t>(count) * array.values_of_new());
   const auto old = array.clone();
   array.resize(0);
   array.resize(static_cast<std::size_t>(count));
@@ -60,40 +75,41 @@ void change_dimension(ArrayBase& array, std::size_t dimension, std::size_t size)
     if (const auto to = moved(i, before, now)) array.copy(*to, *old, i);
 }
 
-Nothing resize(Context&, const Ref& place, double dimension, double size) {
+Nothing resize(Context& context, const Ref& place, double dimension, double size) {
   const std::size_t dimensions = place.field >= 0 ? 1 : std::max<std::size_t>(1, place.array->sizes.size());
   if (!(dimension >= 1.0 && dimension <= static_cast<double>(dimensions)) ||
       dimension != std::floor(dimension) || !(size >= 0.0))
     throw RunFailure(kErrorParameter, "a dimension or a size");
   const auto elements = static_cast<std::size_t>(std::min(std::floor(size), 1e9));
   if (dimensions == 1) {
-    change_size(place, elements);
+    change_size(context, place, elements);
   } else {
-    change_dimension(*place.array, static_cast<std::size_t>(dimension) - 1, elements);
+    change_dimension(context, *place.array, static_cast<std::size_t>(dimension) - 1, elements);
   }
   return {};
 }
 
-Nothing append(Context&, const Ref& place) {
-  change_size(place, place.array->size() + 1);
+Nothing append(Context& context, const Ref& place) {
+  change_size(context, place, place.array->size() + 1);
   return {};
 }
 
-Nothing insert_element(Context&, const Ref& place) {
+Nothing insert_element(Context& context, const Ref& place) {
   ArrayBase& array = *place.array;
-  change_size(place, array.size() + 1);
-  const auto fresh = array.clone();
-  fresh->clear();
+  change_size(context, place, array.size() + 1);
+  context.tasks.charge(array.values());
   for (std::size_t i = array.size() - 1; i > place.index; --i) array.copy(i, array, i - 1);
-  array.copy(place.index, *fresh, place.index);
+  array.clear(std::min(place.index, array.size() - 1));
   return {};
 }
 
-Nothing delete_element(Context&, const Ref& place) {
+Nothing delete_element(Context& context, const Ref& place) {
+  demand_one_dimension(place);
   ArrayBase& array = *place.array;
   if (place.index >= array.size()) throw RunFailure(kErrorIndex, "no element to delete");
+  context.tasks.charge(array.values());
   for (std::size_t i = place.index; i + 1 < array.size(); ++i) array.copy(i, array, i + 1);
-  change_size(place, array.size() - 1);
+  change_size(context, place, array.size() - 1);
   return {};
 }
 
@@ -103,8 +119,9 @@ std::string first_key(Context&, const Ref& place) {
   return keys.empty() ? "" : keys.begin()->first;
 }
 
-std::string next_key(Context&, const Ref& place) {
+std::string next_key(Context& context, const Ref& place) {
   const auto& keys = place.array->keys;
+  context.tasks.charge(keys.size());
   auto at = std::ranges::find_if(keys, [&](const auto& key) { return key.second == place.index; });
   if (at == keys.end() || ++at == keys.end()) return "";
   return at->first;
@@ -155,6 +172,7 @@ double get_data(Context& context, const std::string& text, const Ref& into) {
     return kOtherDataType;
   if (!wanted.is_index || wanted.index >= from.size()) return kNoDataIndex;
   const std::size_t count = std::min(from.size() - wanted.index, into.size());
+  context.tasks.charge(count);
   for (std::size_t i = 0; i < count; ++i) into.array->copy(into.index + i, from, wanted.index + i);
   return static_cast<double>(count);
 }

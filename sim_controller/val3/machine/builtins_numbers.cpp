@@ -7,6 +7,7 @@
 
 #include "sim_controller/val3/machine/builtins.hpp"
 #include "sim_controller/val3/machine/geometry.hpp"
+#include "sim_controller/val3/machine/tasks.hpp"
 
 namespace val3 {
 namespace {
@@ -91,11 +92,13 @@ std::size_t count_of(double n, std::size_t most) {
   return static_cast<std::size_t>(n);
 }
 
-double to_binary(Context&, Slice<double> values, double n, const std::string& text, Slice<double> bytes) {
+double to_binary(Context& context, Slice<double> values, double n, const std::string& text,
+                 Slice<double> bytes) {
   const Format format = format_of(text);
   const std::size_t count = count_of(n, values.size());
   if (count * format.bytes > bytes.size())
     throw RunFailure(kErrorParameter, "too few elements for the bytes");
+  context.tasks.charge(count * format.bytes);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t pattern = pattern_of(values[i], format);
     for (std::size_t k = 0; k < format.bytes; ++k) {
@@ -107,9 +110,11 @@ double to_binary(Context&, Slice<double> values, double n, const std::string& te
 }
 
 /// How many were read; minus that where a byte is none or a float is no number.
-double from_binary(Context&, Slice<double> bytes, double n, const std::string& text, Slice<double> values) {
+double from_binary(Context& context, Slice<double> bytes, double n, const std::string& text,
+                   Slice<double> values) {
   const Format format = format_of(text);
   const std::size_t count = std::min(count_of(n, bytes.size()) / format.bytes, values.size());
+  context.tasks.charge(count * format.bytes);
   for (std::size_t i = 0; i < count; ++i) {
     std::uint64_t pattern = 0;
     for (std::size_t k = 0; k < format.bytes; ++k) {

@@ -13,6 +13,8 @@ using CalledKind = Line::Kind;
 
 constexpr double kTickSecondsOfTasks = 0.004;
 constexpr double kPriorityMax = 100.0;
+/// Locals of a call are made anew: about so many bytes of run memory a value.
+constexpr std::size_t kBytesOfAValue = 8;
 
 /// Fills a parameter of the program that is called.
 class Hand {
@@ -38,7 +40,9 @@ class HandValue final : public Hand {
  public:
   explicit HandValue(NodePtr<T> value) : value_(std::move(value)) {}
   void over(Context& caller, Activation& called, std::size_t slot) const override {
-    called.slots[slot].at<T>() = value_->get(caller);
+    T& parameter = called.slots[slot].at<T>();
+    parameter = value_->get(caller);
+    if constexpr (std::is_same_v<T, Record>) caller.tasks.charge(2 * parameter.values());
   }
 
  private:
@@ -54,6 +58,7 @@ class CallCompiler {
     Called code = called_by(line);
     return operation([code, made = hands(*code.declared->program, line, 0)](Context& c) {
       auto called = Tasks::activate(code.get(), c.tasks.fathers);
+      c.tasks.charge(called->code->call_bytes / kBytesOfAValue);
       for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
       c.tasks.enter(c.task, std::move(called));
       return Flow::kGo;

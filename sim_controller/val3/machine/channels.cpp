@@ -66,6 +66,7 @@ double get(Context& context, const Sio& sio, const Slice<double>& into) {
     got += taken;
     if (taken < wanted) break;
   }
+  context.tasks.charge(got);
   return static_cast<double>(got);
 }
 
@@ -73,6 +74,7 @@ double set(Context& context, const Sio& sio, const Slice<double>& from) {
   const int channel = linked(sio);
   if (!ready(context, channel, [&] { return context.system.connect(channel); })) return -1.0;
   std::vector<std::uint8_t> bytes(std::min(from.size(), kTransferMax));
+  context.tasks.charge(bytes.size());
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = byte_of(from[i]);
   return static_cast<double>(context.system.send(channel, bytes));
 }

@@ -78,10 +78,17 @@ bool bind(LibrarySlot& slot, const LoadableInstance* what) {
   return is_whole;
 }
 
+std::size_t values_of(const Instance& instance) {
+  std::size_t all = 0;
+  for (const auto& global : instance.globals) all += global->values();
+  return all;
+}
+
 /// Its data are those of its files, or those that were saved since.
 void initialise(Context& context, Instance& instance) {
   Findings none;
   load_data(instance, context.system, context.tasks.fathers, none);
+  context.tasks.charge(values_of(instance));
   const auto saved = context.tasks.saved.find(instance.application);
   if (saved != context.tasks.saved.end())
     for (std::size_t i = 0; i < instance.globals.size(); ++i) instance.globals[i]->assign(*saved->second[i]);
@@ -107,6 +114,7 @@ double load(Context& context, LibrarySlot& slot, const LoadableInstance& what) {
 double save(Context& context, const Instance& instance) {
   auto& kept = context.tasks.saved[instance.application];
   kept.clear();
+  context.tasks.charge(values_of(instance));
   for (const auto& global : instance.globals) kept.push_back(global->clone());
   return kLibraryDone;
 }

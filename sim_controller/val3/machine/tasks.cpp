@@ -16,6 +16,8 @@ constexpr std::size_t kSynchronousPeriodsMax = 2;
 constexpr std::size_t kIdleMax = 64;
 /// Larger ones are not kept: their memory is that of the calls that run.
 constexpr std::size_t kIdleBytesMax = 16'384;
+/// Moved by one line beyond what any line may: their time is that of a line.
+constexpr std::size_t kValuesOfALine = 256;
 /// Clocks of two sources agree by this.
 constexpr double kInstantSeconds = 1e-9;
 
@@ -199,11 +201,13 @@ Flow Tasks::carry_out(Task& task) {
   }
 }
 
-void Tasks::run(Task& task, int lines) {
-  for (int left = lines; left > 0 && task.status == 1 && !task.waits; --left) {
+int Tasks::run(Task& task, int lines) {
+  int left = lines;
+  while (left > 0 && task.status == 1 && !task.waits) {
     ++lines_;
     ++task.lines;
     const Flow flow = carry_out(task);
+    left -= 1 + static_cast<int>(std::exchange(moved_values_, 0) / kValuesOfALine);
     if (flow == Flow::kGo) continue;
     if (flow == Flow::kEnded) task.status = -1;
     task.waits = true;
@@ -211,6 +215,7 @@ void Tasks::run(Task& task, int lines) {
   int& most = most_lines_[task.name];
   most = std::max(most, task.lines);
   if (task.waits) task.lines = 0;
+  return lines - left;
 }
 
 void Tasks::run_synchronous() {
@@ -244,8 +249,7 @@ void Tasks::run_asynchronous() {
       continue;
     }
     idle = 0;
-    run(task, task.priority);
-    left -= task.priority;
+    left -= std::max(task.priority, run(task, task.priority));
   }
   turn_ = at == tasks_.end() ? nullptr : at->get();
 }

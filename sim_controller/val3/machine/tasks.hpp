@@ -73,6 +73,10 @@ class Tasks {
   /// The instruction no longer waits.
   static void stop_waiting(Task& task) { task.waits_in = nullptr; }
 
+  /// The line that is carried out moves so many values. It takes the time of as many more lines as it moves
+  /// kValuesOfALine, so that a tick has an end whatever its lines move.
+  void charge(std::size_t values) { moved_values_ += values; }
+
   [[nodiscard]] bool empty() const { return tasks_.empty(); }
   [[nodiscard]] std::vector<TaskView> views() const;
   [[nodiscard]] std::uint64_t lines() const { return lines_; }
@@ -86,7 +90,8 @@ class Tasks {
 
  private:
   void demand_creatable(const Task& task);
-  void run(Task& task, int lines);
+  /// How many of `lines` it took, with the time of what they moved: it may be more.
+  int run(Task& task, int lines);
   Flow carry_out(Task& task);
   void run_synchronous();
   void run_asynchronous();
@@ -96,6 +101,7 @@ class Tasks {
   std::list<std::unique_ptr<Task>> tasks_;
   std::map<std::string, int, std::less<>> most_lines_;
   std::uint64_t lines_ = 0;
+  std::size_t moved_values_ = 0;  // by the line that is carried out
   long ticks_ = 0;
   std::size_t stack_bytes_ = 0;  // of the calls of all tasks
   const Task* turn_ = nullptr;   // whose turn the asynchronous lines of the next tick begin with

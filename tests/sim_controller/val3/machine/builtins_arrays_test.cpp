@@ -25,6 +25,29 @@ TEST(Arrays, GrowAndShrink) {
   expect_errors({{"size(n)", kErrorRunMemory}}, "resize(n,1,2000000)");
 }
 
+TEST(Arrays, OfAUsersTypeGrowAsFarAsTheValuesOfTheirFields) {
+  SmallProject type("pair");
+  type.file_data("<Data name=\"n\" access=\"public\" xsi:type=\"array\" type=\"num\" size=\"99\"/>").write();
+  SmallProject project;
+  project.type(type).data("a", "pair", "").number("n", 2);
+  project.program("start", "resize(a,1,10000)\nn[0]=size(a)\nresize(a,1,10001)\nn[0]=0");
+  Running run(project);
+  run.ticks(3);
+  EXPECT_EQ(run.number("n", 0), 10'000) << run.log();
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorRunMemory) << "100 values each";
+}
+
+TEST(Arrays, OfMoreDimensionsStayAsTheyAreWhereAnElementCannotGo) {
+  SmallProject project;
+  project.file_data("<Data name=\"m\" access=\"private\" xsi:type=\"array\" type=\"num\" size=\"2 3\"/>");
+  project.program("start", "m[0,1]=1\ndelete(m[0,0])");
+  Running run(project);
+  run.ticks(2);
+  EXPECT_EQ(run.machine().task_status("small~"), kErrorParameter);
+  EXPECT_EQ(run.machine().number("m", 0), 0);
+  EXPECT_EQ(run.machine().number("m", 1), 1);
+}
+
 TEST(Arrays, OfTwoDimensionsAreRowsAfterRows) {
   SmallProject project;
   project.file_data("<Data name=\"m\" access=\"private\" xsi:type=\"array\" type=\"num\" size=\"2 3\"/>");

@@ -90,6 +90,43 @@ TEST(Tasks, WaitForTimeAndForConditions) {
   EXPECT_EQ(run.number("n", 3), 1);
 }
 
+/// Lines of a tick in which a program does nothing but `code`, a million values a line.
+std::uint64_t lines_of_a_tick(const std::string& code) {
+  SmallProject type("big");
+  type.file_data("<Data name=\"n\" access=\"public\" xsi:type=\"array\" type=\"num\" size=\"1\"/>").write();
+  SmallProject project;
+  project.type(type).data("a", "big", "").data("b", "big", "");
+  project.number("n", 1'000'000).number("k").flag("bOver");
+  project.program("start", "resize(a.n,1,990000)\ndelay(0)\nwhile true\n" + code + "\nendWhile");
+  Running run(project);
+  run.ticks(1);
+  const std::uint64_t before = run.machine().lines();
+  run.ticks(1);
+  EXPECT_EQ(run.machine().task_status("small~"), 1) << code << run.log();
+  return run.machine().lines() - before;
+}
+
+TEST(Tasks, LinesThatMoveAMillionValuesEndATickSoon) {
+  EXPECT_GT(lines_of_a_tick("k=k+1"), 3000U);
+  for (const char* code :
+       {"resize(n,1,0)\nresize(n,1,1000000)", "delete(n[0])\ninsert(n[0])", "b=a", "k=libSave()",
+        "k=getData(\"n\",n)", "k=toBinary(n,1000000,\"1\",n)", "k=fromBinary(n,1000000,\"1\",n)"})
+    EXPECT_LE(lines_of_a_tick(code), 12U) << code;
+}
+
+TEST(Tasks, ALineThatMovesMuchTakesTheTimeOfManyInAPeriod) {
+  SmallProject project;
+  project.number("n", 1000).number("k").flag("bOver");
+  project.program("count", "while true\nk=getData(\"n\",n)\nk=getData(\"n\",n)\ndelay(0)\nendWhile");
+  project.program("start", "taskCreateSync \"count\",0.004,bOver,count()");
+  Running few(project, {.lines_per_period = 6});
+  few.ticks(4);
+  EXPECT_TRUE(few.truth("bOver")) << "each takes 3 more";
+  Running enough(project, {.lines_per_period = 20});
+  enough.ticks(4);
+  EXPECT_FALSE(enough.truth("bOver"));
+}
+
 TEST(Sockets, AreReadAndWrittenWithReturnCodes) {
   SmallProject project;
   project.number("n", 3).number("in", 4).number("out", 3).data("si", "sio",
