@@ -209,7 +209,7 @@ TEST(RunCommand, SaysOfASignalThatOnlyTheCellCanHaveWhereItIsToBeGiven) {
   EXPECT_EQ(ran.code, kCannotRun);
   EXPECT_THAT(ran.error,
               HasSubstr("start.pgx:5: 'io:bVacuum' is none of the signals that a controller has by "
-                        "itself: put the cell's project io beside the application"));
+                        "itself; put the cell's project io beside the application"));
   EXPECT_THAT(ran.error, HasSubstr("start.pgx:6: 'io:bLight' is none of the signals"));
 }
 

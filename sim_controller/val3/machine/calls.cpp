@@ -116,8 +116,9 @@ class CallCompiler {
       owner = slot->declared;
     }
     if (owner == nullptr || line.called_program < 0)
-      throw NotSimulated{{program_.file, line.line, line.column},
-                         "program " + line.program + " is of a library that is not there"};
+      throw NotSimulated{.at = {program_.file, line.line, line.column},
+                         .what = "program " + line.program + " is of a library that is not there",
+                         .remedy = "put its folder beside the application"};
     return {.declared = &owner->programs.at(static_cast<std::size_t>(line.called_program)),
             .slot = slot == nullptr || slot->is_fixed ? nullptr : slot,
             .program = line.called_program};

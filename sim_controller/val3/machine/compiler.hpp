@@ -12,6 +12,7 @@ namespace val3 {
 struct NotSimulated {
   Position at;
   std::string what;
+  std::string remedy = "run this application on a controller, or leave the line out";
 };
 
 /// Makes the nodes of one program's expressions. The application is resolved and without errors; what the
@@ -32,10 +33,11 @@ class Compiler {
   PlaceNodePtr<T> place(const Expression& e);
 
   [[noreturn]] void refuse(const Expression& e, const std::string& what) const;
+  [[noreturn]] void refuse(const Expression& e, const std::string& what, const std::string& remedy) const;
   /// An expression of another type than is wanted, or without one: names the instruction that has none here.
   [[noreturn]] void refuse_type(const Expression& e, const std::string& what) const;
-  /// Of a name that stands for nothing here, though a controller may know it.
-  [[nodiscard]] std::string why_unknown(const Expression& name) const;
+  /// A name that stands for nothing here, though a controller may know it.
+  [[noreturn]] void refuse_unknown(const Expression& name) const;
   [[nodiscard]] const Instance& instance() const { return instance_; }
   [[nodiscard]] const Fathers& fathers() const { return fathers_; }
   [[nodiscard]] const Program& program() const { return program_; }

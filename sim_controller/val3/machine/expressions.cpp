@@ -77,12 +77,16 @@ T word_of(int index) {
 }  // namespace
 
 void Compiler::refuse(const Expression& e, const std::string& what) const {
-  throw NotSimulated{{program_.file, e.line, e.column}, what};
+  throw NotSimulated{.at = {program_.file, e.line, e.column}, .what = what};
+}
+
+void Compiler::refuse(const Expression& e, const std::string& what, const std::string& remedy) const {
+  throw NotSimulated{.at = {program_.file, e.line, e.column}, .what = what, .remedy = remedy};
 }
 
 void Compiler::refuse_type(const Expression& e, const std::string& what) const {
   if (e.kind == EKind::kCall && e.type.kind == Kind::kVoid) refuse(e, why_refused(e));
-  if (e.kind == EKind::kName && e.is_unknown) refuse(e, why_unknown(e));
+  if (e.kind == EKind::kName && e.is_unknown) refuse_unknown(e);
   for (const Expression& part : e.parts)
     if (part.type.kind == Kind::kVoid) refuse_type(part, what);
   refuse(e, what);

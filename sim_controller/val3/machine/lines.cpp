@@ -255,7 +255,7 @@ Code compile(const Instance& instance, const Fathers& fathers, const Program& pr
                           .rule = "not-simulated",
                           .at = refused.at,
                           .what = refused.what,
-                          .remedy = "run this application on a controller, or leave the line out"});
+                          .remedy = refused.remedy});
       code.operations.push_back(operation([](Context&) { return Flow::kGo; }));
     }
   }

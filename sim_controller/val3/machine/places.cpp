@@ -147,15 +147,15 @@ std::size_t slot_of(const Program& program, const Reference& reference) {
 
 }  // namespace
 
-std::string Compiler::why_unknown(const Expression& name) const {
-  if (name.alias.empty()) return "'" + name.text + "' is no variable here";
+void Compiler::refuse_unknown(const Expression& name) const {
+  if (name.alias.empty()) refuse(name, "'" + name.text + "' is no variable here");
   const std::string full = "'" + name.alias + ":" + name.text + "'";
   const Application& application = *instance_.application;
   const int library = application.library_named(name.alias);
   if (library < 0 || !application.libraries[static_cast<std::size_t>(library)].application)
-    return full + " is of a library that is not there: put its folder beside the application";
-  return full + " is none of the signals that a controller has by itself: put the cell's project " +
-         name.alias + " beside the application";
+    refuse(name, full + " is of a library that is not there", "put its folder beside the application");
+  refuse(name, full + " is none of the signals that a controller has by itself",
+         "put the cell's project " + name.alias + " beside the application");
 }
 
 RefNodePtr Compiler::variable(const Expression& e) {
@@ -178,7 +178,7 @@ RefNodePtr Compiler::variable(const Expression& e) {
     case Reference::To::kFlange:
       return lambda_node<Ref>([flange = &fathers_.flange()](Context&) { return Ref{.array = flange}; });
     default:
-      refuse(e, why_unknown(e));
+      refuse_unknown(e);
   }
 }
 

@@ -46,8 +46,8 @@ TEST(Builtins, TheReadmeNamesEveryInstructionThatIsRefusedAndNoOther) {
   EXPECT_EQ(refused_by_readme(), refused);
 }
 
-/// Why the machine refuses a line.
-std::string refusal_of(const std::string& line) {
+/// What the machine finds in a line that it refuses.
+Finding refusal_of(const std::string& line) {
   SmallApplication small;
   small.application.form = 5;
   small.global("num", "n").global("string", "s").global("trsf", "t").global("mdesc", "m");
@@ -59,7 +59,8 @@ std::string refusal_of(const std::string& line) {
   Cabinet cabinet;
   findings.clear();
   const Machine machine(small.application, cabinet, findings);
-  return findings.size() == 1 ? findings[0].what : std::to_string(findings.size()) + " findings";
+  EXPECT_EQ(findings.size(), 1U) << line;
+  return findings.empty() ? Finding{} : findings[0];
 }
 
 TEST(Builtins, ARefusalNamesTheInstructionThatIsNotThereAndWhy) {
@@ -83,9 +84,17 @@ TEST(Builtins, ARefusalNamesTheInstructionThatIsNotThereAndWhy) {
            {"t=interpolateC(t,t,t,0.5)", "interpolateC() is not simulated"},
            {"if isDefined(n)\nendIf", "isDefined() is not simulated"},
            {"n=append(n)", "what append() gives is not simulated"},
-           {"put(gone:x)",
-            "'gone:x' is of a library that is not there: put its folder beside the application"}})
-    EXPECT_EQ(refusal_of(line), why) << line;
+           {"put(gone:x)", "'gone:x' is of a library that is not there"},
+           {"call gone:f(n)", "program f is of a library that is not there"}})
+    EXPECT_EQ(refusal_of(line).what, why) << line;
+}
+
+TEST(Builtins, TheRemedyForALibraryThatIsNotThereIsToPutItThere) {
+  const std::string there = "put its folder beside the application";
+  EXPECT_EQ(refusal_of("put(gone:x)").remedy, there);
+  EXPECT_EQ(refusal_of("call gone:f(n)").remedy, there);
+  EXPECT_EQ(refusal_of("setPayload(1)").remedy,
+            "run this application on a controller, or leave the line out");
 }
 
 }  // namespace
