@@ -102,7 +102,7 @@ class VersionChecks {
                       what + " came with " + text_of(since));
       else
         subject_.tell(Severity::kWarning, check_rules::kNewerInstruction, program, e,
-                      what + " came with " + text_of(since) + ", or behind s6.4: no manual to s6.4 has it",
+                      what + " came with " + text_of(since) + ", or after s6.4: no manual to s6.4 has it",
                       "see whether the controller has it, or write what s6.4 has");
     }
     if (e.text == "sioCtrl" && subject_.language < kS7) channel_option(program, e);
