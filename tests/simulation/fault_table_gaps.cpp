@@ -70,8 +70,8 @@ const std::map<std::string, std::string>& codes_without_cell() {
        "refuses a start in a cell that is not ready, which nobody gives here: "
        "`tests/service/acquisition/preconditions_test`"},
       {"touch_deadline",
-       "an arm that does not come to rest is told by the controller itself before: "
-       "`tests/service/run/touch_command_test`"},
+       "a touch here ends long before its deadline: "
+       "`tests/service/acquisition/touch_executor_answers_test`"},
       {"touch_does_not_fit",
        "takes a contact elsewhere that is plausible: `tests/service/acquisition/outlier_retest_test`"},
       {"touch_outlier",
