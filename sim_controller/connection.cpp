@@ -14,18 +14,17 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using Clock = std::chrono::steady_clock;
 
-/// How long a closed connection is still read, so that the last message is not lost to a reset.
-constexpr std::chrono::milliseconds kLingerMax{500};
 /// How long the socket of a half-open connection is kept.
 constexpr std::chrono::minutes kHalfOpenMax{1};
 /// A State is dropped when this many frames wait to be sent.
 constexpr std::size_t kStateQueueMax = 4;
-/// A host that does not read is closed when this many frames wait.
-constexpr std::size_t kQueueMax = 1000;
 
 }  // namespace
 
-Connection::Connection(tcp::socket accepted) : socket(std::move(accepted)), linger_(socket.get_executor()) {}
+Connection::Connection(tcp::socket accepted) : socket(std::move(accepted)), linger_(socket.get_executor()) {
+  boost::system::error_code ignored;
+  socket.set_option(tcp::socket::send_buffer_size(kSendBufferBytes), ignored);
+}
 
 void Connection::send(std::vector<std::uint8_t> frame, bool is_state) {
   if (is_state) {

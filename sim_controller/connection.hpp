@@ -4,6 +4,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -19,6 +20,13 @@ namespace sim {
 /// of it. Kept alive by the handlers that run on it.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
+  /// How long a closed connection is still read, so that the last message is not lost to a reset.
+  static constexpr std::chrono::milliseconds kLingerMax{500};
+  /// A host that does not read is closed when this many frames wait.
+  static constexpr std::size_t kQueueMax = 1000;
+  /// Of TCP behind them, which would otherwise keep minutes of States for a host that does not read.
+  static constexpr int kSendBufferBytes = 8192;
+
   explicit Connection(boost::asio::ip::tcp::socket accepted);
 
   boost::asio::ip::tcp::socket socket;

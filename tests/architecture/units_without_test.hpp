@@ -145,7 +145,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
      "data and fathers: val3/machine/machine_test, builtins_geometry_test"},
     {"sim_controller/val3/machine/places", "val3/machine/lines_test, val3/machine/builtins_arrays_test"},
     {"sim_controller/cabinet", "its inputs as the controller uses them: permit_test, trouble_effects_test"},
-    {"sim_controller/connection", "every fault of a connection over sockets: link_faults_test, server_test"},
     {"sim_controller/controller_state",
      "what a restart forgets: trouble_effects_test, end_to_end/programs_test"},
     {"sim_controller/loaded_application",
