@@ -12,11 +12,8 @@ namespace {
 
 using cs8::Outcome;
 
-/// How long the probe may take to seat again, and the arm to stand.
-constexpr int kReseatTicksMax = static_cast<int>(0.5 / kTickSeconds);
-constexpr int kStandstillTicksMax = static_cast<int>(2.0 / kTickSeconds);
-/// VAL3's run-time error of an instruction that does not come to its end.
-constexpr std::int32_t kTimeoutError = 60;
+constexpr int kReseatTicksMax = static_cast<int>(kReseatSecondsMax / kTickSeconds);
+constexpr int kStandstillTicksMax = static_cast<int>(kStandstillSecondsMax / kTickSeconds);
 
 double metres_per_second(std::int32_t um_s) { return cs8::metres_per_second_from_um_s(um_s); }
 

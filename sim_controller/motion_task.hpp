@@ -20,6 +20,12 @@ namespace sim {
 
 using TimePoint = std::chrono::steady_clock::time_point;
 
+/// How long the probe may take to seat again, and the arm to stand.
+inline constexpr double kReseatSecondsMax = 0.5;
+inline constexpr double kStandstillSecondsMax = 2.0;
+/// VAL3's run-time error of an instruction that does not come to its end.
+inline constexpr std::int32_t kTimeoutError = 60;
+
 /// What the motion task is doing.
 enum class Stage {
   kTravel,      // joint moves to the clear posture, or to a travel's target

@@ -2,6 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
+#include <regex>
+#include <string>
+
 namespace cell {
 namespace {
 
@@ -38,6 +43,21 @@ TEST(ReconnectPause, ALinkThatLastedEndsTheGrowthAndItsEndIsAllowedToBeNoticed) 
   EXPECT_EQ(pause.earliest() - now, ReconnectPause::kFirst);
   pause.on_try(now, false);
   EXPECT_EQ(pause.earliest() - now, ReconnectPause::kFirst);
+}
+
+TEST(ReconnectPause, KeepsWhatTheProtocolWantsOfAHost) {
+  std::ifstream file(TOUCHCAL_SOURCE_DIR "/cs8_protocol/PROTOCOL.md");
+  const std::string lines{std::istreambuf_iterator<char>(file), {}};
+  const std::string page = std::regex_replace(lines, std::regex("\\s+"), " ");
+  std::smatch figures;
+  ASSERT_TRUE(std::regex_search(
+      page, figures,
+      std::regex(
+          "A host that lost or closed a connection waits at least ([0-9]+) ms before it connects again, "
+          "since the controller may not have seen the end yet, and after each failure longer, up to "
+          "([0-9]+) s\\.")));
+  EXPECT_GE(ReconnectPause::kFirst, std::chrono::milliseconds(std::stoi(figures[1])));
+  EXPECT_EQ(ReconnectPause::kLongest, std::chrono::seconds(std::stoi(figures[2])));
 }
 
 }  // namespace
