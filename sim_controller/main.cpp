@@ -279,8 +279,7 @@ int main(int argc, char** argv) {
   app.footer(
       "Motions take simulated time (--speed); deadlines, the silence that ends a link and the wait for a "
       "confirmation are wall time. With --val3 these are the application's and simulated too: it waits for "
-      "the "
-      "host's heartbeats.\nSPDLOG_LEVEL=debug in the environment logs each touch.");
+      "the host's heartbeats.\nSPDLOG_LEVEL=debug in the environment logs each touch.");
   try {
     app.parse(argc, argv);
     if (arguments.check.empty() && arguments.cell_file.empty()) throw CLI::RequiredError("--cell");

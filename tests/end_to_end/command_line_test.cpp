@@ -93,6 +93,16 @@ TEST_F(CommandLine, EveryOptionOfTheServersIsInTheirManual) {
   }
 }
 
+TEST_F(CommandLine, HelpOfTheSimulatorSaysWhatIsWallTimeAndWhatIsSimulated) {
+  const std::string help = std::regex_replace(run({"cs8sim", "--help"}).out, std::regex("\\s+"), " ");
+  EXPECT_THAT(help, HasSubstr("simulated against wall time; max: motions take no time"));
+  EXPECT_THAT(help,
+              HasSubstr("Motions take simulated time (--speed); deadlines, the silence that ends a link "
+                        "and the wait for a confirmation are wall time."));
+  EXPECT_THAT(help, HasSubstr("With --val3 these are the application's and simulated too: it waits for the "
+                              "host's heartbeats."));
+}
+
 TEST_F(CommandLine, TheShellCompletesCommandsOptionsAndFiles) {
   const auto script = folder_ / "completion.bash";
   std::ofstream(script) << run({"touchcal", "completion", "bash"}).out << R"(
