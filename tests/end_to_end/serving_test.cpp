@@ -2,11 +2,16 @@
 #include <gmock/gmock.h>
 
 #include <atomic>
+#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/use_future.hpp>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "service/http/routes/api.hpp"
 #include "tests/end_to_end/loopback_cell.hpp"
@@ -20,9 +25,12 @@ using nlohmann::json;
 /// The Api of a cell on a thread of its own; the test's thread is that of the operation.
 class ServedCell {
  public:
-  explicit ServedCell(LoopbackCell& loop)
+  explicit ServedCell(LoopbackCell& loop) : ServedCell(loop, loop.io(), {}) {}
+  /// `store` and `reader`: the threads of the disk.
+  ServedCell(LoopbackCell& loop, asio::io_context& store, asio::any_io_executor reader)
       : loop_(loop),
-        api_(http_.get_executor(), {.operation = loop.io().get_executor(), .store = loop.io().get_executor()},
+        api_(http_.get_executor(),
+             {.operation = loop.io().get_executor(), .store = store.get_executor(), .reader = reader},
              loop.operation(), {"operate", "view"}) {}
   ~ServedCell() {
     http_.stop();
@@ -35,13 +43,15 @@ class ServedCell {
   /// From any thread but those two.
   cell::HttpResponse send(const std::string& method, const std::string& path, const std::string& body = "",
                           cell::Query query = {}) {
-    const cell::HttpRequest request{.method = method,
-                                    .path = path,
-                                    .query = std::move(query),
-                                    .authorization = "Bearer operate",
-                                    .content_type = "application/json",
-                                    .body = body,
-                                    .remote = "127.0.0.1"};
+    return send({.method = method,
+                 .path = path,
+                 .query = std::move(query),
+                 .authorization = "Bearer operate",
+                 .content_type = "application/json",
+                 .body = body,
+                 .remote = "127.0.0.1"});
+  }
+  cell::HttpResponse send(const cell::HttpRequest& request) {
     return asio::co_spawn(http_, api_.answer(request), asio::use_future).get();
   }
   json get(const std::string& path, cell::Query query = {}) {
@@ -157,6 +167,67 @@ TEST(Serving, AStopOfAnotherThreadStopsTheRunWhileReportsAreMade) {
                           [&] { status = served.send("POST", "/api/v1/cell/stop").status; }});
   EXPECT_EQ(status, 202U);
   loop.run_until(cell::State::kStopped);
+}
+
+/// A pause and then an abort of the run, each with a key.
+std::vector<unsigned> pause_and_abort(LoopbackCell& loop, ServedCell& served, std::int64_t run) {
+  std::vector<unsigned> answered;
+  const auto halt = [&](const char* word, cell::State reached) {
+    run_with_clients(loop, {[&] {
+                       answered.push_back(served
+                                              .send({.method = "POST",
+                                                     .path = "/api/v1/runs/" + std::to_string(run) + word,
+                                                     .authorization = "Bearer operate",
+                                                     .idempotency_key = word,
+                                                     .remote = "127.0.0.1"})
+                                              .status);
+                     }});
+    loop.run_until(reached);
+  };
+  halt("/pause", cell::State::kHeld);
+  halt("/abort", cell::State::kAborted);
+  return answered;
+}
+
+/// Of the file and its log: nothing in them is a database any more.
+void overwrite(const std::filesystem::path& store_file) {
+  for (const std::string part : {"", "-wal"}) {
+    const std::filesystem::path file = store_file.string() + part;
+    const std::string junk(std::filesystem::file_size(file), 'x');
+    std::fstream(file, std::ios::in | std::ios::out | std::ios::binary) << junk;
+  }
+}
+
+TEST(Serving, AnAbortAndAPauseAreTakenWhereTheDatabaseCannotBeRead) {
+  LoopbackCell loop;
+  loop.serve();
+  loop.launch();
+  loop.run_until(cell::State::kIdle);
+  const std::int64_t run = loop.start();
+  ServedCell served(loop);
+  loop.run_until_touches(3);
+  overwrite(loop.store_file());
+  unsigned read = 0;
+  run_with_clients(
+      loop, {[&] { read = served.send("GET", "/api/v1/runs/" + std::to_string(run) + "/touches").status; }});
+  EXPECT_THAT(read, ::testing::AnyOf(500U, 503U)) << "it cannot be read";
+  EXPECT_THAT(pause_and_abort(loop, served, run), ::testing::ElementsAre(202U, 202U));
+}
+
+TEST(Serving, AnAbortAndAPauseAreTakenWhileTheDiskDoesNotAnswer) {
+  asio::io_context disk(1);  // nobody runs it
+  LoopbackCell loop;
+  loop.serve();
+  loop.launch();
+  loop.run_until(cell::State::kIdle);
+  const std::int64_t run = loop.start();
+  {
+    ServedCell served(loop, disk, disk.get_executor());
+    loop.run_until_touches(3);
+    EXPECT_THAT(pause_and_abort(loop, served, run), ::testing::ElementsAre(202U, 202U));
+    disk.poll();  // what was to be written
+  }
+  EXPECT_EQ(loop.store().run(run)->outcome, cell::RunOutcome::kAborted);
 }
 
 }  // namespace
