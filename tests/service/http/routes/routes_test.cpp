@@ -2,6 +2,8 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include <filesystem>
+
 #include "tests/service/http/routes/routes_bench.hpp"
 
 namespace cell {
@@ -311,6 +313,18 @@ TEST_F(RoutesTest, ACellThatIsNotReadySaysWhatStandsInTheWay) {
   EXPECT_EQ(unready.at("errors")[0].at("code"), "controller_not_connected");
   EXPECT_EQ(unready.at("errors")[1].at("code"), "state");
   EXPECT_EQ(unready.at("errors")[1].at("detail"), "the cell is in STOPPED");
+}
+
+TEST_F(RoutesTest, ACellWhoseStateDirectoryHasGoneIsNotReady) {
+  namespace fs = std::filesystem;
+  const fs::path there = cell_.store().file().parent_path();
+  const fs::path away = there.string() + "-away";
+  fs::rename(there, away);
+  const json unready = problem(get("/readyz"));
+  fs::rename(away, there);
+  EXPECT_EQ(unready.at("status"), 503);
+  EXPECT_EQ(unready.at("errors").back().at("code"), "store_not_writable");
+  EXPECT_NE(problem(get("/readyz")).at("errors").back().at("code"), "store_not_writable");
 }
 
 TEST_F(RoutesTest, FiguresForPrometheusTellStateAndLink) {
