@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "service/documents/limit_table.hpp"
 #include "service/run/readiness.hpp"
 
 namespace cell {
@@ -202,6 +203,18 @@ std::string planes_text(const std::vector<PlaneDistances>& planes, const char* t
   return lines;
 }
 
+/// What the verdict is made of.
+std::string limits_text(const DecisionRuleDocument& rule) {
+  constexpr const char* kColumns = "{:<23}{:>11}{:>17}{:>10}  {}\n";
+  std::string lines =
+      "\n" + fmt::format(kColumns, rule.rule.empty() ? "limits" : "limits (" + rule.rule + " rule)", "value",
+                         "limit", "+- U", "decision");
+  for (const LimitRow& row : limit_rows(rule))
+    lines +=
+        fmt::format(kColumns, row.criterion, row.value, row.limit, row.expanded_uncertainty, row.decision);
+  return lines;
+}
+
 }  // namespace
 
 std::string result_text(const ResultDocument& result) {
@@ -237,6 +250,7 @@ std::string result_text(const ResultDocument& result) {
     if (std::ranges::find(reasons, warning) == reasons.end())
       lines += fmt::format("\nwarning: {}\n", warning);
   }
+  if (result.verdict.decision_rule) lines += limits_text(*result.verdict.decision_rule);
   lines += result.verdict.accepted ? "\nverdict: accepted\n" : "\nverdict: rejected\n";
   for (const std::string& reason : reasons) lines += fmt::format("  - {}\n", reason);
   return lines;

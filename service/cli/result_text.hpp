@@ -10,7 +10,7 @@
 namespace cell {
 
 /// A result document (touchcal/result/1) as text: the errors, rank and condition numbers, the distances of
-/// each plane before and after, the verdict with its reasons.
+/// each plane before and after, the figures beside their limits, the verdict with its reasons.
 std::string result_text(const ResultDocument& result);
 
 /// The status document in a few lines.

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "service/documents/limit_table.hpp"
 #include "service/report/internal/html.hpp"
-#include "service/report/internal/limit_table.hpp"
 #include "service/report/internal/report_parts.hpp"
 
 namespace cell {
@@ -66,10 +66,13 @@ std::string words_of(const std::string& name) {
 std::string decision_rule(const std::optional<DecisionRuleDocument>& rule) {
   if (!rule)
     return html::paragraph("Decision rule: a figure within its limit is accepted (simple acceptance).");
+  std::vector<html::Row> rows;
+  for (const LimitRow& row : limit_rows(*rule))
+    rows.push_back({row.criterion, row.decision, row.value, row.limit, row.expanded_uncertainty});
   return html::paragraph(fmt::format("Decision rule ({}, {}): {}.", text_or_unknown(rule->standard),
                                      text_or_unknown(rule->rule), text_or_unknown(rule->text))) +
          html::table("Figures and their limits",
-                     {"figure", "decision", "value", "limit", "expanded uncertainty"}, limit_rows(*rule));
+                     {"figure", "decision", "value", "limit", "expanded uncertainty"}, rows);
 }
 
 std::string verdict_box(const RunReport& report) {

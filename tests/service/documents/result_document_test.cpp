@@ -5,6 +5,7 @@
 #include "service/cli/result_text.hpp"
 #include "service/cli/validation_text.hpp"
 #include "service/documents/document_error.hpp"
+#include "service/documents/limit_table.hpp"
 #include "service/documents/validation_view.hpp"
 #include "tests/service/table3_result.hpp"
 
@@ -26,6 +27,20 @@ TEST(ResultDocument, IsWrittenAsItWasRead) {
   const std::string text = stored_text();
   EXPECT_EQ(document_text(read_result(text)), text);
   EXPECT_EQ(json::parse(text).at("conditions"), json::parse(R"({"later":[1]})"));
+}
+
+TEST(ResultDocument, AsTextHasEachCriterionWithItsDecision) {
+  const ResultDocument result = read_result(stored_text());
+  const std::string text = result_text(result);
+  const std::vector<LimitRow> rows = limit_rows(result.verdict.decision_rule.value());
+  ASSERT_FALSE(rows.empty());
+  for (const LimitRow& row : rows) {
+    const std::size_t at = text.find("\n" + row.criterion + " ");
+    ASSERT_NE(at, std::string::npos) << row.criterion;
+    const std::string line = text.substr(at + 1, text.find('\n', at + 1) - at - 1);
+    EXPECT_THAT(line, HasSubstr(" " + row.value + " "));
+    EXPECT_THAT(line, ::testing::EndsWith("  " + row.decision));
+  }
 }
 
 TEST(ResultDocument, OfAnEarlierVersionIsShownWithoutWhatItLacks) {

@@ -36,7 +36,7 @@ TEST(FilterList, SaysWhatIsFilteredAndWithWhichTool) {
 
 TEST(FilterList, RefusesEachLineThatItDoesNotKnow) {
   EXPECT_EQ(list_refusal("pA offline\n\npB\n"),
-            "points.list:3: \"pB\" has no mark; write offline, taught or leave behind it");
+            "points.list:3: \"pB\" has no mark; write offline, taught or leave after it");
   EXPECT_EQ(list_refusal("pA Offline\n"),
             "points.list:1: \"Offline\" is no mark; write offline, taught or leave");
   EXPECT_THAT(list_refusal("pA offline tool more"), HasSubstr(":1: \"more\" is one word too many"));

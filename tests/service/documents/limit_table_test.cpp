@@ -1,4 +1,4 @@
-#include "service/report/internal/limit_table.hpp"
+#include "service/documents/limit_table.hpp"
 
 #include <gmock/gmock.h>
 
@@ -73,8 +73,8 @@ TEST(LimitTable, ACountHasNoDecimals) {
 
 TEST(LimitTable, WhatRejectsFailsAndComesFirst) {
   EXPECT_THAT(limit_rows(rule_of("simple")),
-              ElementsAre(html::Row{"lack of fit", "FAIL", "0.001", "at least 0.03", ""},
-                          html::Row{"held out mean, plane 3", "pass", "0.045 mm", "0.050 mm", "0.010 mm"}));
+              ElementsAre(LimitRow{"lack of fit", "FAIL", "0.001", "at least 0.03", ""},
+                          LimitRow{"held out mean, plane 3", "pass", "0.045 mm", "0.050 mm", "0.010 mm"}));
 }
 
 TEST(LimitTable, AGuardedRuleFailsWhatIsNotProven) {
@@ -98,7 +98,7 @@ TEST(LimitTable, WhatIsSoOrNotIsSaidInAWord) {
   rule.criteria[0].value = 0.0;
   rule.criteria[0].expanded_uncertainty.reset();
   rule.criteria[0].within_limit = false;
-  EXPECT_THAT(limit_rows(rule), ElementsAre(html::Row{"complete", "FAIL", "no", "", ""}));
+  EXPECT_THAT(limit_rows(rule), ElementsAre(LimitRow{"complete", "FAIL", "no", "", ""}));
 }
 
 }  // namespace

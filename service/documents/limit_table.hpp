@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "service/documents/result_document.hpp"
-#include "service/report/internal/html.hpp"
 
 namespace cell {
 
@@ -20,8 +19,17 @@ std::string figure_beside_limit(const DecisionRuleDocument::CriterionFigures& cr
 /// for what is within its limit and not proven; "unknown" where the document does not say.
 std::string decision_text(const DecisionRuleDocument::CriterionFigures& criterion, const std::string& rule);
 
-/// A row a criterion: its name, the decision, the value, the limit, the expanded uncertainty. What rejects
-/// comes first.
-std::vector<html::Row> limit_rows(const DecisionRuleDocument& rule);
+/// A criterion as people read it.
+struct LimitRow {
+  std::string criterion;  // "held out mean, plane 3"
+  std::string decision;   // decision_text()
+  std::string value;      // of what is so or not: "yes" or "no", without a limit
+  std::string limit;
+  std::string expanded_uncertainty;  // empty where it is not known
+  bool operator==(const LimitRow&) const = default;
+};
+
+/// A row a criterion; what rejects comes first.
+std::vector<LimitRow> limit_rows(const DecisionRuleDocument& rule);
 
 }  // namespace cell

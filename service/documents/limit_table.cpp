@@ -1,11 +1,9 @@
-#include "service/report/internal/limit_table.hpp"
+#include "service/documents/limit_table.hpp"
 
 #include <spdlog/fmt/fmt.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "service/report/internal/report_parts.hpp"
 
 namespace cell {
 namespace {
@@ -46,10 +44,11 @@ std::string limit_text(const CriterionFigures& criterion) {
 }
 
 std::string criterion_text(const CriterionFigures& criterion) {
-  std::string words = text_or_unknown(criterion.name);
+  std::string words = criterion.name.empty() ? "unknown" : criterion.name;
   std::ranges::replace(words, '_', ' ');
-  return words + figure_if_known(criterion.plane, ", plane {:.0f}") +
-         (criterion.tool ? ", " + *criterion.tool : "");
+  if (criterion.plane) words += fmt::format(", plane {}", *criterion.plane);
+  if (criterion.tool) words += ", " + *criterion.tool;
+  return words;
 }
 
 bool fails(const CriterionFigures& criterion, const std::string& rule) {
@@ -77,16 +76,19 @@ std::string decision_text(const CriterionFigures& criterion, const std::string& 
   return rule == "guarded" && criterion.proved ? "FAIL (not proven)" : "pass";
 }
 
-std::vector<html::Row> limit_rows(const DecisionRuleDocument& rule) {
+std::vector<LimitRow> limit_rows(const DecisionRuleDocument& rule) {
   std::vector<CriterionFigures> ordered = rule.criteria;
   std::ranges::stable_partition(ordered, [&](const CriterionFigures& one) { return fails(one, rule.rule); });
-  std::vector<html::Row> rows;
+  std::vector<LimitRow> rows;
   for (const CriterionFigures& criterion : ordered) {
-    rows.push_back({criterion_text(criterion), decision_text(criterion, rule.rule), value_text(criterion),
-                    limit_text(criterion),
-                    criterion.expanded_uncertainty
-                        ? figure_beside_limit(criterion, criterion.expanded_uncertainty)
-                        : std::string()});
+    rows.push_back(
+        {.criterion = criterion_text(criterion),
+         .decision = decision_text(criterion, rule.rule),
+         .value = value_text(criterion),
+         .limit = limit_text(criterion),
+         .expanded_uncertainty = criterion.expanded_uncertainty
+                                     ? figure_beside_limit(criterion, criterion.expanded_uncertainty)
+                                     : std::string()});
   }
   return rows;
 }
