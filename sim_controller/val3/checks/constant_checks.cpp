@@ -189,7 +189,7 @@ class ConstantChecks {
                     program.name + " calls itself, and nothing decides about it: error 41");
     else if (program.name == "start")
       subject_.tell(Severity::kNote, check_rules::kEndlessRecursion, program, line,
-                    "start() calls itself, which begins nothing anew: the first call goes on behind it");
+                    "start() calls itself, which begins nothing anew: the first call goes on after it");
   }
 
   /// A library's programs run in the memory of whoever creates the task.

@@ -19,8 +19,8 @@ inline constexpr Version kS5{5, 0, 0}, kS53{5, 3, 0}, kS6{6, 0, 0}, kS61{6, 1, 0
     kS7{7, 0, 0}, kS8{8, 0, 0};
 
 /// A signature is its result and the types of its parameters: "string(string, num&, bool&)". `|` stands
-/// between types of which any will do, `any` for all of them, `&` behind a variable that is written, `[]`
-/// behind an array, `?` behind a parameter that may be left out, `...` in place of parameters that no source
+/// between types of which any will do, `any` for all of them, `&` after a variable that is written, `[]`
+/// after an array, `?` after a parameter that may be left out, `...` in place of parameters that no source
 /// tells. "s6.4 " or "s7 " before it is the version that brought it, where it came after the instruction.
 struct Row {
   std::string_view name;

@@ -1,5 +1,6 @@
 #include "sim_controller/val3/machine/arrays.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -19,7 +20,7 @@ Record& Record::operator=(const Record& other) {
 
 std::size_t Record::values() const {
   std::size_t all = 1;
-  for (const auto& field : fields) all += field->values();
+  for (const auto& field : fields) all += std::max<std::size_t>(1, field->values());
   return all;
 }
 

@@ -62,7 +62,7 @@ struct Record {
   Record& operator=(Record&&) = default;
   ~Record() = default;
 
-  /// In all of its fields.
+  /// In all of its fields; one without elements counts for one, as it takes memory.
   [[nodiscard]] std::size_t values() const;
 
   std::vector<std::shared_ptr<ArrayBase>> fields;

@@ -89,6 +89,7 @@ class CallCompiler {
         task->priority = static_cast<int>(number);
       }
       auto called = Tasks::activate(code.get(), c.tasks.fathers);
+      c.tasks.charge(called->code->call_bytes / kBytesOfAValue);
       for (std::size_t i = 0; i < made.size(); ++i) made[i]->over(c, *called, i);
       c.tasks.enter(*task, std::move(called));
       c.tasks.create(std::move(task));

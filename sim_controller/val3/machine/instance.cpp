@@ -173,9 +173,7 @@ class DataLoader {
   static void size_as_stored(ArrayBase& array, const Declaration& stored) {
     if (array.sizes.size() != stored.sizes.size() || stored.is_collection() || array.sizes == stored.sizes)
       return;
-    std::size_t count = 1;
-    for (const std::size_t size : stored.sizes) count *= size;
-    array.resize(count);
+    array.resize(stored.count());
     array.sizes = stored.sizes;
   }
 
@@ -222,8 +220,7 @@ ArrayBase& Instance::global(const Reference& reference) const {
 }
 
 std::shared_ptr<ArrayBase> make_variable(const Application& application, const Declaration& declared) {
-  std::size_t count = declared.is_collection() ? 0 : 1;
-  for (const std::size_t size : declared.sizes) count *= size;
+  const std::size_t count = declared.count();
   auto made = with_type_of(declared.type.kind, [&]<class T>() -> std::shared_ptr<ArrayBase> {
     if constexpr (std::is_same_v<T, Record>) {
       Record initial;
@@ -240,11 +237,10 @@ std::shared_ptr<ArrayBase> make_variable(const Application& application, const D
 }
 
 void restore(ArrayBase& array, const Declaration& declared) {
-  if (array.sizes != declared.sizes) {
-    std::size_t count = 1;
-    for (const std::size_t size : declared.sizes) count *= size;
-    array.resize(count);
+  if (array.sizes != declared.sizes || declared.is_collection()) {
+    array.resize(declared.count());
     array.sizes = declared.sizes;
+    array.keys.clear();
   }
   array.clear();
 }

@@ -16,7 +16,7 @@ constexpr std::size_t kSynchronousPeriodsMax = 2;
 constexpr std::size_t kIdleMax = 64;
 /// Larger ones are not kept: their memory is that of the calls that run.
 constexpr std::size_t kIdleBytesMax = 16'384;
-/// Moved by one line beyond what any line may: their time is that of a line.
+/// A line that moves so many takes the time of one more line.
 constexpr std::size_t kValuesOfALine = 256;
 /// Clocks of two sources agree by this.
 constexpr double kInstantSeconds = 1e-9;
@@ -25,6 +25,12 @@ bool is_task_name(std::string_view name) {
   return !name.empty() && name.size() <= kTaskNameBytesMax && std::ranges::all_of(name, [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '~';
   });
+}
+
+/// What is handed by value, where the call before has made another number of elements of it.
+void be_one_value(ArrayBase& parameter) {
+  static const Declaration kOneValue;
+  if (parameter.sizes != kOneValue.sizes) restore(parameter, kOneValue);
 }
 
 void number_fathers(Activation& call, Fathers& fathers) {
@@ -42,6 +48,8 @@ std::unique_ptr<Activation> Tasks::activate(const Code& code, Fathers& fathers) 
     again->next = 0;
     again->branch_open = false;
     const std::size_t parameters = code.program->parameters.size();
+    for (std::size_t i = 0; i < parameters; ++i)
+      if (!code.program->parameters[i].by_reference) be_one_value(*again->slots[i].array);
     for (std::size_t i = 0; i < code.program->locals.size(); ++i)
       restore(*again->slots[parameters + i].array, code.program->locals[i]);
     number_fathers(*again, fathers);

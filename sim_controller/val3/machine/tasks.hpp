@@ -73,8 +73,8 @@ class Tasks {
   /// The instruction no longer waits.
   static void stop_waiting(Task& task) { task.waits_in = nullptr; }
 
-  /// The line that is carried out moves so many values. It takes the time of as many more lines as it moves
-  /// kValuesOfALine, so that a tick has an end whatever its lines move.
+  /// The line that is carried out moves so many values. It takes the time of one more line for every 256 of
+  /// them, so that a tick has an end whatever its lines move.
   void charge(std::size_t values) { moved_values_ += values; }
 
   [[nodiscard]] bool empty() const { return tasks_.empty(); }

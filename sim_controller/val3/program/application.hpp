@@ -43,6 +43,12 @@ struct Declaration {
   int line = 0;
 
   [[nodiscard]] bool is_collection() const { return sizes.empty(); }
+  /// Elements of one that nobody has sized yet: none of a collection.
+  [[nodiscard]] std::size_t count() const {
+    std::size_t all = is_collection() ? 0 : 1;
+    for (const std::size_t size : sizes) all *= size;
+    return all;
+  }
   /// More than one element, or more than one dimension.
   [[nodiscard]] bool is_array() const { return sizes.size() != 1 || sizes[0] != 1; }
 };

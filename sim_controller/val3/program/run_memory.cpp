@@ -14,9 +14,7 @@ constexpr int kTypesCountedDeepMax = 16;
 std::size_t bytes_of_element(const Application& application, const Type& type, int deep);
 
 std::size_t bytes_of_variable(const Application& application, const Declaration& declared, int deep) {
-  std::size_t count = declared.is_collection() ? 0 : 1;
-  for (const std::size_t size : declared.sizes) count *= size;
-  return kVariableBytes + count * bytes_of_element(application, declared.type, deep);
+  return kVariableBytes + declared.count() * bytes_of_element(application, declared.type, deep);
 }
 
 std::size_t bytes_of_fields(const Application& application, const Type& type, int deep) {

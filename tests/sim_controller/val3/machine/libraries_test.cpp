@@ -135,6 +135,20 @@ TEST_F(LibrariesOf, OneThatIsLoadedAgainHasTheSizesOfItsFiles) {
   EXPECT_EQ(number(2), 1);
 }
 
+TEST_F(LibrariesOf, ACollectionOfOneThatIsLoadedAgainHasItsKeys) {
+  folder.data("one/one.dtx", public_number("nPub", "1") +
+                                 "<Data name=\"cPub\" access=\"public\" xsi:type=\"collection\" type=\"num\">"
+                                 "<Value key=\"a\" value=\"5\"/><Value key=\"b\" value=\"6\"/></Data>\n");
+  run("append(lib:cPub)\nlib:cPub[\"b\"]=7\nn[0]=lib:libLoad(\"one\")\nn[1]=lib:cPub[\"a\"]\nn[2]=lib:cPub["
+      "\"b\"]\n"
+      "n[3]=size(lib:cPub)\n",
+      true);
+  EXPECT_EQ(number(0), 0);
+  EXPECT_EQ(number(1), 5);
+  EXPECT_EQ(number(2), 6);
+  EXPECT_EQ(number(3), 2);
+}
+
 TEST_F(LibrariesOf, OneInWhichATaskIsIsNotReplaced) {
   library("one", "1", "wait(nPub>5)\n");
   run("taskCreate \"t\",10,lib:add()\ndelay(0)\nn[0]=lib:libLoad(\"two\")\nlib:nPub=9\ndelay(0)\ndelay(0)\n"

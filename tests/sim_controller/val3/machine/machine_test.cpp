@@ -119,6 +119,19 @@ TEST(MachineOf, LocalsThatGrewHaveTheirSizeAgainInTheNextCall) {
   EXPECT_EQ(run.number("n", 1), 3);
 }
 
+TEST(MachineOf, ParametersThatGrewAreOneValueAgainInTheNextCall) {
+  SmallProject project;
+  project.number("n", 3).program(
+      "grow", "n[1]=size(x_n)\nn[2]=x_n[0]\nif n[0]==1\nappend(x_n)\nelse\ndelete(x_n[0])\nendIf",
+      SmallProject::parameters(SmallProject::parameter("x_n", "num", "xsi:type=\"element\"")));
+  project.program("start", "for n[0]=1 to 3\ncall grow(10*n[0])\nendFor\nwait(false)");
+  Running run(project);
+  run.ticks(2);
+  EXPECT_EQ(run.machine().task_status("small~"), 1) << run.log();
+  EXPECT_EQ(run.number("n", 1), 1);
+  EXPECT_EQ(run.number("n", 2), 30);
+}
+
 TEST(MachineOf, LocalsTakeRunMemoryWhileTheirCallLasts) {
   SmallProject project;
   project.number("n").program("large", "l_n[0]=1", SmallProject::local("l_n", "num", 600));
