@@ -24,7 +24,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   static constexpr std::chrono::milliseconds kLingerMax{500};
   /// A host that does not read is closed when this many frames wait.
   static constexpr std::size_t kQueueMax = 1000;
-  /// Of TCP behind them, which would otherwise keep minutes of States for a host that does not read.
+  /// Send buffer of TCP, after that queue: a larger one keeps minutes of States for a host that does not
+  /// read.
   static constexpr int kSendBufferBytes = 8192;
 
   explicit Connection(boost::asio::ip::tcp::socket accepted);

@@ -9,6 +9,7 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <csignal>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -55,10 +56,10 @@ TEST(DaemonReach, OneThatClosesEachConnectionIsToldAsCrowdedAndNotAsMissing) {
       },
       asio::detached);
   std::jthread serving([&] { io.run(); });
+  const std::shared_ptr<void> ends_with_this(nullptr, [&](void*) { io.stop(); });
   const std::string url = "http://127.0.0.1:" + std::to_string(server.local_endpoint().port());
   const std::vector<std::string> call{"touchcal", "stop", "--daemon", url, "--state", folder.path().string()};
   const Finished refused = Process(call, folder / "call.err").wait();
-  io.stop();
   EXPECT_EQ(refused.exit_code, cell::kExitUnreachable);
   EXPECT_THAT(refused.err, HasSubstr("has too many connections"));
   EXPECT_THAT(refused.err, ::testing::Not(HasSubstr("start it")));
@@ -67,6 +68,7 @@ TEST(DaemonReach, OneThatClosesEachConnectionIsToldAsCrowdedAndNotAsMissing) {
 /// A signal would end a run without the way back.
 TEST(DaemonReach, AFileAtItsLargestSizeIsAFailedWriteAndNoSignal) {
   const Folder folder;
+  // 1 KiB: too little for the database, enough for the log, which goes to a file as well
   std::vector<std::string> call{"/bin/bash", "-c", "ulimit -f 1; exec \"$0\" \"$@\""};
   for (const std::string& word : daemon_call(folder / "state")) call.push_back(word);
   call[3] = TOUCHCAL_PROGRAMS_DIR "/" + call[3];

@@ -1,6 +1,7 @@
 // What service/demo leaves up outlives the terminal that it was started from.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <pty.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -9,11 +10,15 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/use_future.hpp>
+#include <cerrno>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <variant>
 
 #include "cs8_protocol/framing.hpp"
@@ -29,6 +34,7 @@ class Terminal {
  public:
   explicit Terminal(const std::string& command) {
     shell_ = ::forkpty(&screen_, nullptr, nullptr, nullptr);
+    if (shell_ < 0) throw std::system_error(errno, std::generic_category(), "forkpty");
     if (shell_ == 0) {
       ::execl("/bin/bash", "bash", "-c", command.c_str(), nullptr);
       ::_exit(127);
@@ -38,11 +44,13 @@ class Terminal {
   Terminal(const Terminal&) = delete;
   Terminal& operator=(const Terminal&) = delete;
 
-  /// All that is shown up to this text, or to the end.
+  /// All that is shown up to this text, to the end, or until nothing more is shown for a minute.
   std::string shown_until(const std::string& text) {
     std::string shown;
     std::array<char, 256> bytes{};
     while (shown.find(text) == std::string::npos) {
+      pollfd readable{screen_, POLLIN, 0};
+      if (::poll(&readable, 1, kPatienceMs) <= 0) break;
       const ssize_t count = ::read(screen_, bytes.data(), bytes.size());
       if (count <= 0) break;
       shown.append(bytes.data(), static_cast<std::size_t>(count));
@@ -59,6 +67,8 @@ class Terminal {
   }
 
  private:
+  static constexpr int kPatienceMs = 60'000;
+
   int screen_ = -1;
   pid_t shell_ = -1;
 };
@@ -81,7 +91,7 @@ class Started {
 
 /// The lines of service/demo from `start() {` on, by which it starts both programs.
 constexpr const char* kStartOfDemo = R"sh(eval "$(sed -n '/^start() {$/,/^}$/p' "$demo")" || exit
-start cs8sim --listen 127.0.0.1:0 --speed max && start touchcald --listen 127.0.0.1:0 --controller 127.0.0.1:9 --state "$home/state" && echo both are up
+start cs8sim --listen 127.0.0.1:0 --speed max && start touchcald --listen 127.0.0.1:0 --controller 127.0.0.1:9 --state "$home/state" && echo both are up || exit
 read -r _ </dev/tty)sh";
 
 bool is_welcomed(unsigned short port) {
@@ -94,7 +104,7 @@ bool is_welcomed(unsigned short port) {
         co_await cs8::write_frame(socket, {0, cs8::Hello{2000}});
         const cs8::DecodeResult frame = co_await cs8::read_frame(socket);
         const auto* message = std::get_if<cs8::Message>(&frame);
-        co_return message&& std::holds_alternative<cs8::Welcome>(message->payload);
+        co_return message != nullptr&& std::holds_alternative<cs8::Welcome>(message->payload);
       },
       asio::use_future);
   io.run();
@@ -118,8 +128,10 @@ TEST(Demonstration, ProgramsThatItLeavesUpOutliveTheirTerminal) {
   for (const Started* program : {&simulator, &daemon})
     EXPECT_EQ(::getsid(program->pid()), program->pid()) << "it is in a session of its own";
   terminal.close();
-  const std::string address = shown.substr(0, shown.find('\r'));
-  const int port = std::stoi(address.substr(address.rfind(':') + 1));
+  constexpr std::string_view kBeforePort = "127.0.0.1:";  // of the first one
+  const std::size_t at = shown.find(kBeforePort);
+  ASSERT_NE(at, std::string::npos) << shown;
+  const int port = std::stoi(shown.substr(at + kBeforePort.size()));
   EXPECT_TRUE(is_welcomed(static_cast<unsigned short>(port))) << "one that was hung up answers no more";
 }
 
