@@ -102,7 +102,7 @@ class FailingRuns {
     } catch (const std::exception& error) {
       throw std::runtime_error(now_ + ": " + error.what() + '\n' + end_of_log());
     }
-    if (tally_.lost + tally_.doubled > lost) std::printf("  behind or before %s\n", now_.c_str());
+    if (tally_.lost + tally_.doubled > lost) std::printf("  before or after %s\n", now_.c_str());
   }
 
   /// The run goes on to its end; what was made to fail in it is told where it was not kept.

@@ -143,10 +143,11 @@ HiddenArm ProofStudy::with_fault(HiddenArm arm, LeftOut left_out, UniformChance&
   return arm;
 }
 
-ProofTally ProofStudy::tally(const HiddenArm& given, LeftOut left_out, int seeds) const {
+ProofTally ProofStudy::tally(const HiddenArm& given, LeftOut left_out, int seeds,
+                             std::uint64_t first_seed) const {
   ProofTally tally;
-  UniformChance faults(1);
-  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(seeds); ++seed) {
+  UniformChance faults(first_seed);
+  for (std::uint64_t seed = first_seed; seed < first_seed + static_cast<std::uint64_t>(seeds); ++seed) {
     const HiddenArm arm = with_fault(given, left_out, faults);
     const auto record = calibrate(calibration_, arm, seed);
     if (!record) {
@@ -172,6 +173,7 @@ ProofTally ProofStudy::tally(const HiddenArm& given, LeftOut left_out, int seeds
     tally.seen += verdict->passed ? 0 : 1;
     tally.by_chance += verdict->p < ProofLimits{}.p_min ? 1 : 0;
     tally.by_rms += verdict->rms_m > ProofLimits{}.rms_max_m ? 1 : 0;
+    tally.p.push_back(verdict->p);
     tally.rms_m.push_back(verdict->rms_m);
     tally.noise_m.push_back(record->noise().std_m);
   }

@@ -30,7 +30,7 @@ struct ProofTally {
   int by_chance = 0, by_rms = 0;        // of them: by the chi-square test, by the limit in mm
   int not_calibrated = 0, refused = 0;  // no proof
   std::string refusal;                  // the last one
-  std::vector<double> rms_m, noise_m;
+  std::vector<double> p, rms_m, noise_m;
 };
 
 /// The block lifted 300 mm, touched 12 times by one plan for all seeds.
@@ -40,7 +40,8 @@ class ProofStudy {
   ProofStudy(StudiedCalibration calibration, const HiddenArm& arm);
 
   /// The same arm under this name; `left_out` is as large as makes the tip wrong by 0.1 mm over the box.
-  [[nodiscard]] ProofTally tally(const HiddenArm& arm, LeftOut left_out, int seeds) const;
+  [[nodiscard]] ProofTally tally(const HiddenArm& arm, LeftOut left_out, int seeds,
+                                 std::uint64_t first_seed = 1) const;
 
   [[nodiscard]] const std::vector<ProofPower>& power() const { return power_; }
   [[nodiscard]] double plan_s() const { return plan_s_; }
