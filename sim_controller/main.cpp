@@ -256,7 +256,7 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false)
       ->needs(run);
   app.add_option("--for", arguments.run_seconds,
-                 "of --run: simulated seconds; default: to a second behind the script's last line, without "
+                 "of --run: simulated seconds; default: to a second after the script's last line, without "
                  "one 10, with --socket without end")
       ->type_name("SECONDS")
       ->check(cell::refuse_number)

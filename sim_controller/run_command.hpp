@@ -16,7 +16,7 @@ struct RunCommand {
   std::string script_file;  // may be empty: nothing is done to it
   std::string cell_file;    // arm and probe
   std::string truth_file;
-  double seconds = 0.0;  // simulated; 0: to a second behind the script's last line, or see below
+  double seconds = 0.0;  // simulated; 0: to a second after the script's last line, or see below
   std::uint64_t seed = 1;
   std::vector<RunSocket> sockets;  // more of them stand in the script
   double speed = 1.0;              // with sockets, of motions: simulated seconds per wall second; kSpeedMax

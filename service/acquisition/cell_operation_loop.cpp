@@ -241,7 +241,7 @@ std::string CellOperation::resumption_text(bool looks_at_reference) const {
   const auto told = session_.latest_state();
   const bool tested = told && (told->flags & cs8::kTouchTested) != 0;
   return fmt::format(
-      "run {} goes on behind {} of {} touches: controller session {}{}; files of the cell and plan as at its "
+      "run {} goes on after {} of {} touches: controller session {}{}; files of the cell and plan as at its "
       "start; block {}; stylus {}; reference place {}",
       run.id(), run.touches_done(), run.touches_total(), session_.number(), session,
       place() ? "where it was located" : "where the cell's file has it",

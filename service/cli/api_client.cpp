@@ -160,7 +160,8 @@ bool is_this_machine(const std::string& host) {
 /// What to do about a daemon that was not reached.
 std::string unreached_remedy(const boost::system::error_code& code) {
   if (is_about_the_certificate(code)) return "name the certificate that signed the daemon's with --ca FILE";
-  if (code == asio::error::eof || code == asio::error::connection_reset || code == beast::error::timeout)
+  if (code == asio::error::eof || code == asio::error::connection_reset || code == asio::error::broken_pipe ||
+      code == beast::error::timeout)
     return "it took the connection and did not answer: it has ended, or has too many connections; try again";
   return "start it, or name it with --daemon URL";
 }

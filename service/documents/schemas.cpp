@@ -38,7 +38,7 @@ constexpr std::string_view kStatus = R"({
   "controller_permit":{"type":["string","null"]},
   "probe":{"enum":["free","touched","fault",null]},
   "retract_due":{"type":["boolean","null"],
-    "description":"the arm stands at a face after a touch that was broken off; it is taken back before anything else, behind resume where a run is on hold, else behind reset"},
+    "description":"the arm stands at a face after a touch that was broken off; it is taken back before anything else, after resume where a run is on hold, else after reset"},
   "by_hand":{"enum":["locate","guided",null],
     "description":"what a person with the pendant does: finds the block, or makes a run's touches"},
   "by_hand_step":{"enum":["touch","undo","pass","passing",null],

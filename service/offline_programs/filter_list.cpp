@@ -70,8 +70,7 @@ class FilterListReader {
   void variable(const std::vector<std::string>& words) {
     if (!is_variable_name(words[0]))
       fail(in_quotes(words[0]) + " is no name of a variable; write letters, digits and _, a letter first");
-    if (words.size() < 2)
-      fail(in_quotes(words[0]) + " has no mark; write offline, taught or leave behind it");
+    if (words.size() < 2) fail(in_quotes(words[0]) + " has no mark; write offline, taught or leave after it");
     if (words.size() > 3)
       fail(in_quotes(words[3]) + " is one word too many; a line is NAME offline|taught|leave [TOOL]");
     ListedVariable listed{.line = number_};

@@ -119,7 +119,7 @@ constexpr std::array kTable{
                "check which stylus is fitted and its file, then touchcal stop, or touchcal resume to go on "
                "all the same",
                FaultKind::kHeld, "P07"},
-    FaultEntry{FaultCode::kProbeBounced, "probe_bounced", "the probe bounced behind a contact",
+    FaultEntry{FaultCode::kProbeBounced, "probe_bounced", "the probe bounced after a contact",
                "the first edge counts, the run goes on", "check the probe when it comes often",
                FaultKind::kWarning, "P14"},
     FaultEntry{FaultCode::kLatchMissing, "latch_missing",
@@ -224,7 +224,7 @@ constexpr std::array kTable{
                "resume where a run is on hold, touchcal clear where it was aborted, touchcal reset and start "
                "a new run",
                FaultKind::kHeld, "P26"},
-    FaultEntry{FaultCode::kOvertravel, "overtravel", "the arm stopped too far behind the trigger",
+    FaultEntry{FaultCode::kOvertravel, "overtravel", "the arm stopped too far beyond the trigger",
                "the arm stopped and retracted",
                "check the stylus and lower the search speed, then touchcal clear, "
                "touchcal reset and start a new run",
@@ -284,7 +284,7 @@ constexpr std::array kTable{
     FaultEntry{
         FaultCode::kDaemonRestarted, "daemon_restarted", "the daemon was restarted during the run",
         "the arm stands where the last daemon's end left it: taken back by it, or stopped when the link went",
-        "touchcal resume to go on with the touch behind the last one that is stored, or touchcal stop to "
+        "touchcal resume to go on with the touch after the last one that is stored, or touchcal stop to "
         "end the run as it is; in ABORTED it cannot go on: touchcal clear, then touchcal reset",
         FaultKind::kHeld, "P41"},
     FaultEntry{

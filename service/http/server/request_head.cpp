@@ -54,7 +54,7 @@ Problem bad_target(std::string_view target) {
   return {.kind = ProblemKind::kTarget,
           .detail =
               target.starts_with('/')
-                  ? "the target is malformed (RFC 3986): a % takes two hexadecimal digits behind it, control "
+                  ? "the target is malformed (RFC 3986): a % takes two hexadecimal digits after it, control "
                     "characters are not allowed, and [ ] { } | \" < > # and spaces are percent-encoded"
                   : "the target must be a path"};
 }
