@@ -117,17 +117,22 @@ TEST(Checks, ConditionsOfConstantsAreFollowed) {
   EXPECT_THAT(found_in_start("do\nn=1\nuntil true\nn=1"), IsEmpty());
 }
 
+/// What a rule tells of a program of the cell on a controller of this version.
+std::vector<Severity> severities_of(std::string_view rule, const std::string& code, const Version& version) {
+  SmallApplication small = cell();
+  small.program("start", code);
+  Findings findings;
+  resolve(small.application, findings);
+  check(small.application, {version}, findings);
+  std::vector<Severity> told;
+  for (const Finding& one : findings)
+    if (one.rule == rule) told.push_back(one.severity);
+  return told;
+}
+
 TEST(Checks, APrintByAQuestionMarkIsOnlyNotedFromS7OnWhereProgramsHaveIt) {
-  const auto severities = [](Version version) {
-    SmallApplication small = cell();
-    small.program("start", "?\"text\"");
-    Findings findings;
-    resolve(small.application, findings);
-    check(small.application, {version}, findings);
-    std::vector<Severity> all;
-    for (const Finding& one : findings)
-      if (one.rule == check_rules::kNewerForm) all.push_back(one.severity);
-    return all;
+  const auto severities = [](const Version& version) {
+    return severities_of(check_rules::kNewerForm, "?\"text\"", version);
   };
   EXPECT_THAT(severities({6, 8, 0}), ElementsAre(Severity::kError));
   EXPECT_THAT(severities({7, 2, 0}), ElementsAre(Severity::kNote));
@@ -282,17 +287,10 @@ TEST(Checks, AnOlderVersionLacksWhatCameLater) {
 
 TEST(Checks, WhatCameBetweenTheLastManualAndS7IsAWarning) {
   const auto severities = [](const Version& version) {
-    SmallApplication small = cell();
-    small.program(
-        "start",
-        "append(nBytes)\nresize(nBytes,1,9)\ninsert(nBytes[1])\ndelete(nBytes[1])\nn=size(nBytes,1)");
-    Findings findings;
-    resolve(small.application, findings);
-    check(small.application, {version}, findings);
-    std::vector<Severity> told;
-    for (const Finding& one : findings)
-      if (one.rule == check_rules::kNewerInstruction) told.push_back(one.severity);
-    return told;
+    return severities_of(
+        check_rules::kNewerInstruction,
+        "append(nBytes)\nresize(nBytes,1,9)\ninsert(nBytes[1])\ndelete(nBytes[1])\nn=size(nBytes,1)",
+        version);
   };
   EXPECT_EQ(severities({6, 4, 99}), std::vector(5, Severity::kError));
   EXPECT_EQ(severities({6, 8, 0}), std::vector(5, Severity::kWarning));
