@@ -61,6 +61,25 @@ TouchNoise expected_noise(const LackOfFit& tested, double ripple_variance_m2) {
   return {std::sqrt(once), tested.noise_degrees * std::pow(once / variance, 2)};
 }
 
+/// What the residuals say of how much of the noise grows with the levers: the mean after the touches of a
+/// share q of the most that may, before them any in (0, 1) alike. Touch i has a variance in proportion to
+/// 1 - q most + q of_joints_i, and what the fit leaves of its residual 1 - leverage of that; of the noise
+/// itself every magnitude is alike.
+double mean_lever_share(const Eigen::VectorXd& of_joints, double most, LeastSquares& fit) {
+  constexpr int kShareSteps = 32;
+  const Eigen::ArrayXd left = (1.0 - fit.leverages().array()).cwiseMax(0.0);
+  const Eigen::ArrayXd squares = (fit.residuals_m().array() / fit.noise_factors().array()).square();
+  Eigen::ArrayXd shares(kShareSteps), logs(kShareSteps);
+  for (int k = 0; k < kShareSteps; ++k) {
+    shares[k] = (k + 0.5) / kShareSteps;
+    const Eigen::ArrayXd variances = 1.0 - shares[k] * most + shares[k] * of_joints.array();
+    logs[k] =
+        -0.5 * (left * variances.log()).sum() - 0.5 * left.sum() * std::log((squares / variances).sum());
+  }
+  const Eigen::ArrayXd weights = (logs - logs.maxCoeff()).exp();
+  return (weights * shares).sum() / weights.sum();
+}
+
 /// Rows times displacements of touches by one unit of growth, even from the first to the last; as the columns
 /// of the whole linearisation.
 Eigen::VectorXd growth_in_run(const LeastSquares& everything, const FullLinearisation& whole,
@@ -101,7 +120,7 @@ CalibrationRecord::CalibrationRecord(const IdentificationProblem& problem,
     const TouchNoise expected = expected_noise(*result.lack_of_fit, mean_variance(per_rad, gears.ripple));
     if (expected.std_m < noise_.std_m) noise_ = expected;
   }
-  share_noise(gears.scatter, per_rad);
+  share_noise(gears.scatter, per_rad, fit);
   Eigen::MatrixXd scattered = fit.rows();
   for (Eigen::Index row = 0; row < scattered.rows(); ++row)
     scattered.row(row) *=
@@ -111,12 +130,15 @@ CalibrationRecord::CalibrationRecord(const IdentificationProblem& problem,
   problem_.touches.clear();
 }
 
-void CalibrationRecord::share_noise(const JointVector& gear_variances, const Eigen::MatrixXd& per_rad) {
+void CalibrationRecord::share_noise(const JointVector& gear_variances, const Eigen::MatrixXd& per_rad,
+                                    LeastSquares& fit) {
   const double variance = noise_.std_m * noise_.std_m;
-  const double of_figures = mean_variance(per_rad, gear_variances);
-  const double of_joints = std::min(variance, of_figures);
-  alike_variance_m2_ = variance - of_joints;
-  if (of_joints > 0.0) joint_variances_rad2_ = of_joints / of_figures * gear_variances;
+  const Eigen::VectorXd of_figures = per_rad.cwiseAbs2() * gear_variances;
+  const double mean = of_figures.mean();
+  const double most = std::min(1.0, mean / variance);
+  const double share = most > 0.0 ? most * mean_lever_share(most * of_figures / mean, most, fit) : 0.0;
+  alike_variance_m2_ = (1.0 - share) * variance;
+  if (share > 0.0) joint_variances_rad2_ = share * variance / mean * gear_variances;
 }
 
 double CalibrationRecord::noise_variance_m2(const JointVector& per_rad, double factor) const {

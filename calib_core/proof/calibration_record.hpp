@@ -36,10 +36,11 @@ class CalibrationRecord {
   /// metres per radian; `factor`: noise_factor() of the touch.
   ///
   /// An error of a joint displaces the ball by its lever about that joint's axis, so that a touch with the
-  /// arm stretched out scatters more than one near the base. As much of noise() as the maker's figures of
-  /// ripple and stops explain is of that kind: with figures g_j, levers l_ij and G the mean of
-  /// sum_j (l_ij g_j)^2 over the fitted touches, touch i has the variance
-  /// max(0, s^2 - G) + min(s^2, G) sum_j (l_ij g_j)^2 / G, whose mean over the fitted touches is s^2.
+  /// arm stretched out scatters more than one near the base; what the probe does is alike for all. With the
+  /// maker's figures g_j of ripple and stops, levers l_ij and G the mean of sum_j (l_ij g_j)^2 over the
+  /// fitted touches, touch i has of the measured variance s^2 the part 1 - q + q sum_j (l_ij g_j)^2 / G,
+  /// whose mean over the fitted touches is 1. q is at most what the figures explain, min(1, G / s^2), and of
+  /// that the share that the residuals of the fit show: its mean after them, any share alike before.
   [[nodiscard]] double noise_variance_m2(const JointVector& per_rad, double factor) const;
   [[nodiscard]] Eigen::Index unknown_count() const { return covariance_.rows(); }
 
@@ -63,7 +64,7 @@ class CalibrationRecord {
 
  private:
   [[nodiscard]] Eigen::VectorXd bent_by(const Eigen::VectorXd& of_columns) const;
-  void share_noise(const JointVector& gear_variances, const Eigen::MatrixXd& per_rad);
+  void share_noise(const JointVector& gear_variances, const Eigen::MatrixXd& per_rad, LeastSquares& fit);
   [[nodiscard]] Eigen::MatrixXd joint_covariance(const Eigen::MatrixXd& of_noise) const;
 
   IdentificationProblem problem_;

@@ -76,29 +76,47 @@ TEST(CalibrationRecord, CountsTheStopsOfTheArmOnceWhereRepeatsShowThem) {
   EXPECT_DOUBLE_EQ(record.noise().degrees_of_freedom, kDegrees * share * share);
 }
 
-TEST(CalibrationRecord, NoiseThatTheGearsExplainGrowsWithTheLeversAndIsTheMeasuredOneInTheMean) {
-  proved::Cell cell;
+/// Of the noise, what does not grow with the levers.
+double alike_share(const CalibrationRecord& record) {
+  return record.noise_variance_m2(JointVector::Zero(), 1.0) / std::pow(record.noise().std_m, 2);
+}
+
+TEST(CalibrationRecord, NoiseIsTheMeasuredOneInTheMeanOfTheTouches) {
+  const proved::Cell cell;
   IdentificationProblem problem = cell.problem();
-  const std::vector<Touch> touches = problem.touches;
-  const auto variances = [&](const CalibrationRecord& record) {
-    const TouchRows rows = touch_rows(record, record.calibrated(), touches);
-    Eigen::VectorXd of_touches(std::ssize(touches));
-    for (Eigen::Index i = 0; i < of_touches.size(); ++i)
-      of_touches[i] = record.noise_variance_m2(rows.of_joints.row(i), 1.0);
-    return of_touches;
-  };
-  constexpr double kMeasured = proved::kNoiseMetres * proved::kNoiseMetres;
-  EXPECT_NEAR(variances(cell.record()).minCoeff() / kMeasured, 1.0, 1e-9);  // no gears are known
-  problem.gear_std_rad.setConstant(50e-6);
-  const CalibrationRecord uneven(problem, cell.options(), cell.result());
-  EXPECT_NEAR(variances(uneven).mean() / kMeasured, 1.0, 1e-3);
-  const JointVector lever = JointVector::Unit(2);
-  EXPECT_NEAR(uneven.noise_variance_m2(2.0 * lever, 1.0), 4.0 * uneven.noise_variance_m2(lever, 1.0), 1e-12);
-  EXPECT_DOUBLE_EQ(uneven.noise_variance_m2(lever, 2.0), 4.0 * uneven.noise_variance_m2(lever, 1.0));
+  for (const double gears_rad : {0.0, 1e-6, 50e-6}) {
+    problem.gear_std_rad.setConstant(gears_rad);
+    const CalibrationRecord record(problem, cell.options(), cell.result());
+    const TouchRows rows = touch_rows(record, record.calibrated(), problem.touches);
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < rows.of_joints.rows(); ++i)
+      sum += record.noise_variance_m2(rows.of_joints.row(i), 1.0);
+    const double mean = sum / static_cast<double>(problem.touches.size());
+    EXPECT_NEAR(mean / std::pow(proved::kNoiseMetres, 2), 1.0, 1e-3) << gears_rad;
+  }
+}
+
+TEST(CalibrationRecord, NoiseGrowsWithTheLeversAsFarAsTheGearsExplainItAndTheResidualsShowIt) {
+  constexpr double kGearsRad = 150e-6;
+  constexpr int kUneven = 4;  // joint 5, whose lever differs most from touch to touch
+  proved::Cell cell;
+  EXPECT_DOUBLE_EQ(alike_share(cell.record()), 1.0);  // no gears are known
+  IdentificationProblem problem = cell.problem();
   problem.gear_std_rad.setConstant(1e-6);
-  const CalibrationRecord almost_even(problem, cell.options(), cell.result());
-  EXPECT_NEAR(variances(almost_even).mean() / kMeasured, 1.0, 1e-3);
-  EXPECT_GT(variances(almost_even).minCoeff() / kMeasured, 0.95);
+  EXPECT_GT(alike_share(CalibrationRecord(problem, cell.options(), cell.result())), 0.95);
+  problem.gear_std_rad = kGearsRad * JointVector::Unit(kUneven);
+  const CalibrationRecord of_probe(problem, cell.options(), cell.result());
+  problem.touches = cell.again(problem.touches, cell.true_arm(), 0.0);
+  UniformChance chance(proved::kSeed);
+  for (Touch& touch : problem.touches) touch.joints[kUneven] += kGearsRad * study::normal(chance);
+  const CalibrationRecord of_joints(problem, cell.options(), identify(problem, cell.options()));
+  EXPECT_LT(alike_share(of_joints), 0.5);
+  EXPECT_GT(alike_share(of_probe), alike_share(of_joints) + 0.2);
+  const JointVector lever = JointVector::Unit(kUneven);
+  const double alike = of_joints.noise_variance_m2(JointVector::Zero(), 1.0);
+  EXPECT_DOUBLE_EQ(of_joints.noise_variance_m2(2.0 * lever, 1.0) - alike,
+                   4.0 * (of_joints.noise_variance_m2(lever, 1.0) - alike));
+  EXPECT_DOUBLE_EQ(of_joints.noise_variance_m2(lever, 2.0), 4.0 * of_joints.noise_variance_m2(lever, 1.0));
 }
 
 TEST(CalibrationRecord, CarriesTheNoiseOfEachTouchThroughTheFit) {

@@ -78,11 +78,12 @@ TEST_F(Proof, TakesAGrowthWithinTheArmsWarmthForNoFault) {
   EXPECT_LT(warm.rms_m, cold_rms_m);
 }
 
-/// Variance of one touch in a covariance beside what the calibration left open.
-double noise_of(const CalibrationRecord& record, const TouchRows& rows, const Eigen::MatrixXd& covariance,
-                Eigen::Index touch) {
+/// Variance of one touch in a covariance beside what the calibration left open and what is alike for all.
+double joint_noise_of(const CalibrationRecord& record, const TouchRows& rows,
+                      const Eigen::MatrixXd& covariance, Eigen::Index touch) {
   const Eigen::VectorXd row = rows.of_unknowns.row(touch);
-  return covariance(touch, touch) - row.dot(record.covariance() * row);
+  return covariance(touch, touch) - row.dot(record.covariance() * row) -
+         record.noise_variance_m2(JointVector::Zero(), 1.0);
 }
 
 TEST_F(Proof, ExpectsATouchToScatterByItsLeversAboutTheJointsThatErr) {
@@ -98,10 +99,11 @@ TEST_F(Proof, ExpectsATouchToScatterByItsLeversAboutTheJointsThatErr) {
       sum += std::pow(rows.of_arm(touch, theta_index(joint)), 2);
     return sum;
   };
-  const double noise = noise_of(record, rows, covariance, 0);
+  const double noise = joint_noise_of(record, rows, covariance, 0);
+  EXPECT_GT(noise, 0.0);
   for (Eigen::Index i = 1; i < std::ssize(touches); ++i) {
     const double expected = levers_squared(i) / levers_squared(0);
-    EXPECT_NEAR(noise_of(record, rows, covariance, i) / noise, expected, 1e-3 * expected);
+    EXPECT_NEAR(joint_noise_of(record, rows, covariance, i) / noise, expected, 1e-3 * expected);
   }
 }
 
