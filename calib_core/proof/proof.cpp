@@ -124,13 +124,18 @@ std::variant<ProofVerdict, ProofRefusal> prove(const CalibrationRecord& record, 
 
 Eigen::MatrixXd proof_covariance(const CalibrationRecord& record, const ProofPlace& place,
                                  const TouchRows& rows, std::span<const Touch> touches) {
-  const Eigen::VectorXd growth = place.std_growth * growth_effect(record, rows);
-  Eigen::MatrixXd covariance =
-      rows.of_unknowns * record.covariance() * rows.of_unknowns.transpose() + growth * growth.transpose();
+  const Eigen::VectorXd since = place.std_growth * growth_effect(record, rows);
+  const Eigen::VectorXd in_run = place.std_growth * (rows.of_unknowns * record.displacement_by_growth());
+  // An arm that grew by g since the middle of the calibration did a part u g of it by its end, and so by
+  // 2 u g from its first touch to its last. Of u in (0, 1) nothing is known: E[(since + 2 u in_run)
+  // (since + 2 u in_run)^T] is with E[u] = 1/2 and E[u^2] = 1/3 what follows.
+  const Eigen::VectorXd both = since + in_run;
+  Eigen::MatrixXd covariance = rows.of_unknowns * record.covariance() * rows.of_unknowns.transpose() +
+                               both * both.transpose() + in_run * in_run.transpose() / 3.0;
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    covariance(row, row) +=
-        std::pow(record.noise().std_m * noise_factor(touches[i], record.problem().touch_noise_m), 2);
+    covariance(row, row) += record.noise_variance_m2(
+        rows.of_joints.row(row), noise_factor(touches[i], record.problem().touch_noise_m));
   }
   return covariance;
 }

@@ -30,7 +30,9 @@ struct ProofPlace {
   /// About where the block stands, as planned or located: R_-1 there in R_-1 of the calibration.
   Eigen::Isometry3d calibrated_from_block = Eigen::Isometry3d::Identity();
   /// One standard deviation of the arm's growth since the calibration, a share of its lengths: what is not
-  /// known of its warmth. A growth within it is no fault of the model. 0: exactly as warm.
+  /// known of its warmth. A growth within it is no fault of the model. It is against the arm as it was in the
+  /// middle of the calibration: a part of it, nobody knows how much, came while that was touched and bent its
+  /// result. 0: exactly as warm, and as warm throughout the calibration.
   double std_growth = 0.0;
 };
 
@@ -65,8 +67,8 @@ std::variant<ProofVerdict, ProofRefusal> prove(const CalibrationRecord& record, 
                                                std::span<const Touch> touches,
                                                const ProofLimits& limits = {});
 
-/// Of the distances of touches when nothing is wrong, square metres: noise, what the calibration left open,
-/// and growth.
+/// Of the distances of touches when nothing is wrong, square metres: noise as each touch's levers make it,
+/// what the calibration left open, and growth with what it bent of the calibration.
 Eigen::MatrixXd proof_covariance(const CalibrationRecord& record, const ProofPlace& place,
                                  const TouchRows& rows, std::span<const Touch> touches);
 

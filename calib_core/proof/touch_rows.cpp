@@ -24,10 +24,14 @@ TouchRows touch_rows(const CalibrationRecord& record, const KinematicModel& arm,
   const auto& columns = record.known_columns();
   TouchRows rows{.distances_m = fit.residuals_m(),
                  .of_arm = Eigen::MatrixXd::Zero(count, kArmParameterCount),
+                 .of_joints = Eigen::MatrixXd(count, kJointCount),
                  .of_unknowns = Eigen::MatrixXd::Zero(count, record.unknown_count()),
                  .of_place = {}};
   for (std::size_t k = 0; k < columns.size(); ++k)
     rows.of_arm.col(columns[k]) = metres.asDiagonal() * fit.rows().col(static_cast<Eigen::Index>(k));
+  for (int joint = 0; joint < kJointCount; ++joint)
+    rows.of_joints.col(joint) =
+        arm.gains[static_cast<std::size_t>(joint)] * rows.of_arm.col(theta_index(joint));
   rows.of_unknowns.leftCols<kArmParameterCount>() = rows.of_arm;
   const Eigen::Index artefact_count = record.artefact_errors().size();
   rows.of_unknowns.middleCols(kArmParameterCount, artefact_count) =

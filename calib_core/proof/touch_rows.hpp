@@ -13,6 +13,7 @@ namespace calib {
 struct TouchRows {
   Eigen::VectorXd distances_m;  // of the ball from where the estimate has the face
   Eigen::MatrixXd of_arm;       // d distance / d ArmVector
+  Eigen::MatrixXd of_joints;    // d distance / d position of each joint, metres per radian
   Eigen::MatrixXd of_unknowns;  // d distance / d unknown of the record, but for the block's place
   /// d distance / d error that moves the whole arm against the block: of these columns, is_place_error().
   Eigen::MatrixXd of_place;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "tests/calib_core/proof/proved_cell.hpp"
@@ -75,6 +76,54 @@ TEST_F(Proof, TakesAGrowthWithinTheArmsWarmthForNoFault) {
   const ProofVerdict warm = verdict_of(touches);
   EXPECT_TRUE(warm.passed) << warm.p << ' ' << warm.rms_m;
   EXPECT_LT(warm.rms_m, cold_rms_m);
+}
+
+/// Variance of one touch in a covariance beside what the calibration left open and what is alike for all.
+double joint_noise_of(const CalibrationRecord& record, const TouchRows& rows,
+                      const Eigen::MatrixXd& covariance, Eigen::Index touch) {
+  const Eigen::VectorXd row = rows.of_unknowns.row(touch);
+  return covariance(touch, touch) - row.dot(record.covariance() * row) -
+         record.noise_variance_m2(JointVector::Zero(), 1.0);
+}
+
+TEST_F(Proof, ExpectsATouchToScatterByItsLeversAboutTheJointsThatErr) {
+  IdentificationProblem problem = cell_.problem();
+  problem.gear_std_rad.setConstant(50e-6);
+  const CalibrationRecord record(problem, cell_.options(), cell_.result());
+  const auto touches = cell_.touches_at(proved::lifted(), cell_.true_arm(), kTouchesOfProof);
+  const TouchRows rows = touch_rows(record, arm_at(record.calibrated(), proved::lifted()), touches);
+  const Eigen::MatrixXd covariance = proof_covariance(record, place_, rows, touches);
+  const auto levers_squared = [&rows](Eigen::Index touch) {
+    double sum = 0.0;
+    for (int joint = 0; joint < kJointCount; ++joint)
+      sum += std::pow(rows.of_arm(touch, theta_index(joint)), 2);
+    return sum;
+  };
+  const double noise = joint_noise_of(record, rows, covariance, 0);
+  EXPECT_GT(noise, 0.0);
+  for (Eigen::Index i = 1; i < std::ssize(touches); ++i) {
+    const double expected = levers_squared(i) / levers_squared(0);
+    EXPECT_NEAR(joint_noise_of(record, rows, covariance, i) / noise, expected, 1e-3 * expected);
+  }
+}
+
+TEST_F(Proof, TakesItForPossibleThatTheArmGrewWhileItWasCalibrated) {
+  const auto touches = cell_.touches_at(proved::lifted(), cell_.true_arm(), kTouchesOfProof);
+  const CalibrationRecord& record = cell_.record();
+  const TouchRows rows = touch_rows(record, arm_at(record.calibrated(), proved::lifted()), touches);
+  const Eigen::MatrixXd as_warm = proof_covariance(record, place_, rows, touches);
+  place_.std_growth = 100e-6;
+  const Eigen::MatrixXd warmer = proof_covariance(record, place_, rows, touches);
+  // The mean of what it grew by the last touch of the calibration, from none of it to all of it.
+  const Eigen::VectorXd since = growth_effect(record, rows);
+  const Eigen::VectorXd in_run = rows.of_unknowns * record.displacement_by_growth();
+  constexpr int kParts = 1000;
+  Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(kTouchesOfProof, kTouchesOfProof);
+  for (int k = 0; k < kParts; ++k) {
+    const Eigen::VectorXd grown = place_.std_growth * (since + 2.0 * (k + 0.5) / kParts * in_run);
+    mean += grown * grown.transpose() / kParts;
+  }
+  EXPECT_LT((warmer - as_warm - mean).norm(), 1e-5 * mean.norm());
 }
 
 TEST_F(Proof, PowerGrowsWithTheFaultFromTheLevelOfTheTest) {
