@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "calib_core/geometry/units.hpp"
+#include "config/arm_uncertainty.hpp"
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/joint_units.hpp"
@@ -338,16 +339,27 @@ void read_frame(const JsonValue& value, int frame, Arm& arm) {
 
 namespace {
 
+/// The keys that the document's schema has.
+JsonObject arm_object(const JsonValue& value, const nlohmann::json& document) {
+  if (has_schema(document, kFirstArmSchema)) {
+    return value.document(kFirstArmSchema, {"schema", "name", "frames", "joint_limits_deg",
+                                            "joint_max_speeds_deg_s", "gravity", "bodies"});
+  }
+  for (const std::string_view earlier : {kSecondArmSchema, kThirdArmSchema}) {
+    if (has_schema(document, earlier)) {
+      return value.document(earlier, {"schema", "name", "frames", "joint_limits_deg",
+                                      "joint_max_speeds_deg_s", "gravity", "gears", "warming", "bodies"});
+    }
+  }
+  return value.document(kArmSchema, {"schema", "name", "frames", "joint_limits_deg", "joint_max_speeds_deg_s",
+                                     "gravity", "gears", "warming", "uncertainty", "bodies"});
+}
+
 Arm arm_from_document(const std::string& source, const nlohmann::json& document) {
   const JsonValue value(source, document);
   const bool is_first_schema = has_schema(document, kFirstArmSchema);
   const bool is_second_schema = has_schema(document, kSecondArmSchema);
-  const JsonObject object =
-      is_first_schema ? value.document(kFirstArmSchema, {"schema", "name", "frames", "joint_limits_deg",
-                                                         "joint_max_speeds_deg_s", "gravity", "bodies"})
-                      : value.document(is_second_schema ? kSecondArmSchema : kArmSchema,
-                                       {"schema", "name", "frames", "joint_limits_deg",
-                                        "joint_max_speeds_deg_s", "gravity", "gears", "warming", "bodies"});
+  const JsonObject object = arm_object(value, document);
   Arm arm;
   arm.name = object.at("name").text();
   const auto frames = object.at("frames").items(kFrameCount, kFrameCount);
@@ -364,6 +376,10 @@ Arm arm_from_document(const std::string& source, const nlohmann::json& document)
   if (!is_first_schema) {
     if (const auto gears = object.find("gears")) read_gears(*gears, !is_second_schema, arm);
     if (const auto warming = object.find("warming")) arm.growth = growth_from_json(*warming);
+  }
+  if (has_schema(document, kArmSchema)) {
+    if (const auto uncertainty = object.find("uncertainty"))
+      arm.covariance = arm_covariance_from_json(*uncertainty);
   }
   arm.bodies = capsules_from_json(object.at("bodies"));
   return arm;

@@ -10,6 +10,7 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "config/arm_file.hpp"
+#include "config/arm_uncertainty.hpp"
 #include "config/joint_units.hpp"
 
 namespace cell {
@@ -195,6 +196,7 @@ std::string arm_document(const Arm& arm) {
                        {"rise_k", finite(arm.growth->rise_k)}};
     text += ",\n  \"warming\": " + warming.dump();
   }
+  if (arm.covariance) text += ",\n  \"uncertainty\": " + arm_covariance_text(*arm.covariance);
   text += ",\n  \"bodies\": " + lines(bodies) + "\n}\n";
   return text;
 }

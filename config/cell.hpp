@@ -16,6 +16,7 @@
 #include "calib_core/kinematics/error_parameters.hpp"
 #include "calib_core/kinematics/kinematic_model.hpp"
 #include "calib_core/motion/collision.hpp"
+#include "calib_core/uncertainty/uncertainty_budget.hpp"
 #include "config/endpoint.hpp"
 #include "config/recipe.hpp"
 
@@ -55,6 +56,9 @@ struct Arm {
   calib::NongeometricDeviations nongeometric_std{};
   Gears gears;
   std::optional<Growth> growth;
+  /// Of a calibrated arm: true minus as the model has it, in the arm's own frame (calib::in_arm_frame());
+  /// nothing where it is unknown.
+  std::optional<calib::ArmCovariance> covariance;
 };
 
 /// The temperature of the block as somebody measured it.

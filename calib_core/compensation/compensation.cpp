@@ -27,8 +27,9 @@ KinematicModel as_the_controller_has_it(const KinematicModel& given) {
   return model;
 }
 
+/// With the place of the block before it.
 KinematicModel as_it_was_calibrated(const CompensationProblem& problem) {
-  KinematicModel model = in_controllers_world(problem.calibrated);
+  KinematicModel model = problem.calibrated;
   model.links[kWristFrame].theta_rad = problem.nominal.links[kWristFrame].theta_rad;
   return model;
 }
@@ -37,18 +38,6 @@ JointRanges widened(JointRanges ranges) {
   ranges.lower.array() -= kRangeRoundingRad;
   ranges.upper.array() += kRangeRoundingRad;
   return ranges;
-}
-
-/// The covariance without the errors before the motion of joint 1, which are nominal on both arms.
-std::optional<ArmMatrix> of_the_moving_arm(const std::optional<ArmCovariance>& covariance) {
-  if (!covariance) return std::nullopt;
-  ArmMatrix moving = *covariance;
-  for (int i = 0; i < kArmParameterCount; ++i) {
-    if (!is_place_error(i)) continue;
-    moving.row(i).setZero();
-    moving.col(i).setZero();
-  }
-  return moving;
 }
 
 /// Number of the first joint outside its range, 1 to 6; 0 when all are inside.
@@ -126,12 +115,13 @@ CompensationTool stylus_tool(const KinematicModel& nominal, const KinematicModel
 
 Compensation::Compensation(const CompensationProblem& problem)
     : nominal_(prepare(as_the_controller_has_it(problem.nominal))),
-      calibrated_(prepare(as_it_was_calibrated(problem))),
+      calibrated_(prepare(in_controllers_world(as_it_was_calibrated(problem)))),
+      calibrated_at_block_(prepare(as_it_was_calibrated(problem))),
       inverse_(nominal_.model),
       ranges_(widened(problem.joint_ranges)),
       world_from_block_(
           (frame_transform(problem.nominal.links[0]) * frame_transform(problem.nominal.links[1])).inverse()),
-      covariance_(of_the_moving_arm(problem.covariance)) {
+      covariance_(problem.covariance ? std::optional<ArmMatrix>(*problem.covariance) : std::nullopt) {
   for (const KinematicModel* model : {&problem.nominal, &problem.calibrated}) {
     if (std::ranges::find(model->joint_types, JointType::kPrismatic) != model->joint_types.end())
       throw std::logic_error("targets are compensated for six revolute joints only");
@@ -250,7 +240,8 @@ CompensatedTarget Compensation::corrected(const CompensationTool& tool,
   target.residual_m = gap.distance_m();
   if (covariance_) {
     const ToolCentre centre = tool.is_stylus ? std::nullopt : ToolCentre(tool.calibrated_frame6_from_tool);
-    target.tip_std_m = tip_std_m(calibrated_, gap.chain, *covariance_, centre);
+    target.tip_std_m =
+        tip_std_m(calibrated_at_block_, forward_chain(calibrated_at_block_, joints), *covariance_, centre);
   }
   return target;
 }

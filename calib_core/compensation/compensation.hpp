@@ -75,8 +75,9 @@ struct CompensationProblem {
   KinematicModel nominal;     // six revolute joints
   KinematicModel calibrated;  // the same with errors, compliances, harmonics
   JointRanges joint_ranges;   // of what is commanded
-  /// Of the errors of the calibrated arm, as UncertaintyBudget::covariance() has them; rows and columns of
-  /// the place have no effect here and are not looked at.
+  /// Of the errors of the calibrated arm in its own frame: UncertaintyBudget::covariance() of in_arm_frame().
+  /// What is before the motion of joint 1 is nominal on both arms; what that joint errs by from posture to
+  /// posture is not, and stands in the row of theta1.
   std::optional<ArmCovariance> covariance;
 };
 
@@ -116,8 +117,9 @@ class Compensation {
                                             const Eigen::Isometry3d& world_from_tool,
                                             const JointVector& nominal_joints) const;
 
-  PreparedModel nominal_;     // in the controller's world, ends in R_6
-  PreparedModel calibrated_;  // in the controller's world, with the calibrated frame 7 and its mass
+  PreparedModel nominal_;              // in the controller's world, ends in R_6
+  PreparedModel calibrated_;           // in the controller's world, with the calibrated frame 7 and its mass
+  PreparedModel calibrated_at_block_;  // the same in the block's frame: what the covariance is of
   InverseKinematics inverse_;
   JointRanges ranges_;  // widened by the rounding
   Eigen::Isometry3d world_from_block_;

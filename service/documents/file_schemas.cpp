@@ -206,9 +206,15 @@ constexpr std::string_view kArm = R"({
 "description":"An arm's file, with what was identified",
 "required":["schema","name","frames"],
 "properties":{
-  "schema":{"const":"touchcal/arm/3"},
+  "schema":{"enum":["touchcal/arm/4","touchcal/arm/3"],"description":"3: of an earlier daemon"},
   "name":{"type":"string"},
-  "frames":{"type":"array","minItems":8,"maxItems":8,"items":{"type":"object"}}}})";
+  "frames":{"type":"array","minItems":8,"maxItems":8,"items":{"type":"object"}},
+  "uncertainty":{"type":"object","required":["errors","covariance_si"],
+    "description":"of the errors that are left, in the arm's own frame; absent where one of any size is possible",
+    "properties":{
+      "errors":{"type":"array","items":{"type":"string"}},
+      "covariance_si":{"type":"array","description":"lower triangle",
+        "items":{"type":"array","items":{"type":"number"}}}}}}})";
 
 constexpr std::string_view kReport = R"({
 "type":"object",

@@ -87,12 +87,11 @@ calib::CompensationTool tool_named(const Cell& cell, const Arm& arm, const std::
 
 std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& arm,
                                                   const calib::CompensationTool& tool,
-                                                  const std::vector<Target>& targets,
-                                                  const std::optional<calib::ArmCovariance>& covariance) {
+                                                  const std::vector<Target>& targets) {
   const calib::Compensation compensation({.nominal = cell.arm.model,
                                           .calibrated = arm.model,
                                           .joint_ranges = cell.arm.joint_ranges,
-                                          .covariance = covariance});
+                                          .covariance = arm.covariance});
   std::vector<calib::CompensatedTarget> results;
   results.reserve(targets.size());
   for (const Target& target : targets) {

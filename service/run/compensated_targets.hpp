@@ -28,11 +28,10 @@ bool is_uncalibrated(const Cell& cell, const Arm& arm);
 calib::CompensationTool tool_named(const Cell& cell, const Arm& arm, const std::string& name,
                                    const std::string& source, const std::string& pointer);
 
-/// The targets in their order. `covariance`: of the arm's errors, where it is known. The cell has revolute
-/// joints only (demand_revolute()) and the arm is one of its own (demand_arm_of()).
+/// The targets in their order, each with its uncertainty where the arm has a covariance. The cell has
+/// revolute joints only (demand_revolute()) and the arm is one of its own (demand_arm_of()).
 std::vector<calib::CompensatedTarget> compensated(const Cell& cell, const Arm& arm,
                                                   const calib::CompensationTool& tool,
-                                                  const std::vector<Target>& targets,
-                                                  const std::optional<calib::ArmCovariance>& covariance = {});
+                                                  const std::vector<Target>& targets);
 
 }  // namespace cell

@@ -126,7 +126,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/report/report_figures", "report_document_test reads the page"},
     {"service/report/report_html", "report_document_test reads the page"},
     {"service/report/report_tables", "report_document_test reads the page"},
-    {"service/run/calibrated_arm", "http/routes/result_routes_test reads the file back"},
     {"service/run/moved_cell", "documents/place_search_test"},
     {"service/run/planning_problem", "documents/plan_test and run/slow_zone_test"},
     {"service/run/touch_benefit", "run_test"},

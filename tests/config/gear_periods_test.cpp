@@ -17,7 +17,7 @@ class GearPeriods : public CopiedConfig {
  protected:
   GearPeriods() {
     edit(kArm, [](json& arm) {
-      arm["schema"] = "touchcal/arm/3";
+      arm["schema"] = "touchcal/arm/3";  // an earlier one is still read
       arm["gears"]["ripple_periods_per_turn"] = json::array({118, nullptr, 96, 72.5, 60, 48});
     });
   }

@@ -70,7 +70,7 @@ TEST_P(SpoiledEntry, IsRefusedInOneLineWithFilePointerAndRemedy) {
 INSTANTIATE_TEST_SUITE_P(
     Arm, SpoiledEntry,
     testing::Values(
-        Spoiled{kArm, "/schema", "touchcal/arm/4", "/schema", "this program reads \"touchcal/arm/3\""},
+        Spoiled{kArm, "/schema", "touchcal/arm/5", "/schema", "this program reads \"touchcal/arm/4\""},
         Spoiled{kArm, "/schema", "touchcal/arm/1", "/gears", "unknown key"},
         Spoiled{kArm, "/schema", std::nullopt, "", "\"schema\" is missing"},
         Spoiled{kArm, "/schema", 1, "/schema", "is a number"},

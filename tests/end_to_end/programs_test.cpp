@@ -129,7 +129,8 @@ TEST(Daemon, RunsOneCalibrationForOneCommandAndBothServersEndAtASignal) {
   EXPECT_NEAR(calib::mm_from_metres(arm.model.links[0].r_m),
               r0.at("nominal").get<double>() + r0.at("error").get<double>(), 1e-9);
   const Finished printed = cell.run({"export", "1", "--arm", "-"});
-  EXPECT_EQ(nlohmann::json::parse(printed.out).at("schema"), "touchcal/arm/3");
+  EXPECT_EQ(nlohmann::json::parse(printed.out).at("schema"), "touchcal/arm/4");
+  EXPECT_TRUE(arm.covariance);
   EXPECT_EQ(cell.run({"export", "2", "--arm", "-"}).exit_code, cell::kExitUsage) << "no such run";
   const std::string urdf_file = (cell.folder() / "arm.urdf").string();
   const Finished forms = cell.run({"export", "1", "--urdf", urdf_file, "--dh", "-"});

@@ -359,7 +359,7 @@ TEST(Compensation, TakesArmsWithoutASphericalWrist) {
   }
 }
 
-TEST(Compensation, TheUncertaintyOfTheToolIsThatOfTheMovingArm) {
+TEST(Compensation, TheUncertaintyOfTheToolIsThatOfTheArmAtTheBlock) {
   CompensationProblem problem = problem_with(true_arm(Droops::kYes));
   const JointVector joints = tx90::degrees(20.0, 30.0, 60.0, 10.0, 50.0, -20.0);
   EXPECT_FALSE(Compensation(problem).at_joints(gripper(), joints).tip_std_m);
@@ -372,8 +372,7 @@ TEST(Compensation, TheUncertaintyOfTheToolIsThatOfTheMovingArm) {
   };
   const CompensationTool stylus = stylus_tool(problem.nominal, problem.calibrated);
   EXPECT_NEAR(std_with("d3", gripper()), 1e-4, 1e-9);
-  for (const char* of_the_place : {"theta0", "r0", "alpha1", "d1", "theta1", "r1", "beta1"})
-    EXPECT_EQ(std_with(of_the_place, gripper()), 0.0) << of_the_place;
+  EXPECT_NEAR(std_with("r0", gripper()), 1e-4, 1e-9);  // of the place only what is the arm's: a drift
   EXPECT_EQ(std_with("r7", gripper()), 0.0);
   EXPECT_NEAR(std_with("r7", stylus), 1e-4, 1e-9);
   // 0.1 mrad of joint 2 by the distance of the tool from its axis.
