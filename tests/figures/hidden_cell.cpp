@@ -157,6 +157,16 @@ std::vector<Eigen::Vector3d> HiddenCell::tips_m(const std::vector<JointVector>& 
   return tips;
 }
 
+std::vector<Eigen::Vector3d> HiddenCell::tips_in_world_m(const std::vector<JointVector>& postures,
+                                                         double rise_k) const {
+  const auto& links = plant_.truth.links;
+  const Eigen::Isometry3d world_from_block =
+      (frame_transform(links[0]) * frame_transform(links[1])).inverse();
+  std::vector<Eigen::Vector3d> tips = tips_m(postures, rise_k);
+  for (Eigen::Vector3d& tip_m : tips) tip_m = world_from_block * tip_m;
+  return tips;
+}
+
 void make_run(HiddenCell& hidden, const std::vector<Touch>& planned, const cell::Recipe& recipe,
               IdentificationProblem& problem) {
   problem.touches = hidden.touch(planned, recipe.reference_every);

@@ -53,6 +53,9 @@ class HiddenCell {
   /// Where the ball is at commanded joints, with the arm this much warmer than cold and without play.
   [[nodiscard]] std::vector<Eigen::Vector3d> tips_m(const std::vector<JointVector>& postures,
                                                     double rise_k) const;
+  /// The same in the controller's world, which begins behind the place of the block.
+  [[nodiscard]] std::vector<Eigen::Vector3d> tips_in_world_m(const std::vector<JointVector>& postures,
+                                                             double rise_k) const;
 
  private:
   Touch touch_once(const Touch& planned);

@@ -1,8 +1,10 @@
 #include "tests/figures/proof_study.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -78,6 +80,13 @@ std::optional<CalibrationRecord> calibrate(const StudiedCalibration& how, const 
 
 Eigen::Vector3d any_direction(UniformChance& chance) {
   return Eigen::Vector3d(study::normal(chance), study::normal(chance), study::normal(chance)).normalized();
+}
+
+/// What a check or a reference gave; one that was refused is a mistake of the study.
+template <class Made>
+Made made(const std::variant<Made, CheckRefusal>& outcome) {
+  if (const auto* refusal = std::get_if<CheckRefusal>(&outcome)) throw std::runtime_error(refusal->message);
+  return std::get<Made>(outcome);
 }
 
 int errors_index(const char* name) { return error_parameter_index(name).value(); }
@@ -213,6 +222,24 @@ std::vector<Touch> CheckStudy::touch(std::uint64_t seed, const CellFault& fault,
   return made_in(cell::with_block_moved(calibration_.cell, moved));
 }
 
+CheckReference CheckStudy::reference_at(const CalibrationRecord& record, std::uint64_t seed,
+                                        std::span<const double> rises_k, std::uint64_t& scatter,
+                                        UniformChance& chance) const {
+  std::vector<std::vector<Touch>> times;
+  for (const double rise_k : rises_k) times.push_back(touch(seed, {}, rise_k, ++scatter, chance));
+  return made(make_reference(record, times));
+}
+
+double CheckStudy::growth_seen(const CalibrationRecord& record, std::uint64_t seed, double reference_k,
+                               double rise_k) const {
+  std::uint64_t scatter = kCheckScatter + kReferenceCount * seed;
+  UniformChance chance(kCheckScatter + seed);
+  std::array<double, kReferenceCount> rises_k{};
+  rises_k.fill(reference_k);
+  const CheckReference reference = reference_at(record, seed, rises_k, scatter, chance);
+  return made(check(record, reference, touch(seed, {}, rise_k, ++scatter, chance))).growth;
+}
+
 CheckTally CheckStudy::tally(const CellFault& fault, int cells, int checks_each) const {
   CheckTally tally;
   const double expansion = arm_.truth.warming.arm_expansion_per_k;
@@ -221,23 +248,14 @@ CheckTally CheckStudy::tally(const CellFault& fault, int cells, int checks_each)
     const auto record = calibrate(calibration_, arm_, seed);
     if (!record) throw std::runtime_error("a calibration did not converge");
     UniformChance chance(kCheckScatter + seed);
-    double reference_k = 0.0;
-    std::vector<std::vector<Touch>> times;
-    for (int k = 0; k < kReferenceCount; ++k) {
-      const double rise_k = kWarmestKelvins * chance();
-      reference_k += rise_k / kReferenceCount;
-      times.push_back(touch(seed, {}, rise_k, ++scatter, chance));
-    }
-    const auto reference = make_reference(*record, times);
-    if (const auto* refusal = std::get_if<CheckRefusal>(&reference))
-      throw std::runtime_error(refusal->message);
+    std::array<double, kReferenceCount> rises_k{};
+    for (double& rise_k : rises_k) rise_k = kWarmestKelvins * chance();
+    const double reference_k = std::reduce(rises_k.begin(), rises_k.end()) / kReferenceCount;
+    const CheckReference reference = reference_at(*record, seed, rises_k, scatter, chance);
     for (int k = 0; k < checks_each; ++k) {
       const double rise_k = kWarmestKelvins * chance();
-      const auto outcome =
-          check(*record, std::get<CheckReference>(reference), touch(seed, fault, rise_k, ++scatter, chance));
-      if (const auto* refusal = std::get_if<CheckRefusal>(&outcome))
-        throw std::runtime_error(refusal->message);
-      const CheckVerdict& verdict = std::get<CheckVerdict>(outcome);
+      const CheckVerdict verdict =
+          made(check(*record, reference, touch(seed, fault, rise_k, ++scatter, chance)));
       ++tally.checks;
       tally.alarms += verdict.alarm ? 1 : 0;
       tally.named += verdict.alarm && verdict.cause == fault.cause && verdict.joint == fault.joint ? 1 : 0;

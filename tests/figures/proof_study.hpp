@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -79,9 +81,16 @@ class CheckStudy {
   CheckStudy(StudiedCalibration calibration, HiddenArm arm);
 
   [[nodiscard]] CheckTally tally(const CellFault& fault, int cells, int checks_each) const;
+  /// The growth that one check of this seed's cell shows, `rise_k` warmer than cold, since a reference made
+  /// while it was as warm as `reference_k`.
+  [[nodiscard]] double growth_seen(const CalibrationRecord& record, std::uint64_t seed, double reference_k,
+                                   double rise_k) const;
   [[nodiscard]] double plan_s() const { return plan_s_; }
 
  private:
+  [[nodiscard]] CheckReference reference_at(const CalibrationRecord& record, std::uint64_t seed,
+                                            std::span<const double> rises_k, std::uint64_t& scatter,
+                                            UniformChance& chance) const;
   /// The touches of a check of a seed's cell, this much warmer than cold.
   [[nodiscard]] std::vector<Touch> touch(std::uint64_t seed, const CellFault& fault, double rise_k,
                                          std::uint64_t scatter, UniformChance& chance) const;
