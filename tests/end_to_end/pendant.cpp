@@ -50,13 +50,13 @@ void Pendant::jog(const cell::JogOrder& order) {
   wait_until_told();
 }
 
-/// Until the daemon has heard a state of the arm as it stands now.
+/// Until the daemon has heard how the arm stands now. A State that was sent before may still be on its way:
+/// on a slow machine that one would be taken for it, and a contact that is left again for none.
 void Pendant::wait_until_told() {
-  const auto from = std::chrono::steady_clock::now();
-  loop_.run_until([from](const cell::Status& status) {
-    const auto since = std::chrono::steady_clock::now() - from;
-    return status.data_age_ms &&
-           since > std::chrono::milliseconds(*status.data_age_ms + 2);  // the age is cut to milliseconds
+  loop_.run_until([this](const cell::Status&) {
+    const auto told = loop_.operation().controller_state();
+    const cs8::State now = loop_.server().report();
+    return told && told->joints == now.joints && told->flags == now.flags;
   });
 }
 
