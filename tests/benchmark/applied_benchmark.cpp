@@ -37,11 +37,6 @@ struct Distances {
   int refused = 0, within = 0;  // within: k = 2 of the target's own uncertainty, at the calibration's warmth
 };
 
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values.at(static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
-}
-
 struct Corrected {
   std::vector<JointVector> joints;
   std::vector<Eigen::Vector3d> meant_m;

@@ -13,6 +13,7 @@
 #include "calib_core/uncertainty/tip_uncertainty.hpp"
 #include "config/read_config.hpp"
 #include "config/truth.hpp"
+#include "tests/figures/simulated_cell.hpp"
 
 namespace calib::figures {
 namespace {
@@ -29,11 +30,6 @@ Eigen::Vector3d tool_in_world_m(const KinematicModel& arm, const JointVector& jo
   const Eigen::Isometry3d block_from_world = frame_transform(arm.links[0]) * frame_transform(arm.links[1]);
   return block_from_world.inverse() *
          (forward_chain(arm, joints).block_from_frame[kFlangeFrame] * frame6_from_tool.translation());
-}
-
-double quantile(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  return values.at(static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
 }
 
 struct BoxFigures {

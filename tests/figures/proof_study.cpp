@@ -232,7 +232,7 @@ CheckReference CheckStudy::reference_at(const CalibrationRecord& record, std::ui
 
 double CheckStudy::growth_seen(const CalibrationRecord& record, std::uint64_t seed, double reference_k,
                                double rise_k) const {
-  std::uint64_t scatter = kCheckScatter + kReferenceCount * seed;
+  std::uint64_t scatter = kCheckScatter + (kReferenceCount + 1) * seed;  // none of another seed's
   UniformChance chance(kCheckScatter + seed);
   std::array<double, kReferenceCount> rises_k{};
   rises_k.fill(reference_k);

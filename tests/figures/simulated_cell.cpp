@@ -15,6 +15,11 @@ double median(std::vector<double> values) {
   return 0.5 * (values[(values.size() - 1) / 2] + values[values.size() / 2]);
 }
 
+double quantile(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return values.at(static_cast<std::size_t>(share * static_cast<double>(values.size() - 1)));
+}
+
 double root_mean_square(std::span<const double> values) {
   double sum = 0.0;
   for (const double value : values) sum += value * value;

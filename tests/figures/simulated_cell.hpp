@@ -23,6 +23,9 @@ inline constexpr double kMicrometres = 1e-6;
 
 double median(std::vector<double> values);
 
+/// The value under which this share of the others is, 0 the least and 1 the greatest.
+double quantile(std::vector<double> values, double share);
+
 double root_mean_square(std::span<const double> values);
 
 cell::Cell shipped_cell(const std::string& name);
