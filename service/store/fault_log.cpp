@@ -3,6 +3,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 
 #include "service/store/damaged_store.hpp"
+#include "service/store/internal/fact.hpp"
 #include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
 #include "service/store/internal/row_checksum.hpp"
@@ -25,7 +26,11 @@ void FaultLog::insert(const StoredFault& fault) {
   insert.bind(3, fault.code);
   insert.bind(4, fault.message);
   insert.exec();
-  row::seal(*database_, row::fault_rows(), "id", database_->getLastInsertRowid());
+  const std::int64_t id = database_->getLastInsertRowid();
+  row::seal(*database_, row::fault_rows(), "id", id);
+  row::append_fact(*database_,
+                   {FactKind::kFault, fault.at, fault.run_id, row::fault_body(fault.code, fault.message)});
+  newest_ = id;
 }
 
 /// What waits, all or nothing.
@@ -42,7 +47,7 @@ void FaultLog::store_all() try {
             .message = std::to_string(lost_) + " more faults up to now could not be stored"});
   }
   SQLite::Statement drop(*database_, "DELETE FROM faults WHERE id <= ?");
-  drop.bind(1, database_->getLastInsertRowid() - kKept);
+  drop.bind(1, newest_ - kKept);
   row::change_row_count(*database_, row::CountedTable::kFaults, came - drop.exec());
   transaction.commit();
   waiting_.clear();

@@ -44,6 +44,7 @@ class FaultLog {
 
   SharedDatabase database_;
   std::vector<StoredFault> waiting_;  // oldest first
+  std::int64_t newest_ = 0;           // id of the fault that was stored last
   std::int64_t lost_ = 0;             // that found no room in waiting_
   std::int64_t changes_ = 0;          // of the connection, when storing failed last
 };

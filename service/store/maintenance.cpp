@@ -25,6 +25,7 @@
 #include "service/store/internal/row_text.hpp"
 #include "service/store/log_damage.hpp"
 #include "service/store/model_store.hpp"
+#include "service/store/outbox.hpp"
 
 namespace cell {
 namespace {
@@ -81,6 +82,7 @@ void find_damaged_rows(SQLite::Database& database, std::vector<std::string>& dam
   if (version >= kLogChecksumSchema)
     std::ranges::move(row::find_row_count_damage(database), std::back_inserter(damage));
   if (version >= kModelSchema) std::ranges::move(find_model_damage(database), std::back_inserter(damage));
+  if (version >= kOutboxSchema) std::ranges::move(find_outbox_damage(database), std::back_inserter(damage));
 }
 
 SQLite::Database open_to_read(const std::filesystem::path& file) {
@@ -306,7 +308,8 @@ std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database) {
   return unknown ? std::nullopt : std::optional(space.available);
 }
 
-int delete_runs_before(const SharedDatabase& database, const std::string& oldest, int days_that_agree) {
+int delete_runs_before(const SharedDatabase& database, const std::string& oldest, int days_that_agree,
+                       const std::vector<std::string>& sinks) {
   constexpr std::array kOfRuns{"touches",      "superseded_touches", "reference_touches", "open_commands",
                                "plan_changes", "resumptions",        "refused_results",   "arms"};
   row::WriteTransaction transaction(*database);
@@ -314,14 +317,16 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
                            "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
                            "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ?) AND id "
                            "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND id NOT IN "
-                           "(SELECT run_id FROM models) AND ? <= (SELECT "
+                           "(SELECT run_id FROM models) AND id NOT IN (SELECT run_id FROM outbox WHERE seq > "
+                           "? AND run_id IS NOT NULL) AND ? <= (SELECT "
                            "count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?)");
   choose.bind(1, oldest);
   choose.bind(2, std::string(run_outcome_name(RunOutcome::kRunning)));
   choose.bind(3, std::string(verdict_name(Verdict::kAccepted)));
   choose.bind(4, kLastRunsKept);
-  choose.bind(5, days_that_agree);
-  choose.bind(6, oldest);
+  choose.bind(5, confirmed_by_all(*database, sinks));
+  choose.bind(6, days_that_agree);
+  choose.bind(7, oldest);
   choose.exec();
   for (const std::string table : kOfRuns)
     database->exec("DELETE FROM " + table + " WHERE run_id IN (SELECT id FROM old_runs)");

@@ -7,6 +7,7 @@
 
 #include "service/base/digest.hpp"
 #include "service/store/damaged_store.hpp"
+#include "service/store/internal/fact.hpp"
 #include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/row_checksum.hpp"
 #include "service/store/internal/row_text.hpp"
@@ -156,6 +157,11 @@ Approval ModelStore::approve(const NewApproval& model) {
                .hash = model.hash,
                .valid_until = model.valid_until};
   append_row(*database_, row, model.document, model.arm_json);
+  row::append_fact(*database_, {FactKind::kApproved, row.at, row.run_id,
+                                row::model_body({.hash = row.hash,
+                                                 .operator_name = row.operator_name,
+                                                 .valid_until = row.valid_until,
+                                                 .current = row.hash})});
   transaction.commit();
   return row;
 }
@@ -170,8 +176,14 @@ Approval ModelStore::roll_back(const std::string& at, const std::optional<std::s
                .operator_name = operator_name,
                .hash = standing.back().hash};
   append_row(*database_, row, {}, {});
+  const Approval& now = standing[standing.size() - 2];
+  row::append_fact(*database_, {FactKind::kRolledBack, row.at, row.run_id,
+                                row::model_body({.hash = row.hash,
+                                                 .operator_name = row.operator_name,
+                                                 .valid_until = now.valid_until,
+                                                 .current = now.hash})});
   transaction.commit();
-  return standing[standing.size() - 2];
+  return now;
 }
 
 std::vector<std::string> find_model_damage(SQLite::Database& database) {

@@ -6,6 +6,7 @@
 
 #include <utility>
 
+#include "service/store/internal/fact.hpp"
 #include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/opened_file.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
@@ -164,14 +165,18 @@ std::int64_t RunStore::insert_run(const NewRun& run) {
   insert.exec();
   const std::int64_t id = database_->getLastInsertRowid();
   row::seal(*database_, row::run_rows(), "id", id);
+  row::tell_run_started(*database_, id);
   transaction.commit();
   return id;
 }
 
 void RunStore::withdraw_run(std::int64_t run_id) {
+  row::WriteTransaction transaction(*database_);
+  row::tell_run_withdrawn(*database_, run_id);
   SQLite::Statement remove(*database_, "DELETE FROM runs WHERE id = ?");
   remove.bind(1, run_id);
   remove.exec();
+  transaction.commit();
 }
 
 void RunStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
@@ -221,7 +226,7 @@ void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& cha
   row::WriteTransaction transaction(*database_);
   if (withdrawn) row::supersede(*database_, run_id, withdrawn->number, withdrawn->reason);
   for (const PlanChange& change : changes) insert_plan_change(*database_, run_id, change);
-  row::note_rows(*database_, run_id);
+  row::note_touches(*database_, run_id);
   transaction.commit();
 }
 
@@ -272,7 +277,7 @@ void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
   }
   row::WriteTransaction transaction(*database_);
   insert_touch(run_id, touch);
-  row::note_rows(*database_, run_id);
+  row::note_touches(*database_, run_id);
   transaction.commit();
 }
 
@@ -289,7 +294,7 @@ void RunStore::insert_touch(std::int64_t run_id, const StoredTouch& touch) {
 void RunStore::withdraw_touch(std::int64_t run_id, int number, const std::string& reason) {
   row::WriteTransaction transaction(*database_);
   row::supersede(*database_, run_id, number, reason);
-  row::note_rows(*database_, run_id);
+  row::note_touches(*database_, run_id);
   transaction.commit();
 }
 
@@ -298,13 +303,14 @@ void RunStore::replace_touch(std::int64_t run_id, const StoredTouch& again, cons
   if (row::is_there(*database_, run_id, again)) return;
   row::supersede(*database_, run_id, again.number, reason);
   insert_touch(run_id, again);
-  row::note_rows(*database_, run_id);
+  row::note_touches(*database_, run_id);
   transaction.commit();
 }
 
 void RunStore::confirm_touch(std::int64_t run_id, int number, const cs8::JointsMicrodeg& again) {
   row::WriteTransaction transaction(*database_);
   row::confirm(*database_, run_id, number, again);
+  row::note_touches(*database_, run_id);
   transaction.commit();
 }
 
@@ -341,7 +347,7 @@ void RunStore::append_resumption(std::int64_t run_id, const std::string& at, int
 void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
   row::WriteTransaction transaction(*database_);
   write_result(*database_, run_id, end.result_json, end.arm_json);
-  row::change_run(*database_, run_id, [&] {
+  row::end_run(*database_, run_id, [&] {
     SQLite::Statement update(*database_,
                              "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ?, fault_code = ?, "
                              "fault_message = ? WHERE id = ?");
@@ -352,7 +358,6 @@ void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
     row::bind_or_null(update, 5, end.fault_message);
     update.bind(6, run_id);
     update.exec();
-    row::count_rows_of(*database_, run_id);
   });
   transaction.commit();
 }
@@ -361,7 +366,7 @@ void RunStore::set_result_json(std::int64_t run_id, const std::string& result_js
                                const std::optional<std::string>& arm_json) {
   row::WriteTransaction transaction(*database_);
   write_result(*database_, run_id, result_json, arm_json);
-  row::note_rows(*database_, run_id);
+  row::note_touches(*database_, run_id);
   transaction.commit();
 }
 
@@ -375,7 +380,7 @@ int RunStore::finish_interrupted(const std::string& now, std::optional<std::int6
   if (open.empty()) return 0;  // nothing is written: a locked file does not keep the daemon from beginning
   row::WriteTransaction transaction(*database_);
   for (const std::int64_t run_id : open) {
-    row::change_run(*database_, run_id, [&] {
+    row::end_run(*database_, run_id, [&] {
       SQLite::Statement update(*database_,
                                "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ? WHERE id = ?");
       update.bind(1, std::string(run_outcome_name(RunOutcome::kInterrupted)));
@@ -383,7 +388,6 @@ int RunStore::finish_interrupted(const std::string& now, std::optional<std::int6
       update.bind(3, now);
       update.bind(4, run_id);
       update.exec();
-      row::count_rows_of(*database_, run_id);
     });
   }
   transaction.commit();

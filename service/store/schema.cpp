@@ -258,9 +258,30 @@ CREATE TABLE refused_results(
 CREATE INDEX refused_results_of_run ON refused_results(run_id);
 )sql";
 
+/// What others must hear of, how far each of them has heard, and which expiry was told of: outbox.hpp.
+constexpr const char* kOutboxTables = R"sql(
+CREATE TABLE outbox(
+  seq INTEGER PRIMARY KEY AUTOINCREMENT,
+  instance INTEGER NOT NULL,
+  kind TEXT NOT NULL,
+  at TEXT NOT NULL,
+  run_id INTEGER,
+  previous TEXT NOT NULL,
+  body TEXT NOT NULL,
+  sha256 TEXT NOT NULL
+) STRICT;
+CREATE TABLE outbox_state(id INTEGER PRIMARY KEY CHECK(id = 1), instance INTEGER NOT NULL, newest TEXT NOT NULL) STRICT;
+INSERT INTO outbox_state VALUES(1, 0, '');
+CREATE TABLE delivered(sink TEXT PRIMARY KEY, seq INTEGER NOT NULL) STRICT, WITHOUT ROWID;
+CREATE TABLE told_certificates(
+  artefact TEXT NOT NULL, valid_until TEXT NOT NULL, PRIMARY KEY(artefact, valid_until)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 constexpr std::array kMigrations{kRunsAndTouches,  kPlans,         kDiary,        kTemperatures,
                                  kStiffness,       kChecksums,     kAuditChained, kTouchNoise,
-                                 kAuditTokenNames, kTouchContacts, kModelTable,   kLogChecksums};
+                                 kAuditTokenNames, kTouchContacts, kModelTable,   kLogChecksums,
+                                 kOutboxTables};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

@@ -34,6 +34,9 @@ inline constexpr std::size_t kModelSchema = 11;
 /// run counts both with its rows.
 inline constexpr std::size_t kLogChecksumSchema = 12;
 
+/// From this schema on facts for others than this cell are kept until they have heard of them.
+inline constexpr std::size_t kOutboxSchema = 13;
+
 /// Opens or creates the file (WAL, synchronous FULL: a commit is durable on return) and migrates it to the
 /// newest schema, all or nothing. Throws std::runtime_error that names the file if that fails, also for a
 /// file of a newer schema, which is not changed.

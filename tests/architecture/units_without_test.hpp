@@ -129,6 +129,7 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/run/moved_cell", "documents/place_search_test"},
     {"service/run/planning_problem", "documents/plan_test and run/slow_zone_test"},
     {"service/run/touch_benefit", "run_test"},
+    {"service/store/fact_body", "store/outbox_test reads what each fact tells"},
     {"service/store/run_store_queries", "the reading half of run_store.cpp: run_store_test"},
     {"service/store/touch_change", "a touch that is superseded or confirmed: run_store_test, schema_test"},
     {"sim_controller/val3/machine/arrays", "as programs see them: val3/machine/builtins_arrays_test"},

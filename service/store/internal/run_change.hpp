@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "service/store/internal/fact.hpp"
 #include "service/store/internal/row_checksum.hpp"
 
 /// Changes of a row of runs, each inside the caller's transaction.
@@ -36,10 +37,27 @@ inline void count_rows_of(SQLite::Database& database, std::int64_t run_id) {
   update.exec();
 }
 
+/// Changes the row of a run that ends by it: what it has of rows counts from now on, and others hear of it.
+template <class Change>
+void end_run(SQLite::Database& database, std::int64_t run_id, Change&& change) {
+  change_run(database, run_id, [&] {
+    std::forward<Change>(change)();
+    count_rows_of(database, run_id);
+  });
+  tell_run_ended(database, run_id);
+}
+
 /// What a run that ended has gained or lost since counts with it.
 inline void note_rows(SQLite::Database& database, std::int64_t run_id) {
   if (!has_ended(database, run_id)) return;
   change_run(database, run_id, [&] { count_rows_of(database, run_id); });
+}
+
+/// The same of its touches or its result, of which others hear too.
+inline void note_touches(SQLite::Database& database, std::int64_t run_id) {
+  if (!has_ended(database, run_id)) return;
+  note_rows(database, run_id);
+  tell_touch_set(database, run_id);
 }
 
 }  // namespace cell::row

@@ -8,6 +8,7 @@
 #include "service/store/damaged_store.hpp"
 #include "service/store/fault_log.hpp"
 #include "service/store/internal/row_checksum.hpp"
+#include "service/store/internal/row_count.hpp"
 #include "service/store/maintenance.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/config/folder.hpp"
@@ -38,10 +39,12 @@ std::filesystem::path file_of_version(const Folder& folder, int version) {
     database.exec(
         "INSERT INTO faults(run_id, at, code, message) VALUES(1, 'then', 'no_contact', 'early'), (NULL, "
         "'then', 'link_lost', 'late'); INSERT INTO resumptions(run_id, at, touches_done) VALUES(1, 'then', "
-        "1); INSERT INTO answers VALUES('key', 'POST /', '', 200, '[]', x'7b7d', 'then')");
+        "1); INSERT INTO answers(key, request, body_digest, status, headers_json, body, at) VALUES('key', "
+        "'POST /', '', 200, '[]', x'7b7d', 'then')");
   }
   if (version >= static_cast<int>(kChecksumSchema)) {
     row::add_checksum_function(database);
+    if (version >= static_cast<int>(kLogChecksumSchema)) row::begin_row_counts(database);
     row::fill_checksums(database, static_cast<std::size_t>(version));
   }
   database.exec("PRAGMA user_version = " + std::to_string(version));

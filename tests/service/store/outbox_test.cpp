@@ -1,0 +1,399 @@
+#include "service/store/outbox.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <sqlite3.h>
+
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "service/base/digest.hpp"
+#include "service/store/damaged_store.hpp"
+#include "service/store/fault_log.hpp"
+#include "service/store/maintenance.hpp"
+#include "service/store/model_store.hpp"
+#include "service/store/run_store.hpp"
+#include "tests/config/folder.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr int kAll = 1000;
+
+StoredTouch touch_of_number(int number) {
+  return {.number = number,
+          .plane = 1,
+          .joints = {number, 2, 3, 4, 5, 6},
+          .captured_at = "2026-01-02T00:00:0" + std::to_string(number) + ".000Z",
+          .session = 1,
+          .sequence = static_cast<std::uint32_t>(number)};
+}
+
+class OutboxTest : public ::testing::Test {
+ protected:
+  std::int64_t begin() {
+    return store_.begin_run({.recipe = "edf-25",
+                             .started_at = "2026-01-02T00:00:00.000Z",
+                             .operator_name = "M. Curie",
+                             .config_digest = "abc"});
+  }
+  void end(std::int64_t run) {
+    store_.finish_run(run, {.outcome = RunOutcome::kComplete,
+                            .verdict = Verdict::kAccepted,
+                            .ended_at = "2026-01-02T00:01:00.000Z",
+                            .result_json = R"({"a":1})",
+                            .arm_json = R"({"b":2})"});
+  }
+  /// Run 1, ended with two touches: three facts.
+  void run_that_ended() {
+    begin();
+    for (const int number : {1, 2}) store_.append_touch(1, touch_of_number(number));
+    end(1);
+  }
+  [[nodiscard]] std::vector<Fact> facts(std::int64_t after = 0) const {
+    return OutboxReader(file_).next(after, kAll);
+  }
+  [[nodiscard]] std::vector<std::string> kinds(std::int64_t after = 0) const {
+    std::vector<std::string> kinds;
+    for (const Fact& fact : facts(after)) kinds.push_back(fact.kind);
+    return kinds;
+  }
+  static nlohmann::json body(const Fact& fact) { return nlohmann::json::parse(fact.body); }
+
+  Folder folder_;
+  std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
+  RunStore store_{file_};
+  Outbox outbox_{store_.database()};
+};
+
+TEST_F(OutboxTest, ARunTellsOfItsStartItsTouchesAndItsEnd) {
+  EXPECT_EQ(outbox_.begin_instance(), 1);
+  EXPECT_EQ(outbox_.begin_instance(), 2);
+  run_that_ended();
+  const std::vector<Fact> told = facts();
+  ASSERT_THAT(kinds(), ElementsAre("run_started", "touch_set_closed", "run_ended"));
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    EXPECT_EQ(told[i].seq, static_cast<std::int64_t>(i) + 1);
+    EXPECT_EQ(told[i].instance, 2);
+    EXPECT_EQ(told[i].run_id, 1);
+    EXPECT_EQ(told[i].previous, i == 0 ? std::string() : told[i - 1].sha256);
+    EXPECT_EQ(told[i].sha256, fact_digest(told[i]));
+  }
+  EXPECT_EQ(told[0].at, "2026-01-02T00:00:00.000Z");
+  EXPECT_EQ(body(told[0]),
+            (nlohmann::json{{"recipe", "edf-25"}, {"operator", "M. Curie"}, {"config_digest", "abc"}}));
+  const auto set = body(told[1]);
+  EXPECT_EQ(set["touches"], 2);
+  EXPECT_EQ(set["result_sha256"], sha256_hex(R"({"a":1})"));
+  EXPECT_EQ(set["arm_sha256"], sha256_hex(R"({"b":2})"));
+  EXPECT_EQ(told[2].at, "2026-01-02T00:01:00.000Z");
+  EXPECT_EQ(body(told[2])["outcome"], "complete");
+  EXPECT_EQ(body(told[2])["verdict"], "accepted");
+  EXPECT_EQ(body(told[2])["touches_done"], 2);
+  EXPECT_TRUE(body(told[2])["fault_code"].is_null());
+}
+
+TEST_F(OutboxTest, WhatChangesTheTouchesOfARunThatEndedClosesTheirSetAgain) {
+  run_that_ended();
+  std::string before = body(facts()[1])["touches_sha256"];
+  const auto expect_another_set = [&](const char* what) {
+    const Fact told = facts().back();
+    EXPECT_EQ(told.kind, "touch_set_closed") << what;
+    EXPECT_NE(body(told)["touches_sha256"], before) << what;
+    before = body(told)["touches_sha256"];
+  };
+  store_.append_touch(1, touch_of_number(3));
+  expect_another_set("a late touch");
+  StoredTouch again = touch_of_number(2);
+  again.sequence = 9;
+  store_.replace_touch(1, again, "outlier");
+  expect_another_set("a touch in place of another");
+  store_.confirm_touch(1, 1, {7, 7, 7, 7, 7, 7});
+  expect_another_set("a repetition");
+  store_.withdraw_touch(1, 3, "by hand");
+  expect_another_set("one that counts no longer");
+  store_.set_result_json(1, R"({"a":2})");
+  EXPECT_EQ(body(facts().back())["touches_sha256"], before);
+  EXPECT_EQ(body(facts().back())["result_sha256"], sha256_hex(R"({"a":2})"));
+  EXPECT_TRUE(body(facts().back())["arm_sha256"].is_null());
+}
+
+TEST_F(OutboxTest, ATouchOfARunUnderWayIsNoFact) {
+  begin();
+  store_.append_touch(1, touch_of_number(1));
+  store_.set_result_json(1, "{}");
+  EXPECT_THAT(kinds(), ElementsAre("run_started"));
+}
+
+TEST_F(OutboxTest, ARunThatIsWithdrawnOrInterruptedEndsForThoseWhoHeardOfItsStart) {
+  begin();
+  store_.withdraw_run(1);
+  begin();
+  store_.finish_interrupted("2026-01-03T00:00:00.000Z");
+  const std::vector<Fact> told = facts();
+  ASSERT_THAT(kinds(), ElementsAre("run_started", "run_ended", "run_started", "run_ended"));
+  EXPECT_EQ(body(told[1])["outcome"], "withdrawn");
+  EXPECT_EQ(told[1].run_id, 1);
+  EXPECT_EQ(body(told[3])["outcome"], "interrupted");
+  EXPECT_EQ(told[3].run_id, 2);
+  EXPECT_EQ(told[3].at, "2026-01-03T00:00:00.000Z");
+}
+
+TEST_F(OutboxTest, ApprovalsAndRollbacksTellWhichModelIsTheCellsNow) {
+  run_that_ended();
+  begin();
+  ModelStore models(store_.database());
+  const auto approve = [&](std::int64_t run, const char* hash) {
+    models.approve({.run_id = run,
+                    .at = "then",
+                    .operator_name = "M. Curie",
+                    .hash = hash,
+                    .document = "{}",
+                    .arm_json = "{}"});
+  };
+  approve(1, "one");
+  approve(2, "two");
+  approve(2, "two");  // it is the cell's already
+  models.roll_back("later", std::nullopt);
+  const std::vector<Fact> told = facts(4);
+  ASSERT_THAT(kinds(4), ElementsAre("approved", "approved", "rolled_back"));
+  EXPECT_EQ(body(told[1]),
+            (nlohmann::json{
+                {"hash", "two"}, {"operator", "M. Curie"}, {"valid_until", nullptr}, {"current", "two"}}));
+  EXPECT_EQ(told[2].at, "later");
+  EXPECT_EQ(told[2].run_id, 2);
+  EXPECT_EQ(body(told[2])["hash"], "two");
+  EXPECT_EQ(body(told[2])["current"], "one");
+}
+
+TEST_F(OutboxTest, FaultsAreToldAlsoOfNoRun) {
+  FaultLog faults(store_.database());
+  faults.append(std::nullopt, "then", "link_lost", "the link is lost");
+  begin();
+  faults.append(1, "later", "no_contact", "\xff");
+  const std::vector<Fact> told = facts();
+  ASSERT_THAT(kinds(), ElementsAre("fault", "run_started", "fault"));
+  EXPECT_EQ(told[0].run_id, std::nullopt);
+  EXPECT_EQ(body(told[0]), (nlohmann::json{{"code", "link_lost"}, {"message", "the link is lost"}}));
+  EXPECT_EQ(told[2].run_id, 1);
+  EXPECT_EQ(body(told[2])["message"], "\xef\xbf\xbd") << "bytes that are no text";
+}
+
+TEST_F(OutboxTest, ACertificateIsToldOfOnceUntilAnotherTakesItsPlace) {
+  for (const char* until : {"2026-02-01", "2026-02-01", "2027-02-01"})
+    outbox_.tell_expiring({"block", until}, "now");
+  ASSERT_THAT(kinds(), ElementsAre("certificate_expiring", "certificate_expiring"));
+  EXPECT_EQ(body(facts()[1]), (nlohmann::json{{"artefact", "block"}, {"valid_until", "2027-02-01"}}));
+}
+
+TEST_F(OutboxTest, TheCursorOfASinkOnlyRises) {
+  const OutboxReader reader(file_);
+  EXPECT_EQ(reader.cursor("mqtt"), 0);
+  run_that_ended();
+  outbox_.confirm("mqtt", 2);
+  outbox_.confirm("mqtt", 1);
+  outbox_.confirm("archive", 1);
+  EXPECT_EQ(reader.cursor("mqtt"), 2);
+  EXPECT_EQ(reader.cursor("archive"), 1);
+  EXPECT_EQ(reader.newest(), 3);
+  EXPECT_EQ(reader.at_after(2), "2026-01-02T00:01:00.000Z");
+  EXPECT_EQ(reader.at_after(3), std::nullopt);
+  EXPECT_THAT(reader.next(1, 1), SizeIs(1));
+}
+
+TEST_F(OutboxTest, FactsGoWhenAllSinksHaveThemAndTheirTimeIsOver) {
+  run_that_ended();  // two facts of the first minute, one of the second
+  const std::string later = "2026-01-03T00:00:00.000Z", between = "2026-01-02T00:00:30.000Z";
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, later), 0) << "the sink has none of them";
+  outbox_.confirm("mqtt", 3);
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt", "archive"}, later), 0) << "the other sink has none";
+  outbox_.confirm("archive", 1);
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt", "archive"}, {}), 0) << "facts are kept for ever";
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt", "archive"}, later), 1);
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, between), 0)
+      << "the touches closed in the second minute";
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, later), 2);
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+  begin();
+  ASSERT_THAT(facts(), SizeIs(1));
+  EXPECT_EQ(facts()[0].seq, 4) << "a number comes once, whatever was deleted";
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+}
+
+TEST_F(OutboxTest, WithoutASinkTheLastFactsStay) {
+  run_that_ended();
+  EXPECT_EQ(delete_facts(store_.database(), {}, {}), 0);
+  EXPECT_EQ(delete_facts(store_.database(), {}, {}, 2), 1);
+  EXPECT_THAT(kinds(), ElementsAre("touch_set_closed", "run_ended"));
+  EXPECT_EQ(delete_facts(store_.database(), {"mqtt"}, {}, 1), 0) << "there is a sink";
+}
+
+TEST_F(OutboxTest, ARunStaysUntilAllSinksHaveHeardOfIt) {
+  for (int run = 1; run <= kLastRunsKept + 2; ++run) {
+    begin();
+    store_.finish_run(
+        run, {.outcome = RunOutcome::kComplete, .verdict = Verdict::kRejected, .ended_at = "2026-01-02"});
+  }
+  const auto old_runs_deleted = [&] {
+    return delete_runs_before(store_.database(), "2026-02", 0, {"archive"});
+  };
+  outbox_.confirm("archive", 2);  // start and end of the first
+  EXPECT_EQ(old_runs_deleted(), 1);
+  outbox_.confirm("archive", 1000);
+  EXPECT_EQ(old_runs_deleted(), 1);
+}
+
+TEST_F(OutboxTest, WhatWasChangedOrTakenOutIsSeenAndNotTold) {
+  for (const char* tampering :
+       {"UPDATE outbox SET body = '{}' WHERE seq = 2", "DELETE FROM outbox WHERE seq = 2",
+        "UPDATE outbox SET run_id = NULL WHERE seq = 2", "UPDATE outbox SET seq = 7 WHERE seq = 3"}) {
+    const Folder folder;
+    const auto file = folder.path() / "touchcal.sqlite";
+    RunStore store(file);
+    for (int run = 0; run < 3; ++run) store.begin_run({.recipe = "edf-25", .started_at = "start"});
+    EXPECT_EQ(store.database()->exec(tampering), 1);
+    EXPECT_THROW(static_cast<void>(OutboxReader(file).next(0, kAll)), DamagedStore) << tampering;
+    EXPECT_THAT(find_damage(file), ElementsAre(HasSubstr("outbox, row"))) << tampering;
+  }
+}
+
+TEST_F(OutboxTest, FactsThatWereTakenOutAtTheEndAreMissed) {
+  run_that_ended();
+  EXPECT_EQ(store_.database()->exec("DELETE FROM outbox WHERE seq = 3"), 1);
+  EXPECT_THAT(find_damage(file_), ElementsAre(HasSubstr("outbox, row 2: rows behind it were taken out")));
+}
+
+/// Each call that writes a fact, and whether what it tells of is there.
+struct ToldCall {
+  const char* name;
+  std::function<void(RunStore&)> call;
+  const char* fact_of_it;  // SQL: how often it has happened
+};
+const std::vector<ToldCall>& told_calls() {
+  static const std::vector<ToldCall> calls{
+      {"begin_run", [](RunStore& store) { store.begin_run({.recipe = "edf-25", .started_at = "later"}); },
+       "SELECT count(*) FROM runs WHERE started_at = 'later'"},
+      {"withdraw_run", [](RunStore& store) { store.withdraw_run(2); },
+       "SELECT count(*) = 0 FROM runs WHERE id = 2"},
+      {"finish_run",
+       [](RunStore& store) { store.finish_run(2, {.outcome = RunOutcome::kComplete, .ended_at = "later"}); },
+       "SELECT count(*) FROM runs WHERE id = 2 AND ended_at = 'later'"},
+      {"finish_interrupted", [](RunStore& store) { store.finish_interrupted("later"); },
+       "SELECT count(*) FROM runs WHERE id = 2 AND ended_at = 'later'"},
+      {"append_touch", [](RunStore& store) { store.append_touch(1, touch_of_number(3)); },
+       "SELECT count(*) FROM touches WHERE number = 3"},
+      {"set_result_json", [](RunStore& store) { store.set_result_json(1, "{}"); },
+       "SELECT count(*) FROM runs WHERE id = 1 AND result_json = '{}'"},
+      {"approve",
+       [](RunStore& store) {
+         ModelStore(store.database())
+             .approve({.run_id = 1, .hash = "new", .document = "{}", .arm_json = "{}"});
+       },
+       "SELECT count(*) FROM models WHERE hash = 'new'"},
+      {"roll_back", [](RunStore& store) { ModelStore(store.database()).roll_back("later", {}); },
+       "SELECT count(*) FROM models WHERE kind = 'rolled_back'"},
+      {"fault", [](RunStore& store) { FaultLog(store.database()).append({}, "later", "link_lost", ""); },
+       "SELECT count(*) FROM faults"},
+      {"certificate",
+       [](RunStore& store) {
+         Outbox(store.database()).tell_expiring({"block", "2026"}, "later");
+       },
+       "SELECT count(*) FROM told_certificates"}};
+  return calls;
+}
+
+class OutboxBreaks : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  OutboxBreaks() {
+    store_.begin_run({.recipe = "edf-25", .started_at = "start"});
+    for (const int number : {1, 2}) store_.append_touch(1, touch_of_number(number));
+    store_.finish_run(1, {.outcome = RunOutcome::kComplete, .ended_at = "end"});
+    store_.begin_run({.recipe = "edf-25", .started_at = "start"});
+    ModelStore models(store_.database());
+    for (const char* hash : {"one", "two"})
+      models.approve({.run_id = 1, .hash = hash, .document = "{}", .arm_json = "{}"});
+  }
+  int count(const std::string& sql) { return store_.database()->execAndGet(sql).getInt(); }
+  const ToldCall& told() const { return told_calls()[GetParam()]; }
+
+  Folder folder_;
+  std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
+  RunStore store_{file_};
+};
+
+/// Lets `left` changes of rows of the outbox's tables and of others through and refuses the next.
+struct Refusal {
+  int left = 0;
+  bool refused = false;
+};
+
+TEST_P(OutboxBreaks, WhicheverWriteFailsAFactAndWhatItTellsOfAreBothThereOrNeither) {
+  const int facts_before = count("SELECT count(*) FROM outbox");
+  ASSERT_EQ(count(told().fact_of_it), 0);
+  Refusal refusal;
+  bool done = false;
+  for (int at = 0; !done; ++at) {
+    ASSERT_LT(at, 100) << "it is never done";
+    refusal = {.left = at};
+    // Each write of a statement begins with a step of the virtual machine's program for it: it is refused
+    // there.
+    sqlite3_set_authorizer(
+        store_.database()->getHandle(),
+        [](void* self, int action, const char*, const char*, const char*, const char*) {
+          auto& refusal = *static_cast<Refusal*>(self);
+          if (action != SQLITE_INSERT && action != SQLITE_UPDATE && action != SQLITE_DELETE) return SQLITE_OK;
+          if (--refusal.left >= 0) return SQLITE_OK;
+          refusal.refused = true;
+          return SQLITE_DENY;
+        },
+        &refusal);
+    try {
+      told().call(store_);
+      done = true;
+    } catch (const std::exception&) {
+    }
+    sqlite3_set_authorizer(store_.database()->getHandle(), nullptr, nullptr);
+    EXPECT_NE(done, refusal.refused) << at;
+    EXPECT_EQ(count(told().fact_of_it), done ? 1 : 0) << "write " << at;
+    EXPECT_EQ(count("SELECT count(*) FROM outbox") > facts_before, done) << "write " << at;
+    EXPECT_THAT(find_damage(file_), IsEmpty()) << "write " << at;
+  }
+}
+
+TEST_P(OutboxBreaks, OnAFullDiskAFactAndWhatItTellsOfAreBothThereOrNeither) {
+  const int facts_before = count("SELECT count(*) FROM outbox");
+  store_.database()->exec("VACUUM");
+  // A fact finds room on the last page of its table for a while.
+  const std::string pages = store_.database()->execAndGet("PRAGMA page_count").getString();
+  store_.database()->exec("PRAGMA max_page_count = " + pages);
+  bool done = true;
+  try {
+    for (int i = 0; i < kAll; ++i)
+      FaultLog(store_.database()).append({}, "then", "link_lost", std::string(500, 'x'));
+    ADD_FAILURE() << "the disk is never full";
+  } catch (const std::exception&) {
+  }
+  const int faults = count("SELECT count(*) FROM faults");
+  EXPECT_EQ(count("SELECT count(*) FROM outbox"), facts_before + faults);
+  const int happened = count(told().fact_of_it), told_before = count("SELECT count(*) FROM outbox");
+  try {
+    told().call(store_);
+  } catch (const std::exception&) {
+    done = false;
+  }
+  EXPECT_EQ(count(told().fact_of_it) > happened, done);
+  EXPECT_EQ(count("SELECT count(*) FROM outbox") > told_before, done);
+  EXPECT_THAT(find_damage(file_), IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Calls, OutboxBreaks, ::testing::Range<std::size_t>(0, told_calls().size()),
+                         [](const auto& call) { return told_calls()[call.param].name; });
+
+}  // namespace
+}  // namespace cell
