@@ -256,6 +256,13 @@ std::string result_text(const ResultDocument& result) {
   return lines;
 }
 
+/// Nothing for a sink that is not configured.
+std::string sink_text(const char* name, const std::optional<std::int64_t>& behind,
+                      const std::optional<std::string>& trouble) {
+  if (!behind) return "";
+  return fmt::format("{:<12}{} facts behind{}\n", name, *behind, trouble ? ": " + *trouble : "");
+}
+
 std::string status_text(const StatusDocument& status) {
   const auto text_or_unknown = [](const std::optional<std::string>& value) {
     return value.value_or("unknown");
@@ -265,7 +272,7 @@ std::string status_text(const StatusDocument& status) {
     return value ? (*value ? yes : no) : "unknown";
   };
   std::optional<double> data_age_ms;
-  if (status.data_age_ms) data_age_ms = static_cast<double>(*status.data_age_ms);
+  if (status.live.data_age_ms) data_age_ms = static_cast<double>(*status.live.data_age_ms);
   lines += fmt::format(
       "controller  {}, power {}, mode {}, emergency stop {}, data {} ms old\n"
       "cell        {}, touch test {}, probe {}, permit {}\n",
@@ -289,6 +296,8 @@ std::string status_text(const StatusDocument& status) {
         figure(status.predicted_tip_rms_mm, "{:.3f}"), word_of(status.verdict));
   }
   lines += more_text(status);
+  lines += sink_text("broker", status.live.mqtt_behind, status.live.mqtt_trouble);
+  lines += sink_text("archive", status.live.archive_behind, status.live.archive_trouble);
   if (status.fault_code) {
     lines += fmt::format("fault       {}: {}\n  robot     {}\n  next      {}\n", *status.fault_code,
                          text(status.fault_message), text(status.fault_robot_action),

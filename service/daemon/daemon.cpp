@@ -13,10 +13,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/signal_set.hpp>
-#include <boost/asio/steady_timer.hpp>
-#include <boost/asio/this_coro.hpp>
 #include <boost/asio/thread_pool.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -30,11 +27,11 @@
 #include "service/base/context.hpp"
 #include "service/base/exit_code.hpp"
 #include "service/base/known_directory.hpp"
-#include "service/base/run_on.hpp"
 #include "service/base/state_directory.hpp"
-#include "service/base/utc_time.hpp"
+#include "service/daemon/daily_care.hpp"
 #include "service/daemon/end_watch.hpp"
 #include "service/daemon/listen_address.hpp"
+#include "service/daemon/plant_sinks.hpp"
 #include "service/daemon/supervision.hpp"
 #include "service/daemon/work_done.hpp"
 #include "service/http/auth/tokens.hpp"
@@ -42,6 +39,7 @@
 #include "service/http/server/listener.hpp"
 #include "service/http/server/local_listener.hpp"
 #include "service/store/maintenance.hpp"
+#include "service/store/outbox.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
@@ -72,24 +70,13 @@ class DirectoryLock {
   int descriptor_;
 };
 
-/// At once and then daily, on the store's thread. A failure is repeated the next day.
-asio::awaitable<void> delete_old_runs(const RunStore& store, asio::any_io_executor disk, Clocks clocks,
-                                      int retain_days) {
-  asio::steady_timer day(co_await asio::this_coro::executor);
-  for (;;) {
-    const std::string oldest = format_utc(clocks.system() - std::chrono::days(retain_days));
-    const auto delete_them = [&store, oldest, retain_days] {
-      try {
-        const int deleted =
-            delete_runs_before(store.database(), oldest, std::min(kDaysThatAgree, retain_days));
-        if (deleted > 0) spdlog::info("{} runs older than {} days were deleted", deleted, retain_days);
-      } catch (const std::exception& error) {
-        spdlog::error("old runs could not be deleted: {}", error.what());
-      }
-    };
-    co_await run_on(disk, delete_them);
-    day.expires_after(std::chrono::days(1));
-    co_await day.async_wait(asio::use_awaitable);
+/// The count of this start. Where the disk does not take it, that of the start before.
+std::int64_t count_start(const RunStore& store) {
+  try {
+    return Outbox(store.database()).begin_instance();
+  } catch (const std::exception& error) {
+    spdlog::warn("this start could not be counted: {}", error.what());
+    return OutboxReader(store.file()).instance();
   }
 }
 
@@ -224,6 +211,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const Clocks clocks{std::chrono::system_clock::now, std::chrono::steady_clock::now};
   RunStore store(options.state_directory / kStoreFile, {.sleep = {}, .now = clocks.steady});
   mark_begun(options.state_directory);
+  const std::int64_t instance = count_start(store);
   const Tokens tokens = load_or_make_tokens(options.state_directory);
 
   // Requests on their way to the operation wait in its context, with sockets of the other: it goes first.
@@ -239,10 +227,11 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
                           cell, store_queue, options.controller.value_or(cell.controller), random_hex(8),
                           clocks);
   operation.keep_place_in(options.state_directory / kBlockPoseFile);
-  if (options.retain_days) {
-    asio::co_spawn(context, delete_old_runs(store, disk.get_executor(), clocks, *options.retain_days),
-                   asio::detached);
-  }
+  asio::co_spawn(
+      context,
+      care_daily(store, cell, {.retain_days = options.retain_days, .sinks = configured_sinks(options)},
+                 disk.get_executor(), clocks),
+      asio::detached);
   Api api(http.get_executor(), {.operation = context.get_executor(), .store = disk.get_executor()}, operation,
           tokens);
   std::optional<HttpListener> listener;
@@ -284,6 +273,9 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   const NothingWaits nothing_waits(context, http, api);
   const WorkDone done({&disk, &arithmetic, &planner}, end_watch, patience,
                       [&] { return end_without_work(operation.run(), store_queue.waiting_count()); });
+  PlantSinks plant(store, disk.get_executor());
+  if (!configured_sinks(options).empty()) api.services().feed.tell_sinks(plant.states(), plant.status());
+  plant.begin(options, cell.name, instance, clocks);
   const LastRefusals last_refusals(api);
   const HttpThread http_thread(http, [&] {
     listener->launch();

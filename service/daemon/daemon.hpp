@@ -7,6 +7,7 @@
 
 #include "config/cell.hpp"
 #include "service/http/server/host_name.hpp"
+#include "service/mqtt/mqtt_options.hpp"
 
 namespace cell {
 
@@ -18,7 +19,8 @@ struct DaemonOptions {
   std::optional<int> retain_days;         // absent: runs are kept for ever
   std::filesystem::path tls_certificate;  // PEM, followed by its chain; with tls_key: TLS
   std::filesystem::path tls_key;
-  bool trusts_loopback = true;  // reading over loopback needs no token
+  std::optional<MqttOptions> mqtt;  // absent: no broker is told
+  bool trusts_loopback = true;      // reading over loopback needs no token
 };
 
 /// Longest time to keep runs: a hundred years.

@@ -105,6 +105,16 @@ void check_locating(const fs::path& file, SelfCheck& check) {
   }
 }
 
+/// A broker that will not take the cell keeps no daemon from starting: what it does not hear is kept for it.
+void check_mqtt(const DaemonOptions& options, SelfCheck& check) {
+  if (!options.mqtt || check.cell_name.empty()) return;
+  try {
+    demand_mqtt_files(*options.mqtt, check.cell_name);
+  } catch (const std::runtime_error& error) {
+    check.remarks.emplace_back(error.what());
+  }
+}
+
 /// What `read` refuses with an Error is a bad file, whatever the error's words say of the start.
 template <class Error>
 std::function<void()> bad_file_at(std::function<void()> read, SelfCheck& check) {
@@ -141,7 +151,8 @@ SelfCheck check_daemon(const fs::path& cell_file, const DaemonOptions& options) 
       bad_file_at<NoToken>([&] { read_token(state / kViewTokenFile); }, check),
       bad_file_at<std::runtime_error>([&] { read_operator_tokens(state); }, check),
       [&] { check_address(options); },
-      [&] { tls_context(options); }};
+      [&] { tls_context(options); },
+      [&] { check_mqtt(options, check); }};
   for (const auto& part : parts) {
     try {
       part();

@@ -39,6 +39,35 @@ void demand_both_of_tls(const std::string& certificate, const std::string& key) 
                                         "; give both, or neither and no TLS");
 }
 
+std::string check_mqtt_url(const std::string& text) {
+  return cell::mqtt_from_url(text)
+             ? ""
+             : "'" + text +
+                   "' is not mqtt://HOST[:PORT] or mqtts://HOST[:PORT]; a certificate, and "
+                   "no user, says who the cell is";
+}
+
+/// The texts of the options, empty where they are not given.
+struct MqttTexts {
+  std::string url, authority, certificate, key;
+};
+
+std::optional<cell::MqttOptions> mqtt_options(const MqttTexts& texts) {
+  const bool has_files = !texts.authority.empty() || !texts.certificate.empty() || !texts.key.empty();
+  auto options = cell::mqtt_from_url(texts.url);
+  if ((!options || !options->tls) && has_files)
+    throw CLI::ValidationError("--mqtt", "has to be mqtts://HOST[:PORT] where certificates are given");
+  if (!options) return std::nullopt;
+  if (options->tls && texts.authority.empty())
+    throw CLI::ValidationError("--mqtt", "needs --mqtt-ca: who has signed the broker's certificate");
+  if (texts.certificate.empty() != texts.key.empty())
+    throw CLI::ValidationError("--mqtt-cert", "and --mqtt-key belong together; give both, or neither");
+  options->authority = texts.authority;
+  options->certificate = texts.certificate;
+  options->key = texts.key;
+  return options;
+}
+
 /// Maintenance of the database, also beside a running daemon. Returns the exit code.
 int keep_state(const std::filesystem::path& database, const std::string& backup, bool verify) {
   if (verify) {
@@ -88,6 +117,7 @@ int main(int argc, char** argv) {
       "touchcald: executes the touches of one robot cell, identifies the arm and serves the JSON API");
   std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key, log_format = "text";
   std::vector<std::string> host_names;
+  MqttTexts mqtt;
   bool check = false, verify = false, loopback_needs_token = false;
   int retain_days = 0;
   const CLI::Validator filled(cell::refuse_empty, "");
@@ -119,6 +149,14 @@ int main(int argc, char** argv) {
   app.add_option("--retain-days", retain_days, "delete older runs, except the last accepted one")
       ->check(cell::refuse_integer)
       ->check(CLI::Range(1, cell::kRetainDaysMax));
+  app.add_option("--mqtt", mqtt.url,
+                 "mqtts://HOST[:PORT] or mqtt://HOST[:PORT] of a broker that is told what happens")
+      ->check(CLI::Validator(check_mqtt_url, "URL"));
+  app.add_option("--mqtt-ca", mqtt.authority, "who has signed the broker's certificate, PEM")->check(filled);
+  app.add_option("--mqtt-cert", mqtt.certificate,
+                 "the cell's certificate, PEM; its CN is the name of the cell; with --mqtt-key")
+      ->check(filled);
+  app.add_option("--mqtt-key", mqtt.key, "that certificate's key, PEM")->check(filled);
   app.add_flag("--loopback-needs-token", loopback_needs_token,
                "reading over a loopback address needs a token too, as behind a proxy on this machine");
   app.set_version_flag("--version", std::string("touchcald ") + cell::kVersion);
@@ -137,6 +175,7 @@ int main(int argc, char** argv) {
     for (const std::string& name : host_names)
       options.host_names.push_back(cell::parse_host_name(name).value());
     options.trusts_loopback = !loopback_needs_token;
+    options.mqtt = mqtt_options(mqtt);
     options.tls_certificate = tls_certificate;
     options.tls_key = tls_key;
     if (!listen.empty()) options.listen = cell::parse_endpoint(listen).value();

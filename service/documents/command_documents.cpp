@@ -19,6 +19,7 @@ struct PlaceOfCell {
 
 }  // namespace
 
+std::string document_text(const ReadyDocument& document) { return written(document); }
 std::string document_text(const PageLinkDocument& document) { return written(document); }
 std::string document_text(const ExportDocument& document) { return written(document); }
 

@@ -22,6 +22,18 @@ struct AccessDocument {
   }
 };
 
+/// GET /readyz of a cell that accepts a run.
+struct ReadyDocument {
+  std::string status = "ready";
+  std::vector<std::string> remarks;  // what keeps no run from starting
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("status", self.status);
+    fields("remarks", self.remarks);
+  }
+};
+
 /// `touchcal page --json`.
 struct PageLinkDocument {
   std::string role;
@@ -54,6 +66,7 @@ struct ExportDocument {
   }
 };
 
+std::string document_text(const ReadyDocument& document);
 std::string document_text(const PageLinkDocument& document);
 std::string document_text(const ExportDocument& document);
 

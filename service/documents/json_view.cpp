@@ -122,11 +122,25 @@ StatusDocument status_of(const Status& status) {
   document.reference_drift_mm = finite_mm(status.reference_drift_m);
   document.last_accepted_run_id = id_text(status.last_accepted_run_id);
   document.last_accepted_at = status.last_accepted_at;
-  document.data_age_ms = status.data_age_ms;
+  document.live = live_fields(status.data_age_ms, status.sinks);
   document.sequence = status.sequence;
   document.instance_id = status.instance_id;
   document.since = status.since;
   return document;
+}
+
+LiveFields live_fields(std::optional<std::int64_t> data_age_ms, const std::vector<SinkState>& sinks) {
+  LiveFields live{.data_age_ms = data_age_ms};
+  for (const SinkState& sink : sinks) {
+    if (sink.sink == kMqttSink) {
+      live.mqtt_behind = sink.behind;
+      live.mqtt_trouble = sink.trouble;
+    } else if (sink.sink == kArchiveSink) {
+      live.archive_behind = sink.behind;
+      live.archive_trouble = sink.trouble;
+    }
+  }
+  return live;
 }
 
 std::string status_document(const Status& status) { return document_text(status_of(status)); }

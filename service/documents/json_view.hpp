@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ namespace cell {
 
 /// Name of a touch's role in every document.
 StatusDocument status_of(const Status& status);
+LiveFields live_fields(std::optional<std::int64_t> data_age_ms, const std::vector<SinkState>& sinks);
 std::string status_document(const Status& status);
 
 std::string run_document(const StoredRun& run);

@@ -13,7 +13,8 @@ constexpr std::string_view kStatus = R"({
   "controller_powered","controller_mode","controller_estop","controller_cell_closed","controller_touch_tested",
   "controller_permit","probe","retract_due","by_hand","by_hand_step","by_hand_plane","by_hand_index","by_hand_total",
   "by_hand_words","by_hand_problem","by_hand_joints_deg","fault_code","fault_message","fault_robot_action","fault_next_step",
-  "warning_code","warning_message","reference_drift_mm","last_accepted_run_id","last_accepted_at","data_age_ms","sequence","instance_id","since"],
+  "warning_code","warning_message","reference_drift_mm","last_accepted_run_id","last_accepted_at","data_age_ms","mqtt_behind","mqtt_trouble","archive_behind",
+  "archive_trouble","sequence","instance_id","since"],
 "properties":{
   "state":{"enum":["STOPPED","RESETTING","IDLE","STARTING","EXECUTE","COMPLETING","COMPLETE","HOLDING","HELD",
     "UNHOLDING","SUSPENDING","SUSPENDED","UNSUSPENDING","STOPPING","ABORTING","ABORTED","CLEARING"]},
@@ -60,6 +61,11 @@ constexpr std::string_view kStatus = R"({
   "last_accepted_run_id":{"type":["string","null"]},
   "last_accepted_at":{"type":["string","null"]},
   "data_age_ms":{"type":["integer","null"],"minimum":0},
+  "mqtt_behind":{"type":["integer","null"],"minimum":0,
+    "description":"facts that the broker has not confirmed; null without one. As the next three and the age of the data, no change of the status"},
+  "mqtt_trouble":{"type":["string","null"],"description":"why the broker does not confirm them"},
+  "archive_behind":{"type":["integer","null"],"minimum":0,"description":"the same of the archive"},
+  "archive_trouble":{"type":["string","null"]},
   "sequence":{"type":"integer","minimum":0},
   "instance_id":{"type":"string"},
   "since":{"type":"string"}}})";
@@ -222,7 +228,10 @@ constexpr std::string_view kFaults = R"({
 constexpr std::string_view kHealth = R"({
 "type":"object",
 "required":["status"],
-"properties":{"status":{"enum":["ok","ready"]}}})";
+"properties":{
+  "status":{"enum":["ok","ready"]},
+  "remarks":{"type":"array","items":{"type":"string"},
+    "description":"of readiness: what keeps no run from starting, as a broker or an archive that is not reached"}}})";
 
 constexpr std::string_view kAccess = R"({
 "type":"object",

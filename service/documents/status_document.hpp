@@ -10,6 +10,24 @@
 
 namespace cell {
 
+/// The fields of a status that change without being a change of it: `sequence` does not count them.
+struct LiveFields {
+  std::optional<std::int64_t> data_age_ms;
+  std::optional<std::int64_t> mqtt_behind;  // these four: no value where the sink is not configured
+  std::optional<std::string> mqtt_trouble;  // nor where there is no trouble
+  std::optional<std::int64_t> archive_behind;
+  std::optional<std::string> archive_trouble;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("data_age_ms", self.data_age_ms);
+    fields("mqtt_behind", self.mqtt_behind);
+    fields("mqtt_trouble", self.mqtt_trouble);
+    fields("archive_behind", self.archive_behind);
+    fields("archive_trouble", self.archive_trouble);
+  }
+};
+
 /// What a supervisor polls. Every field is always there; what is not known is null.
 struct StatusDocument {
   State state = State::kStopped;
@@ -51,7 +69,7 @@ struct StatusDocument {
   std::optional<double> reference_drift_mm;
   std::optional<std::string> last_accepted_run_id;
   std::optional<std::string> last_accepted_at;
-  std::optional<std::int64_t> data_age_ms;
+  LiveFields live;
   std::uint64_t sequence = 0;
   std::string instance_id;
   std::string since;
@@ -97,7 +115,7 @@ struct StatusDocument {
     fields("reference_drift_mm", self.reference_drift_mm);
     fields("last_accepted_run_id", self.last_accepted_run_id);
     fields("last_accepted_at", self.last_accepted_at);
-    fields("data_age_ms", self.data_age_ms);
+    LiveFields::visit(self.live, fields);
     fields("sequence", self.sequence);
     fields("instance_id", self.instance_id);
     fields("since", self.since);
@@ -105,6 +123,9 @@ struct StatusDocument {
 };
 
 std::string document_text(const StatusDocument& document);
+
+/// The fields as they stand in a status, without braces.
+std::string members_text(const LiveFields& fields);
 
 /// DocumentError when the text is no status.
 StatusDocument read_status(std::string_view text);

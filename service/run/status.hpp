@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "service/run/fault_table.hpp"
 #include "service/run/hand_guide.hpp"
 #include "service/run/packml_state.hpp"
 #include "service/run/verdict.hpp"
+#include "service/store/sink_state.hpp"
 
 namespace cell {
 
@@ -55,7 +57,8 @@ struct Status {
   std::string instance_id;
   std::string since;  // when the state was entered
   std::optional<std::int64_t>
-      data_age_ms;  // since the last message of the controller; not part of `sequence`
+      data_age_ms;               // since the last message of the controller; not part of `sequence`
+  std::vector<SinkState> sinks;  // of the outbox, those that are configured; nor are these
 };
 
 }  // namespace cell

@@ -172,14 +172,17 @@ std::vector<Fact> OutboxReader::next(std::int64_t after, int limit) const {
 
 std::int64_t OutboxReader::cursor(const std::string& sink) const { return cursor_in(*database_, sink); }
 
-std::int64_t OutboxReader::newest() const { return last_fact(*database_); }
-
 std::int64_t OutboxReader::instance() const { return instance_in(*database_); }
 
-std::optional<std::string> OutboxReader::at_after(std::int64_t seq) const {
-  SQLite::Statement query(*database_, "SELECT at FROM outbox WHERE seq > ? ORDER BY seq LIMIT 1");
-  query.bind(1, seq);
-  return query.executeStep() ? std::optional(query.getColumn(0).getString()) : std::nullopt;
+Backlog OutboxReader::backlog(std::int64_t after) const {
+  // There is no gap behind the oldest: a million are not counted one by one.
+  SQLite::Statement query(*database_,
+                          "SELECT seq, at, (SELECT max(seq) FROM outbox) FROM outbox WHERE seq > ? ORDER BY "
+                          "seq LIMIT 1");
+  query.bind(1, after);
+  if (!query.executeStep()) return {};
+  return {.count = query.getColumn(2).getInt64() - query.getColumn(0).getInt64() + 1,
+          .oldest_at = query.getColumn(1).getString()};
 }
 
 std::int64_t confirmed_by_all(SQLite::Database& database, const std::vector<std::string>& sinks) {

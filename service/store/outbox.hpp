@@ -62,6 +62,14 @@ struct SinkCursor {
   bool operator==(const SinkCursor&) const = default;
 };
 
+/// The facts after a number.
+struct Backlog {
+  std::int64_t count = 0;
+  std::optional<std::string> oldest_at;
+
+  bool operator==(const Backlog&) const = default;
+};
+
 /// What is written of the outbox besides the facts, on the store's thread. A call is all or nothing and
 /// throws what the database throws.
 class Outbox {
@@ -92,12 +100,9 @@ class OutboxReader {
   [[nodiscard]] std::vector<Fact> next(std::int64_t after, int limit) const;
   /// 0 for a sink that never confirmed anything.
   [[nodiscard]] std::int64_t cursor(const std::string& sink) const;
-  /// The number of the last fact; 0 before there is one.
-  [[nodiscard]] std::int64_t newest() const;
   /// The count of the daemon's starts.
   [[nodiscard]] std::int64_t instance() const;
-  /// When the first fact after `seq` was; nothing where there is none.
-  [[nodiscard]] std::optional<std::string> at_after(std::int64_t seq) const;
+  [[nodiscard]] Backlog backlog(std::int64_t after) const;
   /// Of the same connection, for what goes with a fact.
   [[nodiscard]] const SharedDatabase& database() const { return database_; }
 

@@ -20,7 +20,9 @@ const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"offline_programs", {"base"}},
     {"store", {"base"}},
     {"run", {"base", "store"}},
+    {"plant", {"base", "store"}},
     {"documents", {"base", "store", "run"}},
+    {"mqtt", {"base", "store", "plant", "documents"}},
     {"acquisition", {"base", "store", "run", "documents"}},
     {"report", {"base", "store", "documents"}},
     {"exports", {}},
@@ -29,7 +31,9 @@ const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"http/routes",
      {"base", "store", "run", "documents", "acquisition", "report", "page", "http/server", "http/auth"}},
     {"cli", {"base", "run", "documents", "exports", "offline_programs"}},
-    {"daemon", {"base", "store", "documents", "acquisition", "http/server", "http/auth", "http/routes"}},
+    {"daemon",
+     {"base", "store", "plant", "run", "documents", "mqtt", "acquisition", "http/server", "http/auth",
+      "http/routes"}},
 };
 
 /// The folder of a file of service/: "http/routes" of service/http/routes/internal/start_body.hpp.

@@ -240,6 +240,22 @@ TEST_F(CommandLine, AHostNameHasAPortOrNone) {
   }
 }
 
+TEST_F(CommandLine, ABrokerIsAnAddressAndWhatItsCertificatesNeed) {
+  const auto refusal = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> call{"touchcald", "--cell", cell_file("demo")};
+    call.insert(call.end(), options.begin(), options.end());
+    const Finished refused = run(call);
+    EXPECT_EQ(refused.exit_code, cell::kExitUsage) << options.back();
+    return refused.err;
+  };
+  EXPECT_THAT(refusal({"--mqtt", "mqtt://user:word@broker"}), HasSubstr("is not mqtt://HOST[:PORT]"));
+  EXPECT_THAT(refusal({"--mqtt", "mqtts://broker"}), HasSubstr("needs --mqtt-ca"));
+  EXPECT_THAT(refusal({"--mqtt", "mqtt://broker", "--mqtt-ca", "ca.crt"}), HasSubstr("has to be mqtts://"));
+  EXPECT_THAT(refusal({"--mqtt-ca", "ca.crt"}), HasSubstr("has to be mqtts://"));
+  EXPECT_THAT(refusal({"--mqtt", "mqtts://broker", "--mqtt-ca", "ca.crt", "--mqtt-key", "k"}),
+              HasSubstr("belong together"));
+}
+
 TEST_F(CommandLine, NumbersAreDecimal) {
   const std::vector<std::vector<std::string>> calls{
       {"touchcald", "--retain-days", "0x10"},

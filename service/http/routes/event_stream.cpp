@@ -123,7 +123,7 @@ std::string EventStream::due() {
     if (!change) break;
     seen_ = change->sequence;
     if (!run_id_ || change->run_id == run_id_)
-      text += event_text("status", id_of(seen_), change->document(std::nullopt));
+      text += event_text("status", id_of(seen_), feed.document(*change));
   }
   if (feed.next(seen_) || !run_at_end_) return text;
   ended_ = true;

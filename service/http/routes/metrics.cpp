@@ -5,10 +5,12 @@
 #include <prometheus/registry.h>
 #include <prometheus/text_serializer.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <tuple>
 
+#include "config/utc_text.hpp"
 #include "service/base/version.hpp"
 
 namespace cell {
@@ -20,6 +22,15 @@ using prometheus::Gauge;
 
 Gauge& gauge(prometheus::Registry& registry, const char* name, const char* help) {
   return prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
+}
+
+constexpr double kUnknownFigure = std::numeric_limits<double>::quiet_NaN();
+
+/// 0 also where the clock was set back since.
+double age_s(const std::optional<std::string>& at, std::chrono::system_clock::time_point now) {
+  if (!at) return 0.0;
+  const auto time = time_from_utc(*at);
+  return time ? std::max(std::chrono::duration<double>(now - *time).count(), 0.0) : kUnknownFigure;
 }
 
 }  // namespace
@@ -47,6 +58,18 @@ struct Metrics::Families {
   Gauge& touches_done = gauge(registry, "touchcal_run_touches_done", "Touches of the run so far");
   Gauge& condition =
       gauge(registry, "touchcal_run_condition_number", "Of the latest result; NaN before there is one");
+  Family<Gauge>& outbox_rows = prometheus::BuildGauge()
+                                   .Name("touchcal_outbox_rows")
+                                   .Help("Facts that a sink has not confirmed")
+                                   .Register(registry);
+  Family<Gauge>& outbox_oldest = prometheus::BuildGauge()
+                                     .Name("touchcal_outbox_oldest_seconds")
+                                     .Help("Age of the first of them; 0 where there is none")
+                                     .Register(registry);
+  Family<Gauge>& sink_connected = prometheus::BuildGauge()
+                                      .Name("touchcal_sink_connected")
+                                      .Help("1 while the sink is connected")
+                                      .Register(registry);
   std::map<std::tuple<std::string_view, std::string_view, unsigned>, Counter*> counters;
   std::string shown_state;
   std::string counted_fault;  // code and message: the same fault is counted once
@@ -88,18 +111,23 @@ void Metrics::follow(const Status& status) {
   all.touches_counted = status.touches_done;
 }
 
-std::string Metrics::text(const Status& status) {
+std::string Metrics::text(const Status& status, std::chrono::system_clock::time_point now) {
   Families& all = *families_;
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  for (const SinkState& sink : status.sinks) {
+    const prometheus::Labels label{{"sink", sink.sink}};
+    all.outbox_rows.Add(label).Set(static_cast<double>(sink.behind));
+    all.outbox_oldest.Add(label).Set(age_s(sink.oldest_at, now));
+    all.sink_connected.Add(label).Set(sink.connected ? 1.0 : 0.0);
+  }
   const std::string state(state_name(status.state));
   if (all.shown_state != state && !all.shown_state.empty())
     all.state.Add({{"state", all.shown_state}}).Set(0.0);
   all.state.Add({{"state", state}}).Set(1.0);
   all.shown_state = state;
   all.connected.Set(status.controller.connected ? 1.0 : 0.0);
-  all.link_age.Set(status.data_age_ms ? static_cast<double>(*status.data_age_ms) / 1e3 : kUnknown);
+  all.link_age.Set(status.data_age_ms ? static_cast<double>(*status.data_age_ms) / 1e3 : kUnknownFigure);
   all.touches_done.Set(status.touches_done);
-  all.condition.Set(status.condition_number.value_or(kUnknown));
+  all.condition.Set(status.condition_number.value_or(kUnknownFigure));
   return prometheus::TextSerializer().Serialize(all.registry.Collect());
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -22,8 +23,8 @@ class Metrics {
   void count_request(std::string_view method, std::string_view route, unsigned status);
   /// Call it at each change of the status: counts touches, and faults by code.
   void follow(const Status& status);
-  /// The present metrics.
-  [[nodiscard]] std::string text(const Status& status);
+  /// The present metrics; `now` is that of the cell's clock.
+  [[nodiscard]] std::string text(const Status& status, std::chrono::system_clock::time_point now);
 
  private:
   struct Families;

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "service/acquisition/cell_operation.hpp"
+#include "service/documents/command_documents.hpp"
 #include "service/http/auth/access.hpp"
 #include "service/http/routes/openapi.hpp"
 #include "service/http/routes/route_table.hpp"
@@ -42,10 +43,22 @@ Asked ask_readiness(const Call&, CellOperation& operation) {
   return asked;
 }
 
+/// What keeps no run from starting: what a sink does not get is kept for it.
+std::vector<std::string> remarks_of(const SinkStates& sinks) {
+  std::vector<std::string> remarks;
+  for (const SinkState& sink : sinks.all()) {
+    if (sink.trouble)
+      remarks.push_back(fmt::format("{}: {} facts behind: {}", sink.sink, sink.behind, *sink.trouble));
+  }
+  return remarks;
+}
+
 HttpResponse get_readiness(const Call& call) {
   auto unmet = call.asked.unmet;
   if (auto one = unmet_by_disk(call.reads.store())) unmet.push_back(*std::move(one));
-  if (unmet.empty()) return json_response(200, R"({"status":"ready"})");
+  if (unmet.empty())
+    return json_response(200,
+                         document_text(ReadyDocument{.remarks = remarks_of(call.services.feed.sinks())}));
   Problem problem{.status = 503, .kind = ProblemKind::kNotReady, .detail = "a run cannot start"};
   for (const Unmet& one : unmet) problem.errors.emplace_back(one.code, one.detail);
   return to_response(problem);
@@ -53,7 +66,7 @@ HttpResponse get_readiness(const Call& call) {
 
 HttpResponse get_metrics(const Call& call) {
   return {.content_type = std::string(kPrometheusText),
-          .body = call.services.metrics.text(call.services.feed.status())};
+          .body = call.services.metrics.text(call.services.feed.status(), call.reads.now())};
 }
 
 HttpResponse get_openapi(const Call&) { return {.body = openapi_document()}; }

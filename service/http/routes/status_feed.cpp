@@ -21,28 +21,22 @@ namespace asio = boost::asio;
 namespace {
 
 StatusFeed::Change change_of(Status status) {
-  constexpr std::string_view kAge = "\"data_age_ms\":";
-  constexpr std::string_view kNull = "null";
   status.data_age_ms.reset();
-  const std::string document = status_document(status);
-  const std::size_t age = document.find(std::string(kAge) + std::string(kNull));
-  if (age == document.npos) throw std::logic_error("the status document has no data age");
+  status.sinks.clear();
+  const std::string document = status_document(status), live = members_text(LiveFields{});
+  const std::size_t place = document.find(live);
+  if (place == document.npos) throw std::logic_error("the status document has no data age");
   return {.sequence = status.sequence,
           .run_id = status.run_id,
           .is_active = is_active(status.state),
-          .before_age = document.substr(0, age + kAge.size()),
-          .behind_age = document.substr(age + kAge.size() + kNull.size())};
+          .before_live = document.substr(0, place),
+          .behind_live = document.substr(place + live.size())};
 }
 
 }  // namespace
 
-std::string StatusFeed::Change::document(std::optional<std::int64_t> age_ms) const {
-  std::string text;
-  text.reserve(before_age.size() + behind_age.size() + 24);
-  text += before_age;
-  text += age_ms ? std::to_string(*age_ms) : "null";
-  text += behind_age;
-  return text;
+std::string StatusFeed::Change::document(const LiveFields& live) const {
+  return before_live + members_text(live) + behind_live;
 }
 
 /// Written by the thread of the operation, read by the one that serves.
@@ -83,6 +77,12 @@ void StatusFeed::follow(std::function<void(const Status&)> listener, asio::any_i
   operation_.on_change([this](const Status& status) { publish(status); });
 }
 
+void StatusFeed::tell_sinks(std::shared_ptr<const SinkStates> sinks, std::shared_ptr<LatestText> latest) {
+  sinks_ = std::move(sinks);
+  latest_ = std::move(latest);
+  latest_->put(document());
+}
+
 void StatusFeed::publish(const Status& status) {
   if (!published_->add(std::make_shared<const Status>(status)) || !executor_) return;
   asio::post(executor_, [this, alive = std::weak_ptr(published_)] {
@@ -97,6 +97,7 @@ void StatusFeed::take_in() {
     if (status->sequence != changes_.back().sequence + 1) changes_.clear();
     keep(*status);
     listener_(*status);
+    if (latest_) latest_->put(status_document(*status));
   }
   if (!statuses.empty()) wake();
 }
@@ -125,10 +126,17 @@ Status StatusFeed::status() {
   newest();
   Status status = status_;
   status.data_age_ms = operation_.data_age_ms();
+  status.sinks = sinks_->all();
   return status;
 }
 
-std::string StatusFeed::document() { return newest().document(operation_.data_age_ms()); }
+std::string StatusFeed::document() {
+  return newest().document(live_fields(operation_.data_age_ms(), sinks_->all()));
+}
+
+std::string StatusFeed::document(const Change& change) const {
+  return change.document(live_fields({}, sinks_->all()));
+}
 
 const std::string& StatusFeed::etag() {
   newest();

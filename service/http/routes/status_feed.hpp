@@ -12,7 +12,10 @@
 #include <optional>
 #include <string>
 
+#include "service/base/latest_text.hpp"
+#include "service/documents/status_document.hpp"
 #include "service/run/status.hpp"
+#include "service/store/sink_state.hpp"
 
 namespace cell {
 
@@ -30,12 +33,11 @@ class StatusFeed {
   struct Change {
     std::uint64_t sequence = 0;
     std::optional<std::int64_t> run_id;
-    bool is_active = false;  // a run is under way
-    std::string before_age;  // the document before and after the age of its data
-    std::string behind_age;
+    bool is_active = false;   // a run is under way
+    std::string before_live;  // the document before and after its LiveFields
+    std::string behind_live;
 
-    /// `age_ms`: of the data; nothing is null.
-    [[nodiscard]] std::string document(std::optional<std::int64_t> age_ms) const;
+    [[nodiscard]] std::string document(const LiveFields& live) const;
   };
 
   /// `operation` must outlive the feed.
@@ -51,12 +53,19 @@ class StatusFeed {
   /// What the feed does at each change, on the thread of the operation: for who listens there in its place.
   void publish(const Status& status);
 
+  /// These sinks are told with the status from now on, and each new status is put into `latest` for them.
+  /// Before the threads run.
+  void tell_sinks(std::shared_ptr<const SinkStates> sinks, std::shared_ptr<LatestText> latest);
+  [[nodiscard]] const SinkStates& sinks() const { return *sinks_; }
+
   /// The status as it was published last.
   const Change& newest();
-  /// The same as a value, with the age of its data.
+  /// The same as a value, with the age of its data and the sinks.
   [[nodiscard]] Status status();
   [[nodiscard]] std::string document();
-  /// Strong entity tag of the document without its age: "INSTANCE-SEQUENCE", in quotes.
+  /// Of a change in the past, whose age of the data is not known.
+  [[nodiscard]] std::string document(const Change& change) const;
+  /// Strong entity tag of the document without its LiveFields: "INSTANCE-SEQUENCE", in quotes.
   const std::string& etag();
   [[nodiscard]] const std::string& instance_id() const { return instance_id_; }
 
@@ -77,6 +86,8 @@ class StatusFeed {
 
   CellOperation& operation_;
   std::shared_ptr<Published> published_;  // what the operation has told and this thread has not taken in
+  std::shared_ptr<const SinkStates> sinks_ = std::make_shared<SinkStates>();
+  std::shared_ptr<LatestText> latest_;  // null: nobody takes it
   std::function<void(const Status&)> listener_;
   boost::asio::any_io_executor executor_;
   Status status_;

@@ -56,6 +56,10 @@ const Shape kQuietStatus{{"state", "string"},
                          {"last_accepted_run_id", "null"},
                          {"last_accepted_at", "null"},
                          {"data_age_ms", "null"},
+                         {"mqtt_behind", "null"},
+                         {"mqtt_trouble", "null"},
+                         {"archive_behind", "null"},
+                         {"archive_trouble", "null"},
                          {"sequence", "number"},
                          {"instance_id", "string"},
                          {"since", "string"}};
@@ -100,6 +104,8 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   busy.last_accepted_run_id = 6;
   busy.last_accepted_at = "then";
   busy.data_age_ms = 12;
+  busy.sinks = {{.sink = "mqtt", .behind = 3, .trouble = "no broker"},
+                {.sink = "archive", .behind = 4, .trouble = "no archive"}};
   const json document = json::parse(status_document(busy));
   for (const auto& [name, value] : document.items()) {
     EXPECT_TRUE(kQuietStatus.contains(name)) << name;
@@ -111,6 +117,8 @@ TEST(StatusDocument, HasTheSameFieldsWhenAllIsKnown) {
   EXPECT_EQ(document.at("run_id"), "7") << "ids are text: no client counts with them";
   EXPECT_EQ(document.at("fault_code"), "no_contact");
   EXPECT_EQ(document.at("controller_estop"), false);
+  EXPECT_EQ(document.at("mqtt_behind"), 3);
+  EXPECT_EQ(document.at("archive_trouble"), "no archive");
 }
 
 TEST(StatusDocument, AFigureThatIsNoNumberIsNull) {

@@ -282,6 +282,33 @@ TEST_F(ApiTest, TheDocumentOfTheStatusIsThatOfItsSequence) {
   EXPECT_TRUE(shown().at("data_age_ms").is_null()) << "never heard is not 0";
 }
 
+TEST_F(ApiTest, ASinkThatIsBehindIsToldAndIsNoChangeOfTheStatus) {
+  const auto sinks = std::make_shared<SinkStates>();
+  const auto latest = std::make_shared<LatestText>();
+  const auto get = [&](const std::string& path) {
+    return send({.method = "GET", .path = path, .from_loopback = true});
+  };
+  api_.services().feed.tell_sinks(sinks, latest);
+  EXPECT_EQ(json::parse(latest->take_new().value()).at("state"), "STOPPED");
+  EXPECT_FALSE(latest->take_new());
+  const HttpResponse before = get("/api/v1/status");
+  EXPECT_TRUE(json::parse(before.body).at("mqtt_behind").is_null()) << "it is not configured";
+  sinks->set({.sink = "mqtt", .behind = 3, .oldest_at = "1970-01-01T00:00:00.000Z", .trouble = "no broker"});
+  const HttpResponse behind = get("/api/v1/status");
+  EXPECT_EQ(json::parse(behind.body).at("mqtt_behind"), 3);
+  EXPECT_EQ(json::parse(behind.body).at("mqtt_trouble"), "no broker");
+  EXPECT_TRUE(json::parse(behind.body).at("archive_behind").is_null());
+  EXPECT_EQ(behind.headers, before.headers) << "the tag";
+  const std::string figures = get("/metrics").body;
+  for (const char* figure :
+       {"touchcal_outbox_rows{sink=\"mqtt\"} 3", "touchcal_sink_connected{sink=\"mqtt\"} 0",
+        "touchcal_outbox_oldest_seconds{sink=\"mqtt\"} "})
+    EXPECT_THAT(figures, HasSubstr(figure));
+  ASSERT_EQ(send(post("/api/v1/cell/reset")).status, 202u);
+  get("/api/v1/status");
+  EXPECT_EQ(json::parse(latest->take_new().value()).at("state"), "RESETTING");
+}
+
 TEST_F(ApiTest, WhoReadsWithATokenIsToldAtOnceThatItDoesNotCountAnyMore) {
   HttpRequest request{.method = "GET", .path = "/api/v1/events"};
   request.authorization = "Bearer " + kTokens.operators[0].token;

@@ -333,6 +333,7 @@ TEST_F(RoutesTest, FiguresForPrometheusTellStateAndLink) {
   EXPECT_THAT(figures.body, HasSubstr("touchcal_state{state=\"STOPPED\"} 1"));
   EXPECT_THAT(figures.body, HasSubstr("touchcal_controller_connected 0"));
   EXPECT_THAT(figures.body, HasSubstr("touchcal_link_age_seconds Nan"));
+  EXPECT_THAT(figures.body, ::testing::Not(HasSubstr("touchcal_outbox_rows{"))) << "no sink is configured";
 }
 
 }  // namespace

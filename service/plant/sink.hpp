@@ -1,0 +1,34 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <span>
+#include <stdexcept>
+#include <stop_token>
+
+#include "service/store/outbox.hpp"
+
+namespace cell {
+
+/// Why a sink cannot take facts now, and what to do.
+class SinkTrouble : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Who hears of the facts: a connection to another system. It is made, used and destroyed on one thread, the
+/// only one that its library runs on; making it connects. Each call throws SinkTrouble when the other side
+/// cannot be used, and the sink is destroyed then.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// Hands over the facts, of which there is at least one, oldest first. Returns the number up to which the
+  /// other side has confirmed to keep them, which is at least that of the first; nothing is confirmed by a
+  /// call that throws. Facts that come once more are harmless. Returns early when `ending`, with what was
+  /// confirmed before the first as well.
+  virtual std::int64_t deliver(std::span<const Fact> facts, std::stop_token ending) = 0;
+  /// There is no fact: keeps the connection alive for about `time`.
+  virtual void rest(std::chrono::milliseconds time, std::stop_token ending) = 0;
+};
+
+}  // namespace cell

@@ -1,0 +1,91 @@
+#include "service/plant/sink_thread.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+namespace cell {
+
+namespace {
+
+/// Until the time is over or it is to end.
+void wait_or_end(std::stop_token ending, std::chrono::milliseconds time) {
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  std::unique_lock lock(mutex);
+  ended.wait_for(lock, std::move(ending), time, [] { return false; });
+}
+
+}  // namespace
+
+SinkThread::SinkThread(SinkParts parts) : parts_(std::move(parts)) {
+  if (!parts_.wait) parts_.wait = wait_or_end;
+  parts_.states->set({.sink = parts_.name});
+  thread_ = std::jthread([this](std::stop_token ending) { run(std::move(ending)); });
+}
+
+void SinkThread::run(std::stop_token ending) {
+  std::unique_ptr<OutboxReader> reader;
+  while (!ending.stop_requested()) {
+    try {
+      if (!reader) reader = std::make_unique<OutboxReader>(parts_.store);
+      cursor_ = std::max(cursor_, reader->cursor(parts_.name));
+      serve(*reader, ending);
+    } catch (const std::exception& error) {
+      pause(reader.get(), error.what(), ending);
+    }
+  }
+}
+
+void SinkThread::serve(const OutboxReader& reader, std::stop_token ending) {
+  tell(&reader, false, parts_.states->of(parts_.name)->trouble);
+  const std::unique_ptr<Sink> sink = parts_.connect(ending);
+  while (!ending.stop_requested()) {
+    const std::vector<Fact> facts = reader.next(cursor_, kBatch);
+    if (facts.empty()) {
+      sink->rest(kLook, ending);
+    } else if (const std::int64_t confirmed = sink->deliver(facts, ending); confirmed > cursor_) {
+      cursor_ = confirmed;
+      parts_.confirmed(confirmed);
+    }
+    pause_ = kPauseMin;
+    tell(&reader, true, std::nullopt);
+  }
+}
+
+void SinkThread::tell(const OutboxReader* reader, bool connected, const std::optional<std::string>& trouble) {
+  SinkState state = parts_.states->of(parts_.name).value();
+  state.connected = connected;
+  state.trouble = trouble;
+  try {
+    if (reader) {
+      Backlog backlog = reader->backlog(cursor_);
+      state.behind = backlog.count;
+      state.oldest_at = std::move(backlog.oldest_at);
+    }
+  } catch (const std::exception& error) {
+    state.trouble = error.what();
+  }
+  if (trouble && trouble != logged_trouble_) spdlog::warn("{}: {}", parts_.name, *trouble);
+  if (!trouble && connected && logged_trouble_) spdlog::info("{}: facts are delivered again", parts_.name);
+  if (trouble || connected) logged_trouble_ = trouble;
+  const bool is_far_behind = state.behind >= kFarBehind;
+  if (is_far_behind && !is_far_behind_)
+    spdlog::warn("{}: {} facts wait for it; they are kept, and the database grows", parts_.name,
+                 state.behind);
+  is_far_behind_ = is_far_behind;
+  parts_.states->set(std::move(state));
+}
+
+void SinkThread::pause(const OutboxReader* reader, const std::string& trouble, std::stop_token ending) {
+  // What comes meanwhile is counted.
+  for (auto left = pause_; left.count() > 0 && !ending.stop_requested(); left -= kPauseMin) {
+    tell(reader, false, trouble);
+    parts_.wait(ending, std::min(left, kPauseMin));
+  }
+  pause_ = std::min(2 * pause_, kPauseMax);
+}
+
+}  // namespace cell

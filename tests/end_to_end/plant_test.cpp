@@ -1,0 +1,130 @@
+// A daemon that tells a broker, as processes.
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "service/store/run_store.hpp"
+#include "tests/end_to_end/folder.hpp"
+#include "tests/end_to_end/process.hpp"
+#include "tests/service/mqtt/broker.hpp"
+#include "tests/service/mqtt/certificates.hpp"
+
+namespace touchcal::testing {
+namespace {
+
+using nlohmann::json;
+using ::testing::HasSubstr;
+
+class Plant : public ::testing::Test {
+ protected:
+  [[nodiscard]] std::vector<std::string> daemon_call(const cell::MqttOptions& mqtt) const {
+    return {"touchcald",
+            "--cell",
+            std::string(TOUCHCAL_SOURCE_DIR) + "/config/cells/edf/cell.json",
+            "--listen",
+            "127.0.0.1:0",
+            "--controller",
+            "127.0.0.1:9",
+            "--state",
+            state_.string(),
+            "--mqtt",
+            "mqtts://127.0.0.1:" + std::to_string(mqtt.port),
+            "--mqtt-ca",
+            mqtt.authority.string(),
+            "--mqtt-cert",
+            mqtt.certificate.string(),
+            "--mqtt-key",
+            mqtt.key.string()};
+  }
+  json status(const std::string& address) {
+    return json::parse(
+        Process({"touchcal", "status", "--json", "--daemon", "http://" + address, "--state", state_.string()},
+                folder_ / "status.err")
+            .wait()
+            .out);
+  }
+  /// Asks until the broker has confirmed all.
+  json status_when_told(const std::string& address) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+    json now = status(address);
+    while (now.at("mqtt_behind") != 0 && std::chrono::steady_clock::now() < end) now = status(address);
+    return now;
+  }
+
+  Folder folder_;
+  std::filesystem::path state_ = folder_.directory("state");
+};
+
+/// The number of starts that the `online` messages tell of, negative where they say offline.
+std::vector<int> starts_in(const std::vector<cell::Message>& messages) {
+  std::vector<int> starts;
+  for (const cell::Message& message : messages) {
+    if (!message.topic.ends_with("/online")) continue;
+    const json online = json::parse(message.text);
+    starts.push_back(online.at("instance").get<int>() * (online.at("online") == true ? 1 : -1));
+  }
+  return starts;
+}
+
+std::vector<std::string> kinds_in(const std::vector<cell::Message>& messages) {
+  std::vector<std::string> kinds;
+  for (const cell::Message& message : messages)
+    if (message.topic.starts_with("touchcal/v1/edf/event/"))
+      kinds.push_back(json::parse(message.text).at("kind"));
+  return kinds;
+}
+
+TEST_F(Plant, ADaemonTellsWhatHappenedAndThatItIsThereAgain) {
+  {
+    cell::RunStore store(state_ / "touchcal.sqlite");
+    const std::int64_t run = store.begin_run({.recipe = "edf-25", .started_at = "2026-01-01T00:00:00.000Z"});
+    store.finish_run(run, {.outcome = cell::RunOutcome::kStopped, .ended_at = "2026-01-01T00:01:00.000Z"});
+  }
+  cell::Broker broker(cell::certificates());
+  cell::Subscriber plant(broker.options_of("plant-reader"));
+  std::optional<Process> daemon(std::in_place, daemon_call(broker.options_of("edf")),
+                                folder_ / "touchcald.err");
+  std::string address = daemon->wait_for_address();
+  EXPECT_EQ(status_when_told(address).at("mqtt_behind"), 0);
+  EXPECT_TRUE(status(address).at("mqtt_trouble").is_null());
+  EXPECT_TRUE(status(address).at("archive_behind").is_null());
+  std::vector<std::string> kinds;
+  for (std::size_t count = 5; kinds.size() < 2 && count < 30; ++count)
+    kinds = kinds_in(plant.wait_for(count));
+  EXPECT_THAT(kinds, ::testing::ElementsAre("run_started", "run_ended"));
+
+  daemon->signal(SIGKILL);
+  daemon->wait();
+  daemon.emplace(daemon_call(broker.options_of("edf")), folder_ / "touchcald.err");
+  address = daemon->wait_for_address();
+  EXPECT_EQ(status_when_told(address).at("mqtt_behind"), 0);
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait().exit_code, 0);
+  std::vector<int> starts;
+  for (std::size_t count = 6; starts.size() < 4 && count < 30; ++count)
+    starts = starts_in(plant.wait_for(count));
+  EXPECT_THAT(starts, ::testing::ElementsAre(1, -1, 2, -2));
+}
+
+TEST_F(Plant, ACertificateOfAnotherCellIsToldAndTheCellGoesOn) {
+  cell::Broker broker(cell::certificates());
+  const auto call = daemon_call(broker.options_of("cell-1"));
+  auto check = call;
+  check.emplace_back("--check");
+  const Finished checked = Process(check, folder_ / "check.err").wait();
+  EXPECT_EQ(checked.exit_code, 0) << checked.err;
+  EXPECT_THAT(checked.out, HasSubstr("is of 'cell-1', and this cell is 'edf'"));
+  Process daemon(call, folder_ / "touchcald.err");
+  const std::string address = daemon.wait_for_address();
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  json now = status(address);
+  while (now.at("mqtt_trouble").is_null() && std::chrono::steady_clock::now() < end) now = status(address);
+  EXPECT_THAT(now.at("mqtt_trouble").get<std::string>(), HasSubstr("is of 'cell-1'"));
+  EXPECT_FALSE(now.at("mqtt_behind").is_null()) << "what happens is kept for the broker";
+}
+
+}  // namespace
+}  // namespace touchcal::testing

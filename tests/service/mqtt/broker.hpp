@@ -1,0 +1,64 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "service/mqtt/mqtt_options.hpp"
+
+struct mosquitto;
+
+namespace cell {
+
+/// A mosquitto of its own on a free port, with the configuration that is shipped, in a folder with its
+/// certificates (make_certificates).
+class Broker {
+ public:
+  /// `access`: in place of the shipped access list.
+  explicit Broker(std::filesystem::path folder, const std::optional<std::string>& access = {});
+  ~Broker() { kill(); }
+  Broker(const Broker&) = delete;
+  Broker& operator=(const Broker&) = delete;
+
+  /// At the same port again, without what it had.
+  void start();
+  void kill();
+
+  /// As the owner of these two files, `NAME.crt` and `NAME.key`.
+  [[nodiscard]] MqttOptions options_of(const std::string& name) const;
+
+ private:
+  std::filesystem::path folder_;
+  std::uint16_t port_ = 0;
+  std::atomic<pid_t> pid_ = -1;
+};
+
+struct Message {
+  std::string topic;
+  std::string text;
+  bool retained = false;
+};
+
+/// A subscriber to all of the plant, which looks when it is asked.
+class Subscriber {
+ public:
+  explicit Subscriber(const MqttOptions& options);
+  ~Subscriber();
+  Subscriber(const Subscriber&) = delete;
+  Subscriber& operator=(const Subscriber&) = delete;
+
+  /// All so far, when there are `count`; fewer where they do not come.
+  const std::vector<Message>& wait_for(std::size_t count);
+
+ private:
+  std::unique_ptr<mosquitto, void (*)(mosquitto*)> client_;
+  bool is_subscribed_ = false;
+  std::vector<Message> messages_;
+};
+
+}  // namespace cell

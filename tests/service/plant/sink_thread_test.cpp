@@ -1,0 +1,153 @@
+#include "service/plant/sink_thread.hpp"
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+
+#include <atomic>
+#include <future>
+#include <vector>
+
+#include "service/store/run_store.hpp"
+#include "tests/config/folder.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// The other system as a test scripts it; of the sink's thread until `done` is ready.
+struct OtherSide {
+  std::vector<std::int64_t> kept;     // the numbers it has got, in order
+  std::vector<int> broken_pauses_ms;  // between tries
+  std::vector<SinkState> states;      // at each pause
+  int refused_connects = 0;
+  int broken_deliveries = 0;
+  std::int64_t confirms_at_once = 1000;  // of one batch
+  std::size_t ends_with = 0;             // done when it has so many
+  std::promise<void> done;
+  bool is_done = false;
+
+  void look() {
+    if (kept.size() >= ends_with && !std::exchange(is_done, true)) done.set_value();
+  }
+};
+
+class ScriptedSink final : public Sink {
+ public:
+  explicit ScriptedSink(OtherSide& other) : other_(other) {
+    if (other_.refused_connects-- > 0) throw SinkTrouble("nobody is there");
+  }
+  std::int64_t deliver(std::span<const Fact> facts, std::stop_token) override {
+    if (other_.broken_deliveries-- > 0) throw SinkTrouble("it broke off");
+    std::int64_t confirmed = 0;
+    for (const Fact& fact :
+         facts.first(std::min<std::size_t>(facts.size(), static_cast<std::size_t>(other_.confirms_at_once))))
+      other_.kept.push_back(confirmed = fact.seq);
+    return confirmed;
+  }
+  void rest(std::chrono::milliseconds, std::stop_token) override { other_.look(); }
+
+ private:
+  OtherSide& other_;
+};
+
+class SinkThreadTest : public ::testing::Test {
+ protected:
+  void begin_runs(int count) {
+    for (int i = 0; i < count; ++i) store_.begin_run({.recipe = "edf-25", .started_at = "then"});
+  }
+  /// Until the other side has all that it ends with.
+  void deliver() {
+    auto done = other_.done.get_future();
+    const SinkThread thread(
+        {.name = "other",
+         .store = file_,
+         .states = states_,
+         .connect = [this](const std::stop_token&) { return std::make_unique<ScriptedSink>(other_); },
+         .confirmed = [this](std::int64_t seq) { confirmed_.push_back(seq); },
+         .wait =
+             [this](std::stop_token, std::chrono::milliseconds time) {
+               other_.broken_pauses_ms.push_back(static_cast<int>(time.count()));
+               other_.states.push_back(states_->of("other").value());
+             }});
+    done.wait();
+  }
+
+  Folder folder_;
+  std::filesystem::path file_ = folder_.path() / "touchcal.sqlite";
+  RunStore store_{file_};
+  OtherSide other_;
+  std::shared_ptr<SinkStates> states_ = std::make_shared<SinkStates>();
+  std::vector<std::int64_t> confirmed_;
+};
+
+TEST_F(SinkThreadTest, DeliversEachFactOnceInOrderFromWhereTheSinkHasConfirmed) {
+  begin_runs(5);
+  Outbox(store_.database()).confirm("other", 2);
+  Outbox(store_.database()).confirm("another", 4);
+  other_.confirms_at_once = 2;
+  other_.ends_with = 3;
+  deliver();
+  EXPECT_THAT(other_.kept, ElementsAre(3, 4, 5));
+  EXPECT_THAT(confirmed_, ElementsAre(4, 5));
+  EXPECT_THAT(other_.broken_pauses_ms, IsEmpty());
+  EXPECT_EQ(states_->of("other"), (SinkState{.sink = "other", .connected = true}));
+}
+
+TEST_F(SinkThreadTest, TriesAgainLaterAndLaterAndTellsWhyAndHowFarItIsBehind) {
+  begin_runs(3);
+  other_.refused_connects = 2;
+  other_.broken_deliveries = 1;
+  other_.ends_with = 3;
+  deliver();
+  EXPECT_THAT(other_.kept, ElementsAre(1, 2, 3));
+  // Of one second, of two and of four, in pieces of a second.
+  EXPECT_THAT(other_.broken_pauses_ms, ::testing::AllOf(::testing::SizeIs(7), ::testing::Each(1000)));
+  EXPECT_EQ(other_.states.front(),
+            (SinkState{.sink = "other", .behind = 3, .oldest_at = "then", .trouble = "nobody is there"}));
+  EXPECT_EQ(other_.states.back().trouble, "it broke off");
+  EXPECT_EQ(states_->of("other")->trouble, std::nullopt);
+}
+
+TEST_F(SinkThreadTest, DoesNotTellFactsThatWereChanged) {
+  begin_runs(3);
+  store_.database()->exec("UPDATE outbox SET at = 'other' WHERE seq = 2");
+  other_.ends_with = 1000;
+  std::promise<void> waited;
+  std::atomic<bool> is_told = false;
+  {
+    const SinkThread thread(
+        {.name = "other",
+         .store = file_,
+         .states = states_,
+         .connect = [this](const std::stop_token&) { return std::make_unique<ScriptedSink>(other_); },
+         .confirmed = [](std::int64_t) {},
+         .wait =
+             [&](std::stop_token, std::chrono::milliseconds) {
+               if (!is_told.exchange(true)) waited.set_value();
+             }});
+    waited.get_future().wait();
+  }
+  EXPECT_THAT(other_.kept, IsEmpty());
+  EXPECT_THAT(states_->of("other")->trouble.value(), HasSubstr("table outbox"));
+}
+
+TEST_F(SinkThreadTest, AFactThatComesWhileItRestsIsDelivered) {
+  other_.ends_with = 0;
+  auto done = other_.done.get_future();
+  std::promise<std::int64_t> confirmed;
+  const SinkThread thread(
+      {.name = "other",
+       .store = file_,
+       .states = states_,
+       .connect = [this](const std::stop_token&) { return std::make_unique<ScriptedSink>(other_); },
+       .confirmed = [&](std::int64_t seq) { confirmed.set_value(seq); }});
+  done.wait();
+  begin_runs(1);
+  EXPECT_EQ(confirmed.get_future().get(), 1);
+}
+
+}  // namespace
+}  // namespace cell
