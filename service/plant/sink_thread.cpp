@@ -23,6 +23,13 @@ void wait_or_end(std::stop_token ending, std::chrono::milliseconds time) {
 SinkThread::SinkThread(SinkParts parts) : parts_(std::move(parts)) {
   if (!parts_.wait) parts_.wait = wait_or_end;
   parts_.states->set({.sink = parts_.name});
+  try {
+    const OutboxReader reader(parts_.store);
+    cursor_ = reader.cursor(parts_.name);
+    tell(&reader, false, logged_trouble_);
+  } catch (const std::exception& error) {
+    tell(nullptr, false, error.what());
+  }
   thread_ = std::jthread([this](std::stop_token ending) { run(std::move(ending)); });
 }
 
@@ -69,7 +76,7 @@ void SinkThread::tell(const OutboxReader* reader, bool connected, const std::opt
     state.trouble = error.what();
   }
   if (trouble && trouble != logged_trouble_) spdlog::warn("{}: {}", parts_.name, *trouble);
-  if (!trouble && connected && logged_trouble_) spdlog::info("{}: facts are delivered again", parts_.name);
+  if (!trouble && connected && logged_trouble_) spdlog::info("{}: connected", parts_.name);
   if (trouble || connected) logged_trouble_ = trouble;
   const bool is_far_behind = state.behind >= kFarBehind;
   if (is_far_behind && !is_far_behind_)

@@ -56,7 +56,7 @@ class SinkThread {
   SinkParts parts_;
   std::int64_t cursor_ = 0;  // confirmed; the store may hear of it later
   std::chrono::milliseconds pause_{kPauseMin};
-  std::optional<std::string> logged_trouble_;
+  std::optional<std::string> logged_trouble_ = "it is not connected yet";
   bool is_far_behind_ = false;
   std::jthread thread_;  // the last member: it uses all others
 };
