@@ -152,6 +152,18 @@ struct AuditArguments {
 /// Prints the newest rows of the audit log, newest first.
 ExitCode audit_command(const ApiClient& daemon, const AuditArguments& arguments, bool json);
 
+struct ArchiveArguments {
+  std::string action;  // "prepare" or "verify"
+  std::string url;
+};
+/// Makes the tables of an archive, or compares all that is in it with its digests; kExitBadInput for damage,
+/// kExitUnreachable where the archive cannot be used.
+ExitCode archive_command(const ArchiveArguments& arguments, bool json);
+/// Prints the cells of an archive and what each told last.
+ExitCode fleet_command(const std::string& url, bool json);
+/// What is wrong with the address of an archive; empty when nothing is.
+std::string refuse_archive_url(const std::string& text);
+
 struct ReportArguments {
   std::string run_id;
   std::string format = "html";  // html, csv or pdf

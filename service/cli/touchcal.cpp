@@ -73,6 +73,7 @@ class CommandLine {
     add_report();
     add_models();
     add_audit();
+    add_archive();
     for (const auto& [name, description] : kCellCommands) {
       add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {
         return cell::give_command(daemon, command, json_);
@@ -293,6 +294,27 @@ class CommandLine {
                          "the person who takes it back; stored with it");
   }
 
+  void add_archive_url(CLI::App& command) {
+    command
+        .add_option("--archive", archive_.url, "postgresql://... of the archive; default: TOUCHCAL_ARCHIVE")
+        ->check(CLI::Validator(cell::refuse_archive_url, "URL"))
+        ->envname("TOUCHCAL_ARCHIVE")
+        ->required();
+    command.add_flag("--json", json_, "one JSON document on standard output");
+  }
+
+  void add_archive() {
+    auto* archive = app_.add_subcommand("archive", "prepare or verify the archive of many cells");
+    archive->add_option("ACTION", archive_.action, "prepare: make its tables; verify: find what was changed")
+        ->check(CLI::IsMember({"prepare", "verify"}))
+        ->required();
+    add_archive_url(*archive);
+    archive->callback([this] { action_ = [this] { return cell::archive_command(archive_, json_); }; });
+    auto* fleet = app_.add_subcommand("fleet", "list the cells of the archive and what each told last");
+    add_archive_url(*fleet);
+    fleet->callback([this] { action_ = [this] { return cell::fleet_command(archive_.url, json_); }; });
+  }
+
   void add_audit() {
     auto* audit = add_for_daemon(
         "audit", "list the audit log, newest first: who gave which command, from where, and what came of it",
@@ -337,6 +359,7 @@ class CommandLine {
   cell::ExportArguments export_;
   cell::ReportArguments report_;
   cell::AuditArguments audit_;
+  cell::ArchiveArguments archive_;
   cell::ApproveArguments approve_;
   cell::DaemonChoice daemon_;
   cell::RunArguments run_{.recipe = "edf-25"};

@@ -19,8 +19,9 @@ struct DaemonOptions {
   std::optional<int> retain_days;         // absent: runs are kept for ever
   std::filesystem::path tls_certificate;  // PEM, followed by its chain; with tls_key: TLS
   std::filesystem::path tls_key;
-  std::optional<MqttOptions> mqtt;  // absent: no broker is told
-  bool trusts_loopback = true;      // reading over loopback needs no token
+  std::optional<MqttOptions> mqtt;     // absent: no broker is told
+  std::optional<std::string> archive;  // absent: none; archive_from_url()
+  bool trusts_loopback = true;         // reading over loopback needs no token
 };
 
 /// Longest time to keep runs: a hundred years.

@@ -5,6 +5,7 @@
 #include <boost/asio/post.hpp>
 #include <utility>
 
+#include "service/archive/archive_sink.hpp"
 #include "service/daemon/daemon.hpp"
 #include "service/mqtt/mqtt_sink.hpp"
 #include "service/store/model_store.hpp"
@@ -25,6 +26,7 @@ std::optional<std::string> approved_document(const std::filesystem::path& store)
 std::vector<std::string> configured_sinks(const DaemonOptions& options) {
   std::vector<std::string> sinks;
   if (options.mqtt) sinks.emplace_back(kMqttSink);
+  if (options.archive) sinks.emplace_back(kArchiveSink);
   return sinks;
 }
 
@@ -33,6 +35,10 @@ PlantSinks::PlantSinks(const RunStore& store, boost::asio::any_io_executor disk)
 
 void PlantSinks::begin(const DaemonOptions& options, const std::string& cell, std::int64_t instance,
                        const Clocks& clocks) {
+  if (options.archive) {
+    add(std::string(kArchiveSink), [url = *options.archive, cell, store = store_.file()](
+                                       const std::stop_token&) { return connect_archive(url, cell, store); });
+  }
   if (!options.mqtt) return;
   const MqttCell told{.name = cell,
                       .instance = instance,

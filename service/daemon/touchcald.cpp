@@ -11,6 +11,7 @@
 #include "config/decimal_text.hpp"
 #include "config/option_text.hpp"
 #include "config/read_config.hpp"
+#include "service/archive/archive_options.hpp"
 #include "service/base/exit_code.hpp"
 #include "service/base/log_format.hpp"
 #include "service/base/state_directory.hpp"
@@ -45,6 +46,14 @@ std::string check_mqtt_url(const std::string& text) {
              : "'" + text +
                    "' is not mqtt://HOST[:PORT] or mqtts://HOST[:PORT]; a certificate, and "
                    "no user, says who the cell is";
+}
+
+std::string check_archive_url(const std::string& text) {
+  return cell::archive_from_url(text) ? ""
+                                      : "'" + text +
+                                            "' is not postgresql://[USER@]HOST[:PORT]/DATABASE?sslmode="
+                                            "verify-full, without a password; a host that is this machine "
+                                            "needs no sslmode";
 }
 
 /// The texts of the options, empty where they are not given.
@@ -118,6 +127,7 @@ int main(int argc, char** argv) {
   std::string cell_file, listen, controller, state, backup, tls_certificate, tls_key, log_format = "text";
   std::vector<std::string> host_names;
   MqttTexts mqtt;
+  std::string archive;
   bool check = false, verify = false, loopback_needs_token = false;
   int retain_days = 0;
   const CLI::Validator filled(cell::refuse_empty, "");
@@ -157,6 +167,8 @@ int main(int argc, char** argv) {
                  "the cell's certificate, PEM; its CN is the name of the cell; with --mqtt-key")
       ->check(filled);
   app.add_option("--mqtt-key", mqtt.key, "that certificate's key, PEM")->check(filled);
+  app.add_option("--archive", archive, "postgresql://... of a database that keeps the facts of many cells")
+      ->check(CLI::Validator(check_archive_url, "URL"));
   app.add_flag("--loopback-needs-token", loopback_needs_token,
                "reading over a loopback address needs a token too, as behind a proxy on this machine");
   app.set_version_flag("--version", std::string("touchcald ") + cell::kVersion);
@@ -176,6 +188,7 @@ int main(int argc, char** argv) {
       options.host_names.push_back(cell::parse_host_name(name).value());
     options.trusts_loopback = !loopback_needs_token;
     options.mqtt = mqtt_options(mqtt);
+    if (!archive.empty()) options.archive = archive;
     options.tls_certificate = tls_certificate;
     options.tls_key = tls_key;
     if (!listen.empty()) options.listen = cell::parse_endpoint(listen).value();

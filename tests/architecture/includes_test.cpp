@@ -22,11 +22,11 @@ const std::map<std::string, std::set<std::string>> kMayInclude{
     {"sim_controller",
      {"sim_controller", "config", "cs8_protocol", "calib_core", "boost", "nlohmann", "spdlog", "CLI", "Eigen",
       "pugixml.hpp"}},
-    {"service",
-     {"service",        "config",    "cs8_protocol", "calib_core", "boost",      "nlohmann",    "spdlog",
-      "SQLiteCpp",      "sqlite3.h", "CLI",          "openssl",    "prometheus", "systemd",     "Eigen",
-      "fcntl.h",        "malloc.h",  "spawn.h",      "unistd.h",   "sys",        "pugixml.hpp", "mosquitto.h",
-      "mqtt_protocol.h"}},
+    {"service", {"service",     "config",          "cs8_protocol", "calib_core", "boost",
+                 "nlohmann",    "spdlog",          "SQLiteCpp",    "sqlite3.h",  "CLI",
+                 "openssl",     "prometheus",      "systemd",      "Eigen",      "fcntl.h",
+                 "malloc.h",    "spawn.h",         "unistd.h",     "sys",        "pugixml.hpp",
+                 "mosquitto.h", "mqtt_protocol.h", "pqxx"}},
 };
 
 /// The layers of calib_core: which may include which. Nothing runs up, and nothing in a circle.

@@ -22,6 +22,7 @@ const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"run", {"base", "store"}},
     {"plant", {"base", "store"}},
     {"documents", {"base", "store", "run"}},
+    {"archive", {"base", "store", "plant", "documents"}},
     {"mqtt", {"base", "store", "plant", "documents"}},
     {"acquisition", {"base", "store", "run", "documents"}},
     {"report", {"base", "store", "documents"}},
@@ -30,10 +31,10 @@ const std::map<std::string, std::set<std::string>> kServiceMayInclude{
     {"http/auth", {"base", "http/server"}},
     {"http/routes",
      {"base", "store", "run", "documents", "acquisition", "report", "page", "http/server", "http/auth"}},
-    {"cli", {"base", "run", "documents", "exports", "offline_programs"}},
+    {"cli", {"base", "run", "documents", "archive", "exports", "offline_programs"}},
     {"daemon",
-     {"base", "store", "plant", "run", "documents", "mqtt", "acquisition", "http/server", "http/auth",
-      "http/routes"}},
+     {"base", "store", "plant", "run", "documents", "archive", "mqtt", "acquisition", "http/server",
+      "http/auth", "http/routes"}},
 };
 
 /// The folder of a file of service/: "http/routes" of service/http/routes/internal/start_body.hpp.

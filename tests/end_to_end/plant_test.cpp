@@ -1,4 +1,4 @@
-// A daemon that tells a broker, as processes.
+// A daemon that tells a broker and an archive, as processes.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -6,9 +6,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "service/base/exit_code.hpp"
 #include "service/store/run_store.hpp"
 #include "tests/end_to_end/folder.hpp"
 #include "tests/end_to_end/process.hpp"
+#include "tests/service/archive/postgres.hpp"
 #include "tests/service/mqtt/broker.hpp"
 #include "tests/service/mqtt/certificates.hpp"
 
@@ -20,25 +22,20 @@ using ::testing::HasSubstr;
 
 class Plant : public ::testing::Test {
  protected:
-  [[nodiscard]] std::vector<std::string> daemon_call(const cell::MqttOptions& mqtt) const {
-    return {"touchcald",
-            "--cell",
-            std::string(TOUCHCAL_SOURCE_DIR) + "/config/cells/edf/cell.json",
-            "--listen",
-            "127.0.0.1:0",
-            "--controller",
-            "127.0.0.1:9",
-            "--state",
-            state_.string(),
-            "--mqtt",
-            "mqtts://127.0.0.1:" + std::to_string(mqtt.port),
-            "--mqtt-ca",
-            mqtt.authority.string(),
-            "--mqtt-cert",
-            mqtt.certificate.string(),
-            "--mqtt-key",
-            mqtt.key.string()};
+  [[nodiscard]] std::vector<std::string> daemon_call(const std::vector<std::string>& more) const {
+    std::vector<std::string> call{
+        "touchcald",   "--cell",      std::string(TOUCHCAL_SOURCE_DIR) + "/config/cells/edf/cell.json",
+        "--listen",    "127.0.0.1:0", "--controller",
+        "127.0.0.1:9", "--state",     state_.string()};
+    call.insert(call.end(), more.begin(), more.end());
+    return call;
   }
+  [[nodiscard]] std::vector<std::string> daemon_call(const cell::MqttOptions& mqtt) const {
+    return daemon_call({"--mqtt", "mqtts://127.0.0.1:" + std::to_string(mqtt.port), "--mqtt-ca",
+                        mqtt.authority.string(), "--mqtt-cert", mqtt.certificate.string(), "--mqtt-key",
+                        mqtt.key.string()});
+  }
+  Finished run(const std::vector<std::string>& call) { return Process(call, folder_ / "call.err").wait(); }
   json status(const std::string& address) {
     return json::parse(
         Process({"touchcal", "status", "--json", "--daemon", "http://" + address, "--state", state_.string()},
@@ -47,10 +44,12 @@ class Plant : public ::testing::Test {
             .out);
   }
   /// Asks until the broker has confirmed all.
-  json status_when_told(const std::string& address) {
+  json status_when_told(const std::string& address, const std::string& sink = "mqtt") {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
     json now = status(address);
-    while (now.at("mqtt_behind") != 0 && std::chrono::steady_clock::now() < end) now = status(address);
+    while ((now.at(sink + "_behind") != 0 || !now.at(sink + "_trouble").is_null()) &&
+           std::chrono::steady_clock::now() < end)
+      now = status(address);
     return now;
   }
 
@@ -121,9 +120,44 @@ TEST_F(Plant, ACertificateOfAnotherCellIsToldAndTheCellGoesOn) {
   const std::string address = daemon.wait_for_address();
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(30);
   json now = status(address);
-  while (now.at("mqtt_trouble").is_null() && std::chrono::steady_clock::now() < end) now = status(address);
+  while (now.at("mqtt_trouble") == "it is not connected yet" && std::chrono::steady_clock::now() < end)
+    now = status(address);
   EXPECT_THAT(now.at("mqtt_trouble").get<std::string>(), HasSubstr("is of 'cell-1'"));
   EXPECT_FALSE(now.at("mqtt_behind").is_null()) << "what happens is kept for the broker";
+}
+
+TEST_F(Plant, AnArchiveIsPreparedWrittenVerifiedAndListed) {
+  const std::int64_t run_id = [&] {
+    cell::RunStore store(state_ / "touchcal.sqlite");
+    const std::int64_t run_id =
+        store.begin_run({.recipe = "edf-25", .started_at = "2026-01-01T00:00:00.000Z"});
+    store.finish_run(run_id, {.outcome = cell::RunOutcome::kStopped, .ended_at = "2026-01-01T00:01:00.000Z"});
+    return run_id;
+  }();
+  cell::Postgres postgres;
+  const std::string owner = postgres.url();
+  EXPECT_EQ(run({"touchcal", "fleet", "--archive", owner}).exit_code, cell::kExitUnreachable)
+      << "not prepared";
+  EXPECT_EQ(run({"touchcal", "archive", "prepare", "--archive", owner}).exit_code, 0);
+  postgres.sql("CREATE ROLE edf LOGIN IN ROLE touchcal_writer");
+  Process daemon(daemon_call({"--archive", postgres.url("edf")}), folder_ / "touchcald.err");
+  const std::string address = daemon.wait_for_address();
+  EXPECT_EQ(status_when_told(address, "archive").at("archive_behind"), 0);
+  const json fleet = json::parse(run({"touchcal", "fleet", "--json", "--archive", owner}).out);
+  ASSERT_EQ(fleet.at("cells").size(), 1U);
+  EXPECT_EQ(fleet.at("cells")[0].at("cell"), "edf");
+  EXPECT_EQ(fleet.at("cells")[0].at("last_run_id"), std::to_string(run_id));
+  EXPECT_EQ(fleet.at("cells")[0].at("outcome"), "stopped");
+  EXPECT_TRUE(fleet.at("cells")[0].at("model").is_null());
+  EXPECT_THAT(run({"touchcal", "fleet", "--archive", owner}).out, HasSubstr("stopped"));
+  EXPECT_THAT(run({"touchcal", "archive", "verify", "--archive", owner}).out,
+              HasSubstr("of 1 cells are in order"));
+  postgres.sql("UPDATE event SET at = 'later' WHERE seq = 1");
+  const Finished damaged = run({"touchcal", "archive", "verify", "--archive", owner});
+  EXPECT_EQ(damaged.exit_code, cell::kExitBadInput);
+  EXPECT_THAT(damaged.err, HasSubstr("cell edf, event 1: it was changed"));
+  EXPECT_EQ(run({"touchcal", "fleet", "--archive", "postgresql://db.plant/touchcal"}).exit_code,
+            cell::kExitUsage);
 }
 
 }  // namespace

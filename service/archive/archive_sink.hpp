@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "service/plant/sink.hpp"
+
+namespace cell {
+
+/// A sink that keeps the facts of a cell in a PostgreSQL, with the touches, the result, the arm and the plan
+/// of each run that ended: one transaction a batch, and what is there already stays. `store` is the cell's
+/// database, of which it reads those over a connection of its own. Connects; SinkTrouble where that fails,
+/// and for an archive that is not prepared, or by another version.
+std::unique_ptr<Sink> connect_archive(const std::string& url, const std::string& cell,
+                                      const std::filesystem::path& store);
+
+}  // namespace cell

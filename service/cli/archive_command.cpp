@@ -1,0 +1,80 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <cstdio>
+#include <stdexcept>
+#include <string>
+
+#include "service/archive/archive_options.hpp"
+#include "service/archive/archive_reader.hpp"
+#include "service/archive/archive_schema.hpp"
+#include "service/cli/commands.hpp"
+#include "service/documents/fleet_document.hpp"
+
+namespace cell {
+namespace {
+
+/// Of a hash, in a table.
+constexpr std::size_t kShownOfModel = 12;
+
+std::string fleet_text(const FleetDocument& fleet) {
+  const auto shown = [](const std::optional<std::string>& text) { return text.value_or("-"); };
+  std::string lines = fmt::format("{:<20}{:<26}{:<6}{:<12}{:<12}{:<14}{:<26}{}\n", "cell", "last heard of",
+                                  "run", "outcome", "verdict", "model", "valid until", "last fault");
+  for (const FleetCell& cell : fleet.cells) {
+    lines +=
+        fmt::format("{:<20}{:<26}{:<6}{:<12}{:<12}{:<14}{:<26}{}\n", cell.cell, cell.last_event_at,
+                    shown(cell.last_run_id), shown(cell.outcome), shown(cell.verdict),
+                    shown(cell.model).substr(0, kShownOfModel), shown(cell.valid_until),
+                    cell.last_fault_code ? *cell.last_fault_code + ", " + shown(cell.last_fault_at) : "-");
+  }
+  return lines;
+}
+
+ExitCode verify_archive(const std::string& url, bool json) {
+  const ArchiveDocument look = look_at_archive(url);
+  if (json) fmt::print("{}\n", document_text(look));
+  for (const std::string& line : look.damage) fmt::print(stderr, "{}\n", line);
+  if (!look.damage.empty()) return kExitBadInput;
+  if (!json) fmt::print("{} events of {} cells are in order\n", look.events, look.cells);
+  return kExitDone;
+}
+
+/// What the archive says, or that it is not reached.
+template <class Work>
+ExitCode with_archive(const Work& work) {
+  try {
+    return work();
+  } catch (const std::runtime_error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return kExitUnreachable;
+  }
+}
+
+}  // namespace
+
+std::string refuse_archive_url(const std::string& text) {
+  if (archive_from_url(text)) return "";
+  return "'" + text +
+         "' is not postgresql://[USER@]HOST[:PORT]/DATABASE?sslmode=verify-full, without a password; a host "
+         "that is this machine needs no sslmode";
+}
+
+ExitCode archive_command(const ArchiveArguments& arguments, bool json) {
+  return with_archive([&] {
+    if (arguments.action == "verify") return verify_archive(arguments.url, json);
+    const std::string done = prepare_archive(arguments.url);
+    fmt::print(json ? stderr : stdout, "{}\n", done);
+    if (json) fmt::print("{}\n", document_text(look_at_archive(arguments.url)));
+    return kExitDone;
+  });
+}
+
+ExitCode fleet_command(const std::string& url, bool json) {
+  return with_archive([&] {
+    const FleetDocument fleet = fleet_of(url);
+    fmt::print("{}", json ? document_text(fleet) + "\n" : fleet_text(fleet));
+    return kExitDone;
+  });
+}
+
+}  // namespace cell

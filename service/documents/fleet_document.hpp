@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace cell {
+
+/// A cell as the archive knows it. No value: the archive has none.
+struct FleetCell {
+  std::string cell;
+  std::string last_event_at;               // RFC 3339, as all times
+  std::optional<std::string> last_run_id;  // of the last run that ended, with the next four
+  std::optional<std::string> recipe;
+  std::optional<std::string> outcome;
+  std::optional<std::string> verdict;
+  std::optional<std::string> ended_at;
+  std::optional<std::string> model;        // the hash of the one that is the cell's
+  std::optional<std::string> approved_at;  // when it was approved, or came back
+  std::optional<std::string> valid_until;
+  std::optional<std::string> last_fault_code;
+  std::optional<std::string> last_fault_at;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("cell", self.cell);
+    fields("last_event_at", self.last_event_at);
+    fields("last_run_id", self.last_run_id);
+    fields("recipe", self.recipe);
+    fields("outcome", self.outcome);
+    fields("verdict", self.verdict);
+    fields("ended_at", self.ended_at);
+    fields("model", self.model);
+    fields("approved_at", self.approved_at);
+    fields("valid_until", self.valid_until);
+    fields("last_fault_code", self.last_fault_code);
+    fields("last_fault_at", self.last_fault_at);
+  }
+};
+
+/// touchcal/fleet/1: all cells of an archive, by name.
+struct FleetDocument {
+  std::string schema = "touchcal/fleet/1";
+  std::vector<FleetCell> cells;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("schema", self.schema);
+    fields("cells", self.cells);
+  }
+};
+
+/// touchcal/archive/1: what is wrong with an archive, and how much was looked at.
+struct ArchiveDocument {
+  std::string schema = "touchcal/archive/1";
+  std::int64_t events = 0;
+  std::int64_t cells = 0;
+  std::vector<std::string> damage;  // a line each
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("schema", self.schema);
+    fields("events", self.events);
+    fields("cells", self.cells);
+    fields("damage", self.damage);
+  }
+};
+
+std::string document_text(const FleetDocument& document);
+std::string document_text(const ArchiveDocument& document);
+
+}  // namespace cell

@@ -1,0 +1,96 @@
+#include "service/archive/archive_sink.hpp"
+
+#include <gmock/gmock.h>
+
+#include <future>
+
+#include "service/plant/sink_thread.hpp"
+#include "tests/service/archive/archive_bench.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+TEST_F(ArchiveTest, KeepsEachFactOnceWithWhatGoesWithIt) {
+  run_of(store_);
+  const auto sink = connect();
+  EXPECT_EQ(sink->deliver(facts(), {}), 3);
+  EXPECT_EQ(sink->deliver(facts(), {}), 3) << "once more";
+  EXPECT_EQ(value("SELECT count(*) FROM event"), "3");
+  EXPECT_EQ(value("SELECT count(*) FROM touch"), "3");
+  EXPECT_EQ(value("SELECT joints_microdeg[2] FROM touch WHERE number = 3"), "-2");
+  EXPECT_EQ(value("SELECT count(*) FROM document"), "2") << "result and arm; there was no plan";
+  EXPECT_EQ(
+      value("SELECT document.body FROM document, event WHERE kind = 'touch_set_closed' AND document.sha256 = "
+            "event.body::json ->> 'result_sha256'"),
+      R"({"a":"ä"})");
+  const ArchiveDocument look = look_at_archive(owner_);
+  EXPECT_THAT(look.damage, IsEmpty());
+  EXPECT_EQ(look.events, 3);
+  EXPECT_EQ(look.cells, 1);
+}
+
+TEST_F(ArchiveTest, ACellWritesRowsOfItsOwnAndChangesNone) {
+  run_of(store_);
+  EXPECT_THAT([&] { connect("other")->deliver(facts(), {}); },
+              ThrowsMessage<SinkTrouble>(HasSubstr("row-level security")));
+  connect()->deliver(facts(), {});
+  pqxx::connection connection(writer_);
+  for (const char* change :
+       {"UPDATE event SET at = ''", "DELETE FROM event", "DELETE FROM document", "SELECT * FROM touch"}) {
+    pqxx::work work(connection);
+    EXPECT_THROW(work.exec(change), pqxx::insufficient_privilege) << change;
+  }
+}
+
+TEST_F(ArchiveTest, AnotherHistoryOfTheSameCellIsNotMixedIn) {
+  run_of(store_);
+  connect()->deliver(facts(), {});
+  const Folder folder;
+  const auto file = folder.path() / "touchcal.sqlite";
+  RunStore restored(file);
+  run_of(restored, "edf-37");
+  const auto sink = connect_archive(writer_, "edf", file);
+  EXPECT_THAT([&] { sink->deliver(OutboxReader(file).next(0, 10), {}); },
+              ThrowsMessage<SinkTrouble>(HasSubstr("has another event 1 of cell edf")));
+  EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+}
+
+TEST_F(ArchiveTest, ADatabaseThatIsAwayGetsAllThatItHasNot) {
+  run_of(store_);
+  std::promise<void> first, all;
+  bool is_first = true, is_back = false;
+  std::string trouble;
+  const auto states = std::make_shared<SinkStates>();
+  {
+    const SinkThread thread({.name = "archive",
+                             .store = file_,
+                             .states = states,
+                             .connect = [&](const std::stop_token&) { return connect(); },
+                             .confirmed =
+                                 [&](std::int64_t seq) {
+                                   if (std::exchange(is_first, false)) first.set_value();
+                                   if (seq == 6) all.set_value();
+                                 },
+                             .wait =
+                                 [&](std::stop_token, std::chrono::milliseconds) {
+                                   if (std::exchange(is_back, true)) return;
+                                   trouble = states->of("archive")->trouble.value_or("");
+                                   sql("ALTER ROLE edf LOGIN");
+                                 }});
+    first.get_future().wait();
+    sql("ALTER ROLE edf NOLOGIN");
+    sql("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE usename = 'edf'");
+    run_of(store_);
+    all.get_future().wait();
+  }
+  EXPECT_THAT(trouble, HasSubstr("the archive: "));
+  EXPECT_EQ(value("SELECT count(*) FROM event"), "6");
+  EXPECT_THAT(look_at_archive(owner_).damage, IsEmpty());
+}
+
+}  // namespace
+}  // namespace cell
