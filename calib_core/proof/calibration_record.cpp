@@ -145,6 +145,12 @@ double CalibrationRecord::noise_variance_m2(const JointVector& per_rad, double f
   return factor * factor * (alike_variance_m2_ + per_rad.cwiseAbs2().dot(joint_variances_rad2_));
 }
 
+void CalibrationRecord::meet_at(std::vector<ContactSurface> contact_planes) {
+  if (contact_planes.size() != problem_.artefact.contact_planes.size())
+    throw std::logic_error("a surface for each face is required");
+  problem_.artefact.contact_planes = std::move(contact_planes);
+}
+
 bool CalibrationRecord::is_estimated(int arm_column) const {
   return std::ranges::binary_search(whole_.estimated, arm_column);
 }

@@ -22,7 +22,12 @@ class CalibrationRecord {
   CalibrationRecord(const IdentificationProblem& problem, const IdentificationOptions& options,
                     const IdentificationResult& result);
 
-  /// As it was fitted: artefact, priors, the noise that weighed the touches; without touches.
+  /// From here on touches are held against the artefact as warm as it is now: its surfaces there. One for
+  /// each face; std::logic_error for another number.
+  void meet_at(std::vector<ContactSurface> contact_planes);
+
+  /// As it was fitted: artefact (but for meet_at()), priors, the noise that weighed the touches; without
+  /// touches.
   [[nodiscard]] const IdentificationProblem& problem() const { return problem_; }
   [[nodiscard]] const IdentificationOptions& options() const { return options_; }
   [[nodiscard]] const KinematicModel& calibrated() const { return calibrated_; }

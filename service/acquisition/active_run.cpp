@@ -1,6 +1,7 @@
 #include "service/acquisition/active_run.hpp"
 
 #include "service/documents/result_view.hpp"
+#include "service/documents/verification_view.hpp"
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/verdict.hpp"
 
@@ -17,6 +18,21 @@ ResultDocument document_of(const ActiveRun& active, bool complete, const TipRegi
                    {.complete = complete, .warnings = {}, .conditions = active.conditions});
 }
 
+VerificationResult verified(const ActiveRun& active, bool complete, const TipRegions& regions) {
+  return verification_result(regions, active.run, {.complete = complete, .conditions = active.conditions});
+}
+
+Conclusion conclude_verification(const ActiveRun& active, std::optional<RunOutcome> outcome,
+                                 const TipRegions& regions) {
+  Conclusion concluded{.finished = active.finished};
+  if (outcome) concluded.finished = outcome == RunOutcome::kComplete && active.run.skipped_count() == 0;
+  if (active.run.touches_done() == 0) return concluded;
+  VerificationResult result = verified(active, concluded.finished, regions);
+  if (outcome && concluded.finished) concluded.verdict = result.verdict;
+  concluded.result_json = std::move(result.document);
+  return concluded;
+}
+
 }  // namespace
 
 std::vector<PlanChange> ActiveRun::changes_to_store() const {
@@ -25,6 +41,10 @@ std::vector<PlanChange> ActiveRun::changes_to_store() const {
 }
 
 std::optional<std::string> result_json(const ActiveRun& active, const TipRegions& regions) {
+  if (active.run.verification()) {
+    if (active.run.touches_done() == 0) return std::nullopt;
+    return verified(active, active.finished, regions).document;
+  }
   if (!has_result(active)) return std::nullopt;
   return document_text(document_of(active, active.finished, regions));
 }
@@ -35,6 +55,7 @@ std::optional<std::string> arm_json(const ActiveRun& active, const Cell& cell) {
 }
 
 Conclusion conclude(const ActiveRun& active, std::optional<RunOutcome> outcome, const TipRegions& regions) {
+  if (active.run.verification()) return conclude_verification(active, outcome, regions);
   Conclusion concluded{.finished = active.finished};
   if (outcome)
     concluded.finished =

@@ -56,7 +56,7 @@ void describe_run(Status& status, const ActiveRun& active, std::chrono::steady_c
     return;
   }
   const calib::IdentificationResult& latest = run.latest();
-  if (run.touches_done() > 0)
+  if (run.touches_done() > 0 && run.kind() == RunKind::kCalibration)
     status.identifiable_count = static_cast<int>(latest.identifiable.columns.size());
   if (latest.status == calib::IdentificationStatus::kConverged)
     status.condition_number = latest.iterations.back().condition_number;
@@ -96,8 +96,8 @@ CellOperation::CellOperation(const Threads& threads, const Cell& cell, StoreQueu
       touches_(location_.cell(), computation_, store_, session_, preparation_, status_, wake_, clocks_),
       manual_(location_.cell(), store_, preparation_, touches_, status_, wake_),
       way_back_(session_, status_, wake_),
-      recovery_(location_.cell(), location_.regions(), store_, plans_, session_, preparation_, planning_,
-                touches_, status_, clocks_),
+      recovery_(location_.cell(), location_.place(), location_.regions(), store_, plans_, session_,
+                preparation_, planning_, touches_, status_, clocks_),
       loop_{.executor = threads.operation, .ended = TimerWake(threads.operation)} {
   store_.tell_when_slow(status_, std::make_unique<TimerAlarm>(threads.operation));
   // What a hook throws would leave the link's loops, and with them the program.

@@ -138,7 +138,8 @@ class CellOperation {
   [[nodiscard]] std::optional<CommandRefusal> refuse_start(const StartRequest& request) const;
   [[nodiscard]] std::vector<Unmet> unmet_for(const StartRequest& request) const;
   [[nodiscard]] std::vector<Unmet> unmet_whatever_is_given() const;
-  boost::asio::awaitable<std::variant<Started, CommandRefusal>> start_alone(const StartRequest& request);
+  boost::asio::awaitable<std::variant<Started, CommandRefusal>> start_alone(StartRequest request);
+  boost::asio::awaitable<std::optional<CommandRefusal>> find_verification(StartRequest& request);
   boost::asio::awaitable<void> give_up(std::int64_t run_id);
   [[nodiscard]] NewRun new_run(const StartRequest& request) const;
   [[nodiscard]] std::optional<CommandRefusal> refusal_reason(Command command) const;

@@ -319,7 +319,7 @@ asio::awaitable<void> CellOperation::complete_run() {
   }
   const Run& run = run_->run;
   const calib::IdentificationResult& result = run.latest();
-  if (result.status != calib::IdentificationStatus::kConverged)
+  if (run.kind() == RunKind::kCalibration && result.status != calib::IdentificationStatus::kConverged)
     status_.set_fault({FaultCode::kNotIdentifiable, result.message});
   if (const auto bias = face_warning(result, cell().acceptance.lack_of_fit_p_min)) status_.warn(*bias);
   if (run.skipped_count() > 0)

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "service/acquisition/cell_operation.hpp"
+#include "service/acquisition/past_calibration.hpp"
 #include "service/acquisition/preconditions.hpp"
 #include "service/base/log_format.hpp"
 #include "service/base/utc_time.hpp"
@@ -29,7 +30,10 @@ std::optional<std::variant<Started, CommandRefusal>> CellOperation::repeated_sta
     const StartRequest& request, const Earlier& earlier) {
   const auto& same = earlier.with_key;
   if (!same) return std::nullopt;
-  if (same->recipe == request.recipe) return Started{*same, true};
+  const bool is_same = request.kind == RunKind::kCalibration
+                           ? same->recipe == request.recipe
+                           : !request.of_run || same->of_run == request.of_run;
+  if (same->kind == request.kind && is_same) return Started{*same, true};
   return CommandRefusal{
       .kind = CommandRefusal::Kind::kOtherKey,
       .detail = fmt::format("this Idempotency-Key already started run {} with the recipe '{}'", same->id,
@@ -94,15 +98,47 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start(Star
   co_return answer;
 }
 
+/// Sets what a proof or a check is held against, and the recipe and choices of its calibration. Throws what
+/// the store throws.
+asio::awaitable<std::optional<CommandRefusal>> CellOperation::find_verification(StartRequest& request) {
+  const auto refusal = [](std::string message) {
+    return CommandRefusal{.kind = CommandRefusal::Kind::kPreconditions,
+                          .detail = "the cell is not ready",
+                          .unmet = {{"no_calibration_to_hold_against", std::move(message)}}};
+  };
+  const auto read = [kind = request.kind, of_run = request.of_run, digest = recovery_.config_digest()](
+                        RunStore& store) { return find_calibration(store, kind, of_run, digest); };
+  auto found = co_await store_.run(read);
+  if (const auto* refused = std::get_if<VerificationRefusal>(&found)) co_return refusal(refused->message);
+  PastCalibration past = std::get<PastCalibration>(std::move(found));
+  if (!request.recipe.empty() && request.recipe != past.run.recipe)
+    co_return refusal(
+        fmt::format("run {} was made by the recipe '{}' and not '{}': leave the recipe out, or name "
+                    "the run of another calibration",
+                    past.run.id, past.run.recipe, request.recipe));
+  request.of_run = past.run.id;
+  request.recipe = past.run.recipe;
+  request.stiffness = stiffness_choice_named(past.run.stiffness.value_or(""));
+  VerificationOutcome made = co_await computation_.verification(
+      request.kind, std::move(past), with_block_temperature(cell(), request.block_temperature),
+      place() ? place()->cell_from_block : Eigen::Isometry3d::Identity());
+  if (const auto* refused = std::get_if<VerificationRefusal>(&made)) co_return refusal(refused->message);
+  request.verification = std::get<std::shared_ptr<const Verification>>(std::move(made));
+  co_return std::nullopt;
+}
+
 /// Throws what the store throws.
-asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alone(
-    const StartRequest& request) {
+asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alone(StartRequest request) {
   const auto read = [key = request.idempotency_key](RunStore& store) {
     return Earlier{.with_key = key ? store.run_with_key(*key) : std::nullopt, .last = run_page(store, 1, {})};
   };
   const Earlier earlier = co_await store_.run(read);
   if (auto repeated = repeated_start(request, earlier)) co_return *std::move(repeated);
   look_for_lost_place(earlier.last);
+  if (request.kind != RunKind::kCalibration) {
+    auto refusal = co_await find_verification(request);
+    if (refusal) co_return *std::move(refusal);
+  }
   if (auto refusal = refuse_start(request)) co_return *std::move(refusal);
   // An ended run that cannot be read forbids no other: nothing of it is needed any more.
   for (const DamagedRun& run : earlier.last.damaged) spdlog::error("beside a damaged run: {}", run.what);
@@ -118,12 +154,12 @@ asio::awaitable<std::variant<Started, CommandRefusal>> CellOperation::start_alon
     co_await give_up(id);
     co_return *std::move(refusal);
   }
-  run_.emplace(ActiveRun{
-      .run = Run(id, tip_regions(), recipe_of(request, cell()), begun.started_at, request.block_temperature),
-      .conditions = begun.conditions_json.value_or(""),
-      .guided = request.guided,
-      .interruption = std::nullopt,
-      .place_check = std::nullopt});
+  run_.emplace(ActiveRun{.run = Run(id, tip_regions(), recipe_of(request, cell()), begun.started_at,
+                                    request.block_temperature, request.verification),
+                         .conditions = begun.conditions_json.value_or(""),
+                         .guided = request.guided,
+                         .interruption = std::nullopt,
+                         .place_check = std::nullopt});
   set_logged_run(id);
   touches_.begin_run(*run_);
   manual_.begin_run();
@@ -143,7 +179,9 @@ NewRun CellOperation::new_run(const StartRequest& request) const {
        .temperature_source = request.block_temperature ? TemperatureSource::kRun : TemperatureSource::kFile,
        .arm_moving_min = request.arm_moving_min,
        .place = place()});
-  return {.recipe = request.recipe,
+  return {.kind = request.kind,
+          .of_run = request.of_run,
+          .recipe = request.recipe,
           .started_at = now_text(),
           .idempotency_key = request.idempotency_key,
           .operator_name = request.operator_name,

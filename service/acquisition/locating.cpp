@@ -21,11 +21,6 @@ constexpr double kErrorShare = 1.0 / 6.0;
 /// A ball that comes to rest this near to where it touched before is in the same contact: the probe bounced.
 constexpr double kSameContactMetres = 0.002;
 
-Eigen::Vector3d up_in_block(const Cell& cell) {
-  const Eigen::Matrix3d turn = calib::block_pose_of(cell.arm.model).linear();
-  return -(turn * cell.arm.model.down_in_frame_1);
-}
-
 const calib::Face& face_of(const Cell& cell, int face) {
   return cell.block.faces[static_cast<std::size_t>(face)];
 }

@@ -20,14 +20,16 @@ class GivenUp : public std::exception {
 };
 
 /// On the planner's thread. `goes_on` is called now and then.
-PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe, const std::function<bool()>& goes_on) {
+PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe, const Verification* verification,
+                         const std::function<bool()>& goes_on) {
   const auto end_unless_wanted = [&goes_on](std::string_view, double) {
     if (!goes_on()) throw GivenUp();
   };
   try {
     end_unless_wanted({}, 0.0);
     const TipRegions regions(cell);  // those of the status are for the other thread
-    auto made = make_plan(regions, recipe, end_unless_wanted);
+    auto made = verification ? make_verification_plan(regions, recipe, *verification)
+                             : make_plan(regions, recipe, end_unless_wanted);
     if (auto* refusal = std::get_if<PlanRefusal>(&made)) return std::move(*refusal);
     return std::make_shared<const Plan>(std::get<Plan>(std::move(made)));
   } catch (const std::exception& error) {
@@ -37,8 +39,17 @@ PlanOutcome make_outcome(const Cell& cell, const Recipe& recipe, const std::func
 
 }  // namespace
 
+Cell cell_with(const Cell& cell, const PlanGiven& given) {
+  Cell made = with_block_temperature(cell, given.block_temperature);
+  return given.verification ? with_stand(made, *given.verification) : made;
+}
+
 PlanCache::Key PlanCache::key_of(const std::string& recipe, const PlanGiven& given) const {
-  Key key{recipe, std::nullopt, std::nullopt, std::nullopt};
+  Key key{.recipe = recipe};
+  if (given.verification) {
+    key.kind = given.verification->kind;
+    key.of_run = given.verification->of_run;
+  }
   const Block& block = cell_.block;
   const auto& temperature = given.block_temperature;
   if (temperature &&
@@ -71,13 +82,14 @@ asio::awaitable<PlanOutcome> PlanCache::make(std::string recipe, PlanGiven given
   for (;;) {
     if (const auto made = plans_.find(key); made != plans_.end()) co_return made->second;
     // As it stands now.
-    const auto cell = std::make_shared<const Cell>(with_block_temperature(cell_, given.block_temperature));
+    const auto cell = std::make_shared<const Cell>(cell_with(cell_, given));
     Recipe chosen = cell->recipes.at(recipe);
     if (given.stiffness) chosen.identification.stiffness = *given.stiffness;
+    if (given.verification) chosen = verification_recipe(*cell, chosen, given.verification->kind);
     const int clear_count = clear_count_;
     ++under_way_count_;
-    const auto plan = [cell, chosen, cancelled, ended = ended_] {
-      return make_outcome(*cell, chosen, [&] { return !*ended && !*cancelled; });
+    const auto plan = [cell, chosen, verification = given.verification, cancelled, ended = ended_] {
+      return make_outcome(*cell, chosen, verification.get(), [&] { return !*ended && !*cancelled; });
     };
     const PlanOutcome made = co_await run_on(planner_, plan);
     --under_way_count_;

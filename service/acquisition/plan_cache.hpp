@@ -20,11 +20,15 @@ namespace cell {
 using PlanOutcome = std::variant<std::shared_ptr<const Plan>, PlanRefusal>;
 
 /// What a run was started with in place of what the cell's files say: the block's temperature, and whether
-/// the compliance is estimated.
+/// the compliance is estimated. Of a proof or a check also what it is held against.
 struct PlanGiven {
   std::optional<BlockTemperature> block_temperature;
   std::optional<bool> stiffness;
+  std::shared_ptr<const Verification> verification = nullptr;
 };
+
+/// The cell as a run has it that was started so.
+Cell cell_with(const Cell& cell, const PlanGiven& given);
 
 /// The plans of a cell, by recipe and what was given in place of the cell's. Planning takes seconds and is
 /// done on the executor that is handed in for it; everything else runs on the other one.
@@ -67,8 +71,10 @@ class PlanCache {
     std::string recipe;
     std::optional<double> celsius, std_k;  // nothing for the cell's own
     std::optional<bool> stiffness;         // nothing for the recipe's own
+    RunKind kind = RunKind::kCalibration;
+    std::int64_t of_run = 0;  // of a proof or a check
     auto operator<=>(const Key&) const = default;
-    [[nodiscard]] bool is_own() const { return !celsius && !stiffness; }
+    [[nodiscard]] bool is_own() const { return !celsius && !stiffness && of_run == 0; }
   };
   [[nodiscard]] Key key_of(const std::string& recipe, const PlanGiven& given) const;
   void keep(const Key& key, const PlanOutcome& made);

@@ -20,6 +20,18 @@ asio::awaitable<Run> RunComputation::identified(Run run) {
   co_return done;
 }
 
+asio::awaitable<VerificationOutcome> RunComputation::verification(RunKind kind, PastCalibration past,
+                                                                  Cell cell,
+                                                                  Eigen::Isometry3d cell_from_block) {
+  std::string what = fmt::format("the calibration of run {} once more", past.run.id);
+  const auto compute = [kind, past = std::move(past), cell = std::move(cell), cell_from_block] {
+    return verification_of(kind, past, cell, cell_from_block);
+  };
+  auto computed = late_.told_when_late(std::move(what), run_on(executor_, compute));
+  VerificationOutcome outcome = co_await std::move(computed);
+  co_return outcome;
+}
+
 asio::awaitable<Conclusion> RunComputation::conclude(ActiveRun active, std::optional<RunOutcome> outcome) {
   std::string what = fmt::format("the documents at the end of run {}", active.run.id());
   // The cell is a copy: that of the operation may be another one as soon as its block is found elsewhere.

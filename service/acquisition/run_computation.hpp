@@ -60,6 +60,9 @@ class RunComputation {
       run.change_plan(made.changes[i]);
     co_return std::move(made.result);
   }
+  /// verification_of() these.
+  boost::asio::awaitable<VerificationOutcome> verification(RunKind kind, PastCalibration past, Cell cell,
+                                                           Eigen::Isometry3d cell_from_block);
   /// What the run is worth, see conclude(); without an outcome only its documents.
   boost::asio::awaitable<Conclusion> conclude(ActiveRun active, std::optional<RunOutcome> outcome);
 

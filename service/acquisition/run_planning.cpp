@@ -12,7 +12,9 @@ namespace asio = boost::asio;
 using namespace std::chrono_literals;
 
 PlanGiven given_to(const Run& run) {
-  return {.block_temperature = run.block_temperature(), .stiffness = run.recipe().identification.stiffness};
+  return {.block_temperature = run.block_temperature(),
+          .stiffness = run.recipe().identification.stiffness,
+          .verification = run.verification()};
 }
 
 RunPlanning::RunPlanning(const Cell& cell, const std::optional<BlockPose>& place, StoreQueue& store,
@@ -70,7 +72,7 @@ asio::awaitable<bool> RunPlanning::adopt(ActiveRun& active, std::shared_ptr<cons
 }
 
 void RunPlanning::begin_touches(ActiveRun& active) {
-  const Cell cell = with_block_temperature(cell_, active.run.block_temperature());
+  const Cell cell = cell_with(cell_, given_to(active.run));
   preparation_.begin(planning_problem(cell, active.run.recipe()));
   active.place_check.reset();
   if (!place_) return;

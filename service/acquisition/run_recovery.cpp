@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "service/acquisition/commanded_touch.hpp"
+#include "service/acquisition/past_calibration.hpp"
 #include "service/acquisition/restored_touches.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/conditions_view.hpp"
@@ -33,10 +34,12 @@ std::string kept_words(const std::string& why) {
       why);
 }
 
-RunRecovery::RunRecovery(const Cell& cell, const TipRegions& regions, StoreQueue& store, PlanCache& plans,
-                         ControllerSession& session, TouchPreparation& preparation, RunPlanning& planning,
-                         TouchExecutor& touches, PublishedStatus& status, Clocks clocks)
+RunRecovery::RunRecovery(const Cell& cell, const std::optional<BlockPose>& place, const TipRegions& regions,
+                         StoreQueue& store, PlanCache& plans, ControllerSession& session,
+                         TouchPreparation& preparation, RunPlanning& planning, TouchExecutor& touches,
+                         PublishedStatus& status, Clocks clocks)
     : cell_(cell),
+      place_(place),
       regions_(regions),
       store_(store),
       plans_(plans),
@@ -85,8 +88,16 @@ std::optional<ActiveRun> RunRecovery::take_up(const StoredRun& stored) {
   (void)store_.store().references(stored.id);
   (void)store_.store().superseded_touches(stored.id);
   (void)store_.store().plan_json(stored.id);
-  ActiveRun active{.run = Run(stored.id, regions_, recipe_of(stored, cell_), stored.started_at,
-                              temperature_given_to(stored, cell_)),
+  const auto against = verification_again(stored);
+  if (const auto* why = std::get_if<std::string>(&against)) {
+    end_for_good(stored, *why);
+    return std::nullopt;
+  }
+  const auto& verification = std::get<std::shared_ptr<const Verification>>(against);
+  Recipe recipe = recipe_of(stored, cell_);
+  if (verification) recipe = verification_recipe(cell_, recipe, stored.kind);
+  ActiveRun active{.run = Run(stored.id, regions_, std::move(recipe), stored.started_at,
+                              temperature_given_to(stored, cell_), verification),
                    .conditions = stored.conditions_json.value_or(""),
                    .guided = is_guided(stored.conditions_json),
                    .interruption = Interruption{stored.plan_id, store_.store().plan_changes(stored.id)},
@@ -98,6 +109,19 @@ std::optional<ActiveRun> RunRecovery::take_up(const StoredRun& stored) {
   spdlog::warn("run {} was interrupted after {} of {} touches; it waits to be resumed", stored.id,
                stored.touches_done, stored.touches_total);
   return active;
+}
+
+/// Of a proof or a check, what it is held against, or why that is there no more; null of a calibration.
+std::variant<std::shared_ptr<const Verification>, std::string> RunRecovery::verification_again(
+    const StoredRun& stored) {
+  if (stored.kind == RunKind::kCalibration) return std::shared_ptr<const Verification>();
+  const auto found = find_calibration(store_.store(), stored.kind, stored.of_run, config_digest_);
+  if (const auto* refused = std::get_if<VerificationRefusal>(&found)) return refused->message;
+  auto made = verification_of(stored.kind, std::get<PastCalibration>(found),
+                              with_block_temperature(cell_, temperature_given_to(stored, cell_)),
+                              place_ ? place_->cell_from_block : Eigen::Isometry3d::Identity());
+  if (const auto* refused = std::get_if<VerificationRefusal>(&made)) return refused->message;
+  return std::get<std::shared_ptr<const Verification>>(std::move(made));
 }
 
 ActiveRun RunRecovery::keep_on_hold(const StoredRun& stored, const std::string& why) {

@@ -25,9 +25,9 @@ std::string kept_words(const std::string& why);
 class RunRecovery {
  public:
   /// All must outlive it. Takes the digest of the cell's files, at the daemon's start.
-  RunRecovery(const Cell& cell, const TipRegions& regions, StoreQueue& store, PlanCache& plans,
-              ControllerSession& session, TouchPreparation& preparation, RunPlanning& planning,
-              TouchExecutor& touches, PublishedStatus& status, Clocks clocks);
+  RunRecovery(const Cell& cell, const std::optional<BlockPose>& place, const TipRegions& regions,
+              StoreQueue& store, PlanCache& plans, ControllerSession& session, TouchPreparation& preparation,
+              RunPlanning& planning, TouchExecutor& touches, PublishedStatus& status, Clocks clocks);
 
   [[nodiscard]] const std::optional<std::string>& config_digest() const { return config_digest_; }
 
@@ -43,6 +43,7 @@ class RunRecovery {
  private:
   std::optional<StoredRun> open_run();
   std::optional<ActiveRun> take_up(const StoredRun& stored);
+  std::variant<std::shared_ptr<const Verification>, std::string> verification_again(const StoredRun& stored);
   ActiveRun keep_on_hold(const StoredRun& stored, const std::string& why);
   void end_for_good(const StoredRun& run, const std::string& why);
   void take_up_open_command(std::int64_t run_id);
@@ -50,6 +51,7 @@ class RunRecovery {
   boost::asio::awaitable<bool> resume(ActiveRun& active);
 
   const Cell& cell_;
+  const std::optional<BlockPose>& place_;  // where the block was located, if it was
   const TipRegions& regions_;
   StoreQueue& store_;
   PlanCache& plans_;

@@ -8,6 +8,7 @@
 
 #include "service/base/exit_code.hpp"
 #include "service/cli/api_client.hpp"
+#include "service/store/run_kind.hpp"
 
 /// The commands of touchcal. Each prints to standard output (with `json` one document and nothing else),
 /// reports errors on standard error and returns the exit code.
@@ -105,6 +106,16 @@ struct RunArguments {
 };
 /// Starts a run and watches it to its end.
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);
+
+struct VerifyArguments {
+  RunKind kind = RunKind::kProof;
+  std::string of_run;         // the calibration; the daemon's choice when empty
+  std::string operator_name;  // may be empty
+  TemperatureArguments block_temperature;
+  std::optional<double> arm_moving_min;
+};
+/// Starts a proof or a check and watches it to its end.
+ExitCode verify_command(const ApiClient& daemon, const VerifyArguments& arguments, bool json);
 /// Watches the run under way to its end, also if another one is started after it.
 ExitCode watch_command(const ApiClient& daemon, bool json);
 /// Locates the block: reports each touch that the person at the pendant has to make until the block is

@@ -6,6 +6,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/cli/result_text.hpp"
+#include "service/cli/verification_text.hpp"
 #include "service/documents/command_documents.hpp"
 #include "service/documents/problem_document.hpp"
 
@@ -67,7 +68,7 @@ ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool j
   fmt::print("{}", runs_text({document}));
   if (document.fault_message) fmt::print("fault: {}\n", *document.fault_message);
   if (result.status == 200) {
-    fmt::print("\n{}", result_text(read_reply(result, read_result)));
+    fmt::print("\n{}", read_reply(result, text_of_result));
   } else {
     fmt::print("{}\n", read_reply(result, read_problem).detail.value_or(""));
   }

@@ -49,6 +49,10 @@ class CommandLine {
     add_plan();
     add_compensate();
     add_run();
+    add_verification(prove_, "prove",
+                     "prove the calibrated arm: 12 touches on the block at another place, never fitted");
+    add_verification(check_, "check",
+                     "check the cell: 12 touches where the arm was calibrated, against the first ones");
     add_for_daemon("watch", "watch the run under way",
                    [this](const cell::ApiClient& daemon) { return cell::watch_command(daemon, json_); });
     add_for_daemon("status", "show the state of the cell",
@@ -236,10 +240,27 @@ class CommandLine {
                     "the person responsible for the run; stored with its result");
     cell::add_stiffness(*run, run_.stiffness)->excludes("--plan");
     cell::add_block_temperature(*run, run_.block_temperature);
-    run->add_option("--arm-moving", run_.arm_moving_min,
-                    "minutes that the arm has moved at working speed before: how warm it is")
+    add_arm_moving(*run, run_.arm_moving_min);
+  }
+
+  static void add_arm_moving(CLI::App& run, std::optional<double>& minutes) {
+    run.add_option("--arm-moving", minutes,
+                   "minutes that the arm has moved at working speed before: how warm it is")
         ->check(cell::refuse_number)
         ->check(CLI::Range(0.0, cell::kArmMovingMaxMin));
+  }
+
+  /// A run that is held against an earlier calibration.
+  void add_verification(cell::VerifyArguments& given, const std::string& name,
+                        const std::string& description) {
+    auto* run = add_for_daemon(name, description, [this, &given](const cell::ApiClient& daemon) {
+      return cell::verify_command(daemon, given, json_);
+    });
+    run->add_option("--of", given.of_run, "id of the calibration's run; by default the one that counts");
+    run->add_option("--operator", given.operator_name,
+                    "the person responsible for the run; stored with its result");
+    cell::add_block_temperature(*run, given.block_temperature);
+    add_arm_moving(*run, given.arm_moving_min);
   }
 
   /// For commands that need no daemon.
@@ -363,6 +384,7 @@ class CommandLine {
   cell::ApproveArguments approve_;
   cell::DaemonChoice daemon_;
   cell::RunArguments run_{.recipe = "edf-25"};
+  cell::VerifyArguments prove_{.kind = cell::RunKind::kProof}, check_{.kind = cell::RunKind::kCheck};
   std::string shell_;
   std::string run_id_;
   bool json_ = false;

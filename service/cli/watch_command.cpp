@@ -12,6 +12,7 @@
 #include "service/cli/daemon_reply.hpp"
 #include "service/cli/progress.hpp"
 #include "service/cli/result_text.hpp"
+#include "service/cli/verification_text.hpp"
 #include "service/documents/command_documents.hpp"
 #include "service/run/fault_table.hpp"
 
@@ -39,9 +40,11 @@ bool is_over(const StatusDocument& status) {
   return std::ranges::find(kOver, status.state) != kOver.end();
 }
 
-ExitCode exit_code_of_end(Verdict verdict, const std::optional<std::string>& fault) {
-  if (verdict == Verdict::kAccepted) return kExitDone;
+/// `complete`: it came to its end. A check that is part of the reference has no verdict then.
+ExitCode exit_code_of_end(bool complete, Verdict verdict, const std::optional<std::string>& fault) {
+  if (verdict == Verdict::kAccepted || (complete && verdict == Verdict::kNone)) return kExitDone;
   if (verdict == Verdict::kRejected) return kExitLimitsMissed;
+  if (complete && !fault) return kExitRefused;  // the touches of a proof or a check allow no verdict
   return fault == describe(FaultCode::kRecipeUnreachable).name ||
                  fault == describe(FaultCode::kNotIdentifiable).name
              ? kExitRefused
@@ -111,12 +114,13 @@ ExitCode print_end(const ApiClient& daemon, const std::string& run_id, const Ans
   if (json_only) {
     fmt::print("{}\n", result.status == 200 ? result.body : sorted_text(end.body));
   } else if (result.status == 200) {
-    fmt::print("\n{}{}", result_text(read_reply(result, read_result)), status ? more_text(*status) : "");
+    fmt::print("\n{}{}", read_reply(result, text_of_result), status ? more_text(*status) : "");
   } else {
     fmt::print("{}", status ? status_text(*status) : runs_text({*run}));
   }
-  const ExitCode code = status ? exit_code_of_end(status->verdict, status->fault_code)
-                               : exit_code_of_end(run->verdict, run->fault_code);
+  const ExitCode code =
+      status ? exit_code_of_end(status->state == State::kComplete, status->verdict, status->fault_code)
+             : exit_code_of_end(run->outcome == RunOutcome::kComplete, run->verdict, run->fault_code);
   if (code != kExitDone && code != kExitLimitsMissed) print_failure(end);
   return code;
 }
@@ -137,6 +141,13 @@ StartDocument start_request(const RunArguments& arguments) {
   return request;
 }
 
+ExitCode start_and_watch(const ApiClient& daemon, const StartDocument& request, bool json_only) {
+  const ApiReply reply = daemon.post("/api/v1/runs", document_text(request));
+  if (reply.status != 201) return print_problem(reply, json_only);
+  const std::string run_id = read_reply(reply, read_run).id;
+  return print_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
+}
+
 std::string place_text(const std::optional<PlaceDocument>& place) {
   if (!place) return {};
   const auto line = [](const char* name, const std::array<double, 3>& v, const std::array<double, 3>& s,
@@ -152,10 +163,19 @@ std::string place_text(const std::optional<PlaceDocument>& place) {
 
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json_only) {
   wait_until_ready(daemon, arguments.guided);
-  const ApiReply reply = daemon.post("/api/v1/runs", document_text(start_request(arguments)));
-  if (reply.status != 201) return print_problem(reply, json_only);
-  const std::string run_id = read_reply(reply, read_run).id;
-  return print_end(daemon, run_id, watch_to_end(daemon, run_id, json_only), json_only);
+  return start_and_watch(daemon, start_request(arguments), json_only);
+}
+
+ExitCode verify_command(const ApiClient& daemon, const VerifyArguments& arguments, bool json_only) {
+  wait_until_ready(daemon, false);
+  StartDocument request;
+  request.kind = std::string(run_kind_name(arguments.kind));
+  if (!arguments.of_run.empty()) request.of_run = arguments.of_run;
+  if (!arguments.operator_name.empty()) request.operator_name = arguments.operator_name;
+  request.arm_moving_min = arguments.arm_moving_min;
+  request.block_temperature_c = arguments.block_temperature.celsius;
+  request.std_block_temperature_k = arguments.block_temperature.std_k;
+  return start_and_watch(daemon, request, json_only);
 }
 
 ExitCode watch_command(const ApiClient& daemon, bool json_only) {

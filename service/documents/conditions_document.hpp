@@ -93,6 +93,9 @@ struct ConditionsDocument {
 
 std::string document_text(const ConditionsDocument& document);
 
+/// Of stored conditions, also those of an older daemon. DocumentError when the text is no such document.
+ConditionsDocument read_conditions(std::string_view text);
+
 /// `touching` of stored conditions; nothing when they do not say or are no document.
 std::optional<std::string> touching_of(std::string_view conditions);
 

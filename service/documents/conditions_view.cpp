@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "calib_core/geometry/units.hpp"
 #include "cs8_protocol/messages.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/base/version.hpp"
@@ -53,6 +54,18 @@ bool names_place(const std::optional<std::string>& conditions) {
   const nlohmann::json document = nlohmann::json::parse(*conditions, nullptr, false);
   const auto place = document.is_object() ? document.find("place") : document.end();
   return place != document.end() && !place->is_null();
+}
+
+Eigen::Isometry3d block_stood_at(const std::optional<std::string>& conditions) {
+  if (!names_place(conditions)) return Eigen::Isometry3d::Identity();
+  const auto place = read_conditions(*conditions).place.value().value();
+  const Eigen::Vector3d shift_mm = Eigen::Vector3d::Map(place.shift_mm.data());
+  const Eigen::Vector3d turn_deg = Eigen::Vector3d::Map(place.turn_deg.data());
+  const double angle_deg = turn_deg.norm();
+  const Eigen::Vector3d axis =
+      angle_deg > 0.0 ? Eigen::Vector3d(turn_deg / angle_deg) : Eigen::Vector3d::UnitX();
+  return Eigen::Translation3d(shift_mm * calib::kMetresPerMillimetre) *
+         Eigen::AngleAxisd(angle_deg * calib::kRadiansPerDegree, axis);
 }
 
 bool stood_at(const std::optional<std::string>& conditions, const std::optional<BlockPose>& place) {

@@ -19,6 +19,9 @@ std::string conditions_document(const Cell& cell, const RunConditions& condition
 bool is_guided(const std::optional<std::string>& conditions);
 /// True if these stored conditions name a place where the block was found; false for what is no json.
 bool names_place(const std::optional<std::string>& conditions);
+/// Where the block stood by these stored conditions: R_-1 then, in R_-1 of the cell's file. That of the file
+/// where they name no place.
+Eigen::Isometry3d block_stood_at(const std::optional<std::string>& conditions);
 /// True if the block stood at `place` by these stored conditions: the same location, or that of the cell's
 /// file. Conditions of an older daemon, which name none, are those of the file.
 bool stood_at(const std::optional<std::string>& conditions, const std::optional<BlockPose>& place);

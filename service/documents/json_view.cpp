@@ -29,6 +29,8 @@ std::optional<int> count_once_planned(int touches_total) {
 
 RunSummary summary_of(const StoredRun& run) {
   return {.id = std::to_string(run.id),
+          .kind = std::string(run_kind_name(run.kind)),
+          .of_run = id_text(run.of_run),
           .recipe = run.recipe,
           .touch_mode = std::string(
               touch_mode_name(is_guided(run.conditions_json) ? TouchMode::kGuided : TouchMode::kAutomatic)),

@@ -8,6 +8,7 @@
 
 #include "calib_core/geometry/units.hpp"
 #include "calib_core/numerics/halton.hpp"
+#include "calib_core/proof/detection_planning.hpp"
 #include "config/identification_problem.hpp"
 #include "service/base/digest.hpp"
 #include "service/documents/internal/plan_view.hpp"
@@ -100,6 +101,22 @@ PlanRefusal refuse(const Cell& cell, const Recipe& recipe, const calib::Planning
   return refuse_face(cell, failure);
 }
 
+PlanRefusal refuse_proof_of_nothing(const Cell& cell) {
+  return {.kind = PlanRefusal::Kind::kAccuracy,
+          .message = fmt::format(
+              "a proof is planned for what the model of the arm '{}' may lack, and nothing is known of that: "
+              "give its compliance and its gears deviations (\"gravity\", \"gears\" of the arm's file)",
+              cell.arm.name),
+          .efforts = {}};
+}
+
+/// Sets document and id of a plan.
+void name_plan(PlanDocument document, Plan& plan) {
+  plan.id = sha256_hex(document_text(document)).substr(0, kIdDigits);
+  document.plan_id = plan.id;
+  plan.document = document_text(document);
+}
+
 /// Refuses fewer touches than parameters; with a prior any number will do.
 std::optional<PlanRefusal> refuse_too_few(const Recipe& recipe, const calib::PlanningProblem& problem) {
   const int needed = problem.knowledge.attainable.value().count;
@@ -148,10 +165,25 @@ std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recip
         .message = fmt::format("the planned touches are not sufficient: {}", planned.result.message),
         .efforts = plan.touches.efforts};
   }
-  PlanDocument document = plan_of(regions, recipe, plan.touches, planned);
-  plan.id = sha256_hex(document_text(document)).substr(0, kIdDigits);
-  document.plan_id = plan.id;
-  plan.document = document_text(document);
+  name_plan(plan_of(regions, recipe, plan.touches, planned), plan);
+  return plan;
+}
+
+std::variant<Plan, PlanRefusal> make_verification_plan(const TipRegions& regions, const Recipe& recipe,
+                                                       const Verification& verification) {
+  const Cell& cell = regions.cell();
+  calib::PlanningProblem problem = planning_problem(cell, recipe);
+  problem.candidate_count = calib::kDetectionCandidates;
+  const bool is_proof = verification.kind == RunKind::kProof;
+  std::vector<calib::ProofAlternative> alternatives;
+  if (is_proof) alternatives = calib::proof_alternatives(verification.record, regions.tip().workspace_box);
+  if (is_proof && alternatives.empty()) return refuse_proof_of_nothing(cell);
+  auto outcome = is_proof ? calib::plan_proof(problem, verification.record, verification.place, alternatives)
+                          : calib::plan_check(problem, verification.record);
+  if (const auto* failure = std::get_if<calib::PlanningFailure>(&outcome))
+    return refuse(cell, recipe, *failure);
+  Plan plan{.recipe = recipe.name, .touches = std::get<calib::TouchPlan>(std::move(outcome))};
+  name_plan(plan_of_verification(cell, recipe, plan.touches, verification.kind), plan);
   return plan;
 }
 

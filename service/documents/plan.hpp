@@ -8,6 +8,7 @@
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "service/run/tip_prediction.hpp"
+#include "service/run/verification.hpp"
 
 namespace cell {
 
@@ -38,6 +39,11 @@ struct PlanRefusal {
 /// Plans the touches of a recipe and predicts their result. Takes seconds; deterministic.
 std::variant<Plan, PlanRefusal> make_plan(const TipRegions& regions, const Recipe& recipe,
                                           const calib::PlanningProgress& progress = {});
+
+/// Plans the touches of a proof or a check; `regions` and `recipe` as of a run: where the block stands now,
+/// and verification_recipe(). Deterministic.
+std::variant<Plan, PlanRefusal> make_verification_plan(const TipRegions& regions, const Recipe& recipe,
+                                                       const Verification& verification);
 
 /// One line for each face: the postures tried and the most frequent obstructions.
 std::vector<std::string> effort_lines(const std::vector<calib::FaceEffort>& efforts);

@@ -31,12 +31,14 @@ struct PlanDocument {
     int plane = 0;  // from 1
     int fit = 0;
     int held_out = 0;
+    std::optional<int> proof;  // of a proof or a check
 
     template <class Self, class Fields>
     static void visit(Self& self, Fields& fields) {
       fields("plane", self.plane);
       fields("fit", self.fit);
       fields("held_out", self.held_out);
+      fields.if_set("proof", self.proof);
     }
   };
   /// A cause of the predicted tip error in the workspace box.

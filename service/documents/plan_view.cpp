@@ -84,6 +84,7 @@ std::vector<PlanDocument::TouchesOfPlane> planes_of(const calib::TouchPlan& plan
     planes.push_back({.plane = face + 1,
                       .fit = count(calib::TouchRole::kFit),
                       .held_out = count(calib::TouchRole::kHeldOut)});
+    if (const int proof = count(calib::TouchRole::kProof); proof > 0) planes.back().proof = proof;
   }
   return planes;
 }
@@ -97,6 +98,22 @@ std::vector<PlanDocument::Effort> efforts_of(const std::vector<calib::FaceEffort
       told.obstructions.push_back({.reason = obstruction.reason, .count = obstruction.count});
   }
   return list;
+}
+
+/// What every plan has: where the arm goes.
+PlanDocument steps_of(const Cell& cell, const Recipe& recipe, const calib::TouchPlan& plan) {
+  PlanDocument document{.cell = cell.name,
+                        .arm = cell.arm.name,
+                        .recipe = recipe.name,
+                        .touch_count = static_cast<int>(plan.touches.size()),
+                        .planes = planes_of(plan, recipe),
+                        .duration_s = finite(plan.duration_s()),
+                        .speeds = speeds_of(cell.speeds),
+                        .park_joints_deg = joints_of(cell, cell.park_joints),
+                        .park_via_joints_deg = way_of(cell, plan.park_via),
+                        .park_s = finite(plan.park_s)};
+  for (const calib::PlannedTouch& touch : plan.touches) document.touches.push_back(touch_of(cell, touch));
+  return document;
 }
 
 std::string accuracy_words(const std::vector<ErrorShare>& shares) {
@@ -154,26 +171,25 @@ PlanDocument plan_of(const TipRegions& regions, const Recipe& recipe, const cali
   const calib::IdentificationResult& result = planned.result;
   const TipPrediction tip = predict_tip(regions, planned.problem, result);
   const calib::Iteration& last = result.iterations.back();
-  PlanDocument document{.cell = cell.name,
-                        .arm = cell.arm.name,
-                        .recipe = recipe.name,
-                        .goal = goal_of(recipe),
-                        .touch_count = static_cast<int>(plan.touches.size()),
-                        .planes = planes_of(plan, recipe),
-                        .identifiable_count = static_cast<int>(result.identifiable.columns.size()),
-                        .condition_number = finite(last.condition_number),
-                        .scaled_condition_number = finite(last.scaled_condition_number),
-                        .tip_uncertainty = tip_of(cell, tip),
-                        .parameters = predicted_parameters(recipe, planned),
-                        .artefact_parameters = predicted_artefact(planned),
-                        .duration_s = finite(plan.duration_s()),
-                        .limits = limits_of(plan, tip),
-                        .warnings = result.warnings,
-                        .speeds = speeds_of(cell.speeds),
-                        .park_joints_deg = joints_of(cell, cell.park_joints),
-                        .park_via_joints_deg = way_of(cell, plan.park_via),
-                        .park_s = finite(plan.park_s)};
-  for (const calib::PlannedTouch& touch : plan.touches) document.touches.push_back(touch_of(cell, touch));
+  PlanDocument document = steps_of(cell, recipe, plan);
+  document.goal = goal_of(recipe);
+  document.identifiable_count = static_cast<int>(result.identifiable.columns.size());
+  document.condition_number = finite(last.condition_number);
+  document.scaled_condition_number = finite(last.scaled_condition_number);
+  document.tip_uncertainty = tip_of(cell, tip);
+  document.parameters = predicted_parameters(recipe, planned);
+  document.artefact_parameters = predicted_artefact(planned);
+  document.limits = limits_of(plan, tip);
+  document.warnings = result.warnings;
+  return document;
+}
+
+PlanDocument plan_of_verification(const Cell& cell, const Recipe& recipe, const calib::TouchPlan& plan,
+                                  RunKind kind) {
+  PlanDocument document = steps_of(cell, recipe, plan);
+  document.goal.criterion = std::string(run_kind_name(kind));
+  document.limits = {
+      .words = effort_lines(plan.efforts), .accuracy = {}, .postures = efforts_of(plan.efforts)};
   return document;
 }
 

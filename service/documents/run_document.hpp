@@ -13,6 +13,8 @@ namespace cell {
 /// A run in the list of runs.
 struct RunSummary {
   std::string id;
+  std::string kind;                   // calibration, proof, check
+  std::optional<std::string> of_run;  // the calibration that is proved or checked
   std::string recipe;
   std::optional<std::string> touch_mode;  // automatic, guided
   RunOutcome outcome = RunOutcome::kRunning;
@@ -27,6 +29,8 @@ struct RunSummary {
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     fields("id", self.id);
+    fields("kind", self.kind);
+    fields("of_run", self.of_run);
     fields("recipe", self.recipe);
     fields("touching", self.touch_mode);
     fields("outcome", self.outcome);
@@ -81,6 +85,8 @@ struct RunsDocument {
 struct StartDocument {
   std::optional<double> arm_moving_min;
   std::optional<double> block_temperature_c;
+  std::optional<std::string> kind;  // calibration if absent
+  std::optional<std::string> of_run;
   std::optional<std::string> operator_name;
   std::optional<std::string> plan_id;
   std::optional<std::string> recipe;
@@ -92,6 +98,8 @@ struct StartDocument {
   static void visit(Self& self, Fields& fields) {
     fields.if_set("arm_moving_min", self.arm_moving_min);
     fields.if_set("block_temperature_c", self.block_temperature_c);
+    fields.if_set("kind", self.kind);
+    fields.if_set("of_run", self.of_run);
     fields.if_set("operator", self.operator_name);
     fields.if_set("plan_id", self.plan_id);
     fields.if_set("recipe", self.recipe);

@@ -72,10 +72,12 @@ constexpr std::string_view kStatus = R"({
 
 constexpr std::string_view kRun = R"({
 "type":"object",
-"required":["id","recipe","touching","outcome","verdict","touches_done","touches_total","started_at","ended_at","fault_code",
+"required":["id","kind","of_run","recipe","touching","outcome","verdict","touches_done","touches_total","started_at","ended_at","fault_code",
   "fault_message"],
 "properties":{
   "id":{"type":"string"},
+  "kind":{"enum":["calibration","proof","check"]},
+  "of_run":{"type":["string","null"],"description":"the calibration that is proved or checked"},
   "recipe":{"type":"string"},
   "arm_moving_min":{"type":"number","minimum":0,"maximum":1440,
     "description":"minutes that the arm has moved at working speed before the run: kept with the result"},
@@ -103,12 +105,13 @@ constexpr std::string_view kRuns = R"({
 
 constexpr std::string_view kStartRequest = R"({
 "type":"object",
-"description":"A recipe, or a plan of one that POST plan has made.",
+"description":"A recipe, or a plan of one that POST plan has made; or a proof or a check of an earlier calibration, whose recipe and choices it has.",
 "additionalProperties":false,
 "properties":{
   "recipe":{"type":"string"},
   "plan_id":{"type":"string"},
-  "kind":{"enum":["calibration"]},
+  "kind":{"enum":["calibration","proof","check"],"description":"calibration if absent"},
+  "of_run":{"type":"string","description":"of a proof or a check: the calibration. If absent the newest accepted one, for a check the approved one where there is one"},
   "operator":{"type":"string","minLength":1,"maxLength":100},
   "block_temperature_c":{"type":"number","minimum":-50,"maximum":100,
     "description":"outranks that of the block's file; with its deviation, and with a recipe only"},
@@ -119,7 +122,7 @@ constexpr std::string_view kStartRequest = R"({
   "touching":{"enum":["automatic","guided"],"description":"guided: a person makes the touches; automatic if absent"}},
 "dependentRequired":{"block_temperature_c":["std_block_temperature_k"],
   "std_block_temperature_k":["block_temperature_c"],"block_temperature_at":["block_temperature_c"]},
-"oneOf":[{"required":["recipe"]},{"required":["plan_id"]}]})";
+"anyOf":[{"required":["recipe"]},{"required":["plan_id"]},{"required":["kind"]}]})";
 
 constexpr std::string_view kPlanRequest = R"({
 "type":"object",

@@ -51,6 +51,11 @@ double place_error_m(const Eigen::Matrix<double, 6, 6>& covariance, const std::v
   return kSigmas * std::sqrt(most_m2);
 }
 
+Eigen::Vector3d up_in_block(const Cell& cell) {
+  const Eigen::Matrix3d turn = calib::block_pose_of(cell.arm.model).linear();
+  return -(turn * cell.arm.model.down_in_frame_1);
+}
+
 Cell cell_with_block_pose(const Cell& cell, const BlockPose& place) {
   Cell there = with_block_moved(cell, place.cell_from_block);
   there.place_error_m = place_error_m(place.covariance, cell.block.faces);

@@ -29,12 +29,13 @@ std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& referenc
 }
 
 Run::Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
-         std::optional<BlockTemperature> block_temperature)
+         std::optional<BlockTemperature> block_temperature, std::shared_ptr<const Verification> verification)
     : id_(id),
       regions_(regions),
       recipe_(std::move(recipe)),
       started_at_(std::move(started_at)),
       block_temperature_(block_temperature),
+      verification_(std::move(verification)),
       problem_(identification_problem(with_block_temperature(regions.cell(), block_temperature_), recipe_)) {}
 
 void Run::restore(const std::vector<StoredTouch>& touches, int touches_total) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "calib_core/planning/touch_planning.hpp"
 #include "config/cell.hpp"
 #include "service/run/tip_prediction.hpp"
+#include "service/run/verification.hpp"
 #include "service/store/run_store.hpp"
 
 namespace cell {
@@ -24,13 +26,17 @@ std::vector<calib::Touch> to_touches(const std::vector<ReferenceTouch>& referenc
 class Run {
  public:
   /// `regions`, those of the cell, must outlive the run. `block_temperature`: given for this run, in place of
-  /// that of the cell.
+  /// that of the cell. `verification`: what a proof or a check is held against, null for a calibration.
   Run(std::int64_t id, const TipRegions& regions, Recipe recipe, std::string started_at,
-      std::optional<BlockTemperature> block_temperature = {});
+      std::optional<BlockTemperature> block_temperature = {},
+      std::shared_ptr<const Verification> verification = nullptr);
 
   [[nodiscard]] std::int64_t id() const { return id_; }
   [[nodiscard]] const Recipe& recipe() const { return recipe_; }
   [[nodiscard]] const std::string& started_at() const { return started_at_; }
+  /// Null for a calibration.
+  [[nodiscard]] const std::shared_ptr<const Verification>& verification() const { return verification_; }
+  [[nodiscard]] RunKind kind() const { return verification_ ? verification_->kind : RunKind::kCalibration; }
   [[nodiscard]] const std::optional<BlockTemperature>& block_temperature() const {
     return block_temperature_;
   }
@@ -79,9 +85,9 @@ class Run {
   void note_references(std::vector<ReferenceTouch> references);
   /// Computes latest() from all touches; false if it is up to date. Separate from add(), since it is slow.
   bool identify();
-  /// Whether latest() is not that of all touches.
+  /// Whether latest() is not that of all touches. Those of a proof or a check are never fitted.
   [[nodiscard]] bool identification_is_due() const {
-    return !touches_.empty() && identified_revision_ != revision_;
+    return !verification_ && !touches_.empty() && identified_revision_ != revision_;
   }
   /// A copy to call identify() for, on another thread say. From here on latest() counts as that of all
   /// touches, also where the copy is never identified.
@@ -115,6 +121,7 @@ class Run {
   Recipe recipe_;
   std::string started_at_;
   std::optional<BlockTemperature> block_temperature_;
+  std::shared_ptr<const Verification> verification_;
   calib::TouchPlan plan_;
   std::vector<bool> deferred_;  // one a planned touch
   int skipped_count_ = 0;       // no longer in the plan

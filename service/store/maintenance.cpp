@@ -313,13 +313,16 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
   constexpr std::array kOfRuns{"touches",      "superseded_touches", "reference_touches", "open_commands",
                                "plan_changes", "resumptions",        "refused_results",   "arms"};
   row::WriteTransaction transaction(*database);
-  SQLite::Statement choose(*database,
-                           "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
-                           "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ?) AND id "
-                           "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND id NOT IN "
-                           "(SELECT run_id FROM models) AND id NOT IN (SELECT run_id FROM outbox WHERE seq > "
-                           "? AND run_id IS NOT NULL) AND ? <= (SELECT "
-                           "count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?)");
+  SQLite::Statement choose(
+      *database,
+      "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
+      "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ? AND "
+      "kind = 'calibration') AND id "
+      "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND id NOT IN "
+      "(SELECT run_id FROM models) AND (of_run IS NULL OR of_run NOT IN "
+      "(SELECT run_id FROM models)) AND id NOT IN (SELECT run_id FROM outbox WHERE seq > "
+      "? AND run_id IS NOT NULL) AND ? <= (SELECT "
+      "count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?)");
   choose.bind(1, oldest);
   choose.bind(2, std::string(run_outcome_name(RunOutcome::kRunning)));
   choose.bind(3, std::string(verdict_name(Verdict::kAccepted)));

@@ -81,6 +81,16 @@ struct TouchTables {
   CheckedRows superseded;
 };
 
+CheckedRows run_rows_of(std::string columns) {
+  return {.name = "runs",
+          .table = "runs",
+          .columns = std::move(columns),
+          .checksum = "checksum",
+          .run = "id",
+          .number = "NULL",
+          .applies = "1"};
+}
+
 TouchTables touch_tables_of(const std::string& columns) {
   return {touch_rows_of(columns), superseded_rows_of(columns)};
 }
@@ -152,20 +162,15 @@ const CheckedRows& plan_rows() {
   return rows;
 }
 
-const CheckedRows& run_rows() {
-  static const CheckedRows rows{
-      .name = "runs",
-      .table = "runs",
-      .columns =
-          "id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, "
-          "fault_message, idempotency_key, plan_id, operator_name, block_temperature_c, "
-          "config_digest, trace_json, std_block_temperature_k, block_temperature_at, "
-          "block_temperature_source, stiffness, rows_kept",
-      .checksum = "checksum",
-      .run = "id",
-      .number = "NULL",
-      .applies = "1"};
-  return rows;
+const CheckedRows& run_rows(std::size_t schema) {
+  static const std::string columns =
+      "id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, "
+      "fault_message, idempotency_key, plan_id, operator_name, block_temperature_c, "
+      "config_digest, trace_json, std_block_temperature_k, block_temperature_at, "
+      "block_temperature_source, stiffness, rows_kept";
+  static const CheckedRows without_kind = run_rows_of(columns),
+                           newest = run_rows_of(columns + ", kind, of_run");
+  return schema < kRunKindSchema ? without_kind : newest;
 }
 
 const CheckedRows& result_rows() {
@@ -220,17 +225,18 @@ const CheckedRows& row_count_rows() {
 std::span<const CheckedRows* const> all_checked_rows(std::size_t schema) {
   // What came last stands last.
   constexpr std::size_t kModels = 1, kLogs = 5;
-  static const auto with = [](const TouchTables& tables) {
-    return std::array{&tables.touches,      &tables.superseded, &reference_rows(), &plan_change_rows(),
-                      &open_command_rows(), &plan_rows(),       &run_rows(),       &result_rows(),
-                      &arm_rows(),          &model_rows(),      &fault_rows(),     &resumption_rows(),
+  static const auto as_in = [](std::size_t version) {
+    const TouchTables& tables = touch_tables(version);
+    return std::array{&tables.touches,      &tables.superseded, &reference_rows(),  &plan_change_rows(),
+                      &open_command_rows(), &plan_rows(),       &run_rows(version), &result_rows(),
+                      &arm_rows(),          &model_rows(),      &fault_rows(),      &resumption_rows(),
                       &answer_rows(),       &refused_rows(),    &row_count_rows()};
   };
-  static const std::array without_noise = with(touch_tables(kChecksumSchema));
-  static const std::array without_contacts = with(touch_tables(kTouchNoiseSchema));
-  static const std::array newest = with(touch_tables(kTouchContactsSchema));
+  static const std::array without_noise = as_in(kChecksumSchema), without_contacts = as_in(kTouchNoiseSchema);
+  static const std::array without_kinds = as_in(kTouchContactsSchema), newest = as_in(kRunKindSchema);
   const std::span<const CheckedRows* const> rows = schema < kTouchNoiseSchema      ? without_noise
                                                    : schema < kTouchContactsSchema ? without_contacts
+                                                   : schema < kRunKindSchema       ? without_kinds
                                                                                    : newest;
   const std::size_t later = schema < kModelSchema ? kModels + kLogs : schema < kLogChecksumSchema ? kLogs : 0;
   return rows.first(rows.size() - later);
@@ -272,17 +278,19 @@ void reseal_touches(SQLite::Database& database, std::size_t schema) {
   reseal(database, before.superseded, now.superseded);
 }
 
+void reseal_runs(SQLite::Database& database) { reseal(database, run_rows(kRunKindSchema - 1), run_rows()); }
+
 void seal_logs(SQLite::Database& database) {
+  const CheckedRows& runs = run_rows(kLogChecksumSchema);
   for (const CheckedRows* rows : {&fault_rows(), &resumption_rows(), &answer_rows()})
     fill_checksums_of(database, *rows);
-  SQLite::Statement query(database, "SELECT id FROM runs WHERE rows_kept IS NOT NULL AND " +
-                                        run_rows().is_whole() + " AND " +
-                                        has_its_rows(kLogChecksumSchema - 1));
+  SQLite::Statement query(database, "SELECT id FROM runs WHERE rows_kept IS NOT NULL AND " + runs.is_whole() +
+                                        " AND " + has_its_rows(kLogChecksumSchema - 1));
   std::vector<std::int64_t> ended;
   while (query.executeStep()) ended.push_back(query.getColumn(0).getInt64());
   for (const std::int64_t run_id : ended) {
     count_rows_of(database, run_id);
-    seal(database, run_rows(), "id", run_id);
+    seal(database, runs, "id", run_id);
   }
 }
 

@@ -48,4 +48,9 @@ Verdict verdict_named(const std::string& name) {
   throw unknown("verdict of a run", name);
 }
 
+RunKind kind_named(const std::string& name) {
+  if (const auto kind = run_kind_named(name)) return *kind;
+  throw unknown("kind of a run", name);
+}
+
 }  // namespace cell::row

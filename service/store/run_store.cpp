@@ -147,7 +147,7 @@ std::int64_t RunStore::insert_run(const NewRun& run) {
                            "INSERT INTO runs(recipe, touches_total, started_at, idempotency_key, "
                            "operator_name, config_digest, trace_json, block_temperature_c, "
                            "std_block_temperature_k, block_temperature_at, block_temperature_source, "
-                           "stiffness) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+                           "stiffness, kind, of_run) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   insert.bind(1, run.recipe);
   insert.bind(2, run.touches_total);
   insert.bind(3, run.started_at);
@@ -162,6 +162,8 @@ std::int64_t RunStore::insert_run(const NewRun& run) {
     row::bind_or_null(insert, 11, temperature->source);
   }
   row::bind_or_null(insert, 12, run.stiffness);
+  insert.bind(13, std::string(run_kind_name(run.kind)));
+  row::bind_or_null(insert, 14, run.of_run);
   insert.exec();
   const std::int64_t id = database_->getLastInsertRowid();
   row::seal(*database_, row::run_rows(), "id", id);

@@ -11,6 +11,7 @@
 
 #include "calib_core/geometry/touch.hpp"
 #include "cs8_protocol/messages.hpp"
+#include "service/store/run_kind.hpp"
 #include "service/store/run_outcome.hpp"
 #include "service/store/schema.hpp"
 
@@ -91,6 +92,8 @@ struct StoredTemperature {
 };
 
 struct NewRun {
+  RunKind kind = RunKind::kCalibration;
+  std::optional<std::int64_t> of_run;  // the calibration that is proved or checked
   std::string recipe;
   int touches_total = 0;
   std::string started_at;
@@ -116,6 +119,8 @@ struct RunEnd {
 
 struct StoredRun {
   std::int64_t id = 0;
+  RunKind kind = RunKind::kCalibration;
+  std::optional<std::int64_t> of_run;  // the calibration that is proved or checked
   std::string recipe;
   int touches_total = 0;
   int touches_done = 0;
@@ -217,8 +222,11 @@ class RunStore {
   [[nodiscard]] std::vector<StoredRun> runs(int limit, std::optional<std::int64_t> before_id = {}) const;
   [[nodiscard]] std::optional<StoredRun> run(std::int64_t id) const;
   [[nodiscard]] std::optional<StoredRun> run_with_key(const std::string& idempotency_key) const;
-  /// Nothing also where its row is damaged, which the log says: an older one would be a wrong answer.
+  /// The newest calibration that was accepted. Nothing also where its row is damaged, which the log says: an
+  /// older one would be a wrong answer.
   [[nodiscard]] std::optional<StoredRun> last_accepted() const;
+  /// The runs of a kind that are of this calibration and came to their end, oldest first.
+  [[nodiscard]] std::vector<StoredRun> complete_runs_of(std::int64_t calibration, RunKind kind) const;
   /// The newest run that has not ended.
   [[nodiscard]] std::optional<StoredRun> running() const;
   [[nodiscard]] std::vector<StoredTouch> touches(std::int64_t run_id) const;

@@ -20,7 +20,7 @@ const std::string& run_columns() {
       "SELECT id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, fault_message, "
       "(SELECT count(*) FROM touches WHERE run_id = runs.id), plan_id, operator_name, block_temperature_c, "
       "config_digest, trace_json, std_block_temperature_k, block_temperature_at, block_temperature_source, "
-      "stiffness, " +
+      "stiffness, kind, of_run, " +
       row::run_rows().is_whole() + ", " + row::has_its_rows() + " FROM runs ";
   return columns;
 }
@@ -80,27 +80,30 @@ std::optional<StoredTemperature> read_temperature(SQLite::Statement& query) {
 
 StoredRun read_run(const SQLite::Database& database, SQLite::Statement& query) {
   const std::int64_t id = query.getColumn(0).getInt64();
-  demand_whole(database, query, 19, "runs", id);
-  if (query.getColumn(20).getInt() != 1) demand_rows(database, id);
+  demand_whole(database, query, 21, "runs", id);
+  if (query.getColumn(22).getInt() != 1) demand_rows(database, id);
   std::optional<std::string> conditions;
   if (!query.getColumn(14).isNull())
     conditions = json_text(database, query, 14, "runs", id, "its conditions");
-  return {.id = id,
-          .recipe = query.getColumn(1).getString(),
-          .touches_total = query.getColumn(2).getInt(),
-          .touches_done = query.getColumn(9).getInt(),
-          .started_at = query.getColumn(3).getString(),
-          .ended_at = text_or_nothing(query.getColumn(4)),
-          .outcome = row::outcome_named(query.getColumn(5).getString()),
-          .verdict = row::verdict_named(query.getColumn(6).getString()),
-          .fault_code = text_or_nothing(query.getColumn(7)),
-          .fault_message = text_or_nothing(query.getColumn(8)),
-          .plan_id = text_or_nothing(query.getColumn(10)),
-          .operator_name = text_or_nothing(query.getColumn(11)),
-          .block_temperature = read_temperature(query),
-          .stiffness = text_or_nothing(query.getColumn(18)),
-          .config_digest = text_or_nothing(query.getColumn(13)),
-          .conditions_json = std::move(conditions)};
+  return {
+      .id = id,
+      .kind = row::kind_named(query.getColumn(19).getString()),
+      .of_run = query.getColumn(20).isNull() ? std::nullopt : std::optional(query.getColumn(20).getInt64()),
+      .recipe = query.getColumn(1).getString(),
+      .touches_total = query.getColumn(2).getInt(),
+      .touches_done = query.getColumn(9).getInt(),
+      .started_at = query.getColumn(3).getString(),
+      .ended_at = text_or_nothing(query.getColumn(4)),
+      .outcome = row::outcome_named(query.getColumn(5).getString()),
+      .verdict = row::verdict_named(query.getColumn(6).getString()),
+      .fault_code = text_or_nothing(query.getColumn(7)),
+      .fault_message = text_or_nothing(query.getColumn(8)),
+      .plan_id = text_or_nothing(query.getColumn(10)),
+      .operator_name = text_or_nothing(query.getColumn(11)),
+      .block_temperature = read_temperature(query),
+      .stiffness = text_or_nothing(query.getColumn(18)),
+      .config_digest = text_or_nothing(query.getColumn(13)),
+      .conditions_json = std::move(conditions)};
 }
 
 std::optional<StoredRun> first_run(const SQLite::Database& database, SQLite::Statement& query) {
@@ -218,14 +221,29 @@ std::optional<StoredRun> RunStore::run_with_key(const std::string& idempotency_k
 }
 
 std::optional<StoredRun> RunStore::last_accepted() const try {
-  SQLite::Statement query(*database_, run_columns() + "WHERE verdict = ? ORDER BY id DESC LIMIT 1");
+  SQLite::Statement query(*database_,
+                          run_columns() + "WHERE verdict = ? AND kind = ? ORDER BY id DESC LIMIT 1");
   query.bind(1, std::string(verdict_name(Verdict::kAccepted)));
+  query.bind(2, std::string(run_kind_name(RunKind::kCalibration)));
   auto found = first_run(*database_, query);
   demand_none_damaged(*database_, row::run_rows(), found ? found->id : 0);
   return found;
 } catch (const std::runtime_error& error) {
   spdlog::error("which run was accepted last cannot be told: {}", error.what());
   return std::nullopt;
+}
+
+std::vector<StoredRun> RunStore::complete_runs_of(std::int64_t calibration, RunKind kind) const try {
+  SQLite::Statement query(*database_,
+                          run_columns() + "WHERE of_run = ? AND kind = ? AND outcome = ? ORDER BY id");
+  query.bind(1, calibration);
+  query.bind(2, std::string(run_kind_name(kind)));
+  query.bind(3, std::string(run_outcome_name(RunOutcome::kComplete)));
+  std::vector<StoredRun> found;
+  while (query.executeStep()) found.push_back(read_run(*database_, query));
+  return found;
+} catch (const SQLite::Exception& error) {
+  rethrow(*database_, error);
 }
 
 std::optional<StoredRun> RunStore::running() const try {

@@ -278,10 +278,18 @@ CREATE TABLE told_certificates(
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+/// Whether a run calibrates, or proves or checks an earlier one. Checksums cover both from here on:
+/// reseal_runs().
+constexpr const char* kRunKindColumns = R"sql(
+ALTER TABLE runs ADD COLUMN kind TEXT NOT NULL DEFAULT 'calibration';
+ALTER TABLE runs ADD COLUMN of_run INTEGER;
+CREATE INDEX runs_of_run ON runs(of_run, kind);
+)sql";
+
 constexpr std::array kMigrations{kRunsAndTouches,  kPlans,         kDiary,        kTemperatures,
                                  kStiffness,       kChecksums,     kAuditChained, kTouchNoise,
                                  kAuditTokenNames, kTouchContacts, kModelTable,   kLogChecksums,
-                                 kOutboxTables};
+                                 kOutboxTables,    kRunKindColumns};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.
@@ -315,6 +323,7 @@ void migrate(SQLite::Database& database, const std::filesystem::path& file) {
       row::seal_logs(database);
       row::begin_row_counts(database);
     }
+    if (migration == kRunKindColumns) row::reseal_runs(database);
   }
   database.exec("PRAGMA user_version = " + std::to_string(newest));
   transaction.commit();

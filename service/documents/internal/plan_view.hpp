@@ -2,6 +2,7 @@
 
 #include "service/documents/plan.hpp"
 #include "service/documents/plan_document.hpp"
+#include "service/store/run_kind.hpp"
 
 namespace cell {
 
@@ -9,6 +10,10 @@ namespace cell {
 /// In `joints_deg` the ball of the nominal arm touches the nominal face.
 PlanDocument plan_of(const TipRegions& regions, const Recipe& recipe, const calib::TouchPlan& plan,
                      const PlannedIdentification& planned);
+
+/// The same of a proof or a check: nothing is identified, so that there are no predicted figures.
+PlanDocument plan_of_verification(const Cell& cell, const Recipe& recipe, const calib::TouchPlan& plan,
+                                  RunKind kind);
 
 /// Sources with a smaller share appear in the figures only, not in words.
 inline constexpr double kShareReportedMin = 0.05;

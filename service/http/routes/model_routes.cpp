@@ -113,10 +113,21 @@ HttpResponse get_model_arm(const Call& call) {
 /// Why the result of a run cannot become a model; nothing when it can.
 std::optional<std::string> why_no_model(const StoredRun& run) {
   constexpr std::string_view kOnly = "only a run that is complete and accepted can be approved";
+  if (run.kind != RunKind::kCalibration)
+    return fmt::format("run {} is a {}, which has no model; approve the calibration that it is of", run.id,
+                       run_kind_name(run.kind));
   if (run.outcome == RunOutcome::kRunning) return fmt::format("run {} is not over; {}", run.id, kOnly);
   if (run.outcome == RunOutcome::kComplete && run.verdict == Verdict::kAccepted) return std::nullopt;
   return fmt::format("the outcome of run {} is '{}' and its verdict '{}'; {}", run.id,
                      run_outcome_name(run.outcome), verdict_name(run.verdict), kOnly);
+}
+
+/// The newest proof that the calibration passed; nothing where there is none.
+std::optional<std::string> newest_proof_of(const RunStore& store, std::int64_t run_id) {
+  std::optional<std::string> newest;
+  for (const StoredRun& proof : store.complete_runs_of(run_id, RunKind::kProof))
+    newest = proof.verdict == Verdict::kAccepted ? std::optional(std::to_string(proof.id)) : std::nullopt;
+  return newest;
 }
 
 HttpResponse approve(const Call& call, const StoredRun& run, const ApprovalRequest& request) {
@@ -131,6 +142,7 @@ HttpResponse approve(const Call& call, const StoredRun& run, const ApprovalReque
   if (auto refused = refuse_other_arm(call, run.id, *arm)) return *std::move(refused);
   const auto now = call.reads.now();
   ModelDocument model = model_of(run, store.touches(run.id), *arm, *result);
+  model.proof_run_id = newest_proof_of(store, run.id);
   model.approved_by = request.operator_name;
   model.approved_at = format_utc(now);
   if (request.valid_days) model.valid_until = format_utc(now + std::chrono::days(*request.valid_days));

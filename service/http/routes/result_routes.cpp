@@ -55,6 +55,9 @@ std::optional<std::string> why_not_again(const Reads& reads, const StoredRun& ru
 /// that of the run.
 std::variant<Identified, HttpResponse> identify_stored(const Reads& reads, std::int64_t id) try {
   const StoredRun run = reads.store().run(id).value();
+  if (run.kind != RunKind::kCalibration)
+    return conflict(
+        fmt::format("there is no result: the {} ended before it had one", run_kind_name(run.kind)));
   if (const auto why = why_not_again(reads, run))
     return conflict("it would have to be computed again, but " + *why);
   const Cell cell = with_block_temperature(reads.cell(), temperature_of(run, reads.cell()));
@@ -90,6 +93,14 @@ RunRecord record_of(const Reads& reads, const StoredRun& run) {
   HttpResponse result = get_result(reads, run.id);
   if (result.status == 200) record.result_json = std::move(result.body);
   return record;
+}
+
+/// What a report is made of is a calibration's.
+std::optional<HttpResponse> refuse_report_of_verification(const StoredRun& run) {
+  if (run.kind == RunKind::kCalibration) return std::nullopt;
+  return conflict(
+      fmt::format("a {} has no report of this form; touchcal show {}, or GET its result, has all of it",
+                  run_kind_name(run.kind), run.id));
 }
 
 /// Served as a download: the content security policy of the daemon allows no inline styles.
@@ -167,6 +178,7 @@ HttpResponse get_arm(const Reads& reads, std::int64_t id) {
 }
 
 HttpResponse get_report(const Reads& reads, const StoredRun& run, const std::string& format) {
+  if (const auto refused = refuse_report_of_verification(run)) return *refused;
   return report_of(record_of(reads, run), format);
 }
 
@@ -174,6 +186,7 @@ HttpResponse get_simulated_report(const Reads& reads, const StoredRun& run, cons
                                   int count) {
   if (run.outcome == RunOutcome::kRunning)
     return conflict("the run is not over: it has no result that stays");
+  if (const auto refused = refuse_report_of_verification(run)) return *refused;
   RunRecord record = record_of(reads, run);
   const auto found = identify_stored(reads, run.id);
   if (const auto* response = std::get_if<HttpResponse>(&found)) return *response;

@@ -87,7 +87,7 @@ std::vector<Route> run_routes() {
   list.query = {{"limit", 1, kRunsPageMax, "runs on a page"},
                 {"before", 0, kRunIdMax, "only runs before this id: next_before of the page before"}};
   Route result = read("/api/v1/runs/{id}/result", "The latest result; 409 before there is one",
-                      of_run<result_view>, "Result");
+                      of_run<result_view>, "RunResult");
   Route arm =
       read("/api/v1/runs/{id}/arm", "The calibrated arm as stored when the run ended; 409 when none was",
            of_run<arm_view>, "Arm");

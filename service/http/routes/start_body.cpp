@@ -12,6 +12,7 @@
 #include "config/stiffness_choice.hpp"
 #include "config/strict_json.hpp"
 #include "config/utc_text.hpp"
+#include "service/http/routes/route_table.hpp"
 #include "service/run/run_conditions.hpp"
 
 namespace cell {
@@ -27,9 +28,10 @@ using nlohmann::json;
 
 constexpr std::size_t kOperatorBytesMax = 100;
 
-constexpr std::array<std::string_view, 10> kStartKeys{"recipe",
+constexpr std::array<std::string_view, 11> kStartKeys{"recipe",
                                                       "plan_id",
                                                       "kind",
+                                                      "of_run",
                                                       "operator",
                                                       "touching",
                                                       "block_temperature_c",
@@ -83,12 +85,38 @@ std::optional<Problem> read_touching(const json& body, StartRequest& start) {
   return std::nullopt;
 }
 
-/// Runs of other kinds come later; whoever asks for one must not get a calibration.
-std::optional<Problem> read_kind(const json& body) {
-  const auto found = body.find("kind");
-  if (found == body.end() || *found == "calibration") return std::nullopt;
-  return wrong("/kind",
-               "must be 'calibration', the only kind of run that this daemon makes; or leave it out");
+/// Whoever asks for a kind that there is not must not get a calibration.
+std::optional<Problem> read_kind(const json& body, StartRequest& start) {
+  if (const auto found = body.find("kind"); found != body.end()) {
+    const auto kind =
+        found->is_string() ? run_kind_named(found->get_ref<const std::string&>()) : std::nullopt;
+    if (!kind) return wrong("/kind", "must be 'calibration', 'proof' or 'check'; or leave it out");
+    start.kind = *kind;
+  }
+  const auto of_run = body.find("of_run");
+  if (of_run == body.end()) return std::nullopt;
+  if (start.kind == RunKind::kCalibration)
+    return wrong("/of_run", "is the calibration that a proof or a check is of; leave it out");
+  start.of_run = of_run->is_string() ? run_id_of(of_run->get_ref<const std::string&>()) : std::nullopt;
+  if (start.of_run) return std::nullopt;
+  return wrong("/of_run", "the id of a run, a string of digits, is required");
+}
+
+/// A proof and a check have the recipe and the choices of their calibration, and are touched by the arm. A
+/// recipe that is named has to be that one.
+std::optional<Problem> read_of_verification(const json& body, StartRequest& start) {
+  for (const char* key : {"plan_id", "stiffness"}) {
+    if (body.contains(key))
+      return wrong(pointer_step(key), fmt::format("a {} takes it from its calibration; leave it out",
+                                                  run_kind_name(start.kind)));
+  }
+  if (const auto recipe = body.find("recipe"); recipe != body.end()) {
+    if (!recipe->is_string()) return wrong("/recipe", "a string is required");
+    start.recipe = recipe->get<std::string>();
+  }
+  if (!start.guided) return std::nullopt;
+  return wrong("/touching", fmt::format("the touches of a {} are made by the arm itself: 'automatic'",
+                                        run_kind_name(start.kind)));
 }
 
 bool is_number_within(const json& value, double min, double max) {
@@ -171,10 +199,12 @@ std::variant<StartRequest, Problem> read_body(const json& body, const CellOperat
       return wrong(pointer_step(key), fmt::format("unknown key; known are {}", fmt::join(kStartKeys, ", ")));
   }
   StartRequest start;
-  if (auto problem = read_recipe(body, operation, start)) return *std::move(problem);
+  if (auto problem = read_kind(body, start)) return *std::move(problem);
   if (auto problem = read_operator(body, start)) return *std::move(problem);
   if (auto problem = read_touching(body, start)) return *std::move(problem);
-  if (auto problem = read_kind(body)) return *std::move(problem);
+  if (auto problem = start.kind == RunKind::kCalibration ? read_recipe(body, operation, start)
+                                                         : read_of_verification(body, start))
+    return *std::move(problem);
   if (auto problem = read_temperature(body, operation.clocks().system(), start)) return *std::move(problem);
   if (auto problem = read_warm_up(body, start)) return *std::move(problem);
   if (auto problem = read_stiffness(body, operation.cell(), start)) return *std::move(problem);

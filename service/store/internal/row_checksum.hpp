@@ -34,7 +34,8 @@ const CheckedRows& reference_rows();
 const CheckedRows& plan_change_rows();
 const CheckedRows& open_command_rows();
 const CheckedRows& plan_rows();
-const CheckedRows& run_rows();     // without the result
+/// Without the result; as they are in a file of this schema.
+const CheckedRows& run_rows(std::size_t schema = kRunKindSchema);
 const CheckedRows& result_rows();  // of the table of the runs
 const CheckedRows& arm_rows();
 const CheckedRows& model_rows();  // from kModelSchema on
@@ -62,6 +63,9 @@ void fill_checksums(SQLite::Database& database, std::size_t schema);
 /// Brings the checksums of touches to this schema from the one before, which had fewer columns. A row that
 /// was damaged before stays known as such.
 void reseal_touches(SQLite::Database& database, std::size_t schema);
+
+/// Brings the checksums of runs to kRunKindSchema from the one before, likewise.
+void reseal_runs(SQLite::Database& database);
 
 /// Brings a file to kLogChecksumSchema from the one before: checksums for the rows that have none, and what
 /// the runs that ended have of rows. A run that was damaged before stays known as such.

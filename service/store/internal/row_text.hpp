@@ -40,5 +40,6 @@ std::string_view plan_change_name(PlanChange::Kind kind);  // "put_off"
 PlanChange::Kind plan_change_named(const std::string& name);
 RunOutcome outcome_named(const std::string& name);
 Verdict verdict_named(const std::string& name);
+RunKind kind_named(const std::string& name);
 
 }  // namespace cell::row

@@ -18,6 +18,7 @@ TEST(RowText, ATextThatNoVersionHasWrittenIsRefused) {
   EXPECT_THROW(row::plan_change_named("turned"), std::runtime_error);
   EXPECT_THROW(row::outcome_named("over"), std::runtime_error);
   EXPECT_THROW(row::verdict_named("good"), std::runtime_error);
+  EXPECT_THROW(row::kind_named("trial"), std::runtime_error);
 }
 
 TEST(RowText, ARowIsNamedByItsTableItsRunAndItsNumber) {

@@ -69,6 +69,27 @@ class RunStoreTest : public ::testing::Test {
   std::optional<RunStore> store_{std::in_place, file_};
 };
 
+TEST_F(RunStoreTest, ChecksOfACalibrationAreFoundAndAreNoAcceptedCalibration) {
+  const std::int64_t calibration = begin(), other = begin();
+  finish(calibration, Verdict::kAccepted);
+  const auto begin_of = [&](RunKind kind, std::int64_t of_run) {
+    return store_->begin_run({.kind = kind, .of_run = of_run, .recipe = "best", .started_at = "start"});
+  };
+  const std::int64_t first = begin_of(RunKind::kCheck, calibration),
+                     proof = begin_of(RunKind::kProof, calibration),
+                     of_other = begin_of(RunKind::kCheck, other),
+                     second = begin_of(RunKind::kCheck, calibration),
+                     stopped = begin_of(RunKind::kCheck, calibration);
+  for (const std::int64_t run : {first, proof, of_other, second}) finish(run, Verdict::kAccepted);
+  store_->finish_run(stopped, {.outcome = RunOutcome::kStopped, .ended_at = "end"});
+  EXPECT_EQ(store_->last_accepted()->id, calibration);
+  std::vector<std::int64_t> found;
+  for (const StoredRun& run : store_->complete_runs_of(calibration, RunKind::kCheck)) found.push_back(run.id);
+  EXPECT_THAT(found, ElementsAre(first, second));
+  EXPECT_EQ(store_->run(proof)->kind, RunKind::kProof);
+  EXPECT_EQ(store_->run(proof)->of_run, calibration);
+}
+
 TEST_F(RunStoreTest, TouchesComeBackExactlyAndInTheirOrder) {
   const std::int64_t run = begin();
   const StoredTouch extreme{.number = 2,

@@ -142,6 +142,29 @@ TEST(SealedLogs, FaultsAndAnswersOfAnEarlierVersionAreSealedAndCounted) {
   EXPECT_THAT(find_damage(file), ::testing::ElementsAre(::testing::HasSubstr("table faults")));
 }
 
+TEST(ResealedRuns, ARunThatWasDamagedBeforeItsChecksumCoversItsKindStaysKnownAsDamaged) {
+  const Folder folder;
+  const auto file = file_of_version(folder, static_cast<int>(kRunKindSchema) - 1);
+  EXPECT_THAT(find_damage(file), ::testing::IsEmpty()) << "of a file of that schema";
+  SQLite::Database(file.string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE runs SET recipe = 'other' WHERE id = 1");
+  const RunStore store(file);
+  EXPECT_THROW(static_cast<void>(store.run(1)), DamagedStore);
+  EXPECT_EQ(store.run(2)->kind, RunKind::kCalibration);
+  EXPECT_EQ(store.run(2)->of_run, std::nullopt);
+}
+
+TEST(ResealedRuns, TheKindOfARunAndWhoseProofItIsAreInItsChecksum) {
+  for (const char* tampered : {"kind = 'calibration'", "of_run = 7", "of_run = NULL"}) {
+    const Folder folder;
+    RunStore store(folder.path() / "store.sqlite");
+    const std::int64_t run =
+        store.begin_run({.kind = RunKind::kProof, .of_run = 1, .recipe = "best", .started_at = "start"});
+    store.database()->exec(std::string("UPDATE runs SET ") + tampered);
+    EXPECT_THROW(static_cast<void>(store.run(run)), DamagedStore) << tampered;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Schemas, ResealedTouches,
                          ::testing::Values(kTouchNoiseSchema, kTouchContactsSchema));
 

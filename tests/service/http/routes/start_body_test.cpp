@@ -96,7 +96,13 @@ TEST_F(StartBodyTest, AStartsTemperatureComesWithItsDeviationAndWithinBounds) {
       {"a time as number", deviation(R"(1,"block_temperature_at":0)"), 400, at},
       {"an arm that has moved for ever", with(R"("arm_moving_min":1441)"), 400, "/arm_moving_min"},
       {"moving as text", with(R"("arm_moving_min":"60")"), 400, "/arm_moving_min"},
-      {"another kind", with(R"("kind":"proof")"), 400, "/kind"},
+      {"another kind", with(R"("kind":"trial")"), 400, "/kind"},
+      {"a proof with its own plan", R"({"kind":"proof","plan_id":"x"})", 400, "/plan_id"},
+      {"a proof with a choice of its own", R"({"kind":"proof","stiffness":"on"})", 400, "/stiffness"},
+      {"a check by hand", R"({"kind":"check","touching":"guided"})", 400, "/touching"},
+      {"a check of no run", R"({"kind":"check","of_run":"last"})", 400, "/of_run"},
+      {"a check of a number", R"({"kind":"check","of_run":3})", 400, "/of_run"},
+      {"a calibration of a run", with(R"("of_run":"3")"), 400, "/of_run"},
       {"no kind", with(R"("kind":null)"), 400, "/kind"}};
   for (const BadBody& bad : bodies) {
     const json document = problem(post("/api/v1/runs", bad.body));
@@ -112,6 +118,15 @@ TEST_F(StartBodyTest, AStartsTemperatureComesWithItsDeviationAndWithinBounds) {
       problem(post("/api/v1/runs", deviation(R"(0.5,"block_temperature_at":"1970-01-01T00:10:00Z")")));
   ASSERT_EQ(future.at("status"), 409);
   EXPECT_EQ(future.at("errors").at(1).at("code"), "temperature_in_future");
+}
+
+TEST_F(StartBodyTest, AProofAndACheckNeedACalibrationToBeHeldAgainst) {
+  for (const char* body : {R"({"kind":"proof"})", R"({"kind":"check","of_run":"9"})"}) {
+    const json document = problem(post("/api/v1/runs", body));
+    EXPECT_EQ(document.at("status"), 409) << document;
+    EXPECT_EQ(document.at("errors").at(0).at("code"), "no_calibration_to_hold_against") << document;
+  }
+  EXPECT_TRUE(cell_.store().runs(1).empty());
 }
 
 TEST_F(StartBodyTest, AStartTakesAChoiceOfStiffness) {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "service/run/verification.hpp"
+#include "service/store/run_store.hpp"
+
+namespace cell {
+
+/// What the store has of the calibration that a proof or a check is of: that of run `of_run`; where none is
+/// named, the newest one that was accepted, and for a check the one whose model a person approved, where
+/// there is one. Refused: one that was not accepted, or was made with other files than the cell has now
+/// (`config_digest`). Throws what the store throws.
+std::variant<PastCalibration, VerificationRefusal> find_calibration(
+    RunStore& store, RunKind kind, std::optional<std::int64_t> of_run,
+    const std::optional<std::string>& config_digest);
+
+}  // namespace cell

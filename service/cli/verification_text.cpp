@@ -1,0 +1,77 @@
+#include "service/cli/verification_text.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "service/cli/result_text.hpp"
+
+namespace cell {
+namespace {
+
+std::string shown(const std::optional<double>& value, const char* form) {
+  return value ? fmt::format(fmt::runtime(form), *value) : "-";
+}
+
+std::string verdict_line(const char* what, const VerificationVerdict& verdict, const char* good,
+                         const char* bad) {
+  std::string lines = fmt::format("{}: {}\n", what,
+                                  !verdict.accepted   ? "no verdict"
+                                  : *verdict.accepted ? good
+                                                      : bad);
+  for (const std::string& reason : verdict.reasons) lines += fmt::format("  {}\n", reason);
+  return lines;
+}
+
+}  // namespace
+
+std::string proof_text(const ProofDocument& proof) {
+  std::string lines =
+      verdict_line("proof", proof.verdict, "PROVED: the calibrated arm is right where it was not calibrated",
+                   "NOT PROVED");
+  lines += fmt::format("\nof run {}, {} touches{}\n", proof.of_run, proof.touch_count,
+                       proof.complete ? "" : ", not complete");
+  if (!proof.rms_mm) return lines;
+  lines += fmt::format("distance from the block, rms   {} mm, at most {} mm\n", shown(proof.rms_mm, "{:.4f}"),
+                       shown(proof.rms_max_mm, "{:.3f}"));
+  lines +=
+      fmt::format("chance of so large a scatter   {}, at least {} (chi-square {} of {} degrees of freedom)\n",
+                  shown(proof.p, "{:.3g}"), shown(proof.p_min, "{:.2g}"), shown(proof.chi_square, "{:.1f}"),
+                  shown(proof.degrees_of_freedom, "{:.0f}"));
+  lines += fmt::format("noise of a touch               {} um\n", shown(proof.noise_um, "{:.1f}"));
+  if (const auto& moved = proof.moved_mm)
+    lines += fmt::format("the block moved by             {:.1f} {:.1f} {:.1f} mm\n", (*moved)[0], (*moved)[1],
+                         (*moved)[2]);
+  for (const ProofDocument::Power& power : proof.power)
+    lines += fmt::format("would have seen {:<15}in {} % of cases where it moves the tip by 0.1 mm\n",
+                         power.alternative, power.power ? fmt::format("{:.0f}", 100.0 * *power.power) : "-");
+  return lines;
+}
+
+std::string check_text(const CheckDocument& check) {
+  std::string lines = verdict_line("check", check.verdict, "UNCHANGED since the reference", "CHANGED");
+  lines += fmt::format("\nof run {}, {} touches{}, reference of {} of {} checks\n", check.of_run,
+                       check.touch_count, check.complete ? "" : ", not complete", check.reference.count,
+                       check.reference.needed);
+  if (!check.rms_mm) return lines;
+  lines += fmt::format("change, rms                    {} mm (noise of a touch {} um)\n",
+                       shown(check.rms_mm, "{:.4f}"), shown(check.noise_um, "{:.1f}"));
+  lines +=
+      fmt::format("chance of so large a change    {}, of any joint's {}, each at least {}\n",
+                  shown(check.p, "{:.3g}"), shown(check.joint_p, "{:.3g}"), shown(check.p_min, "{:.2g}"));
+  lines += fmt::format("growth of the arm              {} ppm (std {}){}\n",
+                       shown(check.growth_ppm, "{:.1f}"), shown(check.std_growth_ppm, "{:.1f}"),
+                       check.warmer_k ? fmt::format(", as of {:+.1f} K", *check.warmer_k) : "");
+  lines += "\nif it alone had changed      mrad       std\n";
+  for (const CheckDocument::Joint& joint : check.joints)
+    lines += fmt::format("joint {}                  {:>9} {:>9}\n", joint.joint,
+                         shown(joint.offset_mrad, "{:.3f}"), shown(joint.std_offset_mrad, "{:.3f}"));
+  return lines;
+}
+
+std::string text_of_result(std::string_view document) {
+  const std::string schema = schema_of(document);
+  if (schema == ProofDocument().schema) return proof_text(read_proof(document));
+  if (schema == CheckDocument().schema) return check_text(read_check(document));
+  return result_text(read_result(document));
+}
+
+}  // namespace cell

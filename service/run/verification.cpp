@@ -1,0 +1,156 @@
+#include "service/run/verification.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "calib_core/estimation/block_registration.hpp"
+#include "calib_core/geometry/units.hpp"
+#include "config/identification_problem.hpp"
+#include "service/run/block_temperature.hpp"
+#include "service/run/moved_cell.hpp"
+#include "service/run/run.hpp"
+#include "service/run/run_recipe.hpp"
+#include "service/run/run_repeats.hpp"
+
+namespace cell {
+namespace {
+
+/// Nobody knows better how much warmer the arm is than at its calibration.
+constexpr double kStdWarmthKelvins = 2.0;
+/// Two places of one block that differ by less are the same: to this a person finds it again.
+constexpr double kSamePlaceMetres = 2e-3;
+/// A stand is wider than the block on it by at most this, on each side.
+constexpr double kStandOverhangMetres = 0.075;
+constexpr double kOnSolidMetres = 1e-3;
+
+struct Identified {
+  calib::IdentificationProblem problem;
+  calib::IdentificationOptions options;
+  calib::IdentificationResult result;
+};
+
+/// In the cell as it was then.
+Identified identify_again(const PastCalibration& past, const Cell& cell) {
+  const Recipe recipe = recipe_of(past.run, cell);
+  Identified again{identification_problem(cell, recipe), recipe.identification, {}};
+  std::ranges::transform(past.touches, std::back_inserter(again.problem.touches), to_touch);
+  note_repeats(repeats_of(past.touches, past.references), again.problem);
+  again.result = calib::identify(again.problem, again.options);
+  return again;
+}
+
+std::optional<VerificationRefusal> refuse_place(RunKind kind, std::int64_t run,
+                                                const Eigen::Isometry3d& calibrated_from_block) {
+  const double way_m = calibrated_from_block.translation().norm();
+  if (kind == RunKind::kProof && way_m < calib::kProofWayMinMetres)
+    return VerificationRefusal{fmt::format(
+        "the block stands {:.0f} mm from where it stood in run {}, which proves nothing: lift it by 300 mm, "
+        "find it with touchcal locate, and prove again",
+        calib::mm_from_metres(way_m), run)};
+  if (kind == RunKind::kCheck && way_m > kSamePlaceMetres)
+    return VerificationRefusal{
+        fmt::format("the block stands {:.0f} mm from where it stood in run {}: a check repeats touches at "
+                    "that place; put "
+                    "it back and find it with touchcal locate, or calibrate anew",
+                    calib::mm_from_metres(way_m), run)};
+  return std::nullopt;
+}
+
+bool is_on(const calib::Box& solid, const Eigen::Vector3d& point_m) {
+  const Eigen::Array3d below = point_m - solid.min_m, above = solid.max_m - point_m;
+  const double inside_m = std::min(below.minCoeff(), above.minCoeff());
+  return std::abs(inside_m) < kOnSolidMetres;
+}
+
+/// On which the first face lies.
+const calib::Box* first_solid(const Block& block) {
+  const auto found = std::ranges::find_if(
+      block.solids, [&](const calib::Box& solid) { return is_on(solid, block.faces.front().center_m); });
+  return found == block.solids.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
+                                    const Eigen::Isometry3d& cell_from_block) {
+  const Eigen::Isometry3d calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
+  if (auto refusal = refuse_place(kind, past.run.id, calibrated_from_block)) return *std::move(refusal);
+  const Identified again =
+      identify_again(past, with_block_temperature(with_block_moved(cell, calibrated_from_block.inverse()),
+                                                  temperature_of(past.run, cell)));
+  if (again.result.status != calib::IdentificationStatus::kConverged || !again.result.uncertainty)
+    return VerificationRefusal{fmt::format(
+        "run {} cannot be identified again from its touches, so that nothing can be held against it: {}; "
+        "calibrate anew",
+        past.run.id, again.result.message)};
+  Verification made{.kind = kind,
+                    .of_run = past.run.id,
+                    .record = calib::CalibrationRecord(again.problem, again.options, again.result),
+                    .place = {.calibrated_from_block = calibrated_from_block},
+                    .proof_limits = {},
+                    .references = {}};
+  if (cell.arm.growth) made.place.std_growth = kStdWarmthKelvins * cell.arm.growth->expansion_per_k;
+  made.record.meet_at(calib::make_artefact(artefact_knowledge(cell)).contact_planes);
+  for (const std::vector<StoredTouch>& touches : past.checks) {
+    if (std::ssize(touches) != calib::kCheckTouchCount) continue;  // one left touches out
+    if (std::ssize(made.references) == calib::kReferenceCount) break;
+    made.references.push_back(verifying_touches(touches));
+  }
+  return std::make_shared<const Verification>(std::move(made));
+}
+
+std::vector<calib::Touch> verifying_touches(std::span<const StoredTouch> touches) {
+  std::vector<calib::Touch> made;
+  std::ranges::transform(touches, std::back_inserter(made), to_touch);
+  return made;
+}
+
+std::vector<int> faces_of_first_solid(const Block& block) {
+  std::vector<int> all(block.faces.size());
+  std::iota(all.begin(), all.end(), 0);
+  const calib::Box* solid = first_solid(block);
+  if (solid)
+    std::erase_if(
+        all, [&](int face) { return !is_on(*solid, block.faces[static_cast<std::size_t>(face)].center_m); });
+  return all;
+}
+
+Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind) {
+  Recipe made = recipe;
+  if (kind == RunKind::kProof) made.faces = faces_of_first_solid(cell.block);
+  made.fit_per_face = 0;
+  made.held_out_per_face = 0;
+  made.reference_every = 0;
+  made.goal = {.fit_count = kind == RunKind::kProof ? calib::kProofTouchCount : calib::kCheckTouchCount};
+  return made;
+}
+
+Cell with_stand(const Cell& cell, const Verification& verification) {
+  const Eigen::Isometry3d block_from_before = verification.place.calibrated_from_block.inverse();
+  const Eigen::Vector3d up = up_in_block(cell);
+  Eigen::Index axis = 0;
+  up.cwiseAbs().maxCoeff(&axis);
+  const double lift_m = -block_from_before.translation()[axis] * std::copysign(1.0, up[axis]);
+  const calib::Box* solid = first_solid(cell.block);
+  if (lift_m < kSamePlaceMetres || !solid) return cell;
+  calib::Box under = *solid;
+  under.name = "stand";
+  under.min_m.array() -= kStandOverhangMetres;
+  under.max_m.array() += kStandOverhangMetres;
+  if (up[axis] > 0.0) {
+    under.max_m[axis] = solid->min_m[axis];
+    under.min_m[axis] = under.max_m[axis] - lift_m;
+  } else {
+    under.min_m[axis] = solid->max_m[axis];
+    under.max_m[axis] = under.min_m[axis] + lift_m;
+  }
+  Cell there = cell;
+  there.keep_out_boxes.push_back(std::move(under));
+  return there;
+}
+
+}  // namespace cell

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calib_core/proof/calibration_record.hpp"
+#include "calib_core/proof/check.hpp"
+#include "calib_core/proof/proof.hpp"
+#include "config/cell.hpp"
+#include "service/run/block_pose.hpp"
+#include "service/store/run_kind.hpp"
+#include "service/store/run_store.hpp"
+
+/// Proofs and checks: runs whose touches are held against an earlier calibration and never fitted.
+namespace cell {
+
+/// A calibration as the store has it.
+struct PastCalibration {
+  StoredRun run;
+  std::vector<StoredTouch> touches;
+  std::vector<ReferenceTouch> references;
+  Eigen::Isometry3d cell_from_block = Eigen::Isometry3d::Identity();  // R_-1 then, in R_-1 of the cell's file
+  /// The touches of its checks that came to their end, oldest first; of a proof none.
+  std::vector<std::vector<StoredTouch>> checks;
+};
+
+/// What the touches of a proof or a check are held against.
+struct Verification {
+  RunKind kind = RunKind::kProof;
+  std::int64_t of_run = 0;  // the calibration
+  calib::CalibrationRecord record;
+  calib::ProofPlace place;  // of a proof
+  calib::ProofLimits proof_limits;
+  /// Of a check: the touches of the first checks of this calibration, at most calib::kReferenceCount. While
+  /// there are fewer, the check is one of them.
+  std::vector<std::vector<calib::Touch>> references;
+};
+
+/// One sentence with the remedy.
+struct VerificationRefusal {
+  std::string message;
+};
+
+using VerificationOutcome = std::variant<std::shared_ptr<const Verification>, VerificationRefusal>;
+
+/// `cell`: as it stands now and as warm as its block is now, which is at `cell_from_block`. Identifies the
+/// calibration again: tens of milliseconds. Refused: a calibration that does not converge from its touches,
+/// the block of a check moved, that of a proof not moved.
+VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
+                                    const Eigen::Isometry3d& cell_from_block);
+
+/// The touches of a run that came to its end as the core takes them.
+std::vector<calib::Touch> verifying_touches(std::span<const StoredTouch> touches);
+
+/// The recipe of the calibration, as a run of this kind touches: planned touches only, none held out, no
+/// reference place; of a proof only the faces that move with the block.
+Recipe verification_recipe(const Cell& cell, const Recipe& recipe, RunKind kind);
+
+/// The faces (indices) on the solid on which the first face lies: what is lifted with it. All of them where
+/// that lies on none.
+std::vector<int> faces_of_first_solid(const Block& block);
+
+/// The cell with what stands under a block that was lifted since the calibration: nobody tells of the stand,
+/// so that all of the space under the block is kept out of.
+Cell with_stand(const Cell& cell, const Verification& verification);
+
+}  // namespace cell

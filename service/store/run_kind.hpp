@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+namespace cell {
+
+/// What a run is for. The touches of a proof and of a check are those of a calibration before, which they
+/// name, and are never fitted.
+enum class RunKind {
+  kCalibration,  // the errors of the arm
+  kProof,        // whether the calibrated arm is right where it was not calibrated
+  kCheck,        // whether the cell is still as it was
+};
+inline constexpr std::array kRunKinds{RunKind::kCalibration, RunKind::kProof, RunKind::kCheck};
+std::string_view run_kind_name(RunKind kind);  // "calibration"
+/// Nothing for a text that names no kind.
+std::optional<RunKind> run_kind_named(std::string_view name);
+
+}  // namespace cell

@@ -1,0 +1,106 @@
+#include "service/run/verification.hpp"
+
+#include <gmock/gmock.h>
+
+#include <stdexcept>
+
+#include "service/run/touch_command.hpp"
+#include "tests/service/shipped_cell.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+const Cell& demo() {
+  static const Cell cell = read_cell(kSourceDir / "config/cells/demo/cell.json");
+  return cell;
+}
+
+/// The exact touches of an arm with the errors of Table III.
+PastCalibration table3_calibration() {
+  PastCalibration past{.run = {.id = 7, .recipe = "edf-25"}, .touches = {}, .references = {}, .checks = {}};
+  int number = 0;
+  for (const calib::Touch& touch : table3_touches())
+    past.touches.push_back(
+        {.number = ++number, .plane = touch.face + 1, .role = touch.role, .joints = to_wire(touch.joints)});
+  return past;
+}
+
+Eigen::Isometry3d up_by(double metres) { return Eigen::Isometry3d(Eigen::Translation3d(0.0, -metres, 0.0)); }
+
+std::string refusal(RunKind kind, const PastCalibration& past, const Eigen::Isometry3d& place) {
+  const auto outcome = verification_of(kind, past, edf(), place);
+  const auto* refused = std::get_if<VerificationRefusal>(&outcome);
+  return refused ? refused->message : "";
+}
+
+Verification verification(RunKind kind, const PastCalibration& past, const Eigen::Isometry3d& place) {
+  const auto outcome = verification_of(kind, past, edf(), place);
+  if (const auto* refused = std::get_if<VerificationRefusal>(&outcome))
+    throw std::runtime_error(refused->message);
+  return *std::get<std::shared_ptr<const Verification>>(outcome);
+}
+
+TEST(VerificationOfACalibration, IsOfItsRunAtThePlaceThatTheBlockHasNow) {
+  PastCalibration past = table3_calibration();
+  past.cell_from_block = Eigen::Translation3d(0.1, 0.0, 0.0) * Eigen::Isometry3d::Identity();
+  const Verification proof = verification(RunKind::kProof, past, past.cell_from_block * up_by(0.3));
+  EXPECT_EQ(proof.of_run, 7);
+  EXPECT_TRUE(proof.place.calibrated_from_block.isApprox(up_by(0.3), 1e-12));
+  EXPECT_EQ(proof.record.problem().artefact.contact_planes.size(), edf().block.faces.size());
+}
+
+TEST(VerificationOfACalibration, AProofNeedsAnotherPlaceAndACheckTheSame) {
+  const PastCalibration past = table3_calibration();
+  EXPECT_THAT(refusal(RunKind::kProof, past, up_by(0.09)), HasSubstr("90 mm from where it stood in run 7"));
+  EXPECT_EQ(refusal(RunKind::kProof, past, up_by(0.11)), "");
+  EXPECT_THAT(refusal(RunKind::kCheck, past, up_by(0.003)), HasSubstr("put it back"));
+  EXPECT_EQ(refusal(RunKind::kCheck, past, up_by(0.001)), "");
+}
+
+TEST(VerificationOfACalibration, WithoutTouchesThatIdentifyTheArmThereIsNone) {
+  PastCalibration past = table3_calibration();
+  past.touches.resize(4);
+  EXPECT_THAT(refusal(RunKind::kCheck, past, up_by(0.0)), HasSubstr("run 7 cannot be identified again"));
+}
+
+TEST(VerificationOfACalibration, TheReferenceIsTheFirstThreeWholeChecks) {
+  PastCalibration past = table3_calibration();
+  const std::vector<StoredTouch> whole(past.touches.begin(), past.touches.begin() + calib::kCheckTouchCount);
+  const std::vector<StoredTouch> short_one(whole.begin(), whole.end() - 1);
+  past.checks = {short_one, whole, whole};
+  EXPECT_EQ(verification(RunKind::kCheck, past, up_by(0.0)).references.size(), 2u);
+  past.checks = {whole, whole, short_one, whole, whole};
+  EXPECT_EQ(verification(RunKind::kCheck, past, up_by(0.0)).references.size(), 3u);
+}
+
+TEST(VerificationRecipe, TouchesOnlyWhatItIsHeldAgainst) {
+  const Recipe& best = demo().recipes.at("best");
+  const Recipe proof = verification_recipe(demo(), best, RunKind::kProof);
+  EXPECT_EQ(proof.name, "best");
+  EXPECT_THAT(proof.faces, ElementsAre(0, 1, 2, 3)) << "the plate stays where it is";
+  EXPECT_EQ(proof.held_out_per_face, 0);
+  EXPECT_EQ(proof.reference_every, 0);
+  EXPECT_EQ(verification_recipe(demo(), best, RunKind::kCheck).faces, best.faces);
+  EXPECT_EQ(faces_of_first_solid(demo().block), proof.faces);
+  Block bare = demo().block;
+  bare.solids.clear();
+  EXPECT_EQ(faces_of_first_solid(bare).size(), bare.faces.size());
+}
+
+TEST(VerificationStand, WhatIsUnderALiftedBlockIsKeptOutOf) {
+  Verification lifted = verification(RunKind::kProof, table3_calibration(), up_by(0.3));
+  const Cell there = with_stand(demo(), lifted);
+  ASSERT_EQ(there.keep_out_boxes.size(), demo().keep_out_boxes.size() + 1);
+  const calib::Box& stand = there.keep_out_boxes.back();
+  EXPECT_NEAR(stand.min_m.y(), 0.0, 1e-9) << "the bottom of the cube; y points down";
+  EXPECT_NEAR(stand.max_m.y(), 0.3, 1e-9);
+  EXPECT_LT(stand.min_m.x(), -0.1);
+  lifted.place.calibrated_from_block = Eigen::Translation3d(0.3, 0.0, 0.0) * Eigen::Isometry3d::Identity();
+  EXPECT_EQ(with_stand(demo(), lifted).keep_out_boxes.size(), demo().keep_out_boxes.size()) << "beside it";
+}
+
+}  // namespace
+}  // namespace cell
