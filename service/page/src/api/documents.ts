@@ -119,6 +119,8 @@ export interface FaultEntry {
 
 export interface Run {
   id: string;
+  kind: 'calibration' | 'proof' | 'check';
+  of_run: string | null;  // the calibration that is proved or checked
   recipe: string;
   outcome: 'running' | 'complete' | 'stopped' | 'aborted' | 'interrupted';
   verdict: VerdictName;
@@ -206,7 +208,34 @@ export interface Criterion {
   proved: boolean | null;
 }
 export interface DecisionRule { standard: string; rule: 'simple' | 'guarded'; text: string; coverage_factor: number; criteria: Criterion[] }
+interface VerificationHead {
+  of_run: string;
+  touch_count: number;
+  complete: boolean;
+  verdict: {accepted: boolean | null; reasons: string[]};
+  rms_mm: number | null;
+  p: number | null;
+  p_min: number | null;
+  noise_um: number | null;
+}
+/** The result of a proof. */
+export interface Proof extends VerificationHead {
+  schema: 'touchcal/proof/1';
+  rms_max_mm: number | null;
+  power: {alternative: string; power: number | null}[];
+}
+/** The result of a check. */
+export interface Check extends VerificationHead {
+  schema: 'touchcal/check/1';
+  reference: {count: number; needed: number};
+  joints: {joint: number; offset_mrad: number | null; std_offset_mrad: number | null}[];
+  growth_ppm: number | null;
+  warmer_k: number | null;
+}
+export type Verification = Proof | Check;
+
 export interface Result {
+  schema?: 'touchcal/result/1';
   recipe: string;
   touch_count: number;
   complete: boolean;

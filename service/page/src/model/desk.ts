@@ -1,8 +1,8 @@
 import {get, post, type Reply} from '../api/client.ts';
-import type {Audit, Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet} from '../api/documents.ts';
+import type {Audit, Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
 import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
-import {kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
+import {hasResult, kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
 import {commandPath, isActive, isPaused, isTakenBack, type Command} from './states.ts';
 import {slimResult} from './slim_result.ts';
 import {startBody, type Conditions} from './start_body.ts';
@@ -61,8 +61,8 @@ export class Desk {
     this.asked = null;
     void this.askReadiness();
     void this.followRun();
-    const {view, shownRun, results} = this.store.state;
-    if (view === 'result' && shownRun && !results[shownRun]) void this.loadResult(shownRun);
+    const {view, shownRun} = this.store.state;
+    if (view === 'result' && shownRun && !hasResult(this.store.state, shownRun)) void this.loadResult(shownRun);
   }
 
   private takeStatuses(statuses: Status[]): void {
@@ -198,14 +198,19 @@ export class Desk {
   }
 
   async loadResult(run_id: string): Promise<void> {
-    const reply = await this.ask<Result>(`/api/v1/runs/${run_id}/result`);
-    if (reply.kind === 'ok') this.store.dispatch({type: 'result', run_id, result: slimResult(reply.value)});
+    const reply = await this.ask<Result | Verification>(`/api/v1/runs/${run_id}/result`);
+    if (reply.kind === 'ok') {
+      const told = reply.value;
+      this.store.dispatch(told.schema === 'touchcal/proof/1' || told.schema === 'touchcal/check/1'
+        ? {type: 'verification', run_id, verification: told}
+        : {type: 'result', run_id, result: slimResult(told)});
+    }
     if (reply.kind === 'refused') this.store.dispatch({type: 'missing', run_id, why: reply.problem.detail});
   }
 
   /** The results that the history's trends are drawn of. */
   async loadTrends(): Promise<void> {
-    const wanted = this.store.state.runs.filter((run: Run) => run.outcome === 'complete').slice(0, kTrendRuns);
+    const wanted = this.store.state.runs.filter((run: Run) => run.outcome === 'complete' && run.kind === 'calibration').slice(0, kTrendRuns);
     for (const run of wanted) {
       if (!this.store.state.results[run.id]) await this.loadResult(run.id);
     }
@@ -224,12 +229,12 @@ export class Desk {
   showRun(run_id: string | null): void {
     this.patch({shownRun: run_id, view: 'result'});
     const shown = run_id ?? newestRun(this.store.state);
-    if (shown && !this.store.state.results[shown]) void this.loadResult(shown);
+    if (shown && !hasResult(this.store.state, shown)) void this.loadResult(shown);
   }
 
   compare(run_id: string): void {
     this.store.dispatch({type: 'compare', run_id});
-    if (!this.store.state.results[run_id]) void this.loadResult(run_id);
+    if (!hasResult(this.store.state, run_id)) void this.loadResult(run_id);
   }
 
   chooseRecipe(recipe: string): void {

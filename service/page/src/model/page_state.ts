@@ -1,4 +1,4 @@
-import type {Cell, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet} from '../api/documents.ts';
+import type {Cell, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet, Verification} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
 import {addToSeries, kNoSeries, type Series} from './series.ts';
 import {isActive, isPaused, type Command} from './states.ts';
@@ -45,6 +45,7 @@ export interface PageState {
   shownRun: string | null;              // chosen in the history; null: the newest
   compared: string[];                   // at most two runs
   results: Record<string, Result>;      // by run
+  verifications: Record<string, Verification>;  // of proofs and checks, by run
   missing: Record<string, string>;      // why a run has no result, by run
   touches: {run_id: string; touches: Touch[]} | null;  // of the run that is watched
   runPlan: {run_id: string; touches: Touch[]} | null;
@@ -57,7 +58,7 @@ export const kFirstState: PageState = {
   link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], lastingWarning: null, unmet: null,
   role: null, hasToken: false, waitingSince_ms: null, pausedBy: null,
   view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], damagedRuns: [], nextBefore: null,
-  shownRun: null, compared: [], results: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
+  shownRun: null, compared: [], results: {}, verifications: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
   busy: null,
 };
 
@@ -68,6 +69,7 @@ export type Action =
   | {type: 'patch'; patch: Partial<PageState>}
   | {type: 'plan'; recipe: string; plan: PlanState}
   | {type: 'result'; run_id: string; result: Result}
+  | {type: 'verification'; run_id: string; verification: Verification}
   | {type: 'missing'; run_id: string; why: string}
   | {type: 'runs'; runs: Run[]; damaged: DamagedRun[]; nextBefore: string | null; isMore: boolean}
   | {type: 'noted'; key: string}
@@ -91,6 +93,8 @@ export function reduce(state: PageState, action: Action): PageState {
       return {...state, plans: {...state.plans, [action.recipe]: action.plan}};
     case 'result':
       return {...state, results: keepNewest({...state.results, [action.run_id]: action.result})};
+    case 'verification':
+      return {...state, verifications: keepNewest({...state.verifications, [action.run_id]: action.verification})};
     case 'missing':
       return {...state, missing: {...state.missing, [action.run_id]: action.why}};
     case 'runs':
@@ -156,7 +160,11 @@ function nextView(view: View, before: Status | null, status: Status): View {
   return view;
 }
 
-function keepNewest(results: Record<string, Result>): Record<string, Result> {
+export function hasResult({results, verifications}: PageState, run_id: string): boolean {
+  return run_id in results || run_id in verifications;
+}
+
+function keepNewest<Kept>(results: Record<string, Kept>): Record<string, Kept> {
   const ids = Object.keys(results).sort((a, b) => Number(b) - Number(a)).slice(0, kResultsMax);
   return Object.fromEntries(ids.map((id) => [id, results[id]!]));
 }

@@ -70,7 +70,7 @@ function RunRow({run, state, desk}: {run: Run; state: PageState; desk: Desk}) {
         {sayName(language, 'outcome_', run.outcome)}{run.verdict === 'none' ? '' : `, ${say(`verdict_${run.verdict}`)}`}
         {run.fault_code ? <> · <RunFault run={run} /></> : null}
       </td>
-      <td><button type="button" disabled={run.touches_done < 1} onClick={() => desk.showRun(run.id)}>{say('show')} {run.id}</button></td>
+      <td><button type="button" disabled={run.touches_done < 1 || run.kind !== 'calibration'} onClick={() => desk.showRun(run.id)}>{say('show')} {run.id}</button></td>
       <td>
         <label class="check">
           <input type="checkbox" checked={state.compared.includes(run.id)} disabled={run.touches_done < 1}

@@ -13,6 +13,7 @@ import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 import {UncertaintyMapView} from './uncertainty_map.tsx';
 import {Verdict} from './verdict_panel.tsx';
+import {VerificationView} from './verification_view.tsx';
 
 /** What a run found, in plain words first. */
 export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
@@ -24,6 +25,8 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
   const recipe = result?.recipe ?? state.runs.find(({id}) => id === run_id)?.recipe ?? '';
   if (!run_id) return <p class="empty">{say('noResultYet')}</p>;
   const which = <Which run_id={run_id} recipe={recipe} isEarlier={run_id !== newest} desk={desk} />;
+  const verification = state.verifications[run_id];
+  if (verification) return <div class="result-view">{which}<VerificationView verification={verification} /></div>;
   if (!result) return <>{which}<p class="empty"><OuterText text={why ? say('noResult', {why}) : say('noResultYet')} /></p></>;
   const verdict = verdictOf(run_id, result, state);
   return (

@@ -1,0 +1,68 @@
+import type {VerdictName, Verification} from '../api/documents.ts';
+import {number} from '../model/format.ts';
+import type {WordKey} from '../words/words.ts';
+import {Scroll} from './scroll.tsx';
+import {Symbol} from './symbol.tsx';
+import {OuterText, useLanguage, useSay} from './texts.tsx';
+import {kVerdictShapes} from './verdict_shapes.ts';
+
+/** What a proof or a check found: the verdict first, why, then the figures. */
+export function VerificationView({verification}: {verification: Verification}) {
+  const say = useSay();
+  const {accepted, reasons} = verification.verdict;
+  const verdict: VerdictName = accepted === null ? 'incomplete' : accepted ? 'accepted' : 'rejected';
+  return (
+    <>
+      <section class={`verdict ${verdict}`} aria-label={say(wordOf(verification))}>
+        <p class="word"><Symbol shape={kVerdictShapes[verdict]} />{say(wordOf(verification))}</p>
+        <p>{say('verifies', {run: verification.of_run, count: verification.touch_count})}</p>
+        {reasons.length > 0 ? <ul>{reasons.map((reason) => <li key={reason}><OuterText text={reason} isEnglish /></li>)}</ul> : null}
+      </section>
+      {verification.rms_mm === null ? null : <Figures verification={verification} />}
+    </>
+  );
+}
+
+function wordOf({schema, verdict: {accepted}}: Verification): WordKey {
+  if (accepted === null) return 'noVerdict';
+  if (schema === 'touchcal/proof/1') return accepted ? 'proved' : 'notProved';
+  return accepted ? 'unchanged' : 'changed';
+}
+
+/** A row of the table: what, its figure with the unit, its limit. */
+interface Row { key: string; name: string; figure: string; limit: string }
+
+function Figures({verification}: {verification: Verification}) {
+  const say = useSay();
+  const language = useLanguage();
+  const figure = (value: number | null, digits: number, unit: string): string => `${number(value, digits, language)} ${unit}`.trim();
+  const rows: Row[] = [
+    {key: 'rms', name: say('verifiedRms'), figure: figure(verification.rms_mm, 3, 'mm'),
+      limit: verification.schema === 'touchcal/proof/1' ? figure(verification.rms_max_mm, 3, 'mm') : ''},
+    {key: 'p', name: say('verifiedChance'), figure: figure(verification.p, 3, ''), limit: figure(verification.p_min, 3, '')},
+    {key: 'noise', name: say('verifiedNoise'), figure: figure(verification.noise_um, 1, 'µm'), limit: ''},
+  ];
+  if (verification.schema === 'touchcal/check/1') {
+    rows.push({key: 'growth', name: say('verifiedGrowth'), figure: figure(verification.growth_ppm, 1, 'ppm'), limit: ''});
+    for (const {joint, offset_mrad, std_offset_mrad} of verification.joints)
+      rows.push({key: `joint${joint}`, name: say('verifiedJoint', {joint}),
+        figure: `${number(offset_mrad, 3, language)} ± ${number(std_offset_mrad, 3, language)} mrad`, limit: ''});
+  } else {
+    for (const {alternative, power} of verification.power)
+      rows.push({key: alternative, name: say('verifiedPower', {what: alternative}),
+        figure: figure(power === null ? null : 100 * power, 0, '%'), limit: ''});
+  }
+  return (
+    <Scroll label={say('detail')}>
+      <table>
+        <caption>{say('detail')}</caption>
+        <thead><tr>{(['verifiedWhat', 'verifiedFigure', 'verifiedLimit'] as const).map((key) => <th key={key} scope="col">{say(key)}</th>)}</tr></thead>
+        <tbody>
+          {rows.map((row) => (
+            <tr key={row.key}><th scope="row">{row.name}</th><td class="figure">{row.figure}</td><td class="figure">{row.limit}</td></tr>
+          ))}
+        </tbody>
+      </table>
+    </Scroll>
+  );
+}
