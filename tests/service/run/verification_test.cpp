@@ -13,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-const Cell& demo() {
+const Cell& with_plate() {
   static const Cell cell = read_cell(kSourceDir / "config/cells/demo/cell.json");
   return cell;
 }
@@ -77,29 +77,30 @@ TEST(VerificationOfACalibration, TheReferenceIsTheFirstThreeWholeChecks) {
 }
 
 TEST(VerificationRecipe, TouchesOnlyWhatItIsHeldAgainst) {
-  const Recipe& best = demo().recipes.at("best");
-  const Recipe proof = verification_recipe(demo(), best, RunKind::kProof);
+  const Recipe& best = with_plate().recipes.at("best");
+  const Recipe proof = verification_recipe(with_plate(), best, RunKind::kProof);
   EXPECT_EQ(proof.name, "best");
   EXPECT_THAT(proof.faces, ElementsAre(0, 1, 2, 3)) << "the plate stays where it is";
   EXPECT_EQ(proof.held_out_per_face, 0);
   EXPECT_EQ(proof.reference_every, 0);
-  EXPECT_EQ(verification_recipe(demo(), best, RunKind::kCheck).faces, best.faces);
-  EXPECT_EQ(faces_of_first_solid(demo().block), proof.faces);
-  Block bare = demo().block;
+  EXPECT_EQ(verification_recipe(with_plate(), best, RunKind::kCheck).faces, best.faces);
+  EXPECT_EQ(faces_of_first_solid(with_plate().block), proof.faces);
+  Block bare = with_plate().block;
   bare.solids.clear();
   EXPECT_EQ(faces_of_first_solid(bare).size(), bare.faces.size());
 }
 
 TEST(VerificationStand, WhatIsUnderALiftedBlockIsKeptOutOf) {
   Verification lifted = verification(RunKind::kProof, table3_calibration(), up_by(0.3));
-  const Cell there = with_stand(demo(), lifted);
-  ASSERT_EQ(there.keep_out_boxes.size(), demo().keep_out_boxes.size() + 1);
+  const Cell there = with_stand(with_plate(), lifted);
+  ASSERT_EQ(there.keep_out_boxes.size(), with_plate().keep_out_boxes.size() + 1);
   const calib::Box& stand = there.keep_out_boxes.back();
   EXPECT_NEAR(stand.min_m.y(), 0.0, 1e-9) << "the bottom of the cube; y points down";
   EXPECT_NEAR(stand.max_m.y(), 0.3, 1e-9);
   EXPECT_LT(stand.min_m.x(), -0.1);
   lifted.place.calibrated_from_block = Eigen::Translation3d(0.3, 0.0, 0.0) * Eigen::Isometry3d::Identity();
-  EXPECT_EQ(with_stand(demo(), lifted).keep_out_boxes.size(), demo().keep_out_boxes.size()) << "beside it";
+  EXPECT_EQ(with_stand(with_plate(), lifted).keep_out_boxes.size(), with_plate().keep_out_boxes.size())
+      << "beside it";
 }
 
 }  // namespace
