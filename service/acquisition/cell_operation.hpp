@@ -193,6 +193,7 @@ class CellOperation {
   /// How a run ended, which the disk did not take yet.
   struct UnstoredEnd {
     std::int64_t run_id = 0;
+    RunKind kind = RunKind::kCalibration;
     RunEnd end;
     bool finished = false;          // as ActiveRun::finished
     std::optional<Fault> ended_by;  // what was shown before it could not be stored

@@ -102,6 +102,7 @@ asio::awaitable<void> CellOperation::close_run(RunOutcome outcome) {
   spdlog::info("run {} {}: {}, {} of {} touches", run.id(), run_outcome_name(outcome),
                verdict_name(end.verdict), run.touches_done(), run.touches_total());
   const UnstoredEnd closed{.run_id = run.id(),
+                           .kind = run.kind(),
                            .end = end,
                            .finished = concluded.finished,
                            .ended_by = status_.fault(),
@@ -127,7 +128,8 @@ asio::awaitable<std::optional<std::string>> CellOperation::store_end(UnstoredEnd
     run_->finished = closed.finished;
     status_.set_verdict(verdict);
   }
-  if (verdict == Verdict::kAccepted) status_.set_last_accepted(closed.run_id, closed.end.ended_at);
+  if (verdict == Verdict::kAccepted && closed.kind == RunKind::kCalibration)
+    status_.set_last_accepted(closed.run_id, closed.end.ended_at);
   co_return std::nullopt;
 }
 

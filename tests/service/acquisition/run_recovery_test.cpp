@@ -46,7 +46,7 @@ class RunRecoveryTest : public ::testing::Test, public OwnersBench {
   RunPlanning planning_{cell_of_owners(), nowhere_, queue, plans_, preparation, status, wake};
   TouchExecutor touches_{cell_of_owners(), computation, queue, session,
                          preparation,      status,      wake,  time.clocks()};
-  RunRecovery recovery_{cell_of_owners(), regions,   queue,    plans_, session,
+  RunRecovery recovery_{cell_of_owners(), nowhere_,  regions,  queue,  plans_,       session,
                         preparation,      planning_, touches_, status, time.clocks()};
 };
 
