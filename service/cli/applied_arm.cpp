@@ -8,9 +8,11 @@
 #include "config/arm_file.hpp"
 #include "config/file_bytes.hpp"
 #include "service/base/utc_time.hpp"
+#include "service/cli/commands.hpp"
 #include "service/cli/daemon_reply.hpp"
 #include "service/documents/compensation_view.hpp"
 #include "service/documents/model_document.hpp"
+#include "service/documents/run_document.hpp"
 
 namespace cell {
 namespace {
@@ -45,6 +47,18 @@ ApprovalRow find_approval(const ApiClient& daemon, const std::string& model) {
                         model));
 }
 
+/// Of a check of run `of_run`.
+CheckWarmth warmth_found(const ApiClient& daemon, const std::string& check, const std::string& of_run) {
+  demand_run_id(check);
+  const ApiReply run = daemon.get("/api/v1/runs/" + check);
+  if (run.status != 200) throw ModelRefused(run);
+  const ApiReply result = daemon.get("/api/v1/runs/" + check + "/result");
+  if (result.status != 200) throw ModelRefused(result);
+  auto found = warmth_of(check, read_reply(run, read_run).ended_at.value_or(""), result.body, of_run);
+  if (auto* why = std::get_if<std::string>(&found)) throw ModelRefused(*why);
+  return std::get<CheckWarmth>(std::move(found));
+}
+
 }  // namespace
 
 ModelRefused::ModelRefused(const ApiReply& reply) : std::runtime_error(problem_line(reply)) {}
@@ -55,7 +69,7 @@ AppliedArm arm_of_file(const std::filesystem::path& file) {
   return {.source = source, .arm = read_arm_text(source, bytes), .hash = arm_digest(source, bytes)};
 }
 
-AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model,
+AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const std::string& check,
                         std::chrono::system_clock::time_point now) {
   const ApprovalRow approval = find_approval(daemon, model);
   if (has_come(approval.valid_until, now))
@@ -66,7 +80,12 @@ AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model,
   const ApiReply reply = daemon.get("/api/v1/models/" + approval.id + "/arm");
   if (reply.status != 200) throw ModelRefused(reply);
   const std::string source = fmt::format("the arm of the approved model of run {}", approval.run_id);
-  return {.source = source, .arm = read_arm_text(source, reply.body), .hash = approval.hash};
+  AppliedArm applied{.source = source, .arm = read_arm_text(source, reply.body), .hash = approval.hash};
+  if (!check.empty()) {
+    applied.warmth = warmth_found(daemon, check, approval.run_id);
+    applied.arm = grown(applied.arm, *applied.warmth);
+  }
+  return applied;
 }
 
 }  // namespace cell

@@ -2,11 +2,13 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "config/cell.hpp"
 #include "service/cli/api_client.hpp"
+#include "service/documents/check_warmth.hpp"
 
 namespace cell {
 
@@ -14,7 +16,8 @@ namespace cell {
 struct AppliedArm {
   std::string source;  // for messages: the file, or the model and its daemon
   Arm arm;
-  std::string hash;  // of the model, or of the file: arm_digest()
+  std::string hash;                        // of the model, or of the file: arm_digest()
+  std::optional<CheckWarmth> warmth = {};  // with which the arm was grown()
 };
 
 /// Why no approved model is applied: what the daemon answers, or what is wrong with the model.
@@ -29,7 +32,9 @@ AppliedArm arm_of_file(const std::filesystem::path& file);
 /// The arm of a model that was approved, as the daemon has stored it. `model`: "current", the id of the
 /// approval, or the model's hash or its beginning, 12 digits at least, as touchcal models shows them. Throws
 /// ModelRefused where there is no such model or it is not valid any more at `now`, DaemonUnreachable.
-AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model,
+/// `check`: the run of a check of that calibration, whose growth of the arm is applied too; none where it is
+/// empty. ModelRefused where that does not count.
+AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const std::string& check,
                         std::chrono::system_clock::time_point now);
 
 }  // namespace cell

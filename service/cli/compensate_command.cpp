@@ -39,8 +39,8 @@ ExitCode compensate_command(const CompensateArguments& arguments, const AppliedA
   const calib::CompensationTool tool =
       file.names_tool ? tool_named(cell, arm, file.tool, arguments.targets_file.string(), "/tool")
                       : tool_named(cell, arm, file.tool, "--tool", "");
-  const CompensationDocument document =
-      compensation_of(cell, file.targets, compensated(cell, arm, tool, file.targets), applied.hash);
+  const CompensationDocument document = compensation_of(
+      cell, file.targets, compensated(cell, arm, tool, file.targets), applied.hash, applied.warmth);
   if (is_uncalibrated(cell, arm)) {
     print_warnings({applied.source + " is as the cell's own arm, no target is changed; give one that was "
                                      "calibrated and exported"});

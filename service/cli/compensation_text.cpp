@@ -36,7 +36,11 @@ std::string compensation_text(const CompensationDocument& document, const std::s
              "alone\nmodel {}\n",
              document.targets.size() - static_cast<std::size_t>(document.count(CompensationStatus::kRefused)),
              tool, document.count(CompensationStatus::kWarned), document.count(CompensationStatus::kRefused),
-             document.model);
+             document.model) +
+         (document.warmth
+              ? fmt::format("grown by {:.1f} ppm, as check {} found at {}\n", document.warmth->growth_ppm,
+                            document.warmth->check_run_id, document.warmth->at)
+              : "");
 }
 
 }  // namespace cell

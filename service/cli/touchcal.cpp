@@ -187,6 +187,11 @@ class CommandLine {
         "--model", model_,
         "approved model of the daemon in its place: current, its id or its hash (touchcal models)");
     arm->excludes(model);
+    compensate
+        ->add_option("--check", check_run_,
+                     "the run of a check of that model's calibration: the growth of the arm that it found is "
+                     "applied too")
+        ->needs(model);
     daemon_.add_to(*compensate);
     auto* targets = compensate->add_option("--targets", compensate_.targets_file, "targets, JSON or CSV");
     auto* data = compensate->add_option("--dtx", filter_.data_file,
@@ -211,7 +216,7 @@ class CommandLine {
   cell::AppliedArm applied_arm(const CLI::App& command) const {
     if (!arm_file_.empty()) return cell::arm_of_file(arm_file_);
     if (model_.empty()) throw std::invalid_argument("compensate: give --arm FILE, or --model ID");
-    return cell::arm_of_model(daemon_.client(command), model_, std::chrono::system_clock::now());
+    return cell::arm_of_model(daemon_.client(command), model_, check_run_, std::chrono::system_clock::now());
   }
 
   cell::ExitCode compensate_or_filter(const CLI::App& command) {
@@ -377,6 +382,7 @@ class CommandLine {
   cell::CompensateArguments compensate_;
   cell::FilterArguments filter_;
   std::string arm_file_, model_;  // what compensate applies: one of the two
+  std::string check_run_;
   cell::ExportArguments export_;
   cell::ReportArguments report_;
   cell::AuditArguments audit_;

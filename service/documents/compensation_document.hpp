@@ -34,14 +34,30 @@ struct CompensationDocument {
     }
   };
 
+  /// The growth of the arm that was applied beside the model.
+  struct Warmth {
+    std::string check_run_id;
+    std::string at;  // RFC 3339, the end of that check
+    double growth_ppm = 0.0;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("check_run_id", self.check_run_id);
+      fields("at", self.at);
+      fields("growth_ppm", self.growth_ppm);
+    }
+  };
+
   std::string schema = "touchcal/compensated/1";
-  std::string model;  // SHA-256 of the calibrated arm, see arm_digest()
+  std::string model;             // SHA-256 of the calibrated arm, see arm_digest()
+  std::optional<Warmth> warmth;  // nothing: as warm as at the calibration
   std::vector<Target> targets;
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     fields("schema", self.schema);
     fields("model", self.model);
+    fields("warmth", self.warmth);
     fields("targets", self.targets);
   }
 

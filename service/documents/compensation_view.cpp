@@ -74,6 +74,8 @@ CompensationDocument::Target target_of(const std::string& name, const Compensate
   return target;
 }
 
+constexpr double kPartsInAMillion = 1e6;
+
 }  // namespace
 
 std::string arm_digest(const std::string& source, std::string_view bytes) {
@@ -81,9 +83,13 @@ std::string arm_digest(const std::string& source, std::string_view bytes) {
 }
 
 CompensationDocument compensation_of(const Cell& cell, const std::vector<Target>& targets,
-                                     const std::vector<CompensatedTarget>& results,
-                                     const std::string& model) {
+                                     const std::vector<CompensatedTarget>& results, const std::string& model,
+                                     const std::optional<CheckWarmth>& warmth) {
   CompensationDocument document{.model = model};
+  if (warmth)
+    document.warmth = {.check_run_id = warmth->check_run_id,
+                       .at = warmth->at,
+                       .growth_ppm = warmth->growth * kPartsInAMillion};
   document.targets.reserve(targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i)
     document.targets.push_back(target_of(targets[i].name, results.at(i), cell.arm.joint_ranges));

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "config/cell.hpp"
 #include "config/targets_file.hpp"
+#include "service/documents/check_warmth.hpp"
 #include "service/documents/compensation_document.hpp"
 
 namespace cell {
@@ -15,9 +17,9 @@ namespace cell {
 /// every figure does. `source`: how messages call the bytes. ConfigError when they are no JSON.
 std::string arm_digest(const std::string& source, std::string_view bytes);
 
-/// One result a target, in the same order.
+/// One result a target, in the same order. `warmth`: with which the arm was grown().
 CompensationDocument compensation_of(const Cell& cell, const std::vector<Target>& targets,
                                      const std::vector<calib::CompensatedTarget>& results,
-                                     const std::string& model);
+                                     const std::string& model, const std::optional<CheckWarmth>& warmth = {});
 
 }  // namespace cell

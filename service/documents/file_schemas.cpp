@@ -248,10 +248,12 @@ constexpr std::string_view kTargets = R"({
 
 constexpr std::string_view kCompensated = R"({
 "type":"object",
-"required":["schema","model","targets"],
+"required":["schema","model","warmth","targets"],
 "properties":{
   "schema":{"const":"touchcal/compensated/1"},
   "model":{"type":"string","description":"SHA-256 of the calibrated arm"},
+  "warmth":{"type":["object","null"],"required":["check_run_id","at","growth_ppm"],
+    "description":"the growth that a check found, where it was applied too"},
   "targets":{"type":"array","items":{"type":"object",
     "required":["name","status","joints_deg","moved_mm","residual_um","tip_uncertainty_mm","reason"],
     "properties":{

@@ -1,10 +1,12 @@
 // touchcal prove and touchcal check: the three programs as processes, on the simulated demo cell.
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "service/base/exit_code.hpp"
 #include "tests/end_to_end/running_cell.hpp"
+#include "tests/end_to_end/shipped_cell.hpp"
 
 namespace touchcal::testing {
 namespace {
@@ -44,6 +46,24 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
   EXPECT_EQ(runs.at(0).at("of_run"), "1");
   EXPECT_EQ(runs.at(4).at("kind"), "calibration");
   EXPECT_TRUE(runs.at(4).at("of_run").is_null());
+
+  // A person's word applies the growth that the check found beside the model.
+  done({"approve", "1"});
+  const std::string targets = (cell_.folder() / "targets.csv").string();
+  std::ofstream(targets) << "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\na,20,30,60,10,50,-20\n";
+  const auto compensated = [&](std::vector<std::string> more) {
+    std::vector<std::string> command{"compensate", "--cell",    cell_file("demo"), "--model",
+                                     "current",    "--targets", targets,           "--json"};
+    command.insert(command.end(), more.begin(), more.end());
+    return cell_.run(command);
+  };
+  EXPECT_TRUE(nlohmann::json::parse(compensated({}).out).at("warmth").is_null());
+  const auto warmth = nlohmann::json::parse(compensated({"--check", "5"}).out).at("warmth");
+  EXPECT_EQ(warmth.at("check_run_id"), "5");
+  EXPECT_EQ(warmth.at("growth_ppm"), check.at("growth_ppm"));
+  const Finished refused = compensated({"--check", "2"});
+  EXPECT_EQ(refused.exit_code, cell::kExitRefused) << refused.out;
+  EXPECT_THAT(refused.err, HasSubstr("check 2 has no verdict"));
 }
 
 TEST_F(VerifyCommands, WhatIsNoCalibrationIsNeitherApprovedNorProvedNorReported) {

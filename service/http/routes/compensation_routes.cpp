@@ -26,6 +26,8 @@ struct ArmToApply {
   std::string source;
   std::string json;
   std::string hash;  // of the model, or of the arm
+  std::int64_t run = 0;
+  std::optional<CheckWarmth> warmth = {};
 };
 using ChosenArm = std::variant<ArmToApply, HttpResponse>;
 
@@ -40,7 +42,7 @@ ChosenArm arm_of_run(const Call& call, std::int64_t run) {
   if (!arm_json) return no_arm(fmt::format("run {} has no calibrated arm; name another with ?run=ID", run));
   const std::string source = fmt::format("the arm of run {}", run);
   std::string hash = arm_digest(source, *arm_json);
-  return ArmToApply{source, *std::move(arm_json), std::move(hash)};
+  return ArmToApply{source, *std::move(arm_json), std::move(hash), run};
 }
 
 /// `current`: the cell's model.
@@ -51,7 +53,7 @@ ChosenArm arm_of_model(const Call& call, const ModelStore& models, const Approva
                     "a run with ?run=ID",
                     current.run_id, *current.valid_until));
   return ArmToApply{fmt::format("the arm of the approved model of run {}", current.run_id),
-                    models.arm_json(current.id).value(), current.hash};
+                    models.arm_json(current.id).value(), current.hash, current.run_id};
 }
 
 /// That of the run which the query names, else the approved model's, else that of the newest accepted run.
@@ -64,6 +66,19 @@ ChosenArm arm_to_apply(const Call& call) {
   return no_arm("no run was accepted yet; name one with ?run=ID, or calibrate");
 }
 
+/// The growth that a check found; nothing when it counts.
+std::optional<HttpResponse> add_warmth(const Call& call, std::int64_t check, ArmToApply& applied) {
+  const RunStore& store = call.reads.store();
+  const auto run = store.run(check);
+  const auto result = run ? store.result_json(check) : std::nullopt;
+  if (!result || !run->ended_at)
+    return no_arm(fmt::format("run {} is no check that came to its end; GET /api/v1/runs lists them", check));
+  auto found = warmth_of(std::to_string(check), *run->ended_at, *result, std::to_string(applied.run));
+  if (auto* why = std::get_if<std::string>(&found)) return no_arm(std::move(*why));
+  applied.warmth = std::get<CheckWarmth>(std::move(found));
+  return std::nullopt;
+}
+
 HttpResponse wrong_body(const ConfigError& error) {
   return to_response({.kind = ProblemKind::kBody, .detail = error.what(), .pointer = error.pointer()});
 }
@@ -74,13 +89,15 @@ HttpResponse compensate_for(const Call& call, const TargetsFile& file, const Arm
   try {
     arm = read_arm_text(applied.source, applied.json);
     demand_arm_of(cell, arm, applied.source);
+    if (applied.warmth) arm = grown(arm, *applied.warmth);
   } catch (const ConfigError& error) {
     return no_arm(error.what());
   }
   try {
     const calib::CompensationTool tool = tool_named(cell, arm, file.tool, kTargetsBody, "/tool");
-    return {.body = document_text(compensation_of(cell, file.targets,
-                                                  compensated(cell, arm, tool, file.targets), applied.hash))};
+    return {.body =
+                document_text(compensation_of(cell, file.targets, compensated(cell, arm, tool, file.targets),
+                                              applied.hash, applied.warmth))};
   } catch (const ConfigError& error) {
     return wrong_body(error);
   }
@@ -95,7 +112,11 @@ HttpResponse post_compensate(const Call& call) {
   }
   auto chosen = arm_to_apply(call);
   if (auto* refused = std::get_if<HttpResponse>(&chosen)) return std::move(*refused);
-  return compensate_for(call, file, std::get<ArmToApply>(chosen));
+  ArmToApply& applied = std::get<ArmToApply>(chosen);
+  if (const auto check = call.number("check")) {
+    if (auto refused = add_warmth(call, *check, applied)) return *std::move(refused);
+  }
+  return compensate_for(call, file, applied);
 }
 
 }  // namespace
@@ -109,7 +130,9 @@ std::vector<Route> compensation_routes() {
            .answers = {{.schema = "Compensated"}},
            .query = {{"run", 1, kArmRunMax,
                       "the run whose arm is applied; by default the approved model's, without one the newest "
-                      "accepted"}},
+                      "accepted"},
+                     {"check", 1, kArmRunMax,
+                      "a check of that calibration: the growth of the arm that it found is applied too"}},
            .body_schema = "Targets",
            .body_bytes_max = kTargetsBytesMax,
            .dispatch = DispatchMode::kWorker}};
