@@ -8,7 +8,6 @@
 
 #include "service/base/exit_code.hpp"
 #include "service/cli/api_client.hpp"
-#include "service/store/run_kind.hpp"
 
 /// The commands of touchcal. Each prints to standard output (with `json` one document and nothing else),
 /// reports errors on standard error and returns the exit code.
@@ -108,7 +107,7 @@ struct RunArguments {
 ExitCode run_command(const ApiClient& daemon, const RunArguments& arguments, bool json);
 
 struct VerifyArguments {
-  RunKind kind = RunKind::kProof;
+  std::string kind;           // proof or check
   std::string of_run;         // the calibration; the daemon's choice when empty
   std::string operator_name;  // may be empty
   TemperatureArguments block_temperature;

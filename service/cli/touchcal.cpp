@@ -390,7 +390,7 @@ class CommandLine {
   cell::ApproveArguments approve_;
   cell::DaemonChoice daemon_;
   cell::RunArguments run_{.recipe = "edf-25"};
-  cell::VerifyArguments prove_{.kind = cell::RunKind::kProof}, check_{.kind = cell::RunKind::kCheck};
+  cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"};
   std::string shell_;
   std::string run_id_;
   bool json_ = false;

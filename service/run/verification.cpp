@@ -27,16 +27,16 @@ constexpr double kSamePlaceMetres = 2e-3;
 constexpr double kStandOverhangMetres = 0.075;
 constexpr double kOnSolidMetres = 1e-3;
 
-struct Identified {
+struct IdentifiedAgain {
   calib::IdentificationProblem problem;
   calib::IdentificationOptions options;
   calib::IdentificationResult result;
 };
 
 /// In the cell as it was then.
-Identified identify_again(const PastCalibration& past, const Cell& cell) {
+IdentifiedAgain identify_again(const PastCalibration& past, const Cell& cell) {
   const Recipe recipe = recipe_of(past.run, cell);
-  Identified again{identification_problem(cell, recipe), recipe.identification, {}};
+  IdentifiedAgain again{identification_problem(cell, recipe), recipe.identification, {}};
   std::ranges::transform(past.touches, std::back_inserter(again.problem.touches), to_touch);
   note_repeats(repeats_of(past.touches, past.references), again.problem);
   again.result = calib::identify(again.problem, again.options);
@@ -79,7 +79,7 @@ VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, c
                                     const Eigen::Isometry3d& cell_from_block) {
   const Eigen::Isometry3d calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
   if (auto refusal = refuse_place(kind, past.run.id, calibrated_from_block)) return *std::move(refusal);
-  const Identified again =
+  const IdentifiedAgain again =
       identify_again(past, with_block_temperature(with_block_moved(cell, calibrated_from_block.inverse()),
                                                   temperature_of(past.run, cell)));
   if (again.result.status != calib::IdentificationStatus::kConverged || !again.result.uncertainty)

@@ -149,6 +149,8 @@ TEST(RunsDocument, HasEachRunsFieldsAndWhereTheNextPageBegins) {
   alone.erase("conditions");
   EXPECT_EQ(page.at("runs")[0], alone);
   EXPECT_EQ(shape_of(page.at("runs")[0]), (Shape{{"id", "string"},
+                                                 {"kind", "string"},
+                                                 {"of_run", "null"},
                                                  {"recipe", "string"},
                                                  {"touching", "string"},
                                                  {"outcome", "string"},

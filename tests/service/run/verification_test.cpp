@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "service/run/moved_cell.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/shipped_cell.hpp"
 
@@ -31,13 +32,13 @@ PastCalibration table3_calibration() {
 Eigen::Isometry3d up_by(double metres) { return Eigen::Isometry3d(Eigen::Translation3d(0.0, -metres, 0.0)); }
 
 std::string refusal(RunKind kind, const PastCalibration& past, const Eigen::Isometry3d& place) {
-  const auto outcome = verification_of(kind, past, edf(), place);
+  const auto outcome = verification_of(kind, past, with_block_moved(edf(), place), place);
   const auto* refused = std::get_if<VerificationRefusal>(&outcome);
   return refused ? refused->message : "";
 }
 
 Verification verification(RunKind kind, const PastCalibration& past, const Eigen::Isometry3d& place) {
-  const auto outcome = verification_of(kind, past, edf(), place);
+  const auto outcome = verification_of(kind, past, with_block_moved(edf(), place), place);
   if (const auto* refused = std::get_if<VerificationRefusal>(&outcome))
     throw std::runtime_error(refused->message);
   return *std::get<std::shared_ptr<const Verification>>(outcome);
