@@ -47,7 +47,11 @@ Verification verification(RunKind kind, const PastCalibration& past, const Eigen
 TEST(VerificationOfACalibration, IsOfItsRunAtThePlaceThatTheBlockHasNow) {
   PastCalibration past = table3_calibration();
   past.cell_from_block = Eigen::Translation3d(0.1, 0.0, 0.0) * Eigen::Isometry3d::Identity();
-  const Verification proof = verification(RunKind::kProof, past, past.cell_from_block * up_by(0.3));
+  const auto outcome = verification_of(RunKind::kProof, past, with_block_moved(edf(), up_by(0.3)),
+                                       past.cell_from_block * up_by(0.3));
+  const auto* found = std::get_if<std::shared_ptr<const Verification>>(&outcome);
+  ASSERT_TRUE(found);
+  const Verification& proof = **found;
   EXPECT_EQ(proof.of_run, 7);
   EXPECT_TRUE(proof.place.calibrated_from_block.isApprox(up_by(0.3), 1e-12));
   EXPECT_EQ(proof.record.problem().artefact.contact_planes.size(), edf().block.faces.size());
