@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -183,6 +184,23 @@ struct ReportArguments {
 };
 /// Writes a run's report; with `json` its document on standard output, whatever the format.
 ExitCode report_command(const ApiClient& daemon, const ReportArguments& arguments, bool json);
+
+/// What give_command() takes, with what it does.
+inline const std::map<std::string, std::string> kCellCommands{
+    {"pause", "hold the run after the touch under way"},
+    {"resume", "continue the run on hold"},
+    {"abort", "end the run at once; the cell must be cleared afterwards"},
+    {"stop", "stop motion and end the run"},
+    {"acknowledge", "acknowledge the fault"},
+    {"clear", "leave ABORTED once its cause is removed"},
+    {"reset", "take the arm back from a face, make the cell ready for a run"},
+    {"retry", "repeat the touch that holds the run"},
+    {"skip", "leave out the touch that holds the run; the run is then incomplete"},
+    {"confirm", "report what to confirm at the cell"},
+    {"touch-test", "report the state of the touch test of the stylus"},
+    {"take", "record the present contact, made by hand"},
+    {"undo", "discard the last touch made by hand"},
+};
 
 /// pause, resume, abort, retry, skip: of the active run. stop, acknowledge, clear, reset, confirm,
 /// touch-test, take, undo: of the cell.

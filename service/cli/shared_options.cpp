@@ -6,6 +6,7 @@
 #include "config/decimal_text.hpp"
 #include "config/json_value.hpp"
 #include "config/option_text.hpp"
+#include "service/run/run_conditions.hpp"
 
 namespace cell {
 
@@ -29,6 +30,14 @@ void add_block_temperature(CLI::App& command, TemperatureArguments& temperature)
           ->check(CLI::Range(kPositive.min, kBlockTemperatureStdMaxK))
           ->needs(celsius);
   celsius->needs(deviation);
+}
+
+void add_arm_moving(CLI::App& command, std::optional<double>& minutes) {
+  command
+      .add_option("--arm-moving", minutes,
+                  "minutes that the arm has moved at working speed before: how warm it is")
+      ->check(refuse_number)
+      ->check(CLI::Range(0.0, kArmMovingMaxMin));
 }
 
 }  // namespace cell

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <functional>
 #include <iostream>
-#include <map>
 
 #include "config/block_file.hpp"
 #include "config/config_error.hpp"
@@ -18,26 +17,9 @@
 #include "service/cli/completion.hpp"
 #include "service/cli/daemon_choice.hpp"
 #include "service/cli/shared_options.hpp"
-#include "service/run/run_conditions.hpp"
 #include "service/run/simulated_calibrations.hpp"
 
 namespace {
-
-const std::map<std::string, std::string> kCellCommands{
-    {"pause", "hold the run after the touch under way"},
-    {"resume", "continue the run on hold"},
-    {"abort", "end the run at once; the cell must be cleared afterwards"},
-    {"stop", "stop motion and end the run"},
-    {"acknowledge", "acknowledge the fault"},
-    {"clear", "leave ABORTED once its cause is removed"},
-    {"reset", "take the arm back from a face, make the cell ready for a run"},
-    {"retry", "repeat the touch that holds the run"},
-    {"skip", "leave out the touch that holds the run; the run is then incomplete"},
-    {"confirm", "report what to confirm at the cell"},
-    {"touch-test", "report the state of the touch test of the stylus"},
-    {"take", "record the present contact, made by hand"},
-    {"undo", "discard the last touch made by hand"},
-};
 
 class CommandLine {
  public:
@@ -78,7 +60,7 @@ class CommandLine {
     add_models();
     add_audit();
     add_archive();
-    for (const auto& [name, description] : kCellCommands) {
+    for (const auto& [name, description] : cell::kCellCommands) {
       add_for_daemon(name, description, [this, command = name](const cell::ApiClient& daemon) {
         return cell::give_command(daemon, command, json_);
       });
@@ -245,14 +227,7 @@ class CommandLine {
                     "the person responsible for the run; stored with its result");
     cell::add_stiffness(*run, run_.stiffness)->excludes("--plan");
     cell::add_block_temperature(*run, run_.block_temperature);
-    add_arm_moving(*run, run_.arm_moving_min);
-  }
-
-  static void add_arm_moving(CLI::App& run, std::optional<double>& minutes) {
-    run.add_option("--arm-moving", minutes,
-                   "minutes that the arm has moved at working speed before: how warm it is")
-        ->check(cell::refuse_number)
-        ->check(CLI::Range(0.0, cell::kArmMovingMaxMin));
+    cell::add_arm_moving(*run, run_.arm_moving_min);
   }
 
   /// A run that is held against an earlier calibration.
@@ -265,7 +240,7 @@ class CommandLine {
     run->add_option("--operator", given.operator_name,
                     "the person responsible for the run; stored with its result");
     cell::add_block_temperature(*run, given.block_temperature);
-    add_arm_moving(*run, given.arm_moving_min);
+    cell::add_arm_moving(*run, given.arm_moving_min);
   }
 
   /// For commands that need no daemon.
