@@ -170,16 +170,18 @@ class MqttSink final : public Sink {
   }
 
   void welcome(const MqttOptions& options, const std::stop_token& ending) {
+    // A certificate that the broker does not take ends either call: TLS 1.3 tells it after the handshake.
+    constexpr const char* kNotConnected = "it cannot be connected";
     demand(mosquitto_connect_bind_v5(client_.get(), options.host.c_str(), options.port, kKeepAliveSeconds,
                                      nullptr, nullptr),
-           "it cannot be connected");
+           kNotConnected);
     const auto end = cell_.clocks.steady() + deadlines_.welcome;
     while (!answer_) {
       if (ending.stop_requested() || cell_.clocks.steady() > end)
         throw SinkTrouble(fmt::format("the broker {} listens and does not answer", place_));
       // A refusal is an error of the protocol to the library.
       const int result = mosquitto_loop(client_.get(), static_cast<int>(kSocketLook.count()), 1);
-      if (!answer_ || *answer_ == MQTT_RC_SUCCESS) demand(result, "the connection broke off");
+      if (!answer_ || *answer_ == MQTT_RC_SUCCESS) demand(result, kNotConnected);
     }
     if (*answer_ != MQTT_RC_SUCCESS)
       throw SinkTrouble(

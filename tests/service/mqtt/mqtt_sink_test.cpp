@@ -162,7 +162,7 @@ TEST_F(MqttSinkTest, WhoIsNotTakenIsToldWhy) {
   Broker broker(certificates());
   MqttOptions options = broker.options_of("foreign");
   EXPECT_THAT([&] { connect_mqtt(options, cell(1), {}); },
-              ThrowsMessage<SinkTrouble>(HasSubstr("broke off")));
+              ThrowsMessage<SinkTrouble>(HasSubstr("cannot be connected")));
   options = broker.options_of("cell-1");
   options.authority = certificates() / "other.crt";
   EXPECT_THAT([&] { connect_mqtt(options, cell(1), {}); },
