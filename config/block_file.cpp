@@ -12,6 +12,8 @@
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
+#include "config/schema_version.hpp"
+#include "config/serial_number.hpp"
 #include "config/shapes.hpp"
 #include "config/utc_text.hpp"
 
@@ -255,20 +257,24 @@ void read_temperature(const JsonObject& object, bool is_first_schema, Block& blo
   }
 }
 
+constexpr std::array kBlockSchemas{kFirstBlockSchema, kSecondBlockSchema, kBlockSchema};
+
 }  // namespace
 
 Block read_block(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const bool is_first_schema = has_schema(document, kFirstBlockSchema);
+  const SchemaVersion version = schema_version(document, "block", kBlockSchemas);
+  const bool is_first_schema = version.number == 1;
   const JsonObject object =
       JsonValue(source, document)
-          .document(is_first_schema ? kFirstBlockSchema : kBlockSchema,
-                    {"schema", "name", "temperature_c", "std_temperature_k", "temperature_at",
+          .document(kBlockSchemas[static_cast<std::size_t>(version.number) - 1],
+                    {"schema", "name", "serial", "temperature_c", "std_temperature_k", "temperature_at",
                      "thermal_expansion_per_k", "certificate", "faces", "lengths", "solids"});
   Block block;
   block.file = file;
   block.name = object.at("name").text();
+  block.serial = serial_number(find_since(3, object, "serial", version));
   read_temperature(object, is_first_schema, block);
   if (const auto certificate = object.find("certificate")) {
     for (const auto& [key, value] : certificate->members()) block.certificate.emplace(key, value.text());

@@ -7,8 +7,9 @@
 
 namespace cell {
 
-inline constexpr std::string_view kBlockSchema = "touchcal/block/2";
-inline constexpr std::string_view kFirstBlockSchema = "touchcal/block/1";  // without temperature_at
+inline constexpr std::string_view kBlockSchema = "touchcal/block/3";
+inline constexpr std::string_view kSecondBlockSchema = "touchcal/block/2";  // without serial
+inline constexpr std::string_view kFirstBlockSchema = "touchcal/block/1";   // without temperature_at
 
 /// What a block's temperature may be, degrees C.
 inline constexpr double kBlockTemperatureMinC = -50.0;

@@ -73,6 +73,7 @@ struct BlockTemperature {
 struct Block {
   std::string name;
   std::filesystem::path file;                      // where it was read from
+  std::optional<std::string> serial;               // as engraved; nothing: unknown
   std::map<std::string, std::string> certificate;  // texts for people
   std::optional<double> temperature_c;             // as measured; unknown is not 20
   double std_temperature_k = 0.0;
@@ -86,6 +87,7 @@ struct Block {
 
 struct Probe {
   std::string name;
+  std::optional<std::string> serial;
   std::map<std::string, std::string> certificate;
   calib::Stylus stylus;
   bool tip_is_contact_point = false;  // no ball: stylus is all zero
@@ -156,6 +158,8 @@ struct Cell {
   std::vector<std::filesystem::path> files;  // all that it was read from: itself, arm, block, probe, recipes
   Arm arm;                                   // with the cell's frames 0 and 7
   std::vector<int> own_frames;               // those of the arm that the cell's file gives itself
+  std::optional<std::string> arm_serial;     // of this very robot; its arm's file may serve many
+  std::optional<std::string> controller_serial;
   Block block;
   Probe probe;
   std::map<std::string, Recipe> recipes;

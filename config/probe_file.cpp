@@ -9,6 +9,8 @@
 #include "config/config_error.hpp"
 #include "config/file_bytes.hpp"
 #include "config/json_value.hpp"
+#include "config/schema_version.hpp"
+#include "config/serial_number.hpp"
 #include "config/shapes.hpp"
 
 namespace cell {
@@ -49,12 +51,7 @@ void read_sideways(const JsonObject& object, Probe& probe) {
   }
 }
 
-void refuse_in_first(const JsonObject& object) {
-  for (const char* key : kSidewaysKeys) {
-    if (const auto value = object.find(key))
-      value->fail("unknown key " + in_quotes(key) + R"( in a probe of version 1; raise "schema" to 2)");
-  }
-}
+constexpr std::array kProbeSchemas{kFirstProbeSchema, kSecondProbeSchema, kProbeSchema};
 
 void read_stylus(const JsonObject& object, Probe& probe) {
   for (const char* key : {"stylus_radius_mm", "pretravel_mm"}) {
@@ -89,17 +86,19 @@ void refuse_stylus(const JsonObject& object) {
 Probe read_probe(const std::filesystem::path& file) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const bool is_first_schema = has_schema(document, kFirstProbeSchema);
+  const SchemaVersion version = schema_version(document, "probe", kProbeSchemas);
   const JsonObject object =
       JsonValue(source, document)
-          .document(is_first_schema ? kFirstProbeSchema : kProbeSchema,
-                    {"schema", "name", "tip_is_contact_point", "stylus_radius_mm", "std_stylus_radius_mm",
-                     "pretravel_mm", "std_pretravel_mm", "pretravel_tilt_mm", "std_pretravel_tilt_mm",
-                     "lobes_mm", "std_lobes_mm", "lobe_direction_deg", "lobe_direction_rad", "overtravel_mm",
-                     "calibration_speed_mm_s", "bodies", "certificate"});
-  if (is_first_schema) refuse_in_first(object);
+          .document(
+              kProbeSchemas[static_cast<std::size_t>(version.number) - 1],
+              {"schema", "name", "serial", "tip_is_contact_point", "stylus_radius_mm", "std_stylus_radius_mm",
+               "pretravel_mm", "std_pretravel_mm", "pretravel_tilt_mm", "std_pretravel_tilt_mm", "lobes_mm",
+               "std_lobes_mm", "lobe_direction_deg", "lobe_direction_rad", "overtravel_mm",
+               "calibration_speed_mm_s", "bodies", "certificate"});
+  for (const char* key : kSidewaysKeys) static_cast<void>(find_since(2, object, key, version));
   Probe probe;
   probe.name = object.at("name").text();
+  probe.serial = serial_number(find_since(3, object, "serial", version));
   if (const auto certificate = object.find("certificate")) {
     for (const auto& [key, value] : certificate->members()) probe.certificate.emplace(key, value.text());
   }

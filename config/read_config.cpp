@@ -13,6 +13,8 @@
 #include "config/json_value.hpp"
 #include "config/probe_file.hpp"
 #include "config/recipe_file.hpp"
+#include "config/schema_version.hpp"
+#include "config/serial_number.hpp"
 #include "config/shapes.hpp"
 
 namespace cell {
@@ -66,26 +68,9 @@ void read_recipes(const JsonObject& object, std::optional<StiffnessChoice> stiff
   }
 }
 
-constexpr std::array kCellSchemas{kFirstCellSchema, kSecondCellSchema, kCellSchema};
+constexpr std::array kCellSchemas{kFirstCellSchema, kSecondCellSchema, kThirdCellSchema, kCellSchema};
 
-/// The number of the schema of a cell's document; the newest for one that is none of them.
-int cell_version_of(const nlohmann::json& document) {
-  for (std::size_t i = 0; i < kCellSchemas.size(); ++i)
-    if (has_schema(document, kCellSchemas[i])) return static_cast<int>(i) + 1;
-  return static_cast<int>(kCellSchemas.size());
-}
-
-/// A key that came with a later schema of a cell than the first.
-std::optional<JsonValue> find_since(int since, const JsonObject& object, const char* key, int version) {
-  auto value = object.find(key);
-  if (value && version < since) {
-    value->fail("unknown key " + in_quotes(key) + " in a cell of version " + std::to_string(version) +
-                R"(; raise "schema" to )" + std::to_string(since));
-  }
-  return value;
-}
-
-void read_tools(const JsonValue& tools, int version, Cell& cell) {
+void read_tools(const JsonValue& tools, const SchemaVersion& version, Cell& cell) {
   for (const auto& [name, value] : tools.members()) {
     const JsonObject object = value.object({"position_mm", "rotation_deg", "tip_box_rms_max_mm"});
     cell.tools.emplace(name, pose_from_json(object));
@@ -119,7 +104,7 @@ void read_touch_conditions(const JsonObject& object, Cell& cell) {
 }
 
 /// How old a temperature of the block may be; came with the second schema.
-void read_temperature_age(const JsonObject& object, int version, Cell& cell) {
+void read_temperature_age(const JsonObject& object, const SchemaVersion& version, Cell& cell) {
   constexpr NumberRange kHours{.min = 0.1, .max = 8760.0};  // six minutes to a year
   const auto age = find_since(2, object, "block_temperature_age_max_h", version);
   if (!age) return;
@@ -127,7 +112,7 @@ void read_temperature_age(const JsonObject& object, int version, Cell& cell) {
       std::chrono::duration<double, std::chrono::hours::period>(age->number(kHours)));
 }
 
-void read_permit_lifetime(const JsonObject& object, int version, Cell& cell) {
+void read_permit_lifetime(const JsonObject& object, const SchemaVersion& version, Cell& cell) {
   constexpr int kShiftMinutes = 480;
   if (const auto minutes = find_since(2, object, "permit_minutes", version))
     cell.permit_lifetime = std::chrono::minutes(minutes->integer(1, kShiftMinutes));
@@ -144,7 +129,8 @@ std::map<std::string, double> limits_by_recipe_m(const JsonValue& value, const C
   return limits_m;
 }
 
-AcceptanceLimits acceptance_from_json(const JsonValue& value, int version, const Cell& cell) {
+AcceptanceLimits acceptance_from_json(const JsonValue& value, const SchemaVersion& version,
+                                      const Cell& cell) {
   const JsonObject object =
       value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max",
                     "lack_of_fit_p_min", "tip_box_rms_max_mm", "tip_box_max_mm", "tip_box_max_by_recipe_mm",
@@ -248,37 +234,41 @@ Endpoint endpoint_from_json(const JsonValue& value) {
 Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice> stiffness) {
   const std::string source = file.string();
   const nlohmann::json document = read_json_file(file);
-  const int version = cell_version_of(document);
-  const JsonObject object =
-      JsonValue(source, document)
-          .document(kCellSchemas[static_cast<std::size_t>(version) - 1], {"schema",
-                                                                          "name",
-                                                                          "arm",
-                                                                          "frames",
-                                                                          "block",
-                                                                          "probe",
-                                                                          "recipes",
-                                                                          "default_recipe",
-                                                                          "tools",
-                                                                          "workspace_box",
-                                                                          "keep_out_boxes",
-                                                                          "park_joints_deg",
-                                                                          "nominal_miss_mm",
-                                                                          "stylus_tilt_max_deg",
-                                                                          "touch_noise_mm",
-                                                                          "unknown_place_std",
-                                                                          "block_temperature_age_max_h",
-                                                                          "permit_minutes",
-                                                                          "acceptance",
-                                                                          "speeds",
-                                                                          "deadlines",
-                                                                          "controller"});
+  const SchemaVersion version = schema_version(document, "cell", kCellSchemas);
+  const JsonObject object = JsonValue(source, document)
+                                .document(kCellSchemas[static_cast<std::size_t>(version.number) - 1],
+                                          {"schema",
+                                           "name",
+                                           "arm",
+                                           "arm_serial",
+                                           "controller_serial",
+                                           "frames",
+                                           "block",
+                                           "probe",
+                                           "recipes",
+                                           "default_recipe",
+                                           "tools",
+                                           "workspace_box",
+                                           "keep_out_boxes",
+                                           "park_joints_deg",
+                                           "nominal_miss_mm",
+                                           "stylus_tilt_max_deg",
+                                           "touch_noise_mm",
+                                           "unknown_place_std",
+                                           "block_temperature_age_max_h",
+                                           "permit_minutes",
+                                           "acceptance",
+                                           "speeds",
+                                           "deadlines",
+                                           "controller"});
   Cell cell;
   cell.name = object.at("name").text();
   cell.file = file;
   cell.files = {file};
   cell.arm = read_arm(named_file(object.at("arm"), cell));
   if (const auto frames = object.find("frames")) read_frame_overrides(*frames, cell);
+  cell.arm_serial = serial_number(find_since(4, object, "arm_serial", version));
+  cell.controller_serial = serial_number(find_since(4, object, "controller_serial", version));
   cell.block = read_block(named_file(object.at("block"), cell));
   cell.probe = read_probe(named_file(object.at("probe"), cell));
   read_recipes(object, stiffness, cell);

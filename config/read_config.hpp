@@ -10,7 +10,8 @@
 
 namespace cell {
 
-inline constexpr std::string_view kCellSchema = "touchcal/cell/3";
+inline constexpr std::string_view kCellSchema = "touchcal/cell/4";
+inline constexpr std::string_view kThirdCellSchema = "touchcal/cell/3";   // without serial numbers
 inline constexpr std::string_view kSecondCellSchema = "touchcal/cell/2";  // without tip_box_max_by_recipe_mm
 inline constexpr std::string_view kFirstCellSchema =
     "touchcal/cell/1";  // without block_temperature_age_max_h

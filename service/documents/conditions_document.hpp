@@ -35,11 +35,13 @@ struct PlaceDocument {
 struct ConditionsDocument {
   struct Certified {
     std::string name;
+    std::optional<std::string> serial;
     std::optional<std::map<std::string, std::string>> certificate;
 
     template <class Self, class Fields>
     static void visit(Self& self, Fields& fields) {
       fields("name", self.name);
+      fields("serial", self.serial);
       fields("certificate", self.certificate);
     }
   };
@@ -64,6 +66,8 @@ struct ConditionsDocument {
   std::optional<std::string> block_temperature_source;  // file, run
   std::optional<std::string> block_temperature_at;      // when it was measured
   std::optional<double> arm_moving_min;                 // before the run
+  std::optional<std::string> arm_serial;                // of this very robot
+  std::optional<std::string> controller_serial;
   Certified block;
   Certified probe;
   Versions versions;
@@ -82,6 +86,8 @@ struct ConditionsDocument {
     fields("block_temperature_source", self.block_temperature_source);
     fields("block_temperature_at", self.block_temperature_at);
     fields("arm_moving_min", self.arm_moving_min);
+    fields("arm_serial", self.arm_serial);
+    fields("controller_serial", self.controller_serial);
     fields("block", self.block);
     fields("probe", self.probe);
     fields("versions", self.versions);

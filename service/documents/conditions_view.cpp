@@ -25,8 +25,10 @@ ConditionsDocument conditions_of(const Cell& cell, const RunConditions& conditio
       .config_digest = conditions.config_digest,
       .block_temperature_c = finite(cell.block.temperature_c),
       .arm_moving_min = conditions.arm_moving_min,
-      .block = {cell.block.name, told(cell.block.certificate)},
-      .probe = {cell.probe.name, told(cell.probe.certificate)},
+      .arm_serial = cell.arm_serial,
+      .controller_serial = cell.controller_serial,
+      .block = {cell.block.name, cell.block.serial, told(cell.block.certificate)},
+      .probe = {cell.probe.name, cell.probe.serial, told(cell.probe.certificate)},
       .versions = {kVersion, cs8::kProtocolVersion, conditions.controller_application},
       .place = block_pose_of(conditions.place)};
   if (conditions.touch_mode) document.touch_mode = touch_mode_name(*conditions.touch_mode);

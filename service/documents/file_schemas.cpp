@@ -136,6 +136,8 @@ constexpr std::string_view kResult = R"({
   "conditions":{"type":"object",
     "required":["operator","config_digest","block_temperature_c","block","probe","versions","controller_session"],
     "properties":{
+      "arm_serial":{"type":["string","null"],"description":"of the robot, from the cell's file"},
+      "controller_serial":{"type":["string","null"]},
       "block_temperature_c":{"type":["number","null"]},
       "std_temperature_k":{"type":["number","null"]},
       "thermal_expansion_per_k":{"type":["number","null"]},

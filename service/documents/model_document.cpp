@@ -33,12 +33,12 @@ struct NamedArm {
   }
 };
 
-/// How warm the arm was, where the stored conditions say.
-std::optional<double> arm_moving_min_of(const StoredRun& run) try {
-  if (!run.conditions_json) return std::nullopt;
-  return document_from<ConditionsDocument>(*run.conditions_json, Absent::kKeepsDefault).arm_moving_min;
+/// What the run was made under; all unknown where nothing is stored or what is stored cannot be read.
+ConditionsDocument conditions_of(const StoredRun& run) try {
+  if (!run.conditions_json) return {};
+  return read_conditions(*run.conditions_json);
 } catch (const DocumentError&) {
-  return std::nullopt;
+  return {};
 }
 
 template <class Value>
@@ -85,11 +85,14 @@ std::string model_hash(const StoredRun& run, const std::vector<StoredTouch>& tou
 ModelDocument model_of(const StoredRun& run, const std::vector<StoredTouch>& touches,
                        const std::string& arm_json, const std::string& result_json) {
   auto parts = document_from<PartsOfResult>(result_json, Absent::kKeepsDefault);
+  const ConditionsDocument conditions = conditions_of(run);
   ModelDocument model{.hash = model_hash(run, touches, arm_json),
                       .run_id = std::to_string(run.id),
                       .arm = name_of_arm(arm_json),
+                      .arm_serial = conditions.arm_serial,
+                      .controller_serial = conditions.controller_serial,
                       .config_digest = run.config_digest,
-                      .arm_moving_min = arm_moving_min_of(run),
+                      .arm_moving_min = conditions.arm_moving_min,
                       .tip_uncertainty = std::move(parts.tip_uncertainty),
                       .parameters = std::move(parts.parameters),
                       .nongeometric_parameters = std::move(parts.nongeometric_parameters)};

@@ -24,10 +24,11 @@ struct ModelDocument {
   std::optional<std::string> valid_until;   // RFC 3339; no value: no end was set
   std::optional<std::string> proof_run_id;  // no value: the model is not proved
   std::string arm;
-  std::optional<std::string> arm_serial;         // no file of the cell has serial numbers yet
-  std::optional<std::string> controller_serial;  // likewise
-  std::optional<std::string> config_digest;      // of the cell's files of the run
-  std::optional<double> arm_moving_min;          // before the run: how warm the arm was
+  /// As the cell's file had them when the run began; no value: it had none.
+  std::optional<std::string> arm_serial;
+  std::optional<std::string> controller_serial;
+  std::optional<std::string> config_digest;  // of the cell's files of the run
+  std::optional<double> arm_moving_min;      // before the run: how warm the arm was
   std::optional<double> block_temperature_c;
   Carried<TipDocument> tip_uncertainty;  // these three as in the run's result
   CarriedJson parameters;

@@ -94,6 +94,11 @@ std::string certificate_text(const std::optional<std::map<std::string, std::stri
   return words.empty() ? "unknown" : words;
 }
 
+std::string certified_text(const ConditionsDocument::Certified& certified) {
+  return text_or_unknown(certified.name) + "; " + text_or_unknown(certified.serial) + "; " +
+         certificate_text(certified.certificate);
+}
+
 /// The place of the block: that of the cell's file, or the located one.
 std::string place_text(const ConditionsDocument& conditions) {
   if (!conditions.place) return "unknown";
@@ -126,11 +131,11 @@ std::string run_section(const RunReport& report) {
           "What was calibrated, with what",
           {{"run", text_or_unknown(run.id)},
            {"recipe", text_or_unknown(run.recipe)},
-           {"arm", text_or_unknown(result.arm)},
-           {"block, certificate",
-            text_or_unknown(conditions.block.name) + "; " + certificate_text(conditions.block.certificate)},
-           {"probe, certificate",
-            text_or_unknown(conditions.probe.name) + "; " + certificate_text(conditions.probe.certificate)},
+           {"arm, serial number",
+            text_or_unknown(result.arm) + "; " + text_or_unknown(conditions.arm_serial)},
+           {"controller's serial number", text_or_unknown(conditions.controller_serial)},
+           {"block, serial number, certificate", certified_text(conditions.block)},
+           {"probe, serial number, certificate", certified_text(conditions.probe)},
            {"block's temperature", temperature_text(run.block_temperature_c, conditions)},
            {"arm had moved", figure_text(conditions.arm_moving_min, "{:.0f} min before the run")},
            {"place of the block", place_text(conditions)},

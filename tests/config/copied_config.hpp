@@ -15,6 +15,12 @@ inline constexpr const char* kRealTruth = "cells/demo/truth-real.json";
 
 inline bool is_truth(const std::string& file) { return file == kTruth || file == kRealTruth; }
 
+/// Makes a document of the cell, block or probe one of an earlier schema, which has no serial numbers.
+inline void lower_schema(nlohmann::json& document, std::string_view schema) {
+  for (const char* key : {"serial", "arm_serial", "controller_serial"}) document.erase(key);
+  document["schema"] = schema;
+}
+
 /// A copy of the shipped configuration to spoil: the demo cell, whose files have every kind of entry.
 class CopiedConfig : public testing::Test {
  protected:

@@ -187,8 +187,8 @@ TEST_F(Knowledge, AnUnknownTemperatureStaysUnknown) {
 
 TEST_F(Knowledge, ATemperatureMayHaveTheTimeOfItsMeasurementFromTheSecondSchemaOn) {
   const auto give_time = [](json& block) { block["temperature_at"] = "2026-01-31T08:15:30Z"; };
-  EXPECT_EQ(json_of(path(kBlock)).at("schema"), kFirstBlockSchema) << "files of the first are read";
-  EXPECT_FALSE(read().block.temperature_at);
+  edit(kBlock, [](json& block) { lower_schema(block, kFirstBlockSchema); });
+  EXPECT_FALSE(read().block.temperature_at) << "files of the first are read";
   edit(kBlock, give_time);
   EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/temperature_at");
   edit(kBlock, [](json& block) { block["schema"] = kBlockSchema; });
@@ -201,6 +201,7 @@ TEST_F(Knowledge, ATemperatureMayHaveTheTimeOfItsMeasurementFromTheSecondSchemaO
 
 TEST_F(Knowledge, AnExpansionAloneIsForTemperaturesThatComeWithTheRun) {
   edit(kBlock, [](json& block) {
+    lower_schema(block, kFirstBlockSchema);
     block.erase("temperature_c");
     block.erase("std_temperature_k");
   });
@@ -234,7 +235,7 @@ TEST_F(Knowledge, ACellSaysHowLongARunOnHoldKeepsItsConfirmationFromItsSecondSch
 
 TEST_F(Knowledge, ACellSaysHowOldATemperatureMayBeFromItsSecondSchemaOn) {
   edit(kCell, [](json& cell) {
-    cell["schema"] = kFirstCellSchema;
+    lower_schema(cell, kFirstCellSchema);
     cell["acceptance"].erase("tip_box_max_mm");
     cell["acceptance"].erase("tip_box_max_by_recipe_mm");
   });
@@ -255,7 +256,7 @@ TEST_F(Knowledge, ACellLimitsTheTipAtItsWorstFromItsSecondSchemaOn) {
   const Cell shipped = read();
   ASSERT_TRUE(shipped.acceptance.tip_box_max_m);
   EXPECT_LT(*shipped.acceptance.tip_box_max_m, shipped.nominal_position_error_m) << "else it says nothing";
-  edit(kCell, [](json& cell) { cell["schema"] = kFirstCellSchema; });
+  edit(kCell, [](json& cell) { lower_schema(cell, kFirstCellSchema); });
   EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/acceptance/tip_box_max_mm");
 }
 
@@ -279,7 +280,7 @@ TEST_F(Knowledge, ACellLimitsTheTipByRecipeFromItsThirdSchemaOn) {
     EXPECT_THAT(error.message(), testing::HasSubstr(said));
   }
   limit_to({{"quick", 0.4}});
-  edit(kCell, [](json& cell) { cell["schema"] = kSecondCellSchema; });
+  edit(kCell, [](json& cell) { lower_schema(cell, kSecondCellSchema); });
   const ConfigError older = error_of([&] { static_cast<void>(read()); });
   EXPECT_EQ(older.pointer(), "/acceptance/tip_box_max_by_recipe_mm");
   EXPECT_THAT(older.message(), testing::HasSubstr("version 2; raise \"schema\" to 3"));

@@ -19,8 +19,11 @@ class ProbeFile : public CopiedConfig {
     edit(kProbe, [&](json& probe) {
       for (const char* key : {"pretravel_tilt_mm", "std_pretravel_tilt_mm", "lobes_mm", "std_lobes_mm"})
         probe.erase(key);
+      if (schema == kProbeSchema)
+        probe["schema"] = schema;
+      else
+        lower_schema(probe, schema);
       probe.update(keys);
-      probe["schema"] = schema;
     });
   }
   [[nodiscard]] Probe probe() const { return read_probe(path(kProbe)); }
@@ -53,6 +56,16 @@ TEST_F(ProbeFile, OfTheFirstSchemaHasOnePretravelForAllPushes) {
     EXPECT_EQ(error().pointer(), std::string("/") + key);
     EXPECT_THAT(error().message(), HasSubstr("raise \"schema\" to 2"));
   }
+}
+
+TEST_F(ProbeFile, HasASerialNumberFromTheThirdSchemaOn) {
+  write({{"serial", "H-8842"}});
+  EXPECT_EQ(probe().serial, "H-8842");
+  write({{"serial", "H-8842"}}, kSecondProbeSchema);
+  EXPECT_EQ(error().pointer(), "/serial");
+  EXPECT_THAT(error().message(), HasSubstr("in a probe of version 2; raise \"schema\" to 3"));
+  write(json::object(), kSecondProbeSchema);
+  EXPECT_FALSE(probe().serial) << "files of the second are read";
 }
 
 TEST_F(ProbeFile, MayHaveTheMakersDeviationsAlone) {

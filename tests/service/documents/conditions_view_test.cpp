@@ -40,6 +40,32 @@ TEST_F(ConditionsView, ConditionsTellAllThatIsKnownAndNullForTheRest) {
     EXPECT_TRUE(unknown.at(key).is_null()) << key;
 }
 
+TEST_F(ConditionsView, ConditionsTellTheSerialNumbersOfTheFiles) {
+  const json told = conditions_json({});
+  EXPECT_EQ(told.at("arm_serial"), json_of(path(kCell)).at("arm_serial"));
+  EXPECT_EQ(told.at("controller_serial"), json_of(path(kCell)).at("controller_serial"));
+  EXPECT_EQ(told.at("block").at("serial"), json_of(path(kBlock)).at("serial"));
+  EXPECT_EQ(told.at("probe").at("serial"), json_of(path(kProbe)).at("serial"));
+  for (const char* file : {kCell, kBlock, kProbe}) {
+    edit(file, [](json& document) {
+      for (const char* key : {"serial", "arm_serial", "controller_serial"}) document.erase(key);
+    });
+  }
+  const json untold = conditions_json({});
+  for (const char* pointer : {"/arm_serial", "/controller_serial", "/block/serial", "/probe/serial"})
+    EXPECT_TRUE(untold.at(json::json_pointer(pointer)).is_null()) << pointer;
+}
+
+TEST_F(ConditionsView, ConditionsOfAnOlderDaemonAreReadWithoutSerialNumbers) {
+  json old = conditions_json({});
+  for (const char* key : {"arm_serial", "controller_serial"}) old.erase(key);
+  for (const char* part : {"block", "probe"}) old.at(part).erase("serial");
+  const ConditionsDocument read_back = read_conditions(old.dump());
+  EXPECT_EQ(read_back.block.name, old.at("block").at("name"));
+  EXPECT_FALSE(read_back.arm_serial || read_back.controller_serial || read_back.block.serial ||
+               read_back.probe.serial);
+}
+
 TEST_F(ConditionsView, ConditionsTellWhoTouched) {
   EXPECT_TRUE(is_guided(conditions_document(read(), {.touch_mode = TouchMode::kGuided, .place = {}})));
   EXPECT_FALSE(is_guided(conditions_document(read(), {.touch_mode = TouchMode::kAutomatic, .place = {}})));

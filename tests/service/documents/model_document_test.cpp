@@ -98,6 +98,16 @@ TEST(ModelDocumentTest, HoldsWhatTheRunWasAndPassesOnWhatItsResultSaid) {
   EXPECT_EQ(again.tip_uncertainty.value.expanded.box_max_mm, 0.213);
 }
 
+TEST(ModelDocumentTest, HasTheSerialNumbersThatTheRunWasMadeWith) {
+  StoredRun run = accepted_run();
+  run.conditions_json = R"({"arm_serial":"F09-1","controller_serial":"F09-C-2"})";
+  const ModelDocument model = model_of(run, touches_of_run(), kArmJson, kResultJson);
+  EXPECT_EQ(model.arm_serial, "F09-1");
+  EXPECT_EQ(model.controller_serial, "F09-C-2");
+  EXPECT_EQ(model.hash, model_hash(accepted_run(), touches_of_run(), kArmJson))
+      << "the hash is over raw data";
+}
+
 TEST(ModelDocumentTest, WhatIsNoArmIsRefused) {
   EXPECT_THROW((void)model_of(accepted_run(), {}, "{}", kResultJson), DocumentError);
   EXPECT_THROW((void)name_of_arm("no JSON"), DocumentError);

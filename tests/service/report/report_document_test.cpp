@@ -188,6 +188,21 @@ TEST(Report, TheMinutesThatTheArmHadMovedAreTold) {
   EXPECT_THAT(page_of(moving), HasSubstr("45 min before the run"));
 }
 
+TEST(Report, SerialNumbersAreToldAndUnknownWhereNobodyGaveThem) {
+  RunRecord known = record();
+  Json document = Json::parse(known.result_json.value());
+  Json& conditions = document.at("conditions");
+  conditions.update({{"arm_serial", "F09-1"}, {"controller_serial", "F09-C-2"}});
+  conditions.at("block")["serial"] = "B-3";
+  conditions.at("probe")["serial"] = "P-4";
+  known.result_json = document.dump();
+  const std::string page = page_of(known);
+  for (const char* told : {"; F09-1<", ">F09-C-2<", "; B-3; ", "; P-4; "}) EXPECT_THAT(page, HasSubstr(told));
+  conditions["controller_serial"] = nullptr;
+  known.result_json = document.dump();
+  EXPECT_THAT(page_of(known), HasSubstr("controller&#39;s serial number</td><td>unknown<"));
+}
+
 TEST(Report, TextFromOutsideStaysText) {
   RunRecord hostile = record();
   const std::string markup = "<script>alert('x')</script>\x01&\"";

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "config/block_file.hpp"
 #include "config/utc_text.hpp"
 #include "tests/config/copied_config.hpp"
 
@@ -20,14 +21,14 @@ class BlockTemperatureTest : public CopiedConfig {
   /// Without its temperature; the expansion stays.
   void forget_temperature() const {
     edit(kBlock, [](json& block) {
-      block["schema"] = "touchcal/block/2";
+      block["schema"] = kBlockSchema;
       block.erase("temperature_c");
       block.erase("std_temperature_k");
     });
   }
   void measured_in_file(const char* at) const {
     edit(kBlock, [&](json& block) {
-      block["schema"] = "touchcal/block/2";
+      block["schema"] = kBlockSchema;
       block["temperature_at"] = at;
     });
   }
