@@ -77,6 +77,10 @@ AppliedArm arm_of_model(const ApiClient& daemon, const std::string& model, const
         "the model of run {} was valid until {}; calibrate and approve a newer run, or give --arm "
         "with the arm that touchcal export writes",
         approval.run_id, *approval.valid_until));
+  if (approval.current) {  // which is refused where the cell has another arm now
+    const ApiReply current = daemon.get("/api/v1/models/current");
+    if (current.status != 200) throw ModelRefused(current);
+  }
   const ApiReply reply = daemon.get("/api/v1/models/" + approval.id + "/arm");
   if (reply.status != 200) throw ModelRefused(reply);
   const std::string source = fmt::format("the arm of the approved model of run {}", approval.run_id);

@@ -138,6 +138,16 @@ struct ExportArguments {
 /// written.
 ExitCode export_command(const ApiClient& daemon, const ExportArguments& arguments, bool json);
 
+struct RunFileArguments {
+  std::string run_id;  // to export
+  std::string file;    // "-" is standard output
+  bool overwrite = false;
+};
+/// Writes a run that is over with all that is stored of it, once it has verified itself.
+ExitCode export_run_command(const ApiClient& daemon, const RunFileArguments& arguments, bool json);
+/// Hands such a file to a daemon, once it has verified itself.
+ExitCode import_run_command(const ApiClient& daemon, const std::string& file, bool json);
+
 /// Upper bound of --valid-days.
 inline constexpr int kValidDaysMax = 36'500;
 

@@ -67,6 +67,9 @@ ExitCode show_command(const ApiClient& daemon, const std::string& run_id, bool j
   const RunDocument document = read_reply(run, read_run);
   fmt::print("{}", runs_text({document}));
   if (document.fault_message) fmt::print("fault: {}\n", *document.fault_message);
+  if (const auto& from = document.imported_from)
+    fmt::print("imported: it is run {} of cell '{}', taken in at {}\n", from->run_id, from->cell,
+               from->imported_at);
   if (result.status == 200) {
     fmt::print("\n{}", read_reply(result, text_of_result));
   } else {

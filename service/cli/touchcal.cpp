@@ -16,6 +16,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/completion.hpp"
 #include "service/cli/daemon_choice.hpp"
+#include "service/cli/offline_options.hpp"
 #include "service/cli/shared_options.hpp"
 #include "service/run/simulated_calibrations.hpp"
 
@@ -26,9 +27,11 @@ class CommandLine {
   CommandLine() : app_("touchcal: calibrates a robot arm by touching a block", "touchcal") {
     app_.set_version_flag("--version", std::string("touchcal ") + cell::kVersion);
     app_.require_subcommand(1);
-    add_identify();
-    add_validate();
-    add_plan();
+    add_offline("identify", "identify an arm from a file of touches (offline)", identify_,
+                cell::identify_command);
+    add_offline("validate", "identify again from the calibrated arm, and compare distances (offline)",
+                validate_, cell::validate_command);
+    add_offline("plan", "plan touches and predict their result (offline)", plan_, cell::plan_command);
     add_compensate();
     add_run();
     add_verification(prove_, "prove",
@@ -58,6 +61,7 @@ class CommandLine {
     exported->add_flag("--force", export_.overwrite, "overwrite the files");
     add_report();
     add_models();
+    add_run_files();
     add_audit();
     add_archive();
     for (const auto& [name, description] : cell::kCellCommands) {
@@ -80,82 +84,16 @@ class CommandLine {
   }
 
  private:
-  void add_identify() {
-    auto* identify = app_.add_subcommand("identify", "identify an arm from a file of touches (offline)");
-    add_cell(*identify, identify_.cell, "recipe whose identification options apply");
-    identify->add_option("--touches", identify_.touches_file, "touches, JSON or CSV")->required();
-    identify
-        ->add_option("--monte-carlo", identify_.monte_carlo_count,
-                     "check the uncertainty by this many simulated calibrations (GUM, Supplement 1)")
-        ->check(cell::refuse_integer)
-        ->check(CLI::Range(cell::kMonteCarloMin, cell::kMonteCarloMax));
-    identify->add_option("--export", identify_.arm_file, "write the calibrated arm to this arm file");
-    identify->add_option("--map", identify_.map_file,
-                         "write the predicted uncertainty over the workspace box to this CSV file");
-    identify->add_flag("--force", identify_.overwrite, "overwrite these files");
-    identify->add_flag("--json", json_, "one JSON document on standard output");
-    identify->callback([this] { action_ = [this] { return cell::identify_command(identify_, json_); }; });
-  }
-
-  void add_validate() {
-    auto* validate = app_.add_subcommand(
-        "validate", "identify again from the calibrated arm, and compare distances (offline)");
-    add_cell(*validate, validate_.cell, "recipe whose identification options apply");
-    validate->add_option("--touches", validate_.touches_file, "touches, JSON or CSV")->required();
-    validate->add_option("--other", validate_.other_file,
-                         "touches of another set; default: the held-out ones of --touches");
-    validate->add_flag("--json", json_, "one JSON document on standard output");
-    validate->callback([this] { action_ = [this] { return cell::validate_command(validate_, json_); }; });
-  }
-
-  void add_plan() {
-    auto* plan = app_.add_subcommand("plan", "plan touches and predict their result (offline)");
-    add_cell(*plan, plan_.cell, "the recipe");
-    plan->add_option("--fit", plan_.fit_count, "touches to fit, over all planes, in place of the recipe's")
-        ->check(cell::refuse_integer)
-        ->check(CLI::Range(1, cell::kFitCountMax));
-    std::vector<std::string> criteria;
-    for (const auto& [unused, name] : cell::kCriterionNames) criteria.emplace_back(name);
-    plan->add_option("--criterion", plan_.criterion, "criterion that the touches are chosen by")
-        ->check(CLI::IsMember(criteria));
-    plan->add_option(
-            "--accuracy", plan_.tip_rms_max_mm,
-            "plan the fewest touches, at most --fit or the recipe's, with a predicted tip error within "
-            "this, mm")
-        ->check(cell::refuse_number)
-        ->check(CLI::Range(1e-6, 1e3));
-    plan->add_option("--workspace-box", plan_.workspace_box_mm,
-                     "box in which the tip error is predicted: minX,minY,minZ,maxX,maxY,maxZ in R_-1, mm")
-        ->delimiter(',')
-        ->check(cell::refuse_number)
-        ->expected(6);
-    auto* place = plan->add_flag("--place", plan_.place, "search places for the block and rank them");
-    plan->add_option("--place-min", plan_.place_min_mm,
-                     "lower end of the block's shift, X,Y,Z along the present R_-1, mm")
-        ->delimiter(',')
-        ->check(cell::refuse_number)
-        ->expected(3)
-        ->needs(place);
-    plan->add_option("--place-max", plan_.place_max_mm, "upper end of the block's shift, X,Y,Z, mm")
-        ->delimiter(',')
-        ->check(cell::refuse_number)
-        ->expected(3)
-        ->needs(place);
-    plan->add_option("--place-yaw", plan_.place_yaw_deg,
-                     "range of rotation about R_-1's y axis, MIN,MAX, degrees")
-        ->delimiter(',')
-        ->check(cell::refuse_number)
-        ->expected(2)
-        ->needs(place);
-    plan->add_option("--places", plan_.place_count, "number of places to try")
-        ->needs(place)
-        ->check(cell::refuse_integer)
-        ->check(CLI::Range(1, cell::kPlaceCountMax))
-        ->default_str("24");
-    plan->add_option("--out", plan_.file, "write the document to this file");
-    plan->add_flag("--force", plan_.overwrite, "overwrite it");
-    plan->add_flag("--json", json_, "one JSON document on standard output");
-    plan->callback([this] { action_ = [this] { return cell::plan_command(plan_, json_); }; });
+  /// A command that needs no daemon.
+  template <class Arguments>
+  void add_offline(const std::string& name, const std::string& description, Arguments& given,
+                   cell::ExitCode (*command)(const Arguments&, bool)) {
+    auto* sub = app_.add_subcommand(name, description);
+    given.cell.now = std::chrono::system_clock::now();
+    cell::add_options(*sub, given);
+    sub->add_flag("--json", json_, "one JSON document on standard output");
+    sub->callback(
+        [this, &given, command] { action_ = [this, &given, command] { return command(given, json_); }; });
   }
 
   void add_compensate() {
@@ -243,15 +181,6 @@ class CommandLine {
     cell::add_arm_moving(*run, given.arm_moving_min);
   }
 
-  /// For commands that need no daemon.
-  static void add_cell(CLI::App& command, cell::CellArguments& given, const std::string& recipe_is) {
-    given.now = std::chrono::system_clock::now();
-    command.add_option("--cell", given.file, "cell file")->required();
-    command.add_option("--recipe", given.recipe, recipe_is + "; default: the cell's first");
-    cell::add_stiffness(command, given.stiffness);
-    cell::add_block_temperature(command, given.block_temperature);
-  }
-
   void add_report() {
     auto* report = add_for_daemon(
         "report", "write the report of a run, as HTML by default",
@@ -293,6 +222,21 @@ class CommandLine {
                        });
     rollback->add_option("--operator", approve_.operator_name,
                          "the person who takes it back; stored with it");
+  }
+
+  void add_run_files() {
+    auto* exported = add_for_daemon(
+        "export-run", "write a run that is over with all that is stored of it, for another daemon",
+        [this](const cell::ApiClient& daemon) { return cell::export_run_command(daemon, run_file_, json_); });
+    exported->add_option("RUN", run_file_.run_id, "id of the run")->required();
+    exported->add_option("FILE", run_file_.file, "the file to write; - is standard output")->required();
+    exported->add_flag("--force", run_file_.overwrite, "overwrite the file");
+    auto* imported = add_for_daemon(
+        "import-run", "take in a run that another daemon exported; it becomes no model of the cell by that",
+        [this](const cell::ApiClient& daemon) {
+          return cell::import_run_command(daemon, run_file_.file, json_);
+        });
+    imported->add_option("FILE", run_file_.file, "a file that export-run wrote")->required();
   }
 
   void add_archive_url(CLI::App& command) {
@@ -360,6 +304,7 @@ class CommandLine {
   std::string check_run_;
   cell::ExportArguments export_;
   cell::ReportArguments report_;
+  cell::RunFileArguments run_file_;
   cell::AuditArguments audit_;
   cell::ArchiveArguments archive_;
   cell::ApproveArguments approve_;

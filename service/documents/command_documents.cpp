@@ -22,6 +22,7 @@ struct PlaceOfCell {
 std::string document_text(const ReadyDocument& document) { return written(document); }
 std::string document_text(const PageLinkDocument& document) { return written(document); }
 std::string document_text(const ExportDocument& document) { return written(document); }
+std::string document_text(const ExportedRunDocument& document) { return written(document); }
 
 AccessDocument read_access(std::string_view text) {
   return document_from<AccessDocument>(text, Absent::kIsRefused);

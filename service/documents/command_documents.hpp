@@ -66,9 +66,26 @@ struct ExportDocument {
   }
 };
 
+/// `touchcal export-run --json`.
+struct ExportedRunDocument {
+  std::string run_id;
+  std::string cell;
+  std::string file;    // what was written
+  std::string sha256;  // of the run's file, as in it
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("run_id", self.run_id);
+    fields("cell", self.cell);
+    fields("file", self.file);
+    fields("sha256", self.sha256);
+  }
+};
+
 std::string document_text(const ReadyDocument& document);
 std::string document_text(const PageLinkDocument& document);
 std::string document_text(const ExportDocument& document);
+std::string document_text(const ExportedRunDocument& document);
 
 /// DocumentError when the text is no such document.
 AccessDocument read_access(std::string_view text);

@@ -354,11 +354,28 @@ constexpr std::string_view kVerificationVerdict = R"({
   "accepted":{"type":["boolean","null"],"description":"null: no verdict, and the reasons say why"},
   "reasons":{"type":"array","items":{"type":"string"}}}})";
 
+constexpr std::string_view kRunFile = R"({
+"type":"object",
+"description":"A run that is over with all that is stored of it; joints in 10^-6 degrees, documents as texts",
+"required":["schema","touchcal_version","cell","exported_at","run","touches","superseded_touches","reference_touches",
+  "plan_changes","refused_contacts","plan","result","arm","model","sha256"],
+"properties":{
+  "schema":{"const":"touchcal/run-file/1"},
+  "cell":{"type":"string"},
+  "run":{"type":"object"},
+  "touches":{"type":"array","items":{"type":"object"}},
+  "plan":{"type":["string","null"],"description":"touchcal/plan/1"},
+  "result":{"type":["string","null"]},
+  "arm":{"type":["string","null"],"description":"the calibrated arm as an arm file"},
+  "model":{"type":["string","null"],"description":"touchcal/model/1, as it was approved last"},
+  "sha256":{"type":"string","description":"of this document without white space and with an empty text here"}}})";
+
 constexpr std::string_view kRunResult = R"({
 "description":"by the kind of the run",
 "oneOf":[{"$ref":"#/components/schemas/Result"},{"$ref":"#/components/schemas/Proof"},{"$ref":"#/components/schemas/Check"}]})";
 
 constexpr std::array kFileSchemas{DocumentSchema{"Touches", kTouches},
+                                  DocumentSchema{"RunFile", kRunFile},
                                   DocumentSchema{"RunResult", kRunResult},
                                   DocumentSchema{"Proof", kProof},
                                   DocumentSchema{"Check", kCheck},

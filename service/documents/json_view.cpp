@@ -148,7 +148,13 @@ LiveFields live_fields(std::optional<std::int64_t> data_age_ms, const std::vecto
 std::string status_document(const Status& status) { return document_text(status_of(status)); }
 
 std::string run_document(const StoredRun& run) {
-  RunDocument document{summary_of(run), {}};
+  RunDocument document{summary_of(run), {}, {}};
+  if (run.origin)
+    document.imported_from = ImportedFrom{.cell = run.origin->cell,
+                                          .run_id = std::to_string(run.origin->run_id),
+                                          .exported_at = run.origin->exported_at,
+                                          .imported_at = run.origin->imported_at,
+                                          .sha256 = run.origin->sha256};
   if (run.conditions_json) document.conditions = CarriedJson{*run.conditions_json};
   return document_text(document);
 }

@@ -1,5 +1,7 @@
 #include "service/documents/model_document.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <nlohmann/json.hpp>
 
 #include "cs8_protocol/names.hpp"
@@ -102,6 +104,20 @@ ModelDocument model_of(const StoredRun& run, const std::vector<StoredTouch>& tou
 
 std::string name_of_arm(std::string_view arm_json) {
   return document_from<NamedArm>(arm_json, Absent::kIsRefused).name;
+}
+
+std::optional<std::string> why_other_arm(const ModelDocument& model, const Cell& cell) {
+  const auto other = [&model](const std::string& of_model, const std::string& of_cell) {
+    return fmt::format(
+        "the model of run {} is of the arm {}, and this cell has the arm {} now; calibrate this arm and "
+        "approve "
+        "that run",
+        model.run_id, of_model, of_cell);
+  };
+  if (model.arm != cell.arm.name) return other("'" + model.arm + "'", "'" + cell.arm.name + "'");
+  if (!model.arm_serial || !cell.arm_serial || *model.arm_serial == *cell.arm_serial) return std::nullopt;
+  return other("with the serial number '" + *model.arm_serial + "'",
+               "with the serial number '" + *cell.arm_serial + "'");
 }
 
 ModelsDocument models_page(const std::vector<Approval>& history, std::size_t limit,

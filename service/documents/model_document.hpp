@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "config/cell.hpp"
 #include "service/documents/carried_json.hpp"
 #include "service/documents/tip_document.hpp"
 #include "service/store/model_store.hpp"
@@ -118,6 +119,10 @@ ModelDocument model_of(const StoredRun& run, const std::vector<StoredTouch>& tou
 
 /// The name of the arm in a stored arm. DocumentError.
 std::string name_of_arm(std::string_view arm_json);
+
+/// Why a model is not of the arm that the cell has now: another name, or another serial number where both are
+/// known. Nothing when it is.
+std::optional<std::string> why_other_arm(const ModelDocument& model, const Cell& cell);
 
 /// The `limit` newest rows of a history (oldest first) before `before_id`.
 ModelsDocument models_page(const std::vector<Approval>& history, std::size_t limit,

@@ -44,14 +44,34 @@ struct RunSummary {
   }
 };
 
+/// Where a run is from that another daemon made.
+struct ImportedFrom {
+  std::string cell;
+  std::string run_id;  // there
+  std::string exported_at;
+  std::string imported_at;
+  std::string sha256;  // of the file
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("cell", self.cell);
+    fields("run_id", self.run_id);
+    fields("exported_at", self.exported_at);
+    fields("imported_at", self.imported_at);
+    fields("sha256", self.sha256);
+  }
+};
+
 /// One run's own document.
 struct RunDocument : RunSummary {
   std::optional<CarriedJson> conditions;
+  std::optional<ImportedFrom> imported_from;
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
     RunSummary::visit(self, fields);
     fields("conditions", self.conditions);
+    fields("imported_from", self.imported_from);
   }
 };
 

@@ -90,7 +90,9 @@ constexpr std::string_view kRun = R"({
   "ended_at":{"type":["string","null"]},
   "fault_code":{"type":["string","null"]},
   "fault_message":{"type":["string","null"]},
-  "conditions":{"type":["object","null"],"description":"What it was made under; in the document of one run"}}})";
+  "conditions":{"type":["object","null"],"description":"What it was made under; in the document of one run"},
+  "imported_from":{"type":["object","null"],"required":["cell","run_id","exported_at","imported_at","sha256"],
+    "description":"of a run that another daemon made; in the document of one run"}}})";
 
 constexpr std::string_view kRuns = R"({
 "type":"object",

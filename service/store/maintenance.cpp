@@ -311,18 +311,23 @@ std::optional<std::uintmax_t> disk_room_bytes(const SharedDatabase& database) {
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest, int days_that_agree,
                        const std::vector<std::string>& sinks) {
   constexpr std::array kOfRuns{"touches",      "superseded_touches", "reference_touches", "open_commands",
-                               "plan_changes", "resumptions",        "refused_results",   "arms"};
+                               "plan_changes", "resumptions",        "refused_results",   "arms",
+                               "imported_runs"};
   row::WriteTransaction transaction(*database);
   SQLite::Statement choose(
       *database,
-      "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND "
+      "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND id NOT IN (SELECT run_id "
+      "FROM "
+      "imported_runs WHERE imported_at >= ?1) AND "
       "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ? AND "
-      "kind = 'calibration') AND id "
-      "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND id NOT IN "
-      "(SELECT run_id FROM models) AND (of_run IS NULL OR of_run NOT IN "
-      "(SELECT run_id FROM models)) AND id NOT IN (SELECT run_id FROM outbox WHERE seq > "
-      "? AND run_id IS NOT NULL) AND ? <= (SELECT "
-      "count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?)");
+      "kind = 'calibration' AND " +
+          row::kOfThisDaemon +
+          ") AND id "
+          "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND id NOT IN "
+          "(SELECT run_id FROM models) AND (of_run IS NULL OR of_run NOT IN "
+          "(SELECT run_id FROM models)) AND id NOT IN (SELECT run_id FROM outbox WHERE seq > "
+          "? AND run_id IS NOT NULL) AND ? <= (SELECT "
+          "count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?)");
   choose.bind(1, oldest);
   choose.bind(2, std::string(run_outcome_name(RunOutcome::kRunning)));
   choose.bind(3, std::string(verdict_name(Verdict::kAccepted)));

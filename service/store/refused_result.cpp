@@ -5,6 +5,7 @@
 #include "service/store/damaged_store.hpp"
 #include "service/store/internal/lock_wait.hpp"
 #include "service/store/internal/row_checksum.hpp"
+#include "service/store/internal/row_insert.hpp"
 #include "service/store/internal/row_text.hpp"
 #include "service/store/internal/run_change.hpp"
 #include "service/store/internal/touch_change.hpp"
@@ -43,18 +44,7 @@ bool keep_refused(RunStore& store, std::int64_t run_id, const RefusedResult& ref
   row::WriteTransaction transaction(database);
   if (is_kept(database, run_id, refused)) return true;
   if (!has_room(database, run_id)) return false;
-  SQLite::Statement insert(database, "INSERT INTO refused_results(run_id, session, sequence, " +
-                                         row::kJointColumns +
-                                         ", reason, at) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  int index = 0;
-  insert.bind(++index, run_id);
-  insert.bind(++index, refused.session);
-  insert.bind(++index, refused.sequence);
-  row::bind_joints(insert, index, &refused.joints);
-  insert.bind(++index, refused.reason);
-  insert.bind(++index, refused.at);
-  insert.exec();
-  row::seal(database, row::refused_rows(), "id", database.getLastInsertRowid());
+  row::insert_refused(database, run_id, refused);
   row::note_rows(database, run_id);
   transaction.commit();
   return true;
@@ -64,7 +54,8 @@ std::optional<std::int64_t> run_of_answer(const RunStore& store, std::uint32_t s
                                           std::uint32_t sequence) {
   SQLite::Statement query(*store.database(),
                           "SELECT coalesce((SELECT max(run_id) FROM open_commands WHERE session = ? AND "
-                          "sequence = ?), (SELECT max(id) FROM runs))");
+                          "sequence = ?), (SELECT max(id) FROM runs WHERE " +
+                              row::kOfThisDaemon + "))");
   query.bind(1, session);
   query.bind(2, sequence);
   if (!query.executeStep() || query.getColumn(0).isNull()) return std::nullopt;

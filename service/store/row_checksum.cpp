@@ -222,15 +222,29 @@ const CheckedRows& row_count_rows() {
   return rows;
 }
 
+const CheckedRows& import_rows() {
+  static const CheckedRows rows{
+      .name = "imported_runs",
+      .table = "imported_runs",
+      .columns =
+          "imported_runs.run_id, imported_runs.cell, imported_runs.origin_run, imported_runs.exported_at, "
+          "imported_runs.imported_at, imported_runs.sha256",
+      .checksum = "imported_runs.origin_checksum",
+      .run = "imported_runs.run_id",
+      .number = "NULL",
+      .applies = "1"};
+  return rows;
+}
+
 std::span<const CheckedRows* const> all_checked_rows(std::size_t schema) {
   // What came last stands last.
-  constexpr std::size_t kModels = 1, kLogs = 5;
+  constexpr std::size_t kModels = 1, kLogs = 5, kImports = 1;
   static const auto as_in = [](std::size_t version) {
     const TouchTables& tables = touch_tables(version);
     return std::array{&tables.touches,      &tables.superseded, &reference_rows(),  &plan_change_rows(),
                       &open_command_rows(), &plan_rows(),       &run_rows(version), &result_rows(),
                       &arm_rows(),          &model_rows(),      &fault_rows(),      &resumption_rows(),
-                      &answer_rows(),       &refused_rows(),    &row_count_rows()};
+                      &answer_rows(),       &refused_rows(),    &row_count_rows(),  &import_rows()};
   };
   static const std::array without_noise = as_in(kChecksumSchema), without_contacts = as_in(kTouchNoiseSchema);
   static const std::array without_kinds = as_in(kTouchContactsSchema), newest = as_in(kRunKindSchema);
@@ -238,7 +252,10 @@ std::span<const CheckedRows* const> all_checked_rows(std::size_t schema) {
                                                    : schema < kTouchContactsSchema ? without_contacts
                                                    : schema < kRunKindSchema       ? without_kinds
                                                                                    : newest;
-  const std::size_t later = schema < kModelSchema ? kModels + kLogs : schema < kLogChecksumSchema ? kLogs : 0;
+  const std::size_t later = schema < kModelSchema         ? kModels + kLogs + kImports
+                            : schema < kLogChecksumSchema ? kLogs + kImports
+                            : schema < kImportSchema      ? kImports
+                                                          : 0;
   return rows.first(rows.size() - later);
 }
 

@@ -11,7 +11,7 @@
 #include "service/store/internal/opened_file.hpp"
 #include "service/store/internal/relaxed_durability.hpp"
 #include "service/store/internal/row_checksum.hpp"
-#include "service/store/internal/row_text.hpp"
+#include "service/store/internal/row_insert.hpp"
 #include "service/store/internal/run_change.hpp"
 #include "service/store/internal/touch_change.hpp"
 
@@ -21,55 +21,6 @@ namespace {
 /// Restarts the write-ahead log, so that no touch of a run finds it full. A reader may prevent it: then it
 /// grows.
 void restart_log(SQLite::Database& database) { database.tryExec("PRAGMA wal_checkpoint(RESTART)"); }
-
-/// The columns of a touch, in the order of both tables, from `index` on.
-void bind_touch(SQLite::Statement& insert, std::int64_t run_id, const StoredTouch& touch) {
-  int index = 0;
-  insert.bind(++index, run_id);
-  insert.bind(++index, touch.number);
-  insert.bind(++index, touch.plane);
-  insert.bind(++index, static_cast<int>(touch.role));
-  for (const std::int32_t joint : touch.joints) insert.bind(++index, joint);
-  insert.bind(++index, static_cast<int>(touch.source));
-  insert.bind(++index, touch.overtravel_dmm);
-  insert.bind(++index, touch.captured_at);
-  insert.bind(++index, touch.session);
-  insert.bind(++index, touch.sequence);
-  insert.bind(++index, touch.aimed_with);
-  row::bind_or_null(insert, ++index, touch.noise_um);
-  row::bind_or_null(insert, ++index,
-                    touch.first ? std::optional(static_cast<int>(touch.first->source)) : std::nullopt);
-  row::bind_joints(insert, index, touch.first ? &touch.first->joints : nullptr);
-  row::bind_joints(insert, index, touch.again ? &*touch.again : nullptr);
-}
-
-void insert_plan_change(SQLite::Database& database, std::int64_t run_id, const PlanChange& change) {
-  SQLite::Statement insert(database, "INSERT INTO plan_changes(run_id, kind, place) VALUES(?, ?, ?)");
-  insert.bind(1, run_id);
-  insert.bind(2, std::string(row::plan_change_name(change.kind)));
-  insert.bind(3, change.place);
-  insert.exec();
-  row::seal(database, row::plan_change_rows(), "id", database.getLastInsertRowid());
-}
-
-/// The result and the arm of a run: nothing takes the place of an arm that belongs to another result.
-void write_result(SQLite::Database& database, std::int64_t run_id,
-                  const std::optional<std::string>& result_json, const std::optional<std::string>& arm_json) {
-  SQLite::Statement result(database,
-                           "UPDATE runs SET result_json = ?1, result_checksum = CASE WHEN ?1 IS NOT "
-                           "NULL THEN row_checksum('results', ?2, ?1) END WHERE id = ?2");
-  row::bind_or_null(result, 1, result_json);
-  result.bind(2, run_id);
-  result.exec();
-  SQLite::Statement forget(database, "DELETE FROM arms WHERE run_id = ?");
-  forget.bind(1, run_id);
-  forget.exec();
-  if (!arm_json) return;
-  SQLite::Statement arm(database, "INSERT INTO arms(run_id, document, checksum)" + row::arm_rows().values(2));
-  arm.bind(1, run_id);
-  arm.bind(2, *arm_json);
-  arm.exec();
-}
 
 /// A statement that is kept between calls, for one use: it ends with it, also when it failed. One that a
 /// lock of another program left unended would be a transaction that stays open: what is written after it
@@ -98,12 +49,9 @@ bool has_ended(SQLite::Statement& prepared, std::int64_t run_id) {
 }  // namespace
 
 struct RunStore::Statements {
-  static constexpr int kTouchParameters = 1 + row::kTouchColumnCount;
-
   Statements(SQLite::Database& database, LockTime time)
       : lock_wait(database, std::move(time)),
-        append_touch(database, "INSERT INTO touches(run_id, " + row::kTouchColumns + ", checksum)" +
-                                   row::touch_rows().values(kTouchParameters)),
+        append_touch(database, row::insert_touch_sql()),
         set_open_command(database,
                          "INSERT OR REPLACE INTO open_commands(run_id, session, sequence, aimed_with, "
                          "touch_json, checksum)" +
@@ -143,29 +91,7 @@ std::int64_t RunStore::begin_run(const NewRun& run) {
 
 std::int64_t RunStore::insert_run(const NewRun& run) {
   row::WriteTransaction transaction(*database_);
-  SQLite::Statement insert(*database_,
-                           "INSERT INTO runs(recipe, touches_total, started_at, idempotency_key, "
-                           "operator_name, config_digest, trace_json, block_temperature_c, "
-                           "std_block_temperature_k, block_temperature_at, block_temperature_source, "
-                           "stiffness, kind, of_run) VALUES(?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  insert.bind(1, run.recipe);
-  insert.bind(2, run.touches_total);
-  insert.bind(3, run.started_at);
-  row::bind_or_null(insert, 4, run.idempotency_key);
-  row::bind_or_null(insert, 5, run.operator_name);
-  row::bind_or_null(insert, 6, run.config_digest);
-  row::bind_or_null(insert, 7, run.conditions_json);
-  if (const auto& temperature = run.block_temperature) {
-    insert.bind(8, temperature->celsius);
-    row::bind_or_null(insert, 9, temperature->std_k);
-    row::bind_or_null(insert, 10, temperature->measured_at);
-    row::bind_or_null(insert, 11, temperature->source);
-  }
-  row::bind_or_null(insert, 12, run.stiffness);
-  insert.bind(13, std::string(run_kind_name(run.kind)));
-  row::bind_or_null(insert, 14, run.of_run);
-  insert.exec();
-  const std::int64_t id = database_->getLastInsertRowid();
+  const std::int64_t id = row::insert_run(*database_, run);
   row::seal(*database_, row::run_rows(), "id", id);
   row::tell_run_started(*database_, id);
   transaction.commit();
@@ -184,16 +110,7 @@ void RunStore::withdraw_run(std::int64_t run_id) {
 void RunStore::set_plan(std::int64_t run_id, int touches_total, const std::string& plan_id,
                         const std::string& document) {
   row::WriteTransaction transaction(*database_);
-  // One that was damaged is written again.
-  SQLite::Statement forget(*database_,
-                           "DELETE FROM plans WHERE id = ? AND NOT " + row::plan_rows().is_whole());
-  forget.bind(1, plan_id);
-  forget.exec();
-  SQLite::Statement insert(
-      *database_, "INSERT OR IGNORE INTO plans(id, document, checksum)" + row::plan_rows().values(2));
-  insert.bind(1, plan_id);
-  insert.bind(2, document);
-  insert.exec();
+  row::insert_plan(*database_, plan_id, document);
   row::change_run(*database_, run_id, [&] {
     SQLite::Statement update(*database_, "UPDATE runs SET touches_total = ?, plan_id = ? WHERE id = ?");
     update.bind(1, touches_total);
@@ -218,7 +135,7 @@ void RunStore::set_touches_total(std::int64_t run_id, int touches_total) {
 void RunStore::append_plan_change(std::int64_t run_id, const PlanChange& change) {
   const RelaxedDurability unsynced(*database_);
   row::WriteTransaction transaction(*database_);
-  insert_plan_change(*database_, run_id, change);
+  row::insert_plan_change(*database_, run_id, change);
   row::note_rows(*database_, run_id);
   transaction.commit();
 }
@@ -227,7 +144,7 @@ void RunStore::leave_out(std::int64_t run_id, const std::vector<PlanChange>& cha
                          const std::optional<Withdrawal>& withdrawn) {
   row::WriteTransaction transaction(*database_);
   if (withdrawn) row::supersede(*database_, run_id, withdrawn->number, withdrawn->reason);
-  for (const PlanChange& change : changes) insert_plan_change(*database_, run_id, change);
+  for (const PlanChange& change : changes) row::insert_plan_change(*database_, run_id, change);
   row::note_touches(*database_, run_id);
   transaction.commit();
 }
@@ -285,7 +202,7 @@ void RunStore::append_touch(std::int64_t run_id, const StoredTouch& touch) {
 
 void RunStore::insert_touch(std::int64_t run_id, const StoredTouch& touch) {
   OneUse insert(statements_->append_touch);
-  bind_touch(*insert, run_id, touch);
+  row::bind_touch(*insert, run_id, touch);
   try {
     insert->exec();
   } catch (const SQLite::Exception& failure) {
@@ -319,17 +236,7 @@ void RunStore::confirm_touch(std::int64_t run_id, int number, const cs8::JointsM
 void RunStore::append_reference(std::int64_t run_id, const ReferenceTouch& touch) {
   row::WriteTransaction transaction(*database_);
   if (row::is_there(*database_, run_id, touch)) return;
-  SQLite::Statement insert(*database_, "INSERT INTO reference_touches(run_id, number, touches_done, " +
-                                           row::kJointColumns + ", drift_mm, captured_at, checksum)" +
-                                           row::reference_rows().values(11));
-  int index = 0;
-  insert.bind(++index, run_id);
-  insert.bind(++index, touch.number);
-  insert.bind(++index, touch.touches_done);
-  for (const std::int32_t joint : touch.joints) insert.bind(++index, joint);
-  row::bind_or_null(insert, ++index, touch.drift_mm);
-  insert.bind(++index, touch.captured_at);
-  insert.exec();
+  row::insert_reference(*database_, run_id, touch);
   row::note_rows(*database_, run_id);
   transaction.commit();
 }
@@ -348,7 +255,7 @@ void RunStore::append_resumption(std::int64_t run_id, const std::string& at, int
 
 void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
   row::WriteTransaction transaction(*database_);
-  write_result(*database_, run_id, end.result_json, end.arm_json);
+  row::write_result(*database_, run_id, end.result_json, end.arm_json);
   row::end_run(*database_, run_id, [&] {
     SQLite::Statement update(*database_,
                              "UPDATE runs SET outcome = ?, verdict = ?, ended_at = ?, fault_code = ?, "
@@ -367,7 +274,7 @@ void RunStore::finish_run(std::int64_t run_id, const RunEnd& end) {
 void RunStore::set_result_json(std::int64_t run_id, const std::string& result_json,
                                const std::optional<std::string>& arm_json) {
   row::WriteTransaction transaction(*database_);
-  write_result(*database_, run_id, result_json, arm_json);
+  row::write_result(*database_, run_id, result_json, arm_json);
   row::note_touches(*database_, run_id);
   transaction.commit();
 }

@@ -117,6 +117,17 @@ struct RunEnd {
   std::optional<std::string> arm_json;     // the calibrated arm that goes with it, as a file
 };
 
+/// Where a run that was imported is from: RunImports in run_copy.hpp.
+struct RunOrigin {
+  std::string cell;         // its name
+  std::int64_t run_id = 0;  // there
+  std::string exported_at;  // RFC 3339, as the next
+  std::string imported_at;
+  std::string sha256;  // of the file
+
+  bool operator==(const RunOrigin&) const = default;
+};
+
 struct StoredRun {
   std::int64_t id = 0;
   RunKind kind = RunKind::kCalibration;
@@ -136,6 +147,7 @@ struct StoredRun {
   std::optional<std::string> stiffness;  // in place of the recipe's
   std::optional<std::string> config_digest;
   std::optional<std::string> conditions_json;
+  std::optional<RunOrigin> origin = {};  // nothing: it is of this daemon
 };
 
 /// The time that passes while another program has the file locked.
@@ -222,8 +234,8 @@ class RunStore {
   [[nodiscard]] std::vector<StoredRun> runs(int limit, std::optional<std::int64_t> before_id = {}) const;
   [[nodiscard]] std::optional<StoredRun> run(std::int64_t id) const;
   [[nodiscard]] std::optional<StoredRun> run_with_key(const std::string& idempotency_key) const;
-  /// The newest calibration that was accepted. Nothing also where its row is damaged, which the log says: an
-  /// older one would be a wrong answer.
+  /// The newest calibration of this daemon that was accepted. Nothing also where its row is damaged, which
+  /// the log says: an older one would be a wrong answer.
   [[nodiscard]] std::optional<StoredRun> last_accepted() const;
   /// The runs of a kind that are of this calibration and came to their end, oldest first.
   [[nodiscard]] std::vector<StoredRun> complete_runs_of(std::int64_t calibration, RunKind kind) const;

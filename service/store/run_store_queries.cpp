@@ -14,14 +14,16 @@
 namespace cell {
 namespace {
 
-/// The last two columns: the row is whole; the rows that belong to it are there.
+/// From 21 on: the row is whole; the rows that belong to it are there; where it is from; that this is whole.
 const std::string& run_columns() {
   static const std::string columns =
       "SELECT id, recipe, touches_total, started_at, ended_at, outcome, verdict, fault_code, fault_message, "
       "(SELECT count(*) FROM touches WHERE run_id = runs.id), plan_id, operator_name, block_temperature_c, "
       "config_digest, trace_json, std_block_temperature_k, block_temperature_at, block_temperature_source, "
       "stiffness, kind, of_run, " +
-      row::run_rows().is_whole() + ", " + row::has_its_rows() + " FROM runs ";
+      row::run_rows().is_whole() + ", " + row::has_its_rows() +
+      ", cell, origin_run, exported_at, imported_at, sha256, " + row::import_rows().is_whole() +
+      " FROM runs LEFT JOIN imported_runs ON imported_runs.run_id = runs.id ";
   return columns;
 }
 
@@ -64,7 +66,6 @@ void demand_rows(const SQLite::Database& database, std::int64_t run_id) {
 std::optional<std::string> text_or_nothing(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getString());
 }
-
 std::optional<double> number_or_nothing(const SQLite::Column& column) {
   return column.isNull() ? std::nullopt : std::optional(column.getDouble());
 }
@@ -76,6 +77,15 @@ std::optional<StoredTemperature> read_temperature(SQLite::Statement& query) {
                            .std_k = number_or_nothing(query.getColumn(15)),
                            .measured_at = text_or_nothing(query.getColumn(16)),
                            .source = text_or_nothing(query.getColumn(17))};
+}
+
+std::optional<RunOrigin> read_origin(const SQLite::Database& database, SQLite::Statement& query,
+                                     std::int64_t run_id) {
+  if (query.getColumn(23).isNull()) return std::nullopt;
+  demand_whole(database, query, 28, "imported_runs", run_id);
+  return RunOrigin{query.getColumn(23).getString(), query.getColumn(24).getInt64(),
+                   query.getColumn(25).getString(), query.getColumn(26).getString(),
+                   query.getColumn(27).getString()};
 }
 
 StoredRun read_run(const SQLite::Database& database, SQLite::Statement& query) {
@@ -103,7 +113,8 @@ StoredRun read_run(const SQLite::Database& database, SQLite::Statement& query) {
       .block_temperature = read_temperature(query),
       .stiffness = text_or_nothing(query.getColumn(18)),
       .config_digest = text_or_nothing(query.getColumn(13)),
-      .conditions_json = std::move(conditions)};
+      .conditions_json = std::move(conditions),
+      .origin = read_origin(database, query, id)};
 }
 
 std::optional<StoredRun> first_run(const SQLite::Database& database, SQLite::Statement& query) {
@@ -221,8 +232,8 @@ std::optional<StoredRun> RunStore::run_with_key(const std::string& idempotency_k
 }
 
 std::optional<StoredRun> RunStore::last_accepted() const try {
-  SQLite::Statement query(*database_,
-                          run_columns() + "WHERE verdict = ? AND kind = ? ORDER BY id DESC LIMIT 1");
+  SQLite::Statement query(*database_, run_columns() + "WHERE verdict = ? AND kind = ? AND " +
+                                          row::kOfThisDaemon + " ORDER BY id DESC LIMIT 1");
   query.bind(1, std::string(verdict_name(Verdict::kAccepted)));
   query.bind(2, std::string(run_kind_name(RunKind::kCalibration)));
   auto found = first_run(*database_, query);

@@ -286,10 +286,23 @@ ALTER TABLE runs ADD COLUMN of_run INTEGER;
 CREATE INDEX runs_of_run ON runs(of_run, kind);
 )sql";
 
-constexpr std::array kMigrations{kRunsAndTouches,  kPlans,         kDiary,        kTemperatures,
-                                 kStiffness,       kChecksums,     kAuditChained, kTouchNoise,
-                                 kAuditTokenNames, kTouchContacts, kModelTable,   kLogChecksums,
-                                 kOutboxTables,    kRunKindColumns};
+/// Where the runs are from that other daemons made: run_copy.hpp.
+constexpr const char* kImportTable = R"sql(
+CREATE TABLE imported_runs(
+  run_id INTEGER PRIMARY KEY REFERENCES runs(id),
+  cell TEXT NOT NULL,
+  origin_run INTEGER NOT NULL,
+  exported_at TEXT NOT NULL,
+  imported_at TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  origin_checksum INTEGER
+) STRICT;
+)sql";
+
+constexpr std::array kMigrations{kRunsAndTouches,  kPlans,          kDiary,        kTemperatures,
+                                 kStiffness,       kChecksums,      kAuditChained, kTouchNoise,
+                                 kAuditTokenNames, kTouchContacts,  kModelTable,   kLogChecksums,
+                                 kOutboxTables,    kRunKindColumns, kImportTable};
 
 /// Overwriting allocated blocks of the log takes a third of the time of appending: the log is preallocated
 /// for a run of some hundred touches. If that fails, commits are slower, and nothing else.

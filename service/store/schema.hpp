@@ -40,6 +40,9 @@ inline constexpr std::size_t kOutboxSchema = 13;
 /// From this schema on a run has a kind and may be of another run, which its checksum covers.
 inline constexpr std::size_t kRunKindSchema = 14;
 
+/// From this schema on runs of other daemons may be imported.
+inline constexpr std::size_t kImportSchema = 15;
+
 /// Opens or creates the file (WAL, synchronous FULL: a commit is durable on return) and migrates it to the
 /// newest schema, all or nothing. Throws std::runtime_error that names the file if that fails, also for a
 /// file of a newer schema, which is not changed.

@@ -51,6 +51,27 @@ class Approval : public ::testing::Test {
     return cell_.run(
         {"compensate", "--cell", cell_file("demo"), "--model", model, "--targets", targets, "--json"});
   }
+  /// The run goes to another daemon of the cell as a file, and can be approved there.
+  void expect_to_travel(const std::string& run, const nlohmann::json& model) {
+    const std::string file = (cell_.folder() / "run.json").string();
+    const Finished exported = cell_.run({"export-run", run, file});
+    ASSERT_EQ(exported.exit_code, cell::kExitDone) << exported.err;
+    EXPECT_THAT(exported.out, HasSubstr("with its approved model"));
+    EXPECT_EQ(cell_.run({"export-run", run, file}).exit_code, cell::kExitUsage) << "the file is there";
+    EXPECT_THAT(refused({"import-run", file}), HasSubstr("is here already, as run " + run));
+
+    const RunningCell other("demo", "max");
+    const Finished imported = other.run({"import-run", file});
+    ASSERT_EQ(imported.exit_code, cell::kExitDone) << imported.err;
+    EXPECT_THAT(imported.out, HasSubstr("is run 1 here"));
+    EXPECT_THAT(other.run({"show", "1"}).out, HasSubstr("imported: it is run " + run + " of cell"));
+    EXPECT_THAT(other.run({"models"}).out, HasSubstr("no model is approved"));
+    const auto approved = nlohmann::json::parse(other.run({"approve", "1", "--json"}).out, nullptr, false);
+    EXPECT_EQ(approved.at("parameters"), model.at("parameters"));
+
+    std::filesystem::resize_file(file, std::filesystem::file_size(file) - 1);
+    EXPECT_EQ(other.run({"import-run", file}).exit_code, cell::kExitBadInput);
+  }
   /// So many accepted runs behind those that are there that only a model keeps one of these.
   void make_other_runs() {
     cell::RunStore store(cell_.store_file());
@@ -115,6 +136,7 @@ TEST_F(Approval, MakesAnAcceptedRunTheCellsModelUntilItIsRolledBackAlsoAcrossARe
   EXPECT_EQ(rows().size(), 4U);
   const auto audit = nlohmann::json::parse(cell_.run({"audit", "--json"}).out).at("rows");
   EXPECT_EQ(audit[0].at("action"), "POST /api/v1/runs/2/approve");
+  expect_to_travel("2", second);
 }
 
 TEST_F(Approval, OfARunThatWasNotAcceptedIsRefused) {

@@ -125,7 +125,8 @@ Services::Services(CellOperation& to_serve, Tokens to_ask_for,
       reads(store_file ? Reads(to_serve, *store_file) : Reads(to_serve)),
       answers(to_serve.store().database()),
       audit(to_serve.store().database()),
-      models(to_serve.store().database()) {}
+      models(to_serve.store().database()),
+      imports(to_serve.store().database()) {}
 
 HttpResponse Api::refuse(const Problem& problem, const HttpRequest& request) {
   services_.metrics.count_request("", "", problem.status);

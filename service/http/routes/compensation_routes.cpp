@@ -7,6 +7,7 @@
 #include "config/targets_file.hpp"
 #include "service/base/utc_time.hpp"
 #include "service/documents/compensation_view.hpp"
+#include "service/documents/model_document.hpp"
 #include "service/http/routes/route_table.hpp"
 #include "service/run/compensated_targets.hpp"
 #include "service/store/model_store.hpp"
@@ -52,6 +53,8 @@ ChosenArm arm_of_model(const Call& call, const ModelStore& models, const Approva
         fmt::format("the model of run {} was valid until {}; calibrate and approve a newer run, or name "
                     "a run with ?run=ID",
                     current.run_id, *current.valid_until));
+  if (const auto why = why_other_arm(read_model(models.document(current.id).value()), call.reads.cell()))
+    return no_arm(*why);
   return ArmToApply{fmt::format("the arm of the approved model of run {}", current.run_id),
                     models.arm_json(current.id).value(), current.hash, current.run_id};
 }

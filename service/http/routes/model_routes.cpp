@@ -65,24 +65,18 @@ std::variant<ApprovalRequest, Problem> read_approval(const std::string& body, bo
   }
 }
 
-/// A model is of one arm; nothing when it is the cell's.
-std::optional<HttpResponse> refuse_other_arm(const Call& call, std::int64_t run_id,
-                                             const std::string& arm_json) {
-  const std::string name = name_of_arm(arm_json);
-  const std::string& now = call.reads.cell().arm.name;
-  if (name == now) return std::nullopt;
-  return not_approved(
-      ProblemKind::kOtherArm,
-      fmt::format("the model of run {} is of the arm '{}', and this cell has the arm '{}' now; "
-                  "calibrate this arm and approve that run",
-                  run_id, name, now));
+/// Nothing when the model is of the cell's arm.
+std::optional<HttpResponse> refuse_other_arm(const Call& call, const ModelDocument& model) {
+  const auto why = why_other_arm(model, call.reads.cell());
+  if (!why) return std::nullopt;
+  return not_approved(ProblemKind::kOtherArm, *why);
 }
 
 /// The document of an approval, unless the cell has another arm now.
 HttpResponse tell_model(const Call& call, const ModelStore& models, const Approval& approval) {
-  if (auto refused = refuse_other_arm(call, approval.run_id, models.arm_json(approval.id).value()))
-    return *std::move(refused);
-  return json_response(200, models.document(approval.id).value());
+  std::string document = models.document(approval.id).value();
+  if (auto refused = refuse_other_arm(call, read_model(document))) return *std::move(refused);
+  return json_response(200, std::move(document));
 }
 
 HttpResponse get_models(const Call& call) {
@@ -110,9 +104,12 @@ HttpResponse get_model_arm(const Call& call) {
   return json_response(200, *arm_json);
 }
 
-/// Why the result of a run cannot become a model; nothing when it can.
-std::optional<std::string> why_no_model(const StoredRun& run) {
+/// Why the result of a run cannot become a model of this cell; nothing when it can.
+std::optional<std::string> why_no_model(const StoredRun& run, const std::string& cell) {
   constexpr std::string_view kOnly = "only a run that is complete and accepted can be approved";
+  if (run.origin && run.origin->cell != cell)
+    return fmt::format("run {} is of the cell '{}', and this is the cell '{}'; approve it there", run.id,
+                       run.origin->cell, cell);
   if (run.kind != RunKind::kCalibration)
     return fmt::format("run {} is a {}, which has no model; approve the calibration that it is of", run.id,
                        run_kind_name(run.kind));
@@ -131,7 +128,8 @@ std::optional<std::string> newest_proof_of(const RunStore& store, std::int64_t r
 }
 
 HttpResponse approve(const Call& call, const StoredRun& run, const ApprovalRequest& request) {
-  if (const auto why = why_no_model(run)) return not_approved(ProblemKind::kNotApprovable, *why);
+  if (const auto why = why_no_model(run, call.reads.cell().name))
+    return not_approved(ProblemKind::kNotApprovable, *why);
   const RunStore& store = call.reads.store();
   const auto arm = store.arm_json(run.id), result = store.result_json(run.id);
   if (!arm || !result)
@@ -139,9 +137,9 @@ HttpResponse approve(const Call& call, const StoredRun& run, const ApprovalReque
                         fmt::format("no calibrated arm was stored when run {} ended, and none is computed "
                                     "again; calibrate once more and approve that run",
                                     run.id));
-  if (auto refused = refuse_other_arm(call, run.id, *arm)) return *std::move(refused);
-  const auto now = call.reads.now();
   ModelDocument model = model_of(run, store.touches(run.id), *arm, *result);
+  if (auto refused = refuse_other_arm(call, model)) return *std::move(refused);
+  const auto now = call.reads.now();
   model.proof_run_id = newest_proof_of(store, run.id);
   model.approved_by = request.operator_name;
   model.approved_at = format_utc(now);
@@ -177,7 +175,7 @@ HttpResponse post_rollback(const Call& call) {
         fmt::format("there is no model before that of run {}; approve another run in its place",
                     standing.back().run_id));
   const Approval& before = standing[standing.size() - 2];
-  if (auto refused = refuse_other_arm(call, before.run_id, models.arm_json(before.id).value()))
+  if (auto refused = refuse_other_arm(call, read_model(models.document(before.id).value())))
     return *std::move(refused);
   return tell_model(
       call, models,

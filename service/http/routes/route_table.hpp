@@ -29,7 +29,8 @@ enum class DispatchMode {
   kPlanning,  // answered when the recipe has been planned
   kStored,    // on the reader's thread, since a disk takes time: it may use the request, Call::reads,
               // Call::asked
-  kWritten,   // on the store's thread, since it writes: the request, Call::reads and Services::models
+  kWritten,   // on the store's thread, since it writes: the request, Call::reads, Services::models
+              // and Services::imports
   kWorker,    // on the worker's thread, since it takes long: it may use only the request and Call::reads
   kEvents,    // a stream of events follows the header; for one run the handler is called as for kStored
 };
@@ -119,6 +120,7 @@ std::span<const Route> routes();
 std::vector<Route> service_routes();  // health, metrics, this table
 std::vector<Route> status_routes();
 std::vector<Route> run_routes();
+std::vector<Route> run_file_routes();  // runs that travel
 std::vector<Route> command_routes();
 std::vector<Route> plan_routes();  // plan, identify
 std::vector<Route> compensation_routes();

@@ -11,6 +11,7 @@
 #include "service/store/answer_store.hpp"
 #include "service/store/audit_log.hpp"
 #include "service/store/model_store.hpp"
+#include "service/store/run_copy.hpp"
 
 namespace cell {
 
@@ -30,6 +31,7 @@ struct Services {
   AnswerStore answers;  // these three on the thread that writes
   AuditLog audit;
   ModelStore models;
+  RunImports imports;                                            // likewise
   std::shared_ptr<int> open_streams = std::make_shared<int>(0);  // event streams; a stream may outlive this
 };
 

@@ -70,6 +70,8 @@ std::string_view problem_kind_name(ProblemKind kind) {
       return "idempotency-key";
     case ProblemKind::kInternal:
       return "internal";
+    case ProblemKind::kKnownRun:
+      return "known-run";
     case ProblemKind::kMethod:
       return "method";
     case ProblemKind::kNoModel:

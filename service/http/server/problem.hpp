@@ -23,6 +23,7 @@ enum class ProblemKind {
   kHttp,
   kIdempotencyKey,
   kInternal,
+  kKnownRun,
   kMethod,
   kNoModel,
   kNoPlan,

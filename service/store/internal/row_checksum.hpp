@@ -44,6 +44,7 @@ const CheckedRows& resumption_rows();
 const CheckedRows& answer_rows();
 const CheckedRows& refused_rows();
 const CheckedRows& row_count_rows();
+const CheckedRows& import_rows();  // from kImportSchema on
 /// Of a file of this schema, kChecksumSchema or later.
 std::span<const CheckedRows* const> all_checked_rows(std::size_t schema);
 

@@ -32,6 +32,8 @@ inline constexpr int kTouchColumnCount = 29;
 
 /// "table touches, run 3, number 12".
 std::string place_of(std::string_view table, std::int64_t run_id, std::optional<int> number = {});
+/// Of a row of runs: it was not imported.
+inline const std::string kOfThisDaemon = "runs.id NOT IN (SELECT run_id FROM imported_runs)";
 inline const std::string kOtherChecksum = "the row is not as it was written (its checksum differs)";
 
 std::string_view plan_change_name(PlanChange::Kind kind);  // "put_off"

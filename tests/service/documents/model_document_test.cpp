@@ -12,7 +12,9 @@
 namespace cell {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
 constexpr const char* kArmJson = R"({"schema":"touchcal/arm/3","name":"tx90"})";
@@ -56,6 +58,25 @@ TEST(ModelHash, IsThatOfTheCanonicalTextThatSurfacesDescribes) {
       R"("noise_um":61.5,"number":2,"overtravel_dmm":0,"plane":3,"role":"fit","sequence":0,"session":0,)"
       R"("source":"latched"}]})";
   EXPECT_EQ(model_hash(accepted_run(), touches_of_run(), kArmJson), sha256_hex(text));
+}
+
+TEST(ModelOfAnotherArm, IsOneOfAnotherNameOrAnotherSerialNumber) {
+  Cell cell;
+  cell.arm.name = "tx90";
+  ModelDocument model;
+  model.run_id = "7";
+  model.arm = "tx60";
+  EXPECT_THAT(why_other_arm(model, cell).value_or(""), AllOf(HasSubstr("'tx60'"), HasSubstr("'tx90'")));
+  model.arm = "tx90";
+  EXPECT_FALSE(why_other_arm(model, cell));
+  model.arm_serial = "F12-1";
+  EXPECT_FALSE(why_other_arm(model, cell)) << "nobody says which arm the cell has";
+  cell.arm_serial = "F12-2";
+  EXPECT_THAT(why_other_arm(model, cell).value_or(""), AllOf(HasSubstr("'F12-1'"), HasSubstr("'F12-2'")));
+  model.arm_serial = "F12-2";
+  EXPECT_FALSE(why_other_arm(model, cell));
+  model.arm_serial.reset();
+  EXPECT_FALSE(why_other_arm(model, cell)) << "the run is older than the number";
 }
 
 TEST(ModelHash, IsAnotherForAnyOtherRawFigure) {

@@ -8,16 +8,9 @@
 
 #include "service/store/maintenance.hpp"
 #include "tests/config/folder.hpp"
+#include "tests/service/same_touch.hpp"
 
 namespace cell {
-
-// For EXPECT_EQ on what comes back.
-static bool operator==(const StoredTouch& a, const StoredTouch& b) {
-  return a.number == b.number && a.plane == b.plane && a.role == b.role && a.joints == b.joints &&
-         a.source == b.source && a.overtravel_dmm == b.overtravel_dmm && a.captured_at == b.captured_at &&
-         a.session == b.session && a.sequence == b.sequence && a.aimed_with == b.aimed_with &&
-         a.noise_um == b.noise_um && a.first == b.first && a.again == b.again;
-}
 
 namespace {
 

@@ -84,7 +84,7 @@ TEST_F(CompensationRoutes, TakeTheApprovedModelBeforeANewerRunUntilItsEnd) {
                   .operator_name = {},
                   .hash = std::string(64, hash_digit),
                   .valid_until = valid_until,
-                  .document = "{}",
+                  .document = R"({"arm":")" + edf().arm.name + R"("})",
                   .arm_json = cell_.store().arm_json(run).value()});
   };
   const auto answer = [this](const std::string& query) { return json::parse(compensate(query).body); };

@@ -140,7 +140,11 @@ TEST_F(ModelRoutesTest, AModelOfAnotherArmIsRefusedWithASentence) {
   EXPECT_EQ(row_count(), 0u);
   // The cell had another arm when it was approved.
   ModelStore models(cell_.store().database());
-  models.approve({.run_id = 1, .at = "t", .hash = "h", .document = "{}", .arm_json = arm_named("other")});
+  models.approve({.run_id = 1,
+                  .at = "t",
+                  .hash = "h",
+                  .document = R"({"arm":"other"})",
+                  .arm_json = arm_named("other")});
   EXPECT_THAT(refusal(current(), "other-arm"), HasSubstr("the arm 'other'"));
   approve(ended_run());
   EXPECT_EQ(current().status, 200u);

@@ -1,0 +1,92 @@
+#include "service/cli/offline_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "config/decimal_text.hpp"
+#include "config/recipe.hpp"
+#include "service/cli/shared_options.hpp"
+
+namespace cell {
+namespace {
+
+void add_cell(CLI::App& command, CellArguments& given, const std::string& recipe_is) {
+  command.add_option("--cell", given.file, "cell file")->required();
+  command.add_option("--recipe", given.recipe, recipe_is + "; default: the cell's first");
+  add_stiffness(command, given.stiffness);
+  add_block_temperature(command, given.block_temperature);
+}
+
+}  // namespace
+
+void add_options(CLI::App& command, IdentifyArguments& given) {
+  add_cell(command, given.cell, "recipe whose identification options apply");
+  command.add_option("--touches", given.touches_file, "touches, JSON or CSV")->required();
+  command
+      .add_option("--monte-carlo", given.monte_carlo_count,
+                  "check the uncertainty by this many simulated calibrations (GUM, Supplement 1)")
+      ->check(refuse_integer)
+      ->check(CLI::Range(kMonteCarloMin, kMonteCarloMax));
+  command.add_option("--export", given.arm_file, "write the calibrated arm to this arm file");
+  command.add_option("--map", given.map_file,
+                     "write the predicted uncertainty over the workspace box to this CSV file");
+  command.add_flag("--force", given.overwrite, "overwrite these files");
+}
+
+void add_options(CLI::App& command, ValidateArguments& given) {
+  add_cell(command, given.cell, "recipe whose identification options apply");
+  command.add_option("--touches", given.touches_file, "touches, JSON or CSV")->required();
+  command.add_option("--other", given.other_file,
+                     "touches of another set; default: the held-out ones of --touches");
+}
+
+void add_options(CLI::App& command, PlanArguments& given) {
+  add_cell(command, given.cell, "the recipe");
+  command.add_option("--fit", given.fit_count, "touches to fit, over all planes, in place of the recipe's")
+      ->check(refuse_integer)
+      ->check(CLI::Range(1, kFitCountMax));
+  std::vector<std::string> criteria;
+  for (const auto& [unused, name] : kCriterionNames) criteria.emplace_back(name);
+  command.add_option("--criterion", given.criterion, "criterion that the touches are chosen by")
+      ->check(CLI::IsMember(criteria));
+  command
+      .add_option("--accuracy", given.tip_rms_max_mm,
+                  "plan the fewest touches, at most --fit or the recipe's, with a predicted tip error within "
+                  "this, mm")
+      ->check(refuse_number)
+      ->check(CLI::Range(1e-6, 1e3));
+  command
+      .add_option("--workspace-box", given.workspace_box_mm,
+                  "box in which the tip error is predicted: minX,minY,minZ,maxX,maxY,maxZ in R_-1, mm")
+      ->delimiter(',')
+      ->check(refuse_number)
+      ->expected(6);
+  auto* place = command.add_flag("--place", given.place, "search places for the block and rank them");
+  command
+      .add_option("--place-min", given.place_min_mm,
+                  "lower end of the block's shift, X,Y,Z along the present R_-1, mm")
+      ->delimiter(',')
+      ->check(refuse_number)
+      ->expected(3)
+      ->needs(place);
+  command.add_option("--place-max", given.place_max_mm, "upper end of the block's shift, X,Y,Z, mm")
+      ->delimiter(',')
+      ->check(refuse_number)
+      ->expected(3)
+      ->needs(place);
+  command
+      .add_option("--place-yaw", given.place_yaw_deg,
+                  "range of rotation about R_-1's y axis, MIN,MAX, degrees")
+      ->delimiter(',')
+      ->check(refuse_number)
+      ->expected(2)
+      ->needs(place);
+  command.add_option("--places", given.place_count, "number of places to try")
+      ->needs(place)
+      ->check(refuse_integer)
+      ->check(CLI::Range(1, kPlaceCountMax))
+      ->default_str("24");
+  command.add_option("--out", given.file, "write the document to this file");
+  command.add_flag("--force", given.overwrite, "overwrite it");
+}
+
+}  // namespace cell

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <CLI/App.hpp>
+
+#include "service/cli/commands.hpp"
+
+/// The options of the commands that need no daemon; touchcal adds --json.
+namespace cell {
+
+void add_options(CLI::App& command, IdentifyArguments& given);
+void add_options(CLI::App& command, ValidateArguments& given);
+void add_options(CLI::App& command, PlanArguments& given);
+
+}  // namespace cell
