@@ -60,7 +60,7 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
   EXPECT_TRUE(nlohmann::json::parse(compensated({}).out).at("warmth").is_null());
   const auto warmth = nlohmann::json::parse(compensated({"--check", "5"}).out).at("warmth");
   EXPECT_EQ(warmth.at("check_run_id"), "5");
-  EXPECT_EQ(warmth.at("growth_ppm"), check.at("growth_ppm"));
+  EXPECT_DOUBLE_EQ(warmth.at("growth_ppm").get<double>(), check.at("growth_ppm").get<double>());
   const Finished refused = compensated({"--check", "2"});
   EXPECT_EQ(refused.exit_code, cell::kExitRefused) << refused.out;
   EXPECT_THAT(refused.err, HasSubstr("check 2 has no verdict"));
