@@ -9,6 +9,7 @@
 #include "calib_core/geometry/units.hpp"
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
+#include "service/base/utc_time.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/result_view.hpp"
@@ -112,7 +113,7 @@ HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64
 }
 
 /// The report of a record in a format.
-HttpResponse report_of(const RunRecord& record, const std::string& format) {
+HttpResponse report_of(const Reads& reads, const RunRecord& record, const std::string& format) {
   if (format != "html" && format != "csv" && format != "json") {
     return to_response({.status = 400,
                         .kind = ProblemKind::kQuery,
@@ -123,7 +124,8 @@ HttpResponse report_of(const RunRecord& record, const std::string& format) {
   const std::string document = report_document(record);
   if (format == "json") return {.body = document};
   const RunReport report = read_report(document);
-  if (format == "html") return saved_as("html", kHtml, record.run.id, report_html(report));
+  if (format == "html")
+    return saved_as("html", kHtml, record.run.id, report_html(report, format_utc(reads.now())));
   return saved_as("csv", kCsv, record.run.id, report_csv(report));
 }
 
@@ -179,7 +181,7 @@ HttpResponse get_arm(const Reads& reads, std::int64_t id) {
 
 HttpResponse get_report(const Reads& reads, const StoredRun& run, const std::string& format) {
   if (const auto refused = refuse_report_of_verification(run)) return *refused;
-  return report_of(record_of(reads, run), format);
+  return report_of(reads, record_of(reads, run), format);
 }
 
 HttpResponse get_simulated_report(const Reads& reads, const StoredRun& run, const std::string& format,
@@ -198,7 +200,7 @@ HttpResponse get_simulated_report(const Reads& reads, const StoredRun& run, cons
         "simulation would not be of its result; take the version that its conditions name");
   simulate(reads, again, count, told);
   record.result_json = document_text(told);
-  return report_of(record, format);
+  return report_of(reads, record, format);
 }
 
 }  // namespace cell

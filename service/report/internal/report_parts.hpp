@@ -2,8 +2,11 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "service/documents/run_report.hpp"
+#include "service/report/internal/html.hpp"
 
 /// Parts of the HTML report. Each takes the report or its result document and returns markup.
 namespace cell {
@@ -17,6 +20,24 @@ std::string figure_if_known(std::optional<double> value, const char* format);
 /// A string; "unknown" if it is empty or absent.
 std::string text_or_unknown(const std::string& text);
 std::string text_or_unknown(const std::optional<std::string>& text);
+
+/// A section with its title.
+std::string section(std::string_view title, const std::string& inner);
+std::string pairs_table(std::string_view caption, const std::vector<html::Row>& rows);
+/// A list of texts; empty without any.
+std::string bullets(const std::vector<std::string>& texts);
+
+// report_front.cpp
+/// Day of the run's end, its id, the first digits of the digest of its raw data: "20260131-7-3f2a9c1b". The
+/// same for every report of the run.
+std::string report_number(const RunReport& report);
+std::string front_page(const RunReport& report, const std::string& issued_at);
+
+// report_budget.cpp
+std::string budget_section(const ResultDocument& result);
+
+// report_certificates.cpp
+std::string certificates_section(const RunReport& report);
 
 // report_tables.cpp
 std::string errors_table(const ResultDocument& result);       // Table III

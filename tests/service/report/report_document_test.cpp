@@ -39,7 +39,7 @@ RunRecord record() {
 
 RunReport report_of(const RunRecord& of) { return read_report(report_document(of)); }
 
-std::string page_of(const RunRecord& of) { return report_html(report_of(of)); }
+std::string page_of(const RunRecord& of) { return report_html(report_of(of), "2026-02-01T00:00:00.000Z"); }
 
 Json json_of(const RunRecord& of) { return Json::parse(report_document(of)); }
 
@@ -197,10 +197,70 @@ TEST(Report, SerialNumbersAreToldAndUnknownWhereNobodyGaveThem) {
   conditions.at("probe")["serial"] = "P-4";
   known.result_json = document.dump();
   const std::string page = page_of(known);
-  for (const char* told : {"; F09-1<", ">F09-C-2<", "; B-3; ", "; P-4; "}) EXPECT_THAT(page, HasSubstr(told));
+  for (const char* told : {"; F09-1<", ">F09-C-2<", "; B-3<", "; P-4<"}) EXPECT_THAT(page, HasSubstr(told));
   conditions["controller_serial"] = nullptr;
   known.result_json = document.dump();
   EXPECT_THAT(page_of(known), HasSubstr("controller&#39;s serial number</td><td>unknown<"));
+}
+
+TEST(Report, TheFirstPageHasWhatIsSigned) {
+  RunRecord ended = record();
+  ended.run.ended_at = "2026-01-31T08:25:30.250Z";
+  ended.run.verdict = Verdict::kAccepted;
+  ended.run.operator_name = "M. Curie";
+  const std::string page = page_of(ended);
+  const std::string number = "20260131-7-" + report_of(ended).raw_data.sha256.substr(0, 8);
+  const std::string front = page.substr(0, page.find("Run and conditions"));
+  for (const std::string& told :
+       {"<h1>Calibration report " + number + "</h1>", std::string("Verdict: accepted"),
+        std::string("<td>date of issue</td><td>2026-02-01T00:00:00.000Z</td>"),
+        std::string("<td>M. Curie</td>"), std::string("Expanded uncertainty of the tip, k = 2"),
+        std::string("Decision rule"), std::string("Calibrated by"), std::string("Approved by")})
+    EXPECT_THAT(front, HasSubstr(told));
+  std::size_t signatures = 0;
+  for (std::size_t at = front.find("Signature:"); at != std::string::npos;
+       at = front.find("Signature:", at + 1))
+    ++signatures;
+  EXPECT_EQ(signatures, 2U);
+  const json expanded = result().at("tip_uncertainty").at("expanded");
+  EXPECT_THAT(front, HasSubstr(fmt::format("<td>{:.3f}</td>", expanded.at("box_max_mm").get<double>())));
+  EXPECT_THAT(page, HasSubstr("content: \"Calibration report " + number + "\"")) << "the head of each page";
+}
+
+TEST(Report, ItsNumberIsTheSameForEveryReportOfTheRunAndAnotherForOtherTouches) {
+  RunRecord ended = record();
+  const auto heading = [](const std::string& page) { return page.substr(page.find("<h1>"), 60); };
+  EXPECT_EQ(heading(page_of(ended)), heading(report_html(report_of(ended), "later")));
+  RunRecord other = record();
+  other.touches[0].joints[0] += 1;
+  EXPECT_NE(heading(page_of(ended)), heading(page_of(other)));
+}
+
+TEST(Report, TheBudgetSharesAddUpAndNothingIsInvented) {
+  const json tip = result().at("tip_uncertainty");
+  const std::string page = page_of(record());
+  double sum = 0.0;
+  for (const json& source : tip.at("sources")) {
+    const double part = source.at("workspace_box_rms_mm"), whole = tip.at("workspace_box_rms_mm");
+    const std::string share = fmt::format("{:.1f}", 1e2 * (part / whole) * (part / whole));
+    EXPECT_THAT(page, HasSubstr(fmt::format("<td>{:.4f}</td><td>{}</td>", part, share))) << source;
+    sum += part * part / (whole * whole);
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-6) << "the sources are all that the tip's uncertainty is made of";
+  EXPECT_THAT(page, HasSubstr("<td>touch noise</td><td>A</td><td>0 µm</td>"));
+  EXPECT_THAT(page, HasSubstr("<td>block size</td><td>B</td><td>several</td><td>as declared</td>"));
+}
+
+TEST(Report, CertificatesAreToldByTheirKeysAndUnknownWhereNobodyGaveThem) {
+  RunRecord known = record();
+  Json document = Json::parse(known.result_json.value());
+  document.at("conditions").at("block")["certificate"] = {{"laboratory", "LNE"}, {"covers", "four <faces>"}};
+  document.at("conditions").at("probe")["certificate"] = nullptr;
+  known.result_json = document.dump();
+  const std::string page = page_of(known);
+  EXPECT_THAT(page, HasSubstr("<td>LNE</td><td>unknown</td><td>unknown</td><td>unknown</td><td>unknown</td>"
+                              "<td>covers: four &lt;faces&gt;</td>"));
+  EXPECT_THAT(page, HasSubstr("ISO/IEC 17025"));
 }
 
 TEST(Report, TextFromOutsideStaysText) {
