@@ -115,9 +115,11 @@ std::string report_number(const RunReport& report) {
 std::string front_page(const RunReport& report, const std::string& issued_at) {
   std::string inner = html::element("h1", html::escaped("Calibration report " + report_number(report))) +
                       "\n" + verdict_box(report) + identification(report, issued_at);
-  if (report.result) inner += tip_table(report.result->value.tip_uncertainty) + limits_table(report);
+  if (report.result) inner += tip_table(report.result->value.tip_uncertainty);
+  // Before the limits: whoever signs finds the place on this page however many of them there are.
   inner +=
       html::element("div", signature("Calibrated by") + signature("Approved by"), R"(class="sign")") + "\n";
+  if (report.result) inner += limits_table(report);
   return html::element("section", inner, R"(class="front")") + "\n";
 }
 

@@ -26,9 +26,12 @@ svg { width: 49%; height: auto; font: 9px sans-serif; break-inside: avoid; }
 .verdict { border: 2px solid #000; padding: 3mm 4mm; margin: 4mm 0; }
 .verdict strong { font-size: 20pt; }
 .front { break-after: page; }
-.sign { display: flex; gap: 8mm; margin-top: 8mm; break-inside: avoid; }
+.front h1, .front .verdict, .front .verdict p { margin: 1.5mm 0; } .front .verdict { padding: 1mm 4mm; }
+.front table { font-size: 7.5pt; line-height: 1.15; margin: 2mm 0; } .front th, .front td { padding: 0.1mm 1.6mm; }
+.front > p { font-size: 8pt; margin: 1mm 0; }
+.sign { display: flex; gap: 8mm; margin: 3mm 0; break-inside: avoid; }
 .sign div { flex: 1; border: 1px solid #000; padding: 2mm 3mm; }
-.sign p { border-bottom: 1px solid #bbb; margin: 0; padding-top: 7mm; }
+.sign p { border-bottom: 1px solid #bbb; margin: 0; padding-top: 5mm; }
 )";
 
 /// The head of each printed page. The number holds digits, letters and hyphens only.
