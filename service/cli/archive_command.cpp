@@ -18,13 +18,16 @@ constexpr std::size_t kShownOfModel = 12;
 
 std::string fleet_text(const FleetDocument& fleet) {
   const auto shown = [](const std::optional<std::string>& text) { return text.value_or("-"); };
-  std::string lines = fmt::format("{:<20}{:<26}{:<6}{:<12}{:<12}{:<14}{:<26}{}\n", "cell", "last heard of",
-                                  "run", "outcome", "verdict", "model", "valid until", "last fault");
+  constexpr auto kLine = "{:<20}{:<26}{:<6}{:<12}{:<12}{:<14}{:<8}{:<26}{:<38}{}\n";
+  std::string lines = fmt::format(kLine, "cell", "last heard of", "run", "outcome", "verdict", "model",
+                                  "tip mm", "valid until", "last check", "last fault");
   for (const FleetCell& cell : fleet.cells) {
+    const std::string found = cell.last_check_cause.value_or(shown(cell.last_check_verdict));
     lines +=
-        fmt::format("{:<20}{:<26}{:<6}{:<12}{:<12}{:<14}{:<26}{}\n", cell.cell, cell.last_event_at,
-                    shown(cell.last_run_id), shown(cell.outcome), shown(cell.verdict),
-                    shown(cell.model).substr(0, kShownOfModel), shown(cell.valid_until),
+        fmt::format(kLine, cell.cell, cell.last_event_at, shown(cell.last_run_id), shown(cell.outcome),
+                    shown(cell.verdict), shown(cell.model).substr(0, kShownOfModel),
+                    cell.tip_box_max_mm ? fmt::format("{:.3f}", *cell.tip_box_max_mm) : "-",
+                    shown(cell.valid_until), cell.last_check_at ? *cell.last_check_at + ", " + found : "-",
                     cell.last_fault_code ? *cell.last_fault_code + ", " + shown(cell.last_fault_at) : "-");
   }
   return lines;

@@ -11,7 +11,7 @@ namespace cell {
 struct FleetCell {
   std::string cell;
   std::string last_event_at;               // RFC 3339, as all times
-  std::optional<std::string> last_run_id;  // of the last run that ended, with the next four
+  std::optional<std::string> last_run_id;  // of the last calibration that ended, with the next four
   std::optional<std::string> recipe;
   std::optional<std::string> outcome;
   std::optional<std::string> verdict;
@@ -19,6 +19,12 @@ struct FleetCell {
   std::optional<std::string> model;        // the hash of the one that is the cell's
   std::optional<std::string> approved_at;  // when it was approved, or came back
   std::optional<std::string> valid_until;
+  std::optional<double> tip_box_max_mm;  // expanded uncertainty at the worst in the workspace box
+  std::optional<std::string> last_proof_at;
+  std::optional<std::string> last_proof_verdict;
+  std::optional<std::string> last_check_at;
+  std::optional<std::string> last_check_verdict;
+  std::optional<std::string> last_check_cause;  // of an alarm
   std::optional<std::string> last_fault_code;
   std::optional<std::string> last_fault_at;
 
@@ -34,6 +40,12 @@ struct FleetCell {
     fields("model", self.model);
     fields("approved_at", self.approved_at);
     fields("valid_until", self.valid_until);
+    fields("tip_box_max_mm", self.tip_box_max_mm);
+    fields("last_proof_at", self.last_proof_at);
+    fields("last_proof_verdict", self.last_proof_verdict);
+    fields("last_check_at", self.last_check_at);
+    fields("last_check_verdict", self.last_check_verdict);
+    fields("last_check_cause", self.last_check_cause);
     fields("last_fault_code", self.last_fault_code);
     fields("last_fault_at", self.last_fault_at);
   }

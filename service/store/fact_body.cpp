@@ -40,6 +40,40 @@ std::string digest_of_touches(SQLite::Database& database, std::int64_t run_id) {
   return sha256_hex(text);
 }
 
+/// A field of a document that is stored as it is; null where it has none.
+Json field_of(const Json& document, const char* key) {
+  return document.is_object() && document.contains(key) ? document.at(key) : Json(nullptr);
+}
+
+/// The expanded uncertainty of the tip at the worst in the workspace box, as the model's document has it.
+Json tip_box_max_of(const std::string& model_document) {
+  const Json model = Json::parse(model_document, nullptr, false);
+  return field_of(field_of(field_of(model, "tip_uncertainty"), "expanded"), "box_max_mm");
+}
+
+/// What a proof or a check found, of a run that came to its end.
+void tell_verification(SQLite::Database& database, std::int64_t run_id) {
+  SQLite::Statement query(
+      database,
+      "SELECT ended_at, kind, of_run, verdict, result_json FROM runs WHERE id = ? AND kind <> ? AND "
+      "outcome = ?");
+  query.bind(1, run_id);
+  query.bind(2, std::string(run_kind_name(RunKind::kCalibration)));
+  query.bind(3, std::string(run_outcome_name(RunOutcome::kComplete)));
+  if (!query.executeStep()) return;
+  const bool is_proof = query.getColumn(1).getString() == run_kind_name(RunKind::kProof);
+  const Json result = query.getColumn(4).isNull()
+                          ? Json(nullptr)
+                          : Json::parse(query.getColumn(4).getString(), nullptr, false);
+  Json body{{"of_run", json_of(query.getColumn(2))},
+            {"verdict", json_of(query.getColumn(3))},
+            {"rms_mm", field_of(result, "rms_mm")}};
+  if (!is_proof)
+    for (const char* key : {"cause", "joint", "growth_ppm"}) body[key] = field_of(result, key);
+  append_fact(database, {is_proof ? FactKind::kProof : FactKind::kCheck, query.getColumn(0).getString(),
+                         run_id, text_of(body)});
+}
+
 /// When the last touch was captured or the run ended, whichever came later: texts of one form and zone.
 constexpr const char* kClosedAt =
     "max(ended_at, coalesce((SELECT max(captured_at) FROM touches WHERE run_id = runs.id), ended_at))";
@@ -75,7 +109,7 @@ void tell_run_ended(SQLite::Database& database, std::int64_t run_id) {
   SQLite::Statement query(
       database,
       "SELECT ended_at, recipe, outcome, verdict, fault_code, fault_message, (SELECT count(*) FROM "
-      "touches WHERE run_id = runs.id), touches_total FROM runs WHERE id = ?");
+      "touches WHERE run_id = runs.id), touches_total, kind FROM runs WHERE id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return;
   if (query.getColumn(6).getInt() > 0) tell_touch_set(database, run_id);
@@ -83,12 +117,13 @@ void tell_run_ended(SQLite::Database& database, std::int64_t run_id) {
       {"recipe", json_of(query.getColumn(1))},        {"outcome", json_of(query.getColumn(2))},
       {"verdict", json_of(query.getColumn(3))},       {"fault_code", json_of(query.getColumn(4))},
       {"fault_message", json_of(query.getColumn(5))}, {"touches_done", json_of(query.getColumn(6))},
-      {"touches_total", json_of(query.getColumn(7))}};
+      {"touches_total", json_of(query.getColumn(7))}, {"kind", json_of(query.getColumn(8))}};
   append_fact(database, {FactKind::kRunEnded, query.getColumn(0).getString(), run_id, text_of(body)});
+  tell_verification(database, run_id);
 }
 
 void tell_run_withdrawn(SQLite::Database& database, std::int64_t run_id) {
-  SQLite::Statement query(database, "SELECT started_at, recipe FROM runs WHERE id = ?");
+  SQLite::Statement query(database, "SELECT started_at, recipe, kind FROM runs WHERE id = ?");
   query.bind(1, run_id);
   if (!query.executeStep()) return;
   const Json body{{"recipe", json_of(query.getColumn(1))},
@@ -97,7 +132,8 @@ void tell_run_withdrawn(SQLite::Database& database, std::int64_t run_id) {
                   {"fault_code", nullptr},
                   {"fault_message", nullptr},
                   {"touches_done", 0},
-                  {"touches_total", nullptr}};
+                  {"touches_total", nullptr},
+                  {"kind", json_of(query.getColumn(2))}};
   append_fact(database, {FactKind::kRunEnded, query.getColumn(0).getString(), run_id, text_of(body)});
 }
 
@@ -105,6 +141,7 @@ std::string model_body(const ToldModel& model) {
   return text_of({{"hash", model.hash},
                   {"operator", value_or_null(model.operator_name)},
                   {"valid_until", value_or_null(model.valid_until)},
+                  {"tip_box_max_mm", tip_box_max_of(model.document)},
                   {"current", model.current}});
 }
 

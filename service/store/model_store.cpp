@@ -161,7 +161,8 @@ Approval ModelStore::approve(const NewApproval& model) {
                                 row::model_body({.hash = row.hash,
                                                  .operator_name = row.operator_name,
                                                  .valid_until = row.valid_until,
-                                                 .current = row.hash})});
+                                                 .current = row.hash,
+                                                 .document = model.document})});
   transaction.commit();
   return row;
 }
@@ -181,7 +182,8 @@ Approval ModelStore::roll_back(const std::string& at, const std::optional<std::s
                                 row::model_body({.hash = row.hash,
                                                  .operator_name = row.operator_name,
                                                  .valid_until = now.valid_until,
-                                                 .current = now.hash})});
+                                                 .current = now.hash,
+                                                 .document = document(now.id).value_or("")})});
   transaction.commit();
   return now;
 }

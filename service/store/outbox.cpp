@@ -24,8 +24,9 @@ namespace cell {
 namespace {
 
 constexpr std::array<std::string_view, kFactKindCount> kFactKindNames{
-    "run_started", "run_ended", "touch_set_closed",    "approved",
-    "rolled_back", "fault",     "certificate_expiring"};
+    "run_started", "run_ended", "touch_set_closed",     "approved",
+    "rolled_back", "fault",     "certificate_expiring", "proof",
+    "check"};
 
 /// The number of the last fact that was ever written; it outlives the fact.
 std::int64_t last_fact(SQLite::Database& database) {

@@ -23,8 +23,10 @@ enum class FactKind {
   kRolledBack,      // it was taken back
   kFault,
   kCertificateExpiring,
+  kProof,  // a proof came to its end, and what it found; likewise
+  kCheck,
 };
-inline constexpr std::size_t kFactKindCount = 7;
+inline constexpr std::size_t kFactKindCount = 9;
 
 std::string_view fact_kind_name(FactKind kind);  // "run_started"
 

@@ -30,12 +30,14 @@ void tell_run_withdrawn(SQLite::Database& database, std::int64_t run_id);
 /// Of a run that has ended: a touch or its result changed since.
 void tell_touch_set(SQLite::Database& database, std::int64_t run_id);
 
-/// One that was approved or rolled back. `current`: the hash of the model that is the cell's now.
+/// One that was approved or rolled back. `current` and `document`: the hash of the model that is the cell's
+/// now, and what is told of it.
 struct ToldModel {
   std::string hash;
   std::optional<std::string> operator_name;
   std::optional<std::string> valid_until;
   std::string current;
+  std::string document;
 };
 std::string model_body(const ToldModel& model);
 std::string fault_body(const std::string& code, const std::string& message);

@@ -43,8 +43,14 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
                     .at = "2026-01-02",
                     .hash = hash,
                     .valid_until = "2027",
-                    .document = "{}",
+                    .document = R"({"tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})",
                     .arm_json = "{}"});
+  const std::int64_t check = store_.begin_run(
+      {.kind = RunKind::kCheck, .of_run = 1, .recipe = "edf-25", .started_at = "2026-01-02"});
+  store_.finish_run(check, {.outcome = RunOutcome::kComplete,
+                            .verdict = Verdict::kRejected,
+                            .ended_at = "2026-01-02T08",
+                            .result_json = R"({"cause":"joint"})"});
   models.roll_back("2026-01-03", {});
   FaultLog(store_.database()).append({}, "2026-01-04", "link_lost", "");
   store_.begin_run({.recipe = "edf-25", .started_at = "2026-01-05"});
@@ -65,6 +71,11 @@ TEST_F(ArchiveTest, TheFleetIsTheLastThatEachCellTold) {
   EXPECT_EQ(cell.verdict, "accepted");
   EXPECT_EQ(cell.model, "one");
   EXPECT_EQ(cell.valid_until, "2027");
+  EXPECT_EQ(cell.tip_box_max_mm, 0.25);
+  EXPECT_EQ(cell.last_check_at, "2026-01-02T08");
+  EXPECT_EQ(cell.last_check_verdict, "rejected");
+  EXPECT_EQ(cell.last_check_cause, "joint");
+  EXPECT_EQ(cell.last_proof_at, std::nullopt);
   EXPECT_EQ(cell.last_fault_code, "link_lost");
 }
 

@@ -98,6 +98,32 @@ TEST_F(OutboxTest, ARunTellsOfItsStartItsTouchesAndItsEnd) {
   EXPECT_TRUE(body(told[2])["fault_code"].is_null());
 }
 
+TEST_F(OutboxTest, AProofAndACheckThatCameToTheirEndTellWhatTheyFound) {
+  const auto verified = [&](RunKind kind, RunOutcome outcome, const std::string& result) {
+    const std::int64_t run =
+        store_.begin_run({.kind = kind, .of_run = 7, .recipe = "edf-25", .started_at = "2026-01-02"});
+    store_.finish_run(
+        run,
+        {.outcome = outcome, .verdict = Verdict::kRejected, .ended_at = "2026-01-03", .result_json = result});
+  };
+  verified(RunKind::kProof, RunOutcome::kComplete, R"({"rms_mm":0.041,"power":[]})");
+  ASSERT_THAT(kinds(), ElementsAre("run_started", "run_ended", "proof"));
+  EXPECT_EQ(body(facts()[1])["kind"], "proof");
+  EXPECT_EQ(body(facts()[2]), (nlohmann::json{{"of_run", 7}, {"verdict", "rejected"}, {"rms_mm", 0.041}}));
+  EXPECT_EQ(facts()[2].at, "2026-01-03");
+  verified(RunKind::kCheck, RunOutcome::kComplete,
+           R"({"rms_mm":null,"cause":"joint","joint":3,"growth_ppm":-4.5})");
+  EXPECT_EQ(facts().back().kind, "check");
+  EXPECT_EQ(body(facts().back()), (nlohmann::json{{"of_run", 7},
+                                                  {"verdict", "rejected"},
+                                                  {"rms_mm", nullptr},
+                                                  {"cause", "joint"},
+                                                  {"joint", 3},
+                                                  {"growth_ppm", -4.5}}));
+  verified(RunKind::kCheck, RunOutcome::kStopped, "{}");
+  EXPECT_EQ(facts().back().kind, "run_ended") << "it found nothing";
+}
+
 TEST_F(OutboxTest, WhatChangesTheTouchesOfARunThatEndedClosesTheirSetAgain) {
   run_that_ended();
   std::string before = body(facts()[1])["touches_sha256"];
@@ -153,7 +179,7 @@ TEST_F(OutboxTest, ApprovalsAndRollbacksTellWhichModelIsTheCellsNow) {
                     .at = "then",
                     .operator_name = "M. Curie",
                     .hash = hash,
-                    .document = "{}",
+                    .document = run == 2 ? R"({"tip_uncertainty":{"expanded":{"box_max_mm":0.25}}})" : "{}",
                     .arm_json = "{}"});
   };
   approve(1, "one");
@@ -162,13 +188,16 @@ TEST_F(OutboxTest, ApprovalsAndRollbacksTellWhichModelIsTheCellsNow) {
   models.roll_back("later", std::nullopt);
   const std::vector<Fact> told = facts(4);
   ASSERT_THAT(kinds(4), ElementsAre("approved", "approved", "rolled_back"));
-  EXPECT_EQ(body(told[1]),
-            (nlohmann::json{
-                {"hash", "two"}, {"operator", "M. Curie"}, {"valid_until", nullptr}, {"current", "two"}}));
+  EXPECT_EQ(body(told[1]), (nlohmann::json{{"hash", "two"},
+                                           {"operator", "M. Curie"},
+                                           {"valid_until", nullptr},
+                                           {"tip_box_max_mm", 0.25},
+                                           {"current", "two"}}));
   EXPECT_EQ(told[2].at, "later");
   EXPECT_EQ(told[2].run_id, 2);
   EXPECT_EQ(body(told[2])["hash"], "two");
   EXPECT_EQ(body(told[2])["current"], "one");
+  EXPECT_TRUE(body(told[2])["tip_box_max_mm"].is_null()) << "the one before never told it";
 }
 
 TEST_F(OutboxTest, FaultsAreToldAlsoOfNoRun) {
