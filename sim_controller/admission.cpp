@@ -84,9 +84,9 @@ std::vector<cs8::JointsMicrodeg> used_via(const Command& command) {
   return {command.via.begin(), command.via.begin() + command.via_count};
 }
 
-std::vector<calib::JointVector> joints_from_wire(std::span<const cs8::JointsMicrodeg> postures) {
+std::vector<calib::JointVector> postures_from_wire(std::span<const cs8::JointsMicrodeg> postures) {
   std::vector<calib::JointVector> joints;
-  for (const cs8::JointsMicrodeg& posture : postures) joints.push_back(sim::joints_from_wire(posture));
+  for (const cs8::JointsMicrodeg& posture : postures) joints.push_back(joints_from_wire(posture));
   return joints;
 }
 
@@ -134,7 +134,7 @@ cs8::JointsMicrodeg wire_from_joints(const calib::JointVector& joints) {
 TouchMotion touch_motion(const cs8::Touch& command) {
   auto waypoints = used_via(command);
   waypoints.push_back(command.clear);
-  return {joints_from_wire(waypoints),
+  return {postures_from_wire(waypoints),
           joints_from_wire(command.approach),
           joints_from_wire(command.search_end),
           cs8::metres_per_second_from_um_s(command.travel_speed_um_s),
@@ -145,7 +145,7 @@ TouchMotion touch_motion(const cs8::Touch& command) {
 std::vector<calib::JointVector> travel_waypoints(const cs8::Travel& command) {
   auto waypoints = used_via(command);
   waypoints.push_back(command.target);
-  return joints_from_wire(waypoints);
+  return postures_from_wire(waypoints);
 }
 
 }  // namespace sim

@@ -21,16 +21,17 @@ std::string document_of(const std::string& targets) {
 std::string named(const std::string& name, const std::string& wanted = kJoints) {
   return R"({"name":")" + name + "\"," + wanted + "}";
 }
-TargetsFile from_json(const std::string& targets) {
+TargetsFile targets_of_json(const std::string& targets) {
   return targets_from_json("t.json", document_of(targets), kTargetsSizeMax);
 }
-TargetsFile from_csv(const std::string& lines) {
+TargetsFile targets_of_csv(const std::string& lines) {
   return targets_from_csv("t.csv", std::string(kTargetsCsvHeader) + "\n" + lines);
 }
 
 TEST(TargetsJson, AreJointsOrPosesOfOneTool) {
-  const TargetsFile file = from_json(named("pick") + "," + named("leave it") + "," + named("put", kPose) +
-                                     "," + named("lay", kPose + R"(,"frame":"world")"));
+  const TargetsFile file =
+      targets_of_json(named("pick") + "," + named("leave it") + "," + named("put", kPose) + "," +
+                      named("lay", kPose + R"(,"frame":"world")"));
   EXPECT_EQ(file.tool, "gripper");
   EXPECT_TRUE(file.names_tool);
   ASSERT_EQ(file.targets.size(), 4U);
@@ -52,7 +53,7 @@ class RefusedTargets : public testing::TestWithParam<Refusal> {};
 
 TEST_P(RefusedTargets, NameTheirPlaceAndTheRemedy) {
   const auto& [targets, pointer, part] = GetParam();
-  const ConfigError error = error_of([&] { from_json(targets); });
+  const ConfigError error = error_of([&] { targets_of_json(targets); });
   EXPECT_EQ(error.source(), "t.json");
   EXPECT_EQ(error.pointer(), pointer);
   EXPECT_THAT(error.message(), HasSubstr(part));
@@ -94,7 +95,7 @@ TEST(TargetsJson, WithoutAToolOrOfAnotherSchemaAreRefused) {
 }
 
 TEST(TargetsCsv, AreJointsOfTheStylus) {
-  const TargetsFile file = from_csv("pick,20,30,60,10,50,-20\r\n\nprise \xc3\xa9, 1,2,3,4,5,6");
+  const TargetsFile file = targets_of_csv("pick,20,30,60,10,50,-20\r\n\nprise \xc3\xa9, 1,2,3,4,5,6");
   EXPECT_EQ(file.tool, kStylusTool);
   EXPECT_FALSE(file.names_tool);
   ASSERT_EQ(file.targets.size(), 2U);
@@ -114,7 +115,7 @@ TEST(TargetsCsv, WhatIsWrongIsSaidWithItsLine) {
         std::pair{right + "b\tc,1,2,3,4,5,6", "line 3: the name is no text"},
         std::pair{right + "\xff,1,2,3,4,5,6", "line 3: the name is no text"},
         std::pair{std::string("\n"), "there is no target"}}) {
-    EXPECT_THAT(error_of([&] { from_csv(lines); }).message(), HasSubstr(said)) << lines;
+    EXPECT_THAT(error_of([&] { targets_of_csv(lines); }).message(), HasSubstr(said)) << lines;
   }
   EXPECT_THAT(error_of([] { targets_from_csv("t.csv", "a,1,2,3,4,5,6\n"); }).message(),
               HasSubstr("line 1: the header is missing; begin with name,j1_deg"));
@@ -123,8 +124,8 @@ TEST(TargetsCsv, WhatIsWrongIsSaidWithItsLine) {
 TEST(TargetsCsv, OfMoreThanAHundredThousandLinesAreRefused) {
   std::string lines;
   for (std::size_t i = 0; i < kTargetCountMax; ++i) lines += "p" + std::to_string(i) + ",1,2,3,4,5,6\n";
-  EXPECT_EQ(from_csv(lines).targets.size(), kTargetCountMax);
-  EXPECT_THAT(error_of([&] { from_csv(lines + "one,1,2,3,4,5,6\n"); }).message(),
+  EXPECT_EQ(targets_of_csv(lines).targets.size(), kTargetCountMax);
+  EXPECT_THAT(error_of([&] { targets_of_csv(lines + "one,1,2,3,4,5,6\n"); }).message(),
               HasSubstr("more than 100000 targets; split the file"));
 }
 

@@ -27,14 +27,14 @@ enum class Reached {
 };
 
 /// What a fault at the n-th message of a type makes of the run.
-struct Case {
+struct LinkCase {
   Fault fault;
   MessageType on;
   std::vector<std::string> expected;  // fault code; two where a busy machine may miss either first
   Reached reached;
 };
 
-std::string describe(const Case& link_case, std::uint32_t nth) {
+std::string describe(const LinkCase& link_case, std::uint32_t nth) {
   static const std::map<Fault, std::string> kNames{{Fault::kCloseSocket, "closes"},
                                                    {Fault::kGoSilent, "goes silent"},
                                                    {Fault::kGarbage, "sends garbage"},
@@ -46,7 +46,7 @@ std::string describe(const Case& link_case, std::uint32_t nth) {
 
 /// A run that meets the fault, waits with its touches and goes on when a person says so. `before` touches are
 /// made in peace.
-void meet(const Case& link_case, std::uint32_t nth, int before) {
+void meet(const LinkCase& link_case, std::uint32_t nth, int before) {
   SCOPED_TRACE(describe(link_case, nth));
   const int captured = before + (link_case.reached == Reached::kCaptured ? 1 : 0);
   const int kept = before + (link_case.reached == Reached::kNotMade ? 0 : 1);
@@ -76,7 +76,7 @@ void meet(const Case& link_case, std::uint32_t nth, int before) {
   EXPECT_EQ(loop.store().runs(10).size(), 1U);
 }
 
-void meet_at_touches(const Case& link_case, std::initializer_list<int> touches) {
+void meet_at_touches(const LinkCase& link_case, std::initializer_list<int> touches) {
   for (const int nth : touches) meet(link_case, static_cast<std::uint32_t>(nth), nth - 1);
 }
 

@@ -22,7 +22,7 @@ namespace {
 using cell::Command;
 using cell::State;
 
-constexpr std::chrono::seconds kPatience{120};
+constexpr std::chrono::seconds kRestartPatience{120};
 constexpr const char* kFewTouches = "few";
 constexpr int kTouchesInAll = 4 * (7 + 1);
 
@@ -72,7 +72,7 @@ class MortalDaemon {
     ++steps_;
   }
   void run_until(const std::function<bool(const cell::Status&)>& condition) {
-    const auto deadline = std::chrono::steady_clock::now() + kPatience;
+    const auto deadline = std::chrono::steady_clock::now() + kRestartPatience;
     while (!condition(operation_->status())) {
       if (std::chrono::steady_clock::now() >= deadline)
         throw std::runtime_error("waited in vain: " + cell::status_document(operation_->status()));

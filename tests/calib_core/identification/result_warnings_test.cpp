@@ -14,16 +14,16 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double kNoiseMetres = 10e-6;
+constexpr double kWarnedNoiseMetres = 10e-6;
 
 /// Of touches that were made as `knowledge` says, but for a plane that is displaced outwards.
 std::vector<std::string> warnings_of(const ArtefactKnowledge& knowledge, std::size_t displaced_face = 0,
                                      double displaced_m = 0.0) {
   UniformChance chance(4);
-  IdentificationProblem problem = drawn::problem(knowledge, kNoiseMetres);
+  IdentificationProblem problem = drawn::problem(knowledge, kWarnedNoiseMetres);
   drawn::Truth truth = drawn::draw_truth(problem, chance);
   truth.planes[displaced_face].offset_m += displaced_m;
-  problem.touches = drawn::touches(truth, {.count = 100, .noise_m = kNoiseMetres}, chance);
+  problem.touches = drawn::touches(truth, {.count = 100, .noise_m = kWarnedNoiseMetres}, chance);
   const IdentificationResult result = identify(problem, {.hold_weak = false});
   EXPECT_EQ(result.status, IdentificationStatus::kConverged) << result.message;
   return result.warnings;
@@ -50,12 +50,12 @@ TEST(ResultWarnings, NameAPlaneThatFitsNoOther) {
 
 TEST(ResultWarnings, NameAJointThatWouldGiveWayUpwards) {
   UniformChance chance(4);
-  IdentificationProblem problem = drawn::problem(drawn::certain_artefact(5), kNoiseMetres);
+  IdentificationProblem problem = drawn::problem(drawn::certain_artefact(5), kWarnedNoiseMetres);
   problem.nominal.masses[4] = {20.0, {0.0, 0.0, -0.25}};
   problem.nongeometric_std[static_cast<std::size_t>(compliance_position(1))] = 3e-6;
   drawn::Truth truth = drawn::draw_truth(problem, chance);
   truth.arm.compliance_rad_per_nm[1] = 3e-6;
-  problem.touches = drawn::touches(truth, {.count = 100, .noise_m = kNoiseMetres}, chance);
+  problem.touches = drawn::touches(truth, {.count = 100, .noise_m = kWarnedNoiseMetres}, chance);
   const auto warning = HasSubstr("joint 2 would give way upwards");
   EXPECT_THAT(identify(problem, {.stiffness = true}).warnings, Not(Contains(warning)));
   problem.nominal.down_in_frame_1 = -problem.nominal.down_in_frame_1;
@@ -65,8 +65,9 @@ TEST(ResultWarnings, NameAJointThatWouldGiveWayUpwards) {
 
 TEST(ResultWarnings, NameReferenceTouchesThatHardlyVary) {
   UniformChance chance(4);
-  IdentificationProblem problem = drawn::problem(drawn::certain_artefact(5), kNoiseMetres);
-  problem.touches = drawn::touches(drawn::draw_truth(problem, chance), {.noise_m = kNoiseMetres}, chance);
+  IdentificationProblem problem = drawn::problem(drawn::certain_artefact(5), kWarnedNoiseMetres);
+  problem.touches =
+      drawn::touches(drawn::draw_truth(problem, chance), {.noise_m = kWarnedNoiseMetres}, chance);
   const auto warning = AllOf(HasSubstr("the 8 touches of the reference place scatter by 0.03 um only"),
                              HasSubstr("the declared 10.00 um"), HasSubstr("\"reference_touches\""));
   EXPECT_THAT(identify(problem, {.hold_weak = false}).warnings, Not(Contains(warning)));

@@ -17,7 +17,7 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr double kDeclaredNoiseMetres = 1e-6;  // the touches themselves are exact
-constexpr std::size_t kBall = 4;               // index of its face
+constexpr std::size_t kSphere = 4;             // index of its face
 
 ArtefactKnowledge block_and_ball(double cap_half_angle_deg = 100.0) {
   ArtefactKnowledge knowledge = drawn::certain_artefact(4);
@@ -40,7 +40,7 @@ Eigen::VectorXd moved_ball(const Artefact& artefact) {
 
 TEST(Sphere, HasRowsThatAreTheDerivativesOfItsDistances) {
   ArtefactKnowledge knowledge = block_and_ball();
-  knowledge.face_uncertainties[kBall] = {.std_offset_m = 1e-5, .std_center_m = 1e-3};
+  knowledge.face_uncertainties[kSphere] = {.std_offset_m = 1e-5, .std_center_m = 1e-3};
   knowledge.std_radius_m = 5e-6;
   knowledge.thermal_expansion_per_k = 2.36e-5;
   knowledge.std_temperature_k = 1.0;
@@ -127,7 +127,7 @@ TEST(Sphere, ThatIsTouchedFromOneSideOnlyIsRefusedByName) {
     EXPECT_THAT(refused.message, HasSubstr("/faces/4/place \"known\" with std_center_mm"));
     EXPECT_FALSE(refused.uncertainty);
 
-    knowledge.face_uncertainties[kBall] = {.std_center_m = 1e-3};  // as the sentence says
+    knowledge.face_uncertainties[kSphere] = {.std_center_m = 1e-3};  // as the sentence says
     problem.artefact = make_artefact(knowledge);
     const IdentificationResult found = identify(problem, options);
     EXPECT_EQ(found.status, IdentificationStatus::kConverged) << found.message;
@@ -142,8 +142,8 @@ TEST(Sphere, ThatIsTouchedInOnePlaneOnlyIsRefusedToo) {
   problem.touches = touches_on(knowledge, truth, 1'000, chance);
   std::erase_if(problem.touches, [&](const Touch& touch) {
     const Eigen::Vector3d tip_m = forward_kinematics(problem.nominal, touch.joints).translation();
-    return static_cast<std::size_t>(touch.face) == kBall &&
-           std::abs(normal_at(problem.artefact.contact_planes[kBall], tip_m).x()) > 0.1;
+    return static_cast<std::size_t>(touch.face) == kSphere &&
+           std::abs(normal_at(problem.artefact.contact_planes[kSphere], tip_m).x()) > 0.1;
   });
   const IdentificationResult result = identify(problem, {});
   EXPECT_EQ(result.status, IdentificationStatus::kUnobservable);

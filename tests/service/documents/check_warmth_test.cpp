@@ -17,7 +17,7 @@ CheckDocument quiet_check() {
   return check;
 }
 
-std::string refusal(const std::string& result, const std::string& of_run = "3") {
+std::string why_no_warmth(const std::string& result, const std::string& of_run = "3") {
   const auto found = warmth_of("9", "then", result, of_run);
   const auto* why = std::get_if<std::string>(&found);
   return why ? *why : "";
@@ -32,17 +32,17 @@ TEST(CheckWarmth, IsTheGrowthThatAQuietCheckFound) {
 }
 
 TEST(CheckWarmth, OfAnotherRunWithoutAVerdictOrWithAnAlarmThereIsNone) {
-  EXPECT_THAT(refusal(document_text(ProofDocument())), HasSubstr("run 9 is no check"));
-  EXPECT_THAT(refusal("{}"), HasSubstr("run 9 is no check"));
-  EXPECT_THAT(refusal(document_text(quiet_check()), "4"), HasSubstr("touchcal check --of 4"));
+  EXPECT_THAT(why_no_warmth(document_text(ProofDocument())), HasSubstr("run 9 is no check"));
+  EXPECT_THAT(why_no_warmth("{}"), HasSubstr("run 9 is no check"));
+  EXPECT_THAT(why_no_warmth(document_text(quiet_check()), "4"), HasSubstr("touchcal check --of 4"));
   CheckDocument check = quiet_check();
   check.verdict.accepted.reset();
-  EXPECT_THAT(refusal(document_text(check)), HasSubstr("has no verdict"));
+  EXPECT_THAT(why_no_warmth(document_text(check)), HasSubstr("has no verdict"));
   check.verdict.accepted = false;
-  EXPECT_THAT(refusal(document_text(check)), HasSubstr("more than the arm's warmth"));
+  EXPECT_THAT(why_no_warmth(document_text(check)), HasSubstr("more than the arm's warmth"));
   check.verdict.accepted = true;
   check.growth_ppm.reset();
-  EXPECT_THAT(refusal(document_text(check)), HasSubstr("has no verdict"));
+  EXPECT_THAT(why_no_warmth(document_text(check)), HasSubstr("has no verdict"));
 }
 
 TEST(CheckWarmth, MakesTheLengthsOfTheArmLongerAndNothingElse) {

@@ -10,7 +10,7 @@ namespace {
 
 using calib::CompensationStatus;
 
-CompensationDocument document() {
+CompensationDocument three_targets() {
   CompensationDocument document{.model = "abc"};
   document.targets = {
       {.name = "p1", .status = CompensationStatus::kOk, .joints_deg = {{1.0, -2.5, 3.0, 4.0, 5.0, 1e-9}}},
@@ -20,7 +20,7 @@ CompensationDocument document() {
 }
 
 TEST(CompensationDocument, IsReadAsItWasWritten) {
-  const std::string text = document_text(document());
+  const std::string text = document_text(three_targets());
   const CompensationDocument read = read_compensation(text);
   EXPECT_EQ(document_text(read), text);
   EXPECT_EQ(read.count(CompensationStatus::kOk), 1);
@@ -30,7 +30,7 @@ TEST(CompensationDocument, IsReadAsItWasWritten) {
 }
 
 TEST(CompensationDocument, OfRefusedTargetsTheCsvHasNoJoints) {
-  EXPECT_EQ(compensated_csv(document()),
+  EXPECT_EQ(compensated_csv(three_targets()),
             "name,j1_deg,j2_deg,j3_deg,j4_deg,j5_deg,j6_deg\n"
             "p1,1.000000000,-2.500000000,3.000000000,4.000000000,5.000000000,0.000000001\n"
             "p2,,,,,,\n"
@@ -38,7 +38,7 @@ TEST(CompensationDocument, OfRefusedTargetsTheCsvHasNoJoints) {
 }
 
 TEST(CompensationDocument, TheCsvIsReadAsTargets) {
-  CompensationDocument taken = document();
+  CompensationDocument taken = three_targets();
   taken.targets.erase(taken.targets.begin() + 1);
   EXPECT_EQ(targets_from_csv("t.csv", compensated_csv(taken)).targets.size(), 2U);
 }

@@ -61,7 +61,7 @@ TEST_F(ConditionsView, ConditionsOfAnOlderDaemonAreReadWithoutSerialNumbers) {
   for (const char* key : {"arm_serial", "controller_serial"}) old.erase(key);
   for (const char* part : {"block", "probe"}) old.at(part).erase("serial");
   const ConditionsDocument read_back = read_conditions(old.dump());
-  EXPECT_EQ(read_back.block.name, old.at("block").at("name"));
+  EXPECT_EQ(read_back.block.name, old.at("block").at("name").get<std::string>());
   EXPECT_FALSE(read_back.arm_serial || read_back.controller_serial || read_back.block.serial ||
                read_back.probe.serial);
 }

@@ -13,7 +13,7 @@
 namespace cell {
 namespace {
 
-StoredTouch stored(int number, const calib::Touch& touch) {
+StoredTouch stored_touch(int number, const calib::Touch& touch) {
   return {.number = number, .plane = touch.face + 1, .role = touch.role, .joints = to_wire(touch.joints)};
 }
 
@@ -47,7 +47,7 @@ TEST_F(RunTest, GoesThroughItsPlanTouchByTouchAndEndsWithTheResult) {
     EXPECT_FALSE(run_.complete());
     ASSERT_NE(run_.next(), nullptr);
     EXPECT_EQ(run_.next()->face, touch.face);
-    keep(run_, stored(++number, touch));
+    keep(run_, stored_touch(++number, touch));
     EXPECT_EQ(run_.touches_done(), number);
     EXPECT_EQ(run_.latest().fitted_touch_count, number - 1) << "not yet";
     run_.identify();
@@ -70,14 +70,14 @@ TEST_F(RunTest, WhatIsLeftTakesAsMuchLongerThanPlannedAsWhatIsMadeTook) {
   }
   run_.set_plan(plan);
   EXPECT_EQ(run_.remaining_s(0.0), plan.duration_s());
-  keep(run_, stored(1, table3_touches()[0]));
-  keep(run_, stored(2, table3_touches()[1]));
+  keep(run_, stored_touch(1, table3_touches()[0]));
+  keep(run_, stored_touch(2, table3_touches()[1]));
   EXPECT_DOUBLE_EQ(run_.remaining_s(7.0), (2.0 + 20.0 + 5.0) * 7.0 / (2.0 + 6.0 + 2.0 + 4.0));
 }
 
 TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
-  keep(run_, stored(1, table3_touches()[0]));
-  EXPECT_THROW(keep(run_, stored(1, table3_touches()[1])), std::exception);
+  keep(run_, stored_touch(1, table3_touches()[0]));
+  EXPECT_THROW(keep(run_, stored_touch(1, table3_touches()[1])), std::exception);
   EXPECT_EQ(run_.touches_done(), 1);
   run_.identify();
   EXPECT_EQ(run_.latest().fitted_touch_count, 1);
@@ -85,7 +85,7 @@ TEST_F(RunTest, ATouchThatIsNotStoredDoesNotCount) {
 }
 
 TEST_F(RunTest, AResultFromACopyCountsWhileTheTouchesAreThoseItIsOf) {
-  keep(run_, stored(1, table3_touches()[0]));
+  keep(run_, stored_touch(1, table3_touches()[0]));
   EXPECT_TRUE(run_.identification_is_due());
   cell::Run copy = run_.copy_to_identify();
   EXPECT_FALSE(run_.identification_is_due()) << "once, also where it fails";
@@ -95,9 +95,9 @@ TEST_F(RunTest, AResultFromACopyCountsWhileTheTouchesAreThoseItIsOf) {
   EXPECT_EQ(run_.latest().fitted_touch_count, 1);
   EXPECT_FALSE(run_.identify());
   cell::Run other(store_.begin_run({.recipe = "edf-25"}), regions_, edf().recipes.at("edf-25"), "start");
-  keep(other, stored(1, table3_touches()[0]));
+  keep(other, stored_touch(1, table3_touches()[0]));
   EXPECT_FALSE(other.take_latest(copy)) << "of another run";
-  keep(run_, stored(2, table3_touches()[1]));
+  keep(run_, stored_touch(2, table3_touches()[1]));
   EXPECT_FALSE(run_.take_latest(copy)) << "a touch came meanwhile";
   EXPECT_TRUE(run_.identification_is_due());
 }
@@ -118,7 +118,7 @@ TEST_F(RunTest, ATouchThatIsPutOffComesBehindTheOthersOfItsRoleOnce) {
 TEST_F(RunTest, TellsWhatMoreTouchesWouldBringOnceAllIsSeen) {
   int number = 0;
   for (const calib::Touch& touch : table3_touches()) {
-    keep(run_, stored(++number, touch));
+    keep(run_, stored_touch(++number, touch));
     if (number == 30) {
       run_.identify();
       EXPECT_FALSE(run_.touch_benefit());
@@ -132,7 +132,7 @@ TEST_F(RunTest, TellsWhatMoreTouchesWouldBringOnceAllIsSeen) {
 TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
   Recipe asking = edf().recipes.at("edf-25");
   int number = 0;
-  for (const calib::Touch& touch : table3_touches()) keep(run_, stored(++number, touch));
+  for (const calib::Touch& touch : table3_touches()) keep(run_, stored_touch(++number, touch));
   run_.identify();
   const double reached_m = run_.predicted_tip_rms_m().value();
   EXPECT_FALSE(run_.meets_accuracy_goal()) << "nothing was asked for";
@@ -141,7 +141,7 @@ TEST_F(RunTest, ARunIsGoodEnoughWhenItsRecipeAsksForAnAccuracyAndHasIt) {
     cell::Run run(store_.begin_run({.recipe = "edf-25"}), regions_, asking, "start");
     EXPECT_FALSE(run.meets_accuracy_goal());
     number = 0;
-    for (const calib::Touch& touch : table3_touches()) keep(run, stored(++number, touch));
+    for (const calib::Touch& touch : table3_touches()) keep(run, stored_touch(++number, touch));
     run.identify();
     EXPECT_EQ(run.meets_accuracy_goal(), share > 1.0);
   }
@@ -171,7 +171,7 @@ std::vector<cell::ReferenceTouch> references_moved_by(double drift_m, const cell
 
 TEST_F(RunTest, TheDriftOfTheReferencePlaceIsInTheTipsUncertainty) {
   int number = 0;
-  for (const calib::Touch& touch : table3_touches()) keep(run_, stored(++number, touch));
+  for (const calib::Touch& touch : table3_touches()) keep(run_, stored_touch(++number, touch));
   run_.note_references(references_moved_by(0.0, run_, run_.problem()));
   run_.identify();
   EXPECT_EQ(run_.problem().drift_m, 0.0);
@@ -191,7 +191,7 @@ TEST_F(RunTest, TheDriftOfTheReferencePlaceIsInTheTipsUncertainty) {
 
 TEST_F(RunTest, WhatTheReferencePlaceScattersIsPureError) {
   int number = 0;
-  for (const calib::Touch& touch : table3_touches()) keep(run_, stored(++number, touch));
+  for (const calib::Touch& touch : table3_touches()) keep(run_, stored_touch(++number, touch));
   EXPECT_FALSE(run_.problem().pure_error);
   run_.note_references(references_moved_by(1e-4, run_, run_.problem()));
   ASSERT_TRUE(run_.problem().pure_error);

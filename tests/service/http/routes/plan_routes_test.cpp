@@ -20,7 +20,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::Pair;
 
-constexpr const char* kRecipe = "edf-25";
+constexpr const char* kShippedRecipe = "edf-25";
 
 class PlanRoutes : public ::testing::Test {
  protected:
@@ -42,7 +42,8 @@ class PlanRoutes : public ::testing::Test {
   }
 
   void begin_planning() {
-    boost::asio::co_spawn(cell_.context(), cell_.operation().plan_recipe(kRecipe), boost::asio::detached);
+    boost::asio::co_spawn(cell_.context(), cell_.operation().plan_recipe(kShippedRecipe),
+                          boost::asio::detached);
     cell_.context().poll();
   }
   void finish_planning() { cell_.context().run(); }
@@ -51,7 +52,7 @@ class PlanRoutes : public ::testing::Test {
 };
 
 TEST_F(PlanRoutes, APlanIsMadeOnceAndShownFromThenOn) {
-  EXPECT_EQ(to_plan(plan_request()), kRecipe);
+  EXPECT_EQ(to_plan(plan_request()), kShippedRecipe);
   begin_planning();
   finish_planning();
   EXPECT_EQ(to_plan(plan_request()), std::nullopt) << "it is there";
@@ -144,7 +145,7 @@ TEST_F(PlanRoutes, AStartByAPlanThatIsNotKnownSaysHowToGetOne) {
 }
 
 TEST_F(PlanRoutes, ThePlanOfARunComesFromTheStore) {
-  const std::int64_t run = cell_.store().begin_run({.recipe = kRecipe, .started_at = "start"});
+  const std::int64_t run = cell_.store().begin_run({.recipe = kShippedRecipe, .started_at = "start"});
   HttpRequest request{
       .method = "GET", .path = "/api/v1/runs/" + std::to_string(run) + "/plan", .from_loopback = true};
   EXPECT_EQ(send(request).status, 409u) << "not planned yet";
