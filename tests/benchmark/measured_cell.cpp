@@ -113,6 +113,7 @@ std::vector<SeenFrame> Wire::take() {
 
 void Wire::on_frame(std::function<void(const SeenFrame&)> watch) {
   const std::lock_guard lock(mutex_);
+  if (watch) std::ranges::for_each(frames_, watch);
   watch_ = std::move(watch);
 }
 

@@ -50,7 +50,8 @@ class Wire {
   [[nodiscard]] std::uint16_t port() const { return relay_.port(); }
   /// All frames since the last call.
   std::vector<SeenFrame> take();
-  /// Called on the wire's thread for each frame that is kept, before it is passed on.
+  /// Called for each frame that is kept: at once for those that take() would return, since the daemon greets
+  /// the controller before anyone can watch; then on the wire's thread, before the frame is passed on.
   void on_frame(std::function<void(const SeenFrame&)> watch);
   /// How many Hello went over it: the links that the daemon made.
   [[nodiscard]] int links() const { return links_; }
