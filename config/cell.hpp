@@ -170,8 +170,9 @@ struct Cell {
   PlaceTolerance unknown_place_std;
   double stylus_tilt_max_rad = 0.0;
   std::chrono::minutes block_temperature_age_max = std::chrono::hours(8);  // older ones say nothing of today
-  std::chrono::minutes permit_lifetime{30};  // of a run on hold; then a person confirms it again
-  double touch_noise_m = 0.0;                // one standard deviation of a touch along the normal, all in all
+  std::optional<std::chrono::days> check_every;  // how often the cell is to be checked; nothing: nobody says
+  std::chrono::minutes permit_lifetime{30};      // of a run on hold; then a person confirms it again
+  double touch_noise_m = 0.0;  // one standard deviation of a touch along the normal, all in all
   calib::Box workspace_box;
   std::vector<calib::Box> keep_out_boxes;
   std::map<std::string, Eigen::Isometry3d> tools;  // named tool centres: R_6 (wrist centre) from tool

@@ -118,6 +118,12 @@ void read_permit_lifetime(const JsonObject& object, const SchemaVersion& version
     cell.permit_lifetime = std::chrono::minutes(minutes->integer(1, kShiftMinutes));
 }
 
+void read_check_interval(const JsonObject& object, const SchemaVersion& version, Cell& cell) {
+  constexpr int kYearDays = 366;
+  if (const auto days = find_since(4, object, "check_every_days", version))
+    cell.check_every = std::chrono::days(days->integer(1, kYearDays));
+}
+
 /// Limits by the name of a recipe of this cell.
 std::map<std::string, double> limits_by_recipe_m(const JsonValue& value, const Cell& cell) {
   std::map<std::string, double> limits_m;
@@ -257,6 +263,7 @@ Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice>
                                            "unknown_place_std",
                                            "block_temperature_age_max_h",
                                            "permit_minutes",
+                                           "check_every_days",
                                            "acceptance",
                                            "speeds",
                                            "deadlines",
@@ -276,6 +283,7 @@ Cell read_cell(const std::filesystem::path& file, std::optional<StiffnessChoice>
   read_touch_conditions(object, cell);
   read_temperature_age(object, version, cell);
   read_permit_lifetime(object, version, cell);
+  read_check_interval(object, version, cell);
   cell.acceptance = acceptance_from_json(object.at("acceptance"), version, cell);
   if (const auto tools = object.find("tools")) read_tools(*tools, version, cell);
   cell.speeds = speeds_from_json(object.at("speeds"), cell.probe);

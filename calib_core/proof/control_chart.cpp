@@ -49,6 +49,7 @@ std::vector<ChartPoint> control_chart(std::span<const double> values, int base_c
     forgotten *= (1.0 - kEwmaShare) * (1.0 - kEwmaShare);
     point.standardised = (point.value - base.mean) / base.std;
     point.mean = mean;
+    point.centre = base.mean;
     point.shewhart_limit = base.limit(kShewhartSigmas, 1.0);
     point.ewma_limit = base.limit(kEwmaSigmas, kEwmaShare / (2.0 - kEwmaShare) * (1.0 - forgotten));
     point.is_beyond_shewhart = std::abs(point.value - base.mean) > point.shewhart_limit;

@@ -21,6 +21,7 @@ struct ChartPoint {
   /// Nothing for the checks that the limits are from.
   std::optional<double> standardised;  // distance from the mean of the base in its standard deviations
   std::optional<double> mean;          // the exponentially weighted one
+  double centre = 0.0;                 // the base's mean
   double shewhart_limit = 0.0;         // distance from the base's mean that alarms, in the unit of the values
   double ewma_limit = 0.0;
   bool is_beyond_shewhart = false;

@@ -8,9 +8,7 @@
 #include "service/store/model_store.hpp"
 
 namespace cell {
-namespace {
 
-/// The run that a proof or check is of where none is named; nothing where there is none.
 std::optional<std::int64_t> calibration_of_cell(const RunStore& store, RunKind kind) {
   if (kind == RunKind::kCheck) {
     const auto standing = standing_approvals(ModelStore(store.database()).history());
@@ -19,6 +17,8 @@ std::optional<std::int64_t> calibration_of_cell(const RunStore& store, RunKind k
   const auto accepted = store.last_accepted();
   return accepted ? std::optional(accepted->id) : std::nullopt;
 }
+
+namespace {
 
 std::optional<std::string> why_not_of(const StoredRun& run, const std::optional<std::string>& config_digest) {
   if (run.kind != RunKind::kCalibration)

@@ -10,9 +10,13 @@
 
 namespace cell {
 
+/// The run that a proof or a check is of where none is named: the newest calibration that was accepted, and
+/// of a check the one whose model a person approved, where there is one. Nothing where there is none.
+std::optional<std::int64_t> calibration_of_cell(const RunStore& store, RunKind kind);
+
 /// What the store has of the calibration that a proof or a check is of: that of run `of_run`; where none is
-/// named, the newest one that was accepted, and for a check the one whose model a person approved, where
-/// there is one. Refused: one that was not accepted, or was made with other files than the cell has now
+/// named, calibration_of_cell(). Refused: one that was not accepted, or was made with other files than the
+/// cell has now
 /// (`config_digest`). Throws what the store throws.
 std::variant<PastCalibration, VerificationRefusal> find_calibration(
     RunStore& store, RunKind kind, std::optional<std::int64_t> of_run,

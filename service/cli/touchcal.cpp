@@ -38,6 +38,7 @@ class CommandLine {
                      "prove the calibrated arm: 12 touches on the block at another place, never fitted");
     add_verification(check_, "check",
                      "check the cell: 12 touches where the arm was calibrated, against the first ones");
+    add_checks();
     add_for_daemon("watch", "watch the run under way",
                    [this](const cell::ApiClient& daemon) { return cell::watch_command(daemon, json_); });
     add_for_daemon("status", "show the state of the cell",
@@ -179,6 +180,13 @@ class CommandLine {
                     "the person responsible for the run; stored with its result");
     cell::add_block_temperature(*run, given.block_temperature);
     cell::add_arm_moving(*run, given.arm_moving_min);
+  }
+
+  void add_checks() {
+    auto* checks = add_for_daemon(
+        "checks", "show what the checks of a calibration found, and when the next one is due",
+        [this](const cell::ApiClient& daemon) { return cell::checks_command(daemon, run_id_, json_); });
+    checks->add_option("--of", run_id_, "id of the calibration's run; by default the one that counts");
   }
 
   void add_report() {

@@ -233,6 +233,17 @@ TEST_F(Knowledge, ACellSaysHowLongARunOnHoldKeepsItsConfirmationFromItsSecondSch
   }
 }
 
+TEST_F(Knowledge, ACellSaysHowOftenItIsToBeChecked) {
+  edit(kCell, [](json& cell) { cell["schema"] = kCellSchema; });
+  EXPECT_FALSE(read().check_every);
+  edit(kCell, [](json& cell) { cell["check_every_days"] = 7; });
+  EXPECT_EQ(read().check_every, std::chrono::days(7));
+  for (const json& wrong : {json(0), json(367), json(1.5), json("7"), json(nullptr)}) {
+    edit(kCell, [&](json& cell) { cell["check_every_days"] = wrong; });
+    EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/check_every_days") << wrong;
+  }
+}
+
 TEST_F(Knowledge, ACellSaysHowOldATemperatureMayBeFromItsSecondSchemaOn) {
   edit(kCell, [](json& cell) {
     lower_schema(cell, kFirstCellSchema);

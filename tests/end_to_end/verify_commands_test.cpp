@@ -12,6 +12,7 @@ namespace touchcal::testing {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 
 class VerifyCommands : public ::testing::Test {
@@ -46,6 +47,17 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
   EXPECT_EQ(runs.at(0).at("of_run"), "1");
   EXPECT_EQ(runs.at(4).at("kind"), "calibration");
   EXPECT_TRUE(runs.at(4).at("of_run").is_null());
+
+  EXPECT_THAT(done({"checks"}).out,
+              AllOf(HasSubstr("checks of run 1: 4, reference of 3 of 3, limits from 1 of 10"),
+                    HasSubstr("none is due"), ContainsRegex("2 .*reference  *-  *-"),
+                    ContainsRegex("5 .*unchanged +-?0[.][0-9]{3}")));
+  const auto checks = nlohmann::json::parse(done({"checks", "--of", "1", "--json"}).out);
+  EXPECT_EQ(checks.at("charts").at(4).at("quantity"), "growth");
+  EXPECT_EQ(checks.at("charts").at(4).at("points").at(0).at("value"), check.at("growth_ppm"));
+  const Finished unknown = cell_.run({"checks", "--of", "2"});
+  EXPECT_EQ(unknown.exit_code, cell::kExitUsage) << unknown.out;
+  EXPECT_THAT(unknown.err, HasSubstr("there is no calibration '2'"));
 
   // A person's word applies the growth that the check found beside the model.
   done({"approve", "1"});

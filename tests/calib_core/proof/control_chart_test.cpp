@@ -33,6 +33,7 @@ TEST(ControlChart, SeesALargeStepAtOnce) {
   const ChartPoint last = control_chart(values).back();
   EXPECT_TRUE(last.is_beyond_shewhart);
   EXPECT_GT(last.standardised.value(), 10.0);
+  EXPECT_GT(std::abs(last.value - last.centre), last.shewhart_limit);
 }
 
 TEST(ControlChart, SeesACreepByItsWeightedMeanBeforeOneValueIsStriking) {

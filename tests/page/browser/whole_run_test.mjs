@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {after, before} from 'node:test';
-import {expectAccessible, expectQuiet, openBrowser, openPage, speak, start, startButton, step, waitForState} from './browser.mjs';
+import {closeQuietly, expectAccessible, expectQuiet, openBrowser, openPage, openWith, speak, start, startButton, step, waitForState} from './browser.mjs';
 import {Cell} from './cell.mjs';
 
 /** As if the page's tab were in front, or behind another. */
@@ -150,6 +150,33 @@ step('TwoRunsAreComparedAndDrawnAsATrend', async () => {
   await page.getByLabel('Trend of').selectOption('plane 3');
   await page.getByRole('img', {name: /Check touches of plane 3, rms, mm/}).waitFor();
   await expectAccessible(page, 'history');
+});
+
+step('AChecksResultHasTheChecksBeforeItAsACurveWithLimits', async () => {
+  const points = Array.from({length: 12}, (_, i) => ({
+    run: String(i + 3), value: i === 11 ? 0.2 : 0.01 * (i % 2), weighted_mean: i < 10 ? null : 0.01, shewhart_limit: i < 10 ? null : 0.05,
+    ewma_limit: i < 10 ? null : 0.02, beyond_shewhart: i === 11, beyond_ewma: false,
+  }));
+  const checked = await openWith(browser, cell, {
+    '/api/v1/runs/2/result': () => ({
+      schema: 'touchcal/check/1', of_run: '1', touch_count: 12, complete: true, verdict: {accepted: true, reasons: []}, rms_mm: 0.004, p: 0.5, p_min: 0.005,
+      noise_um: 3.2, reference: {count: 3, needed: 3}, joints: [{joint: 3, offset_mrad: 0.2, std_offset_mrad: 0.01}], growth_ppm: 2, warmer_k: 0.1,
+    }),
+    '/api/v1/checks?of_run=1': (document) => ({
+      ...document, base: {count: 10, needed: 10}, due_at: '2026-11-20T00:00:00.000Z', overdue: true, warnings: ['run 14: it differs'],
+      charts: document.charts.map((chart) => (chart.quantity === 'joint_3' ? {...chart, centre: 0.005, points} : chart)),
+    }),
+  });
+  await checked.getByRole('button', {name: /^Result/}).click();
+  const checks = checked.getByRole('region', {name: 'Checks of run 1'});
+  await checks.getByText('A check was due on 2026-11-20 00:00:00 (UTC). Check the cell now.').waitFor();
+  await checks.getByText('run 14: it differs').waitFor();
+  await checks.getByText('A chart begins with the second check').waitFor();
+  await checks.getByLabel('Chart of').selectOption('joint_3');
+  await checks.getByRole('img', {name: 'Joint 3, if it alone had changed, mrad: 0.200'}).waitFor();
+  for (const line of ['Value', 'Weighted mean', 'Upper limit', 'Lower limit']) await checks.locator('.u-legend', {hasText: line}).waitFor();
+  await expectAccessible(checked, 'the checks of a calibration');
+  await closeQuietly(checked);
 });
 
 step('FrenchAndDarkAreOneTouchEachAndStay', async () => {

@@ -234,6 +234,26 @@ export interface Check extends VerificationHead {
 }
 export type Verification = Proof | Check;
 
+/** One figure of a check, and what chance allows it. */
+export interface CheckPoint {
+  run: string;
+  value: number | null;
+  weighted_mean: number | null;
+  shewhart_limit: number | null;
+  beyond_shewhart: boolean;
+  beyond_ewma: boolean;
+}
+export interface CheckChart { quantity: string; unit: string; centre: number | null; points: CheckPoint[] }
+/** The checks of a calibration. */
+export interface Checks {
+  of_run: string;
+  base: {count: number; needed: number};
+  due_at: string | null;
+  overdue: boolean | null;
+  warnings: string[];
+  charts: CheckChart[];
+}
+
 export interface Result {
   schema?: 'touchcal/result/1';
   recipe: string;

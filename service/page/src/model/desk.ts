@@ -1,5 +1,5 @@
 import {get, post, type Reply} from '../api/client.ts';
-import type {Audit, Cell, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
+import type {Audit, Cell, Checks, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
 import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
 import {hasResult, kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
@@ -204,8 +204,15 @@ export class Desk {
       this.store.dispatch(told.schema === 'touchcal/proof/1' || told.schema === 'touchcal/check/1'
         ? {type: 'verification', run_id, verification: told}
         : {type: 'result', run_id, result: slimResult(told)});
+      if (told.schema === 'touchcal/check/1' && told.complete) await this.loadChecks(told.of_run);
     }
     if (reply.kind === 'refused') this.store.dispatch({type: 'missing', run_id, why: reply.problem.detail});
+  }
+
+  /** What the checks of a calibration found so far. */
+  private async loadChecks(of_run: string): Promise<void> {
+    const reply = await this.ask<Checks>(`/api/v1/checks?of_run=${of_run}`);
+    if (reply.kind === 'ok') this.store.dispatch({type: 'checks', checks: reply.value});
   }
 
   /** The results that the history's trends are drawn of. */

@@ -1,4 +1,4 @@
-import type {Cell, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet, Verification} from '../api/documents.ts';
+import type {Cell, Checks, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet, Verification} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
 import {addToSeries, kNoSeries, type Series} from './series.ts';
 import {isActive, isPaused, type Command} from './states.ts';
@@ -46,6 +46,7 @@ export interface PageState {
   compared: string[];                   // at most two runs
   results: Record<string, Result>;      // by run
   verifications: Record<string, Verification>;  // of proofs and checks, by run
+  checks: Record<string, Checks>;       // by the run of the calibration
   missing: Record<string, string>;      // why a run has no result, by run
   touches: {run_id: string; touches: Touch[]} | null;  // of the run that is watched
   runPlan: {run_id: string; touches: Touch[]} | null;
@@ -58,7 +59,7 @@ export const kFirstState: PageState = {
   link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], lastingWarning: null, unmet: null,
   role: null, hasToken: false, waitingSince_ms: null, pausedBy: null,
   view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], damagedRuns: [], nextBefore: null,
-  shownRun: null, compared: [], results: {}, verifications: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
+  shownRun: null, compared: [], results: {}, verifications: {}, checks: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
   busy: null,
 };
 
@@ -70,6 +71,7 @@ export type Action =
   | {type: 'plan'; recipe: string; plan: PlanState}
   | {type: 'result'; run_id: string; result: Result}
   | {type: 'verification'; run_id: string; verification: Verification}
+  | {type: 'checks'; checks: Checks}
   | {type: 'missing'; run_id: string; why: string}
   | {type: 'runs'; runs: Run[]; damaged: DamagedRun[]; nextBefore: string | null; isMore: boolean}
   | {type: 'noted'; key: string}
@@ -95,6 +97,8 @@ export function reduce(state: PageState, action: Action): PageState {
       return {...state, results: keepNewest({...state.results, [action.run_id]: action.result})};
     case 'verification':
       return {...state, verifications: keepNewest({...state.verifications, [action.run_id]: action.verification})};
+    case 'checks':
+      return {...state, checks: keepNewest({...state.checks, [action.checks.of_run]: action.checks})};
     case 'missing':
       return {...state, missing: {...state.missing, [action.run_id]: action.why}};
     case 'runs':

@@ -7,6 +7,7 @@ import {newestRun, type PageState} from '../model/page_state.ts';
 import {tipRows} from '../model/tip_rows.ts';
 import {verdictOf} from '../model/verdict.ts';
 import {sayName, type Say, type WordKey} from '../words/words.ts';
+import {ChecksView} from './checks_view.tsx';
 import {LimitsTable} from './limits_table.tsx';
 import {Scroll} from './scroll.tsx';
 import {Symbol} from './symbol.tsx';
@@ -26,7 +27,10 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
   if (!run_id) return <p class="empty">{say('noResultYet')}</p>;
   const which = <Which run_id={run_id} recipe={recipe} isEarlier={run_id !== newest} desk={desk} />;
   const verification = state.verifications[run_id];
-  if (verification) return <div class="result-view">{which}<VerificationView verification={verification} /></div>;
+  if (verification) {
+    const checks = verification.schema === 'touchcal/check/1' ? state.checks[verification.of_run] : undefined;
+    return <div class="result-view">{which}<VerificationView verification={verification} />{checks ? <ChecksView checks={checks} /> : null}</div>;
+  }
   if (!result) return <>{which}<p class="empty"><OuterText text={why ? say('noResult', {why}) : say('noResultYet')} /></p></>;
   const verdict = verdictOf(run_id, result, state);
   return (

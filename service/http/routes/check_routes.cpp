@@ -1,0 +1,55 @@
+#include <spdlog/fmt/fmt.h>
+
+#include "service/acquisition/past_calibration.hpp"
+#include "service/documents/checks_view.hpp"
+#include "service/documents/document_error.hpp"
+#include "service/http/routes/route_table.hpp"
+
+namespace cell {
+namespace {
+
+/// One without a verdict where there is none that can be read.
+CheckDocument result_of(const RunStore& store, std::int64_t check) try {
+  const auto stored = store.result_json(check);
+  return stored ? read_check(*stored) : CheckDocument();
+} catch (const DocumentError&) {
+  return {};
+}
+
+HttpResponse get_checks(const Call& call) {
+  const RunStore& store = call.reads.store();
+  const auto asked = call.number("of_run");
+  const auto of_run = asked ? asked : calibration_of_cell(store, RunKind::kCheck);
+  if (!of_run)
+    return to_response(
+        {.status = 409,
+         .kind = ProblemKind::kNoResult,
+         .detail = "there is no accepted calibration that checks could be of: touchcal run first"});
+  const auto calibration = store.run(*of_run);
+  if (!calibration || calibration->kind != RunKind::kCalibration)
+    return not_found(fmt::format(
+        "there is no calibration '{}'; GET /api/v1/runs lists the runs with their kind", *of_run));
+  std::vector<EndedCheck> checks;
+  for (const StoredRun& check : store.complete_runs_of(*of_run, RunKind::kCheck))
+    checks.push_back({check, result_of(store, check.id)});
+  return json_response(
+      200, document_text(checks_view(*calibration, checks, call.reads.cell().check_every, call.reads.now())));
+}
+
+}  // namespace
+
+std::vector<Route> check_routes() {
+  constexpr std::int64_t kRunIdMax = std::int64_t{1} << 53;
+  return {
+      {.method = "GET",
+       .path = "/api/v1/checks",
+       .summary =
+           "The checks of a calibration: what each found as charts with limits, and when the next one is due",
+       .handle = get_checks,
+       .answers = {{.schema = "Checks"}},
+       .query = {{"of_run", 1, kRunIdMax, "the calibration; without it the one that a check would be of"}},
+       .dispatch = DispatchMode::kStored},
+  };
+}
+
+}  // namespace cell
