@@ -70,7 +70,7 @@ std::string checks_text(const ChecksDocument& document) {
                          document.overdue.value_or(false) ? "OVERDUE since" : "next one due",
                          minutes_of(*document.due_at), document.every_days.value_or(0));
   else
-    lines += "none is due: the cell's file has no check_every_days\n";
+    lines += "none is due: the cell's file has no check_every_days, or another calibration counts\n";
   if (!document.checks.empty()) lines += "\n" + table_text(document);
   if (std::ranges::any_of(document.charts, [](const auto& chart) { return chart.centre.has_value(); }))
     lines += fmt::format(

@@ -80,7 +80,7 @@ struct ChecksDocument {
   std::string of_run;
   Count reference;
   Count base;                     // of the charts: checks without an alarm
-  std::optional<int> every_days;  // the cell's own rule; nothing: it has none, and the next two neither
+  std::optional<int> every_days;  // nothing, as the next two: no rule, or the calibration was replaced
   std::optional<std::string> due_at;
   std::optional<bool> overdue;
   std::vector<std::string> warnings;  // what the newest check shows, one sentence each

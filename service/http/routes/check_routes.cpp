@@ -18,8 +18,9 @@ CheckDocument result_of(const RunStore& store, std::int64_t check) try {
 
 HttpResponse get_checks(const Call& call) {
   const RunStore& store = call.reads.store();
+  const auto counting = calibration_of_cell(store, RunKind::kCheck);
   const auto asked = call.number("of_run");
-  const auto of_run = asked ? asked : calibration_of_cell(store, RunKind::kCheck);
+  const auto of_run = asked ? asked : counting;
   if (!of_run)
     return to_response(
         {.status = 409,
@@ -32,8 +33,9 @@ HttpResponse get_checks(const Call& call) {
   std::vector<EndedCheck> checks;
   for (const StoredRun& check : store.complete_runs_of(*of_run, RunKind::kCheck))
     checks.push_back({check, result_of(store, check.id)});
-  return json_response(
-      200, document_text(checks_view(*calibration, checks, call.reads.cell().check_every, call.reads.now())));
+  // A calibration that another one has replaced is checked no more.
+  const auto every = of_run == counting ? call.reads.cell().check_every : std::nullopt;
+  return json_response(200, document_text(checks_view(*calibration, checks, every, call.reads.now())));
 }
 
 }  // namespace

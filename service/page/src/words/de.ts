@@ -248,7 +248,7 @@ export const de: Words = {
   checksOf: 'Prüfungen zu Lauf {run}',
   checksDue: 'Die nächste Prüfung ist am {date} (UTC) fällig.',
   checksOverdue: 'Eine Prüfung war am {date} (UTC) fällig. Die Zelle jetzt prüfen.',
-  checksNotDue: 'Keine Prüfung ist fällig: Die Datei der Zelle sagt nicht, wie oft (check_every_days).',
+  checksNotDue: 'Keine nächste Prüfung vorgesehen: Die Datei der Zelle sagt nicht, wie oft (check_every_days), oder eine andere Kalibrierung gilt.',
   checksFew: 'Grenzen kommen mit den nächsten: {count} von {needed} Prüfungen, aus denen sie stammen, sind da.',
   checksNone: 'Eine Kurve beginnt mit der zweiten Prüfung nach der Referenz.',
   checksChart: 'Kurve',

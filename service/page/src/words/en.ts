@@ -245,7 +245,7 @@ export const en = {
   checksOf: 'Checks of run {run}',
   checksDue: 'The next check is due on {date} (UTC).',
   checksOverdue: 'A check was due on {date} (UTC). Check the cell now.',
-  checksNotDue: 'No check is due: the cell’s file does not say how often (check_every_days).',
+  checksNotDue: 'No next check is set: the cell’s file does not say how often (check_every_days), or another calibration counts now.',
   checksFew: 'Limits come with the next ones: {count} of {needed} checks are there that they are from.',
   checksNone: 'A chart begins with the second check behind the reference.',
   checksChart: 'Chart of',

@@ -249,7 +249,7 @@ export const fr: Words = {
   checksOf: 'Contrôles du cycle {run}',
   checksDue: 'Prochain contrôle à faire le {date} (UTC).',
   checksOverdue: 'Un contrôle était à faire le {date} (UTC). Contrôler la cellule maintenant.',
-  checksNotDue: 'Aucun contrôle prévu : le fichier de la cellule ne dit pas tous les combien (check_every_days).',
+  checksNotDue: 'Aucun contrôle prévu : le fichier de la cellule n’indique pas la fréquence (check_every_days), ou un autre étalonnage fait foi.',
   checksFew: 'Les limites viendront : {count} des {needed} contrôles dont elles sont tirées sont faits.',
   checksNone: 'Une courbe commence au deuxième contrôle après la référence.',
   checksChart: 'Courbe de',

@@ -8,8 +8,15 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
+Cell checked_weekly() {
+  Cell cell = edf();
+  cell.check_every = std::chrono::days(7);
+  return cell;
+}
+
 class CheckRoutesTest : public RoutesTest {
  protected:
+  CheckRoutesTest() : RoutesTest(checked_weekly()) {}
   std::int64_t accepted_calibration() {
     const std::int64_t run = stored_run();
     cell_.store().finish_run(run, {.verdict = Verdict::kAccepted, .ended_at = "1970-01-01T00:00:00.000Z"});
@@ -48,10 +55,10 @@ TEST_F(CheckRoutesTest, TellsTheChecksOfTheCalibrationThatCounts) {
   EXPECT_EQ(document.checks[0].operator_name, "M. Curie");
   EXPECT_EQ(document.charts.at(2).quantity, "joint_4");
   EXPECT_EQ(document.charts.at(2).points.at(0).value, 0.125);
-  EXPECT_FALSE(document.due_at) << "the shipped cell has no rule";
-  EXPECT_EQ(
-      read_checks(get("/api/v1/checks?of_run=" + std::to_string(older)).body).charts.at(2).points.at(0).value,
-      0.5);
+  EXPECT_EQ(document.due_at, "1970-01-09T00:00:00.000Z");
+  const ChecksDocument before = read_checks(get("/api/v1/checks?of_run=" + std::to_string(older)).body);
+  EXPECT_EQ(before.charts.at(2).points.at(0).value, 0.5);
+  EXPECT_FALSE(before.due_at) << "it was replaced";
 }
 
 TEST_F(CheckRoutesTest, ACheckWhoseResultCannotBeReadHasNoVerdict) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <regex>
 #include <string>
+#include <utility>
 
 #include "service/http/routes/route_table.hpp"
 #include "service/http/routes/routes.hpp"
@@ -20,6 +21,9 @@ namespace cell {
 /// Requests to the routes of a cell without a controller; each answer is held against its schema.
 class RoutesTest : public ::testing::Test {
  protected:
+  RoutesTest() = default;
+  explicit RoutesTest(Cell cell) : cell_(std::move(cell)) {}
+
   /// The problem document of a refusal; the test fails when it is none.
   static nlohmann::json problem(const HttpResponse& response) {
     EXPECT_EQ(response.content_type, "application/problem+json");
