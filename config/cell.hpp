@@ -111,6 +111,8 @@ struct AcceptanceLimits {
   std::optional<double> tip_box_max_m;      // expanded tip uncertainty, k = 2, where it is worst in the box
   std::map<std::string, double> tip_box_max_by_recipe_m;  // in place of tip_box_max_m, by a recipe's name
   std::map<std::string, double> tool_box_rms_max_m;       // as tip_box_rms_max_m, by the name of a tool
+  /// Of the distances from the block in a proof; that of calib::ProofLimits when absent.
+  std::optional<double> proof_rms_max_m;
   /// A limit is kept only when the value and its expanded uncertainty are within it (ISO 14253-1); else when
   /// the value is.
   bool guarded = false;

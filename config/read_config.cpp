@@ -140,7 +140,7 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value, const SchemaVersio
   const JsonObject object =
       value.object({"held_out_mean_max_mm", "held_out_rms_max_mm", "condition_number_max",
                     "lack_of_fit_p_min", "tip_box_rms_max_mm", "tip_box_max_mm", "tip_box_max_by_recipe_mm",
-                    "reference_drift_max_mm", "decision"});
+                    "reference_drift_max_mm", "proof_rms_max_mm", "decision"});
   constexpr NumberRange kConditionNumbers{.min = 1.0, .max = 1e16};
   constexpr NumberRange kProbabilities{.min = 0.0, .max = 0.5};
   AcceptanceLimits limits{
@@ -161,6 +161,8 @@ AcceptanceLimits acceptance_from_json(const JsonValue& value, const SchemaVersio
     limits.guarded = rule == "guarded";
   }
   limits.reference_drift_max_m = object.find_metres("reference_drift_max", kPositive);
+  if (const auto limit = find_since(4, object, "proof_rms_max_mm", version))
+    limits.proof_rms_max_m = calib::kMetresPerMillimetre * limit->number(kPositive);
   return limits;
 }
 

@@ -101,6 +101,7 @@ CalibrationRecord::CalibrationRecord(const IdentificationProblem& problem,
     : problem_(problem),
       options_(settled_options(options, result)),
       calibrated_(result.calibrated),
+      errors_(result.errors),
       artefact_errors_(result.artefact_errors) {
   if (result.status != IdentificationStatus::kConverged || !result.uncertainty)
     throw std::logic_error("only a calibration that has converged can be proved or checked");
@@ -126,7 +127,11 @@ CalibrationRecord::CalibrationRecord(const IdentificationProblem& problem,
     scattered.row(row) *=
         fit.weights()[row] * std::sqrt(noise_variance_m2(per_rad.row(row), fit.noise_factors()[row]));
   bent_by_growth_ = bent_by(growth_in_run(everything, whole_, calibrated_));
-  covariance_ = joint_covariance(scattered.transpose() * scattered);
+  const Eigen::MatrixXd of_noise = scattered.transpose() * scattered;
+  scatter_.setZero(unknown_count(), unknown_count());
+  scatter_(whole_.estimated, whole_.estimated) =
+      whole_.estimated_covariance * of_noise * whole_.estimated_covariance;
+  covariance_ = joint_covariance(of_noise);
   problem_.touches.clear();
 }
 
@@ -156,7 +161,7 @@ bool CalibrationRecord::is_estimated(int arm_column) const {
 }
 
 Eigen::VectorXd CalibrationRecord::bent_by(const Eigen::VectorXd& of_columns) const {
-  Eigen::VectorXd bent = Eigen::VectorXd::Zero(whole_.touch_information.rows() + std::ssize(whole_.patterns));
+  Eigen::VectorXd bent = Eigen::VectorXd::Zero(unknown_count());
   bent(whole_.estimated) = -whole_.estimated_covariance * of_columns(whole_.estimated);
   return bent;
 }
@@ -167,13 +172,35 @@ Eigen::VectorXd CalibrationRecord::displacement_by(int arm_column) const {
   return displaced;
 }
 
+Eigen::VectorXd CalibrationRecord::displacement_by_pattern(Eigen::Index pattern) const {
+  Eigen::VectorXd displaced = bent_by(whole_.pattern_columns.col(pattern));
+  displaced[whole_.touch_information.rows() + pattern] = 1.0;
+  return whole_.patterns[static_cast<std::size_t>(pattern)].std * displaced;
+}
+
+Eigen::MatrixXd CalibrationRecord::repeated_displacements() const {
+  Eigen::MatrixXd displaced = Eigen::MatrixXd::Zero(unknown_count(), unknown_count());
+  const auto displace = [&](Eigen::Index unknown, const std::optional<double>& std) {
+    if (!std) return;
+    displaced.col(unknown) = *std * bent_by(whole_.touch_information.col(unknown));
+    displaced(unknown, unknown) += *std;
+  };
+  for (int column = 0; column < kArmParameterCount; ++column)
+    displace(column, std_unless_estimated(problem_, column, {1.0, 1.0}));
+  const auto& of_artefact = problem_.artefact.parameters;
+  for (std::size_t k = 0; k < of_artefact.size(); ++k)
+    displace(kArmParameterCount + static_cast<Eigen::Index>(k), of_artefact[k].std);
+  for (Eigen::Index k = 0; k < std::ssize(whole_.patterns); ++k)
+    displaced.col(whole_.touch_information.rows() + k) = displacement_by_pattern(k);
+  return displaced;
+}
+
 Eigen::MatrixXd CalibrationRecord::joint_covariance(const Eigen::MatrixXd& of_noise) const {
-  const Eigen::Index unknowns = whole_.touch_information.rows() + std::ssize(whole_.patterns);
   const Eigen::MatrixXd& weighted = whole_.estimated_covariance;
   // The noise may differ from the one that weighed the touches against the priors.
   const Eigen::MatrixXd of_unit_noise =
       weighted * whole_.touch_information(whole_.estimated, whole_.estimated) * weighted;
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(unknown_count(), unknown_count());
   covariance(whole_.estimated, whole_.estimated) = weighted - of_unit_noise + weighted * of_noise * weighted;
   for (int column = 0; column < kErrorParameterCount; ++column) {
     const auto& tolerance = problem_.tolerances[static_cast<std::size_t>(column)];
@@ -182,9 +209,7 @@ Eigen::MatrixXd CalibrationRecord::joint_covariance(const Eigen::MatrixXd& of_no
     covariance += displaced * displaced.transpose();
   }
   for (Eigen::Index k = 0; k < std::ssize(whole_.patterns); ++k) {
-    Eigen::VectorXd displaced = bent_by(whole_.pattern_columns.col(k));
-    displaced[whole_.touch_information.rows() + k] = 1.0;
-    displaced *= whole_.patterns[static_cast<std::size_t>(k)].std;
+    const Eigen::VectorXd displaced = displacement_by_pattern(k);
     covariance += displaced * displaced.transpose();
   }
   return covariance;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <iterator>
 #include <vector>
 
 #include "calib_core/estimation/identification_problem.hpp"
@@ -31,6 +32,7 @@ class CalibrationRecord {
   [[nodiscard]] const IdentificationProblem& problem() const { return problem_; }
   [[nodiscard]] const IdentificationOptions& options() const { return options_; }
   [[nodiscard]] const KinematicModel& calibrated() const { return calibrated_; }
+  [[nodiscard]] const ArmVector& errors() const { return errors_; }  // 0 of what was not estimated
   [[nodiscard]] const Eigen::VectorXd& artefact_errors() const { return artefact_errors_; }
   /// Of a fitted touch, mean over them: measured by the residuals or expected, the smaller one. Residuals are
   /// larger where the model lacks something, and a test against them would be blind to what it lacks.
@@ -47,13 +49,23 @@ class CalibrationRecord {
   /// whose mean over the fitted touches is 1. q is at most what the figures explain, min(1, G / s^2), and of
   /// that the share that the residuals of the fit show: its mean after them, any share alike before.
   [[nodiscard]] double noise_variance_m2(const JointVector& per_rad, double factor) const;
-  [[nodiscard]] Eigen::Index unknown_count() const { return covariance_.rows(); }
+  [[nodiscard]] Eigen::Index unknown_count() const {
+    return whole_.touch_information.rows() + std::ssize(whole_.patterns);
+  }
 
   /// Of the unknowns while the model is complete: by noise (of each touch as its levers make it) and priors
   /// of what was estimated, by the maker's tolerances of the kinematic errors that were not, by the patterns.
   /// What is beside rigid kinematics and was not estimated is not in it: whether it is there is what touches
   /// that were never fitted are to tell.
   [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }
+
+  /// How the estimated unknowns would scatter if the same calibration were made again: by noise alone.
+  [[nodiscard]] const Eigen::MatrixXd& scatter() const { return scatter_; }
+  /// True minus estimated unknowns by one standard deviation of each unknown that has one, estimated or not,
+  /// a column each: what a calibration at the same postures would do again. A column of 0 where none is
+  /// given. Of the errors of a block whose faces and lengths are told each has its own: no smaller than they
+  /// are.
+  [[nodiscard]] Eigen::MatrixXd repeated_displacements() const;
 
   /// Columns of the arm (indices into ArmVector) that were linearised: the candidates, and what else was
   /// estimated or has a deviation.
@@ -68,6 +80,7 @@ class CalibrationRecord {
   [[nodiscard]] const Eigen::VectorXd& displacement_by_growth() const { return bent_by_growth_; }
 
  private:
+  [[nodiscard]] Eigen::VectorXd displacement_by_pattern(Eigen::Index pattern) const;  // by its deviation
   [[nodiscard]] Eigen::VectorXd bent_by(const Eigen::VectorXd& of_columns) const;
   void share_noise(const JointVector& gear_variances, const Eigen::MatrixXd& per_rad, LeastSquares& fit);
   [[nodiscard]] Eigen::MatrixXd joint_covariance(const Eigen::MatrixXd& of_noise) const;
@@ -75,12 +88,14 @@ class CalibrationRecord {
   IdentificationProblem problem_;
   IdentificationOptions options_;
   KinematicModel calibrated_;
+  ArmVector errors_;
   Eigen::VectorXd artefact_errors_;
   TouchNoise noise_;
   double alike_variance_m2_ = 0.0;  // of the noise, what does not grow with the levers
   JointVector joint_variances_rad2_ = JointVector::Zero();  // ... and what does
   FullLinearisation whole_;
   Eigen::VectorXd bent_by_growth_;
+  Eigen::MatrixXd scatter_;
   Eigen::MatrixXd covariance_;
 };
 

@@ -33,27 +33,31 @@ ChartBase base_of(std::span<const double> values) {
 
 }  // namespace
 
-std::vector<ChartPoint> control_chart(std::span<const double> values, int base_count) {
+std::vector<ChartPoint> control_chart(std::span<const ChartedValue> values, int base_count) {
   if (base_count < 2) throw std::logic_error("the limits of a chart are from two checks or more");
   std::vector<ChartPoint> points;
-  for (const double value : values) points.push_back({.value = value});
-  const auto base_end = static_cast<std::size_t>(base_count);
-  if (values.size() <= base_end) return points;
-  const ChartBase base = base_of(values.first(base_end));
+  for (const ChartedValue& value : values) points.push_back({.value = value.value});
+  std::vector<double> base_values;
+  std::size_t after_base = 0;
+  for (; after_base < values.size() && std::ssize(base_values) < base_count; ++after_base)
+    if (values[after_base].counts) base_values.push_back(values[after_base].value);
+  if (std::ssize(base_values) < base_count) return points;
+  const ChartBase base = base_of(base_values);
   if (!(base.std > 0.0)) return points;
   double mean = base.mean;
   double forgotten = 1.0;  // (1 - share)^(2 i) after i checks
-  for (std::size_t i = base_end; i < points.size(); ++i) {
+  for (std::size_t i = after_base; i < points.size(); ++i) {
     ChartPoint& point = points[i];
+    point.centre = base.mean;
+    point.standardised = (point.value - base.mean) / base.std;
+    point.shewhart_limit = base.limit(kShewhartSigmas, 1.0);
+    point.is_beyond_shewhart = std::abs(point.value - base.mean) > *point.shewhart_limit;
+    if (!values[i].counts) continue;
     mean += kEwmaShare * (point.value - mean);
     forgotten *= (1.0 - kEwmaShare) * (1.0 - kEwmaShare);
-    point.standardised = (point.value - base.mean) / base.std;
     point.mean = mean;
-    point.centre = base.mean;
-    point.shewhart_limit = base.limit(kShewhartSigmas, 1.0);
     point.ewma_limit = base.limit(kEwmaSigmas, kEwmaShare / (2.0 - kEwmaShare) * (1.0 - forgotten));
-    point.is_beyond_shewhart = std::abs(point.value - base.mean) > point.shewhart_limit;
-    point.is_beyond_ewma = std::abs(mean - base.mean) > point.ewma_limit;
+    point.is_beyond_ewma = std::abs(mean - base.mean) > *point.ewma_limit;
   }
   return points;
 }

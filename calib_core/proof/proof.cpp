@@ -113,10 +113,7 @@ std::variant<ProofVerdict, ProofRefusal> prove(const CalibrationRecord& record, 
   verdict.distances_m = at_best_pose(record, place, located->rows, degrees);
   verdict.degrees_of_freedom = static_cast<double>(white.degrees());
   verdict.chi_square = white.rest(located->rows.distances_m).squaredNorm();
-  verdict.p = std::isfinite(record.noise().degrees_of_freedom)
-                  ? f_survival(verdict.chi_square / verdict.degrees_of_freedom, verdict.degrees_of_freedom,
-                               record.noise().degrees_of_freedom)
-                  : chi_square_survival(verdict.chi_square, verdict.degrees_of_freedom);
+  verdict.p = rest_p(verdict.chi_square, verdict.degrees_of_freedom, record.noise().degrees_of_freedom);
   verdict.rms_m = std::sqrt(verdict.distances_m.squaredNorm() / static_cast<double>(degrees));
   judge(limits, verdict);
   return verdict;

@@ -37,7 +37,7 @@ std::optional<std::string> why_not_of(const StoredRun& run, const std::optional<
 }  // namespace
 
 std::variant<PastCalibration, VerificationRefusal> find_calibration(
-    RunStore& store, RunKind kind, std::optional<std::int64_t> of_run,
+    const RunStore& store, RunKind kind, std::optional<std::int64_t> of_run,
     const std::optional<std::string>& config_digest) {
   if (!of_run) of_run = calibration_of_cell(store, kind);
   if (!of_run)
@@ -53,8 +53,10 @@ std::variant<PastCalibration, VerificationRefusal> find_calibration(
                        .cell_from_block = block_stood_at(run->conditions_json),
                        .checks = {}};
   if (kind == RunKind::kCheck) {
+    // Only those that became part of the reference: one that did not fit to the others would spoil it for
+    // all.
     for (const StoredRun& check : store.complete_runs_of(run->id, RunKind::kCheck))
-      past.checks.push_back(store.touches(check.id));
+      if (check.verdict == Verdict::kNone) past.checks.push_back(store.touches(check.id));
   }
   return past;
 }

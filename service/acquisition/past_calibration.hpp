@@ -16,10 +16,9 @@ std::optional<std::int64_t> calibration_of_cell(const RunStore& store, RunKind k
 
 /// What the store has of the calibration that a proof or a check is of: that of run `of_run`; where none is
 /// named, calibration_of_cell(). Refused: one that was not accepted, or was made with other files than the
-/// cell has now
-/// (`config_digest`). Throws what the store throws.
+/// cell has now (`config_digest`). Throws what the store throws.
 std::variant<PastCalibration, VerificationRefusal> find_calibration(
-    RunStore& store, RunKind kind, std::optional<std::int64_t> of_run,
+    const RunStore& store, RunKind kind, std::optional<std::int64_t> of_run,
     const std::optional<std::string>& config_digest);
 
 }  // namespace cell

@@ -119,6 +119,9 @@ ExitCode verify_command(const ApiClient& daemon, const VerifyArguments& argument
 /// Prints the checks of a calibration, the daemon's choice where `of_run` is empty, and when the next one is
 /// due.
 ExitCode checks_command(const ApiClient& daemon, const std::string& of_run, bool json);
+/// Prints whether the arm has changed between two calibrations; kExitLimitsMissed when it has.
+ExitCode compare_command(const ApiClient& daemon, const std::string& run, const std::string& other,
+                         bool json);
 /// Watches the run under way to its end, also if another one is started after it.
 ExitCode watch_command(const ApiClient& daemon, bool json);
 /// Locates the block: reports each touch that the person at the pendant has to make until the block is

@@ -4,15 +4,9 @@
 
 #include <algorithm>
 
+#include "service/cli/figure_text.hpp"
+
 namespace cell {
-namespace {
-
-std::string figure_or_dash(std::optional<double> value, const char* format) {
-  return value ? fmt::format(fmt::runtime(format), *value) : "-";
-}
-
-}  // namespace
-
 std::string compensation_text(const CompensationDocument& document, const std::string& tool) {
   std::size_t width = std::string_view("target").size();
   for (const CompensationDocument::Target& target : document.targets)

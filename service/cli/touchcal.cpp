@@ -39,6 +39,7 @@ class CommandLine {
     add_verification(check_, "check",
                      "check the cell: 12 touches where the arm was calibrated, against the first ones");
     add_checks();
+    add_compare();
     add_for_daemon("watch", "watch the run under way",
                    [this](const cell::ApiClient& daemon) { return cell::watch_command(daemon, json_); });
     add_for_daemon("status", "show the state of the cell",
@@ -189,6 +190,15 @@ class CommandLine {
     checks->add_option("--of", run_id_, "id of the calibration's run; by default the one that counts");
   }
 
+  void add_compare() {
+    auto* compare = add_for_daemon("compare", "say whether the arm has changed between two calibrations",
+                                   [this](const cell::ApiClient& daemon) {
+                                     return cell::compare_command(daemon, run_id_, other_run_id_, json_);
+                                   });
+    compare->add_option("RUN", run_id_, "id of the run of a calibration")->required();
+    compare->add_option("OTHER", other_run_id_, "id of another one")->required();
+  }
+
   void add_report() {
     auto* report = add_for_daemon(
         "report", "write the report of a run, as HTML by default",
@@ -321,6 +331,7 @@ class CommandLine {
   cell::VerifyArguments prove_{.kind = "proof"}, check_{.kind = "check"};
   std::string shell_;
   std::string run_id_;
+  std::string other_run_id_;
   bool json_ = false;
 };
 

@@ -2,14 +2,11 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "service/cli/figure_text.hpp"
 #include "service/cli/result_text.hpp"
 
 namespace cell {
 namespace {
-
-std::string shown(const std::optional<double>& value, const char* form) {
-  return value ? fmt::format(fmt::runtime(form), *value) : "-";
-}
 
 std::string verdict_line(const char* what, const VerificationVerdict& verdict, const char* good,
                          const char* bad) {
@@ -30,13 +27,13 @@ std::string proof_text(const ProofDocument& proof) {
   lines += fmt::format("\nof run {}, {} touches{}\n", proof.of_run, proof.touch_count,
                        proof.complete ? "" : ", not complete");
   if (!proof.rms_mm) return lines;
-  lines += fmt::format("distance from the block, rms   {} mm, at most {} mm\n", shown(proof.rms_mm, "{:.4f}"),
-                       shown(proof.rms_max_mm, "{:.3f}"));
-  lines +=
-      fmt::format("chance of so large a scatter   {}, at least {} (chi-square {} of {} degrees of freedom)\n",
-                  shown(proof.p, "{:.3g}"), shown(proof.p_min, "{:.2g}"), shown(proof.chi_square, "{:.1f}"),
-                  shown(proof.degrees_of_freedom, "{:.0f}"));
-  lines += fmt::format("noise of a touch               {} um\n", shown(proof.noise_um, "{:.1f}"));
+  lines += fmt::format("distance from the block, rms   {} mm, at most {} mm\n",
+                       figure_or_dash(proof.rms_mm, "{:.4f}"), figure_or_dash(proof.rms_max_mm, "{:.3f}"));
+  lines += fmt::format(
+      "chance of so large a scatter   {}, at least {} (chi-square {} of {} degrees of freedom)\n",
+      figure_or_dash(proof.p, "{:.3g}"), figure_or_dash(proof.p_min, "{:.2g}"),
+      figure_or_dash(proof.chi_square, "{:.1f}"), figure_or_dash(proof.degrees_of_freedom, "{:.0f}"));
+  lines += fmt::format("noise of a touch               {} um\n", figure_or_dash(proof.noise_um, "{:.1f}"));
   if (const auto& moved = proof.moved_mm)
     lines += fmt::format("the block moved by             {:.1f} {:.1f} {:.1f} mm\n", (*moved)[0], (*moved)[1],
                          (*moved)[2]);
@@ -53,17 +50,19 @@ std::string check_text(const CheckDocument& check) {
                        check.reference.needed);
   if (!check.rms_mm) return lines;
   lines += fmt::format("change, rms                    {} mm (noise of a touch {} um)\n",
-                       shown(check.rms_mm, "{:.4f}"), shown(check.noise_um, "{:.1f}"));
+                       figure_or_dash(check.rms_mm, "{:.4f}"), figure_or_dash(check.noise_um, "{:.1f}"));
+  lines += fmt::format("chance of so large a change    {}, of any joint's {}, each at least {}\n",
+                       figure_or_dash(check.p, "{:.3g}"), figure_or_dash(check.joint_p, "{:.3g}"),
+                       figure_or_dash(check.p_min, "{:.2g}"));
   lines +=
-      fmt::format("chance of so large a change    {}, of any joint's {}, each at least {}\n",
-                  shown(check.p, "{:.3g}"), shown(check.joint_p, "{:.3g}"), shown(check.p_min, "{:.2g}"));
-  lines += fmt::format("growth of the arm              {} ppm (std {}){}\n",
-                       shown(check.growth_ppm, "{:.1f}"), shown(check.std_growth_ppm, "{:.1f}"),
-                       check.warmer_k ? fmt::format(", as of {:+.1f} K", *check.warmer_k) : "");
+      fmt::format("growth of the arm              {} ppm (std {}){}\n",
+                  figure_or_dash(check.growth_ppm, "{:.1f}"), figure_or_dash(check.std_growth_ppm, "{:.1f}"),
+                  check.warmer_k ? fmt::format(", as of {:+.1f} K", *check.warmer_k) : "");
   lines += "\nif it alone had changed      mrad       std\n";
   for (const CheckDocument::Joint& joint : check.joints)
     lines += fmt::format("joint {}                  {:>9} {:>9}\n", joint.joint,
-                         shown(joint.offset_mrad, "{:.3f}"), shown(joint.std_offset_mrad, "{:.3f}"));
+                         figure_or_dash(joint.offset_mrad, "{:.3f}"),
+                         figure_or_dash(joint.std_offset_mrad, "{:.3f}"));
   return lines;
 }
 

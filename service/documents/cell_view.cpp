@@ -55,7 +55,8 @@ Json limits_json(const AcceptanceLimits& limits) {
           {"lack_of_fit_p_min", limits.lack_of_fit_p_min},
           {"tip_box_rms_max_mm", number_mm(limits.tip_box_rms_max_m)},
           {"tip_box_max_mm", number_mm(limits.tip_box_max_m)},
-          {"tip_box_max_by_recipe_mm", by_recipe}};
+          {"tip_box_max_by_recipe_mm", by_recipe},
+          {"proof_rms_max_mm", number_mm(limits.proof_rms_max_m)}};
 }
 
 /// A figure of which nothing is said, neither itself nor its deviation, is unknown.

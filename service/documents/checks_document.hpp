@@ -44,9 +44,9 @@ struct ChecksDocument {
   struct Point {
     std::string run;
     std::optional<double> value;
-    std::optional<double> weighted_mean;   // these three: nothing until the chart's base is whole
-    std::optional<double> shewhart_limit;  // distance of the value from `centre`
-    std::optional<double> ewma_limit;      // distance of the weighted mean from it
+    std::optional<double> shewhart_limit;  // distance of the value from `centre`; nothing without limits
+    std::optional<double> weighted_mean;   // these two: nothing either of a check that alarms
+    std::optional<double> ewma_limit;      // distance of the weighted mean from `centre`
     bool beyond_shewhart = false;
     bool beyond_ewma = false;
 
@@ -54,8 +54,8 @@ struct ChecksDocument {
     static void visit(Self& self, Fields& fields) {
       fields("run", self.run);
       fields("value", self.value);
-      fields("weighted_mean", self.weighted_mean);
       fields("shewhart_limit", self.shewhart_limit);
+      fields("weighted_mean", self.weighted_mean);
       fields("ewma_limit", self.ewma_limit);
       fields("beyond_shewhart", self.beyond_shewhart);
       fields("beyond_ewma", self.beyond_ewma);
@@ -78,10 +78,11 @@ struct ChecksDocument {
 
   std::string schema = "touchcal/checks/1";
   std::string of_run;
+  int count = 0;  // of all its checks; `checks` and the charts have the newest of them
   Count reference;
-  Count base;                     // of the charts: checks without an alarm
-  std::optional<int> every_days;  // nothing, as the next two: no rule, or the calibration was replaced
-  std::optional<std::string> due_at;
+  Count base;                         // of the charts: checks without an alarm
+  std::optional<int> every_days;      // nothing: no rule, or the calibration was replaced
+  std::optional<std::string> due_at;  // nothing with a rule: it is not known, the clock being wrong
   std::optional<bool> overdue;
   std::vector<std::string> warnings;  // what the newest check shows, one sentence each
   std::vector<Check> checks;          // oldest first
@@ -91,6 +92,7 @@ struct ChecksDocument {
   static void visit(Self& self, Fields& fields) {
     fields("schema", self.schema);
     fields("of_run", self.of_run);
+    fields("count", self.count);
     fields("reference", self.reference);
     fields("base", self.base);
     fields("every_days", self.every_days);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <set>
 
 #include "calib_core/proof/check.hpp"
 #include "calib_core/proof/control_chart.hpp"
@@ -15,72 +16,65 @@
 namespace cell {
 namespace {
 
+/// A figure that is charted, and what to do about one beyond its limit.
 struct Quantity {
   std::string name;
   std::string words;
   std::string unit;
-  std::string remedy;
+  std::string remedy_above, remedy_below;
+  bool is_bad_below;
   std::function<std::optional<double>(const CheckDocument&)> of;
 };
 
 std::vector<Quantity> charted_quantities() {
-  const std::string mend = "look at the chart, find out what has changed, and calibrate anew if it goes on";
+  const std::string changed = "find out what has changed, and calibrate anew";
   std::vector<Quantity> all;
   for (const int joint : calib::kCheckedJoints) {
     const auto offset = [joint](const CheckDocument& check) {
       const auto found = std::ranges::find(check.joints, joint, &CheckDocument::Joint::joint);
       return found == check.joints.end() ? std::nullopt : found->offset_mrad;
     };
-    all.push_back(
-        {fmt::format("joint_{}", joint), fmt::format("the offset of joint {}", joint), "mrad", mend, offset});
+    all.push_back({fmt::format("joint_{}", joint), fmt::format("the offset of joint {}", joint), "mrad",
+                   changed, changed, true, offset});
   }
   all.push_back({"growth", "the growth of the arm", "ppm",
-                 "the arm is not as warm as then; warm it up as for those checks, or compensate with the "
-                 "growth of this one",
+                 "the arm is warmer than at those checks: compensate with the growth of this one",
+                 "the arm is colder than at those checks: warm it up as then", true,
                  [](const CheckDocument& check) { return check.growth_ppm; }});
-  all.push_back({"residual", "what the arm's growth leaves", "mm", mend,
+  all.push_back({"residual", "the change that the arm's growth does not explain", "mm", changed, "", false,
                  [](const CheckDocument& check) { return check.rms_mm; }});
   return all;
 }
 
-/// Those that the charts are of.
-std::vector<const EndedCheck*> charted(const std::vector<EndedCheck>& checks) {
-  std::vector<const EndedCheck*> chosen;
-  for (const EndedCheck& check : checks) {
-    if (!check.result.verdict.accepted) continue;
-    const bool is_base = std::ssize(chosen) < calib::kChartBaseCount;
-    if (*check.result.verdict.accepted || !is_base) chosen.push_back(&check);
-  }
-  return chosen;
-}
-
-ChecksDocument::Point point_told(const calib::ChartPoint& point, const EndedCheck& check) {
-  ChecksDocument::Point made{.run = std::to_string(check.run.id),
-                             .value = finite(point.value),
-                             .beyond_shewhart = point.is_beyond_shewhart,
-                             .beyond_ewma = point.is_beyond_ewma};
-  if (!point.mean) return made;
-  made.weighted_mean = finite(*point.mean);
-  made.shewhart_limit = finite(point.shewhart_limit);
-  made.ewma_limit = finite(point.ewma_limit);
+/// Below its centre a value is beyond a limit only where that is bad.
+ChecksDocument::Point point_told(const calib::ChartPoint& point, const EndedCheck& check, bool is_bad_below) {
+  const auto counts = [&](double value) { return is_bad_below || value > point.centre.value_or(value); };
+  ChecksDocument::Point made{.run = std::to_string(check.run.id), .value = finite(point.value)};
+  made.beyond_shewhart = point.is_beyond_shewhart && counts(point.value);
+  made.beyond_ewma = point.is_beyond_ewma && counts(point.mean.value_or(point.value));
+  if (point.shewhart_limit) made.shewhart_limit = finite(*point.shewhart_limit);
+  if (point.mean) made.weighted_mean = finite(*point.mean);
+  if (point.ewma_limit) made.ewma_limit = finite(*point.ewma_limit);
   return made;
 }
 
-ChecksDocument::Chart chart_of(const Quantity& quantity, const std::vector<const EndedCheck*>& checks) {
-  std::vector<double> values;
+/// Of the checks with a verdict. One that alarms is shown, and changes nothing of the others.
+ChecksDocument::Chart chart_of(const Quantity& quantity, const std::vector<EndedCheck>& checks) {
+  std::vector<calib::ChartedValue> values;
   std::vector<const EndedCheck*> measured;
-  for (const EndedCheck* check : checks) {
-    const auto value = quantity.of(check->result);
-    if (!value) continue;
-    values.push_back(*value);
-    measured.push_back(check);
+  for (const EndedCheck& check : checks) {
+    const auto value = quantity.of(check.result);
+    if (!value || !check.result.verdict.accepted) continue;
+    values.push_back({*value, *check.result.verdict.accepted});
+    measured.push_back(&check);
   }
   ChecksDocument::Chart chart{.quantity = quantity.name, .unit = quantity.unit, .centre = {}, .points = {}};
   const auto points = calib::control_chart(values);
-  std::ranges::transform(
-      points, measured, std::back_inserter(chart.points),
-      [](const calib::ChartPoint& point, const EndedCheck* check) { return point_told(point, *check); });
-  if (!points.empty() && points.back().mean) chart.centre = finite(points.back().centre);
+  std::ranges::transform(points, measured, std::back_inserter(chart.points),
+                         [&](const calib::ChartPoint& point, const EndedCheck* check) {
+                           return point_told(point, *check, quantity.is_bad_below);
+                         });
+  if (!points.empty() && points.back().centre) chart.centre = finite(*points.back().centre);
   return chart;
 }
 
@@ -88,10 +82,12 @@ void warn_of(const Quantity& quantity, const ChecksDocument::Chart& chart, Check
   if (chart.points.empty() || chart.points.back().run != document.checks.back().run) return;
   const ChecksDocument::Point& newest = chart.points.back();
   const auto add = [&](const char* what, double value, double limit) {
-    document.warnings.push_back(
-        fmt::format("run {}: {} {} by {:.3f} {} from the first {} checks, and chance explains {:.3f}: {}",
-                    newest.run, quantity.words, what, value - *chart.centre, chart.unit,
-                    calib::kChartBaseCount, limit, quantity.remedy));
+    const double away = value - *chart.centre;
+    document.warnings.push_back(fmt::format(
+        "run {}: {} {} by {:.3f} {} from the first {} checks, and chance explains {:.3f}: check again; if it "
+        "stays so, {}",
+        newest.run, quantity.words, what, away, chart.unit, calib::kChartBaseCount, limit,
+        away > 0.0 ? quantity.remedy_above : quantity.remedy_below));
   };
   if (newest.beyond_shewhart) {
     add("differs", *newest.value, *newest.shewhart_limit);
@@ -100,17 +96,56 @@ void warn_of(const Quantity& quantity, const ChecksDocument::Chart& chart, Check
   }
 }
 
-void tell_due(const StoredRun& calibration, const std::vector<EndedCheck>& checks, std::chrono::days every,
+/// A check that alarms says itself what has changed: where each joint seems to be then is no news.
+void warn_of_newest(const std::vector<Quantity>& quantities, const EndedCheck& newest,
+                    ChecksDocument& document) {
+  if (newest.result.verdict.accepted == false) {
+    for (const std::string& reason : newest.result.verdict.reasons)
+      document.warnings.push_back(fmt::format("run {}: {}", newest.run.id, reason));
+    return;
+  }
+  for (std::size_t i = 0; i < quantities.size(); ++i) warn_of(quantities[i], document.charts[i], document);
+}
+
+/// One that says something of the cell: it has a verdict, or is part of the reference.
+bool says_something(const ChecksDocument::Check& check) {
+  return check.reference || check.accepted.has_value();
+}
+
+void tell_due(const StoredRun& calibration, std::chrono::days every,
               std::chrono::system_clock::time_point now, ChecksDocument& document) {
   document.every_days = static_cast<int>(every.count());
-  const StoredRun& last = checks.empty() ? calibration : checks.back().run;
-  const auto ended = time_from_utc(last.ended_at.value_or(""));
+  const auto newest = std::ranges::find_if(document.checks.rbegin(), document.checks.rend(), says_something);
+  const bool was_checked = newest != document.checks.rend();
+  const std::string last = was_checked ? newest->ended_at : calibration.ended_at.value_or("");
+  const auto ended = time_from_utc(last);
   if (!ended) return;
-  const auto due = *ended + every;
-  document.due_at = format_utc(due);
-  document.overdue = now > due;
-  if (*document.overdue)
-    document.warnings.push_back(fmt::format("a check was due on {}: touchcal check", *document.due_at));
+  if (*ended > now) {
+    document.warnings.push_back(
+        fmt::format("when the next check is due is not known: the clock of the daemon is at {}, and run {} "
+                    "ended at {}; set the clock",
+                    format_utc(now), was_checked ? newest->run : document.of_run, last));
+    return;
+  }
+  document.due_at = format_utc(*ended + every);
+  document.overdue = now > *ended + every;
+}
+
+std::vector<ChecksDocument::Check> checks_told(const std::vector<EndedCheck>& checks) {
+  std::vector<ChecksDocument::Check> told;
+  int references = 0;
+  for (const EndedCheck& check : checks) {
+    const bool is_reference =
+        check.run.verdict == Verdict::kNone && references++ < calib::kReferenceCount;  // as verification_of()
+    told.push_back({.run = std::to_string(check.run.id),
+                    .ended_at = check.run.ended_at.value_or(""),
+                    .operator_name = check.run.operator_name,
+                    .reference = is_reference,
+                    .accepted = check.result.verdict.accepted,
+                    .cause = check.result.cause,
+                    .joint = check.result.joint});
+  }
+  return told;
 }
 
 }  // namespace
@@ -120,27 +155,31 @@ ChecksDocument checks_view(const StoredRun& calibration, const std::vector<Ended
                            std::chrono::system_clock::time_point now) {
   ChecksDocument document;
   document.of_run = std::to_string(calibration.id);
-  for (const EndedCheck& check : checks) {
-    document.checks.push_back({.run = std::to_string(check.run.id),
-                               .ended_at = check.run.ended_at.value_or(""),
-                               .operator_name = check.run.operator_name,
-                               .reference = check.run.verdict == Verdict::kNone,
-                               .accepted = check.result.verdict.accepted,
-                               .cause = check.result.cause,
-                               .joint = check.result.joint});
-  }
+  document.count = static_cast<int>(std::ssize(checks));
+  document.checks = checks_told(checks);
   document.reference = {
       .count = static_cast<int>(std::ranges::count(document.checks, true, &ChecksDocument::Check::reference)),
       .needed = calib::kReferenceCount};
-  const auto chosen = charted(checks);
-  document.base = {.count = static_cast<int>(std::min<std::size_t>(chosen.size(), calib::kChartBaseCount)),
+  const auto within = std::ranges::count(document.checks, true, &ChecksDocument::Check::accepted);
+  document.base = {.count = static_cast<int>(std::min<std::ptrdiff_t>(within, calib::kChartBaseCount)),
                    .needed = calib::kChartBaseCount};
-  for (const Quantity& quantity : charted_quantities()) {
-    document.charts.push_back(chart_of(quantity, chosen));
-    if (!document.checks.empty()) warn_of(quantity, document.charts.back(), document);
-  }
-  if (every) tell_due(calibration, checks, *every, now, document);
+  const auto quantities = charted_quantities();
+  for (const Quantity& quantity : quantities) document.charts.push_back(chart_of(quantity, checks));
+  if (!checks.empty()) warn_of_newest(quantities, checks.back(), document);
+  if (every) tell_due(calibration, *every, now, document);
   return document;
+}
+
+void keep_newest(ChecksDocument& document, std::size_t limit) {
+  if (document.checks.size() <= limit) return;
+  const auto kept = document.checks.end() - static_cast<std::ptrdiff_t>(limit);
+  std::set<std::string> left_out;
+  std::transform(document.checks.begin(), kept, std::inserter(left_out, left_out.end()),
+                 [](const ChecksDocument::Check& check) { return check.run; });
+  document.checks.erase(document.checks.begin(), kept);
+  for (ChecksDocument::Chart& chart : document.charts)
+    std::erase_if(chart.points,
+                  [&](const ChecksDocument::Point& point) { return left_out.contains(point.run); });
 }
 
 }  // namespace cell

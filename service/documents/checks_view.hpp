@@ -16,11 +16,14 @@ struct EndedCheck {
   CheckDocument result;
 };
 
-/// The checks of a calibration, oldest first, as charts. A check that alarms while the base of the charts is
-/// not whole is in none: their limits are those of a cell that has not changed. `every`: how often the cell
-/// is to be checked, nothing for a calibration that was replaced; counted from the newest check, or from the
-/// calibration where there is none.
+/// The checks of a calibration, oldest first, as charts. A check that alarms is held against the limits, and
+/// changes neither them nor the weighted means: they are of a cell that has not changed. `every`: how often
+/// the cell is to be checked, nothing for a calibration that was replaced; counted from the newest check that
+/// has a verdict or is part of the reference, or from the calibration where there is none.
 ChecksDocument checks_view(const StoredRun& calibration, const std::vector<EndedCheck>& checks,
                            std::optional<std::chrono::days> every, std::chrono::system_clock::time_point now);
+
+/// Leaves out all but the newest checks and their points; what was made of all stays.
+void keep_newest(ChecksDocument& document, std::size_t limit);
 
 }  // namespace cell

@@ -10,7 +10,13 @@ namespace cell {
 std::optional<std::string> configuration_digest(const Cell& cell) {
   if (cell.files.empty()) return std::nullopt;
   std::string canonical;
-  for (const std::filesystem::path& file : cell.files) canonical += read_json_file(file).dump() + "\n";
+  for (const std::filesystem::path& file : cell.files) {
+    auto document = read_json_file(file);
+    // How often the cell is to be checked says nothing of the cell: a rule that is changed must not end the
+    // checks of the calibration that it is for.
+    if (document.is_object()) document.erase("check_every_days");
+    canonical += document.dump() + "\n";
+  }
   return sha256_hex(canonical);
 }
 

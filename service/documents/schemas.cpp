@@ -203,7 +203,8 @@ constexpr std::string_view kCell = R"({
   "touch_noise_mm":{"type":"number"},
   "acceptance":{"type":"object","properties":{
     "tip_box_max_by_recipe_mm":{"type":"object","description":"in place of tip_box_max_mm, by the name of a recipe",
-      "additionalProperties":{"type":"number"}}}},
+      "additionalProperties":{"type":"number"}},
+    "proof_rms_max_mm":{"type":["number","null"],"description":"of a proof; null: 0.030"}}},
   "scene":{"type":"object","description":"what the cell looks like, in R_-1; bodies in the frame that they move with; a solid has holes (center_mm, axis, radius_mm), which go through it",
     "required":["frames","gains","arm_bodies","probe_bodies","solids","park_joints_deg"]},
   "controller":{"type":"string"},
@@ -281,50 +282,6 @@ constexpr std::string_view kModels = R"({
       "current":{"type":"boolean","description":"the approval by which its model is the cell's"}}}},
   "next_before":{"type":["string","null"],"description":"ask for the next page with before; null on the last"}}})";
 
-constexpr std::string_view kChecks = R"({
-"type":"object",
-"description":"The checks of a calibration, each figure from check to check, with the limits of chance",
-"required":["schema","of_run","reference","base","every_days","due_at","overdue","warnings","checks","charts"],
-"properties":{
-  "schema":{"const":"touchcal/checks/1"},
-  "of_run":{"type":"string"},
-  "reference":{"type":"object","required":["count","needed"],"properties":{"count":{"type":"integer"},"needed":{"type":"integer"}}},
-  "base":{"type":"object","required":["count","needed"],"properties":{"count":{"type":"integer"},"needed":{"type":"integer"}},
-    "description":"checks without an alarm that the limits are from"},
-  "every_days":{"type":["integer","null"],"description":"of the cell's file; null: it has no such rule"},
-  "due_at":{"type":["string","null"]},
-  "overdue":{"type":["boolean","null"]},
-  "warnings":{"type":"array","items":{"type":"string"}},
-  "checks":{"type":"array","items":{
-    "type":"object",
-    "required":["run","ended_at","operator","reference","accepted","cause","joint"],
-    "properties":{
-      "run":{"type":"string"},
-      "ended_at":{"type":"string"},
-      "operator":{"type":["string","null"]},
-      "reference":{"type":"boolean"},
-      "accepted":{"type":["boolean","null"],"description":"null: no verdict"},
-      "cause":{"enum":["joint","block","stylus","unknown",null]},
-      "joint":{"type":["integer","null"]}}}},
-  "charts":{"type":"array","items":{
-    "type":"object",
-    "required":["quantity","unit","centre","points"],
-    "properties":{
-      "quantity":{"enum":["joint_2","joint_3","joint_4","joint_5","growth","residual"]},
-      "unit":{"enum":["mrad","ppm","mm"]},
-      "centre":{"type":["number","null"],"description":"null until the base is whole"},
-      "points":{"type":"array","items":{
-        "type":"object",
-        "required":["run","value","weighted_mean","shewhart_limit","ewma_limit","beyond_shewhart","beyond_ewma"],
-        "properties":{
-          "run":{"type":"string"},
-          "value":{"type":["number","null"]},
-          "weighted_mean":{"type":["number","null"]},
-          "shewhart_limit":{"type":["number","null"],"minimum":0},
-          "ewma_limit":{"type":["number","null"],"minimum":0},
-          "beyond_shewhart":{"type":"boolean"},
-          "beyond_ewma":{"type":"boolean"}}}}}}}}})";
-
 constexpr std::string_view kApprovalRequest = R"({
 "type":"object",
 "additionalProperties":false,
@@ -356,7 +313,6 @@ constexpr std::array kDaemonSchemas{DocumentSchema{"Status", kStatus},
                                     DocumentSchema{"Access", kAccess},
                                     DocumentSchema{"Audit", kAudit},
                                     DocumentSchema{"Models", kModels},
-                                    DocumentSchema{"Checks", kChecks},
                                     DocumentSchema{"ApprovalRequest", kApprovalRequest},
                                     DocumentSchema{"RollbackRequest", kRollbackRequest},
                                     DocumentSchema{"OpenApi", kOpenApi}};

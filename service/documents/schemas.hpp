@@ -15,5 +15,7 @@ struct DocumentSchema {
 /// such.
 std::span<const DocumentSchema> daemon_schemas();
 std::span<const DocumentSchema> file_schemas();
+std::span<const DocumentSchema>
+verification_schemas();  // what is made of proofs, checks and calibrations together
 
 }  // namespace cell

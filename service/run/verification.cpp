@@ -75,24 +75,33 @@ const calib::Box* first_solid(const Block& block) {
 
 }  // namespace
 
-VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
-                                    const Eigen::Isometry3d& cell_from_block) {
-  const Eigen::Isometry3d calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
-  if (auto refusal = refuse_place(kind, past.run.id, calibrated_from_block)) return *std::move(refusal);
-  const IdentifiedAgain again =
-      identify_again(past, with_block_temperature(with_block_moved(cell, calibrated_from_block.inverse()),
-                                                  temperature_of(past.run, cell)));
+std::variant<calib::CalibrationRecord, VerificationRefusal> record_of(
+    const PastCalibration& past, const Cell& cell, const Eigen::Isometry3d& cell_from_block) {
+  const Cell then =
+      with_block_temperature(with_block_moved(cell, cell_from_block.inverse() * past.cell_from_block),
+                             temperature_of(past.run, cell));
+  const IdentifiedAgain again = identify_again(past, then);
   if (again.result.status != calib::IdentificationStatus::kConverged || !again.result.uncertainty)
     return VerificationRefusal{fmt::format(
         "run {} cannot be identified again from its touches, so that nothing can be held against it: {}; "
         "calibrate anew",
         past.run.id, again.result.message)};
+  return calib::CalibrationRecord(again.problem, again.options, again.result);
+}
+
+VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
+                                    const Eigen::Isometry3d& cell_from_block) {
+  const Eigen::Isometry3d calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
+  if (auto refusal = refuse_place(kind, past.run.id, calibrated_from_block)) return *std::move(refusal);
+  auto record = record_of(past, cell, cell_from_block);
+  if (auto* refusal = std::get_if<VerificationRefusal>(&record)) return *std::move(refusal);
   Verification made{.kind = kind,
                     .of_run = past.run.id,
-                    .record = calib::CalibrationRecord(again.problem, again.options, again.result),
+                    .record = std::get<calib::CalibrationRecord>(std::move(record)),
                     .place = {.calibrated_from_block = calibrated_from_block},
                     .proof_limits = {},
                     .references = {}};
+  if (const auto limit_m = cell.acceptance.proof_rms_max_m) made.proof_limits.rms_max_m = *limit_m;
   if (cell.arm.growth) made.place.std_growth = kStdWarmthKelvins * cell.arm.growth->expansion_per_k;
   made.record.meet_at(calib::make_artefact(artefact_knowledge(cell)).contact_planes);
   for (const std::vector<StoredTouch>& touches : past.checks) {

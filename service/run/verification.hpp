@@ -24,7 +24,7 @@ struct PastCalibration {
   std::vector<StoredTouch> touches;
   std::vector<ReferenceTouch> references;
   Eigen::Isometry3d cell_from_block = Eigen::Isometry3d::Identity();  // R_-1 then, in R_-1 of the cell's file
-  /// The touches of its checks that came to their end, oldest first; of a proof none.
+  /// The touches of the checks that are its reference, oldest first; of a proof none.
   std::vector<std::vector<StoredTouch>> checks;
 };
 
@@ -47,9 +47,13 @@ struct VerificationRefusal {
 
 using VerificationOutcome = std::variant<std::shared_ptr<const Verification>, VerificationRefusal>;
 
-/// `cell`: as it stands now and as warm as its block is now, which is at `cell_from_block`. Identifies the
-/// calibration again: tens of milliseconds. Refused: a calibration that does not converge from its touches,
-/// the block of a check moved, that of a proof not moved.
+/// The calibration, identified again from its touches in the cell as it was then: tens of milliseconds.
+/// `cell` is as it stands now, with its block at `cell_from_block`. Refused: one that does not converge.
+std::variant<calib::CalibrationRecord, VerificationRefusal> record_of(
+    const PastCalibration& past, const Cell& cell, const Eigen::Isometry3d& cell_from_block);
+
+/// `cell`: as it stands now and as warm as its block is now, which is at `cell_from_block`. Refused: a
+/// calibration that has no record_of(), the block of a check moved, that of a proof not moved.
 VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, const Cell& cell,
                                     const Eigen::Isometry3d& cell_from_block);
 

@@ -314,27 +314,28 @@ int delete_runs_before(const SharedDatabase& database, const std::string& oldest
                                "plan_changes", "resumptions",        "refused_results",   "arms",
                                "imported_runs"};
   row::WriteTransaction transaction(*database);
+  // What a model rests on: each that was approved, and the calibration that a proof or a check is of now.
+  const std::string kept =
+      "(SELECT run_id FROM models UNION SELECT max(id) FROM runs WHERE verdict = ?3 AND kind = 'calibration' "
+      "AND " +
+      std::string(row::kOfThisDaemon) + ")";
   SQLite::Statement choose(
       *database,
-      "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ? AND id NOT IN (SELECT run_id "
-      "FROM "
-      "imported_runs WHERE imported_at >= ?1) AND "
-      "outcome <> ? AND id IS NOT (SELECT max(id) FROM runs WHERE verdict = ? AND "
-      "kind = 'calibration' AND " +
-          row::kOfThisDaemon +
-          ") AND id "
-          "NOT IN (SELECT id FROM runs ORDER BY id DESC LIMIT ?) AND id NOT IN "
-          "(SELECT run_id FROM models) AND (of_run IS NULL OR of_run NOT IN "
-          "(SELECT run_id FROM models)) AND id NOT IN (SELECT run_id FROM outbox WHERE seq > "
-          "? AND run_id IS NOT NULL) AND ? <= (SELECT "
-          "count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?)");
+      "CREATE TEMP TABLE old_runs AS SELECT id FROM runs WHERE started_at < ?1 AND outcome <> ?2 AND id NOT "
+      "IN "
+      "(SELECT run_id FROM imported_runs WHERE imported_at >= ?1) AND id NOT IN (SELECT id FROM runs ORDER "
+      "BY "
+      "id DESC LIMIT ?4) AND id NOT IN (SELECT run_id FROM outbox WHERE seq > ?5 AND run_id IS NOT NULL) AND "
+      "?6 <= (SELECT count(DISTINCT substr(started_at, 1, 10)) FROM runs WHERE started_at >= ?1) AND "
+      "id NOT IN (SELECT * FROM " +
+          kept + " WHERE run_id IS NOT NULL) AND (of_run IS NULL OR of_run NOT IN (SELECT * FROM " + kept +
+          " WHERE run_id IS NOT NULL))");
   choose.bind(1, oldest);
   choose.bind(2, std::string(run_outcome_name(RunOutcome::kRunning)));
   choose.bind(3, std::string(verdict_name(Verdict::kAccepted)));
   choose.bind(4, kLastRunsKept);
   choose.bind(5, confirmed_by_all(*database, sinks));
   choose.bind(6, days_that_agree);
-  choose.bind(7, oldest);
   choose.exec();
   for (const std::string table : kOfRuns)
     database->exec("DELETE FROM " + table + " WHERE run_id IN (SELECT id FROM old_runs)");

@@ -72,12 +72,12 @@ inline constexpr int kLastRunsKept = 10;
 inline constexpr int kDaysThatAgree = 3;
 
 /// Deletes the runs that began before `oldest` (as in format_utc()) with all their rows, except the last
-/// accepted run of this daemon, a running one, one that was imported since, one with a model that was ever
-/// approved, one with a fact that not all `sinks` have confirmed, and the last kLastRunsKept; returns how
-/// many. What is deleted does not come back, so no clock is believed alone: where runs began on fewer than
-/// `days_that_agree` days since `oldest`, nothing is deleted. More likely than a cell at rest is a clock that
-/// stands years ahead, at this start of the daemon or at one before that made some runs. Faults and audit
-/// entries have their own limits.
+/// accepted run of this daemon and one with a model that was ever approved, each with its proofs and checks,
+/// a running one, one that was imported since, one with a fact that not all `sinks` have confirmed, and the
+/// last kLastRunsKept; returns how many. What is deleted does not come back, so no clock is believed alone:
+/// where runs began on fewer than `days_that_agree` days since `oldest`, nothing is deleted. More likely than
+/// a cell at rest is a clock that stands years ahead, at this start of the daemon or at one before that made
+/// some runs. Faults and audit entries have their own limits.
 int delete_runs_before(const SharedDatabase& database, const std::string& oldest,
                        int days_that_agree = kDaysThatAgree, const std::vector<std::string>& sinks = {});
 

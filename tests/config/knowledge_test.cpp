@@ -143,6 +143,14 @@ TEST_F(Knowledge, AcceptanceNeedsNoLimitOnLackOfFitOrTheBox) {
   EXPECT_DOUBLE_EQ(limits.tip_box_rms_max_m.value(), 0.06e-3);
 }
 
+TEST_F(Knowledge, TheLimitOfAProofIsOfVersion4) {
+  EXPECT_FALSE(read().acceptance.proof_rms_max_m);
+  edit(kCell, [](json& cell) { cell["acceptance"]["proof_rms_max_mm"] = 0.05; });
+  EXPECT_DOUBLE_EQ(read().acceptance.proof_rms_max_m.value(), 0.05e-3);
+  edit(kCell, [](json& cell) { cell["acceptance"]["proof_rms_max_mm"] = 0; });
+  EXPECT_EQ(error_of([&] { static_cast<void>(read()); }).pointer(), "/acceptance/proof_rms_max_mm");
+}
+
 TEST_F(Knowledge, TheArtefactIsTheBlockAndTheBallWithTheirUncertainties) {
   edit(kBlock, [](json& block) {
     block["temperature_c"] = 23;

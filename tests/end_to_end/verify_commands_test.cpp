@@ -78,6 +78,20 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
   EXPECT_THAT(refused.err, HasSubstr("check 2 has no verdict"));
 }
 
+TEST_F(VerifyCommands, TwoCalibrationsOfTheSameArmDoNotDiffer) {
+  done({"run", "quick"});
+  done({"run", "quick"});
+  EXPECT_THAT(done({"compare", "1", "2"}).out,
+              AllOf(HasSubstr("runs 1 and 2: UNCHANGED"), HasSubstr("arm: as it was"), HasSubstr("E_n")));
+  const auto compared = nlohmann::json::parse(done({"compare", "2", "1", "--json"}).out);
+  EXPECT_EQ(compared.at("earlier"), "1");
+  EXPECT_EQ(compared.at("verdict").at("accepted"), true) << compared;
+  EXPECT_LT(compared.at("tip_difference_mm").get<double>(),
+            3.0 * compared.at("std_tip_difference_mm").get<double>());
+  EXPECT_THAT(refused({"compare", "1", "7"}), HasSubstr("there is no run 7"));
+  EXPECT_THAT(refused({"compare", "1", "1"}), HasSubstr("with which run?"));
+}
+
 TEST_F(VerifyCommands, WhatIsNoCalibrationIsNeitherApprovedNorProvedNorReported) {
   done({"run", "quick"});
   done({"check"});

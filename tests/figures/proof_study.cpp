@@ -29,7 +29,7 @@ constexpr double kLiftSeconds = 300.0;
 /// A moved block is turned by this for each metre it is moved: 0.5 mrad with 0.1 mm.
 constexpr double kTurnPerMetre = 5.0;
 /// The scatter of a proof or check is not that of the calibration with the same seed.
-constexpr std::uint64_t kProofScatter = 1'000'000, kCheckScatter = 10'000'000;
+constexpr std::uint64_t kProofScatter = 1'000'000, kCheckScatter = 10'000'000, kPairScatter = 100'000'000;
 
 HiddenArm as_warm_as(HiddenArm arm, double rise_k) {
   arm.truth.warming.arm_rise_k = rise_k;
@@ -66,11 +66,14 @@ std::vector<Touch> touches_of(const std::variant<TouchPlan, PlanningFailure>& ou
   return touches;
 }
 
-/// The calibration of a seed's cell; nothing when it did not converge.
+/// The calibration of a seed's cell; nothing when it did not converge. `scatter`: of its touches, in place of
+/// the seed's.
 std::optional<CalibrationRecord> calibrate(const StudiedCalibration& how, const HiddenArm& arm,
-                                           std::uint64_t seed) {
+                                           std::uint64_t seed,
+                                           std::optional<std::uint64_t> scatter = std::nullopt) {
   UniformChance chance(seed);
   HiddenCell hidden(how.cell, arm, chance);
+  if (scatter) hidden.restart_scatter(*scatter);
   IdentificationProblem problem = cell::identification_problem(how.cell, how.recipe);
   make_run(hidden, how.planned, how.recipe, problem);
   const IdentificationResult result = identify(problem, how.recipe.identification);
@@ -90,6 +93,20 @@ Made made(const std::variant<Made, CheckRefusal>& outcome) {
 }
 
 int errors_index(const char* name) { return error_parameter_index(name).value(); }
+
+/// A joint that slipped or a stylus that was bent, to either side.
+HiddenArm with_cell_fault(HiddenArm arm, const CellFault& fault, double length_of_tool_m,
+                          UniformChance& chance) {
+  ErrorVector& errors = arm.truth.errors;
+  if (fault.cause == CheckCause::kJoint)
+    errors[theta_index(fault.joint - 1)] += std::copysign(fault.size, chance() - 0.5);
+  if (fault.cause == CheckCause::kStylus) {
+    const double direction_rad = 2.0 * std::numbers::pi * chance();
+    errors[errors_index("d7")] += fault.size * std::cos(direction_rad);
+    errors[errors_index("alpha7")] += fault.size * std::sin(direction_rad) / length_of_tool_m;
+  }
+  return arm;
+}
 
 }  // namespace
 
@@ -200,16 +217,8 @@ CheckStudy::CheckStudy(StudiedCalibration calibration, HiddenArm arm)
 
 std::vector<Touch> CheckStudy::touch(std::uint64_t seed, const CellFault& fault, double rise_k,
                                      std::uint64_t scatter, UniformChance& chance) const {
-  HiddenArm arm = as_warm_as(arm_, rise_k);
-  ErrorVector& errors = arm.truth.errors;
-  if (fault.cause == CheckCause::kJoint)
-    errors[theta_index(fault.joint - 1)] += std::copysign(fault.size, chance() - 0.5);
-  if (fault.cause == CheckCause::kStylus) {
-    const double direction_rad = 2.0 * std::numbers::pi * chance();
-    const double length_m = calibration_.cell.arm.model.links.back().r_m;
-    errors[errors_index("d7")] += fault.size * std::cos(direction_rad);
-    errors[errors_index("alpha7")] += fault.size * std::sin(direction_rad) / length_m;
-  }
+  const HiddenArm arm =
+      with_cell_fault(as_warm_as(arm_, rise_k), fault, calibration_.cell.arm.model.links.back().r_m, chance);
   UniformChance same(seed);
   const auto made_in = [&](const cell::Cell& cell) {
     HiddenCell hidden(cell, arm, same);
@@ -261,6 +270,31 @@ CheckTally CheckStudy::tally(const CellFault& fault, int cells, int checks_each)
       tally.named += verdict.alarm && verdict.cause == fault.cause && verdict.joint == fault.joint ? 1 : 0;
       tally.growth_error_ppm.push_back(1e6 * (verdict.growth - expansion * (rise_k - reference_k)));
     }
+  }
+  return tally;
+}
+
+ComparisonTally compare_calibrations(const StudiedCalibration& calibration, const HiddenArm& arm,
+                                     const CellFault& fault, int pairs) {
+  ComparisonTally tally;
+  UniformChance chance(kPairScatter);
+  const double expansion = arm.truth.warming.arm_expansion_per_k;
+  const double length_of_tool_m = calibration.cell.arm.model.links.back().r_m;
+  for (std::uint64_t seed = 1; seed <= static_cast<std::uint64_t>(pairs); ++seed) {
+    const double before_k = kWarmestKelvins * chance(), after_k = kWarmestKelvins * chance();
+    const auto before = calibrate(calibration, as_warm_as(arm, before_k), seed, kPairScatter + 2 * seed);
+    const HiddenArm changed = with_cell_fault(as_warm_as(arm, after_k), fault, length_of_tool_m, chance);
+    const auto after = calibrate(calibration, changed, seed, kPairScatter + 2 * seed + 1);
+    if (!before || !after) throw std::runtime_error("a calibration did not converge");
+    const auto outcome = compare(*before, *after);
+    if (const auto* refusal = std::get_if<ComparisonRefusal>(&outcome))
+      throw std::runtime_error(refusal->message);
+    const Comparison& made = std::get<Comparison>(outcome);
+    ++tally.pairs;
+    tally.arm_changed += made.arm.has_changed() ? 1 : 0;
+    tally.tool_changed += made.tool.has_changed() ? 1 : 0;
+    tally.growth_error_ppm.push_back(1e6 * (made.growth - expansion * (after_k - before_k)));
+    tally.arm_chi_square_per_degree.push_back(made.arm.chi_square / made.arm.degrees_of_freedom);
   }
   return tally;
 }

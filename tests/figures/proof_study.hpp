@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calib_core/proof/check.hpp"
+#include "calib_core/proof/comparison.hpp"
 #include "calib_core/proof/proof.hpp"
 #include "tests/figures/hidden_cell.hpp"
 
@@ -100,5 +101,15 @@ class CheckStudy {
   std::vector<Touch> touches_;
   double plan_s_ = 0.0;
 };
+
+struct ComparisonTally {
+  int pairs = 0, arm_changed = 0, tool_changed = 0;
+  std::vector<double> growth_error_ppm, arm_chi_square_per_degree;
+};
+
+/// Two calibrations of each seed's cell by the same plan, the arm between 0 and 8 K warm at each, with this
+/// fault of a joint or the stylus in between.
+ComparisonTally compare_calibrations(const StudiedCalibration& calibration, const HiddenArm& arm,
+                                     const CellFault& fault, int pairs);
 
 }  // namespace calib::figures

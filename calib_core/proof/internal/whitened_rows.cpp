@@ -1,7 +1,9 @@
 #include "calib_core/proof/internal/whitened_rows.hpp"
 
+#include <cmath>
 #include <stdexcept>
 
+#include "calib_core/numerics/distributions.hpp"
 #include "calib_core/proof/internal/column_space.hpp"
 
 namespace calib {
@@ -16,6 +18,11 @@ WhitenedRows::WhitenedRows(const Eigen::MatrixXd& covariance, const Eigen::Matri
 Eigen::MatrixXd WhitenedRows::rest(const Eigen::MatrixXd& columns) const {
   const Eigen::MatrixXd white = cholesky_.matrixL().solve(columns);
   return white - basis_ * (basis_.transpose() * white);
+}
+
+double rest_p(double chi_square, double degrees, double noise_degrees) {
+  return std::isfinite(noise_degrees) ? f_survival(chi_square / degrees, degrees, noise_degrees)
+                                      : chi_square_survival(chi_square, degrees);
 }
 
 }  // namespace calib

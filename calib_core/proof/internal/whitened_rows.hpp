@@ -24,4 +24,8 @@ class WhitenedRows {
   Eigen::MatrixXd basis_;  // of the free quantities, whitened
 };
 
+/// How likely chance makes a sum of squares of a rest so large, where the noise that whitened it was measured
+/// with so many degrees of freedom; infinite ones where it was declared.
+double rest_p(double chi_square, double degrees, double noise_degrees);
+
 }  // namespace calib

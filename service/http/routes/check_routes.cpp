@@ -8,6 +8,8 @@
 namespace cell {
 namespace {
 
+constexpr std::int64_t kChecksTold = 200, kChecksToldMax = 1000;
+
 /// One without a verdict where there is none that can be read.
 CheckDocument result_of(const RunStore& store, std::int64_t check) try {
   const auto stored = store.result_json(check);
@@ -35,7 +37,9 @@ HttpResponse get_checks(const Call& call) {
     checks.push_back({check, result_of(store, check.id)});
   // A calibration that another one has replaced is checked no more.
   const auto every = of_run == counting ? call.reads.cell().check_every : std::nullopt;
-  return json_response(200, document_text(checks_view(*calibration, checks, every, call.reads.now())));
+  ChecksDocument document = checks_view(*calibration, checks, every, call.reads.now());
+  keep_newest(document, static_cast<std::size_t>(call.number("limit").value_or(kChecksTold)));
+  return json_response(200, document_text(document));
 }
 
 }  // namespace
@@ -49,7 +53,8 @@ std::vector<Route> check_routes() {
            "The checks of a calibration: what each found as charts with limits, and when the next one is due",
        .handle = get_checks,
        .answers = {{.schema = "Checks"}},
-       .query = {{"of_run", 1, kRunIdMax, "the calibration; without it the one that a check would be of"}},
+       .query = {{"of_run", 1, kRunIdMax, "the calibration; without it the one that a check would be of"},
+                 {"limit", 1, kChecksToldMax, "how many of the newest checks are told; 200 without it"}},
        .dispatch = DispatchMode::kStored},
   };
 }

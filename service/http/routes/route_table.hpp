@@ -128,6 +128,7 @@ std::vector<Route> cell_routes();  // what is configured
 std::vector<Route> audit_routes();
 std::vector<Route> model_routes();  // what a person approved
 std::vector<Route> check_routes();  // a calibration's checks together
+std::vector<Route> comparison_routes();
 std::vector<Route> page_routes();
 
 /// A stop is executed whatever the request holds, and whatever else fails.

@@ -10,9 +10,9 @@
 namespace calib {
 namespace {
 
-std::vector<double> quiet_values(std::size_t count, UniformChance& chance) {
-  std::vector<double> values;
-  while (values.size() < count) values.push_back(3.0 + 0.5 * study::normal(chance));
+std::vector<ChartedValue> quiet_values(std::size_t count, UniformChance& chance) {
+  std::vector<ChartedValue> values;
+  while (values.size() < count) values.push_back({3.0 + 0.5 * study::normal(chance)});
   return values;
 }
 
@@ -28,18 +28,18 @@ TEST(ControlChart, HasNoLimitsUntilItsBaseIsWhole) {
 
 TEST(ControlChart, SeesALargeStepAtOnce) {
   UniformChance chance(2);
-  std::vector<double> values = quiet_values(kChartBaseCount + 1, chance);
-  values.back() += 10.0;
+  std::vector<ChartedValue> values = quiet_values(kChartBaseCount + 1, chance);
+  values.back().value += 10.0;
   const ChartPoint last = control_chart(values).back();
   EXPECT_TRUE(last.is_beyond_shewhart);
   EXPECT_GT(last.standardised.value(), 10.0);
-  EXPECT_GT(std::abs(last.value - last.centre), last.shewhart_limit);
+  EXPECT_GT(std::abs(last.value - last.centre.value()), last.shewhart_limit.value());
 }
 
 TEST(ControlChart, SeesACreepByItsWeightedMeanBeforeOneValueIsStriking) {
   UniformChance chance(3);
-  std::vector<double> values = quiet_values(kChartBaseCount, chance);
-  for (int check = 1; check <= 60; ++check) values.push_back(3.0 + 0.03 * check);
+  std::vector<ChartedValue> values = quiet_values(kChartBaseCount, chance);
+  for (int check = 1; check <= 60; ++check) values.push_back({3.0 + 0.03 * check});
   const auto points = control_chart(values);
   const auto by_mean = std::ranges::find(points, true, &ChartPoint::is_beyond_ewma);
   const auto by_value = std::ranges::find(points, true, &ChartPoint::is_beyond_shewhart);
@@ -58,13 +58,29 @@ TEST(ControlChart, AlarmsOfTheFirstCheckAfterItsBaseAsSeldomAsKnownDeviationsWou
 }
 
 TEST(ControlChart, OfABaseThatDoesNotVaryAlarmsOfNothing) {
-  std::vector<double> values(kChartBaseCount, 1.0);
-  values.push_back(2.0);
+  std::vector<ChartedValue> values(kChartBaseCount, {1.0});
+  values.push_back({2.0});
   EXPECT_FALSE(control_chart(values).back().is_beyond_shewhart);
 }
 
+TEST(ControlChart, AValueThatDoesNotCountMovesNeitherTheLimitsNorTheWeightedMean) {
+  UniformChance chance(5);
+  const std::vector<ChartedValue> quiet = quiet_values(kChartBaseCount + 2, chance);
+  std::vector<ChartedValue> values = quiet;
+  values.insert(values.end() - 1, {100.0, false});
+  values.insert(values.begin() + 3, {100.0, false});
+  const auto points = control_chart(values), without = control_chart(quiet);
+  EXPECT_FALSE(points[3].shewhart_limit) << "the base is not whole";
+  const ChartPoint& apart = points[points.size() - 2];
+  EXPECT_TRUE(apart.is_beyond_shewhart);
+  EXPECT_FALSE(apart.mean || apart.ewma_limit || apart.is_beyond_ewma);
+  EXPECT_DOUBLE_EQ(points.back().mean.value(), without.back().mean.value());
+  EXPECT_DOUBLE_EQ(points.back().ewma_limit.value(), without.back().ewma_limit.value());
+  EXPECT_DOUBLE_EQ(points.back().centre.value(), without.back().centre.value());
+}
+
 TEST(ControlChart, IsRefusedABaseOfOne) {
-  EXPECT_THROW(control_chart(std::vector<double>{1.0, 2.0}, 1), std::logic_error);
+  EXPECT_THROW(control_chart(std::vector<ChartedValue>{{1.0}, {2.0}}, 1), std::logic_error);
 }
 
 }  // namespace

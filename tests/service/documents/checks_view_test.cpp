@@ -9,6 +9,8 @@
 namespace cell {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::Field;
@@ -33,7 +35,10 @@ EndedCheck check_of_day(int day, double offset_mrad, bool accepted = true) {
   check.result.reference = {.count = calib::kReferenceCount, .needed = calib::kReferenceCount};
   check.result.joints = {{.joint = 2, .offset_mrad = 0.0}, {.joint = 3, .offset_mrad = offset_mrad}};
   check.result.growth_ppm = 100.0 * offset_mrad;
-  if (!accepted) check.result.cause = "joint", check.result.joint = 3;
+  if (!accepted) {
+    check.result.cause = "joint", check.result.joint = 3;
+    check.result.verdict.reasons = {"joint 3 has changed"};
+  }
   return check;
 }
 
@@ -92,8 +97,11 @@ TEST(ChecksView, AJumpOfTheNewestCheckIsWarnedOfWithItsFigure) {
   EXPECT_TRUE(newest.beyond_shewhart);
   EXPECT_NEAR(chart(document, "joint_3").centre.value(), 0.0, 1e-12);
   EXPECT_LT(newest.shewhart_limit.value(), 0.08);
-  EXPECT_THAT(document.warnings, ElementsAre(HasSubstr("run 15: the offset of joint 3 differs by 0.080 mrad"),
-                                             HasSubstr("the growth of the arm differs by 8.000 ppm")));
+  EXPECT_THAT(document.warnings,
+              ElementsAre(AllOf(HasSubstr("run 15: the offset of joint 3 differs by 0.080 mrad"),
+                                HasSubstr("check again; if it stays so, find out")),
+                          AllOf(HasSubstr("the growth of the arm differs by 8.000 ppm"),
+                                HasSubstr("warmer than at those checks"))));
   checks.push_back(check_of_day(kBaseEnd + 2, 0.0));
   EXPECT_FALSE(chart(view_of(checks), "joint_3").points.back().beyond_shewhart);
 }
@@ -109,17 +117,75 @@ TEST(ChecksView, ACreepIsWarnedOfBeforeOneCheckIsStriking) {
   EXPECT_FALSE(chart(document, "joint_3").points.back().beyond_shewhart);
 }
 
-TEST(ChecksView, AnAlarmBeforeTheBaseIsWholeMakesNoLimitsWide) {
+TEST(ChecksView, AnArmThatIsColderIsToldToWarmUpAndASmallResidualIsGood) {
   std::vector<EndedCheck> checks = base_checks();
+  double rms_mm = 0.010;
+  for (EndedCheck& check : checks) check.result.rms_mm = rms_mm += 0.0001;
+  checks.push_back(check_of_day(kBaseEnd + 1, 0.0));
+  checks.back().result.growth_ppm = -8.0;
+  checks.back().result.rms_mm = 0.001;
+  const ChecksDocument document = view_of(checks);
+  EXPECT_THAT(document.warnings, ElementsAre(AllOf(HasSubstr("differs by -8.000 ppm"), HasSubstr("colder"))));
+  checks.back().result.rms_mm = 0.05;
+  EXPECT_THAT(view_of(checks).warnings, Contains(HasSubstr("growth does not explain differs by 0.0")));
+}
+
+TEST(ChecksView, AnAlarmIsShownAndChangesNothingOfTheOthers) {
+  std::vector<EndedCheck> checks = base_checks();
+  checks.push_back(check_of_day(kBaseEnd + 1, 0.0));
+  const ChecksDocument without = view_of(checks);
   checks.insert(checks.begin() + kBeforeBase + 2, check_of_day(20, 5.0, false));
-  const ChecksDocument without = view_of(base_checks()), document = view_of(checks);
-  EXPECT_THAT(chart(document, "joint_3").points, SizeIs(calib::kChartBaseCount));
-  EXPECT_EQ(document.checks.at(kBeforeBase + 2).accepted, false);
-  EXPECT_EQ(document.checks.at(kBeforeBase + 2).joint, 3);
-  checks.push_back(check_of_day(21, 4.0, false));
-  EXPECT_THAT(chart(view_of(checks), "joint_3").points, SizeIs(calib::kChartBaseCount + 1))
-      << "behind the base it is shown";
-  EXPECT_EQ(without.base.count, document.base.count);
+  checks.insert(checks.end() - 1, check_of_day(21, 4.0, false));
+  const ChecksDocument document = view_of(checks);
+  EXPECT_EQ(document.count, std::ssize(checks));
+  EXPECT_EQ(document.base.count, without.base.count);
+  const ChecksDocument::Chart& with = chart(document, "joint_3");
+  ASSERT_THAT(with.points, SizeIs(std::size(chart(without, "joint_3").points) + 2));
+  EXPECT_EQ(with.centre, chart(without, "joint_3").centre);
+  EXPECT_FALSE(with.points.at(2).shewhart_limit) << "the base is not whole there";
+  const ChecksDocument::Point& alarm = *(with.points.end() - 2);
+  EXPECT_TRUE(alarm.beyond_shewhart);
+  EXPECT_FALSE(alarm.weighted_mean || alarm.ewma_limit);
+  const ChecksDocument::Point &newest = with.points.back(),
+                              &as_without = chart(without, "joint_3").points.back();
+  EXPECT_EQ(newest.weighted_mean, as_without.weighted_mean);
+  EXPECT_EQ(newest.ewma_limit, as_without.ewma_limit);
+  EXPECT_THAT(document.warnings, IsEmpty());
+}
+
+TEST(ChecksView, OfANewestCheckThatAlarmsOnlyItsCauseIsTold) {
+  std::vector<EndedCheck> checks = base_checks();
+  checks.push_back(check_of_day(kBaseEnd + 1, 5.0, false));
+  const ChecksDocument document = view_of(checks);
+  EXPECT_EQ(document.checks.back().joint, 3);
+  EXPECT_THAT(document.warnings, ElementsAre("run 15: joint 3 has changed"));
+}
+
+TEST(ChecksView, ACheckThatWasNotTakenIntoTheReferenceIsNone) {
+  std::vector<EndedCheck> checks{reference_of_day(1), reference_of_day(2), reference_of_day(3),
+                                 reference_of_day(4), reference_of_day(5)};
+  checks[2].run.verdict = Verdict::kIncomplete;
+  const ChecksDocument document = view_of(checks);
+  EXPECT_EQ(document.reference.count, calib::kReferenceCount);
+  EXPECT_FALSE(document.checks[2].reference);
+  EXPECT_TRUE(document.checks[3].reference);
+  EXPECT_FALSE(document.checks[4].reference) << "the reference was whole";
+}
+
+TEST(ChecksView, TheNewestAreKeptWithTheirPointsAndWhatWasMadeOfAll) {
+  std::vector<EndedCheck> checks = base_checks();
+  checks.push_back(check_of_day(kBaseEnd + 1, 0.0));
+  ChecksDocument document = view_of(checks);
+  const ChecksDocument all = document;
+  keep_newest(document, checks.size());
+  EXPECT_EQ(document_text(document), document_text(all));
+  keep_newest(document, 2);
+  EXPECT_THAT(document.checks, SizeIs(2));
+  EXPECT_EQ(document.count, std::ssize(checks));
+  const ChecksDocument::Chart& kept = chart(document, "joint_3");
+  ASSERT_THAT(kept.points, SizeIs(2));
+  EXPECT_EQ(kept.points.back().run, "15");
+  EXPECT_EQ(kept.centre, chart(all, "joint_3").centre);
 }
 
 TEST(ChecksView, TheNextCheckIsDueByTheCellsRuleFromTheNewestOne) {
@@ -133,7 +199,17 @@ TEST(ChecksView, TheNextCheckIsDueByTheCellsRuleFromTheNewestOne) {
   const ChecksDocument late = checks_view(calibration_of_day_0(), checks, every, at("1970-01-21T00:00:01Z"));
   EXPECT_EQ(late.due_at, "1970-01-21T00:00:00.000Z");
   EXPECT_EQ(late.overdue, true);
-  EXPECT_THAT(late.warnings, ElementsAre(HasSubstr("a check was due on 1970-01-21")));
+  EXPECT_THAT(late.warnings, IsEmpty()) << "it is told once";
+  std::vector<EndedCheck> more = checks;
+  more.push_back(reference_of_day(kBaseEnd + 1));
+  more.back().run.verdict = Verdict::kIncomplete;
+  EXPECT_EQ(checks_view(calibration_of_day_0(), more, every, at("1970-01-21T00:00:01Z")).due_at, late.due_at)
+      << "one without a verdict says nothing";
+  const ChecksDocument behind =
+      checks_view(calibration_of_day_0(), checks, every, at("1970-01-13T23:59:59Z"));
+  EXPECT_EQ(behind.every_days, 7);
+  EXPECT_FALSE(behind.due_at || behind.overdue);
+  EXPECT_THAT(behind.warnings, ElementsAre(AllOf(HasSubstr("is not known"), HasSubstr("run 14 ended"))));
   const ChecksDocument without = view_of(checks);
   EXPECT_FALSE(without.due_at || without.overdue || without.every_days);
 }

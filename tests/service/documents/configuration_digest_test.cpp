@@ -31,6 +31,13 @@ TEST_F(ConfigurationDigest, TheDigestHangsOnEveryFigureOfEveryFileAndNotOnTheLay
   EXPECT_EQ(digest(), shipped);
 }
 
+TEST_F(ConfigurationDigest, HowOftenTheCellIsCheckedIsNotInIt) {
+  const std::string before = digest();
+  edit(kCell, [](json& cell) { cell["check_every_days"] = 7; });
+  EXPECT_EQ(read().check_every, std::chrono::days(7));
+  EXPECT_EQ(digest(), before);
+}
+
 TEST_F(ConfigurationDigest, ACellThatWasNotReadFromFilesHasNoDigest) {
   EXPECT_EQ(configuration_digest(Cell{}), std::nullopt);
 }

@@ -32,6 +32,22 @@ TEST(VerificationDocument, ACheckIsReadBackAsItWasWritten) {
   EXPECT_EQ(read_check(text).verdict.accepted, std::nullopt);
 }
 
+TEST(VerificationDocument, AnotherSchemaOrACauseThatNobodyKnowsIsRefused) {
+  CheckDocument check;
+  check.schema = "touchcal/check/9";
+  EXPECT_THROW(read_check(document_text(check)), DocumentError);
+  ProofDocument proof;
+  proof.schema = "touchcal/proof/2";
+  EXPECT_THROW(read_proof(document_text(proof)), DocumentError);
+  check = CheckDocument();
+  for (const char* cause : {"joint", "block", "stylus", "unknown"}) {
+    check.cause = cause;
+    EXPECT_EQ(read_check(document_text(check)).cause, cause);
+  }
+  check.cause = "moon";
+  EXPECT_THROW(read_check(document_text(check)), DocumentError);
+}
+
 TEST(VerificationDocument, OneIsNotTakenForTheOther) {
   EXPECT_THROW(read_proof(document_text(CheckDocument())), DocumentError);
   EXPECT_THROW(read_check("{}"), DocumentError);

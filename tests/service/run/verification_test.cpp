@@ -81,6 +81,16 @@ TEST(VerificationOfACalibration, TheReferenceIsTheFirstThreeWholeChecks) {
   EXPECT_EQ(verification(RunKind::kCheck, past, up_by(0.0)).references.size(), 3u);
 }
 
+TEST(VerificationOfACalibration, TheCellsFileMayNameTheLimitOfAProof) {
+  const PastCalibration past = table3_calibration();
+  EXPECT_EQ(verification(RunKind::kProof, past, up_by(0.2)).proof_limits.rms_max_m,
+            calib::ProofLimits().rms_max_m);
+  Cell strict = with_block_moved(edf(), up_by(0.2));
+  strict.acceptance.proof_rms_max_m = 20e-6;
+  const auto made = verification_of(RunKind::kProof, past, strict, up_by(0.2));
+  EXPECT_EQ(std::get<std::shared_ptr<const Verification>>(made)->proof_limits.rms_max_m, 20e-6);
+}
+
 TEST(VerificationRecipe, TouchesOnlyWhatItIsHeldAgainst) {
   const Recipe& best = with_plate().recipes.at("best");
   const Recipe proof = verification_recipe(with_plate(), best, RunKind::kProof);

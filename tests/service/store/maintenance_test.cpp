@@ -226,6 +226,25 @@ TEST_F(StoreMaintenance, OldRunsGoWithAllThatIsTheirsButTheLastAcceptedAndTheRun
   EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 0);
 }
 
+TEST_F(StoreMaintenance, TheChecksOfTheCalibrationThatCountsStay) {
+  const auto check_of = [&](std::int64_t calibration) {
+    const std::int64_t check = store_.begin_run(
+        {.kind = RunKind::kCheck, .of_run = calibration, .recipe = "edf-25", .started_at = "2026-01-02"});
+    store_.finish_run(check, {.verdict = Verdict::kNone, .ended_at = "2026-01-02"});
+    return check;
+  };
+  const std::int64_t before = add_run("2026-01-01", Verdict::kAccepted);
+  const std::int64_t check_before = check_of(before);
+  const std::int64_t accepted = add_run("2026-01-02", Verdict::kAccepted);
+  const std::int64_t reference = check_of(accepted);
+  for (int i = 0; i < kLastRunsKept; ++i)
+    add_run("2026-03-0" + std::to_string(1 + i % 3), Verdict::kRejected);
+  EXPECT_EQ(delete_runs_before(store_.database(), "2026-02-01"), 2);
+  EXPECT_FALSE(store_.run(before) || store_.run(check_before));
+  EXPECT_TRUE(store_.run(accepted));
+  EXPECT_TRUE(store_.run(reference)) << "without it the next check would be the reference of all later ones";
+}
+
 TEST_F(StoreMaintenance, TheRoomOnTheDiskOfTheDatabaseIsTold) {
   constexpr double kOthersWriteBytes = 1e9;
   EXPECT_NEAR(static_cast<double>(disk_room_bytes(store_.database()).value()),

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <stdexcept>
 
 namespace calib {
@@ -31,6 +32,14 @@ TEST(WhitenedRows, HaveUnitVarianceInEachDirectionThatIsLeft) {
 
 TEST(WhitenedRows, RefuseACovarianceThatIsNone) {
   EXPECT_THROW(WhitenedRows(-some_covariance(), Eigen::MatrixXd(4, 0)), std::logic_error);
+}
+
+TEST(WhitenedRows, ChanceOfARestIsByFUnlessTheNoiseIsKnown) {
+  constexpr double kDegrees = 12.0, kMuch = 26.0;
+  const double known = rest_p(kMuch, kDegrees, std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(known, 0.0107, 1e-4) << "of a table of chi-square";
+  EXPECT_GT(rest_p(kMuch, kDegrees, 10.0), 2.0 * known);
+  EXPECT_NEAR(rest_p(kMuch, kDegrees, 1e6), known, 1e-4);
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class CheckRoutesTest : public RoutesTest {
                                                       .started_at = "start",
                                                       .operator_name = "M. Curie"});
     cell_.store().finish_run(
-        run, {.verdict = verdict, .ended_at = "1970-01-02T00:00:00.000Z", .result_json = result});
+        run, {.verdict = verdict, .ended_at = "1970-01-01T00:00:00.000Z", .result_json = result});
     return run;
   }
   static std::string result_with(double offset_mrad) {
@@ -55,7 +55,7 @@ TEST_F(CheckRoutesTest, TellsTheChecksOfTheCalibrationThatCounts) {
   EXPECT_EQ(document.checks[0].operator_name, "M. Curie");
   EXPECT_EQ(document.charts.at(2).quantity, "joint_4");
   EXPECT_EQ(document.charts.at(2).points.at(0).value, 0.125);
-  EXPECT_EQ(document.due_at, "1970-01-09T00:00:00.000Z");
+  EXPECT_EQ(document.due_at, "1970-01-08T00:00:00.000Z");
   const ChecksDocument before = read_checks(get("/api/v1/checks?of_run=" + std::to_string(older)).body);
   EXPECT_EQ(before.charts.at(2).points.at(0).value, 0.5);
   EXPECT_FALSE(before.due_at) << "it was replaced";
@@ -66,6 +66,17 @@ TEST_F(CheckRoutesTest, ACheckWhoseResultCannotBeReadHasNoVerdict) {
   const ChecksDocument document = read_checks(get("/api/v1/checks").body);
   ASSERT_THAT(document.checks, SizeIs(1));
   EXPECT_FALSE(document.checks[0].accepted || document.checks[0].reference);
+}
+
+TEST_F(CheckRoutesTest, TellsSoManyOfTheNewestAsAreAskedFor) {
+  const std::int64_t calibration = accepted_calibration();
+  for (int i = 0; i < 3; ++i) ended_check(calibration, result_with(0.1 * i));
+  const ChecksDocument document = read_checks(get("/api/v1/checks?limit=2").body);
+  EXPECT_THAT(document.checks, SizeIs(2));
+  EXPECT_EQ(document.count, 3);
+  EXPECT_EQ(document.charts.at(2).points.back().value, 0.2);
+  for (const char* limit : {"0", "1001", "x"})
+    EXPECT_EQ(problem(get(std::string("/api/v1/checks?limit=") + limit)).at("status"), 400) << limit;
 }
 
 TEST_F(CheckRoutesTest, RefusesWhatIsNoCalibration) {
