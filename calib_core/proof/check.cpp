@@ -52,6 +52,13 @@ std::optional<CheckRefusal> find_bad_first(const CalibrationRecord& record, std:
   return std::nullopt;
 }
 
+Eigen::VectorXd distances_then_m(const CalibrationRecord& record, const ReferenceTime& time) {
+  if (time.contact_planes.empty()) return touch_rows(record, record.calibrated(), time.touches).distances_m;
+  CalibrationRecord then = record;
+  then.meet_at(time.contact_planes);
+  return touch_rows(then, then.calibrated(), time.touches).distances_m;
+}
+
 /// Faults that may explain a check, with what the touches show of each.
 struct Explanation {
   CheckCause cause = CheckCause::kJoint;
@@ -110,18 +117,17 @@ Size size_of(const WhitenedRows& white, const Eigen::VectorXd& effect, const Eig
 }  // namespace
 
 std::variant<CheckReference, CheckRefusal> make_reference(const CalibrationRecord& record,
-                                                          std::span<const std::vector<Touch>> times) {
+                                                          std::span<const ReferenceTime> times) {
   if (std::ssize(times) < kReferenceCount)
     return CheckRefusal{std::to_string(times.size()) + " checks: a reference is the mean of " +
                         std::to_string(kReferenceCount) + "; repeat the check"};
-  const std::vector<Touch>& first = times.front();
+  const std::vector<Touch>& first = times.front().touches;
   if (auto refusal = find_bad_first(record, first)) return *refusal;
   Eigen::MatrixXd distances_m(std::ssize(first), std::ssize(times));
   for (std::size_t k = 0; k < times.size(); ++k) {
-    if (auto refusal = find_difference(record, first, times[k]))
+    if (auto refusal = find_difference(record, first, times[k].touches))
       return CheckRefusal{"check " + std::to_string(k + 1) + " of the reference: " + refusal->message};
-    distances_m.col(static_cast<Eigen::Index>(k)) =
-        touch_rows(record, record.calibrated(), times[k]).distances_m;
+    distances_m.col(static_cast<Eigen::Index>(k)) = distances_then_m(record, times[k]);
   }
   CheckReference reference{
       .touches = first, .distances_m = distances_m.rowwise().mean(), .count = static_cast<int>(times.size())};

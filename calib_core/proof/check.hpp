@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "calib_core/geometry/contact_surface.hpp"
 #include "calib_core/geometry/touch.hpp"
 #include "calib_core/proof/calibration_record.hpp"
 
@@ -43,10 +44,18 @@ struct CheckRefusal {
   std::string message;  // one sentence with the remedy
 };
 
+/// One of the first checks.
+struct ReferenceTime {
+  std::vector<Touch> touches;
+  /// Of the artefact as warm as it was then, one for each face; empty: as the record has it now. A block of
+  /// 150 mm that is 5 K warmer grows by as much as a touch scatters, or more.
+  std::vector<ContactSurface> contact_planes = {};
+};
+
 /// From kReferenceCount times the same touches, in the same order. Refused: fewer of them, another order or
 /// number of faces, a number that is not finite, a touch 2 mm from where the first one was, no scatter.
 std::variant<CheckReference, CheckRefusal> make_reference(const CalibrationRecord& record,
-                                                          std::span<const std::vector<Touch>> times);
+                                                          std::span<const ReferenceTime> times);
 
 enum class CheckCause { kNone, kJoint, kBlock, kStylus, kUnknown };
 

@@ -56,7 +56,7 @@ std::variant<PastCalibration, VerificationRefusal> find_calibration(
     // Only those that became part of the reference: one that did not fit to the others would spoil it for
     // all.
     for (const StoredRun& check : store.complete_runs_of(run->id, RunKind::kCheck))
-      if (check.verdict == Verdict::kNone) past.checks.push_back(store.touches(check.id));
+      if (check.verdict == Verdict::kNone) past.checks.push_back({check, store.touches(check.id)});
   }
   return past;
 }

@@ -154,8 +154,8 @@ void tell_check(const calib::CheckVerdict& verdict, const std::vector<calib::Tou
 /// Of a check that is part of the reference.
 Verdict tell_reference(const Verification& verification, std::vector<calib::Touch> touches,
                        CheckDocument& document) {
-  std::vector<std::vector<calib::Touch>> times = verification.references;
-  times.push_back(std::move(touches));
+  std::vector<calib::ReferenceTime> times = verification.references;
+  times.push_back({std::move(touches)});
   document.reference.count = static_cast<int>(std::ssize(times));
   document.verdict.reasons = {
       fmt::format("reference check {} of {}: the checks after them are held against their mean",

@@ -73,6 +73,10 @@ const calib::Box* first_solid(const Block& block) {
   return found == block.solids.end() ? nullptr : &*found;
 }
 
+std::vector<calib::ContactSurface> contact_planes_of(const Cell& cell) {
+  return calib::make_artefact(artefact_knowledge(cell)).contact_planes;
+}
+
 }  // namespace
 
 std::variant<calib::CalibrationRecord, VerificationRefusal> record_of(
@@ -103,11 +107,13 @@ VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, c
                     .references = {}};
   if (const auto limit_m = cell.acceptance.proof_rms_max_m) made.proof_limits.rms_max_m = *limit_m;
   if (cell.arm.growth) made.place.std_growth = kStdWarmthKelvins * cell.arm.growth->expansion_per_k;
-  made.record.meet_at(calib::make_artefact(artefact_knowledge(cell)).contact_planes);
-  for (const std::vector<StoredTouch>& touches : past.checks) {
-    if (std::ssize(touches) != calib::kCheckTouchCount) continue;  // one left touches out
+  made.record.meet_at(contact_planes_of(cell));
+  for (const PastCheck& check : past.checks) {
+    if (std::ssize(check.touches) != calib::kCheckTouchCount) continue;  // one left touches out
     if (std::ssize(made.references) == calib::kReferenceCount) break;
-    made.references.push_back(verifying_touches(touches));
+    made.references.push_back(
+        {verifying_touches(check.touches),
+         contact_planes_of(with_block_temperature(cell, temperature_of(check.run, cell)))});
   }
   return std::make_shared<const Verification>(std::move(made));
 }

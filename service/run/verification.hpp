@@ -18,14 +18,19 @@
 /// Proofs and checks: runs whose touches are held against an earlier calibration and never fitted.
 namespace cell {
 
+/// A check that is part of the reference, as the store has it.
+struct PastCheck {
+  StoredRun run;
+  std::vector<StoredTouch> touches;
+};
+
 /// A calibration as the store has it.
 struct PastCalibration {
   StoredRun run;
   std::vector<StoredTouch> touches;
   std::vector<ReferenceTouch> references;
   Eigen::Isometry3d cell_from_block = Eigen::Isometry3d::Identity();  // R_-1 then, in R_-1 of the cell's file
-  /// The touches of the checks that are its reference, oldest first; of a proof none.
-  std::vector<std::vector<StoredTouch>> checks;
+  std::vector<PastCheck> checks;  // that are its reference, oldest first; of a proof none
 };
 
 /// What the touches of a proof or a check are held against.
@@ -37,7 +42,7 @@ struct Verification {
   calib::ProofLimits proof_limits;
   /// Of a check: the touches of the first checks of this calibration, at most calib::kReferenceCount. While
   /// there are fewer, the check is one of them.
-  std::vector<std::vector<calib::Touch>> references;
+  std::vector<calib::ReferenceTime> references;
 };
 
 /// One sentence with the remedy.

@@ -234,8 +234,8 @@ std::vector<Touch> CheckStudy::touch(std::uint64_t seed, const CellFault& fault,
 CheckReference CheckStudy::reference_at(const CalibrationRecord& record, std::uint64_t seed,
                                         std::span<const double> rises_k, std::uint64_t& scatter,
                                         UniformChance& chance) const {
-  std::vector<std::vector<Touch>> times;
-  for (const double rise_k : rises_k) times.push_back(touch(seed, {}, rise_k, ++scatter, chance));
+  std::vector<ReferenceTime> times;
+  for (const double rise_k : rises_k) times.push_back({touch(seed, {}, rise_k, ++scatter, chance)});
   return made(make_reference(record, times));
 }
 

@@ -18,8 +18,8 @@ constexpr int kTouchesOfCheck = 16;
 class Check : public ::testing::Test {
  protected:
   Check() : touches_(cell_.touches_at(Eigen::Isometry3d::Identity(), cell_.true_arm(), kTouchesOfCheck)) {
-    std::vector<std::vector<Touch>> times;
-    for (int k = 0; k < kReferenceCount; ++k) times.push_back(made_by(cell_.true_arm()));
+    std::vector<ReferenceTime> times;
+    for (int k = 0; k < kReferenceCount; ++k) times.push_back({made_by(cell_.true_arm())});
     reference_ = std::get<CheckReference>(make_reference(cell_.record(), times));
   }
 
@@ -90,6 +90,34 @@ TEST_F(Check, OfMoreThanOneFaultBlamesNoneOfThem) {
   EXPECT_EQ(verdict.joint, 0);
 }
 
+TEST_F(Check, ABlockThatWasWarmerAtTheReferenceIsNoChange) {
+  constexpr double kGrowth = 23e-6 * 12.0;  // aluminium, 12 K
+  std::vector<ContactSurface> warm = cell_.record().problem().artefact.contact_planes;
+  for (ContactSurface& plane : warm) plane.offset_m *= 1.0 + kGrowth;
+  std::vector<ReferenceTime> told, untold;
+  for (int k = 0; k < kReferenceCount; ++k) {
+    std::vector<Touch> touches = made_by(cell_.true_arm());
+    for (Touch& touch : touches) {
+      const auto face = static_cast<std::size_t>(touch.face);
+      ContactSurface plane = cell_.record().problem().artefact.contact_planes[face];
+      // Where this touch met the block, as much further out as the block has grown there.
+      plane.offset_m = plane.outward.dot(forward_kinematics(cell_.true_arm(), touch.joints).translation()) +
+                       warm[face].offset_m - plane.offset_m;
+      touch = moved_onto_plane(cell_.true_arm(), plane, touch);
+    }
+    told.push_back({touches, warm});
+    untold.push_back({touches});
+  }
+  const auto since = [&](std::span<const ReferenceTime> times) {
+    const auto reference = std::get<CheckReference>(make_reference(cell_.record(), times));
+    return std::get<CheckVerdict>(check(cell_.record(), reference, made_by(cell_.true_arm())));
+  };
+  EXPECT_FALSE(since(told).alarm);
+  EXPECT_NEAR(since(told).growth, 0.0, 4.0 * since(told).std_growth);
+  const CheckVerdict wrong = since(untold);
+  EXPECT_TRUE(wrong.alarm || std::abs(wrong.growth) > 4.0 * wrong.std_growth);
+}
+
 TEST_F(Check, OfOtherTouchesIsRefused) {
   std::vector<Touch> touches = made_by(cell_.true_arm());
   EXPECT_THAT(refusal_of(std::span(touches).first(5)), HasSubstr("5 touches where the reference has 16"));
@@ -101,7 +129,7 @@ TEST_F(Check, OfOtherTouchesIsRefused) {
 }
 
 TEST_F(Check, ReferenceIsRefusedOfTwoTimesAndOfCopies) {
-  std::vector<std::vector<Touch>> times(2, made_by(cell_.true_arm()));
+  std::vector<ReferenceTime> times(2, {made_by(cell_.true_arm())});
   EXPECT_THAT(std::get<CheckRefusal>(make_reference(cell_.record(), times)).message,
               HasSubstr("2 checks: a reference is the mean of 3"));
   times.push_back(times.front());

@@ -73,12 +73,30 @@ TEST(VerificationOfACalibration, WithoutTouchesThatIdentifyTheArmThereIsNone) {
 
 TEST(VerificationOfACalibration, TheReferenceIsTheFirstThreeWholeChecks) {
   PastCalibration past = table3_calibration();
-  const std::vector<StoredTouch> whole(past.touches.begin(), past.touches.begin() + calib::kCheckTouchCount);
-  const std::vector<StoredTouch> short_one(whole.begin(), whole.end() - 1);
+  const PastCheck whole{{}, {past.touches.begin(), past.touches.begin() + calib::kCheckTouchCount}};
+  const PastCheck short_one{{}, {whole.touches.begin(), whole.touches.end() - 1}};
   past.checks = {short_one, whole, whole};
   EXPECT_EQ(verification(RunKind::kCheck, past, up_by(0.0)).references.size(), 2u);
   past.checks = {whole, whole, short_one, whole, whole};
   EXPECT_EQ(verification(RunKind::kCheck, past, up_by(0.0)).references.size(), 3u);
+}
+
+TEST(VerificationOfACalibration, EachCheckOfTheReferenceMetTheBlockAsWarmAsItWasThen) {
+  PastCalibration past = table3_calibration();
+  PastCheck warm{{}, {past.touches.begin(), past.touches.begin() + calib::kCheckTouchCount}};
+  warm.run.block_temperature = {.celsius = 40.0, .std_k = 0.1, .measured_at = {}, .source = "run"};
+  PastCheck cold = warm;
+  cold.run.block_temperature->celsius = 20.0;
+  past.checks = {warm, cold};
+  const Verification made = verification(RunKind::kCheck, past, up_by(0.0));
+  const double expansion = edf().block.thermal_expansion_per_k.value();
+  for (std::size_t face = 0; face < edf().block.faces.size(); ++face) {
+    const double offset_m = edf().block.faces[face].plane.offset_m;
+    EXPECT_NEAR(
+        made.references[0].contact_planes[face].offset_m - made.references[1].contact_planes[face].offset_m,
+        20.0 * expansion * offset_m, 1e-9)
+        << face;
+  }
 }
 
 TEST(VerificationOfACalibration, TheCellsFileMayNameTheLimitOfAProof) {
