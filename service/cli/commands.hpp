@@ -127,6 +127,10 @@ ExitCode watch_command(const ApiClient& daemon, bool json);
 /// Locates the block: reports each touch that the person at the pendant has to make until the block is
 /// located; given once more, follows the arm around it until the pose is accepted.
 ExitCode locate_command(const ApiClient& daemon, bool json);
+/// Prints the names that a shell completes, a line each: runs or recipes of the daemon; recipes or tools of a
+/// cell's file.
+ExitCode names_command(const ApiClient& daemon, const std::string& what);
+ExitCode names_of_cell_command(const std::string& what, const std::filesystem::path& cell_file);
 /// Prints the link that opens the operator's page with the token in it, for a browser on this machine.
 ExitCode page_command(const ApiClient& daemon, bool json);
 ExitCode status_command(const ApiClient& daemon, bool json);

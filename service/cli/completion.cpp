@@ -38,26 +38,58 @@ std::string names_of(const CLI::App& app, bool only_with_value) {
   return names;
 }
 
-std::vector<const CLI::App*> commands_of(const CLI::App& app) {
-  auto commands = app.get_subcommands([](const CLI::App*) { return true; });
-  std::ranges::sort(commands, {}, &CLI::App::get_name);
-  return commands;
+/// What `names` of the program is asked for, to complete a value; empty: it is a file.
+std::string named_kind(const OptionWords& option) {
+  const auto is = [&](const char* name) {
+    return option.place_name == name || std::ranges::find(option.names, name) != option.names.end();
+  };
+  if (is("RUN") || is("OTHER") || is("--of") || is("--check")) return "runs";
+  if (is("RECIPE") || is("--recipe")) return "recipes";
+  return is("--tool") ? "tools" : "";
+}
+
+/// Lines of a shell's case of "command:word", the first word being the command, for what goes by its place.
+std::string bash_places(const CLI::App& command) {
+  std::string cases;
+  int word = 1;
+  for (const OptionWords& option : options_of(command)) {
+    if (!option.names.empty()) continue;
+    ++word;
+    if (const std::string kind = named_kind(option); !kind.empty())
+      cases += fmt::format("    {}:{}) kind={} ;;\n", command.get_name(), word, kind);
+  }
+  return cases;
 }
 
 std::string bash_script(const CLI::App& app) {
-  std::string commands, cases;
-  for (const CLI::App* command : commands_of(app)) {
+  std::string commands, cases, places;
+  for (const CLI::App* command : shown_commands(app)) {
+    places += bash_places(*command);
     commands += (commands.empty() ? "" : " ") + command->get_name();
     cases += fmt::format("    {}) options=\"{}\" ;;\n", command->get_name(), names_of(*command, false));
   }
   std::string with_value;
-  for (const CLI::App* command : commands_of(app)) with_value += " " + names_of(*command, true);
-  return fmt::format(R"(# bash completion of {0}, made by `{0} completion bash`
+  for (const CLI::App* command : shown_commands(app)) with_value += " " + names_of(*command, true);
+  return fmt::format(R"sh(# bash completion of {0}, made by `{0} completion bash`
 _{0}() {{
-  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" options
+  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" options kind= cell=() i
   case "${{COMP_WORDS[1]}}" in
 {2}    *) options="{3}" ;;
   esac
+  case "${{COMP_WORDS[1]}}:$COMP_CWORD" in
+{5}  esac
+  case "$before" in
+    --of|--check) kind=runs ;;
+    --recipe) kind=recipes ;;
+    --tool) kind=tools ;;
+  esac
+  if [ -n "$kind" ] && [[ "$word" != -* ]]; then
+    for ((i = 2; i < COMP_CWORD; i++)); do
+      [ "${{COMP_WORDS[i]}}" != --cell ] || cell=(--cell "${{COMP_WORDS[i+1]}}")
+    done
+    COMPREPLY=($(compgen -W "$("${{COMP_WORDS[0]}}" names "$kind" "${{cell[@]}}" 2>/dev/null)" -- "$word"))
+    return
+  fi
   if [ "$COMP_CWORD" -eq 1 ]; then
     options="{1} $options"
   elif [[ " {4} " == *" $before "* ]] || [[ "$word" != -* ]]; then
@@ -67,8 +99,8 @@ _{0}() {{
   COMPREPLY=($(compgen -W "$options" -- "$word"))
 }}
 complete -o filenames -F _{0} {0}
-)",
-                     app.get_name(), commands, cases, names_of(app, false), with_value);
+)sh",
+                     app.get_name(), commands, cases, names_of(app, false), with_value, places);
 }
 
 /// Within single quotes and the brackets of _arguments.
@@ -89,22 +121,26 @@ std::string quoted(const std::string& text) {
 std::string zsh_arguments(const CLI::App& command) {
   std::string arguments;
   for (const OptionWords& option : options_of(command)) {
-    const std::string value = option.takes_value ? ":value:_files" : "";
+    const std::string kind = named_kind(option);
+    const std::string filled = kind.empty() ? "_files" : "{_touchcal_names " + kind + "}";
+    const std::string value = option.takes_value ? ":value:" + filled : "";
     for (const std::string& name : option.names)
       arguments += fmt::format(" \\\n      '{}[{}]{}'", name, quoted(option.description), value);
-    if (option.names.empty()) arguments += fmt::format(" \\\n      ':{}:_files'", quoted(option.place_name));
+    if (option.names.empty())
+      arguments += fmt::format(" \\\n      ':{}:{}'", quoted(option.place_name), filled);
   }
   return arguments;
 }
 
 std::string zsh_script(const CLI::App& app) {
   std::string commands, cases;
-  for (const CLI::App* command : commands_of(app)) {
+  for (const CLI::App* command : shown_commands(app)) {
     commands += fmt::format("    '{}:{}'\n", command->get_name(), quoted(command->get_description()));
     cases += fmt::format("    {}) _arguments{} ;;\n", command->get_name(), zsh_arguments(*command));
   }
-  return fmt::format(R"(#compdef {0}
+  return fmt::format(R"sh(#compdef {0}
 # zsh completion of {0}, made by `{0} completion zsh`
+_{0}_names() {{ compadd -- ${{(f)"$({0} names $1 2>/dev/null)"}} }}
 _{0}() {{
   local -a commands
   commands=(
@@ -120,11 +156,17 @@ _{0}() {{
 {2}  esac
 }}
 _{0} "$@"
-)",
+)sh",
                      app.get_name(), commands, cases, zsh_arguments(app));
 }
 
 }  // namespace
+
+std::vector<const CLI::App*> shown_commands(const CLI::App& app) {
+  auto commands = app.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+  std::ranges::sort(commands, {}, &CLI::App::get_name);
+  return commands;
+}
 
 std::string completion_script(const CLI::App& app, const std::string& shell) {
   return shell == "zsh" ? zsh_script(app) : bash_script(app);

@@ -16,6 +16,7 @@
 #include "service/cli/commands.hpp"
 #include "service/cli/completion.hpp"
 #include "service/cli/daemon_choice.hpp"
+#include "service/cli/nearest_word.hpp"
 #include "service/cli/offline_options.hpp"
 #include "service/cli/shared_options.hpp"
 #include "service/run/simulated_calibrations.hpp"
@@ -74,9 +75,11 @@ class CommandLine {
     add_for_daemon("locate", "locate the block by six touches made by hand, then pass once around it",
                    [this](const cell::ApiClient& daemon) { return cell::locate_command(daemon, json_); });
     add_completion();
+    add_names();
   }
 
   int run(int argc, char** argv) {
+    if (argc > 1 && argv[1][0] != '-' && !is_command(argv[1])) return refuse_command(argv[1]);
     try {
       app_.parse(argc, argv);
       return action_();
@@ -86,6 +89,20 @@ class CommandLine {
   }
 
  private:
+  [[nodiscard]] bool is_command(const std::string& name) const {
+    return !app_.get_subcommands([&](const CLI::App* command) { return command->get_name() == name; })
+                .empty();
+  }
+
+  [[nodiscard]] int refuse_command(const std::string& typed) const {
+    std::vector<std::string> names;
+    for (const CLI::App* command : cell::shown_commands(app_)) names.push_back(command->get_name());
+    const auto meant = cell::nearest_word(typed, names);
+    std::cerr << "touchcal: there is no command '" << typed << "'"
+              << (meant ? "; did you mean '" + *meant + "'?" : "") << "\ntouchcal --help lists them all\n";
+    return cell::kExitUsage;
+  }
+
   /// A command that needs no daemon.
   template <class Arguments>
   void add_offline(const std::string& name, const std::string& description, Arguments& given,
@@ -301,6 +318,21 @@ class CommandLine {
     });
   }
 
+  /// What the script asks for what is completed.
+  void add_names() {
+    auto* names = app_.add_subcommand("names", "print the names of runs, recipes or tools, for the shell");
+    names->group("");  // it is for the script alone
+    names->add_option("WHAT", names_of_, "runs, recipes or tools")->required();
+    names->add_option("--cell", names_cell_, "the cell's file");
+    daemon_.add_to(*names);
+    names->callback([this, names] {
+      action_ = [this, names] {
+        return names_cell_.empty() ? cell::names_command(daemon_.client(*names), names_of_)
+                                   : cell::names_of_cell_command(names_of_, names_cell_);
+      };
+    });
+  }
+
   CLI::App* add_for_daemon(const std::string& name, const std::string& description,
                            const std::function<cell::ExitCode(const cell::ApiClient&)>& command) {
     auto* sub = app_.add_subcommand(name, description);
@@ -332,6 +364,7 @@ class CommandLine {
   std::string shell_;
   std::string run_id_;
   std::string other_run_id_;
+  std::string names_of_, names_cell_;
   bool json_ = false;
 };
 

@@ -28,6 +28,10 @@ AccessDocument read_access(std::string_view text) {
   return document_from<AccessDocument>(text, Absent::kIsRefused);
 }
 
+RecipeNamesDocument read_recipe_names(std::string_view text) {
+  return document_from<RecipeNamesDocument>(text, Absent::kIsRefused);
+}
+
 std::optional<PlaceDocument> read_place_of_cell(std::string_view text) {
   return document_from<PlaceOfCell>(text, Absent::kIsRefused).place;
 }

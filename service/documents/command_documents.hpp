@@ -34,6 +34,24 @@ struct ReadyDocument {
   }
 };
 
+/// What the command line reads of GET /api/v1/recipes.
+struct RecipeNamesDocument {
+  struct Named {
+    std::string name;
+
+    template <class Self, class Fields>
+    static void visit(Self& self, Fields& fields) {
+      fields("name", self.name);
+    }
+  };
+  std::vector<Named> recipes;
+
+  template <class Self, class Fields>
+  static void visit(Self& self, Fields& fields) {
+    fields("recipes", self.recipes);
+  }
+};
+
 /// `touchcal page --json`.
 struct PageLinkDocument {
   std::string role;
@@ -89,6 +107,7 @@ std::string document_text(const ExportedRunDocument& document);
 
 /// DocumentError when the text is no such document.
 AccessDocument read_access(std::string_view text);
+RecipeNamesDocument read_recipe_names(std::string_view text);
 
 /// `place` of the cell's document; nothing where the block stands as the cell's file has it.
 std::optional<PlaceDocument> read_place_of_cell(std::string_view text);

@@ -94,6 +94,8 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/daemon/plant_sinks", "the threads of the sinks: end_to_end/plant_test"},
     {"service/daemon/touchcald", "the program; end_to_end/command_line_test runs it"},
     {"service/documents/audit_document", "http/routes/audit_routes_test writes and reads it"},
+    {"service/cli/names_command",
+     "end_to_end/command_line_test completes by it, verify_commands_test runs it"},
     {"service/cli/compare_command", "end_to_end/verify_commands_test runs the command"},
     {"service/documents/comparison_document",
      "http/routes/comparison_routes_test reads what the route writes"},

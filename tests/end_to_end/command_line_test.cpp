@@ -118,6 +118,32 @@ COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchcal; printf '%s ' "${COMPREPLY[
   EXPECT_EQ(completed({"touchcal", "identify", "--cell", cell.substr(0, cell.size() - 2)}), cell + " ");
 }
 
+TEST_F(CommandLine, TheShellCompletesRecipesAndToolsOfTheCellThatIsNamed) {
+  const auto script = folder_ / "completion.bash";
+  std::ofstream(script) << run({"touchcal", "completion", "bash"}).out << R"(
+COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchcal; printf '%s ' "${COMPREPLY[@]}"
+)";
+  const std::string program = std::string(TOUCHCAL_PROGRAMS_DIR) + "/touchcal";
+  const auto completed = [&](const std::string& command, const std::string& option, const std::string& word) {
+    return run({"/bin/bash", script.string(), program, command, "--cell", cell_file("demo"), option, word})
+        .out;
+  };
+  EXPECT_EQ(completed("identify", "--recipe", "qui"), "quick ");
+  EXPECT_THAT(completed("plan", "--recipe", ""), AllOf(HasSubstr("best "), HasSubstr("edf-25 ")));
+  EXPECT_THAT(completed("compensate", "--tool", ""), HasSubstr("stylus "));
+  EXPECT_EQ(run({"/bin/bash", script.string(), program, "show", ""}).out, " ") << "no daemon runs";
+}
+
+TEST_F(CommandLine, ACommandThatThereIsNotIsToldWithTheOneThatWasMeant) {
+  const Finished swapped = run({"touchcal", "statsu"});
+  EXPECT_EQ(swapped.exit_code, cell::kExitUsage);
+  EXPECT_THAT(swapped.err, AllOf(HasSubstr("there is no command 'statsu'; did you mean 'status'?"),
+                                 HasSubstr("touchcal --help")));
+  const Finished strange = run({"touchcal", "banana", "--json"});
+  EXPECT_EQ(strange.exit_code, cell::kExitUsage);
+  EXPECT_THAT(strange.err, AllOf(HasSubstr("no command 'banana'"), Not(HasSubstr("did you mean"))));
+}
+
 TEST_F(CommandLine, AnOptionThatIsNoneIsToldBeforeOneThatIsMissing) {
   const Finished finished = run({"touchcald", "--bogus"});
   EXPECT_EQ(finished.exit_code, cell::kExitUsage);

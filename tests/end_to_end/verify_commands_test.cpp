@@ -59,6 +59,9 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
   EXPECT_EQ(unknown.exit_code, cell::kExitUsage) << unknown.out;
   EXPECT_THAT(unknown.err, HasSubstr("there is no calibration '2'"));
 
+  EXPECT_EQ(done({"names", "runs"}).out, "5\n4\n3\n2\n1\n");
+  EXPECT_THAT(done({"names", "recipes"}).out, HasSubstr("quick\n"));
+
   // A person's word applies the growth that the check found beside the model.
   done({"approve", "1"});
   const std::string targets = (cell_.folder() / "targets.csv").string();
