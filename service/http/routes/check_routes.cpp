@@ -2,21 +2,13 @@
 
 #include "service/acquisition/past_calibration.hpp"
 #include "service/documents/checks_view.hpp"
-#include "service/documents/document_error.hpp"
+#include "service/http/routes/internal/stored_checks.hpp"
 #include "service/http/routes/route_table.hpp"
 
 namespace cell {
 namespace {
 
 constexpr std::int64_t kChecksTold = 200, kChecksToldMax = 1000;
-
-/// One without a verdict where there is none that can be read.
-CheckDocument result_of(const RunStore& store, std::int64_t check) try {
-  const auto stored = store.result_json(check);
-  return stored ? read_check(*stored) : CheckDocument();
-} catch (const DocumentError&) {
-  return {};
-}
 
 HttpResponse get_checks(const Call& call) {
   const RunStore& store = call.reads.store();
@@ -32,12 +24,9 @@ HttpResponse get_checks(const Call& call) {
   if (!calibration || calibration->kind != RunKind::kCalibration)
     return not_found(fmt::format(
         "there is no calibration '{}'; GET /api/v1/runs lists the runs with their kind", *of_run));
-  std::vector<EndedCheck> checks;
-  for (const StoredRun& check : store.complete_runs_of(*of_run, RunKind::kCheck))
-    checks.push_back({check, result_of(store, check.id)});
   // A calibration that another one has replaced is checked no more.
   const auto every = of_run == counting ? call.reads.cell().check_every : std::nullopt;
-  ChecksDocument document = checks_view(*calibration, checks, every, call.reads.now());
+  ChecksDocument document = checks_view(*calibration, checks_of(store, *of_run), every, call.reads.now());
   keep_newest(document, static_cast<std::size_t>(call.number("limit").value_or(kChecksTold)));
   return json_response(200, document_text(document));
 }
