@@ -26,5 +26,17 @@ TEST(ExpiringCertificates, AreThoseThatEndWithinTheNotice) {
   }
 }
 
+TEST(CertificateEnds, AreTheEndsOfTheLastDays) {
+  Cell cell;
+  EXPECT_THAT(certificate_ends(cell), IsEmpty());
+  cell.probe.certificate = {{"valid_until", "2026-05-31"}};
+  cell.block.certificate = {{"valid_until", "by the end of May"}};
+  const auto ends = certificate_ends(cell);
+  ASSERT_EQ(ends.size(), 1u);
+  EXPECT_EQ(ends[0].artefact, "probe");
+  EXPECT_EQ(ends[0].valid_until, "2026-05-31");
+  EXPECT_EQ(ends[0].ends_at, time_from_utc("2026-06-01T00:00:00Z"));
+}
+
 }  // namespace
 }  // namespace cell
