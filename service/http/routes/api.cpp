@@ -17,7 +17,6 @@
 #include "service/http/routes/internal/desk.hpp"
 #include "service/http/routes/internal/event_stream.hpp"
 #include "service/http/routes/internal/plan_routes.hpp"
-#include "service/http/routes/internal/token_log.hpp"
 #include "service/http/server/target.hpp"
 #include "service/store/damaged_store.hpp"
 
@@ -292,37 +291,6 @@ asio::awaitable<HttpResponse> Api::execute_command_once(const HttpRequest& reque
 }
 
 std::string Api::now_text() const { return format_utc(services_.operation.clocks().system()); }
-
-asio::awaitable<void> Api::follow_tokens(KnownDirectory state_directory, std::chrono::milliseconds every) {
-  asio::steady_timer timer(executor_);
-  TokenTroubles troubles;
-  for (;;) {
-    timer.expires_after(every);
-    co_await timer.async_wait(asio::use_awaitable);
-    const auto look = [state_directory, known = services_.tokens] {
-      return tokens_now(state_directory, known);
-    };
-    CurrentTokens now = co_await run_on(reader_->executor, look);
-    troubles.tell(now);
-    take_tokens(std::move(now.tokens));
-  }
-}
-
-void Api::take_tokens(Tokens now) {
-  if (now == services_.tokens) return;
-  tell_changes(services_.tokens, now);
-  services_.tokens = std::move(now);
-  services_.feed.wake();  // streams look whether their token still counts
-}
-
-asio::awaitable<void> Api::follow_strangers(std::chrono::milliseconds every) {
-  asio::steady_timer timer(executor_);
-  for (;;) {
-    timer.expires_after(every);
-    co_await timer.async_wait(asio::use_awaitable);
-    audit_.record_left_out();
-  }
-}
 
 asio::awaitable<void> Api::delay_wrong_token(const HttpRequest& request) {
   if (!request.authorization) co_return;

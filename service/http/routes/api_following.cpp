@@ -1,0 +1,46 @@
+// What an Api looks at again and again.
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <utility>
+
+#include "service/base/run_on.hpp"
+#include "service/http/routes/api.hpp"
+#include "service/http/routes/internal/desk.hpp"
+#include "service/http/routes/internal/token_log.hpp"
+
+namespace cell {
+
+namespace asio = boost::asio;
+
+asio::awaitable<void> Api::follow_tokens(KnownDirectory state_directory, std::chrono::milliseconds every) {
+  asio::steady_timer timer(executor_);
+  TokenTroubles troubles;
+  for (;;) {
+    timer.expires_after(every);
+    co_await timer.async_wait(asio::use_awaitable);
+    const auto look = [state_directory, known = services_.tokens] {
+      return tokens_now(state_directory, known);
+    };
+    CurrentTokens now = co_await run_on(reader_->executor, look);
+    troubles.tell(now);
+    take_tokens(std::move(now.tokens));
+  }
+}
+
+void Api::take_tokens(Tokens now) {
+  if (now == services_.tokens) return;
+  tell_changes(services_.tokens, now);
+  services_.tokens = std::move(now);
+  services_.feed.wake();  // streams look whether their token still counts
+}
+
+asio::awaitable<void> Api::follow_strangers(std::chrono::milliseconds every) {
+  asio::steady_timer timer(executor_);
+  for (;;) {
+    timer.expires_after(every);
+    co_await timer.async_wait(asio::use_awaitable);
+    audit_.record_left_out();
+  }
+}
+
+}  // namespace cell
