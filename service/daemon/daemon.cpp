@@ -109,6 +109,9 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
 /// How often the tokens are read again: one that was removed ends so soon.
 constexpr std::chrono::milliseconds kTokensLook{1000};
 
+/// How old the metrics of checks and models may be.
+constexpr std::chrono::milliseconds kCellLook{60'000};
+
 /// How long the end of a flood of refusals may be missing in the audit.
 constexpr std::chrono::milliseconds kStrangersLook{10'000};
 
@@ -262,6 +265,7 @@ void run_daemon(const Cell& cell, const DaemonOptions& options) {
   });
   operation.launch();
   asio::co_spawn(http, api.follow_tokens(state_directory, kTokensLook), asio::detached);
+  asio::co_spawn(http, api.follow_cell(kCellLook), asio::detached);
   asio::co_spawn(http, api.follow_strangers(kStrangersLook), asio::detached);
   listener->launch();
   if (socket) socket->launch();

@@ -132,7 +132,6 @@ inline const std::map<std::string, std::string> kUnitsWithoutTest{
     {"service/http/auth/token_file", "tokens_test makes and reads the files"},
     {"service/http/routes/cell_routes", "routes_test"},
     {"service/http/routes/command_routes", "routes_test"},
-    {"service/http/routes/metrics", "routes_test reads the text"},
     {"service/http/routes/request_body", "plan_routes_test"},
     {"service/http/routes/route_table", "routes_test"},
     {"service/http/routes/run_routes", "routes_test"},

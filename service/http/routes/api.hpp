@@ -51,6 +51,9 @@ class Api final : public RequestHandler {
   /// Reads the tokens again and again, on the thread that reads, until the executor ends: one whose file has
   /// gone or is refused ends within this time, and a new one counts.
   boost::asio::awaitable<void> follow_tokens(KnownDirectory state_directory, std::chrono::milliseconds every);
+  /// Reads what is stored of the cell's checks and models for the metrics, now and again and again, on the
+  /// thread that reads, until the executor ends.
+  boost::asio::awaitable<void> follow_cell(std::chrono::milliseconds every);
   /// Records again and again how many refusals of strangers were left out, until the executor ends: the tail
   /// of a flood is in the audit within this time.
   boost::asio::awaitable<void> follow_strangers(std::chrono::milliseconds every);

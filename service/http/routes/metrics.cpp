@@ -9,9 +9,11 @@
 #include <limits>
 #include <map>
 #include <tuple>
+#include <utility>
 
 #include "config/utc_text.hpp"
 #include "service/base/version.hpp"
+#include "service/run/cell_figures.hpp"
 
 namespace cell {
 namespace {
@@ -24,6 +26,10 @@ Gauge& gauge(prometheus::Registry& registry, const char* name, const char* help)
   return prometheus::BuildGauge().Name(name).Help(help).Register(registry).Add({});
 }
 
+Family<Gauge>& gauges(prometheus::Registry& registry, const char* name, const char* help) {
+  return prometheus::BuildGauge().Name(name).Help(help).Register(registry);
+}
+
 constexpr double kUnknownFigure = std::numeric_limits<double>::quiet_NaN();
 
 /// 0 also where the clock was set back since.
@@ -32,6 +38,98 @@ double age_s(const std::optional<std::string>& at, std::chrono::system_clock::ti
   const auto time = time_from_utc(*at);
   return time ? std::max(std::chrono::duration<double>(now - *time).count(), 0.0) : kUnknownFigure;
 }
+
+/// Negative where `at` is behind.
+double until_s(CellFigures::Time at, std::chrono::system_clock::time_point now) {
+  return std::chrono::duration<double>(at - now).count();
+}
+
+/// 0 also where the clock was set back since.
+double since_s(const std::optional<CellFigures::Time>& at, std::chrono::system_clock::time_point now) {
+  return at ? std::max(-until_s(*at, now), 0.0) : kUnknownFigure;
+}
+
+double figure_of(std::optional<bool> is_so) { return is_so ? (*is_so ? 1.0 : 0.0) : kUnknownFigure; }
+
+/// A family of one label whose rows come and go: what is not known has none.
+class LabelledGauges {
+ public:
+  LabelledGauges(Family<Gauge>& family, std::string label) : family_(family), label_(std::move(label)) {}
+
+  void show(const std::map<std::string, double>& figures) {
+    std::erase_if(shown_, [&](const auto& row) {
+      if (figures.contains(row.first)) return false;
+      family_.Remove(row.second);
+      return true;
+    });
+    for (const auto& [of, figure] : figures) {
+      Gauge*& shown = shown_[of];
+      if (!shown) shown = &family_.Add({{label_, of}});
+      shown->Set(figure);
+    }
+  }
+
+ private:
+  Family<Gauge>& family_;
+  std::string label_;
+  std::map<std::string, Gauge*> shown_;
+};
+
+/// What is stored of the cell's checks and models.
+class StoredFamilies {
+ public:
+  explicit StoredFamilies(prometheus::Registry& registry)
+      : check_age_(gauge(registry, "touchcal_check_age_seconds",
+                         "Since the newest check of the calibration that counts; NaN before the first")),
+        check_due_(gauge(registry, "touchcal_check_due_seconds",
+                         "Until the next check, negative when it is overdue; NaN without a rule")),
+        arm_growth_(gauge(registry, "touchcal_arm_growth_ratio",
+                          "Of the arm's lengths since the reference, by the newest check")),
+        proof_passed_(gauge(registry, "touchcal_proof_passed",
+                            "1 where the newest proof of the calibration that counts was passed, 0 where it "
+                            "was missed")),
+        model_age_(gauge(registry, "touchcal_approved_model_age_seconds",
+                         "Since the approval of the cell's model; NaN where there is none")),
+        model_of_this_arm_(gauge(registry, "touchcal_approved_model_of_this_arm",
+                                 "1 where the approved model is of the arm with the serial number of the "
+                                 "cell's file, 0 of another; NaN where one is unknown")),
+        joint_(gauges(registry, "touchcal_check_joint_radians", "Offset of a joint, by the newest check"),
+               "joint"),
+        limit_ratio_(gauges(registry, "touchcal_check_limit_ratio",
+                            "Of the newest point of a chart to its limit; over 1 it is beyond it"),
+                     "quantity"),
+        certificate_(gauges(registry, "touchcal_certificate_valid_seconds",
+                            "Until the certificate of an artefact ends, negative when it has ended"),
+                     "artefact") {}
+
+  void show(const CellFigures& figures, std::chrono::system_clock::time_point now) {
+    check_age_.Set(since_s(figures.checked_at, now));
+    check_due_.Set(figures.check_due_at ? until_s(*figures.check_due_at, now) : kUnknownFigure);
+    arm_growth_.Set(figures.arm_growth.value_or(kUnknownFigure));
+    proof_passed_.Set(figure_of(figures.is_proved));
+    model_age_.Set(since_s(figures.model_approved_at, now));
+    model_of_this_arm_.Set(figure_of(figures.is_model_of_this_arm));
+    std::map<std::string, double> joints, certificates;
+    for (const auto& [joint, offset_rad] : figures.joint_offsets_rad)
+      joints[std::to_string(joint)] = offset_rad;
+    for (const auto& [artefact, ends_at] : figures.certificate_ends)
+      certificates[artefact] = until_s(ends_at, now);
+    joint_.show(joints);
+    limit_ratio_.show(figures.limit_ratios);
+    certificate_.show(certificates);
+  }
+
+ private:
+  Gauge& check_age_;
+  Gauge& check_due_;
+  Gauge& arm_growth_;
+  Gauge& proof_passed_;
+  Gauge& model_age_;
+  Gauge& model_of_this_arm_;
+  LabelledGauges joint_;
+  LabelledGauges limit_ratio_;
+  LabelledGauges certificate_;
+};
 
 }  // namespace
 
@@ -70,6 +168,8 @@ struct Metrics::Families {
                                       .Name("touchcal_sink_connected")
                                       .Help("1 while the sink is connected")
                                       .Register(registry);
+  StoredFamilies stored{registry};
+  CellFigures figures;
   std::map<std::tuple<std::string_view, std::string_view, unsigned>, Counter*> counters;
   std::string shown_state;
   std::string counted_fault;  // code and message: the same fault is counted once
@@ -111,6 +211,8 @@ void Metrics::follow(const Status& status) {
   all.touches_counted = status.touches_done;
 }
 
+void Metrics::take(const CellFigures& figures) { families_->figures = figures; }
+
 std::string Metrics::text(const Status& status, std::chrono::system_clock::time_point now) {
   Families& all = *families_;
   for (const SinkState& sink : status.sinks) {
@@ -128,6 +230,7 @@ std::string Metrics::text(const Status& status, std::chrono::system_clock::time_
   all.link_age.Set(status.data_age_ms ? static_cast<double>(*status.data_age_ms) / 1e3 : kUnknownFigure);
   all.touches_done.Set(status.touches_done);
   all.condition.Set(status.condition_number.value_or(kUnknownFigure));
+  all.stored.show(all.figures, now);
   return prometheus::TextSerializer().Serialize(all.registry.Collect());
 }
 

@@ -9,6 +9,8 @@
 
 namespace cell {
 
+struct CellFigures;
+
 /// Metrics in the Prometheus text format (GET /metrics): names begin with touchcal_, base units. Only the
 /// core of prometheus-cpp: its own HTTP server would be a second port without our access rules.
 class Metrics {
@@ -23,6 +25,8 @@ class Metrics {
   void count_request(std::string_view method, std::string_view route, unsigned status);
   /// Call it at each change of the status: counts touches, and faults by code.
   void follow(const Status& status);
+  /// What is stored, as it was read last: no call of this class reads it itself.
+  void take(const CellFigures& figures);
   /// The present metrics; `now` is that of the cell's clock.
   [[nodiscard]] std::string text(const Status& status, std::chrono::system_clock::time_point now);
 

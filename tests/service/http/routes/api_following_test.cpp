@@ -1,8 +1,12 @@
 // What an Api looks at again and again.
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <gmock/gmock.h>
 
 #include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <chrono>
 #include <memory>
+#include <string>
 
 #include "tests/service/http/routes/api_bench.hpp"
 
@@ -41,6 +45,50 @@ TEST_F(ApiFollowingTest, WhoReadsWithATokenIsToldAtOnceThatItDoesNotCountAnyMore
   EXPECT_EQ(events->due(), "");
   EXPECT_TRUE(events->ended());
   EXPECT_EQ(status, 401U);
+}
+
+TEST_F(ApiFollowingTest, TheMetricsOfTheCellAreReadAtOnceAndAgain) {
+  const auto serving = quiet_.context().get_executor();
+  Api api(serving, {.operation = serving, .store = serving, .reader = serving}, quiet_.operation(), kTokens);
+  const auto is_shown = [&](const char* row) {
+    return api.services().metrics.text({}, {}).find(std::string("\n") + row + "\n") != std::string::npos;
+  };
+  const std::int64_t calibration = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+  quiet_.store().finish_run(calibration,
+                            {.verdict = Verdict::kAccepted, .ended_at = "1970-01-01T00:00:00.000Z"});
+  const auto prove = [&](Verdict verdict) {
+    const std::int64_t proof = quiet_.store().begin_run(
+        {.kind = RunKind::kProof, .of_run = calibration, .recipe = "edf-25", .started_at = "start"});
+    quiet_.store().finish_run(proof, {.verdict = verdict, .ended_at = "1970-01-02T00:00:00.000Z"});
+  };
+  prove(Verdict::kRejected);
+  boost::asio::co_spawn(quiet_.context(), api.follow_cell(std::chrono::milliseconds(0)),
+                        boost::asio::detached);
+  EXPECT_TRUE(is_shown("touchcal_proof_passed Nan"));
+  quiet_.context().restart();
+  while (!is_shown("touchcal_proof_passed 0")) ASSERT_EQ(quiet_.context().run_one(), 1u);
+  prove(Verdict::kAccepted);
+  while (!is_shown("touchcal_proof_passed 1")) ASSERT_EQ(quiet_.context().run_one(), 1u);
+}
+
+TEST_F(ApiFollowingTest, WhatTheMetricsCannotReadIsLoggedOnce) {
+  const auto serving = quiet_.context().get_executor();
+  Api api(serving, {.operation = serving, .store = serving, .reader = serving}, quiet_.operation(), kTokens);
+  const std::int64_t calibration = quiet_.store().begin_run({.recipe = "edf-25", .started_at = "start"});
+  quiet_.store().finish_run(calibration, {.verdict = Verdict::kAccepted, .ended_at = "end"});
+  const std::int64_t check = quiet_.store().begin_run(
+      {.kind = RunKind::kCheck, .of_run = calibration, .recipe = "edf-25", .started_at = "start"});
+  quiet_.store().finish_run(check, {.ended_at = "end"});
+  ASSERT_EQ(quiet_.store().database()->exec("UPDATE runs SET started_at = 'x' WHERE kind = 'check'"), 1);
+  boost::asio::co_spawn(quiet_.context(), api.follow_cell(std::chrono::milliseconds(0)),
+                        boost::asio::detached);
+  quiet_.context().restart();
+  ::testing::internal::CaptureStdout();
+  for (int step = 0; step < 100; ++step) EXPECT_EQ(quiet_.context().run_one(), 1u) << "it goes on";
+  const std::string said = ::testing::internal::GetCapturedStdout();
+  const std::size_t first = said.find("metrics of checks and models are left out");
+  ASSERT_NE(first, std::string::npos) << said;
+  EXPECT_EQ(said.find("left out", first + 50), std::string::npos) << said;
 }
 
 }  // namespace
