@@ -291,69 +291,6 @@ constexpr std::string_view kModel = R"({
   "parameters":{"type":["array","null"],"description":"likewise"},
   "nongeometric_parameters":{"type":["array","null"],"description":"likewise"}}})";
 
-constexpr std::string_view kProof = R"({
-"type":"object",
-"description":"Touches of the block at another place, never fitted, against a calibration",
-"required":["schema","arm","of_run","touch_count","complete","verdict","rms_mm","rms_max_mm","chi_square","degrees_of_freedom","p",
-  "p_min","noise_um","moved_mm","turned_deg","power","touches","conditions"],
-"properties":{
-  "schema":{"const":"touchcal/proof/1"},
-  "arm":{"type":"string"},
-  "of_run":{"type":"string","description":"the calibration"},
-  "touch_count":{"type":"integer","minimum":0},
-  "complete":{"type":"boolean"},
-  "verdict":{"$ref":"#/components/schemas/VerificationVerdict"},
-  "rms_mm":{"type":["number","null"],"description":"distance from the block at the pose that fits best"},
-  "rms_max_mm":{"type":["number","null"]},
-  "chi_square":{"type":["number","null"]},
-  "degrees_of_freedom":{"type":["number","null"]},
-  "p":{"type":["number","null"]},
-  "p_min":{"type":["number","null"]},
-  "noise_um":{"type":["number","null"],"description":"of a touch, as the calibration measured it"},
-  "moved_mm":{"type":["array","null"],"minItems":3,"maxItems":3,"description":"the block since the calibration, in R_-1 then"},
-  "turned_deg":{"type":["array","null"],"minItems":3,"maxItems":3,"description":"rotation vector"},
-  "power":{"type":"array","items":{"type":"object","required":["alternative","power"],
-    "description":"the probability to see something that moves the tip by 0.1 mm"}},
-  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","distance_mm"]}},
-  "conditions":{"type":["object","null"]}}})";
-
-constexpr std::string_view kCheck = R"({
-"type":"object",
-"description":"The touches of the first checks of a calibration once more, against their mean",
-"required":["schema","arm","of_run","touch_count","complete","verdict","reference","chi_square","degrees_of_freedom","p","joint_p",
-  "p_min","rms_mm","noise_um","cause","joint","joints","growth_ppm","std_growth_ppm","warmer_k","touches","conditions"],
-"properties":{
-  "schema":{"const":"touchcal/check/1"},
-  "arm":{"type":"string"},
-  "of_run":{"type":"string","description":"the calibration"},
-  "touch_count":{"type":"integer","minimum":0},
-  "complete":{"type":"boolean"},
-  "verdict":{"$ref":"#/components/schemas/VerificationVerdict"},
-  "reference":{"type":"object","required":["count","needed"]},
-  "chi_square":{"type":["number","null"]},
-  "degrees_of_freedom":{"type":["number","null"]},
-  "p":{"type":["number","null"]},
-  "joint_p":{"type":["number","null"],"description":"of the most striking joint"},
-  "p_min":{"type":["number","null"],"description":"of each of the two"},
-  "rms_mm":{"type":["number","null"]},
-  "noise_um":{"type":["number","null"],"description":"of a touch, as the reference scatters"},
-  "cause":{"enum":["joint","block","stylus","unknown",null],"description":"of an alarm"},
-  "joint":{"type":["integer","null"],"minimum":2,"maximum":5},
-  "joints":{"type":"array","items":{"type":"object","required":["joint","offset_mrad","std_offset_mrad"],
-    "description":"as if it alone had changed"}},
-  "growth_ppm":{"type":["number","null"],"description":"of the arm since the reference"},
-  "std_growth_ppm":{"type":["number","null"]},
-  "warmer_k":{"type":["number","null"]},
-  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","change_mm"]}},
-  "conditions":{"type":["object","null"]}}})";
-
-constexpr std::string_view kVerificationVerdict = R"({
-"type":"object",
-"required":["accepted","reasons"],
-"properties":{
-  "accepted":{"type":["boolean","null"],"description":"null: no verdict, and the reasons say why"},
-  "reasons":{"type":"array","items":{"type":"string"}}}})";
-
 constexpr std::string_view kRunFile = R"({
 "type":"object",
 "description":"A run that is over with all that is stored of it; joints in 10^-6 degrees, documents as texts",
@@ -374,12 +311,14 @@ constexpr std::string_view kRunResult = R"({
 "description":"by the kind of the run",
 "oneOf":[{"$ref":"#/components/schemas/Result"},{"$ref":"#/components/schemas/Proof"},{"$ref":"#/components/schemas/Check"}]})";
 
+constexpr std::string_view kRunReport = R"({
+"description":"by the kind of the run",
+"oneOf":[{"$ref":"#/components/schemas/Report"},{"$ref":"#/components/schemas/VerificationReport"}]})";
+
 constexpr std::array kFileSchemas{DocumentSchema{"Touches", kTouches},
                                   DocumentSchema{"RunFile", kRunFile},
                                   DocumentSchema{"RunResult", kRunResult},
-                                  DocumentSchema{"Proof", kProof},
-                                  DocumentSchema{"Check", kCheck},
-                                  DocumentSchema{"VerificationVerdict", kVerificationVerdict},
+                                  DocumentSchema{"RunReport", kRunReport},
                                   DocumentSchema{"Result", kResult},
                                   DocumentSchema{"Distances", kDistances},
                                   DocumentSchema{"TipUncertainty", kTipUncertainty},

@@ -12,10 +12,9 @@ struct DocumentSchema {
 };
 
 /// Documents of this daemon alone, and those whose schema is a version of its own: touchcal/result/1 and
-/// such.
+/// such; of those, what is of proofs, checks and comparisons.
 std::span<const DocumentSchema> daemon_schemas();
 std::span<const DocumentSchema> file_schemas();
-std::span<const DocumentSchema>
-verification_schemas();  // what is made of proofs, checks and calibrations together
+std::span<const DocumentSchema> verification_schemas();
 
 }  // namespace cell

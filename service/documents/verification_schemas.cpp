@@ -5,6 +5,88 @@
 namespace cell {
 namespace {
 
+constexpr std::string_view kProof = R"({
+"type":"object",
+"description":"Touches of the block at another place, never fitted, against a calibration",
+"required":["schema","arm","of_run","touch_count","complete","verdict","rms_mm","rms_max_mm","chi_square","degrees_of_freedom","p",
+  "p_min","noise_um","moved_mm","turned_deg","power","touches","conditions"],
+"properties":{
+  "schema":{"const":"touchcal/proof/1"},
+  "arm":{"type":"string"},
+  "of_run":{"type":"string","description":"the calibration"},
+  "touch_count":{"type":"integer","minimum":0},
+  "complete":{"type":"boolean"},
+  "verdict":{"$ref":"#/components/schemas/VerificationVerdict"},
+  "rms_mm":{"type":["number","null"],"description":"distance from the block at the pose that fits best"},
+  "rms_max_mm":{"type":["number","null"]},
+  "chi_square":{"type":["number","null"]},
+  "degrees_of_freedom":{"type":["number","null"]},
+  "p":{"type":["number","null"]},
+  "p_min":{"type":["number","null"]},
+  "noise_um":{"type":["number","null"],"description":"of a touch, as the calibration measured it"},
+  "moved_mm":{"type":["array","null"],"minItems":3,"maxItems":3,"description":"the block since the calibration, in R_-1 then"},
+  "turned_deg":{"type":["array","null"],"minItems":3,"maxItems":3,"description":"rotation vector"},
+  "power":{"type":"array","items":{"type":"object","required":["alternative","power"],
+    "description":"the probability to see something that moves the tip by 0.1 mm"}},
+  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","distance_mm"]}},
+  "conditions":{"type":["object","null"]}}})";
+
+constexpr std::string_view kCheck = R"({
+"type":"object",
+"description":"The touches of the first checks of a calibration once more, against their mean",
+"required":["schema","arm","of_run","touch_count","complete","verdict","reference","chi_square","degrees_of_freedom","p","joint_p",
+  "p_min","rms_mm","noise_um","cause","joint","joints","growth_ppm","std_growth_ppm","warmer_k","touches","conditions"],
+"properties":{
+  "schema":{"const":"touchcal/check/1"},
+  "arm":{"type":"string"},
+  "of_run":{"type":"string","description":"the calibration"},
+  "touch_count":{"type":"integer","minimum":0},
+  "complete":{"type":"boolean"},
+  "verdict":{"$ref":"#/components/schemas/VerificationVerdict"},
+  "reference":{"type":"object","required":["count","needed"]},
+  "chi_square":{"type":["number","null"]},
+  "degrees_of_freedom":{"type":["number","null"]},
+  "p":{"type":["number","null"]},
+  "joint_p":{"type":["number","null"],"description":"of the most striking joint"},
+  "p_min":{"type":["number","null"],"description":"of each of the two"},
+  "rms_mm":{"type":["number","null"]},
+  "noise_um":{"type":["number","null"],"description":"of a touch, as the reference scatters"},
+  "cause":{"enum":["joint","block","stylus","unknown",null],"description":"of an alarm"},
+  "joint":{"type":["integer","null"],"minimum":2,"maximum":5},
+  "joints":{"type":"array","items":{"type":"object","required":["joint","offset_mrad","std_offset_mrad"],
+    "description":"as if it alone had changed"}},
+  "growth_ppm":{"type":["number","null"],"description":"of the arm since the reference"},
+  "std_growth_ppm":{"type":["number","null"]},
+  "warmer_k":{"type":["number","null"]},
+  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","change_mm"]}},
+  "conditions":{"type":["object","null"]}}})";
+
+constexpr std::string_view kVerificationVerdict = R"({
+"type":"object",
+"required":["accepted","reasons"],
+"properties":{
+  "accepted":{"type":["boolean","null"],"description":"null: no verdict, and the reasons say why"},
+  "reasons":{"type":"array","items":{"type":"string"}}}})";
+
+constexpr std::string_view kVerificationReport = R"({
+"type":"object",
+"required":["schema","kind","cell","touchcal_version","run","raw_data","touched_again","refused_contacts","faults","calibration",
+  "touches","conditions","result"],
+"properties":{
+  "schema":{"const":"touchcal/verification-report/1"},
+  "kind":{"enum":["proof","check"]},
+  "cell":{"type":"string","description":"its name"},
+  "run":{"type":"object","required":["id","recipe","operator","started_at","ended_at","outcome","verdict"]},
+  "raw_data":{"type":"object","required":["sha256","of"]},
+  "refused_contacts":{"type":"array","description":"what the controller measured and the daemon refused",
+    "items":{"type":"object","required":["sequence","joints_deg","reason","at"]}},
+  "calibration":{"type":"object","required":["id","recipe","started_at","ended_at","verdict","raw_data_sha256"],
+    "description":"that the run is of; all but id null where it is no longer stored"},
+  "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","deviation_mm"],
+    "description":"deviation_mm: distance_mm of a proof's result, change_mm of a check's"}},
+  "conditions":{"type":["object","null"]},
+  "result":{"type":["object","null"],"description":"touchcal/proof/1 or touchcal/check/1 as stored"}}})";
+
 constexpr std::string_view kChecks = R"({
 "type":"object",
 "description":"The checks of a calibration, each figure from check to check, with the limits of chance",
@@ -84,7 +166,11 @@ constexpr std::string_view kComparedPart = R"({
         "parameter":{"type":"string"},
         "share":{"type":["number","null"],"minimum":-1,"maximum":1}}}}}}}}})";
 
-constexpr std::array kVerificationSchemas{DocumentSchema{"Checks", kChecks},
+constexpr std::array kVerificationSchemas{DocumentSchema{"Proof", kProof},
+                                          DocumentSchema{"Check", kCheck},
+                                          DocumentSchema{"VerificationVerdict", kVerificationVerdict},
+                                          DocumentSchema{"VerificationReport", kVerificationReport},
+                                          DocumentSchema{"Checks", kChecks},
                                           DocumentSchema{"Comparison", kComparison},
                                           DocumentSchema{"ComparedPart", kComparedPart}};
 

@@ -28,6 +28,10 @@ struct Range {
     high = any ? std::max(high, value) : value;
     any = true;
   }
+  void take(const std::pair<double, double>& both) {
+    take(both.first);
+    take(both.second);
+  }
   /// Adds a margin; an empty range gets a width.
   void widen() {
     const double width = high - low;
@@ -61,6 +65,8 @@ Axes axes_of(const Figure& figure) {
     }
   }
   if (figure.level) axes.y.take(*figure.level);
+  if (figure.x_range) axes.x.take(*figure.x_range);
+  if (figure.y_range) axes.y.take(*figure.y_range);
   axes.x.widen();
   axes.y.widen();
   return axes;

@@ -44,15 +44,18 @@ std::vector<std::string> to_be_added() {
 
 }  // namespace
 
-std::string certificates_section(const RunReport& report) {
-  const ConditionsDocument conditions =
-      report.result ? report.result->value.conditions.value : ConditionsDocument();
+std::string certificates_table(const ConditionsDocument& conditions) {
+  return html::table(
+      "What the lengths rest on",
+      {"instrument", "name", "serial number", "laboratory", "number", "issued", "valid until", "traceable to",
+       "more"},
+      {certificate_row("block", conditions.block), certificate_row("probe", conditions.probe)});
+}
+
+std::string certificates_section(const ConditionsDocument& conditions) {
   return section(
       "Certificates",
-      html::table("What the lengths rest on",
-                  {"instrument", "name", "serial number", "laboratory", "number", "issued", "valid until",
-                   "traceable to", "more"},
-                  {certificate_row("block", conditions.block), certificate_row("probe", conditions.probe)}) +
+      certificates_table(conditions) +
           html::paragraph(
               "The chain of this calibration: the standard that the block's certificate names, the faces of "
               "the "

@@ -2,41 +2,12 @@
 
 #include <spdlog/fmt/fmt.h>
 
-#include <cstdlib>
-
 #include "cs8_protocol/names.hpp"
-#include "service/base/digest.hpp"
-#include "service/base/version.hpp"
 #include "service/documents/figures.hpp"
-#include "service/documents/json_view.hpp"
+#include "service/report/internal/report_data.hpp"
 
 namespace cell {
 namespace {
-
-/// An integer of 10^-6 degrees as degrees, without rounding.
-std::string degrees_text(std::int64_t microdegrees) {
-  constexpr std::int64_t kPerDegree = 1'000'000;
-  const std::int64_t size = std::abs(microdegrees);
-  return fmt::format("{}{}.{:06}", microdegrees < 0 ? "-" : "", size / kPerDegree, size % kPerDegree);
-}
-
-RunReport::OfRun of_run(const StoredRun& run) {
-  return {
-      .id = std::to_string(run.id),
-      .recipe = run.recipe,
-      .operator_name = run.operator_name,
-      .started_at = run.started_at,
-      .ended_at = run.ended_at,
-      .outcome = run.outcome,
-      .verdict = run.verdict,
-      .touches_done = run.touches_done,
-      .touches_total = run.touches_total > 0 ? std::optional(run.touches_total) : std::nullopt,
-      .fault_code = run.fault_code,
-      .fault_message = run.fault_message,
-      .plan_id = run.plan_id,
-      .config_digest = run.config_digest,
-      .block_temperature_c = run.block_temperature ? finite(run.block_temperature->celsius) : std::nullopt};
-}
 
 /// Each touch with the entry of the result at the same index, if there is one.
 std::vector<RunReport::Touch> touches_of(const RunRecord& record, const ResultDocument& result) {
@@ -47,7 +18,7 @@ std::vector<RunReport::Touch> touches_of(const RunRecord& record, const ResultDo
     touch.touch = static_cast<int>(i) + 1;
     touch.plane = stored.plane;
     touch.role = stored.role;
-    for (const auto joint : stored.joints) touch.joints_deg.push_back(degrees_text(joint));
+    touch.joints_deg = degrees_texts(stored.joints);
     touch.source = cs8::name(stored.source);
     touch.captured_at = stored.captured_at;
     if (i >= result.touches.size()) continue;
@@ -71,32 +42,14 @@ std::string raw_data_text(const std::vector<StoredTouch>& touches) {
 }
 
 std::string report_document(const RunRecord& record) {
-  RunReport report{.touchcal_version = kVersion,
-                   .run = of_run(record.run),
-                   .raw_data = {.sha256 = sha256_hex(raw_data_text(record.touches)),
-                                .of = "the first nine columns of the CSV form, without its heading"},
-                   .touches = touches_of(
-                       record, record.result_json ? read_result(*record.result_json) : ResultDocument())};
-  for (const SupersededTouch& again : record.superseded) {
-    report.touched_again.push_back({.number = again.touch.number,
-                                    .plane = again.touch.plane,
-                                    .reason = again.reason,
-                                    .captured_at = again.touch.captured_at});
-  }
+  RunReport report{head_of(record)};
+  report.touches =
+      touches_of(record, record.result_json ? read_result(*record.result_json) : ResultDocument());
   for (const ReferenceTouch& reference : record.references) {
     report.reference_touches.push_back({.touches_done = reference.touches_done,
                                         .drift_mm = finite(reference.drift_mm),
                                         .captured_at = reference.captured_at});
   }
-  for (const RefusedResult& refused : record.refused) {
-    RunReport::Refused& told = report.refused_contacts.emplace_back();
-    told.sequence = refused.sequence;
-    for (const auto joint : refused.joints) told.joints_deg.push_back(degrees_text(joint));
-    told.reason = refused.reason;
-    told.at = refused.at;
-  }
-  for (auto fault = record.faults.rbegin(); fault != record.faults.rend(); ++fault)
-    report.faults.push_back({.at = fault->at, .code = fault->code, .message = fault->message});
   if (record.result_json) report.result.emplace().text = *record.result_json;
   return document_text(report);
 }

@@ -41,19 +41,6 @@ std::string decision_rule(const std::optional<DecisionRuleDocument>& rule) {
                      {"figure", "decision", "value", "limit", "expanded uncertainty"}, rows);
 }
 
-std::string verdict_box(const RunReport& report) {
-  const VerdictDocument of_result = report.result ? report.result->value.verdict : VerdictDocument();
-  return html::element(
-      "div",
-      html::element("strong", html::escaped(fmt::format("Verdict: {}", word_of(report.run.verdict)))) +
-          html::paragraph(verdict_words(report.run.verdict)) + bullets(of_result.reasons),
-      R"(class="verdict")");
-}
-
-std::string limits_table(const RunReport& report) {
-  return decision_rule(report.result->value.verdict.decision_rule);
-}
-
 /// k times the standard uncertainty; nothing where that is unknown.
 std::string times(double k, const std::optional<double>& standard_mm) {
   return standard_mm ? fmt::format("{:.3f}", k * *standard_mm) : "unknown";
@@ -83,21 +70,6 @@ std::string named_instrument(const ConditionsDocument::Certified& certified) {
   return text_or_unknown(certified.name) + "; " + text_or_unknown(certified.serial);
 }
 
-std::string identification(const RunReport& report, const std::string& issued_at) {
-  const ResultDocument result = report.result ? report.result->value : ResultDocument();
-  const ConditionsDocument& conditions = result.conditions.value;
-  return pairs_table(
-      "What was calibrated, with what, by whom",
-      {{"report number", report_number(report)},
-       {"date of the run", text_or_unknown(report.run.started_at)},
-       {"date of issue", text_or_unknown(issued_at)},
-       {"robot; serial number", text_or_unknown(result.arm) + "; " + text_or_unknown(conditions.arm_serial)},
-       {"controller's serial number", text_or_unknown(conditions.controller_serial)},
-       {"probe; serial number", named_instrument(conditions.probe)},
-       {"block; serial number", named_instrument(conditions.block)},
-       {"operator", text_or_unknown(report.run.operator_name)}});
-}
-
 std::string signature(std::string_view role) {
   return html::element("div", html::element("strong", html::escaped(role)) + html::paragraph("Name:") +
                                   html::paragraph("Date:") + html::paragraph("Signature:"));
@@ -105,22 +77,58 @@ std::string signature(std::string_view role) {
 
 }  // namespace
 
-std::string report_number(const RunReport& report) {
-  std::string day = report.run.ended_at.value_or(report.run.started_at).substr(0, kDateLength);
+std::string verdict_box(std::string_view verdict, std::string_view words,
+                        const std::vector<std::string>& reasons) {
+  return html::element("div",
+                       html::element("strong", html::escaped(fmt::format("Verdict: {}", verdict))) +
+                           html::paragraph(words) + bullets(reasons),
+                       R"(class="verdict")");
+}
+
+std::vector<html::Row> identification_rows(const ReportHead& head, const std::string& issued_at,
+                                           const std::string& arm, const ConditionsDocument& conditions) {
+  return {{"report number", report_number(head)},
+          {"date of the run", text_or_unknown(head.run.started_at)},
+          {"date of issue", text_or_unknown(issued_at)},
+          {"robot; serial number", text_or_unknown(arm) + "; " + text_or_unknown(conditions.arm_serial)},
+          {"controller's serial number", text_or_unknown(conditions.controller_serial)},
+          {"probe; serial number", named_instrument(conditions.probe)},
+          {"block; serial number", named_instrument(conditions.block)},
+          {"operator", text_or_unknown(head.run.operator_name)}};
+}
+
+std::string signatures(std::string_view maker) {
+  return html::element("div", signature(maker) + signature("Approved by"), R"(class="sign")") + "\n";
+}
+
+std::string front_sheet(std::string_view title, const std::string& inner) {
+  return html::element("section", html::element("h1", html::escaped(title)) + "\n" + inner,
+                       R"(class="front")") +
+         "\n";
+}
+
+std::string report_number(std::string day, const std::string& run, const std::string& raw_data_sha256) {
+  day.resize(std::min(day.size(), kDateLength));
   std::erase_if(day, [](char each) { return each < '0' || each > '9'; });
-  return fmt::format("{}-{}-{}", day.empty() ? "undated" : day, report.run.id,
-                     report.raw_data.sha256.substr(0, kNumberDigits));
+  return fmt::format("{}-{}-{}", day.empty() ? "undated" : day, run,
+                     raw_data_sha256.substr(0, kNumberDigits));
+}
+
+std::string report_number(const ReportHead& head) {
+  return report_number(head.run.ended_at.value_or(head.run.started_at), head.run.id, head.raw_data.sha256);
 }
 
 std::string front_page(const RunReport& report, const std::string& issued_at) {
-  std::string inner = html::element("h1", html::escaped("Calibration report " + report_number(report))) +
-                      "\n" + verdict_box(report) + identification(report, issued_at);
-  if (report.result) inner += tip_table(report.result->value.tip_uncertainty);
+  const ResultDocument result = report.result ? report.result->value : ResultDocument();
+  std::string inner =
+      verdict_box(word_of(report.run.verdict), verdict_words(report.run.verdict), result.verdict.reasons) +
+      pairs_table("What was calibrated, with what, by whom",
+                  identification_rows(report, issued_at, result.arm, result.conditions.value));
+  if (report.result) inner += tip_table(result.tip_uncertainty);
   // Before the limits: whoever signs finds the place on this page however many of them there are.
-  inner +=
-      html::element("div", signature("Calibrated by") + signature("Approved by"), R"(class="sign")") + "\n";
-  if (report.result) inner += limits_table(report);
-  return html::element("section", inner, R"(class="front")") + "\n";
+  inner += signatures("Calibrated by");
+  if (report.result) inner += decision_rule(result.verdict.decision_rule);
+  return front_sheet("Calibration report " + report_number(report), inner);
 }
 
 }  // namespace cell

@@ -43,7 +43,8 @@ TEST(Surfaces, NameEveryFieldThatASchemaRequires) {
     const std::string source = text_of(file);
     for (const char* wanted :
          {"kStatus = R", "kRun = R", "kRuns = R", "kCell = R", "kJoints = R", "kProblem = R", "kResult = R",
-          "kTipUncertainty = R", "kPlan = R", "kReport = R", "kModels = R", "kModel = R", "kChecks = R", "kComparison = R"}) {
+          "kTipUncertainty = R", "kPlan = R", "kReport = R", "kModels = R", "kModel = R", "kChecks = R",
+          "kProof = R", "kCheck = R", "kVerificationReport = R", "kComparison = R"}) {
       const std::size_t schema = source.find(wanted);
       if (schema == std::string::npos) continue;
       std::smatch fields;

@@ -42,6 +42,18 @@ TEST_F(VerifyCommands, AreHeldAgainstACalibrationAndAreNone) {
   EXPECT_EQ(check.at("verdict").at("accepted"), true) << check;
   EXPECT_THAT(done({"show", "5"}).out,
               AllOf(HasSubstr("UNCHANGED since the reference"), HasSubstr("joint 5")));
+  const std::string page = done({"report", "5"}).out;
+  EXPECT_THAT(page, AllOf(HasSubstr("<h1>Check report "), HasSubstr("Verdict: unchanged"),
+                          HasSubstr("<td>calibration that is checked</td><td>run 1 of "),
+                          HasSubstr("<td>M. Curie</td>")));
+  EXPECT_THAT(done({"report", "2"}).out,
+              AllOf(HasSubstr("Verdict: none"), HasSubstr("reference check 1 of 3")));
+  EXPECT_THAT(done({"report", "5", "--csv"}).out, HasSubstr(",deviation_mm,captured_at\n1,"));
+  const auto report = nlohmann::json::parse(done({"report", "5", "--json"}).out);
+  EXPECT_EQ(report.at("schema"), "touchcal/verification-report/1");
+  EXPECT_EQ(report.at("result"), check);
+  EXPECT_EQ(report.at("touches").at(3).at("deviation_mm"), check.at("touches").at(3).at("change_mm"));
+
   const auto runs = nlohmann::json::parse(done({"runs", "--json"}).out).at("runs");
   EXPECT_EQ(runs.at(0).at("kind"), "check");
   EXPECT_EQ(runs.at(0).at("of_run"), "1");
@@ -95,14 +107,15 @@ TEST_F(VerifyCommands, TwoCalibrationsOfTheSameArmDoNotDiffer) {
   EXPECT_THAT(refused({"compare", "1", "1"}), HasSubstr("with which run?"));
 }
 
-TEST_F(VerifyCommands, WhatIsNoCalibrationIsNeitherApprovedNorProvedNorReported) {
+TEST_F(VerifyCommands, WhatIsNoCalibrationIsNeitherApprovedNorProvedNorSimulated) {
   done({"run", "quick"});
   done({"check"});
   EXPECT_THAT(refused({"prove"}), HasSubstr("proves nothing: lift it by 300 mm"));
   EXPECT_THAT(refused({"check", "--of", "2"}), HasSubstr("run 2 is a check"));
   EXPECT_THAT(refused({"prove", "--of", "7"}), HasSubstr("there is no run 7"));
   EXPECT_THAT(refused({"approve", "2"}), HasSubstr("run 2 is a check, which has no model"));
-  EXPECT_THAT(refused({"report", "2"}), HasSubstr("a check has no report of this form"));
+  EXPECT_THAT(refused({"report", "2", "--monte-carlo", "100"}),
+              HasSubstr("run 2 is a check, which calibrates nothing that could be simulated"));
 }
 
 }  // namespace

@@ -16,6 +16,8 @@
 #include "service/http/server/problem.hpp"
 #include "service/report/report_document.hpp"
 #include "service/report/report_html.hpp"
+#include "service/report/verification_html.hpp"
+#include "service/report/verification_report.hpp"
 #include "service/run/block_temperature.hpp"
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/run_recipe.hpp"
@@ -96,14 +98,6 @@ RunRecord record_of(const Reads& reads, const StoredRun& run) {
   return record;
 }
 
-/// What a report is made of is a calibration's.
-std::optional<HttpResponse> refuse_report_of_verification(const StoredRun& run) {
-  if (run.kind == RunKind::kCalibration) return std::nullopt;
-  return conflict(
-      fmt::format("a {} has no report of this form; touchcal show {}, or GET its result, has all of it",
-                  run_kind_name(run.kind), run.id));
-}
-
 /// Served as a download: the content security policy of the daemon allows no inline styles.
 HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64_t run, std::string body) {
   return {.content_type = std::string(type),
@@ -112,14 +106,17 @@ HttpResponse saved_as(std::string_view ending, std::string_view type, std::int64
                        fmt::format("attachment; filename=\"touchcal-run-{}.{}\"", run, ending)}}};
 }
 
-/// The report of a record in a format.
+std::optional<HttpResponse> refuse_format(const std::string& format) {
+  if (format == "html" || format == "csv" || format == "json") return std::nullopt;
+  return to_response({.status = 400,
+                      .kind = ProblemKind::kQuery,
+                      .detail = "format is html, csv or json; touchcal report makes a PDF of the first",
+                      .parameter = "format"});
+}
+
+/// The report of a calibration in a format.
 HttpResponse report_of(const Reads& reads, const RunRecord& record, const std::string& format) {
-  if (format != "html" && format != "csv" && format != "json") {
-    return to_response({.status = 400,
-                        .kind = ProblemKind::kQuery,
-                        .detail = "format is html, csv or json; touchcal report makes a PDF of the first",
-                        .parameter = "format"});
-  }
+  if (const auto refused = refuse_format(format)) return *refused;
   // Once to text and back: replaces bytes from outside that are not UTF-8, for all formats.
   const std::string document = report_document(record);
   if (format == "json") return {.body = document};
@@ -127,6 +124,23 @@ HttpResponse report_of(const Reads& reads, const RunRecord& record, const std::s
   if (format == "html")
     return saved_as("html", kHtml, record.run.id, report_html(report, format_utc(reads.now())));
   return saved_as("csv", kCsv, record.run.id, report_csv(report));
+}
+
+/// The report of a proof or a check in a format, made as that of a calibration is.
+HttpResponse verification_report_of(const Reads& reads, const StoredRun& run, const std::string& format) {
+  if (const auto refused = refuse_format(format)) return *refused;
+  VerificationRecord record{.own = record_of(reads, run),
+                            .cell = run.origin ? run.origin->cell : reads.cell().name,
+                            .calibration = {},
+                            .calibration_touches = {}};
+  if (run.of_run) record.calibration = reads.store().run(*run.of_run);
+  if (record.calibration) record.calibration_touches = reads.store().touches(*run.of_run);
+  const std::string document = verification_report_document(record);
+  if (format == "json") return {.body = document};
+  const VerificationReport report = read_verification_report(document);
+  if (format == "html")
+    return saved_as("html", kHtml, run.id, verification_html(report, format_utc(reads.now())));
+  return saved_as("csv", kCsv, run.id, verification_report_csv(report));
 }
 
 /// A figure of a result that was made again on another machine, perhaps by another compiler.
@@ -180,15 +194,18 @@ HttpResponse get_arm(const Reads& reads, std::int64_t id) {
 }
 
 HttpResponse get_report(const Reads& reads, const StoredRun& run, const std::string& format) {
-  if (const auto refused = refuse_report_of_verification(run)) return *refused;
+  if (run.kind != RunKind::kCalibration) return verification_report_of(reads, run, format);
   return report_of(reads, record_of(reads, run), format);
 }
 
 HttpResponse get_simulated_report(const Reads& reads, const StoredRun& run, const std::string& format,
                                   int count) {
+  if (run.kind != RunKind::kCalibration)
+    return conflict(
+        fmt::format("run {} is a {}, which calibrates nothing that could be simulated; its report is without",
+                    run.id, run_kind_name(run.kind)));
   if (run.outcome == RunOutcome::kRunning)
     return conflict("the run is not over: it has no result that stays");
-  if (const auto refused = refuse_report_of_verification(run)) return *refused;
   RunRecord record = record_of(reads, run);
   const auto found = identify_stored(reads, run.id);
   if (const auto* response = std::get_if<HttpResponse>(&found)) return *response;

@@ -114,13 +114,13 @@ std::vector<Route> run_routes() {
        .path = "/api/v1/runs/{id}/report",
        .summary = "The report of the run",
        .handle = of_run<report_view>,
-       .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "Report"}},
+       .answers = {{.content_type = kHtml}, {.content_type = kCsv}, {.schema = "RunReport"}},
        .query = {{.name = "format", .words = "html, csv or json; html by default", .is_text = true}},
        .dispatch = DispatchMode::kStored,
        .tells_result = true},
       {.method = "POST",
        .path = "/api/v1/runs/{id}/report/monte-carlo",
-       .summary = "The report of a run that is over with simulated calibrations beside its linear "
+       .summary = "The report of a calibration that is over with simulated calibrations beside its linear "
                   "uncertainty; takes about a millisecond for each",
        .access = Access::kOperate,
        .handle = of_run<simulated_report_view>,

@@ -26,6 +26,9 @@ struct Figure {
   std::vector<Series> series;
   std::optional<double> level;  // a horizontal line
   std::string level_name;
+  /// What the axes cover besides the points, so that figures have one scale.
+  std::optional<std::pair<double, double>> x_range = {};
+  std::optional<std::pair<double, double>> y_range = {};
 };
 
 /// Ticks of an axis from `low` to `high` (low < high, both finite): three to eight multiples of 1, 2 or 5

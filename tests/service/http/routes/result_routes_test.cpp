@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "config/arm_file.hpp"
+#include "service/documents/verification_document.hpp"
 #include "service/run/calibrated_arm.hpp"
 #include "service/run/touch_command.hpp"
 #include "tests/service/quiet_cell.hpp"
@@ -80,6 +81,41 @@ TEST_F(ResultRoutesTest, TheReportSetsSimulatedCalibrationsBesideTheLinearUncert
   json without = result;
   without["monte_carlo"] = nullptr;
   EXPECT_EQ(without, json::parse(get_report(cell_.operation(), stored, "json").body).at("result"));
+}
+
+TEST_F(ResultRoutesTest, ACheckHasAReportOfItsOwnAndNoSimulation) {
+  CheckDocument check{.arm = "tx90", .of_run = std::to_string(run_), .touch_count = 1, .complete = true};
+  check.verdict.accepted = true;
+  check.touches = {{.touch = 1, .plane = 1, .change_mm = 0.25}};
+  const std::int64_t id = cell_.store().begin_run(
+      {.kind = RunKind::kCheck, .of_run = run_, .recipe = "edf-25", .started_at = "start"});
+  cell_.store().append_touch(id, {.number = 1, .plane = 1});
+  cell_.store().finish_run(id, {.outcome = RunOutcome::kComplete, .result_json = document_text(check)});
+  const StoredRun stored = cell_.store().run(id).value();
+  const auto report = [&](const char* format) { return get_report(cell_.operation(), stored, format); };
+
+  const json document = json::parse(report("json").body);
+  EXPECT_EQ(document.at("kind"), "check");
+  EXPECT_EQ(document.at("cell"), edf().name);
+  EXPECT_EQ(document.at("calibration").at("id"), std::to_string(run_));
+  EXPECT_FALSE(document.at("calibration").at("raw_data_sha256").is_null());
+  EXPECT_EQ(document.at("touches").at(0).at("deviation_mm"), 0.25);
+  EXPECT_THAT(report("html").body, HasSubstr("Verdict: unchanged"));
+  EXPECT_THAT(report("csv").body, HasSubstr(",0.250000,"));
+  EXPECT_EQ(report("pdf").status, 400u);
+  const HttpResponse refused = get_simulated_report(cell_.operation(), stored, "html", 100);
+  EXPECT_EQ(refused.status, 409u);
+  EXPECT_THAT(refused.body, HasSubstr("is a check, which calibrates nothing"));
+}
+
+TEST_F(ResultRoutesTest, AProofThatWasCutOffHasAReportThatSaysSo) {
+  const std::int64_t id = cell_.store().begin_run(
+      {.kind = RunKind::kProof, .of_run = run_, .recipe = "edf-25", .started_at = "start"});
+  cell_.store().finish_run(id, {.outcome = RunOutcome::kInterrupted});
+  const StoredRun stored = cell_.store().run(id).value();
+  EXPECT_TRUE(json::parse(get_report(cell_.operation(), stored, "json").body).at("result").is_null());
+  EXPECT_THAT(get_report(cell_.operation(), stored, "html").body,
+              HasSubstr("the run ended before it had a result"));
 }
 
 TEST_F(ResultRoutesTest, AResultThatIsNotThatOfTheTouchesIsNotSimulated) {

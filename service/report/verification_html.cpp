@@ -1,0 +1,135 @@
+#include "service/report/verification_html.hpp"
+
+#include <spdlog/fmt/fmt.h>
+
+#include "service/report/internal/html.hpp"
+#include "service/report/internal/report_parts.hpp"
+#include "service/report/internal/verification_parts.hpp"
+#include "service/store/run_kind.hpp"
+
+namespace cell {
+namespace {
+
+/// What differs between the report of a proof and that of a check.
+struct KindWords {
+  const char* title;
+  const char* of_what;    // the row of the calibration
+  const char* with_what;  // caption
+  const char* how;        // caption
+  const char* made_by;
+  const char* good;
+  const char* good_words;
+  const char* bad;
+  const char* bad_words;
+  const char* does_not_show;
+  const char* certificates;
+};
+
+constexpr KindWords kProofWords{
+    .title = "Proof report",
+    .of_what = "calibration that is proved",
+    .with_what = "What was proved, with what, by whom",
+    .how = "How it was proved",
+    .made_by = "Proved by",
+    .good = "proved",
+    .good_words = "The calibrated arm is right at this place, where it was not calibrated.",
+    .bad = "not proved",
+    .bad_words = "The calibrated arm is not right at this place, where it was not calibrated.",
+    .does_not_show =
+        "What this proof does not show: it says nothing of volumes that are far both from the place of the "
+        "calibration and from the place of this proof, and nothing of what has changed in the cell since.",
+    .certificates =
+        "The block is the ruler of the calibration and of this proof. An error of its size is in both and "
+        "does "
+        "not show here; an unknown certificate means that nobody vouches for it."};
+
+constexpr KindWords kCheckWords{
+    .title = "Check report",
+    .of_what = "calibration that is checked",
+    .with_what = "What was checked, with what, by whom",
+    .how = "How it was checked",
+    .made_by = "Checked by",
+    .good = "unchanged",
+    .good_words = "The touches are those of the reference, within their noise and the arm's growth.",
+    .bad = "changed",
+    .bad_words = "Something has changed since the reference.",
+    .does_not_show =
+        "What this check does not show: it is of change since its reference only, so that what was wrong "
+        "with "
+        "the calibration or the reference shows in no check. A growth of all lengths is told and is no "
+        "fault.",
+    .certificates =
+        "A check compares touches with earlier ones of the same block: its certificate does not enter the "
+        "verdict. It is the ruler of the calibration."};
+
+const VerificationVerdict& verdict_in(const FoundVerification& found) {
+  static const VerificationVerdict kNoVerdict;
+  return found.proof ? found.proof->verdict : found.check ? found.check->verdict : kNoVerdict;
+}
+
+/// What the result says, and where there is none why.
+std::vector<std::string> reasons_of(const VerificationReport& report, const FoundVerification& found) {
+  std::vector<std::string> reasons = verdict_in(found).reasons;
+  if (!found.unreadable.empty())
+    reasons.push_back("the stored result cannot be read: " + found.unreadable);
+  else if (!report.result && report.run.outcome == RunOutcome::kRunning)
+    reasons.emplace_back("the run is not over");
+  else if (!report.result)
+    reasons.emplace_back("the run ended before it had a result");
+  if (!verdict_in(found).accepted && report.run.fault_message)
+    reasons.push_back("it ended with a fault: " + *report.run.fault_message);
+  return reasons;
+}
+
+std::string verification_verdict(const VerificationReport& report, const FoundVerification& found,
+                                 const KindWords& words) {
+  const std::vector<std::string> reasons = reasons_of(report, found);
+  const std::optional<bool> accepted = verdict_in(found).accepted;
+  if (!accepted) return verdict_box("none", "This run has no verdict.", reasons);
+  return *accepted ? verdict_box(words.good, words.good_words, reasons)
+                   : verdict_box(words.bad, words.bad_words, reasons);
+}
+
+/// "run 1 of 2026-01-31T..., report 20260131-1-3f2a9c1b".
+std::string calibration_text(const VerificationReport::Calibration& of) {
+  const std::string run = "run " + text_or_unknown(of.id);
+  if (!of.raw_data_sha256) return run + ", which is no longer stored: its date is unknown";
+  const std::string date = of.ended_at.value_or(of.started_at.value_or(""));
+  return fmt::format("{} of {}, recipe {}, {}, report {}", run, text_or_unknown(date),
+                     text_or_unknown(of.recipe), of.verdict ? word_of(*of.verdict) : "unknown",
+                     report_number(date, text_or_unknown(of.id), *of.raw_data_sha256));
+}
+
+std::string verification_front(const VerificationReport& report, const FoundVerification& found,
+                               const ConditionsDocument& conditions, const KindWords& words,
+                               const std::string& issued_at) {
+  const std::string arm = found.proof ? found.proof->arm : found.check ? found.check->arm : std::string();
+  std::vector<html::Row> rows = identification_rows(report, issued_at, arm, conditions);
+  rows.insert(rows.begin() + 1, {{words.of_what, calibration_text(report.calibration)},
+                                 {"cell", text_or_unknown(report.cell)}});
+  return front_sheet(fmt::format("{} {}", words.title, report_number(report)),
+                     verification_verdict(report, found, words) + html::paragraph(words.does_not_show) +
+                         pairs_table(words.with_what, rows) + signatures(words.made_by) +
+                         (found.proof ? proof_tables(*found.proof) : std::string()) +
+                         (found.check ? check_tables(*found.check) : std::string()));
+}
+
+}  // namespace
+
+std::string verification_html(const VerificationReport& report, const std::string& issued_at) {
+  const bool is_proof = report.kind == run_kind_name(RunKind::kProof);
+  const KindWords& words = is_proof ? kProofWords : kCheckWords;
+  const FoundVerification found =
+      report.result ? read_verification(report.result->text) : FoundVerification();
+  const ConditionsDocument conditions = report.conditions ? report.conditions->value : ConditionsDocument();
+  const std::string body =
+      verification_front(report, found, conditions, words, issued_at) +
+      section(is_proof ? "Distances from the block" : "Changes since the reference",
+              deviation_figures(report, is_proof) + verifying_touches_table(report, is_proof)) +
+      run_section(words.how, report, conditions) +
+      section("Touches and faults", made_again_table(report) + incident_tables(report)) +
+      section("Certificates", certificates_table(conditions) + html::paragraph(words.certificates));
+  return printed_page(fmt::format("{} {}", words.title, report_number(report)), body);
+}
+
+}  // namespace cell
