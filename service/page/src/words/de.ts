@@ -1,8 +1,10 @@
 import {kFaultsDe, kFaultTitlesDe} from './faults_de.ts';
+import {kVerificationDe} from './verification_de.ts';
 import type {Pack, Words} from './words.ts';
 
 /** The same in German. */
 export const de: Words = {
+  ...kVerificationDe,
   title: 'touchcal',
   loading: 'Der Dienst wird gefragt…',
   unknown: 'unbekannt',
@@ -230,31 +232,6 @@ export const de: Words = {
   noCurve: 'Noch nichts zu zeichnen',
 
   verdict_accepted: 'Angenommen',
-  proved: 'Bewiesen',
-  notProved: 'Nicht bewiesen',
-  unchanged: 'Unverändert',
-  changed: 'Verändert',
-  noVerdict: 'Ohne Urteil',
-  verifies: 'Zu Lauf {run}, {count} Antastungen, die nie angepasst wurden',
-  verifiedWhat: 'Größe',
-  verifiedFigure: 'Wert',
-  verifiedLimit: 'Grenze',
-  verifiedRms: 'Abstand vom Block, Effektivwert',
-  verifiedChance: 'Wahrscheinlichkeit einer so großen Streuung, mindestens',
-  verifiedNoise: 'Rauschen einer Antastung',
-  verifiedGrowth: 'Ausdehnung des Arms',
-  verifiedJoint: 'Achse {joint}, wenn nur sie sich geändert hätte',
-  verifiedPower: 'Würde gesehen, wenn es das Werkzeug um 0,1 mm verschiebt: {what}',
-  checksOf: 'Prüfungen zu Lauf {run}',
-  checksDue: 'Die nächste Prüfung ist am {date} (UTC) fällig.',
-  checksOverdue: 'Eine Prüfung war am {date} (UTC) fällig. Die Zelle jetzt prüfen.',
-  checksNotDue: 'Keine nächste Prüfung vorgesehen: Die Datei der Zelle sagt nicht, wie oft (check_every_days), oder eine andere Kalibrierung gilt.',
-  checksFew: 'Grenzen kommen mit den nächsten: {count} von {needed} Prüfungen, aus denen sie stammen, sind da.',
-  checksNone: 'Eine Kurve beginnt mit der zweiten Prüfung nach der Referenz.',
-  checksChart: 'Kurve',
-  checksMean: 'Gewichteter Mittelwert',
-  checksUpper: 'Obere Grenze',
-  checksLower: 'Untere Grenze',
   verdict_rejected: 'Abgelehnt',
   verdict_incomplete: 'Unvollständig',
   verdict_none: 'Kein Urteil',

@@ -1,0 +1,30 @@
+import type {kVerificationEn} from './verification_en.ts';
+
+/** The same in German. */
+export const kVerificationDe: Record<keyof typeof kVerificationEn, string> = {
+  proved: 'Bewiesen',
+  notProved: 'Nicht bewiesen',
+  unchanged: 'Unverändert',
+  changed: 'Verändert',
+  noVerdict: 'Ohne Urteil',
+  verifies: 'Zu Lauf {run}, {count} Antastungen, die nie angepasst wurden',
+  verifiedWhat: 'Größe',
+  verifiedFigure: 'Wert',
+  verifiedLimit: 'Grenze',
+  verifiedRms: 'Abstand vom Block, Effektivwert',
+  verifiedChance: 'Wahrscheinlichkeit einer so großen Streuung, mindestens',
+  verifiedNoise: 'Rauschen einer Antastung',
+  verifiedGrowth: 'Ausdehnung des Arms',
+  verifiedJoint: 'Achse {joint}, wenn nur sie sich geändert hätte',
+  verifiedPower: 'Würde gesehen, wenn es das Werkzeug um 0,1 mm verschiebt: {what}',
+  checksOf: 'Prüfungen zu Lauf {run}',
+  checksDue: 'Die nächste Prüfung ist am {date} (UTC) fällig.',
+  checksOverdue: 'Eine Prüfung war am {date} (UTC) fällig. Die Zelle jetzt prüfen.',
+  checksNotDue: 'Keine nächste Prüfung vorgesehen: Die Datei der Zelle sagt nicht, wie oft (check_every_days), oder eine andere Kalibrierung gilt.',
+  checksFew: 'Grenzen kommen mit den nächsten: {count} von {needed} Prüfungen, aus denen sie stammen, sind da.',
+  checksNone: 'Eine Kurve beginnt mit der zweiten Prüfung nach der Referenz.',
+  checksChart: 'Kurve',
+  checksMean: 'Gewichteter Mittelwert',
+  checksUpper: 'Obere Grenze',
+  checksLower: 'Untere Grenze',
+};

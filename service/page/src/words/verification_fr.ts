@@ -1,0 +1,30 @@
+import type {kVerificationEn} from './verification_en.ts';
+
+/** The same in French. */
+export const kVerificationFr: Record<keyof typeof kVerificationEn, string> = {
+  proved: 'Prouvé',
+  notProved: 'Non prouvé',
+  unchanged: 'Inchangé',
+  changed: 'Changé',
+  noVerdict: 'Sans verdict',
+  verifies: 'Du cycle {run}, {count} palpages jamais ajustés',
+  verifiedWhat: 'Grandeur',
+  verifiedFigure: 'Valeur',
+  verifiedLimit: 'Limite',
+  verifiedRms: 'Distance au bloc, valeur efficace',
+  verifiedChance: 'Probabilité d’une dispersion aussi grande, au moins',
+  verifiedNoise: 'Bruit d’un palpage',
+  verifiedGrowth: 'Dilatation du bras',
+  verifiedJoint: 'Axe {joint}, s’il avait changé seul',
+  verifiedPower: 'Serait vu s’il déplace l’outil de 0,1 mm : {what}',
+  checksOf: 'Contrôles du cycle {run}',
+  checksDue: 'Prochain contrôle à faire le {date} (UTC).',
+  checksOverdue: 'Un contrôle était à faire le {date} (UTC). Contrôler la cellule maintenant.',
+  checksNotDue: 'Aucun contrôle prévu : le fichier de la cellule n’indique pas la fréquence (check_every_days), ou un autre étalonnage fait foi.',
+  checksFew: 'Les limites viendront : {count} des {needed} contrôles dont elles sont tirées sont faits.',
+  checksNone: 'Une courbe commence au deuxième contrôle après la référence.',
+  checksChart: 'Courbe de',
+  checksMean: 'Moyenne pondérée',
+  checksUpper: 'Limite haute',
+  checksLower: 'Limite basse',
+};
