@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import type {Run, Status} from 'page/api/documents.ts';
-import {dataAge_ms, kFirstState, newestRun, reduce, type PageState} from 'page/model/page_state.ts';
+import type {Checks, Run, Status, Verification} from 'page/api/documents.ts';
+import {checkedRun, dataAge_ms, kFirstState, newestRun, reduce, type PageState} from 'page/model/page_state.ts';
 import {statusWith} from './statuses.ts';
 
 const take = (state: PageState, ...statuses: Status[]): PageState => reduce(state, {type: 'statuses', statuses, heard_ms: 0});
@@ -120,4 +120,34 @@ test('AThousandTouchesKeepAPointEachAndNoMore', () => {
   let state: PageState = kFirstState;
   for (let i = 1; i <= 3000; ++i) state = take(state, statusWith({sequence: i, state: 'EXECUTE', run_id: '1', touches_done: Math.ceil(i / 3)}));
   assert.equal(state.series.points.length, 1000);
+});
+
+const found = (of_run: string, overdue: boolean) => ({kind: 'known' as const, checks: {of_run, overdue} as Checks});
+
+test('TheChecksOfTheCalibrationThatCountsAreTheNewestThatWereHeard', () => {
+  let state = reduce(kFirstState, {type: 'checks', asked: null, found: found('2', false)});
+  assert.deepEqual([state.countingChecks, state.checks], [found('2', false), {2: found('2', false)}]);
+  state = reduce(state, {type: 'checks', asked: '1', found: found('1', true)});
+  assert.deepEqual(state.countingChecks, found('2', false), 'another calibration');
+  state = reduce(state, {type: 'checks', asked: '2', found: found('2', true)});
+  assert.deepEqual([state.countingChecks, state.checks], [found('2', true), {1: found('1', true), 2: found('2', true)}]);
+});
+
+test('ChecksThatAreRefusedSayWhyAndNoCalibrationSaysNothing', () => {
+  const refused = {kind: 'refused' as const, why: 'the store is damaged'};
+  const known = reduce(kFirstState, {type: 'checks', asked: null, found: found('2', false)});
+  assert.deepEqual(reduce(known, {type: 'checks', asked: '2', found: refused}).checks, {2: refused});
+  assert.deepEqual(reduce(known, {type: 'checks', asked: null, found: refused}).countingChecks, refused);
+  const none = reduce(known, {type: 'checks', asked: null, found: null});
+  assert.deepEqual([none.countingChecks, none.checks], [null, known.checks]);
+  const first = reduce(kFirstState, {type: 'checks', asked: '1', found: refused});
+  assert.deepEqual([first.countingChecks, first.checks], [null, {1: refused}], 'of a run that is looked at');
+});
+
+test('OnlyAShownCheckHasAChartOfItsCalibration', () => {
+  const verified = (schema: string): Verification => ({schema, of_run: '1'} as Verification);
+  const state = {...kFirstState, runs: [{id: '3'}, {id: '2'}] as Run[], verifications: {2: verified('touchcal/proof/1'), 3: verified('touchcal/check/1')}};
+  assert.equal(checkedRun(state), '1');
+  assert.equal(checkedRun({...state, shownRun: '2'}), null);
+  assert.equal(checkedRun(kFirstState), null);
 });

@@ -239,18 +239,33 @@ export interface CheckPoint {
   run: string;
   value: number | null;
   weighted_mean: number | null;
-  shewhart_limit: number | null;
+  shewhart_limit: number | null;  // distance of the value from the centre
+  ewma_limit: number | null;      // of the weighted mean from it
   beyond_shewhart: boolean;
   beyond_ewma: boolean;
 }
 export interface CheckChart { quantity: string; unit: string; centre: number | null; points: CheckPoint[] }
+/** One check, as far as all of them are told together. */
+export interface CheckRow {
+  run: string;
+  ended_at: string;
+  operator: string | null;
+  reference: boolean;
+  accepted: boolean | null;
+  cause: string | null;  // of one that is not accepted: joint, block, stylus, unknown
+  joint: number | null;
+}
 /** The checks of a calibration. */
 export interface Checks {
   of_run: string;
+  count: number;              // of all; `checks` and the points of the charts are of the newest
+  reference: {count: number; needed: number};
   base: {count: number; needed: number};
-  due_at: string | null;
+  every_days: number | null;  // null: no rule, or the calibration was replaced
+  due_at: string | null;      // null with a rule: not known
   overdue: boolean | null;
   warnings: string[];
+  checks: CheckRow[];
   charts: CheckChart[];
 }
 

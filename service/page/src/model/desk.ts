@@ -2,7 +2,7 @@ import {get, post, type Reply} from '../api/client.ts';
 import type {Audit, Cell, Checks, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
 import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
-import {hasResult, kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
+import {checkedRun, hasResult, kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
 import {commandPath, isActive, isPaused, isTakenBack, type Command} from './states.ts';
 import {slimResult} from './slim_result.ts';
 import {startBody, type Conditions} from './start_body.ts';
@@ -11,6 +11,7 @@ import {Store} from './store.ts';
 
 const kResultGap_ms = 1000;     // a live result is asked for at most so often
 const kReadiness_ms = 2000;
+const kChecks_ms = 600000;      // then the checks are asked for again: one may have become due
 const kTrendRuns = 20;
 const kPlanPatience_ms = 120000;
 const kStopPatience_ms = 1500;  // then it is asked again
@@ -21,6 +22,7 @@ export class Desk {
   private readonly live: Live;
   private asked: {run_id: string; touches: number; isOver: boolean} | null = null;  // the live result that was asked for last
   private askingResult = false;
+  private checksAsked_ms = 0;
   private endGap: (() => void) | null = null;  // the end of a run is not waited for
   private isPageHidden = false;
 
@@ -36,7 +38,10 @@ export class Desk {
   start(): void {
     this.live.start();
     void this.loadAll();
-    setInterval(() => void this.askReadiness(), kReadiness_ms);
+    setInterval(() => {
+      void this.askReadiness();
+      if (!this.isPageHidden && performance.now() - this.checksAsked_ms >= kChecks_ms) void this.renewChecks();
+    }, kReadiness_ms);
     document.addEventListener('visibilitychange', () => {
       this.isPageHidden = document.hidden;
       this.setPace();
@@ -76,6 +81,7 @@ export class Desk {
       this.endGap?.();
       void this.loadRuns();
       void this.askReadiness();
+      if (before && !isActive(status.state)) void this.renewChecks();
       if (status.run_id && status.touches_total !== null) void this.loadRunPlan(status.run_id);
     }
     if (before && before.instance_id !== status.instance_id) void this.loadAll();
@@ -121,6 +127,7 @@ export class Desk {
       }),
       this.askReadiness(),
       this.loadRuns(),
+      this.renewChecks(),
     ]);
   }
 
@@ -204,15 +211,27 @@ export class Desk {
       this.store.dispatch(told.schema === 'touchcal/proof/1' || told.schema === 'touchcal/check/1'
         ? {type: 'verification', run_id, verification: told}
         : {type: 'result', run_id, result: slimResult(told)});
-      if (told.schema === 'touchcal/check/1' && told.complete) await this.loadChecks(told.of_run);
+      const {status} = this.store.state;
+      const isUnderWay = status?.run_id === run_id && isActive(status.state);
+      if (told.schema === 'touchcal/check/1' && !isUnderWay) await this.loadChecks(told.of_run);
     }
     if (reply.kind === 'refused') this.store.dispatch({type: 'missing', run_id, why: reply.problem.detail});
   }
 
-  /** What the checks of a calibration found so far. */
-  private async loadChecks(of_run: string): Promise<void> {
-    const reply = await this.ask<Checks>(`/api/v1/checks?of_run=${of_run}`);
-    if (reply.kind === 'ok') this.store.dispatch({type: 'checks', checks: reply.value});
+  /** What the checks of a calibration found so far; null: of the one that the next check would be of. */
+  private async loadChecks(asked: string | null): Promise<void> {
+    const reply = await this.ask<Checks>(asked === null ? '/api/v1/checks' : `/api/v1/checks?of_run=${asked}`);
+    if (reply.kind === 'ok') this.store.dispatch({type: 'checks', asked, found: {kind: 'known', checks: reply.value}});
+    if (reply.kind !== 'refused') return;
+    const isNoCalibration = asked === null && reply.status === 409;
+    this.store.dispatch({type: 'checks', asked, found: isNoCalibration ? null : {kind: 'refused', why: reply.problem.detail}});
+  }
+
+  /** That a check is overdue is told by the daemon's clock: the browser's is not asked. */
+  private async renewChecks(): Promise<void> {
+    this.checksAsked_ms = performance.now();
+    const shown = checkedRun(this.store.state);
+    await Promise.all([this.loadChecks(null), shown === null ? null : this.loadChecks(shown)]);
   }
 
   /** The results that the history's trends are drawn of. */
@@ -237,6 +256,7 @@ export class Desk {
     this.patch({shownRun: run_id, view: 'result'});
     const shown = run_id ?? newestRun(this.store.state);
     if (shown && !hasResult(this.store.state, shown)) void this.loadResult(shown);
+    else if (checkedRun(this.store.state) !== null) void this.renewChecks();
   }
 
   compare(run_id: string): void {

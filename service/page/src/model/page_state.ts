@@ -13,6 +13,9 @@ export interface Pulse { joints: Joints; heard_ms: number }
 /** A plan of a recipe: being made, made, or why not. */
 export type PlanState = {kind: 'planning'} | {kind: 'made'; plan: Plan} | {kind: 'refused'; problem: Problem} | {kind: 'lost'};
 
+/** The checks of a calibration, or why they cannot be had. */
+export type ChecksState = {kind: 'known'; checks: Checks} | {kind: 'refused'; why: string};
+
 /** A command that was not taken, in words, until noted. */
 export interface Notice { command: Command | 'start'; problem: Problem | null }
 
@@ -46,7 +49,8 @@ export interface PageState {
   compared: string[];                   // at most two runs
   results: Record<string, Result>;      // by run
   verifications: Record<string, Verification>;  // of proofs and checks, by run
-  checks: Record<string, Checks>;       // by the run of the calibration
+  checks: Record<string, ChecksState>;  // by the run of the calibration
+  countingChecks: ChecksState | null;   // of the calibration that the next check would be of; null: there is none, or it was not heard yet
   missing: Record<string, string>;      // why a run has no result, by run
   touches: {run_id: string; touches: Touch[]} | null;  // of the run that is watched
   runPlan: {run_id: string; touches: Touch[]} | null;
@@ -59,8 +63,8 @@ export const kFirstState: PageState = {
   link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], lastingWarning: null, unmet: null,
   role: null, hasToken: false, waitingSince_ms: null, pausedBy: null,
   view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], damagedRuns: [], nextBefore: null,
-  shownRun: null, compared: [], results: {}, verifications: {}, checks: {}, missing: {}, touches: null, runPlan: null, notice: null, isStopLost: false,
-  busy: null,
+  shownRun: null, compared: [], results: {}, verifications: {}, checks: {}, countingChecks: null, missing: {}, touches: null, runPlan: null,
+  notice: null, isStopLost: false, busy: null,
 };
 
 export type Action =
@@ -71,7 +75,7 @@ export type Action =
   | {type: 'plan'; recipe: string; plan: PlanState}
   | {type: 'result'; run_id: string; result: Result}
   | {type: 'verification'; run_id: string; verification: Verification}
-  | {type: 'checks'; checks: Checks}
+  | {type: 'checks'; asked: string | null; found: ChecksState | null}  // asked null: of the calibration that counts; found null: there is none
   | {type: 'missing'; run_id: string; why: string}
   | {type: 'runs'; runs: Run[]; damaged: DamagedRun[]; nextBefore: string | null; isMore: boolean}
   | {type: 'noted'; key: string}
@@ -98,7 +102,7 @@ export function reduce(state: PageState, action: Action): PageState {
     case 'verification':
       return {...state, verifications: keepNewest({...state.verifications, [action.run_id]: action.verification})};
     case 'checks':
-      return {...state, checks: keepNewest({...state.checks, [action.checks.of_run]: action.checks})};
+      return takeChecks(state, action.asked, action.found);
     case 'missing':
       return {...state, missing: {...state.missing, [action.run_id]: action.why}};
     case 'runs':
@@ -136,6 +140,18 @@ function takeStatus(state: PageState, status: Status, heard_ms: number): PageSta
   };
 }
 
+/** What is heard of the calibration that counts is the same document as that of its run: both places have the newer. */
+function takeChecks(state: PageState, asked: string | null, found: ChecksState | null): PageState {
+  const runOf = (one: ChecksState | null): string | null => (one?.kind === 'known' ? one.checks.of_run : null);
+  const of_run = runOf(found) ?? asked;
+  const counts = asked === null || of_run === runOf(state.countingChecks);
+  return {
+    ...state,
+    checks: found && of_run !== null ? keepNewest({...state.checks, [of_run]: found}) : state.checks,
+    countingChecks: counts ? found : state.countingChecks,
+  };
+}
+
 /** A wait that another page load began has no beginning here: what is left of it is not guessed. */
 function waitingSince({status: before, waitingSince_ms}: PageState, status: Status, heard_ms: number): number | null {
   if (status.waiting_for === null || before === null || before.instance_id !== status.instance_id) return null;
@@ -154,6 +170,13 @@ function takePulse(state: PageState, pulse: Pulse): PageState {
 export function newestRun({status, runs}: Pick<PageState, 'status' | 'runs'>): string | null {
   const ids = [status?.run_id ?? null, runs[0]?.id ?? null].filter((id) => id !== null);
   return ids.sort((a, b) => Number(b) - Number(a))[0] ?? null;
+}
+
+/** The calibration that the shown run is a check of; null: it is none. */
+export function checkedRun(state: PageState): string | null {
+  const run_id = state.shownRun ?? newestRun(state);
+  const shown = run_id === null ? undefined : state.verifications[run_id];
+  return shown?.schema === 'touchcal/check/1' ? shown.of_run : null;
 }
 
 /** A start shows the run, its end the result; else a person chooses. */

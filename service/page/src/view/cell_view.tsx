@@ -8,6 +8,7 @@ import {shownTemperature, type Conditions, type WrittenTemperature} from '../mod
 import {isActive, isLocating, mayStart} from '../model/states.ts';
 import {faultWords, withButtons} from '../words/fault_words.ts';
 import {sayName} from '../words/words.ts';
+import {NextCheck} from './checks_view.tsx';
 import {Symbol, type Shape} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
 
@@ -23,6 +24,7 @@ export function CellView({state, desk, conditions: given, onConditions}: Props) 
   return (
     <div class="cell-view">
       {state.cell && cut(state.cell.name, 80) !== null ? <p class="cell-name"><OuterText text={state.cell.name} /></p> : null}
+      {state.countingChecks ? <NextCheck found={state.countingChecks} /> : null}
       <Readiness state={state} />
       <RecipeChoice state={state} desk={desk} given={given} onConditions={onConditions} />
       <LocateOffer state={state} desk={desk} />

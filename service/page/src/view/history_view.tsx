@@ -1,7 +1,7 @@
 import {useMemo, useState} from 'preact/hooks';
 import type {Run} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
-import {number, time} from '../model/format.ts';
+import {kUnknown, number, time} from '../model/format.ts';
 import {compareHeldOut, compareRuns, trend, trendChoices, type TrendOf} from '../model/history.ts';
 import type {PageState} from '../model/page_state.ts';
 import {verdictOf} from '../model/verdict.ts';
@@ -63,17 +63,21 @@ function RunRow({run, state, desk}: {run: Run; state: PageState; desk: Desk}) {
     <tr>
       <th scope="row">{run.id}</th>
       <td>{time(run.started_at)}</td>
-      <td><OuterText text={run.recipe} /></td>
+      <td>
+        <OuterText text={run.recipe} />
+        {run.kind === 'calibration' ? null : <>, {say(`kind_${run.kind}`, {run: run.of_run ?? kUnknown})}</>}
+      </td>
       <td class="figure">{run.touches_done}{run.touches_total ? ` / ${run.touches_total}` : ''}</td>
       <td class={isBad ? 'abnormal' : ''}>
         {isBad ? <Symbol shape="warning" /> : null}
         {sayName(language, 'outcome_', run.outcome)}{run.verdict === 'none' ? '' : `, ${say(`verdict_${run.verdict}`)}`}
         {run.fault_code ? <> · <RunFault run={run} /></> : null}
       </td>
-      <td><button type="button" disabled={run.touches_done < 1 || run.kind !== 'calibration'} onClick={() => desk.showRun(run.id)}>{say('show')} {run.id}</button></td>
+      <td><button type="button" disabled={run.touches_done < 1} onClick={() => desk.showRun(run.id)}>{say('show')} {run.id}</button></td>
       <td>
         <label class="check">
-          <input type="checkbox" checked={state.compared.includes(run.id)} disabled={run.touches_done < 1}
+          <input type="checkbox" checked={state.compared.includes(run.id)}
+                 disabled={run.touches_done < 1 || run.kind !== 'calibration'}
                  onChange={() => desk.compare(run.id)} />
           <span>{say('compare')} {run.id}</span>
         </label>
@@ -165,7 +169,7 @@ function Trends({state}: {state: PageState}) {
               {choices.map((choice) => <option key={keyOf(choice)} value={keyOf(choice)}>{nameOf(choice)}</option>)}
             </select>
           </label>
-          <Curve title={nameOf(of)} x={x} lines={lines} height={180} isCounted write={(value) => number(value, of.kind === 'plane' ? 3 : 4, language)} />
+          <Curve title={nameOf(of)} x={x} xName={say('runColumn')} lines={lines} height={180} isCounted write={(value) => number(value, of.kind === 'plane' ? 3 : 4, language)} />
         </>
       ) : <p class="hint">{say('trendNone')}</p>}
     </section>

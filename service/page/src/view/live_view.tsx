@@ -67,9 +67,9 @@ function Curves({state}: {state: PageState}) {
   return (
     <>
       <h2>{say('curveCondition')}</h2>
-      <Curve title={say('curveCondition')} x={x} lines={condition} height={104} isLog write={(value) => number(value, 0, language)} />
+      <Curve title={say('curveCondition')} x={x} xName={say('touchColumn')} lines={condition} height={104} isLog write={(value) => number(value, 0, language)} />
       <h2>{say('curveAccuracy')}</h2>
-      <Curve title={say('curveAccuracy')} x={x} lines={accuracy} height={104} isLog write={(value) => number(value, 2, language)} />
+      <Curve title={say('curveAccuracy')} x={x} xName={say('touchColumn')} lines={accuracy} height={104} isLog write={(value) => number(value, 2, language)} />
     </>
   );
 }

@@ -29,7 +29,7 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
   const verification = state.verifications[run_id];
   if (verification) {
     const checks = verification.schema === 'touchcal/check/1' ? state.checks[verification.of_run] : undefined;
-    return <div class="result-view">{which}<VerificationView verification={verification} />{checks ? <ChecksView checks={checks} /> : null}</div>;
+    return <div class="result-view">{which}<VerificationView verification={verification} />{checks ? <ChecksView found={checks} /> : null}</div>;
   }
   if (!result) return <>{which}<p class="empty"><OuterText text={why ? say('noResult', {why}) : say('noResultYet')} /></p></>;
   const verdict = verdictOf(run_id, result, state);
