@@ -144,7 +144,11 @@ step('TwoRunsAreComparedAndDrawnAsATrend', async () => {
   await page.getByRole('button', {name: /^History/}).click();
   await page.getByLabel('Compare 1').check();
   await page.getByLabel('Compare 2').check();
-  const compared = page.getByRole('table', {name: 'Comparison of runs 1 and 2'});
+  const comparison = page.getByRole('region', {name: 'Comparison of runs 1 and 2'});
+  for (const part of ['Arm: as it was', 'Stylus: as it was']) await comparison.getByText(part).waitFor();
+  await comparison.getByText(/bring the tip 0\.\d{3} mm apart/).waitFor();
+  assert.equal(await comparison.getByRole('table', {name: 'Where they differ most'}).getByRole('rowheader', {name: 'Arm'}).count(), 5);
+  const compared = comparison.getByRole('table', {name: 'Figures of both runs'});
   for (const row of ['Verdict', 'Check touches of plane 3, rms']) await compared.getByRole('row', {name: row}).waitFor();
   await page.locator('.history-view .curve canvas').waitFor();
   await page.getByLabel('Trend of').selectOption('plane 3');
@@ -163,7 +167,8 @@ step('AChecksResultHasTheChecksBeforeItAsACurveWithLimits', async () => {
       noise_um: 3.2, reference: {count: 3, needed: 3}, joints: [{joint: 3, offset_mrad: 0.2, std_offset_mrad: 0.01}], growth_ppm: 2, warmer_k: 0.1,
     }),
     '/api/v1/checks?of_run=1': (document) => ({
-      ...document, base: {count: 10, needed: 10}, due_at: '2026-11-20T00:00:00.000Z', overdue: true, warnings: ['run 14: it differs'],
+      ...document, count: 15, reference: {count: 3, needed: 3}, base: {count: 10, needed: 10}, every_days: 7, due_at: '2026-11-20T00:00:00.000Z', overdue: true, warnings: ['run 14: it differs'],
+      checks: points.map(({run}) => ({run, ended_at: '2026-11-10T08:00:00.000Z', operator: 'M. Curie', reference: false, accepted: true, cause: null, joint: null})),
       charts: document.charts.map((chart) => (chart.quantity === 'joint_3' ? {...chart, centre: 0.005, points} : chart)),
     }),
   });
@@ -171,10 +176,12 @@ step('AChecksResultHasTheChecksBeforeItAsACurveWithLimits', async () => {
   const checks = checked.getByRole('region', {name: 'Checks of run 1'});
   await checks.getByText('A check was due on 2026-11-20 00:00:00 (UTC). Check the cell now.').waitFor();
   await checks.getByText('run 14: it differs').waitFor();
-  await checks.getByText('A chart begins with the second check').waitFor();
+  await checks.getByText('The chart is drawn once two checks').waitFor();
+  await checks.getByText('The newest 12 of 15 checks are shown.').waitFor();
   await checks.getByLabel('Chart of').selectOption('joint_3');
   await checks.getByRole('img', {name: 'Joint 3, if it alone had changed, mrad: 0.200'}).waitFor();
-  for (const line of ['Value', 'Weighted mean', 'Upper limit', 'Lower limit']) await checks.locator('.u-legend', {hasText: line}).waitFor();
+  await checks.getByRole('table', {name: 'Marked checks'}).getByRole('row', {name: /^14 .*M\. Curie.*0\.200 mrad is beyond the limit/}).waitFor();
+  for (const line of ['Run', 'Value', 'Weighted mean', 'Upper limit', 'Lower limit', 'Upper limit of the mean']) await checks.locator('.u-legend', {hasText: line}).waitFor();
   await expectAccessible(checked, 'the checks of a calibration');
   await closeQuietly(checked);
 });

@@ -94,6 +94,6 @@ test('NoLimitOfTheChecksIsSaidToBeThreeDeviations', () => {
     for (const [key, text] of Object.entries(words)) {
       if (key.startsWith('check')) assert.doesNotMatch(text, /sigma|σ|deviation|Standardabweichung|écart/i, key);
     }
-    assert.match(words.checksHint, /40/, language);
+    assert.match(words.checksHint, /30/, language);
   }
 });

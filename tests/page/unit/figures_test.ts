@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import type {Cell, Parameter, Result, Run, UncertaintyMap} from 'page/api/documents.ts';
-import {compareHeldOut, compareRuns, trend, trendChoices} from 'page/model/history.ts';
+import {compareHeldOut, trend, trendChoices} from 'page/model/history.ts';
 import {layersOf, rangeOf} from 'page/model/map_layers.ts';
 import {conditions} from 'page/model/readiness.ts';
 import {kTouchFaults, mainAction, mayPause, mood, touchActions} from 'page/model/states.ts';
@@ -14,12 +14,6 @@ import {statusWith} from './statuses.ts';
 const parameter = (name: string, error: number | null, std_uncertainty: number | null): Parameter =>
     ({name, group: 'arm', unit: 'mm', nominal: 0, status: error === null ? 'weak' : 'identified', error, std_uncertainty, interval95: null, grouped_with: []});
 const resultWith = (parameters: Parameter[]): Result => ({parameters, planes: [], planes_held_out: []} as unknown as Result);
-
-test('ADifferenceCountsBeyondBothUncertaintiesOnly', () => {
-  const rows = compareRuns(resultWith([parameter('d2', 1, 0.1), parameter('d3', 1, 0.1), parameter('d4', null, null)]),
-                           resultWith([parameter('d2', 1.2, 0.1), parameter('d3', 1.4, 0.1), parameter('d4', null, null)]));
-  assert.deepEqual(rows.map((row) => [row.parameter.name, row.isSignificant]), [['d2', false], ['d3', true]]);
-});
 
 test('ATrendHasTheCompleteRunsOldestFirst', () => {
   const run = (id: string, outcome: Run['outcome']): Run => ({id, outcome} as Run);

@@ -269,6 +269,25 @@ export interface Checks {
   charts: CheckChart[];
 }
 
+/** Part of a comparison: the arm, or the stylus. */
+export interface ComparedPart {
+  changed: boolean;
+  p: number | null;
+  combinations: {e_n: number | null; shares: {parameter: string; share: number | null}[]}[];
+}
+/** Two calibrations, compared by the combinations of errors that both identified. */
+export interface Comparison {
+  earlier: string;
+  later: string;
+  verdict: {accepted: boolean | null; reasons: string[]};
+  growth_ppm: number | null;
+  std_growth_ppm: number | null;
+  tip_difference_mm: number | null;
+  std_tip_difference_mm: number | null;
+  arm: ComparedPart;
+  tool: ComparedPart;
+}
+
 export interface Result {
   schema?: 'touchcal/result/1';
   recipe: string;

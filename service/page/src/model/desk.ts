@@ -1,8 +1,8 @@
 import {get, post, type Reply} from '../api/client.ts';
-import type {Audit, Cell, Checks, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
+import type {Audit, Cell, Checks, Comparison, FaultEntry, Joints, Plan, Recipes, Result, Role, Run, Runs, Status, Touches, Unmet, Verification} from '../api/documents.ts';
 import {saveAs} from '../api/download.ts';
 import {Live, type Link} from '../api/live.ts';
-import {checkedRun, hasResult, kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
+import {checkedRun, comparedPair, comparisonKey, hasResult, kFirstState, newestRun, reduce, type Action, type PageState, type View} from './page_state.ts';
 import {commandPath, isActive, isPaused, isTakenBack, type Command} from './states.ts';
 import {slimResult} from './slim_result.ts';
 import {startBody, type Conditions} from './start_body.ts';
@@ -234,6 +234,16 @@ export class Desk {
     await Promise.all([this.loadChecks(null), shown === null ? null : this.loadChecks(shown)]);
   }
 
+  private async loadComparison(): Promise<void> {
+    const pair = comparedPair(this.store.state.compared);
+    if (!pair) return;
+    const key = comparisonKey(pair);
+    if (this.store.state.comparisons[key]?.kind === 'known') return;
+    const reply = await this.ask<Comparison>(`/api/v1/runs/${pair[1]}/comparison?with=${pair[0]}`);
+    if (reply.kind === 'ok') this.store.dispatch({type: 'comparison', key, found: {kind: 'known', comparison: reply.value}});
+    if (reply.kind === 'refused') this.store.dispatch({type: 'comparison', key, found: {kind: 'refused', why: reply.problem.detail}});
+  }
+
   /** The results that the history's trends are drawn of. */
   async loadTrends(): Promise<void> {
     const wanted = this.store.state.runs.filter((run: Run) => run.outcome === 'complete' && run.kind === 'calibration').slice(0, kTrendRuns);
@@ -262,6 +272,7 @@ export class Desk {
   compare(run_id: string): void {
     this.store.dispatch({type: 'compare', run_id});
     if (!hasResult(this.store.state, run_id)) void this.loadResult(run_id);
+    void this.loadComparison();
   }
 
   chooseRecipe(recipe: string): void {

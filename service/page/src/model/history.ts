@@ -1,4 +1,4 @@
-import type {Parameter, Result, Run} from '../api/documents.ts';
+import type {Result, Run} from '../api/documents.ts';
 
 /** What a trend is drawn of: a parameter's error, or the rms of the held-out distances of a plane. */
 export type TrendOf = {kind: 'parameter'; name: string; unit: string} | {kind: 'plane'; plane: number};
@@ -29,22 +29,6 @@ export function trendChoices(results: Record<string, Result>): TrendOf[] {
     ...[...planes].sort((a, b) => a - b).map((plane): TrendOf => ({kind: 'plane', plane})),
     ...[...parameters].map(([name, unit]): TrendOf => ({kind: 'parameter', name, unit})),
   ];
-}
-
-/** One parameter in two runs. */
-export interface Compared { parameter: Parameter; a: number | null; b: number | null; difference: number | null; isSignificant: boolean }
-
-/** A difference counts when it is beyond what both runs' uncertainties explain (95 %, two normal errors). */
-const kExpansion = 1.96;
-
-export function compareRuns(a: Result, b: Result): Compared[] {
-  return a.parameters.map((parameter) => {
-    const other = b.parameters.find(({name}) => name === parameter.name);
-    const [first, second] = [parameter.error, other?.error ?? null];
-    const difference = first === null || second === null ? null : second - first;
-    const std = Math.hypot(parameter.std_uncertainty ?? NaN, other?.std_uncertainty ?? NaN);
-    return {parameter, a: first, b: second, difference, isSignificant: difference !== null && Math.abs(difference) > kExpansion * std};
-  }).filter((row) => row.a !== null || row.b !== null);
 }
 
 /** A plane's held-out distances in two runs, in mm. */

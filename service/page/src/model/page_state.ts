@@ -1,4 +1,4 @@
-import type {Cell, Checks, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet, Verification} from '../api/documents.ts';
+import type {Cell, Checks, Comparison, DamagedRun, FaultEntry, Joints, Plan, Problem, Recipes, Result, Role, Run, Status, Touch, Unmet, Verification} from '../api/documents.ts';
 import type {Link} from '../api/live.ts';
 import {addToSeries, kNoSeries, type Series} from './series.ts';
 import {isActive, isPaused, type Command} from './states.ts';
@@ -15,6 +15,9 @@ export type PlanState = {kind: 'planning'} | {kind: 'made'; plan: Plan} | {kind:
 
 /** The checks of a calibration, or why they cannot be had. */
 export type ChecksState = {kind: 'known'; checks: Checks} | {kind: 'refused'; why: string};
+
+/** A comparison of two runs, or why there is none. */
+export type ComparisonState = {kind: 'known'; comparison: Comparison} | {kind: 'refused'; why: string};
 
 /** A command that was not taken, in words, until noted. */
 export interface Notice { command: Command | 'start'; problem: Problem | null }
@@ -47,6 +50,7 @@ export interface PageState {
   nextBefore: string | null;            // of the history's next page
   shownRun: string | null;              // chosen in the history; null: the newest
   compared: string[];                   // at most two runs
+  comparisons: Record<string, ComparisonState>;  // by comparisonKey()
   results: Record<string, Result>;      // by run
   verifications: Record<string, Verification>;  // of proofs and checks, by run
   checks: Record<string, ChecksState>;  // by the run of the calibration
@@ -63,7 +67,7 @@ export const kFirstState: PageState = {
   link: 'connecting', status: null, pulse: null, statusKnown_ms: null, series: kNoSeries, faults: [], lastingWarning: null, unmet: null,
   role: null, hasToken: false, waitingSince_ms: null, pausedBy: null,
   view: 'cell', cell: null, recipes: null, faultTable: {}, recipe: null, plans: {}, runs: [], damagedRuns: [], nextBefore: null,
-  shownRun: null, compared: [], results: {}, verifications: {}, checks: {}, countingChecks: null, missing: {}, touches: null, runPlan: null,
+  shownRun: null, compared: [], comparisons: {}, results: {}, verifications: {}, checks: {}, countingChecks: null, missing: {}, touches: null, runPlan: null,
   notice: null, isStopLost: false, busy: null,
 };
 
@@ -76,6 +80,7 @@ export type Action =
   | {type: 'result'; run_id: string; result: Result}
   | {type: 'verification'; run_id: string; verification: Verification}
   | {type: 'checks'; asked: string | null; found: ChecksState | null}  // asked null: of the calibration that counts; found null: there is none
+  | {type: 'comparison'; key: string; found: ComparisonState}
   | {type: 'missing'; run_id: string; why: string}
   | {type: 'runs'; runs: Run[]; damaged: DamagedRun[]; nextBefore: string | null; isMore: boolean}
   | {type: 'noted'; key: string}
@@ -103,6 +108,8 @@ export function reduce(state: PageState, action: Action): PageState {
       return {...state, verifications: keepNewest({...state.verifications, [action.run_id]: action.verification})};
     case 'checks':
       return takeChecks(state, action.asked, action.found);
+    case 'comparison':
+      return {...state, comparisons: {...state.comparisons, [action.key]: action.found}};
     case 'missing':
       return {...state, missing: {...state.missing, [action.run_id]: action.why}};
     case 'runs':
@@ -139,6 +146,14 @@ function takeStatus(state: PageState, status: Status, heard_ms: number): PageSta
     shownRun: status.run_id !== null && before?.run_id !== status.run_id ? null : state.shownRun,  // a new run is looked at
   };
 }
+
+/** The two runs that are compared, the earlier one first; null: not two are chosen. */
+export function comparedPair(compared: string[]): [string, string] | null {
+  const [a, b] = [...compared].sort((x, y) => Number(x) - Number(y));
+  return a !== undefined && b !== undefined ? [a, b] : null;
+}
+
+export const comparisonKey = ([earlier, later]: [string, string]): string => `${earlier} ${later}`;
 
 /** What is heard of the calibration that counts is the same document as that of its run: both places have the newer. */
 function takeChecks(state: PageState, asked: string | null, found: ChecksState | null): PageState {

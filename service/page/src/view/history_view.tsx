@@ -2,13 +2,12 @@ import {useMemo, useState} from 'preact/hooks';
 import type {Run} from '../api/documents.ts';
 import type {Desk} from '../model/desk.ts';
 import {kUnknown, number, time} from '../model/format.ts';
-import {compareHeldOut, compareRuns, trend, trendChoices, type TrendOf} from '../model/history.ts';
+import {trend, trendChoices, type TrendOf} from '../model/history.ts';
 import type {PageState} from '../model/page_state.ts';
-import {verdictOf} from '../model/verdict.ts';
 import {faultTitle, hasTitle} from '../words/fault_words.ts';
 import {sayName} from '../words/words.ts';
+import {Comparison} from './comparison_view.tsx';
 import {Curve} from './curve.tsx';
-import {inUnit, shownUnit} from './result_view.tsx';
 import {Scroll} from './scroll.tsx';
 import {Symbol} from './symbol.tsx';
 import {OuterText, useLanguage, useSay} from './texts.tsx';
@@ -91,59 +90,6 @@ function RunFault({run: {fault_code, fault_message}}: {run: Run}) {
   const language = useLanguage();
   if (fault_code && hasTitle(language, fault_code)) return <>{faultTitle(language, fault_code)}</>;
   return <OuterText text={fault_message ?? fault_code ?? ''} isEnglish />;
-}
-
-function Comparison({state}: {state: PageState}) {
-  const say = useSay();
-  const language = useLanguage();
-  const [a, b] = [...state.compared].sort((x, y) => Number(x) - Number(y));
-  const [first, second] = [a ? state.results[a] : undefined, b ? state.results[b] : undefined];
-  if (!a || !b || !first || !second) return <p class="hint">{say('compareHint')}</p>;
-  return (
-    <section>
-      <Scroll label={say('comparison', {a, b})}>
-        <table>
-          <caption>{say('comparison', {a, b})}</caption>
-          <thead>
-            <tr>
-              <th scope="col">{say('parameter')}</th>
-              <th scope="col">{a}</th>
-              <th scope="col">{b}</th>
-              <th scope="col">{say('difference')}</th>
-              <th scope="col">{say('unit')}</th>
-            </tr>
-          </thead>
-          <tbody>
-            <tr>
-              <th scope="row">{say('verdict')}</th>
-              <td>{say(`verdict_${verdictOf(a, first, state)}`)}</td>
-              <td>{say(`verdict_${verdictOf(b, second, state)}`)}</td>
-              <td /><td />
-            </tr>
-            {compareHeldOut(first, second).map((row) => (
-              <tr key={row.plane}>
-                <th scope="row">{say('heldOutOf', {plane: row.plane})}</th>
-                {[row.a, row.b, row.difference].map((value, i) => <td key={i} class="figure">{number(value, 3, language)}</td>)}
-                <td>mm</td>
-              </tr>
-            ))}
-            {compareRuns(first, second).map((row) => (
-              <tr key={row.parameter.name}>
-                <th scope="row">{row.parameter.name}</th>
-                <td class="figure">{inUnit(row.parameter, row.a, language)}</td>
-                <td class="figure">{inUnit(row.parameter, row.b, language)}</td>
-                <td class="figure">
-                  {inUnit(row.parameter, row.difference, language)}
-                  {row.isSignificant ? <span class="abnormal"><Symbol shape="warning" />{say('differenceSignificant')}</span> : null}
-                </td>
-                <td>{shownUnit(row.parameter)}</td>
-              </tr>
-            ))}
-          </tbody>
-        </table>
-      </Scroll>
-    </section>
-  );
 }
 
 const keyOf = (of: TrendOf): string => (of.kind === 'plane' ? `plane ${of.plane}` : of.name);

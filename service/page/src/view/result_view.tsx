@@ -29,7 +29,7 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
   const verification = state.verifications[run_id];
   if (verification) {
     const checks = verification.schema === 'touchcal/check/1' ? state.checks[verification.of_run] : undefined;
-    return <div class="result-view">{which}<VerificationView verification={verification} />{checks ? <ChecksView found={checks} /> : null}</div>;
+    return <div class="result-view">{which}<VerificationView verification={verification} /><Downloads run_id={run_id} desk={desk} offers={kOfferedOfVerification} />{checks ? <ChecksView found={checks} /> : null}</div>;
   }
   if (!result) return <>{which}<p class="empty"><OuterText text={why ? say('noResult', {why}) : say('noResultYet')} /></p></>;
   const verdict = verdictOf(run_id, result, state);
@@ -38,7 +38,7 @@ export function ResultView({state, desk}: {state: PageState; desk: Desk}) {
       {which}
       <Verdict result={result} verdict={verdict} run_id={run_id} cell={state.cell} />
       {result.verdict.decision_rule ? <LimitsTable rule={result.verdict.decision_rule} cell={state.cell} /> : null}
-      <Downloads run_id={run_id} desk={desk} />
+      <Downloads run_id={run_id} desk={desk} offers={kOffered} />
       <h2>{say('detail')}</h2>
       <TipExpanded result={result} />
       <TipErrors result={result} />
@@ -74,7 +74,10 @@ const kOffered: Offered[] = [
   {words: 'calibratedArm', form: 'JSON', path: 'arm', ending: '-arm.json'},
 ];
 
-function Downloads({run_id, desk}: {run_id: string; desk: Desk}) {
+/** A proof or a check makes no arm. */
+const kOfferedOfVerification = kOffered.filter(({path}) => path !== 'arm');
+
+function Downloads({run_id, desk, offers}: {run_id: string; desk: Desk; offers: Offered[]}) {
   const say = useSay();
   const [failed, setFailed] = useState<Offered | null>(null);
   const save = async (offered: Offered): Promise<void> => {
@@ -85,7 +88,7 @@ function Downloads({run_id, desk}: {run_id: string; desk: Desk}) {
     <section aria-labelledby="downloads">
       <h3 id="downloads">{say('download')}</h3>
       <p class="downloads">
-        {kOffered.map((offered) => (
+        {offers.map((offered) => (
           <button key={offered.path} type="button" onClick={() => void save(offered)}>{say(offered.words)} ({offered.form})</button>
         ))}
       </p>

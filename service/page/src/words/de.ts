@@ -324,7 +324,6 @@ export const de: Words = {
   comparison: 'Vergleich der Läufe {a} und {b}',
   compareHint: 'Zwei Läufe zum Vergleichen wählen.',
   difference: 'Unterschied',
-  differenceSignificant: 'mehr als seine Unsicherheit',
   damagedRun: 'Lauf {run} ist nicht lesbar:',
   more: 'Ältere Läufe',
   trends: 'Trend über die Läufe',

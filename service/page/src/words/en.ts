@@ -322,7 +322,6 @@ export const en = {
   comparison: 'Comparison of runs {a} and {b}',
   compareHint: 'Choose two runs to compare.',
   difference: 'Difference',
-  differenceSignificant: 'more than its uncertainty',
   damagedRun: 'Run {run} cannot be read:',
   more: 'Older runs',
   trends: 'Trend over the runs',

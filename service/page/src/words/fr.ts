@@ -325,7 +325,6 @@ export const fr: Words = {
   comparison: 'Comparaison des cycles {a} et {b}',
   compareHint: 'Choisissez deux cycles à comparer.',
   difference: 'Différence',
-  differenceSignificant: 'plus que son incertitude',
   damagedRun: 'Le cycle {run} ne peut pas être lu :',
   more: 'Cycles plus anciens',
   trends: 'Tendance au fil des cycles',
