@@ -35,6 +35,13 @@ inline void check_schema(const nlohmann::json& value, const nlohmann::json& sche
     if (key == "$ref") {
       check_schema(value, openapi().at(json::json_pointer(wanted.get<std::string>().substr(1))), where,
                    wrong);
+    } else if (key == "oneOf") {
+      const auto fits = [&](const json& one) {
+        std::vector<std::string> of_this;
+        check_schema(value, one, where, of_this);
+        return of_this.empty();
+      };
+      expect(std::count_if(wanted.begin(), wanted.end(), fits) == 1, "just one of " + wanted.dump());
     } else if (key == "type") {
       const json types = wanted.is_array() ? wanted : json::array({wanted});
       bool any = false;

@@ -37,7 +37,7 @@ void find_limit_ratios(const ChecksDocument& document, CellFigures& figures) {
     const ChecksDocument::Point& newest = chart.points.back();
     // Nothing is less than any figure.
     auto ratio = std::max(share_of_limit(newest.value, chart.centre, newest.shewhart_limit),
-                                share_of_limit(newest.weighted_mean, chart.centre, newest.ewma_limit));
+                          share_of_limit(newest.weighted_mean, chart.centre, newest.ewma_limit));
     // A residual that is smaller than before is beyond no limit.
     if (ratio && !newest.beyond_shewhart && !newest.beyond_ewma) ratio = std::min(*ratio, 1.0);
     if (ratio) figures.limit_ratios[chart.quantity] = *ratio;
@@ -55,12 +55,11 @@ void find_newest_verdict(const std::vector<EndedCheck>& checks, CellFigures& fig
   if (newest->result.growth_ppm) figures.arm_growth = *newest->result.growth_ppm * 1e-6;
 }
 
-void find_checks(const RunStore& store, const Cell& cell, std::chrono::system_clock::time_point now,
-                 CellFigures& figures) {
-  const auto id = calibration_of_cell(store, RunKind::kCheck);
-  const auto calibration = id ? store.run(*id) : std::nullopt;
+void find_checks(const RunStore& store, const Cell& cell, std::int64_t of_run,
+                 std::chrono::system_clock::time_point now, CellFigures& figures) {
+  const auto calibration = store.run(of_run);
   if (!calibration) return;
-  const std::vector<EndedCheck> checks = checks_of(store, *id);
+  const std::vector<EndedCheck> checks = checks_of(store, of_run);
   const ChecksDocument document = checks_view(*calibration, checks, cell.check_every, now);
   if (document.due_at) figures.check_due_at = time_from_utc(*document.due_at);
   for (const ChecksDocument::Check& check : document.checks) {
@@ -70,10 +69,8 @@ void find_checks(const RunStore& store, const Cell& cell, std::chrono::system_cl
   find_limit_ratios(document, figures);
 }
 
-void find_proof(const RunStore& store, CellFigures& figures) {
-  const auto id = calibration_of_cell(store, RunKind::kCheck);
-  if (!id) return;
-  for (const StoredRun& proof : store.complete_runs_of(*id, RunKind::kProof)) {
+void find_proof(const RunStore& store, std::int64_t of_run, CellFigures& figures) {
+  for (const StoredRun& proof : store.complete_runs_of(of_run, RunKind::kProof)) {
     if (proof.verdict == Verdict::kAccepted || proof.verdict == Verdict::kRejected)
       figures.is_proved = proof.verdict == Verdict::kAccepted;
   }
@@ -106,9 +103,16 @@ FoundFigures cell_figures(const RunStore& store, const Cell& cell,
   FoundFigures found;
   for (const CertificateEnd& end : certificate_ends(cell))
     found.figures.certificate_ends[end.artefact] = end.ends_at;
-  const std::vector<std::function<void()>> parts{[&] { find_model(store, cell, found.figures); },
-                                                 [&] { find_proof(store, found.figures); },
-                                                 [&] { find_checks(store, cell, now, found.figures); }};
+  std::optional<std::int64_t> of_run;
+  const std::vector<std::function<void()>> parts{
+      [&] { find_model(store, cell, found.figures); },
+      [&] { of_run = calibration_of_cell(store, RunKind::kCheck); },
+      [&] {
+        if (of_run) find_proof(store, *of_run, found.figures);
+      },
+      [&] {
+        if (of_run) find_checks(store, cell, *of_run, now, found.figures);
+      }};
   for (const auto& find : parts) {
     try {
       find();
