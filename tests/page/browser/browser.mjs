@@ -94,8 +94,8 @@ export const startButton = (page) => page.locator('.run-controls .run.main');
 export const pauseButton = (page) => page.locator('.run-controls .run.pause');
 export const stopButton = (page) => page.locator('.run-controls .run.stop');
 
-export async function start(page) {
-  await page.locator('.run-controls .run.main:not([disabled])', {hasText: /START|DÉMARRER/}).waitFor();
+export async function start(page, label = /START|DÉMARRER/) {
+  await page.locator('.run-controls .run.main:not([disabled])', {hasText: label}).waitFor();
   await hold(page, startButton(page));
 }
 

@@ -200,3 +200,19 @@ step('FrenchAndDarkAreOneTouchEachAndStay', async () => {
   }
   expectQuiet(page, cell);
 });
+
+step('ACheckIsStartedLikeARun', async () => {
+  const checking = await openPage(browser, cell.link);
+  await speak(checking, 'en');
+  await checking.getByRole('button', {name: /^Cell/}).click();
+  await checking.getByRole('radio', {name: 'Check'}).check();
+  await checking.getByText('The first three checks of a calibration are its reference.').waitFor();
+  assert.equal(await checking.getByRole('radiogroup', {name: 'Recipe'}).count(), 0, 'it has that of its calibration');
+  await expectAccessible(checking, 'a check before its start');
+  await start(checking, 'CHECK');
+  await waitForState(checking, 'Complete');
+  await checking.getByText('reference check 1 of 3').waitFor();
+  await checking.getByRole('button', {name: /^Cell/}).click();
+  assert.equal(await checking.getByRole('radio', {name: 'Calibration'}).isChecked(), true, 'the next start is a calibration again');
+  await closeQuietly(checking);
+});

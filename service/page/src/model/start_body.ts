@@ -3,12 +3,16 @@ import type {Cell} from '../api/documents.ts';
 /** What a person wrote into the fields of the block's temperature; a field that was not touched is not there. */
 export interface WrittenTemperature { celsius?: string; std?: string }
 
+/** What is done in place of a calibration, with the recipe of the one that counts. */
+export type VerifyingKind = 'check' | 'proof';
+
 /** What a start is made with beside the recipe. */
-export interface Conditions { operator?: string; touching?: 'guided'; temperature?: WrittenTemperature; movingMin?: string }
+export interface Conditions { kind?: VerifyingKind; operator?: string; touching?: 'guided'; temperature?: WrittenTemperature; movingMin?: string }
 
 /** The body of a start, as POST runs takes it. */
 export interface StartBody {
-  recipe: string;
+  recipe?: string;
+  kind?: VerifyingKind;
   operator?: string;
   touching?: 'guided';
   block_temperature_c?: number | string;
@@ -22,10 +26,12 @@ export function shownTemperature(written: WrittenTemperature | undefined, block:
 }
 
 /** A temperature is sent when it is another one than the file's; the daemon judges what is no number. */
-export function startBody(recipe: string, {temperature, movingMin, ...others}: Conditions, block: Cell['block'] | null): StartBody {
+export function startBody(recipe: string, {kind, temperature, movingMin, touching, ...others}: Conditions, block: Cell['block'] | null): StartBody {
   const shown = shownTemperature(temperature, block);
   const ofFile = shownTemperature(undefined, block);
-  const start = {recipe, ...others, ...(movingMin?.trim() && {arm_moving_min: figure(movingMin)})};
+  // The touches of a check or a proof are made by the arm itself.
+  const what = kind ? {kind} : {recipe, ...(touching && {touching})};
+  const start = {...what, ...others, ...(movingMin?.trim() && {arm_moving_min: figure(movingMin)})};
   if (shown.celsius.trim() === ofFile.celsius && shown.std.trim() === ofFile.std) return start;
   return {
     ...start,

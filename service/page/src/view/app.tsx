@@ -67,7 +67,7 @@ export function App({desk}: {desk: Desk}) {
   }, [theme]);
   const startRun = async (): Promise<void> => {
     if (!await desk.startRun(conditions)) return;
-    setConditions(({temperature: _, movingMin: __, ...others}) => others);  // they were of this run
+    setConditions(({temperature: _, movingMin: __, kind: ___, ...others}) => others);  // they were of this run
     document.querySelector<HTMLElement>('header h1')?.focus();
   };
   /** Words that do not come, as of a daemon that is gone, leave the page in the language that it has. */

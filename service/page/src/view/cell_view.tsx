@@ -26,6 +26,7 @@ export function CellView({state, desk, conditions: given, onConditions}: Props) 
       {state.cell && cut(state.cell.name, 80) !== null ? <p class="cell-name"><OuterText text={state.cell.name} /></p> : null}
       {state.countingChecks ? <NextCheck found={state.countingChecks} /> : null}
       <Readiness state={state} />
+      <WorkChoice state={state} given={given} onConditions={onConditions} />
       <RecipeChoice state={state} desk={desk} given={given} onConditions={onConditions} />
       <LocateOffer state={state} desk={desk} />
     </div>
@@ -70,12 +71,40 @@ function ConditionRow({condition, state}: {condition: Condition; state: PageStat
   );
 }
 
+const kWork = ['calibration', 'check', 'proof'] as const;
+
+/** What START does; without a calibration there is nothing to choose. */
+function WorkChoice({state, given, onConditions}: {state: PageState; given: Conditions; onConditions: (conditions: Conditions) => void}) {
+  const say = useSay();
+  if (!state.status?.last_accepted_run_id) return null;
+  const choose = (work: typeof kWork[number]): void => {
+    const {kind: _, ...others} = given;
+    onConditions(work === 'calibration' ? others : {...others, kind: work});
+  };
+  const chosen = given.kind ?? 'calibration';
+  return (
+    <section class="recipe" aria-labelledby="work">
+      <h2 id="work">{say('work')}</h2>
+      <div class="choices" role="radiogroup" aria-labelledby="work">
+        {kWork.map((work) => (
+          <label key={work} class={work === chosen ? 'choice chosen' : 'choice'}>
+            <input type="radio" name="work" value={work} checked={work === chosen} onChange={() => choose(work)} />
+            <span class="name">{say(`work_${work}`)}</span>
+          </label>
+        ))}
+      </div>
+      {chosen === 'calibration' ? null : <p>{say(`workWords_${chosen}`)}</p>}
+    </section>
+  );
+}
+
 function RecipeChoice({state, desk, given, onConditions}: {
   state: PageState; desk: Desk; given: Conditions; onConditions: (conditions: Conditions) => void;
 }) {
   const say = useSay();
   const {recipes, recipe} = state;
   const chosen = recipes?.recipes.find(({name}) => name === recipe) ?? null;
+  if (given.kind) return <section class="recipe"><StartFields state={state} given={given} onConditions={onConditions} /></section>;
   return (
     <section class="recipe" aria-labelledby="recipe">
       <h2 id="recipe">{say('recipe')}</h2>
@@ -165,7 +194,7 @@ function StartFields({state, given, onConditions}: {state: PageState; given: Con
         <input type="text" inputMode="decimal" maxLength={6} autocomplete="off" placeholder={say('unknown')} value={given.movingMin ?? ''}
                onInput={(event) => onConditions({...given, movingMin: event.currentTarget.value})} />
       </label>
-      {state.cell?.place !== undefined && (
+      {state.cell?.place !== undefined && !given.kind && (
         <label class="check">
           <input type="checkbox" checked={given.touching === 'guided'} onChange={(event) => takeGuided(event.currentTarget.checked)} />
           <span>{say('guided')}</span>

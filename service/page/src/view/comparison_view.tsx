@@ -32,14 +32,11 @@ function KnownComparison({comparison}: {comparison: Compared}) {
   const {arm, tool, growth_ppm, std_growth_ppm, tip_difference_mm, std_tip_difference_mm} = comparison;
   return (
     <>
-      <ul class="plain">
-        {([['comparedArm', arm], ['comparedStylus', tool]] as const).map(([what, part]) => (
-          <li key={what} class={part.changed ? 'abnormal' : ''}>
-            <Symbol shape={kVerdictShapes[part.changed ? 'rejected' : 'accepted']} />
-            {say(part.changed ? 'comparedChanged' : 'comparedSame', {what: say(what)})}
-          </li>
-        ))}
-      </ul>
+      {([['comparedArm', arm], ['comparedStylus', tool]] as const).map(([what, part]) => (
+        <p key={what} class={part.changed ? 'abnormal' : ''}>
+          <Symbol shape={kVerdictShapes[part.changed ? 'rejected' : 'accepted']} /> {say(part.changed ? 'comparedChanged' : 'comparedSame', {what: say(what)})}
+        </p>
+      ))}
       <p>{say('comparedGrowth', {growth: number(growth_ppm, 0, language), std: number(std_growth_ppm, 0, language)})}</p>
       <p>{say('comparedTip', {tip: number(tip_difference_mm, 3, language), chance: number(std_tip_difference_mm, 3, language)})}</p>
       <Combinations arm={arm} tool={tool} />

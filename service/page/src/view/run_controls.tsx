@@ -59,7 +59,7 @@ function MainButton({state, desk, conditions, onStart}: Props) {
         </button>
       ) : (
         <HoldButton class="main" note={note} disabled={disabled} onHeld={action === 'start' ? onStart : () => void desk.command(action)}>
-          {say(action)}
+          {say(action === 'start' && conditions.kind ? `start_${conditions.kind}` : action)}
         </HoldButton>
       )}
     </div>

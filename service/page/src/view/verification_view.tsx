@@ -37,7 +37,7 @@ function Figures({verification}: {verification: Verification}) {
   const language = useLanguage();
   const figure = (value: number | null, digits: number, unit: string): string => `${number(value, digits, language)} ${unit}`.trim();
   const rows: Row[] = [
-    {key: 'rms', name: say('verifiedRms'), figure: figure(verification.rms_mm, 3, 'mm'),
+    {key: 'rms', name: say(verification.schema === 'touchcal/proof/1' ? 'verifiedRms' : 'checksResidual'), figure: figure(verification.rms_mm, 3, 'mm'),
       limit: verification.schema === 'touchcal/proof/1' ? figure(verification.rms_max_mm, 3, 'mm') : ''},
     {key: 'p', name: say('verifiedChance'), figure: figure(verification.p, 3, ''), limit: figure(verification.p_min, 3, '')},
     {key: 'noise', name: say('verifiedNoise'), figure: figure(verification.noise_um, 1, 'µm'), limit: ''},
