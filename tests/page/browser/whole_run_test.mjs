@@ -156,33 +156,74 @@ step('TwoRunsAreComparedAndDrawnAsATrend', async () => {
   await expectAccessible(page, 'history');
 });
 
-step('AChecksResultHasTheChecksBeforeItAsACurveWithLimits', async () => {
+/** As the daemon tells the checks of run 1; of which one is beyond its limit, and one was not accepted. */
+const checksTold = (changes) => {
   const points = Array.from({length: 12}, (_, i) => ({
     run: String(i + 3), value: i === 11 ? 0.2 : 0.01 * (i % 2), weighted_mean: i < 10 ? null : 0.01, shewhart_limit: i < 10 ? null : 0.05,
     ewma_limit: i < 10 ? null : 0.02, beyond_shewhart: i === 11, beyond_ewma: false,
   }));
+  const row = (run, accepted) => ({run, ended_at: '2026-11-13T00:00:00.000Z', operator: null, reference: false, accepted, cause: accepted ? null : 'block', joint: null});
+  return {
+    schema: 'touchcal/checks/1', of_run: '1', count: 15, reference: {count: 3, needed: 3}, base: {count: 10, needed: 10}, every_days: 7,
+    due_at: '2026-11-20T00:00:00.000Z', overdue: false, warnings: ['run 14: it differs'], checks: [row('13', false), row('14', true)],
+    charts: [{quantity: 'joint_3', unit: 'mrad', centre: 0.005, points}, {quantity: 'growth', unit: 'ppm', centre: null, points: []}], ...changes,
+  };
+};
+
+/** Ten minutes later, by the clock of the page; it asks for the checks again. */
+const tenMinutesLater = (page) => page.evaluate(() => {
+  const now = performance.now.bind(performance);
+  performance.now = () => now() + 600000;
+});
+
+step('WithoutAnApprovedCalibrationOrARuleNoCheckIsDue', async () => {
+  await page.getByRole('button', {name: /^Cell/}).click();
+  await page.locator('.readiness li').first().waitFor();
+  assert.equal(await page.locator('.next-check').count(), 0);
+});
+
+step('ACheckIsShownFromTheHistoryWithTheChecksBeforeItAsACurveWithLimits', async () => {
+  let told = checksTold({});
   const checked = await openWith(browser, cell, {
-    '/api/v1/runs/2/result': () => ({
+    '/api/v1/runs?limit=50': (document) => ({...document, runs: document.runs.map((run) => (run.id === '1' ? {...run, kind: 'check', of_run: '1'} : run))}),
+    '/api/v1/runs/1/result': () => ({
       schema: 'touchcal/check/1', of_run: '1', touch_count: 12, complete: true, verdict: {accepted: true, reasons: []}, rms_mm: 0.004, p: 0.5, p_min: 0.005,
       noise_um: 3.2, reference: {count: 3, needed: 3}, joints: [{joint: 3, offset_mrad: 0.2, std_offset_mrad: 0.01}], growth_ppm: 2, warmer_k: 0.1,
     }),
-    '/api/v1/checks?of_run=1': (document) => ({
-      ...document, count: 15, reference: {count: 3, needed: 3}, base: {count: 10, needed: 10}, every_days: 7, due_at: '2026-11-20T00:00:00.000Z', overdue: true, warnings: ['run 14: it differs'],
-      checks: points.map(({run}) => ({run, ended_at: '2026-11-10T08:00:00.000Z', operator: 'M. Curie', reference: false, accepted: true, cause: null, joint: null})),
-      charts: document.charts.map((chart) => (chart.quantity === 'joint_3' ? {...chart, centre: 0.005, points} : chart)),
-    }),
   });
-  await checked.getByRole('button', {name: /^Result/}).click();
+  await checked.route((url) => url.pathname === '/api/v1/checks', (route) => (told ? route.fulfill({json: told})
+      : route.fulfill({status: 503, json: {type: 'about:blank', title: 'x', status: 503, detail: 'the store does not answer'}})));
+  await checked.getByRole('button', {name: /^History/}).click();
+  await checked.getByRole('row', {name: 'check of run 1'}).getByRole('button', {name: 'Show 1'}).click();
   const checks = checked.getByRole('region', {name: 'Checks of run 1'});
-  await checks.getByText('A check was due on 2026-11-20 00:00:00 (UTC). Check the cell now.').waitFor();
+  await checks.getByText('The next check is due on 2026-11-20 00:00:00 (UTC).').waitFor();
   await checks.getByText('run 14: it differs').waitFor();
-  await checks.getByText('The chart is drawn once two checks').waitFor();
-  await checks.getByText('The newest 12 of 15 checks are shown.').waitFor();
-  await checks.getByLabel('Chart of').selectOption('joint_3');
+  await checks.getByText('first check again').waitFor();
+  await checks.getByText('The newest 2 of 15 checks are shown').waitFor();
   await checks.getByRole('img', {name: 'Joint 3, if it alone had changed, mrad: 0.200'}).waitFor();
-  await checks.getByRole('table', {name: 'Marked checks'}).getByRole('row', {name: /^14 .*M\. Curie.*0\.200 mrad is beyond the limit/}).waitFor();
-  for (const line of ['Run', 'Value', 'Weighted mean', 'Upper limit', 'Lower limit', 'Upper limit of the mean']) await checks.locator('.u-legend', {hasText: line}).waitFor();
+  for (const line of ['Run', 'Value', 'Weighted mean', 'Upper limit', 'Lower limit', 'Upper limit of the mean', 'Lower limit of the mean'])
+    await checks.locator('.u-legend .u-label', {hasText: new RegExp(`^${line}$`)}).waitFor();
+  const marked = checks.getByRole('table', {name: 'Marked checks'}).locator('tbody tr');
+  assert.deepEqual(await marked.getByRole('rowheader').allTextContents(), ['14', '13']);
+  await marked.nth(0).filter({hasText: 'Joint 3, if it alone had changed: 0.200 mrad is beyond the limit 0.055 mrad'}).waitFor();
+  await marked.nth(1).filter({hasText: 'Changed: the block'}).waitFor();
   await expectAccessible(checked, 'the checks of a calibration');
+  await checks.getByLabel('Chart of').selectOption('growth');
+  await checks.getByText('once two checks have been compared').waitFor();
+  told = checksTold({overdue: true});
+  await tenMinutesLater(checked);
+  await checks.getByText('A check was due on 2026-11-20 00:00:00 (UTC). Check the cell now.').waitFor();
+  await checked.getByRole('button', {name: /^Cell/}).click();
+  await checked.locator('.cell-view .next-check', {hasText: 'A check was due on 2026-11-20'}).waitFor();
+  await expectAccessible(checked, 'a check is overdue');
+  told = checksTold({due_at: null, overdue: null});
+  await tenMinutesLater(checked);
+  await checked.locator('.cell-view .next-check', {hasText: 'not known: the clock'}).waitFor();
+  told = null;
+  await tenMinutesLater(checked);
+  await checked.locator('.cell-view .next-check', {hasText: 'the store does not answer'}).waitFor();
+  await checked.getByRole('button', {name: /^Result/}).click();
+  await checked.locator('.result-view .next-check', {hasText: 'The checks cannot be shown: the store does not answer'}).waitFor();
   await closeQuietly(checked);
 });
 

@@ -99,10 +99,9 @@ function ChartHint({chart, checks: {reference, base, count, checks}}: {chart: Ch
       : base.count < base.needed ? say('checksFew', {...base})
       : say('checksHint', {needed: base.needed});
   return (
-    <>
-      <p class="hint">{hint}</p>
-      {checks.length < count ? <p class="hint">{say('checksNewest', {shown: checks.length, count})}</p> : null}
-    </>
+    <p class="hint">
+      {hint}{checks.length < count ? ` ${say('checksNewest', {shown: checks.length, count})}` : ''}
+    </p>
   );
 }
 

@@ -54,7 +54,7 @@ function drawMarks(plot: uPlot, marks: Mark[], style: CSSStyleDeclaration): void
     const place = plot.valToPos(value, 'y', true);
     const size = 18 * scale;
     const gap = 5 * devicePixelRatio;
-    const top = place - gap - size < bbox.top ? place + gap : place - gap - size;
+    const top = place - gap - size < 0 ? place + gap : place - gap - size;
     const kind = shape === 'fault' ? 'fault' : 'warning';
     const path = new Path2D(kPaths[shape]);
     ctx.save();
@@ -64,6 +64,7 @@ function drawMarks(plot: uPlot, marks: Mark[], style: CSSStyleDeclaration): void
     ctx.strokeStyle = style.getPropertyValue(`--${kind}`).trim();
     ctx.lineWidth = 2;
     ctx.lineJoin = 'round';
+    ctx.setLineDash([]);
     ctx.fill(path);
     ctx.stroke(path);
     ctx.restore();

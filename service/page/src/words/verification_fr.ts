@@ -39,7 +39,7 @@ export const kVerificationFr: Record<keyof typeof kVerificationEn, string> = {
   checksNone: 'La courbe est tracée dès que deux contrôles ont été comparés à la référence.',
   checksHint: 'Les limites sont tirées des {needed} premiers contrôles de cette cellule, et élargies parce qu’ils sont peu nombreux. Le hasard seul marque au plus un contrôle sur 30. Si un contrôle est marqué, refaites d’abord un contrôle.',
   checksChart: 'Courbe de',
-  checksWithMarks: '{what} : {count} marqués',
+  checksWithMarks: '{what} (marques : {count})',
   checksMean: 'Moyenne pondérée',
   checksUpper: 'Limite haute',
   checksLower: 'Limite basse',
