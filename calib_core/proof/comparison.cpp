@@ -71,11 +71,24 @@ Combination named(const Eigen::VectorXd& shares, const std::vector<int>& columns
 }
 
 /// The principal directions of the errors in their standard deviations: independent of their units.
+struct PrincipalDirections {
+  Eigen::VectorXd std;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
+
+  explicit PrincipalDirections(const Eigen::MatrixXd& covariance)
+      : std(covariance.diagonal().cwiseSqrt()),
+        solver((std.cwiseInverse().asDiagonal() * covariance * std.cwiseInverse().asDiagonal()).eval()) {}
+
+  /// Whether chance is known in each of them.
+  [[nodiscard]] bool are_known() const {
+    constexpr double kVarianceMin = 1e-12;
+    return std.allFinite() && std.minCoeff() > 0.0 && solver.eigenvalues().minCoeff() > kVarianceMin;
+  }
+};
+
 std::vector<Combination> combinations_of(const Difference& difference) {
-  const Eigen::VectorXd std = difference.covariance.diagonal().cwiseSqrt();
-  const Eigen::MatrixXd correlation =
-      std.cwiseInverse().asDiagonal() * difference.covariance * std.cwiseInverse().asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(correlation);
+  const PrincipalDirections principal(difference.covariance);
+  const auto& [std, solver] = principal;
   const Eigen::VectorXd along =
       solver.eigenvectors().transpose() * difference.errors.cwiseQuotient(std).eval();
   std::vector<Combination> made;
@@ -119,6 +132,11 @@ std::variant<Comparison, ComparisonRefusal> compare(const CalibrationRecord& ear
     return ComparisonRefusal{
         "the two calibrations have nothing of the arm in common that both estimated: compare two of one "
         "recipe"};
+
+  if (!PrincipalDirections(whole.covariance).are_known())
+    return ComparisonRefusal{
+        "how the two calibrations scatter is not known of all that both estimated: compare two with more "
+        "touches"};
 
   Comparison made;
   made.difference(columns) = whole.errors;

@@ -140,7 +140,11 @@ std::string zsh_script(const CLI::App& app) {
   }
   return fmt::format(R"sh(#compdef {0}
 # zsh completion of {0}, made by `{0} completion zsh`
-_{0}_names() {{ compadd -- ${{(f)"$({0} names $1 2>/dev/null)"}} }}
+_{0}_names() {{
+  local i=${{words[(i)--cell]}} cell=()
+  (( i < $#words )) && cell=(--cell $words[i+1])
+  compadd -- ${{(f)"$({0} names $1 $cell 2>/dev/null)"}}
+}}
 _{0}() {{
   local -a commands
   commands=(

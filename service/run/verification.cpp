@@ -98,7 +98,7 @@ VerificationOutcome verification_of(RunKind kind, const PastCalibration& past, c
   const Eigen::Isometry3d calibrated_from_block = past.cell_from_block.inverse() * cell_from_block;
   if (auto refusal = refuse_place(kind, past.run.id, calibrated_from_block)) return *std::move(refusal);
   auto record = record_of(past, cell, cell_from_block);
-  if (auto* refusal = std::get_if<VerificationRefusal>(&record)) return *std::move(refusal);
+  if (auto* refusal = std::get_if<VerificationRefusal>(&record)) return *refusal;
   Verification made{.kind = kind,
                     .of_run = past.run.id,
                     .record = std::get<calib::CalibrationRecord>(std::move(record)),

@@ -10,7 +10,7 @@ namespace {
 std::variant<calib::CalibrationRecord, VerificationRefusal> stored_record(const Reads& reads,
                                                                           std::int64_t run) {
   auto past = find_calibration(reads.store(), RunKind::kProof, run, reads.config_digest());
-  if (auto* refusal = std::get_if<VerificationRefusal>(&past)) return *std::move(refusal);
+  if (auto* refusal = std::get_if<VerificationRefusal>(&past)) return *refusal;
   const auto& place = reads.place();
   return record_of(std::get<PastCalibration>(past), reads.cell(),
                    place ? place->cell_from_block : Eigen::Isometry3d::Identity());
