@@ -109,8 +109,8 @@ void open_socket(std::optional<LocalListener>& socket, asio::io_context& context
 /// How often the tokens are read again: one that was removed ends so soon.
 constexpr std::chrono::milliseconds kTokensLook{1000};
 
-/// How old the metrics of checks and models may be.
-constexpr std::chrono::milliseconds kCellLook{60'000};
+/// How old the metrics of checks and models may be: ten years of daily checks are read in a second.
+constexpr std::chrono::milliseconds kCellLook{300'000};
 
 /// How long the end of a flood of refusals may be missing in the audit.
 constexpr std::chrono::milliseconds kStrangersLook{10'000};
