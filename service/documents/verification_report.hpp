@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "service/documents/carried_json.hpp"
+#include "service/documents/checks_document.hpp"
 #include "service/documents/conditions_document.hpp"
 #include "service/documents/report_head.hpp"
 #include "service/documents/words.hpp"
@@ -63,6 +64,7 @@ struct VerificationReport : ReportHead {
   std::vector<Touch> touches;
   std::optional<Carried<ConditionsDocument>> conditions;  // as stored when the run started
   std::optional<CarriedJson> result;                      // touchcal/proof/1 or touchcal/check/1
+  std::optional<ChecksDocument> checks;  // of a check: those of its calibration up to this one
 
   template <class Self, class Fields>
   static void visit(Self& self, Fields& fields) {
@@ -74,6 +76,7 @@ struct VerificationReport : ReportHead {
     fields("touches", self.touches);
     fields("conditions", self.conditions);
     fields("result", self.result);
+    fields("checks", self.checks);
   }
 };
 

@@ -71,7 +71,7 @@ constexpr std::string_view kVerificationVerdict = R"({
 constexpr std::string_view kVerificationReport = R"({
 "type":"object",
 "required":["schema","kind","cell","touchcal_version","run","raw_data","touched_again","refused_contacts","faults","calibration",
-  "touches","conditions","result"],
+  "touches","conditions","result","checks"],
 "properties":{
   "schema":{"const":"touchcal/verification-report/1"},
   "kind":{"enum":["proof","check"]},
@@ -85,7 +85,8 @@ constexpr std::string_view kVerificationReport = R"({
   "touches":{"type":"array","items":{"type":"object","required":["touch","plane","role","joints_deg","deviation_mm"],
     "description":"deviation_mm: distance_mm of a proof's result, change_mm of a check's"}},
   "conditions":{"type":["object","null"]},
-  "result":{"type":["object","null"],"description":"touchcal/proof/1 or touchcal/check/1 as stored"}}})";
+  "result":{"type":["object","null"],"description":"touchcal/proof/1 or touchcal/check/1 as stored"},
+  "checks":{"type":["object","null"],"description":"of a check: touchcal/checks/1 of its calibration up to this one"}}})";
 
 constexpr std::string_view kChecks = R"({
 "type":"object",

@@ -130,6 +130,7 @@ std::string legend(const Figure& figure) {
   const double y = kHeight - 7;
   constexpr double kLetter = 5.4;
   for (const Series& series : figure.series) {
+    if (series.name.empty()) continue;
     drawn += mark(series.mark, x + 3, y - 3) + text(x + 10, y, "start", series.name);
     x += 22 + kLetter * static_cast<double>(series.name.size());
   }

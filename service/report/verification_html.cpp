@@ -126,6 +126,7 @@ std::string verification_html(const VerificationReport& report, const std::strin
       verification_front(report, found, conditions, words, issued_at) +
       section(is_proof ? "Distances from the block" : "Changes since the reference",
               deviation_figures(report, is_proof) + verifying_touches_table(report, is_proof)) +
+      (report.checks ? section("From check to check", check_charts(*report.checks)) : std::string()) +
       run_section(words.how, report, conditions) +
       section("Touches and faults", made_again_table(report) + incident_tables(report)) +
       section("Certificates", certificates_table(conditions) + html::paragraph(words.certificates));

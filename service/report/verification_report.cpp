@@ -76,6 +76,7 @@ std::string verification_report_document(const VerificationRecord& record) {
   }
   if (own.run.conditions_json) report.conditions.emplace().text = *own.run.conditions_json;
   if (own.result_json) report.result = CarriedJson{*own.result_json};
+  report.checks = record.checks;
   return document_text(report);
 }
 

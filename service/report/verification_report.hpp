@@ -16,6 +16,7 @@ struct VerificationRecord {
   std::string cell;                      // its name
   std::optional<StoredRun> calibration;  // nothing where it is no longer stored
   std::vector<StoredTouch> calibration_touches;
+  std::optional<ChecksDocument> checks = {};  // of a check: those of the calibration up to this one
 };
 
 /// touchcal/verification-report/1, one JSON document as text.

@@ -10,9 +10,11 @@
 #include "config/config_error.hpp"
 #include "config/identification_problem.hpp"
 #include "service/base/utc_time.hpp"
+#include "service/documents/checks_view.hpp"
 #include "service/documents/conditions_view.hpp"
 #include "service/documents/parameter_view.hpp"
 #include "service/documents/result_view.hpp"
+#include "service/http/routes/internal/stored_checks.hpp"
 #include "service/http/server/problem.hpp"
 #include "service/report/report_document.hpp"
 #include "service/report/report_html.hpp"
@@ -126,6 +128,13 @@ HttpResponse report_of(const Reads& reads, const RunRecord& record, const std::s
   return saved_as("csv", kCsv, record.run.id, report_csv(report));
 }
 
+/// As they were when this check ended: later ones do not change its report.
+ChecksDocument checks_until(const Reads& reads, const StoredRun& calibration, std::int64_t check) {
+  std::vector<EndedCheck> checks = checks_of(reads.store(), calibration.id);
+  std::erase_if(checks, [check](const EndedCheck& one) { return one.run.id > check; });
+  return checks_view(calibration, checks, std::nullopt, reads.now());
+}
+
 /// The report of a proof or a check in a format, made as that of a calibration is.
 HttpResponse verification_report_of(const Reads& reads, const StoredRun& run, const std::string& format) {
   if (const auto refused = refuse_format(format)) return *refused;
@@ -135,6 +144,8 @@ HttpResponse verification_report_of(const Reads& reads, const StoredRun& run, co
                             .calibration_touches = {}};
   if (run.of_run) record.calibration = reads.store().run(*run.of_run);
   if (record.calibration) record.calibration_touches = reads.store().touches(*run.of_run);
+  if (record.calibration && run.kind == RunKind::kCheck)
+    record.checks = checks_until(reads, *record.calibration, run.id);
   const std::string document = verification_report_document(record);
   if (format == "json") return {.body = document};
   const VerificationReport report = read_verification_report(document);

@@ -13,7 +13,7 @@ namespace cell {
 enum class Mark { kRing, kDot, kCross };
 
 struct Series {
-  std::string name;
+  std::string name;  // empty: not in the legend
   Mark mark = Mark::kDot;
   std::vector<std::pair<double, double>> points;
   bool joined = false;  // by a line

@@ -28,6 +28,8 @@ std::string proof_tables(const ProofDocument& proof);
 std::string check_tables(const CheckDocument& check);
 /// A figure a plane, all of one scale.
 std::string deviation_figures(const VerificationReport& report, bool is_proof);
+/// Each quantity from check to check, with the limits where there are some.
+std::string check_charts(const ChecksDocument& checks);
 std::string verifying_touches_table(const VerificationReport& report, bool is_proof);
 
 }  // namespace cell

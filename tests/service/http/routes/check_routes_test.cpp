@@ -79,6 +79,18 @@ TEST_F(CheckRoutesTest, TellsSoManyOfTheNewestAsAreAskedFor) {
     EXPECT_EQ(problem(get(std::string("/api/v1/checks?limit=") + limit)).at("status"), 400) << limit;
 }
 
+TEST_F(CheckRoutesTest, TheReportOfACheckHasThoseUpToItAndLaterOnesChangeNothing) {
+  const std::int64_t calibration = accepted_calibration();
+  const std::int64_t first = ended_check(calibration, result_with(0.1));
+  const auto report = [&] { return get(path_of(first) + "/report?format=json").body; };
+  const std::string before = report();
+  ended_check(calibration, result_with(0.2));
+  EXPECT_EQ(report(), before);
+  const auto checks = nlohmann::json::parse(before).at("checks");
+  EXPECT_EQ(checks.at("count"), 1);
+  EXPECT_EQ(checks.at("checks").at(0).at("run"), std::to_string(first));
+}
+
 TEST_F(CheckRoutesTest, RefusesWhatIsNoCalibration) {
   EXPECT_EQ(problem(get("/api/v1/checks")).at("status"), 409);
   const std::int64_t check = ended_check(accepted_calibration(), result_with(0.0));

@@ -1,0 +1,61 @@
+#include <spdlog/fmt/fmt.h>
+
+#include <algorithm>
+
+#include "service/report/internal/figure.hpp"
+#include "service/report/internal/report_parts.hpp"
+#include "service/report/internal/verification_parts.hpp"
+
+namespace cell {
+namespace {
+
+std::string quantity_title(const std::string& quantity) {
+  if (quantity == "growth") return "Growth of the arm";
+  if (quantity == "residual") return "Change that the growth does not explain";
+  return "Joint " + quantity.substr(quantity.rfind('_') + 1) + ", as if it alone had changed";
+}
+
+/// The points are numbered as checks of the calibration, the reference among them.
+Figure figure_of(const ChecksDocument::Chart& chart, const std::vector<std::string>& runs) {
+  Series values{.name = "check"}, means{.name = "weighted mean", .mark = Mark::kRing, .joined = true};
+  Series upper{.name = "limits", .mark = Mark::kCross, .joined = true};
+  Series lower = upper;
+  lower.name = "";
+  for (const ChecksDocument::Point& point : chart.points) {
+    const auto number = static_cast<double>(std::ranges::find(runs, point.run) - runs.begin() + 1);
+    if (point.value) values.points.emplace_back(number, *point.value);
+    if (point.weighted_mean) means.points.emplace_back(number, *point.weighted_mean);
+    if (!point.shewhart_limit || !chart.centre) continue;
+    upper.points.emplace_back(number, *chart.centre + *point.shewhart_limit);
+    lower.points.emplace_back(number, *chart.centre - *point.shewhart_limit);
+  }
+  Figure figure{.title = quantity_title(chart.quantity),
+                .x_label = "number of the check",
+                .y_label = chart.unit,
+                .series = {values},
+                .level = chart.centre,
+                .level_name = "first checks",
+                .x_range = std::pair(1.0, static_cast<double>(runs.size()))};
+  if (!upper.points.empty()) figure.series.insert(figure.series.end(), {means, upper, lower});
+  return figure;
+}
+
+}  // namespace
+
+std::string check_charts(const ChecksDocument& checks) {
+  std::vector<std::string> runs;
+  for (const ChecksDocument::Check& check : checks.checks) runs.push_back(check.run);
+  std::string drawn;
+  for (const ChecksDocument::Chart& chart : checks.charts)
+    if (chart.points.size() > 1) drawn += svg(figure_of(chart, runs));
+  const std::string counts = fmt::format(
+      "{} checks up to this one, reference of {} of {}, limits from {} of {}. Beyond a limit is what chance "
+      "makes of one check in 30 or fewer.",
+      checks.count, checks.reference.count, checks.reference.needed, checks.base.count, checks.base.needed);
+  return html::paragraph(counts) +
+         (drawn.empty() ? html::paragraph("A figure begins with the second check that was held against the "
+                                          "reference.")
+                        : drawn);
+}
+
+}  // namespace cell

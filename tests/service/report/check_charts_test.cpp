@@ -1,0 +1,58 @@
+#include <gmock/gmock.h>
+
+#include "service/report/internal/verification_parts.hpp"
+#include "service/report/verification_html.hpp"
+#include "tests/service/report/verified_run.hpp"
+
+namespace cell {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+/// Fourteen checks, of which the first three are the reference; limits from the last one on.
+ChecksDocument charted_checks() {
+  ChecksDocument checks;
+  checks.of_run = "7";
+  checks.count = 14;
+  checks.reference = {.count = 3, .needed = 3};
+  checks.base = {.count = 10, .needed = 10};
+  ChecksDocument::Chart joint{.quantity = "joint_4", .unit = "mrad", .centre = 0.01, .points = {}};
+  for (int run = 8; run < 22; ++run) {
+    checks.checks.push_back({.run = std::to_string(run)});
+    if (run > 10) joint.points.push_back({.run = std::to_string(run), .value = 0.02});
+  }
+  joint.points.back().shewhart_limit = 0.05;
+  joint.points.back().weighted_mean = 0.015;
+  checks.charts = {
+      joint, {.quantity = "growth", .unit = "ppm", .centre = {}, .points = {{.run = "21", .value = 3.0}}}};
+  return checks;
+}
+
+TEST(CheckCharts, EachQuantityWithTwoPointsIsAFigureWithItsLimits) {
+  const std::string drawn = check_charts(charted_checks());
+  EXPECT_THAT(drawn, AllOf(HasSubstr("14 checks up to this one, reference of 3 of 3, limits from 10 of 10"),
+                           HasSubstr("Joint 4, as if it alone had changed"), HasSubstr("weighted mean"),
+                           HasSubstr(">limits</text>"), HasSubstr("first checks")));
+  EXPECT_THAT(drawn, Not(HasSubstr("Growth of the arm"))) << "one point is no curve";
+}
+
+TEST(CheckCharts, WithoutTwoPointsThereIsASentence) {
+  ChecksDocument checks = charted_checks();
+  checks.charts.front().points.resize(1);
+  EXPECT_THAT(check_charts(checks), AllOf(HasSubstr("A figure begins"), Not(HasSubstr("<svg"))));
+}
+
+TEST(CheckCharts, AreInTheReportOfACheckAndInNoProof) {
+  VerificationRecord record = check_record();
+  record.checks = charted_checks();
+  const auto page = [](const VerificationRecord& of) {
+    return verification_html(read_verification_report(verification_report_document(of)), "2026-02-04");
+  };
+  EXPECT_THAT(page(record), HasSubstr("From check to check"));
+  EXPECT_THAT(page(proof_record()), Not(HasSubstr("From check to check")));
+}
+
+}  // namespace
+}  // namespace cell
