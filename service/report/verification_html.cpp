@@ -34,7 +34,7 @@ constexpr KindWords kProofWords{
     .good = "proved",
     .good_words = "The calibrated arm is right at this place, where it was not calibrated.",
     .bad = "not proved",
-    .bad_words = "The calibrated arm is not right at this place, where it was not calibrated.",
+    .bad_words = "At this place, where it was not calibrated, the calibrated arm does not meet the limits.",
     .does_not_show =
         "What this proof does not show: it says nothing of volumes that are far both from the place of the "
         "calibration and from the place of this proof, and nothing of what has changed in the cell since.",

@@ -67,7 +67,8 @@ TEST(VerificationHtml, AProofsFiguresStandBesideTheirLimits) {
   off.verdict = {.accepted = false, .reasons = {"the touches are off"}};
   off.rms_mm = 0.05;
   EXPECT_THAT(verified_page(proof_record(off)),
-              AllOf(HasSubstr("Verdict: not proved"), HasSubstr("<li>the touches are off</li>"),
+              AllOf(HasSubstr("Verdict: not proved"), HasSubstr("does not meet the limits"),
+                    HasSubstr("<li>the touches are off</li>"),
                     HasSubstr("<td>0.0500 mm</td><td>at most 0.03 mm</td><td>beyond</td>")));
 }
 

@@ -91,6 +91,17 @@ TEST_F(CheckRoutesTest, TheReportOfACheckHasThoseUpToItAndLaterOnesChangeNothing
   EXPECT_EQ(checks.at("checks").at(0).at("run"), std::to_string(first));
 }
 
+TEST_F(CheckRoutesTest, ACheckHasAReportInThreeFormsAndNoSimulation) {
+  const std::string report = path_of(ended_check(accepted_calibration(), result_with(0.125))) + "/report";
+  EXPECT_THAT(get(report).content_type, HasSubstr("text/html"));
+  EXPECT_THAT(get(report + "?format=csv").body, HasSubstr(",deviation_mm,captured_at"));
+  EXPECT_EQ(nlohmann::json::parse(get(report + "?format=json").body).at("schema"),
+            "touchcal/verification-report/1");
+  EXPECT_EQ(problem(get(report + "?format=docx")).at("status"), 400);
+  EXPECT_THAT(problem(post(report + "/monte-carlo")).at("detail").get<std::string>(),
+              HasSubstr("is a check, which calibrates nothing"));
+}
+
 TEST_F(CheckRoutesTest, RefusesWhatIsNoCalibration) {
   EXPECT_EQ(problem(get("/api/v1/checks")).at("status"), 409);
   const std::int64_t check = ended_check(accepted_calibration(), result_with(0.0));
