@@ -127,7 +127,7 @@ std::variant<Comparison, ComparisonRefusal> compare(const CalibrationRecord& ear
                    .covariance = earlier.scatter()(columns, columns) + later.scatter()(columns, columns)};
   whole.covariance += unlike(columns, Eigen::all) * unlike(columns, Eigen::all).transpose();
   Difference of_arm = part_of(whole, false);
-  const Difference of_tool = part_of(whole, true);
+  Difference of_tool = part_of(whole, true);
   if (of_arm.columns.size() < 2)
     return ComparisonRefusal{
         "the two calibrations have nothing of the arm in common that both estimated: compare two of one "
@@ -142,12 +142,17 @@ std::variant<Comparison, ComparisonRefusal> compare(const CalibrationRecord& ear
   made.difference(columns) = whole.errors;
   made.covariance(columns, columns) = whole.covariance;
   const double noise_degrees = std::min(earlier.noise().degrees_of_freedom, later.noise().degrees_of_freedom);
-  const Eigen::VectorXd by_growth = estimate_by_growth(later)(of_arm.columns);
+  const Eigen::VectorXd all_by_growth = estimate_by_growth(later);
+  const Eigen::VectorXd by_growth = all_by_growth(of_arm.columns);
   const WhitenedRows white(of_arm.covariance, Eigen::MatrixXd(by_growth.size(), 0));
   const Eigen::VectorXd grown = white.rest(by_growth).col(0);
   made.growth = grown.dot(white.rest(of_arm.errors).col(0)) / grown.squaredNorm();
   made.std_growth = 1.0 / grown.norm();
   of_arm.errors -= made.growth * by_growth;
+  // An arm that has grown may bend what is estimated of the stylus as well.
+  const Eigen::VectorXd tool_by_growth = all_by_growth(of_tool.columns);
+  of_tool.errors -= made.growth * tool_by_growth;
+  of_tool.covariance += made.std_growth * made.std_growth * tool_by_growth * tool_by_growth.transpose();
   made.arm = compared(of_arm, by_growth, noise_degrees);
   made.tool = compared(of_tool, Eigen::MatrixXd(of_tool.errors.size(), 0), noise_degrees);
   return made;

@@ -31,7 +31,8 @@ struct ComparedErrors {
   double chi_square = 0.0;
   double degrees_of_freedom = 0.0;
   double p = 1.0;  // by F, as the noise of each calibration has few degrees of freedom
-  std::vector<Combination> combinations;
+  std::vector<Combination>
+      combinations;  // empty: neither calibration nor chance says anything of these errors
 
   [[nodiscard]] bool has_changed() const { return p < kComparisonP; }
 };

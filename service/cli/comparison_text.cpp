@@ -26,9 +26,9 @@ std::string shares_text(const ComparisonDocument::Combination& combination) {
 
 std::string part_text(const char* name, const ComparisonDocument::Part& part,
                       const std::optional<double>& p_min) {
-  if (part.combinations.empty()) return fmt::format("\n{}: nothing of it was identified by both\n", name);
+  if (!part.changed) return fmt::format("\n{}: nothing of it was identified by both\n", name);
   std::string lines = fmt::format("\n{}: {} (chance {}, at least {}; chi-square {} of {})\n", name,
-                                  part.changed ? "CHANGED" : "as it was", figure_or_dash(part.p, "{:.3g}"),
+                                  *part.changed ? "CHANGED" : "as it was", figure_or_dash(part.p, "{:.3g}"),
                                   figure_or_dash(p_min, "{:.2g}"), figure_or_dash(part.chi_square, "{:.1f}"),
                                   figure_or_dash(part.degrees_of_freedom, "{:.0f}"));
   lines += "     E_n  combination\n";

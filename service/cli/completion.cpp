@@ -72,7 +72,7 @@ std::string bash_script(const CLI::App& app) {
   for (const CLI::App* command : shown_commands(app)) with_value += " " + names_of(*command, true);
   return fmt::format(R"sh(# bash completion of {0}, made by `{0} completion bash`
 _{0}() {{
-  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" options kind= cell=() i
+  local word="${{COMP_WORDS[COMP_CWORD]}}" before="${{COMP_WORDS[COMP_CWORD-1]}}" options kind= same=() i name
   case "${{COMP_WORDS[1]}}" in
 {2}    *) options="{3}" ;;
   esac
@@ -85,9 +85,15 @@ _{0}() {{
   esac
   if [ -n "$kind" ] && [[ "$word" != -* ]]; then
     for ((i = 2; i < COMP_CWORD; i++)); do
-      [ "${{COMP_WORDS[i]}}" != --cell ] || cell=(--cell "${{COMP_WORDS[i+1]}}")
+      case "${{COMP_WORDS[i]}}" in
+        --cell|--daemon|--state|--ca) same+=("${{COMP_WORDS[i]}}" "${{COMP_WORDS[i+1]/#\~/$HOME}}") ;;
+        --token-in-clear) same+=(--token-in-clear) ;;
+      esac
     done
-    COMPREPLY=($(compgen -W "$("${{COMP_WORDS[0]}}" names "$kind" "${{cell[@]}}" 2>/dev/null)" -- "$word"))
+    COMPREPLY=()
+    while IFS= read -r name; do
+      [[ "$name" != "$word"* ]] || COMPREPLY+=("$(printf %q "$name")")
+    done < <("${{COMP_WORDS[0]}}" names "$kind" "${{same[@]}}" 2>/dev/null)
     return
   fi
   if [ "$COMP_CWORD" -eq 1 ]; then
@@ -141,9 +147,12 @@ std::string zsh_script(const CLI::App& app) {
   return fmt::format(R"sh(#compdef {0}
 # zsh completion of {0}, made by `{0} completion zsh`
 _{0}_names() {{
-  local i=${{words[(i)--cell]}} cell=()
-  (( i < $#words )) && cell=(--cell $words[i+1])
-  compadd -- ${{(f)"$({0} names $1 $cell 2>/dev/null)"}}
+  local option i same=()
+  for option in --cell --daemon --state --ca; do
+    i=${{words[(i)$option]}}
+    (( i < $#words )) && same+=($option ${{words[i+1]/#\~/$HOME}})
+  done
+  compadd -- ${{(f)"$({0} names $1 $same 2>/dev/null)"}}
 }}
 _{0}() {{
   local -a commands

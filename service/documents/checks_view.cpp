@@ -78,8 +78,9 @@ ChecksDocument::Chart chart_of(const Quantity& quantity, const std::vector<Ended
   return chart;
 }
 
-void warn_of(const Quantity& quantity, const ChecksDocument::Chart& chart, ChecksDocument& document) {
-  if (chart.points.empty() || chart.points.back().run != document.checks.back().run) return;
+void warn_of(const Quantity& quantity, const ChecksDocument::Chart& chart, const EndedCheck& newest_check,
+             ChecksDocument& document) {
+  if (chart.points.empty() || chart.points.back().run != std::to_string(newest_check.run.id)) return;
   const ChecksDocument::Point& newest = chart.points.back();
   const auto add = [&](const char* what, double value, double limit) {
     const double away = value - *chart.centre;
@@ -96,15 +97,22 @@ void warn_of(const Quantity& quantity, const ChecksDocument::Chart& chart, Check
   }
 }
 
-/// A check that alarms says itself what has changed: where each joint seems to be then is no news.
-void warn_of_newest(const std::vector<Quantity>& quantities, const EndedCheck& newest,
+/// Of the newest check with a verdict: one without takes nothing back. A check that alarms says itself what
+/// has changed: where each joint seems to be then is no news.
+void warn_of_newest(const std::vector<Quantity>& quantities, const std::vector<EndedCheck>& checks,
                     ChecksDocument& document) {
+  const auto found = std::find_if(checks.rbegin(), checks.rend(), [](const EndedCheck& check) {
+    return check.result.verdict.accepted.has_value();
+  });
+  if (found == checks.rend()) return;
+  const EndedCheck& newest = *found;
   if (newest.result.verdict.accepted == false) {
     for (const std::string& reason : newest.result.verdict.reasons)
       document.warnings.push_back(fmt::format("run {}: {}", newest.run.id, reason));
     return;
   }
-  for (std::size_t i = 0; i < quantities.size(); ++i) warn_of(quantities[i], document.charts[i], document);
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    warn_of(quantities[i], document.charts[i], newest, document);
 }
 
 /// One that says something of the cell: it has a verdict, or is part of the reference.
@@ -165,7 +173,7 @@ ChecksDocument checks_view(const StoredRun& calibration, const std::vector<Ended
                    .needed = calib::kChartBaseCount};
   const auto quantities = charted_quantities();
   for (const Quantity& quantity : quantities) document.charts.push_back(chart_of(quantity, checks));
-  if (!checks.empty()) warn_of_newest(quantities, checks.back(), document);
+  warn_of_newest(quantities, checks, document);
   if (every) tell_due(calibration, *every, now, document);
   return document;
 }

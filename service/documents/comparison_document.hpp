@@ -33,7 +33,7 @@ struct ComparisonDocument {
     }
   };
   struct Part {
-    bool changed = false;
+    std::optional<bool> changed;  // nothing, as the figures: none of these errors was identified by both
     std::optional<double> p;
     std::optional<double> chi_square;
     std::optional<double> degrees_of_freedom;
@@ -52,7 +52,7 @@ struct ComparisonDocument {
   std::string schema = "touchcal/comparison/1";
   std::string earlier;  // runs
   std::string later;
-  VerificationVerdict verdict;  // accepted: neither arm nor tool has changed
+  VerificationVerdict verdict;  // accepted: neither has changed, as far as is known
   std::optional<double> p_min;  // of each part
   std::optional<double> growth_ppm;
   std::optional<double> std_growth_ppm;

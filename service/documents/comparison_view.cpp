@@ -11,6 +11,7 @@ namespace {
 constexpr double kPerMillionth = 1e6;
 
 ComparisonDocument::Part part_told(const calib::ComparedErrors& compared) {
+  if (compared.combinations.empty()) return {};
   ComparisonDocument::Part part{.changed = compared.has_changed(),
                                 .p = finite(compared.p),
                                 .chi_square = finite(compared.chi_square),
@@ -51,13 +52,16 @@ ComparisonDocument comparison_view(std::int64_t earlier, std::int64_t later,
   document.std_tip_difference_mm = in_box_mm(box, comparison.covariance);
   document.arm = part_told(comparison.arm);
   document.tool = part_told(comparison.tool);
-  document.verdict.accepted = !document.arm.changed && !document.tool.changed;
-  if (document.arm.changed)
+  document.verdict.accepted = !document.arm.changed.value_or(false) && !document.tool.changed.value_or(false);
+  if (!document.tool.changed)
+    document.verdict.reasons.emplace_back(
+        "of the stylus nothing was identified by both runs: it is not compared");
+  if (document.arm.changed.value_or(false))
     document.verdict.reasons.push_back(
         fmt::format("the arm has changed between run {} and run {}, most of all in {}: look for a collision "
                     "or a repair in between, and approve the later run",
                     earlier, later, largest_of(document.arm)));
-  if (document.tool.changed)
+  if (document.tool.changed.value_or(false))
     document.verdict.reasons.push_back(
         fmt::format("the stylus was changed or has bent between run {} and run {}", earlier, later));
   return document;

@@ -154,7 +154,7 @@ constexpr std::string_view kComparedPart = R"({
 "type":"object",
 "required":["changed","p","chi_square","degrees_of_freedom","combinations"],
 "properties":{
-  "changed":{"type":"boolean"},
+  "changed":{"type":["boolean","null"],"description":"null: nothing of it was identified by both"},
   "p":{"type":["number","null"]},
   "chi_square":{"type":["number","null"]},
   "degrees_of_freedom":{"type":["number","null"]},

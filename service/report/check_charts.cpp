@@ -21,13 +21,19 @@ Figure figure_of(const ChecksDocument::Chart& chart, const std::vector<std::stri
   Series upper{.name = "limits", .mark = Mark::kCross, .joined = true};
   Series lower = upper;
   lower.name = "";
+  const bool is_bad_below = chart.quantity != "residual";
+  Series mean_upper{.name = "", .mark = Mark::kRing, .joined = true}, mean_lower = mean_upper;
   for (const ChecksDocument::Point& point : chart.points) {
     const auto number = static_cast<double>(std::ranges::find(runs, point.run) - runs.begin() + 1);
     if (point.value) values.points.emplace_back(number, *point.value);
     if (point.weighted_mean) means.points.emplace_back(number, *point.weighted_mean);
     if (!point.shewhart_limit || !chart.centre) continue;
+    if (point.ewma_limit) {
+      mean_upper.points.emplace_back(number, *chart.centre + *point.ewma_limit);
+      if (is_bad_below) mean_lower.points.emplace_back(number, *chart.centre - *point.ewma_limit);
+    }
     upper.points.emplace_back(number, *chart.centre + *point.shewhart_limit);
-    lower.points.emplace_back(number, *chart.centre - *point.shewhart_limit);
+    if (is_bad_below) lower.points.emplace_back(number, *chart.centre - *point.shewhart_limit);
   }
   Figure figure{.title = quantity_title(chart.quantity),
                 .x_label = "number of the check",
@@ -36,7 +42,8 @@ Figure figure_of(const ChecksDocument::Chart& chart, const std::vector<std::stri
                 .level = chart.centre,
                 .level_name = "first checks",
                 .x_range = std::pair(1.0, static_cast<double>(runs.size()))};
-  if (!upper.points.empty()) figure.series.insert(figure.series.end(), {means, upper, lower});
+  if (!upper.points.empty())
+    figure.series.insert(figure.series.end(), {means, upper, lower, mean_upper, mean_lower});
   return figure;
 }
 

@@ -14,6 +14,7 @@ struct CellFigures {
 
   /// End of the newest check of the calibration, of those that have a verdict or are of its reference.
   std::optional<Time> checked_at;
+  std::optional<bool> is_unchanged;         // by the newest check with a verdict
   std::optional<Time> check_due_at;         // nothing where the cell's file has no rule
   std::map<int, double> joint_offsets_rad;  // by joint from 1; these two of the newest check with a verdict
   std::optional<double> arm_growth;         // of the arm's lengths since the reference: 1e-6 is a ppm

@@ -134,6 +134,23 @@ COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchcal; printf '%s ' "${COMPREPLY[
   EXPECT_EQ(run({"/bin/bash", script.string(), program, "show", ""}).out, " ") << "no daemon runs";
 }
 
+TEST_F(CommandLine, ANameThatIsCompletedIsTextAndNothingThatTheShellRuns) {
+  const auto script = folder_ / "completion.bash", program = folder_ / "touchcal", made = folder_ / "made";
+  std::ofstream(script) << run({"touchcal", "completion", "bash"}).out << R"(
+COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _touchcal; printf '%s\n' "${COMPREPLY[@]}"
+)";
+  std::ofstream(program) << "#!/bin/sh\necho \"$*\" >" << (folder_ / "asked").string() << "\necho '$(touch$"
+                         << "{IFS}" << made.string() << ")'\necho 'two words'\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const std::string out = run({"/bin/bash", script.string(), program.string(), "run", "--daemon",
+                               "http://other:1", "--recipe", ""})
+                              .out;
+  EXPECT_FALSE(std::filesystem::exists(made));
+  EXPECT_THAT(out, HasSubstr("two\\ words\n"));
+  EXPECT_EQ(run({"/bin/cat", (folder_ / "asked").string()}).out, "names recipes --daemon http://other:1\n")
+      << "the daemon of the command";
+}
+
 TEST_F(CommandLine, ACommandThatThereIsNotIsToldWithTheOneThatWasMeant) {
   const Finished swapped = run({"touchcal", "statsu"});
   EXPECT_EQ(swapped.exit_code, cell::kExitUsage);

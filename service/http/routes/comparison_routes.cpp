@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <tuple>
 
 #include "service/acquisition/past_calibration.hpp"
 #include "service/documents/comparison_view.hpp"
@@ -34,17 +34,24 @@ HttpResponse comparison_of(const Reads& reads, std::int64_t earlier, std::int64_
                                                      reads.tip_regions().tip().workspace_box)));
 }
 
+/// By their dates: a run that was imported has a number of this daemon.
+bool is_earlier(const StoredRun& one, const StoredRun& other) {
+  return std::tie(one.started_at, one.id) < std::tie(other.started_at, other.id);
+}
+
 HttpResponse get_comparison(const Call& call) {
-  const auto run = call.run_id();
-  if (!run || !call.reads.store().run(*run))
-    return not_found("there is no run '" + std::string(call.id) + "'; GET /api/v1/runs lists them");
+  const auto id = call.run_id();
+  const auto run = id ? call.reads.store().run(*id) : std::nullopt;
+  if (!run) return not_found("there is no run '" + std::string(call.id) + "'; GET /api/v1/runs lists them");
   const auto other = call.number("with");
-  if (!other || *other == *run)
+  if (!other || *other == run->id)
     return to_response({.status = 400,
                         .kind = ProblemKind::kQuery,
                         .detail = "with which run? Give with=RUN, the number of another calibration",
                         .parameter = "with"});
-  return comparison_of(call.reads, std::min(*run, *other), std::max(*run, *other));
+  const auto other_run = call.reads.store().run(*other);
+  const bool is_second = other_run && is_earlier(*other_run, *run);
+  return comparison_of(call.reads, is_second ? *other : run->id, is_second ? run->id : *other);
 }
 
 }  // namespace

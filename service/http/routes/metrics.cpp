@@ -83,6 +83,8 @@ class StoredFamilies {
                          "Since the newest check of the calibration that counts; NaN before the first")),
         check_due_(gauge(registry, "touchcal_check_due_seconds",
                          "Until the next check, negative when it is overdue; NaN without a rule")),
+        check_passed_(gauge(registry, "touchcal_check_passed",
+                            "1 where the newest check with a verdict found the cell unchanged, 0 where not")),
         arm_growth_(gauge(registry, "touchcal_arm_growth_ratio",
                           "Of the arm's lengths since the reference, by the newest check")),
         proof_passed_(gauge(registry, "touchcal_proof_passed",
@@ -105,6 +107,7 @@ class StoredFamilies {
   void show(const CellFigures& figures, std::chrono::system_clock::time_point now) {
     check_age_.Set(since_s(figures.checked_at, now));
     check_due_.Set(figures.check_due_at ? until_s(*figures.check_due_at, now) : kUnknownFigure);
+    check_passed_.Set(figure_of(figures.is_unchanged));
     arm_growth_.Set(figures.arm_growth.value_or(kUnknownFigure));
     proof_passed_.Set(figure_of(figures.is_proved));
     model_age_.Set(since_s(figures.model_approved_at, now));
@@ -122,6 +125,7 @@ class StoredFamilies {
  private:
   Gauge& check_age_;
   Gauge& check_due_;
+  Gauge& check_passed_;
   Gauge& arm_growth_;
   Gauge& proof_passed_;
   Gauge& model_age_;

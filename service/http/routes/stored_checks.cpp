@@ -49,6 +49,7 @@ void find_newest_verdict(const std::vector<EndedCheck>& checks, CellFigures& fig
     return check.result.verdict.accepted.has_value();
   });
   if (newest == checks.rend()) return;
+  figures.is_unchanged = newest->result.verdict.accepted;
   for (const CheckDocument::Joint& joint : newest->result.joints) {
     if (joint.offset_mrad) figures.joint_offsets_rad[joint.joint] = *joint.offset_mrad * 1e-3;
   }

@@ -159,6 +159,9 @@ TEST(ChecksView, OfANewestCheckThatAlarmsOnlyItsCauseIsTold) {
   const ChecksDocument document = view_of(checks);
   EXPECT_EQ(document.checks.back().joint, 3);
   EXPECT_THAT(document.warnings, ElementsAre("run 15: joint 3 has changed"));
+  checks.push_back(reference_of_day(kBaseEnd + 2));
+  checks.back().run.verdict = Verdict::kIncomplete;
+  EXPECT_EQ(view_of(checks).warnings, document.warnings) << "one without a verdict takes nothing back";
 }
 
 TEST(ChecksView, ACheckThatWasNotTakenIntoTheReferenceIsNone) {

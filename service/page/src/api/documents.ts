@@ -271,7 +271,7 @@ export interface Checks {
 
 /** Part of a comparison: the arm, or the stylus. */
 export interface ComparedPart {
-  changed: boolean;
+  changed: boolean | null;  // null: nothing of it was identified by both
   p: number | null;
   combinations: {e_n: number | null; shares: {parameter: string; share: number | null}[]}[];
 }

@@ -290,7 +290,7 @@ export class Desk {
   /** Whether the daemon took it. */
   async startRun(conditions: Conditions): Promise<boolean> {
     const {recipe, cell} = this.store.state;
-    return recipe !== null && this.send('start', '/api/v1/runs', startBody(recipe, conditions, cell?.block ?? null));
+    return (recipe !== null || conditions.kind !== undefined) && this.send('start', '/api/v1/runs', startBody(recipe ?? '', conditions, cell?.block ?? null));
   }
 
   async command(command: Command): Promise<void> {

@@ -12,14 +12,14 @@ export interface Reason { key: WordKey; cause?: Cause; code?: string; state?: St
 /** What leads on from here: one action at a time. */
 export interface MainButton { action: NonNullable<MainAction>; why: Reason | null }
 
-/** `bringsTemperature`: the start would bring the block's temperature. */
-export function mainButton(state: PageState, bringsTemperature: boolean): MainButton {
+/** `bringsTemperature`: the start would bring the block's temperature. A check and a proof have the recipe of their calibration. */
+export function mainButton(state: PageState, bringsTemperature: boolean, needsRecipe = true): MainButton {
   const {status} = state;
   const action = status ? mainAction(status.state, status.retract_due === true) : null;
-  return {action: action ?? 'start', why: reason(state, action, bringsTemperature)};
+  return {action: action ?? 'start', why: reason(state, action, bringsTemperature, needsRecipe)};
 }
 
-function reason(state: PageState, action: MainAction, bringsTemperature: boolean): Reason | null {
+function reason(state: PageState, action: MainAction, bringsTemperature: boolean, needsRecipe: boolean): Reason | null {
   const {status, link, role, busy} = state;
   if (link === 'connecting') return {key: 'whyUnknown'};
   if (link !== 'live' && link !== 'polling') return {key: 'whyNoLink'};
@@ -33,11 +33,11 @@ function reason(state: PageState, action: MainAction, bringsTemperature: boolean
   if (action === 'clear') return cause === null ? null : {key: 'whyNotReady', cause};
   if (action !== 'start') return null;
   if (isMotionDisabled(status)) return {key: 'whyNotReady', cause: 'estop'};  // sooner than the list of conditions is asked for
-  return reasonOfStart(state, bringsTemperature);
+  return reasonOfStart(state, bringsTemperature, needsRecipe);
 }
 
-function reasonOfStart({recipe, unmet}: PageState, bringsTemperature: boolean): Reason | null {
+function reasonOfStart({recipe, unmet}: PageState, bringsTemperature: boolean, needsRecipe: boolean): Reason | null {
   if (unmet === null) return {key: 'whyUnknown'};
   if (!isReadyFor(unmet, bringsTemperature)) return {key: 'whyNotReady', ...standsInTheWay(unmet, bringsTemperature)};
-  return recipe ? null : {key: 'whyNoRecipe'};
+  return recipe || !needsRecipe ? null : {key: 'whyNoRecipe'};
 }

@@ -76,7 +76,8 @@ const kWork = ['calibration', 'check', 'proof'] as const;
 /** What START does; without a calibration there is nothing to choose. */
 function WorkChoice({state, given, onConditions}: {state: PageState; given: Conditions; onConditions: (conditions: Conditions) => void}) {
   const say = useSay();
-  if (!state.status?.last_accepted_run_id) return null;
+  const mayProve = Boolean(state.status?.last_accepted_run_id);  // without a number a proof is of a calibration of this daemon
+  if (!mayProve && state.countingChecks?.kind !== 'known') return null;
   const choose = (work: typeof kWork[number]): void => {
     const {kind: _, ...others} = given;
     onConditions(work === 'calibration' ? others : {...others, kind: work});
@@ -86,7 +87,7 @@ function WorkChoice({state, given, onConditions}: {state: PageState; given: Cond
     <section class="recipe" aria-labelledby="work">
       <h2 id="work">{say('work')}</h2>
       <div class="choices" role="radiogroup" aria-labelledby="work">
-        {kWork.map((work) => (
+        {kWork.filter((work) => work !== 'proof' || mayProve).map((work) => (
           <label key={work} class={work === chosen ? 'choice chosen' : 'choice'}>
             <input type="radio" name="work" value={work} checked={work === chosen} onChange={() => choose(work)} />
             <span class="name">{say(`work_${work}`)}</span>

@@ -26,6 +26,9 @@ export function Comparison({state}: {state: PageState}) {
   );
 }
 
+const verdictOfPart = ({changed}: ComparedPart) => (changed === null ? 'none' : changed ? 'rejected' : 'accepted');
+const kPartWords = {none: 'comparedUnknown', rejected: 'comparedChanged', accepted: 'comparedSame'} as const;
+
 function KnownComparison({comparison}: {comparison: Compared}) {
   const say = useSay();
   const language = useLanguage();
@@ -34,7 +37,7 @@ function KnownComparison({comparison}: {comparison: Compared}) {
     <>
       {([['comparedArm', arm], ['comparedStylus', tool]] as const).map(([what, part]) => (
         <p key={what} class={part.changed ? 'abnormal' : ''}>
-          <Symbol shape={kVerdictShapes[part.changed ? 'rejected' : 'accepted']} /> {say(part.changed ? 'comparedChanged' : 'comparedSame', {what: say(what)})}
+          <Symbol shape={kVerdictShapes[verdictOfPart(part)]} /> {say(kPartWords[verdictOfPart(part)], {what: say(what)})}
         </p>
       ))}
       <p>{say('comparedGrowth', {growth: number(growth_ppm, 0, language), std: number(std_growth_ppm, 0, language)})}</p>

@@ -47,7 +47,7 @@ function MainButton({state, desk, conditions, onStart}: Props) {
   const language = useLanguage();
   const {status, recipe} = state;
   const body = startBody(recipe ?? '', conditions, state.cell?.block ?? null);
-  const {action, why} = mainButton(state, body.block_temperature_c !== undefined);
+  const {action, why} = mainButton(state, body.block_temperature_c !== undefined, !conditions.kind);
   const disabled = why !== null;
   const note = why ? reasonWords(why, say, language) : say(action === 'reset' ? (status?.retract_due ? 'resetBackWords' : 'resetWords') : 'startHold');
   return (

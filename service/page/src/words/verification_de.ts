@@ -61,6 +61,7 @@ export const kVerificationDe: Record<keyof typeof kVerificationEn, string> = {
   comparedPart: 'Teil',
   comparedSame: '{what}: unverändert',
   comparedChanged: '{what}: verändert',
+  comparedUnknown: '{what}: beide Läufe haben davon nichts bestimmt',
   comparedGrowth: 'Längenänderung des Arms dazwischen: {growth} ppm (Standardabweichung {std}). Sie kommt von der Wärme und ist kein Fehler.',
   comparedTip: 'Im Arbeitsraum liegt die Spitze bei beiden um {tip} mm auseinander (quadratisches Mittel); der Zufall allein macht {chance} mm aus.',
   comparedFigures: 'Werte beider Läufe',

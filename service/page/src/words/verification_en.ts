@@ -59,6 +59,7 @@ export const kVerificationEn = {
   comparedPart: 'Part',
   comparedSame: '{what}: as it was',
   comparedChanged: '{what}: changed',
+  comparedUnknown: '{what}: nothing of it was identified by both runs',
   comparedGrowth: 'Growth of the arm in between: {growth} ppm (standard deviation {std}). It comes with the warmth and is no change.',
   comparedTip: 'In the workspace box the two bring the tip {tip} mm apart (rms); chance alone makes {chance} mm.',
   comparedFigures: 'Figures of both runs',

@@ -61,6 +61,7 @@ export const kVerificationFr: Record<keyof typeof kVerificationEn, string> = {
   comparedPart: 'Partie',
   comparedSame: '{what} : inchangé',
   comparedChanged: '{what} : a changé',
+  comparedUnknown: '{what} : rien n’en a été identifié par les deux cycles',
   comparedGrowth: 'Dilatation du bras entre les deux : {growth} ppm (écart type {std}). Elle vient de la température et n’est pas un défaut.',
   comparedTip: 'Dans le volume de travail, les deux placent la pointe à {tip} mm l’une de l’autre (moyenne quadratique) ; le hasard seul donne {chance} mm.',
   comparedFigures: 'Chiffres des deux cycles',

@@ -13,10 +13,11 @@ using ::testing::HasSubstr;
 class ComparisonRoutesTest : public RoutesTest {
  protected:
   /// With the touches of Table III, joint 3 at each of them further by `offset_rad`.
-  std::int64_t calibration(double offset_rad = 0.0, std::optional<std::string> digest = std::nullopt) {
+  std::int64_t calibration(double offset_rad = 0.0, std::optional<std::string> digest = std::nullopt,
+                           const std::string& started_at = "start") {
     const std::int64_t run =
         cell_.store().begin_run({.recipe = "edf-25",
-                                 .started_at = "start",
+                                 .started_at = started_at,
                                  .config_digest = digest ? digest : cell_.operation().config_digest()});
     int number = 0;
     for (calib::Touch touch : table3_touches()) {
@@ -50,12 +51,19 @@ TEST_F(ComparisonRoutesTest, OfTheSameTouchesNothingDiffers) {
   EXPECT_FALSE(document.arm.combinations.empty());
 }
 
+TEST_F(ComparisonRoutesTest, TheEarlierOneIsByItsDateAsAnImportedRunGetsANewNumber) {
+  const std::int64_t young = calibration(0.0, std::nullopt, "2026-05-02"),
+                     old = calibration(0.0, std::nullopt, "2026-01-31");
+  for (const ComparisonDocument& document : {compared(young, old), compared(old, young)})
+    EXPECT_EQ(document.earlier, std::to_string(old));
+}
+
 TEST_F(ComparisonRoutesTest, AnArmWhoseEncoderSlippedHasChangedWhicheverIsNamedFirst) {
   const std::int64_t before = calibration(), after = calibration(1e-3);
   for (const ComparisonDocument& document : {compared(before, after), compared(after, before)}) {
     EXPECT_EQ(document.verdict.accepted, false);
-    EXPECT_TRUE(document.arm.changed);
-    EXPECT_FALSE(document.tool.changed);
+    EXPECT_EQ(document.arm.changed, true);
+    EXPECT_EQ(document.tool.changed, false);
     EXPECT_THAT(document.verdict.reasons.at(0), HasSubstr("the arm has changed between run"));
     EXPECT_GT(document.tip_difference_mm.value(), 0.3);
     EXPECT_GT(std::abs(document.arm.combinations.at(0).e_n.value()), 1.0);

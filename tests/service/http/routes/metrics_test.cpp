@@ -20,7 +20,7 @@ TEST(Metrics, OfWhatIsStoredAreUnknownBeforeItWasRead) {
   Metrics metrics;
   const std::string text = metrics.text({}, kScrape);
   for (const char* one : {"touchcal_check_age_seconds", "touchcal_check_due_seconds",
-                          "touchcal_arm_growth_ratio", "touchcal_proof_passed",
+                          "touchcal_arm_growth_ratio", "touchcal_check_passed", "touchcal_proof_passed",
                           "touchcal_approved_model_age_seconds", "touchcal_approved_model_of_this_arm"})
     EXPECT_THAT(text, HasSubstr(std::string("\n") + one + " Nan\n"));
   for (const char* family :
