@@ -1,6 +1,10 @@
 #include "service/documents/internal/document_fields.hpp"
 
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <type_traits>
+#include <utility>
 
 namespace cell {
 namespace {
@@ -16,10 +20,24 @@ std::string pointer_to(const FieldReader::Place& at) {
                       std::string("expected ") + expected + ", found " + at.value.type_name());
 }
 
-template <class Number>
-Number number_at(const FieldReader::Place& at) {
-  if (!at.value.is_number()) refuse(at, "a number");
-  return at.value.get<Number>();
+/// A whole number that this type holds; 12.0 is one.
+template <class Whole>
+Whole whole_number_at(const FieldReader::Place& at) {
+  const Json& value = at.value;
+  if (!value.is_number()) refuse(at, "a number");
+  bool is_held = false;
+  if (value.is_number_unsigned()) {
+    is_held = std::in_range<Whole>(value.get<std::uint64_t>());
+  } else if (value.is_number_integer()) {
+    is_held = std::in_range<Whole>(value.get<std::int64_t>());
+  } else {
+    const auto figure = value.get<double>();
+    const double above = std::ldexp(1.0, std::numeric_limits<Whole>::digits);  // the first that is too large
+    const double least = std::is_signed_v<Whole> ? -above : 0.0;
+    is_held = figure >= least && figure < above && figure == std::trunc(figure);
+  }
+  if (!is_held) throw DocumentError(pointer_to(at), "is no whole number of the size that is wanted");
+  return value.get<Whole>();
 }
 
 }  // namespace
@@ -71,10 +89,13 @@ void FieldReader::read(const Place& at, bool& value) {
   value = at.value.get<bool>();
 }
 
-void FieldReader::read(const Place& at, int& value) { value = number_at<int>(at); }
-void FieldReader::read(const Place& at, std::int64_t& value) { value = number_at<std::int64_t>(at); }
-void FieldReader::read(const Place& at, std::uint64_t& value) { value = number_at<std::uint64_t>(at); }
-void FieldReader::read(const Place& at, double& value) { value = number_at<double>(at); }
+void FieldReader::read(const Place& at, int& value) { value = whole_number_at<int>(at); }
+void FieldReader::read(const Place& at, std::int64_t& value) { value = whole_number_at<std::int64_t>(at); }
+void FieldReader::read(const Place& at, std::uint64_t& value) { value = whole_number_at<std::uint64_t>(at); }
+void FieldReader::read(const Place& at, double& value) {
+  if (!at.value.is_number()) refuse(at, "a number");
+  value = at.value.get<double>();
+}
 
 void FieldReader::read(const Place& at, std::string& value) {
   if (!at.value.is_string()) refuse(at, "a text");

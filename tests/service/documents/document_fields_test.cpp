@@ -81,6 +81,19 @@ TEST(DocumentFields, TheWayToWhatCannotBeReadIsItsPointer) {
               ThrowsMessage<DocumentError>("/texts/a: expected a text, found number"));
 }
 
+TEST(DocumentFields, AWholeNumberThatItsTypeDoesNotHoldIsRefused) {
+  const auto counted = [](const std::string& count) {
+    const std::string text = R"({"count":)" + count + R"(,"list":[],"texts":{}})";
+    return read(text.c_str()).count;
+  };
+  EXPECT_EQ(counted("12"), 12);
+  EXPECT_EQ(counted("12.0"), 12);
+  EXPECT_EQ(counted("-2147483648"), std::numeric_limits<int>::min());
+  for (const char* count : {"3.3e29", "-1e300", "2147483648", "-2147483649.0", "2147483648.0", "1.5",
+                            "18446744073709551615", "9223372036854775808"})
+    EXPECT_THROW(counted(count), DocumentError) << count;
+}
+
 TEST(StatusDocument, IsWrittenAsItWasRead) {
   for (const Status& status : {Status{}, Status{.run_id = 7,
                                          .touches_total = 140,
